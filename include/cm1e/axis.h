@@ -1,0 +1,66 @@
+/**
+ * @file axis.h
+ * The PLCopen axis: AXIS_REF, its state (PLCopen Motion Control Part 1 v2.0, 2.1) and what happened to it in words.
+ * Axes are made and driven by the scheduler; programs act on them through function blocks (plcopen.h) in the cycle.
+ */
+#ifndef CM1E_AXIS_H
+#define CM1E_AXIS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "cm1e/error.h"
+#include "cm1e/iec_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** A handle, not axis data: it may be copied. 0 names no axis. */
+typedef struct AXIS_REF {
+    UINT Handle;
+} AXIS_REF_t;
+
+/** PLCopen Part 1 v2.0, figure 2. */
+typedef enum cm1e_axis_state {
+    CM1E_AXIS_DISABLED = 0,
+    CM1E_AXIS_STANDSTILL,
+    CM1E_AXIS_HOMING,
+    CM1E_AXIS_DISCRETE_MOTION,
+    CM1E_AXIS_CONTINUOUS_MOTION,
+    CM1E_AXIS_SYNCHRONIZED_MOTION,
+    CM1E_AXIS_STOPPING,
+    CM1E_AXIS_ERROR_STOP,
+    CM1E_AXIS_STATE_COUNT,
+} cm1e_axis_state_t;
+
+/** "Standstill" ... ; never NULL. @rt any */
+const char *cm1e_axis_state_name(cm1e_axis_state_t state);
+
+/** What an axis shows; one consistent copy. Units: u, u/s, % of rated torque. */
+typedef struct cm1e_axis_info {
+    cm1e_axis_state_t state;
+    double set_position, set_velocity, set_acceleration;
+    double actual_position, actual_velocity, actual_torque;
+    double position_lag;
+    bool powered, homed, online;
+    cm1e_error_t error;        /**< why the axis is in ErrorStop; CM1E_OK otherwise */
+    uint16_t device_error;     /**< 0x603F with it */
+    uint16_t digital_inputs;   /**< bit 0 = IN1 ... bit 3 = IN4 */
+    uint16_t statusword;
+    int8_t mode;               /**< 0x6061 */
+    int16_t temperature;       /**< degrees C */
+    double dc_link_voltage;    /**< V */
+} cm1e_axis_info_t;
+
+/** CM1E_ERROR_FB_AXIS_REF for a handle that names no axis. @rt cycle (call it in a program of the axis's scheduler) */
+cm1e_error_t cm1e_axis_read(AXIS_REF_t axis, cm1e_axis_info_t *info);
+/** The configured name; "" for a handle that names no axis. @rt any */
+const char *cm1e_axis_name(AXIS_REF_t axis);
+/** The axis's error as sentences: what happened, with which numbers, what to do. "" without an error. @rt block */
+void cm1e_axis_error_text(AXIS_REF_t axis, char *text, size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

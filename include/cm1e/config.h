@@ -1,0 +1,121 @@
+/**
+ * @file config.h
+ * What hangs where: the network as the application expects it. Filled by hand or read from a bus file (YAML).
+ * Plain data, made before the bus is opened; any thread, one at a time.
+ * A zero in any field means the default that its comment names.
+ */
+#ifndef CM1E_CONFIG_H
+#define CM1E_CONFIG_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "cm1e/error.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define CM1E_MAX_SLAVES 128 /**< slaves on one bus */
+#define CM1E_MAX_AXES 128   /**< axes on one bus */
+#define CM1E_NAME_LENGTH 32 /**< longest axis name, with its final 0 */
+
+/** How a slave is found (UG 4.2). */
+typedef enum cm1e_address_kind {
+    CM1E_ADDRESS_POSITION = 0, /**< by its place on the wire, 1 = first */
+    CM1E_ADDRESS_ALIAS,        /**< by the configured station alias, register 0x0012 */
+    CM1E_ADDRESS_EXPLICIT_ID,  /**< by the rotary switches (explicit device ID, register 0x0134), 1 ... 254 */
+} cm1e_address_kind_t;
+
+/** Which of the four fixed PDO mappings (UG 4.4) the slave runs with. */
+typedef enum cm1e_mapping {
+    CM1E_MAPPING_DYNAMIC = 0, /**< 0x1600/0x1A00: every mode, switchable; the default */
+    CM1E_MAPPING_CSP,         /**< 0x1601/0x1A01 */
+    CM1E_MAPPING_CSV,         /**< 0x1602/0x1A02 */
+    CM1E_MAPPING_PROFILE,     /**< 0x1603/0x1A03 */
+} cm1e_mapping_t;
+
+/** Order of the objects in the four mappings: the manual gives two (UG 4.4 and UG 7.2). Simulator only; the driver
+ *  reads the order from the device. */
+typedef enum cm1e_pdo_order {
+    CM1E_PDO_ORDER_UG_4_4 = 0,
+    CM1E_PDO_ORDER_UG_7_2,
+} cm1e_pdo_order_t;
+
+/** Defaults of MC_Home for one axis; values in axis units (u). */
+typedef struct cm1e_homing_config {
+    int8_t method;       /**< 0 none, -1/-2 hard stop CW/CCW, -3/-4 input 2 CW/CCW, -5/-6 input 3 CW/CCW (UG 6.2.4) */
+    double offset;       /**< u; the axis moves there after the reference, then calls it 0; +-3,276,700 counts */
+    double velocity;     /**< u/s; 0: 50,000 counts/s; 1,000 ... 500,000 counts/s */
+    double acceleration; /**< u/s2; 0: 100,000 counts/s2; 1,000 ... 5,000,000 counts/s2 */
+    double torque;       /**< % of rated torque, 10 ... 100; 0: 30 */
+    double timeout_s;    /**< s; 0: 60 */
+} cm1e_homing_config_t;
+
+/** The mechanics that the simulator puts behind one axis; ignored on a wire. Positions in counts of the motor shaft,
+ *  measured from the power-on position. All zero: a linear axis with a hard stop 250,000 counts to either side, input 2
+ *  active beyond +150,000 counts and input 3 active beyond -150,000 counts, a light load. */
+typedef struct cm1e_sim_axis_config {
+    double load_inertia;     /**< kg m2, reflected to the shaft; 0: 2e-6 */
+    double friction;         /**< Nm, Coulomb; 0: 0.005 */
+    double viscous_friction; /**< Nm s/rad; 0: 1e-5 */
+    double stop_positive;    /**< counts; 0: +250,000 */
+    double stop_negative;    /**< counts; 0: -250,000 */
+    bool no_stops;           /**< TRUE: turns for ever */
+    double sensor_input2;    /**< counts; IN2 is on beyond it, away from 0; 0: +150,000 */
+    double sensor_input3;    /**< counts; IN3 is on beyond it, away from 0; 0: -150,000 */
+    bool no_sensors;         /**< TRUE: nothing is wired to IN2 and IN3 */
+} cm1e_sim_axis_config_t;
+
+/** One axis: where it is, which motor, which units and limits. */
+typedef struct cm1e_axis_config {
+    char name[CM1E_NAME_LENGTH];     /**< "": "axis<n>" */
+    cm1e_address_kind_t address_kind;
+    uint16_t address;                /**< position 1 ..., alias or ID; 0: position = place in the list */
+    char motor[20];                  /**< "CM1-E-17S30D", "CM1-E-17L30D", "CM1-E-23S30D" or "CM1-E-23L20D"; "": 17S30D */
+    char firmware[12];               /**< expected or, simulated, played: "1.2.0" ... "1.3.5"; "": any, simulated 1.3.5 */
+    cm1e_mapping_t mapping;
+    double counts_per_unit;          /**< encoder counts (50,000 a revolution) per axis unit u; 0: 50,000 (u = revolution) */
+    bool invert;                     /**< TRUE: positive u is CCW */
+    double max_velocity;             /**< u/s; 0: the motor's peak speed (UG 6.3), which is also the upper bound */
+    double max_acceleration;         /**< u/s2; 0: 5,000,000 counts/s2 */
+    double max_deceleration;         /**< u/s2; 0: as max_acceleration. Also the ramp of an error stop */
+    double max_jerk;                 /**< u/s3; 0: 100,000,000 counts/s3 */
+    double software_limit_positive;  /**< u; both limits 0: none */
+    double software_limit_negative;  /**< u */
+    double max_position_lag;         /**< u; 0: 25,000 counts (half a revolution) */
+    bool velocity_in_counts_per_ms;  /**< states the unit of 0x60FF/0x606C where object 0x100A cannot be read */
+    bool velocity_unit_stated;       /**< TRUE: the field above is used instead of the firmware version */
+    bool acceleration_in_kpulses;    /**< TRUE: 0x6083/0x6084 take kpulses/s2 on the wire (device-specific, UG 7.3.17/6.2.3) */
+    cm1e_homing_config_t homing;
+    cm1e_sim_axis_config_t sim;
+} cm1e_axis_config_t;
+
+/** The whole bus. */
+typedef struct cm1e_bus_config {
+    char interface_name[64];         /**< "eth1", "sim", "sim:<bus file>"; "": "sim" */
+    char second_interface[64];       /**< second network interface of a redundant ring; "": none */
+    int64_t cycle_time_ns;           /**< 200,000, 250,000, 500,000 or 1,000,000; 0: 1,000,000 */
+    int64_t frame_timeout_ns;        /**< wait for a lost frame in the cycle; 0: a quarter of the cycle time */
+    uint32_t lost_cycles_limit;      /**< cycles in a row without valid inputs before the axes stop; 0: 3 */
+    char pcap_file[256];             /**< every frame is written there; "": none */
+    bool virtual_time;               /**< simulated segment only: time passes only inside the cycle and in waits */
+    cm1e_pdo_order_t sim_pdo_order;  /**< simulated segment only */
+    uint32_t axis_count;
+    cm1e_axis_config_t axes[CM1E_MAX_AXES];
+} cm1e_bus_config_t;
+
+/** A configuration of `axis_count` default axes at positions 1 ... n on `interface_name` (NULL: "sim"). @rt init */
+void cm1e_bus_config_init(cm1e_bus_config_t *config, const char *interface_name, uint32_t axis_count);
+
+/** Reads a bus file (YAML; format: docs/BUS-FILE.md). On failure `config` is untouched and `diag` names file, line,
+ *  column, what was found and what was expected. @rt init */
+cm1e_error_t cm1e_bus_config_load(cm1e_bus_config_t *config, const char *path, cm1e_diag_t *diag);
+
+/** Checks ranges and contradictions of a configuration made by hand (a bus file is checked on loading). @rt init */
+cm1e_error_t cm1e_bus_config_check(const cm1e_bus_config_t *config, cm1e_diag_t *diag);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

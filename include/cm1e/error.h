@@ -1,0 +1,103 @@
+/**
+ * @file error.h
+ * What can go wrong, once: every function that can fail returns a cm1e_error_t, and function blocks show the same
+ * error as ErrorID. Foreign codes (SDO abort codes, AL status codes, the drive's error codes) travel beside it
+ * unchanged. Any thread may call the functions here.
+ */
+#ifndef CM1E_ERROR_H
+#define CM1E_ERROR_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** ErrorID of a function block = CM1E_ERROR_ID_BASE - error: 0x1E01 ... 0x1EFF, a range of our own, outside
+ *  0x4000-0x4FFF and 0x8000-0x8FFF, which TwinCAT users read as NC and ADS errors. */
+#define CM1E_ERROR_ID_BASE 0x1E00
+
+/** The one list of errors: X(name, value, text). */
+#define CM1E_ERRORS(X)                                                                                              \
+    X(OK, 0, "no error")                                                                                            \
+    X(ERROR_INVALID_ARGUMENT, -1, "an argument is out of its range")                                                \
+    X(ERROR_NO_MEMORY, -2, "out of memory")                                                                         \
+    X(ERROR_NOT_FOUND, -3, "no such thing")                                                                         \
+    X(ERROR_TIMEOUT, -4, "no answer in time")                                                                       \
+    X(ERROR_PERMISSION, -5, "a privilege is missing")                                                               \
+    X(ERROR_IO, -6, "the operating system refused an input or output")                                              \
+    X(ERROR_FULL, -7, "a queue is full; try again in a later cycle")                                                \
+    X(ERROR_BUSY, -8, "an earlier request is still being worked on")                                                \
+    X(ERROR_UNSUPPORTED, -9, "the device or this library cannot do that")                                           \
+    X(ERROR_CONFIG, -10, "the configuration is wrong")                                                              \
+    X(ERROR_STATE, -11, "not allowed in this state")                                                                \
+    X(ERROR_CANCELLED, -12, "cancelled")                                                                            \
+    X(ERROR_BUS_NO_SLAVES, -20, "no EtherCAT slave answers")                                                        \
+    X(ERROR_BUS_IDENTITY, -21, "a slave is missing, extra, doubled or of another kind than configured")             \
+    X(ERROR_BUS_STATE, -22, "a slave refused or left an EtherCAT state")                                            \
+    X(ERROR_BUS_LOST, -23, "the bus does not answer: frames are lost")                                              \
+    X(ERROR_BUS_WORKING_COUNTER, -24, "the working counter is wrong: a slave did not take part in the cycle")       \
+    X(ERROR_BUS_MAILBOX, -25, "mailbox error")                                                                      \
+    X(ERROR_SDO_ABORT, -26, "the slave aborted an SDO transfer")                                                    \
+    X(ERROR_PDO_MAPPING, -27, "the PDO mapping lacks an object that the operation needs")                           \
+    X(ERROR_BUS_CYCLE_TIME, -28, "the cycle time is not one the device accepts")                                    \
+    X(ERROR_DRIVE_FAULT, -40, "the drive reports a fault")                                                          \
+    X(ERROR_DRIVE_POWER, -41, "motor power is off")                                                                 \
+    X(ERROR_DRIVE_ENABLE_LOST, -42, "the drive left Operation enabled by itself")                                   \
+    X(ERROR_DRIVE_ENABLE_TIMEOUT, -43, "the drive did not reach Operation enabled in time")                         \
+    X(ERROR_DRIVE_MODE_TIMEOUT, -44, "the drive did not confirm the mode of operation in time")                     \
+    X(ERROR_DRIVE_MODE_LOST, -45, "the drive left the commanded mode of operation")                                 \
+    X(ERROR_DRIVE_RESET_TIMEOUT, -46, "the fault did not clear")                                                    \
+    X(ERROR_AXIS_STATE, -60, "not allowed in the present state of the axis")                                        \
+    X(ERROR_AXIS_NOT_POWERED, -61, "the axis is Disabled: enable it with MC_Power")                                 \
+    X(ERROR_AXIS_ERROR_STOP, -62, "the axis is in ErrorStop: remove the cause, then MC_Reset")                      \
+    X(ERROR_AXIS_STOPPING, -63, "the axis is Stopping: MC_Stop.Execute is still TRUE or the axis still moves")      \
+    X(ERROR_AXIS_HOMING, -64, "the axis is Homing")                                                                 \
+    X(ERROR_AXIS_POSITION_RANGE, -65, "a position is not a finite number or outside the range or software limits")  \
+    X(ERROR_AXIS_VELOCITY_RANGE, -66, "the velocity is zero, not finite or above the axis's maximum")               \
+    X(ERROR_AXIS_DYNAMICS_RANGE, -67, "an acceleration, deceleration or jerk is negative, not finite or too large") \
+    X(ERROR_AXIS_DIRECTION, -68, "the direction is not allowed here")                                               \
+    X(ERROR_AXIS_DIRECTION_DISABLED, -69, "motion in this direction is disabled by MC_Power")                       \
+    X(ERROR_AXIS_BUFFER_MODE, -70, "this buffer mode is not supported here")                                        \
+    X(ERROR_AXIS_LAG, -71, "the position lag is above its limit")                                                   \
+    X(ERROR_AXIS_HOMING_FAILED, -72, "the drive reports a homing error")                                            \
+    X(ERROR_AXIS_HOMING_TIMEOUT, -73, "homing did not end in time")                                                 \
+    X(ERROR_AXIS_HOMING_METHOD, -74, "the homing method is not one of the device")                                  \
+    X(ERROR_AXIS_HOMING_PARAMETER, -75, "a homing parameter is out of the device's range")                          \
+    X(ERROR_AXIS_OFFLINE, -76, "the axis does not take part in the bus cycle")                                      \
+    X(ERROR_FB_AXIS_REF, -90, "AXIS_REF names no axis")                                                             \
+    X(ERROR_FB_AXIS_CHANGED, -91, "the axis of a busy function block was changed")                                  \
+    X(ERROR_FB_SECOND_POWER, -92, "another MC_Power controls this axis")
+
+typedef enum cm1e_error {
+#define CM1E_ERROR_ENUM(name, value, text) CM1E_##name = (value),
+    CM1E_ERRORS(CM1E_ERROR_ENUM)
+#undef CM1E_ERROR_ENUM
+} cm1e_error_t;
+
+/** One line of text for an error; never NULL, also for numbers that are no error. Static storage. @rt any */
+const char *cm1e_strerror(cm1e_error_t error);
+
+/** ErrorID (WORD) for an error, 0 for CM1E_OK. @rt cycle */
+uint16_t cm1e_error_id(cm1e_error_t error);
+
+/** The error behind an ErrorID; CM1E_ERROR_NOT_FOUND for a number that is not ours. @rt any */
+cm1e_error_t cm1e_error_from_id(uint16_t error_id);
+
+/** A diagnosis: the error, the foreign code it came with, and a sentence that names cause, place and cure.
+ *  Filled by functions that run before or beside the cycle; owned by the caller. */
+typedef struct cm1e_diag {
+    cm1e_error_t error;
+    uint32_t foreign_code; /**< SDO abort code, AL status code or drive error code; 0 where there is none */
+    char text[512];        /**< one or more sentences, no trailing newline */
+} cm1e_diag_t;
+
+/** Fills a diagnosis (printf style) and returns `error`; `diag` may be NULL. @rt block */
+cm1e_error_t cm1e_diag_set(cm1e_diag_t *diag, cm1e_error_t error, uint32_t foreign_code, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+#ifdef __cplusplus
+}
+#endif
+#endif

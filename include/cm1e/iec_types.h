@@ -1,0 +1,25 @@
+/**
+ * @file iec_types.h
+ * The elementary types of IEC 61131-3 as function blocks use them. BOOL is one byte; TIME is 64-bit nanoseconds.
+ */
+#ifndef CM1E_IEC_TYPES_H
+#define CM1E_IEC_TYPES_H
+
+#include <stdint.h>
+
+typedef uint8_t BOOL;
+typedef int16_t INT;
+typedef uint16_t UINT;
+typedef uint16_t WORD;
+typedef uint32_t DWORD;
+typedef double LREAL;
+typedef int64_t TIME;
+
+#ifndef TRUE
+#define TRUE 1
+#endif
+#ifndef FALSE
+#define FALSE 0
+#endif
+
+#endif

@@ -1,0 +1,92 @@
+/**
+ * @file scheduler.h
+ * The cycle: receive -> inputs -> programs -> axes -> outputs -> send, on a real-time thread or on virtual time.
+ * IEC 61131-3 tasks (interval, priority) run their programs in it, highest priority first, never in parallel.
+ */
+#ifndef CM1E_SCHEDULER_H
+#define CM1E_SCHEDULER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "cm1e/axis.h"
+#include "cm1e/bus.h"
+#include "cm1e/error.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct cm1e_scheduler cm1e_scheduler_t;
+
+/** A program: called in the cycle; must return soon, allocate nothing, wait for nothing. */
+typedef void (*cm1e_program_t)(void *context);
+
+typedef struct cm1e_task_config {
+    const char *name;       /**< "": "task<n>"; copied */
+    int64_t interval_ns;    /**< a multiple of the bus cycle; 0: every cycle */
+    uint32_t priority;      /**< IEC 61131-3: 0 = highest; equal ones run in the order they were added */
+    cm1e_program_t program;
+    void *context;
+} cm1e_task_config_t;
+
+/** A zero means the default. */
+typedef struct cm1e_scheduler_config {
+    int realtime_priority;      /**< SCHED_FIFO priority 1 ... 98; 0: 80; -1: do not ask for real time */
+    int cpu;                    /**< bind to this CPU (1 = first); 0: any */
+    bool realtime_required;     /**< TRUE: a missing privilege is an error; FALSE: a warning in the statistics */
+    int64_t stop_timeout_ns;    /**< longest ramp-down at the end; 0: 10 s */
+    uint32_t trace_capacity;    /**< cycles that the trace keeps per axis; 0: no trace */
+    uint32_t trace_every;       /**< record every n-th cycle; 0: 1 */
+} cm1e_scheduler_config_t;
+
+enum { CM1E_MAX_TASKS = 16, CM1E_HISTOGRAM_BUCKETS = 32 };
+
+/** Distribution of a time in ns; bucket n counts values below 2^n us ... in steps of a factor 2 from 1 us. */
+typedef struct cm1e_distribution {
+    int64_t minimum_ns, maximum_ns, sum_ns;
+    uint64_t count;
+    uint64_t histogram[CM1E_HISTOGRAM_BUCKETS];
+} cm1e_distribution_t;
+
+typedef struct cm1e_scheduler_statistics {
+    cm1e_distribution_t cycle_time, wake_up_latency, execution_time;
+    uint64_t cycles, overruns;   /**< overrun: the work of a cycle ended after the next one's start */
+    cm1e_bus_counters_t bus;
+    bool realtime;               /**< SCHED_FIFO and locked memory are in force */
+    char advice[256];            /**< what to do where a privilege is missing; "" if none is */
+} cm1e_scheduler_statistics_t;
+
+/** For a bus in Operational; makes one axis per configured axis. `config` NULL: defaults. The bus must outlive it.
+ *  @rt init */
+cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus, const cm1e_scheduler_config_t *config,
+                                   cm1e_diag_t *diag);
+void cm1e_scheduler_destroy(cm1e_scheduler_t *scheduler);
+/** Before the scheduler runs. The interval must be a multiple of the bus cycle. @rt init */
+cm1e_error_t cm1e_scheduler_add_task(cm1e_scheduler_t *scheduler, const cm1e_task_config_t *task, cm1e_diag_t *diag);
+/** The reference of configured axis `index` (0 = first), or of the axis called `name`; Handle 0: none. @rt any */
+AXIS_REF_t cm1e_scheduler_axis(const cm1e_scheduler_t *scheduler, uint32_t index);
+AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *scheduler, const char *name);
+
+/** Runs the cycle in the calling thread for `duration_ns` (0: until cm1e_scheduler_stop()), then stops in order: axes
+ *  ramp down, drives are disabled, slaves go to Safe-Operational and Init. Returns the first error that ended it early
+ *  (bus lost for good ...), else CM1E_OK. @rt init */
+cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns, cm1e_diag_t *diag);
+/** Asks the run to end in order. Any thread, any program, any signal handler. @rt any */
+void cm1e_scheduler_stop(cm1e_scheduler_t *scheduler);
+/** SIGINT and SIGTERM stop this scheduler in order. One scheduler per process. @rt init */
+void cm1e_scheduler_stop_on_signals(cm1e_scheduler_t *scheduler);
+/** Time since the first cycle, the same for a whole scan. @rt cycle */
+int64_t cm1e_scheduler_time_ns(const cm1e_scheduler_t *scheduler);
+/** After the run, or from a program. @rt cycle */
+void cm1e_scheduler_statistics(const cm1e_scheduler_t *scheduler, cm1e_scheduler_statistics_t *statistics);
+
+/** Writes the trace (time; per axis: state, set and actual position and velocity, torque) as CSV, or as an SVG plot
+ *  with one panel per axis and quantity. To a temporary name, then renamed. After the run. @rt block */
+cm1e_error_t cm1e_scheduler_write_csv(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);
+cm1e_error_t cm1e_scheduler_write_svg(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

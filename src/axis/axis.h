@@ -1,0 +1,88 @@
+/**
+ * @file axis/axis.h
+ * The axis as scheduler and function blocks see it. The scheduler calls cm1e_axis_inputs() before and
+ * cm1e_axis_outputs() after the programs of a cycle; function blocks post commands between the two and poll them by
+ * number. The axis never touches a function block's memory, so a block may vanish at any time. All in the cycle thread.
+ */
+#ifndef CM1E_AXIS_AXIS_H
+#define CM1E_AXIS_AXIS_H
+
+#include "cm1e/axis.h"
+#include "cm1e/plcopen.h"
+#include "drive/drive.h"
+
+typedef struct cm1e_axis cm1e_axis_t;
+
+typedef enum cm1e_command_kind {
+    CM1E_COMMAND_MOVE_ABSOLUTE = 0,
+    CM1E_COMMAND_MOVE_RELATIVE,
+    CM1E_COMMAND_MOVE_VELOCITY,
+    CM1E_COMMAND_HALT,
+    CM1E_COMMAND_STOP,
+    CM1E_COMMAND_HOME,
+    CM1E_COMMAND_KIND_COUNT,
+} cm1e_command_kind_t;
+
+/** A motion command as a function block posts it. Zero acceleration, deceleration or jerk: the axis's maximum. */
+typedef struct cm1e_axis_command {
+    cm1e_command_kind_t kind;
+    double position;       /**< u: target, or distance */
+    double velocity, acceleration, deceleration, jerk;
+    MC_DIRECTION direction;
+    MC_BUFFER_MODE buffer_mode;
+    const cm1e_homing_config_t *homing; /**< HOME: parameters, copied; NULL: the axis's configured ones */
+} cm1e_axis_command_t;
+
+/** 0 is no command. */
+typedef uint32_t cm1e_command_id_t;
+
+typedef enum cm1e_command_state {
+    CM1E_COMMAND_UNKNOWN = 0, /**< forgotten: too many commands since */
+    CM1E_COMMAND_ACTIVE,
+    CM1E_COMMAND_DONE,
+    CM1E_COMMAND_ABORTED,
+    CM1E_COMMAND_ERROR,
+} cm1e_command_state_t;
+
+typedef struct cm1e_command_status {
+    cm1e_command_state_t state;
+    cm1e_error_t error;   /**< with CM1E_COMMAND_ERROR */
+    bool in_velocity;     /**< MOVE_VELOCITY: set velocity = commanded velocity */
+} cm1e_command_status_t;
+
+/** Makes the axis of drive `index` and registers its handle. @rt init */
+cm1e_error_t cm1e_axis_create(cm1e_axis_t **axis, cm1e_bus_t *bus, uint32_t index, cm1e_diag_t *diag);
+void cm1e_axis_destroy(cm1e_axis_t *axis);
+AXIS_REF_t cm1e_axis_reference(const cm1e_axis_t *axis);
+/** NULL: the handle names no axis. @rt cycle */
+cm1e_axis_t *cm1e_axis_from_reference(const AXIS_REF_t *reference);
+
+/** Takes in the cycle's feedback and lets errors act. `health` is cm1e_bus_health(). @rt cycle */
+void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t health, int64_t now_ns);
+/** Next set-point, state diagram, drive outputs. @rt cycle */
+void cm1e_axis_outputs(cm1e_axis_t *axis);
+
+/** Starts a command or refuses it (then *id is 0). @rt cycle */
+cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_command_id_t id);
+/** MC_Stop.Execute is (still) TRUE: while it is, the axis stays Stopping. @rt cycle */
+void cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold);
+
+/** MC_Power, called every cycle by its one owner (any non-NULL pointer that identifies the block).
+ *  CM1E_ERROR_FB_SECOND_POWER: another one owns it. @rt cycle */
+cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, bool enable_positive,
+                             bool enable_negative);
+/** Power stage on: MC_Power.Status. @rt cycle */
+bool cm1e_axis_powered(const cm1e_axis_t *axis);
+/** MC_Reset: starts; poll with cm1e_axis_reset_state(). @rt cycle */
+cm1e_error_t cm1e_axis_reset(cm1e_axis_t *axis);
+cm1e_command_state_t cm1e_axis_reset_state(const cm1e_axis_t *axis, cm1e_error_t *error);
+
+void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info);
+const cm1e_axis_config_t *cm1e_axis_configuration(const cm1e_axis_t *axis);
+
+/** Orderly end: ramp down whatever runs, then disable. TRUE when the drive is disabled (or gone). Call every cycle
+ *  instead of the programs. @rt cycle */
+bool cm1e_axis_shut_down(cm1e_axis_t *axis);
+
+#endif

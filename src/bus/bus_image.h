@@ -1,0 +1,43 @@
+/**
+ * @file bus_image.h
+ * What the drive room sees of the bus: the process image, located by object, resolved once at start-up.
+ */
+#ifndef CM1E_BUS_BUS_IMAGE_H
+#define CM1E_BUS_BUS_IMAGE_H
+
+#include "cm1e/bus.h"
+#include "core/clock.h"
+#include "device/device.h"
+
+/** Where an object lies in the process image. `bytes` 0: it is not mapped. */
+typedef struct cm1e_image_slot {
+    uint32_t offset; /**< from cm1e_bus_outputs() or cm1e_bus_inputs() */
+    uint8_t bytes;   /**< 1 ... 4 */
+} cm1e_image_slot_t;
+
+/** Finds an object in the mapping read from slave `position`; bytes 0 where it is not mapped. @rt init */
+cm1e_image_slot_t cm1e_bus_find_output(const cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex);
+cm1e_image_slot_t cm1e_bus_find_input(const cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex);
+
+/** The image itself, valid from cm1e_bus_configure() on. @rt cycle */
+uint8_t *cm1e_bus_outputs(cm1e_bus_t *bus);
+const uint8_t *cm1e_bus_inputs(const cm1e_bus_t *bus);
+
+/** AL state and status code of a slave as last seen by the supervision in the cycle (0: not seen yet); `lost`: it does
+ *  not answer at its address. @rt cycle */
+typedef struct cm1e_slave_watch {
+    uint16_t al_state, al_status_code;
+    bool lost;
+} cm1e_slave_watch_t;
+cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position);
+/** Asks the supervision to bring a slave that came back (reset, power cycle, replug) to Operational again, with its
+ *  configuration, while the cycle runs. Progress is seen through cm1e_bus_slave_watch(). @rt cycle */
+void cm1e_bus_request_recovery(cm1e_bus_t *bus, uint16_t position);
+
+cm1e_clock_t *cm1e_bus_clock(cm1e_bus_t *bus);
+/** The firmware of a slave as object 0x100A tells; NULL: unreadable. @rt init */
+const cm1e_firmware_info_t *cm1e_bus_slave_firmware(const cm1e_bus_t *bus, uint16_t position);
+/** For tests: the nic below. */
+struct cm1e_nic *cm1e_bus_nic(cm1e_bus_t *bus);
+
+#endif

@@ -1,0 +1,38 @@
+/**
+ * @file clock.h
+ * The one clock seam: all time in the library, SOEM's included, comes from here. Monotonic time of the machine, or a
+ * virtual clock that only advances when somebody waits on it. Times are int64_t nanoseconds.
+ */
+#ifndef CM1E_CORE_CLOCK_H
+#define CM1E_CORE_CLOCK_H
+
+#include <stdint.h>
+
+typedef struct cm1e_clock cm1e_clock_t;
+
+typedef struct cm1e_clock_ops {
+    int64_t (*now_ns)(const cm1e_clock_t *clock);
+    void (*sleep_until_ns)(cm1e_clock_t *clock, int64_t time_ns); /**< absolute; returns at once if past */
+} cm1e_clock_ops_t;
+
+struct cm1e_clock {
+    const cm1e_clock_ops_t *ops;
+    int64_t virtual_now_ns; /**< virtual clock only */
+};
+
+static inline int64_t cm1e_clock_now(const cm1e_clock_t *clock) { return clock->ops->now_ns(clock); }
+static inline void cm1e_clock_sleep_until(cm1e_clock_t *clock, int64_t time_ns)
+{
+    clock->ops->sleep_until_ns(clock, time_ns);
+}
+
+/** CLOCK_MONOTONIC, slept on with absolute time. Shared, never freed. @rt any */
+cm1e_clock_t *cm1e_clock_monotonic(void);
+/** A clock that stands at `start_ns` and is moved by cm1e_clock_sleep_until() only. @rt any */
+void cm1e_clock_init_virtual(cm1e_clock_t *clock, int64_t start_ns);
+
+/** The clock of the calling thread: what SOEM's osal functions use. Default: monotonic. Thread local. @rt cycle */
+cm1e_clock_t *cm1e_clock_current(void);
+void cm1e_clock_make_current(cm1e_clock_t *clock);
+
+#endif

@@ -1,0 +1,94 @@
+/**
+ * @file drive.h
+ * One CiA 402 drive in one slave: its process data by name, its state machine, mode switching, homing, fault reset, and
+ * faults in words. Counts and counts/s; units and motion belong to the axis. The cycle thread owns it.
+ *
+ * Rules kept here whatever the caller asks: the drive goes to Operation enabled only with target position = actual
+ * position and target velocity = 0; a fault reset is one short edge; nothing is re-enabled by itself after a fault.
+ */
+#ifndef CM1E_DRIVE_DRIVE_H
+#define CM1E_DRIVE_DRIVE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "bus/bus_image.h"
+#include "cia402/cia402.h"
+#include "cm1e/bus.h"
+
+/** What the caller wants of the drive; written every cycle before cm1e_drive_write(). */
+typedef struct cm1e_drive_command {
+    bool enable;                    /**< Operation enabled, if possible */
+    bool reset;                     /**< rising edge: one fault reset attempt */
+    cm1e_mode_t mode;               /**< CSP, CSV, PP, PV or HM */
+    int32_t target_position;        /**< counts; CSP, PP. Used only while `enabled` is TRUE */
+    int32_t target_velocity;        /**< counts/s; CSV, PV */
+    bool homing_start;              /**< HM: rising edge starts, FALSE ends (controlword bit 4) */
+    bool halt;                      /**< PP, PV, HM: controlword bit 8 */
+    uint16_t digital_outputs;       /**< 0x60FE */
+} cm1e_drive_command_t;
+
+/** What the drive shows, fresh after cm1e_drive_read(). */
+typedef struct cm1e_drive_feedback {
+    bool online;                    /**< the inputs of this cycle are valid */
+    uint16_t statusword, error_code;
+    cm1e_fsa_state_t state;
+    int8_t mode;                    /**< 0x6061 */
+    int32_t position;               /**< counts, wraps */
+    int32_t velocity;               /**< counts/s, whatever the firmware's unit; 0 where the mapping lacks it */
+    int16_t torque;                 /**< 0.1 % of rated torque */
+    uint16_t digital_inputs;
+    int16_t temperature;            /**< degrees C */
+    int32_t dc_link_decivolt;
+    bool enabled;                   /**< Operation enabled and in the commanded mode: set-points act */
+    bool voltage;                   /**< motor power is on (statusword bit 4) */
+    bool fault;
+    bool target_reached, bit12, bit13; /**< per mode: UG 6.2 */
+} cm1e_drive_feedback_t;
+
+/** Why the drive stopped being enabled, or did not become so. */
+typedef struct cm1e_drive_fault {
+    cm1e_error_t error;             /**< CM1E_OK: none */
+    uint16_t device_code;           /**< 0x603F at that moment, 0: none */
+    uint16_t statusword;
+    int8_t mode_commanded, mode_shown;
+    uint16_t al_state, al_status_code;
+} cm1e_drive_fault_t;
+
+typedef struct cm1e_drive {
+    cm1e_bus_t *bus;
+    uint32_t axis;                  /**< index in the configuration */
+    uint16_t position;              /**< slave */
+    const cm1e_axis_config_t *config;
+    const cm1e_motor_t *motor;
+    const cm1e_firmware_info_t *firmware;
+    cm1e_drive_command_t command;
+    cm1e_drive_feedback_t feedback;
+    cm1e_drive_fault_t fault;       /**< latched; cleared by a successful reset */
+    /* private: drive.c */
+    cm1e_image_slot_t out_controlword, out_position, out_velocity, out_mode, out_digital, out_profile_velocity,
+        out_profile_acceleration;
+    cm1e_image_slot_t in_statusword, in_error, in_position, in_velocity, in_torque, in_digital, in_temperature, in_dc,
+        in_mode;
+    double velocity_scale;          /**< counts/s per unit of 0x60FF and 0x606C */
+    int64_t now_ns, enable_deadline_ns, mode_deadline_ns, reset_until_ns, reset_deadline_ns;
+    bool was_enabled, reset_before;
+    uint8_t reset_phase;
+} cm1e_drive_t;
+
+/** Resolves the objects of the mapping. A mapping that lacks an object the configured use needs is
+ *  CM1E_ERROR_PDO_MAPPING naming the object; an unreadable firmware version with no unit stated is CM1E_ERROR_CONFIG.
+ *  @rt init */
+cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis, cm1e_diag_t *diag);
+/** Decodes the inputs of this cycle; `bus_ok` FALSE: they are old. Latches faults. @rt cycle */
+void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns);
+/** Encodes the outputs from `command` under the rules above. @rt cycle */
+void cm1e_drive_write(cm1e_drive_t *drive);
+/** TRUE while a commanded reset is under way. @rt cycle */
+bool cm1e_drive_resetting(const cm1e_drive_t *drive);
+/** Whether the mapping allows a mode (its objects are mapped, or the mode can be set and shown). @rt cycle */
+bool cm1e_drive_supports(const cm1e_drive_t *drive, cm1e_mode_t mode);
+/** The latched fault as sentences: cause, numbers, cure. @rt block */
+void cm1e_drive_fault_text(const cm1e_drive_t *drive, char *text, size_t size);
+
+#endif

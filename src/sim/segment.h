@@ -1,0 +1,67 @@
+/**
+ * @file segment.h
+ * A simulated EtherCAT segment: a line (or ring) of slaves that takes an Ethernet frame and gives back what the wire
+ * would. One thread at a time; the frame path allocates nothing. Time is passed in, so it may be virtual.
+ */
+#ifndef CM1E_SIM_SEGMENT_H
+#define CM1E_SIM_SEGMENT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cm1e/config.h"
+
+typedef struct cm1e_sim_segment cm1e_sim_segment_t;
+typedef struct cm1e_sim_slave cm1e_sim_slave_t;
+typedef struct cm1e_sim_cm1e cm1e_sim_cm1e_t;
+
+/** The network that a configuration describes: one CM1-E per axis, placed by position, alias or explicit ID (aliases
+ *  and IDs are set in the simulated devices in the order of the list). NULL and a diagnosis on failure. */
+cm1e_sim_segment_t *cm1e_sim_segment_create(const cm1e_bus_config_t *config, cm1e_diag_t *diag);
+/** An empty segment, to which slaves are added in the order of the line; it owns them. */
+cm1e_sim_segment_t *cm1e_sim_segment_create_empty(void);
+cm1e_error_t cm1e_sim_segment_add(cm1e_sim_segment_t *segment, cm1e_sim_slave_t *slave);
+void cm1e_sim_segment_destroy(cm1e_sim_segment_t *segment);
+
+uint32_t cm1e_sim_segment_slave_count(const cm1e_sim_segment_t *segment);
+/** 1 = first; NULL: none. */
+cm1e_sim_slave_t *cm1e_sim_segment_slave(cm1e_sim_segment_t *segment, uint32_t position);
+
+enum { CM1E_SIM_PORT_PRIMARY = 0, CM1E_SIM_PORT_SECONDARY = 1, CM1E_SIM_PORT_LOST = -1 };
+
+/** Sends an Ethernet frame (from destination MAC on, without FCS) through the segment, in place; returns the port at
+ *  which it comes out, or CM1E_SIM_PORT_LOST. A line gives it back at the entry port; a closed ring
+ *  (cm1e_sim_segment_close_ring()) at the other one. Frames that are not EtherCAT are lost. */
+int cm1e_sim_segment_process(cm1e_sim_segment_t *segment, int entry_port, uint8_t *frame, size_t length, int64_t now_ns);
+/** Lets simulated time pass without a frame (watchdogs, mechanics). */
+void cm1e_sim_segment_advance(cm1e_sim_segment_t *segment, int64_t now_ns);
+
+/** The secondary network interface is connected behind the last slave. */
+void cm1e_sim_segment_close_ring(cm1e_sim_segment_t *segment);
+/** Cuts (or mends) the cable before slave `position` (1 = between master and first; count + 1 = the ring's last). */
+void cm1e_sim_segment_cut(cm1e_sim_segment_t *segment, uint32_t position, bool cut);
+
+/** Faults on the next frames as the console sets them; the backend asks before it delivers a frame. Consumes one. */
+typedef enum cm1e_frame_fault { CM1E_FRAME_OK = 0, CM1E_FRAME_LOSE, CM1E_FRAME_CORRUPT, CM1E_FRAME_DELAY } cm1e_frame_fault_t;
+cm1e_frame_fault_t cm1e_sim_segment_next_frame_fault(cm1e_sim_segment_t *segment, int64_t *delay_ns);
+
+/** One console line ("help" lists them): acts on the segment and writes an answer without trailing newline. Lines come
+ *  from `cm1e sim`, tests and cm1e_bus_simulate(). Returns CM1E_OK, or an error whose reason is the answer. */
+cm1e_error_t cm1e_sim_console(cm1e_sim_segment_t *segment, const char *line, char *answer, size_t size);
+
+/* ---- what tests measure behind a drive (NULL-safe; position 1 = first; not a CM1-E: zeros) ------------------------- */
+typedef struct cm1e_sim_probe {
+    double position_counts;   /**< of the shaft, exact, since power-on (homing does not change it) */
+    double velocity_counts_per_s;
+    double torque_nm;         /**< motor torque */
+    bool torque_on;           /**< the output stage is on (Section C, UG 6.1.1) */
+    uint16_t statusword, controlword, error_code;
+    int8_t mode;
+    double peak_velocity_counts_per_s; /**< largest absolute value since the last cm1e_sim_probe_reset() */
+    double travel_counts;     /**< sum of absolute movement since the last reset */
+} cm1e_sim_probe_t;
+void cm1e_sim_probe(cm1e_sim_segment_t *segment, uint32_t position, cm1e_sim_probe_t *probe);
+void cm1e_sim_probe_reset(cm1e_sim_segment_t *segment, uint32_t position);
+
+#endif
