@@ -45,6 +45,9 @@ void cm1e_sim_segment_cut(cm1e_sim_segment_t *segment, uint32_t position, bool c
 /** Faults on the next frames as the console sets them; the backend asks before it delivers a frame. Consumes one. */
 typedef enum cm1e_frame_fault { CM1E_FRAME_OK = 0, CM1E_FRAME_LOSE, CM1E_FRAME_CORRUPT, CM1E_FRAME_DELAY } cm1e_frame_fault_t;
 cm1e_frame_fault_t cm1e_sim_segment_next_frame_fault(cm1e_sim_segment_t *segment, int64_t *delay_ns);
+/** Sets that fault on the next `count` frames (`delay_ns`: CM1E_FRAME_DELAY only); replaces what was set before. */
+void cm1e_sim_segment_set_frame_fault(cm1e_sim_segment_t *segment, cm1e_frame_fault_t kind, uint32_t count,
+                                      int64_t delay_ns);
 
 /** One console line ("help" lists them): acts on the segment and writes an answer without trailing newline. Lines come
  *  from `cm1e sim`, tests and cm1e_bus_simulate(). Returns CM1E_OK, or an error whose reason is the answer. */
