@@ -87,7 +87,8 @@ typedef struct cm1e_firmware_info {
 
 /** Never NULL for a valid enumerator. */
 const cm1e_firmware_info_t *cm1e_firmware_info(cm1e_firmware_t firmware);
-/** The newest known firmware not newer than `version` ("1.3.5", "V1.3.5", "1.3.7"); NULL where it cannot be parsed. */
+/** The newest known firmware not newer than `version` ("1.3.5", "V1.3.5", "1.3.7"), the oldest known one for any older
+ *  version; NULL where it cannot be parsed. */
 const cm1e_firmware_info_t *cm1e_firmware_from_version(const char *version);
 
 /* ---- object dictionary -------------------------------------------------------------------------------------------- */
@@ -118,6 +119,7 @@ typedef struct cm1e_entry {
     const char *unit;      /**< "" where there is none */
     int64_t default_value, minimum, maximum;
     uint32_t round_to;
+    int64_t kept_minimum;  /**< a smaller value is accepted and kept as this one (UG 6.2.2: 0x6083, 0x6084); 0: none */
     const char *default_string; /**< CM1E_TYPE_STRING only */
     cm1e_firmware_t since;
 } cm1e_entry_t;
@@ -200,7 +202,7 @@ extern const size_t cm1e_device_error_count;
 const cm1e_device_error_t *cm1e_device_error(uint16_t code);
 
 /** Homing parameter ranges and rounding as the dictionary has them are in cm1e_device_entry(); this rounds a value as
- *  the device does (nearest multiple of round_to, half away from zero), without checking the range. */
+ *  the device does (nearest multiple of round_to, half away from zero, at least kept_minimum), without checking the range. */
 int64_t cm1e_entry_round(const cm1e_entry_t *entry, int64_t value);
 
 #endif
