@@ -1,0 +1,320 @@
+/** cm1e move, cm1e home: one axis, enabled, moved or homed, and disabled again, by a program of function blocks. */
+#include <stdio.h>
+#include <string.h>
+
+#include "cm1e/plcopen.h"
+#include "cm1e/scheduler.h"
+#include "command.h"
+
+enum { KEY_TO = 0x300, KEY_BY, KEY_SPEED, KEY_FOR, KEY_JERK, KEY_METHOD, KEY_OFFSET, KEY_TORQUE, KEY_POSITION, KEY_CSV,
+       KEY_SVG };
+
+typedef enum motion_kind { MOTION_NONE = 0, MOTION_TO, MOTION_BY, MOTION_SPEED, MOTION_HOME } motion_kind_t;
+
+typedef struct motion_options {
+    common_options_t common;
+    const char *axis_word, *csv_file, *svg_file;
+    motion_kind_t kind;
+    double target, velocity, acceleration, deceleration, jerk, seconds, home_position;
+    cm1e_homing_config_t homing;
+    bool homing_given;
+} motion_options_t;
+
+typedef enum motion_step { STEP_POWER, STEP_RUN, STEP_HALT, STEP_POWER_OFF, STEP_END } motion_step_t;
+
+/** The program: its blocks, its step, and what came out. */
+typedef struct motion_program {
+    const motion_options_t *options;
+    cm1e_scheduler_t *scheduler;
+    AXIS_REF_t axis;
+    motion_step_t step;
+    MC_Power_t power;
+    MC_MoveAbsolute_t move_absolute;
+    MC_MoveRelative_t move_relative;
+    MC_MoveVelocity_t move_velocity;
+    MC_Halt_t halt;
+    MC_Home_t home;
+    cm1e_axis_info_t before, after;
+    int64_t started_ns, ended_ns;
+    WORD error_id;
+    BOOL failed, done;
+} motion_program_t;
+
+static error_t set_kind(struct argp_state *state, motion_options_t *options, motion_kind_t kind, double *value,
+                        char *arg, const char *what)
+{
+    if (options->kind != MOTION_NONE)
+        argp_error(state, "--to, --by and --speed exclude each other");
+    options->kind = kind;
+    return parse_real(arg, what, value) ? 0 : EINVAL;
+}
+
+static error_t parse_real_option(char *arg, const char *what, double *value)
+{
+    return parse_real(arg, what, value) ? 0 : EINVAL;
+}
+
+static error_t parse_axis(char *arg, struct argp_state *state, motion_options_t *options)
+{
+    if (options->axis_word)
+        argp_error(state, "one axis at a time; \"%s\" is too many", arg);
+    options->axis_word = arg;
+    return 0;
+}
+
+static error_t parse_move(int key, char *arg, struct argp_state *state)
+{
+    motion_options_t *options = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case KEY_TO: return set_kind(state, options, MOTION_TO, &options->target, arg, "the target position");
+    case KEY_BY: return set_kind(state, options, MOTION_BY, &options->target, arg, "the distance");
+    case KEY_SPEED: return set_kind(state, options, MOTION_SPEED, &options->velocity, arg, "the speed");
+    case KEY_FOR: return parse_real_option(arg, "the time", &options->seconds);
+    case 'v': return parse_real_option(arg, "the velocity", &options->velocity);
+    case 'a': return parse_real_option(arg, "the acceleration", &options->acceleration);
+    case 'd': return parse_real_option(arg, "the deceleration", &options->deceleration);
+    case KEY_JERK: return parse_real_option(arg, "the jerk", &options->jerk);
+    case KEY_CSV: options->csv_file = arg; return 0;
+    case KEY_SVG: options->svg_file = arg; return 0;
+    case ARGP_KEY_ARG: return parse_axis(arg, state, options);
+    case ARGP_KEY_END:
+        if (options->kind == MOTION_NONE)
+            argp_error(state, "say where to: --to POSITION, --by DISTANCE, or --speed VELOCITY --for SECONDS");
+        if (options->kind == MOTION_SPEED && !(options->seconds > 0))
+            argp_error(state, "--speed needs --for SECONDS, more than 0");
+        return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static error_t parse_home(int key, char *arg, struct argp_state *state)
+{
+    motion_options_t *options = state->input;
+    long long method;
+    switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case KEY_METHOD:
+        options->homing_given = true;
+        if (!parse_number(arg, "the homing method", -6, 0, &method))
+            return EINVAL;
+        options->homing.method = (int8_t)method;
+        return 0;
+    case 'v': return parse_real_option(arg, "the velocity", &options->homing.velocity);
+    case 'a': return parse_real_option(arg, "the acceleration", &options->homing.acceleration);
+    case KEY_OFFSET: return parse_real_option(arg, "the offset", &options->homing.offset);
+    case KEY_TORQUE: return parse_real_option(arg, "the torque", &options->homing.torque);
+    case KEY_FOR: return parse_real_option(arg, "the time", &options->homing.timeout_s);
+    case KEY_POSITION: return parse_real_option(arg, "the position", &options->home_position);
+    case KEY_CSV: options->csv_file = arg; return 0;
+    case KEY_SVG: options->svg_file = arg; return 0;
+    case ARGP_KEY_ARG: return parse_axis(arg, state, options);
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static void finish(motion_program_t *p, BOOL done, BOOL failed, WORD error_id)
+{
+    p->done = done;
+    p->failed = failed;
+    p->error_id = error_id;
+    p->step = STEP_POWER_OFF;
+    p->ended_ns = cm1e_scheduler_time_ns(p->scheduler);
+    cm1e_axis_read(p->axis, &p->after);
+}
+
+static void call_blocks(motion_program_t *p)
+{
+    MC_Power(&p->power);
+    MC_MoveAbsolute(&p->move_absolute);
+    MC_MoveRelative(&p->move_relative);
+    MC_MoveVelocity(&p->move_velocity);
+    MC_Halt(&p->halt);
+    MC_Home(&p->home);
+}
+
+static void start_motion(motion_program_t *p)
+{
+    cm1e_axis_read(p->axis, &p->before);
+    p->started_ns = cm1e_scheduler_time_ns(p->scheduler);
+    p->move_absolute.Execute = p->options->kind == MOTION_TO;
+    p->move_relative.Execute = p->options->kind == MOTION_BY;
+    p->move_velocity.Execute = p->options->kind == MOTION_SPEED;
+    p->home.Execute = p->options->kind == MOTION_HOME;
+    p->step = STEP_RUN;
+}
+
+static void watch_motion(motion_program_t *p)
+{
+    const BOOL done = p->move_absolute.Done || p->move_relative.Done || p->home.Done || p->halt.Done;
+    const BOOL failed = p->move_absolute.Error || p->move_relative.Error || p->move_velocity.Error || p->home.Error
+                        || p->halt.Error;
+    const WORD error_id = p->move_absolute.ErrorID | p->move_relative.ErrorID | p->move_velocity.ErrorID
+                          | p->home.ErrorID | p->halt.ErrorID;
+    if (done || failed)
+        finish(p, done && !failed, failed, error_id);
+    else if (p->options->kind == MOTION_SPEED && p->step == STEP_RUN
+             && cm1e_scheduler_time_ns(p->scheduler) - p->started_ns > (int64_t)(p->options->seconds * 1e9)) {
+        p->halt.Execute = TRUE;
+        p->step = STEP_HALT;
+    }
+}
+
+static void program(void *context)
+{
+    motion_program_t *p = context;
+    cm1e_axis_info_t info;
+    cm1e_axis_read(p->axis, &info);
+    p->power.Enable = p->step < STEP_POWER_OFF;
+    call_blocks(p);
+    switch (p->step) {
+    case STEP_POWER:
+        if (p->power.Error || info.state == CM1E_AXIS_ERROR_STOP)
+            finish(p, FALSE, TRUE, p->power.Error ? p->power.ErrorID : cm1e_error_id(info.error));
+        else if (p->power.Status)
+            start_motion(p);
+        break;
+    case STEP_RUN:
+    case STEP_HALT:
+        watch_motion(p);
+        break;
+    case STEP_POWER_OFF:
+        if (!p->power.Status)
+            p->step = STEP_END;
+        break;
+    case STEP_END:
+        cm1e_scheduler_stop(p->scheduler);
+        break;
+    }
+}
+
+static void prepare(motion_program_t *p, const motion_options_t *options)
+{
+    p->options = options;
+    p->power = (MC_Power_t){.Axis = &p->axis, .EnablePositive = TRUE, .EnableNegative = TRUE};
+    p->halt = (MC_Halt_t){.Axis = &p->axis, .Deceleration = options->deceleration, .Jerk = options->jerk};
+    p->home = (MC_Home_t){.Axis = &p->axis, .Position = options->home_position,
+                          .Parameters = options->homing_given ? &options->homing : NULL};
+    p->move_absolute = (MC_MoveAbsolute_t){
+        .Axis = &p->axis, .Position = options->target, .Velocity = options->velocity,
+        .Acceleration = options->acceleration, .Deceleration = options->deceleration, .Jerk = options->jerk};
+    p->move_relative = (MC_MoveRelative_t){
+        .Axis = &p->axis, .Distance = options->target, .Velocity = options->velocity,
+        .Acceleration = options->acceleration, .Deceleration = options->deceleration, .Jerk = options->jerk};
+    p->move_velocity = (MC_MoveVelocity_t){
+        .Axis = &p->axis, .Velocity = options->velocity, .Direction = mcPositiveDirection,
+        .Acceleration = options->acceleration, .Deceleration = options->deceleration, .Jerk = options->jerk};
+}
+
+static int report(const motion_program_t *p, const char *what)
+{
+    const double seconds = (double)(p->ended_ns - p->started_ns) * 1e-9;
+    char text[512] = "";
+    cm1e_axis_error_text(p->axis, text, sizeof text);
+    if (p->options->common.json)
+        print_json(json_pack("{s:s, s:s, s:b, s:f, s:f, s:f, s:s, s:s}", "axis", cm1e_axis_name(p->axis), "command",
+                             what, "done", p->done, "from", p->before.actual_position, "to", p->after.actual_position,
+                             "seconds", p->done ? seconds : 0.0, "error",
+                             p->failed ? cm1e_strerror(cm1e_error_from_id(p->error_id)) : "", "details", text));
+    else if (p->done)
+        printf("%s: %s done in %.3f s, from %.6g to %.6g\n", cm1e_axis_name(p->axis), what, seconds,
+               p->before.actual_position, p->after.actual_position);
+    if (p->failed)
+        complain("%s: %s. %s", cm1e_axis_name(p->axis), cm1e_strerror(cm1e_error_from_id(p->error_id)), text);
+    else if (!p->done)
+        complain("%s: %s was interrupted", cm1e_axis_name(p->axis), what);
+    return p->done ? EXIT_OK : EXIT_FAILED;
+}
+
+static int run(const motion_options_t *options, const char *what, cm1e_bus_t *bus, int axis, cm1e_diag_t *diag)
+{
+    static motion_program_t p;
+    const cm1e_scheduler_config_t settings = {.trace_capacity = options->csv_file || options->svg_file ? 60000 : 0};
+    cm1e_scheduler_t *scheduler = NULL;
+    if (cm1e_scheduler_create(&scheduler, bus, &settings, diag) != CM1E_OK)
+        return fail(diag);
+    p.scheduler = scheduler;
+    p.axis = cm1e_scheduler_axis(scheduler, (uint32_t)axis);
+    prepare(&p, options);
+    const cm1e_task_config_t task = {.name = what, .program = program, .context = &p};
+    cm1e_scheduler_stop_on_signals(scheduler);
+    int status = EXIT_OK;
+    if (cm1e_scheduler_add_task(scheduler, &task, diag) != CM1E_OK
+        || cm1e_scheduler_run(scheduler, 0, diag) != CM1E_OK)
+        status = fail(diag);
+    if (report(&p, what) != EXIT_OK)
+        status = EXIT_FAILED;
+    if (options->csv_file && cm1e_scheduler_write_csv(scheduler, options->csv_file, diag) != CM1E_OK)
+        status = fail(diag);
+    if (options->svg_file && cm1e_scheduler_write_svg(scheduler, options->svg_file, diag) != CM1E_OK)
+        status = fail(diag);
+    cm1e_scheduler_destroy(scheduler);
+    return status;
+}
+
+static int move_or_home(motion_options_t *options, const char *what)
+{
+    static cm1e_bus_config_t config;
+    if (!load_axes(&options->common, &config))
+        return EXIT_FAILED;
+    const int axis = find_axis(&config, options->axis_word ? options->axis_word : "1");
+    if (axis < 0)
+        return EXIT_WRONG_USE;
+    if (options->kind != MOTION_HOME && options->velocity == 0)
+        options->velocity = 1.0;
+    cm1e_diag_t diag = {0};
+    cm1e_bus_t *bus = NULL;
+    int status;
+    if (cm1e_bus_open(&bus, &config, &diag) != CM1E_OK || cm1e_bus_start(bus, &diag) != CM1E_OK)
+        status = fail(&diag);
+    else
+        status = run(options, what, bus, axis, &diag);
+    cm1e_bus_close(bus);
+    return status;
+}
+
+int command_move(int argc, char **argv)
+{
+    static const struct argp_option table[] = {
+        {"to", KEY_TO, "POSITION", 0, "Absolute target, in units of the axis", 0},
+        {"by", KEY_BY, "DISTANCE", 0, "Relative distance", 0},
+        {"speed", KEY_SPEED, "VELOCITY", 0, "Turn at this velocity, then halt", 0},
+        {"for", KEY_FOR, "SECONDS", 0, "How long, with --speed", 0},
+        {"velocity", 'v', "VELOCITY", 0, "Units/s; default 1", 0},
+        {"acceleration", 'a', "ACCELERATION", 0, "Units/s2; default: the axis's maximum", 0},
+        {"deceleration", 'd', "DECELERATION", 0, "Units/s2; default: the axis's maximum", 0},
+        {"jerk", KEY_JERK, "JERK", 0, "Units/s3; default: the axis's maximum", 0},
+        {"csv", KEY_CSV, "FILE", 0, "Write a trace", 0},
+        {"svg", KEY_SVG, "FILE", 0, "Write a plot", 0},
+        {0}};
+    static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+    static const struct argp argp = {table, parse_move, "[AXIS]",
+                                     "Enables one axis (name or number, default 1), moves it, disables it. Without a bus "
+                                     "file the unit is the revolution.", children, NULL, NULL};
+    motion_options_t options = {0};
+    argp_parse(&argp, argc, argv, 0, NULL, &options);
+    return move_or_home(&options, "move");
+}
+
+int command_home(int argc, char **argv)
+{
+    static const struct argp_option table[] = {
+        {"method", KEY_METHOD, "METHOD", 0, "-1/-2 hard stop CW/CCW, -3/-4 input 2 CW/CCW, -5/-6 input 3 CW/CCW; "
+                                            "default: the bus file's homing", 0},
+        {"velocity", 'v', "VELOCITY", 0, "Units/s", 0},
+        {"acceleration", 'a', "ACCELERATION", 0, "Units/s2", 0},
+        {"offset", KEY_OFFSET, "OFFSET", 0, "Units from the reference to the home position", 0},
+        {"torque", KEY_TORQUE, "PERCENT", 0, "10 ... 100 % of rated torque", 0},
+        {"position", KEY_POSITION, "POSITION", 0, "What the home position is called; default 0", 0},
+        {"for", KEY_FOR, "SECONDS", 0, "Longest time; default 60", 0},
+        {"csv", KEY_CSV, "FILE", 0, "Write a trace", 0},
+        {"svg", KEY_SVG, "FILE", 0, "Write a plot", 0},
+        {0}};
+    static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+    static const struct argp argp = {table, parse_home, "[AXIS]",
+                                     "Enables one axis (name or number, default 1), homes it, disables it.", children,
+                                     NULL, NULL};
+    motion_options_t options = {.kind = MOTION_HOME};
+    argp_parse(&argp, argc, argv, 0, NULL, &options);
+    return move_or_home(&options, "home");
+}

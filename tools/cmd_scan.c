@@ -1,0 +1,69 @@
+/** cm1e scan: what is on the network. */
+#include <stdio.h>
+
+#include "command.h"
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    (void)arg;
+    if (key == ARGP_KEY_INIT) {
+        state->child_inputs[0] = state->input;
+        return 0;
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
+static json_t *slave_as_json(const cm1e_slave_info_t *slave)
+{
+    char state[48];
+    return json_pack("{s:i, s:s, s:I, s:I, s:I, s:I, s:i, s:i, s:s, s:b, s:s}", "position", slave->position, "name",
+                     slave->name, "vendor_id", (json_int_t)slave->vendor_id, "product_code",
+                     (json_int_t)slave->product_code, "revision", (json_int_t)slave->revision, "serial_number",
+                     (json_int_t)slave->serial_number, "alias", slave->alias, "explicit_id", slave->explicit_id,
+                     "al_state", al_state_name(slave->al_state, state, sizeof state), "is_cm1e", slave->is_cm1e,
+                     "software_version", slave->software_version);
+}
+
+static void print_table(const cm1e_bus_t *bus)
+{
+    char state[48];
+    printf("%3s  %-20s %-10s %-10s %-10s %6s %4s  %-18s %s\n", "pos", "name", "vendor", "product", "revision", "alias",
+           "ID", "state", "firmware");
+    for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++) {
+        const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, i);
+        printf("%3u  %-20s 0x%08X 0x%08X 0x%08X %6u %4u  %-18s %s\n", slave->position, slave->name, slave->vendor_id,
+               slave->product_code, slave->revision, slave->alias, slave->explicit_id,
+               al_state_name(slave->al_state, state, sizeof state),
+               slave->software_version[0] ? slave->software_version : "-");
+    }
+}
+
+int command_scan(int argc, char **argv)
+{
+    static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+    static const struct argp argp = {NULL, parse, NULL, "Lists the slaves of a network.", children, NULL, NULL};
+    common_options_t options = {0};
+    argp_parse(&argp, argc, argv, 0, NULL, &options);
+
+    static cm1e_bus_config_t config;
+    if (!load_configuration(&options, &config))
+        return EXIT_WRONG_USE;
+    cm1e_diag_t diag = {0};
+    cm1e_bus_t *bus = NULL;
+    if (cm1e_bus_open(&bus, &config, &diag) != CM1E_OK || cm1e_bus_scan(bus, &diag) != CM1E_OK) {
+        cm1e_bus_close(bus);
+        return fail(&diag);
+    }
+    if (options.json) {
+        json_t *slaves = json_array();
+        for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++)
+            json_array_append_new(slaves, slave_as_json(cm1e_bus_slave(bus, i)));
+        print_json(slaves);
+    } else {
+        print_table(bus);
+    }
+    /* A bus file says what should be there: compare. */
+    const bool as_expected = config.axis_count == 0 || cm1e_bus_identify(bus, &diag) == CM1E_OK;
+    cm1e_bus_close(bus);
+    return as_expected ? EXIT_OK : fail(&diag);
+}

@@ -1,0 +1,201 @@
+/** cm1e sdo read|write: one object of one slave, by its type in the device tables where the slave is a CM1-E. */
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "command.h"
+#include "core/bytes.h"
+#include "device/device.h"
+
+enum { KEY_TYPE = 0x200, MAX_SDO_BYTES = 4096 };
+
+static const struct {
+    const char *name;
+    cm1e_data_type_t type;
+    unsigned bytes;
+    bool is_signed;
+} types[] = {
+    {"SINT", CM1E_TYPE_SINT, 1, true},   {"INT", CM1E_TYPE_INT, 2, true},   {"DINT", CM1E_TYPE_DINT, 4, true},
+    {"USINT", CM1E_TYPE_USINT, 1, false}, {"UINT", CM1E_TYPE_UINT, 2, false}, {"UDINT", CM1E_TYPE_UDINT, 4, false},
+    {"STRING", CM1E_TYPE_STRING, 0, false},
+};
+enum { TYPE_COUNT = sizeof types / sizeof types[0] };
+
+typedef struct sdo_options {
+    common_options_t common;
+    const char *type_name;
+    const char *words[4]; /**< read|write, position, index[:sub], value */
+    int word_count;
+} sdo_options_t;
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    sdo_options_t *options = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case KEY_TYPE: options->type_name = arg; return 0;
+    case ARGP_KEY_ARG:
+        if (options->word_count >= 4)
+            argp_error(state, "too many arguments from \"%s\" on", arg);
+        options->words[options->word_count++] = arg;
+        return 0;
+    case ARGP_KEY_END: {
+        const bool read = options->word_count == 3 && strcmp(options->words[0], "read") == 0;
+        const bool write = options->word_count == 4 && strcmp(options->words[0], "write") == 0;
+        if (!read && !write)
+            argp_error(state, "expected: read POSITION INDEX[:SUB], or write POSITION INDEX[:SUB] VALUE");
+        return 0;
+    }
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static bool parse_object(const char *word, uint16_t *index, uint8_t *subindex)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%s", word);
+    char *colon = strchr(text, ':');
+    long long number;
+    *subindex = 0;
+    if (colon) {
+        *colon = '\0';
+        if (!parse_number(colon + 1, "the sub-index", 0, 255, &number))
+            return false;
+        *subindex = (uint8_t)number;
+    }
+    if (!parse_number(text, "the index", 0, 0xFFFF, &number))
+        return false;
+    *index = (uint16_t)number;
+    return true;
+}
+
+/** Row of the type to use: the one asked for, else the device table's; -1: unknown (raw bytes); -2: complained. */
+static int find_type(const char *name, const cm1e_slave_info_t *slave, uint16_t index, uint8_t subindex)
+{
+    if (name) {
+        for (int i = 0; i < TYPE_COUNT; i++)
+            if (strcasecmp(types[i].name, name) == 0)
+                return i;
+        complain("there is no type \"%s\"; there are SINT INT DINT USINT UINT UDINT STRING", name);
+        return -2;
+    }
+    const cm1e_entry_t *entry = slave->is_cm1e ? cm1e_device_entry(index, subindex) : NULL;
+    for (int i = 0; entry && i < TYPE_COUNT; i++)
+        if (types[i].type == entry->type)
+            return i;
+    return -1;
+}
+
+static int64_t sign_extend(uint64_t value, unsigned bytes)
+{
+    const unsigned shift = 64 - 8 * bytes;
+    return (int64_t)(value << shift) >> shift;
+}
+
+static void print_value(const uint8_t *data, size_t size, int type, bool json)
+{
+    char hex[3 * 64 + 4] = "";
+    for (size_t i = 0; i < size && i < 64; i++)
+        snprintf(hex + strlen(hex), sizeof hex - strlen(hex), "%s%02X", i ? " " : "", data[i]);
+    const bool is_text = type >= 0 && types[type].type == CM1E_TYPE_STRING;
+    const bool is_number = !is_text && type >= 0 && size == types[type].bytes;
+    const uint64_t bits = is_number ? cm1e_get_uint(data, (unsigned)size) : 0;
+    const int64_t number = is_number && types[type].is_signed ? sign_extend(bits, (unsigned)size) : (int64_t)bits;
+    if (json) {
+        json_t *object = json_pack("{s:s, s:s}", "type", type >= 0 ? types[type].name : "raw", "bytes", hex);
+        if (is_text)
+            json_object_set_new(object, "value", json_stringn((const char *)data, size));
+        else if (is_number)
+            json_object_set_new(object, "value", json_integer(number));
+        print_json(object);
+    } else if (is_text) {
+        printf("%.*s\n", (int)size, (const char *)data);
+    } else if (is_number) {
+        printf("%" PRId64 " (0x%0*" PRIX64 ")\n", number, (int)size * 2, bits);
+    } else {
+        printf("%s\n", hex);
+    }
+}
+
+/** The bytes to write for a word; 0 and a complaint where it is no value of the type. */
+static size_t encode_value(const char *word, int type, uint8_t *data)
+{
+    if (types[type].type == CM1E_TYPE_STRING) {
+        const size_t length = strlen(word);
+        if (length == 0 || length > MAX_SDO_BYTES) {
+            complain("the value must have 1 ... %d characters", MAX_SDO_BYTES);
+            return 0;
+        }
+        memcpy(data, word, length);
+        return length;
+    }
+    const unsigned bits = types[type].bytes * 8;
+    const long long maximum = (1LL << (types[type].is_signed ? bits - 1 : bits)) - 1;
+    const long long minimum = types[type].is_signed ? -maximum - 1 : 0;
+    long long value;
+    if (!parse_number(word, "the value", minimum, maximum, &value))
+        return 0;
+    cm1e_put_uint(data, types[type].bytes, (uint64_t)value);
+    return types[type].bytes;
+}
+
+static int transfer(cm1e_bus_t *bus, const sdo_options_t *options, cm1e_diag_t *diag)
+{
+    long long position;
+    uint16_t index;
+    uint8_t subindex;
+    if (!parse_number(options->words[1], "the position", 1, CM1E_MAX_SLAVES, &position)
+        || !parse_object(options->words[2], &index, &subindex))
+        return EXIT_WRONG_USE;
+    const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, (uint32_t)position);
+    if (!slave) {
+        complain("there is no slave %lld; the network has %u", position, cm1e_bus_slave_count(bus));
+        return EXIT_FAILED;
+    }
+    const int type = find_type(options->type_name, slave, index, subindex);
+    if (type == -2)
+        return EXIT_WRONG_USE;
+    static uint8_t data[MAX_SDO_BYTES];
+    size_t size = sizeof data;
+    if (options->word_count == 3) {
+        if (cm1e_sdo_read(bus, (uint16_t)position, index, subindex, data, &size, diag) != CM1E_OK)
+            return fail(diag);
+        print_value(data, size, type, options->common.json);
+        return EXIT_OK;
+    }
+    if (type < 0) {
+        complain("the type of 0x%04X:%u is unknown here: state it with --type", index, subindex);
+        return EXIT_WRONG_USE;
+    }
+    size = encode_value(options->words[3], type, data);
+    if (size == 0)
+        return EXIT_WRONG_USE;
+    return cm1e_sdo_write(bus, (uint16_t)position, index, subindex, data, size, diag) == CM1E_OK ? EXIT_OK : fail(diag);
+}
+
+int command_sdo(int argc, char **argv)
+{
+    static const struct argp_option table[] = {
+        {"type", KEY_TYPE, "TYPE", 0, "SINT INT DINT USINT UINT UDINT STRING; default: as the device tables say", 0}, {0}};
+    static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+    static const struct argp argp = {table, parse, "read POSITION INDEX[:SUB]\nwrite POSITION INDEX[:SUB] VALUE",
+                                     "Reads or writes an object, e.g. `cm1e sdo read -i eth1 1 0x1018:2`.", children,
+                                     NULL, NULL};
+    sdo_options_t options = {0};
+    argp_parse(&argp, argc, argv, 0, NULL, &options);
+
+    static cm1e_bus_config_t config;
+    if (!load_configuration(&options.common, &config))
+        return EXIT_WRONG_USE;
+    cm1e_diag_t diag = {0};
+    cm1e_bus_t *bus = NULL;
+    if (cm1e_bus_open(&bus, &config, &diag) != CM1E_OK || cm1e_bus_scan(bus, &diag) != CM1E_OK) {
+        cm1e_bus_close(bus);
+        return fail(&diag);
+    }
+    const int status = transfer(bus, &options, &diag);
+    cm1e_bus_close(bus);
+    return status;
+}

@@ -1,0 +1,90 @@
+/** cm1e sim: a simulated network on a network interface, for any master. */
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "command.h"
+#include "nic/nic.h"
+#include "sim/segment.h"
+
+static volatile int stop_requested;
+
+static void request_stop(int signal_number)
+{
+    (void)signal_number;
+    stop_requested = 1;
+}
+
+typedef struct sim_options {
+    const char *interface_name, *bus_file, *order;
+} sim_options_t;
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    sim_options_t *options = state->input;
+    switch (key) {
+    case 'i': options->interface_name = arg; return 0;
+    case 'o': options->order = arg; return 0;
+    case ARGP_KEY_ARG:
+        if (options->bus_file)
+            argp_error(state, "one bus file is enough; \"%s\" is too many", arg);
+        options->bus_file = arg;
+        return 0;
+    case ARGP_KEY_END:
+        if (!options->interface_name)
+            argp_error(state, "say which network interface: -i INTERFACE");
+        return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static bool describe(const sim_options_t *options, cm1e_bus_config_t *config)
+{
+    cm1e_diag_t diag = {0};
+    cm1e_bus_config_init(config, "sim", 1);
+    if (options->bus_file && cm1e_bus_config_load(config, options->bus_file, &diag) != CM1E_OK) {
+        fail(&diag);
+        return false;
+    }
+    if (options->order && strcmp(options->order, "ug-7.2") == 0)
+        config->sim_pdo_order = CM1E_PDO_ORDER_UG_7_2;
+    else if (options->order && strcmp(options->order, "ug-4.4") != 0) {
+        complain("there is no PDO order \"%s\"; there are ug-4.4 and ug-7.2", options->order);
+        return false;
+    }
+    return true;
+}
+
+int command_sim(int argc, char **argv)
+{
+    static const struct argp_option table[] = {
+        {"interface", 'i', "INTERFACE", 0, "Network interface to answer on", 0},
+        {"pdo-order", 'o', "ORDER", 0, "ug-4.4 (default) or ug-7.2: the order of objects in the PDO mappings", 0},
+        {0}};
+    static const struct argp argp = {
+        table, parse, "[BUS-FILE]",
+        "Serves a simulated network until SIGINT or SIGTERM; without a bus file one CM1-E-17S30D, firmware 1.3.5. "
+        "Lines on standard input act on it; `help` lists them.", NULL, NULL, NULL};
+    sim_options_t options = {0};
+    argp_parse(&argp, argc, argv, 0, NULL, &options);
+
+    static cm1e_bus_config_t config;
+    if (!describe(&options, &config))
+        return EXIT_WRONG_USE;
+    cm1e_diag_t diag = {0};
+    cm1e_sim_segment_t *segment = cm1e_sim_segment_create(&config, &diag);
+    if (!segment)
+        return fail(&diag);
+    const struct sigaction action = {.sa_handler = request_stop};
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    printf("%u simulated slave%s on %s; `help` lists what can be done to them\n",
+           cm1e_sim_segment_slave_count(segment), cm1e_sim_segment_slave_count(segment) == 1 ? "" : "s",
+           options.interface_name);
+    fflush(stdout);
+    const cm1e_error_t error = cm1e_nic_serve(segment, options.interface_name, STDIN_FILENO, STDOUT_FILENO,
+                                              &stop_requested, &diag);
+    cm1e_sim_segment_destroy(segment);
+    return error == CM1E_OK ? EXIT_OK : fail(&diag);
+}

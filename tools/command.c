@@ -1,0 +1,159 @@
+#include "command.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { KEY_PCAP = 0x100, KEY_JSON };
+
+static const struct argp_option common_option_table[] = {
+    {"interface", 'i', "INTERFACE", 0, "Network interface, or sim, or sim:BUS-FILE", 1},
+    {"bus", 'b', "BUS-FILE", 0, "What hangs where (YAML, see docs/BUS-FILE.md)", 1},
+    {"json", KEY_JSON, NULL, 0, "Write JSON", 1},
+    {"pcap", KEY_PCAP, "FILE", 0, "Record every frame for Wireshark", 1},
+    {0},
+};
+
+static error_t parse_common(int key, char *arg, struct argp_state *state)
+{
+    common_options_t *options = state->input;
+    switch (key) {
+    case 'i': options->interface_name = arg; return 0;
+    case 'b': options->bus_file = arg; return 0;
+    case KEY_JSON: options->json = true; return 0;
+    case KEY_PCAP: options->pcap_file = arg; return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+const struct argp common_argp = {common_option_table, parse_common, NULL, NULL, NULL, NULL, NULL};
+
+void complain(const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    fprintf(stderr, "%s: ", program_invocation_name);
+    vfprintf(stderr, format, args);
+    fputc('\n', stderr);
+    va_end(args);
+}
+
+int fail(const cm1e_diag_t *diag)
+{
+    complain("%s", diag->text[0] ? diag->text : cm1e_strerror(diag->error));
+    return EXIT_FAILED;
+}
+
+/** Copies a word into a configuration field; false where it does not fit. */
+static bool copy_word(char *field, size_t size, const char *word, const char *what)
+{
+    if (strlen(word) >= size) {
+        complain("%s is too long: at most %zu characters", what, size - 1);
+        return false;
+    }
+    strcpy(field, word);
+    return true;
+}
+
+bool load_configuration(const common_options_t *options, cm1e_bus_config_t *config)
+{
+    cm1e_diag_t diag = {0};
+    if (!options->interface_name && !options->bus_file) {
+        complain("say which network: -i INTERFACE (\"-i sim\" for a simulated one) or -b BUS-FILE");
+        return false;
+    }
+    if (options->bus_file) {
+        if (cm1e_bus_config_load(config, options->bus_file, &diag) != CM1E_OK) {
+            fail(&diag);
+            return false;
+        }
+    } else {
+        cm1e_bus_config_init(config, options->interface_name, 0);
+    }
+    if (options->interface_name && !copy_word(config->interface_name, sizeof config->interface_name,
+                                              options->interface_name, "the interface name"))
+        return false;
+    return !options->pcap_file
+           || copy_word(config->pcap_file, sizeof config->pcap_file, options->pcap_file, "the name of the pcap file");
+}
+
+bool load_axes(const common_options_t *options, cm1e_bus_config_t *config)
+{
+    if (!load_configuration(options, config))
+        return false;
+    if (config->axis_count > 0)
+        return true;
+    cm1e_diag_t diag = {0};
+    cm1e_bus_t *bus = NULL;
+    cm1e_bus_config_t scanned = *config;
+    scanned.pcap_file[0] = '\0';
+    if (cm1e_bus_open(&bus, &scanned, &diag) != CM1E_OK || cm1e_bus_scan(bus, &diag) != CM1E_OK) {
+        cm1e_bus_close(bus);
+        fail(&diag);
+        return false;
+    }
+    for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++)
+        if (cm1e_bus_slave(bus, position)->is_cm1e && config->axis_count < CM1E_MAX_AXES)
+            config->axes[config->axis_count++].address = (uint16_t)position;
+    cm1e_bus_close(bus);
+    if (config->axis_count == 0)
+        complain("there is no CM1-E on %s", config->interface_name);
+    return config->axis_count > 0;
+}
+
+int find_axis(const cm1e_bus_config_t *config, const char *word)
+{
+    for (uint32_t i = 0; i < config->axis_count; i++)
+        if (config->axes[i].name[0] && strcmp(config->axes[i].name, word) == 0)
+            return (int)i;
+    char *end;
+    const long number = strtol(word, &end, 10);
+    if (*word && *end == '\0' && number >= 1 && number <= (long)config->axis_count)
+        return (int)number - 1;
+    complain("there is no axis \"%s\"; there are 1 ... %u%s", word, config->axis_count,
+             config->axes[0].name[0] ? ", or their names in the bus file" : "");
+    return -1;
+}
+
+bool parse_number(const char *word, const char *what, long long minimum, long long maximum, long long *value)
+{
+    char *end;
+    errno = 0;
+    *value = strtoll(word, &end, 0);
+    if (*word && *end == '\0' && errno == 0 && *value >= minimum && *value <= maximum)
+        return true;
+    complain("%s is \"%s\"; expected a whole number %lld ... %lld", what, word, minimum, maximum);
+    return false;
+}
+
+bool parse_real(const char *word, const char *what, double *value)
+{
+    char *end;
+    *value = strtod(word, &end);
+    if (*word && *end == '\0' && isfinite(*value))
+        return true;
+    complain("%s is \"%s\"; expected a number", what, word);
+    return false;
+}
+
+void print_json(json_t *value)
+{
+    json_dumpf(value, stdout, JSON_INDENT(2));
+    putchar('\n');
+    json_decref(value);
+}
+
+const char *al_state_name(uint16_t al_state, char *buffer, size_t size)
+{
+    static const char *const names[] = {
+        [CM1E_AL_INIT] = "Init", [CM1E_AL_PRE_OP] = "Pre-Operational", [CM1E_AL_BOOT] = "Bootstrap",
+        [CM1E_AL_SAFE_OP] = "Safe-Operational", [CM1E_AL_OP] = "Operational",
+    };
+    const uint16_t state = al_state & 0x0F;
+    const char *name = state < sizeof names / sizeof names[0] && names[state] ? names[state] : "unknown state";
+    snprintf(buffer, size, "%s%s", name, al_state & CM1E_AL_ERROR ? " + error" : "");
+    return buffer;
+}

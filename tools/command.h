@@ -1,0 +1,63 @@
+/**
+ * @file command.h
+ * What the subcommands of `cm1e` share: options, configuration, output, the error line. Each subcommand is a file
+ * cmd_<name>.c with one function of this type; it returns the exit status of the process.
+ */
+#ifndef CM1E_TOOLS_COMMAND_H
+#define CM1E_TOOLS_COMMAND_H
+
+#include <argp.h>
+#include <jansson.h>
+#include <stdbool.h>
+
+#include "cm1e/bus.h"
+#include "cm1e/config.h"
+
+enum { EXIT_OK = 0, EXIT_FAILED = 1, EXIT_WRONG_USE = 2 };
+
+typedef int (*command_fn)(int argc, char **argv);
+
+int command_scan(int argc, char **argv);
+int command_sdo(int argc, char **argv);
+int command_status(int argc, char **argv);
+int command_move(int argc, char **argv);
+int command_home(int argc, char **argv);
+int command_sim(int argc, char **argv);
+int command_generate(int argc, char **argv);
+
+/** Options that most subcommands take: a child parser to be listed in a subcommand's argp. */
+typedef struct common_options {
+    const char *interface_name; /**< -i */
+    const char *bus_file;       /**< -b */
+    const char *pcap_file;      /**< --pcap */
+    bool json;                  /**< --json */
+} common_options_t;
+extern const struct argp common_argp;
+
+/** The configuration that the options describe: the bus file's, with the interface of -i in place of its own; without a
+ *  bus file no axes are expected. Complains on standard error and returns false where it cannot be had. */
+bool load_configuration(const common_options_t *options, cm1e_bus_config_t *config);
+
+/** As load_configuration(), but without a bus file the network is scanned and every CM1-E found becomes an axis with
+ *  default settings (unit: revolution). */
+bool load_axes(const common_options_t *options, cm1e_bus_config_t *config);
+
+/** Finds an axis of the configuration by name or number (1 = first); -1 and a complaint: there is none. */
+int find_axis(const cm1e_bus_config_t *config, const char *word);
+
+/** A whole decimal or 0x number within [minimum, maximum]; false and a complaint that names `what` otherwise. */
+bool parse_number(const char *word, const char *what, long long minimum, long long maximum, long long *value);
+/** A finite decimal number; false and a complaint otherwise. */
+bool parse_real(const char *word, const char *what, double *value);
+
+/** Prints "cm1e <command>: <text of diag>" on standard error and returns EXIT_FAILED. */
+int fail(const cm1e_diag_t *diag);
+void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/** Prints a JSON value on standard output with a final newline, and releases it. */
+void print_json(json_t *value);
+
+/** The name of an AL state: "Pre-Operational"; with the error flag "Pre-Operational + error". Static or in `buffer`. */
+const char *al_state_name(uint16_t al_state, char *buffer, size_t size);
+
+#endif

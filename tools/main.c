@@ -1,0 +1,55 @@
+/** cm1e: the command line program. Each subcommand is a file cmd_<name>.c. */
+#include <stdio.h>
+#include <string.h>
+
+#include "command.h"
+
+static const struct {
+    const char *name, *summary;
+    command_fn run;
+} commands[] = {
+    {"scan", "list the slaves of a network", command_scan},
+    {"status", "show every drive's state, error and measurements in words", command_status},
+    {"sdo", "read or write an object of a slave", command_sdo},
+    {"home", "home one axis", command_home},
+    {"move", "move one axis", command_move},
+    {"sim", "serve a simulated network on a network interface", command_sim},
+};
+enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
+
+static void print_usage(FILE *file)
+{
+    fputs("Usage: cm1e COMMAND [OPTION...]\n"
+          "Drives Myostat CM1-E servo motors over EtherCAT.\n\n", file);
+    for (int i = 0; i < COMMAND_COUNT; i++)
+        fprintf(file, "  %-10s %s\n", commands[i].name, commands[i].summary);
+    fputs("\n`cm1e COMMAND --help` shows a command's options. `-i sim` is a simulated network in this process,\n"
+          "`-i eth1` a real one (needs the right to open raw sockets).\n", file);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 2) {
+        print_usage(stderr);
+        return EXIT_WRONG_USE;
+    }
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
+        print_usage(stdout);
+        return EXIT_OK;
+    }
+    if (strcmp(argv[1], "--version") == 0) {
+        puts("cm1e " CM1E_VERSION);
+        return EXIT_OK;
+    }
+    argp_err_exit_status = EXIT_WRONG_USE;
+    for (int i = 0; i < COMMAND_COUNT; i++)
+        if (strcmp(argv[1], commands[i].name) == 0) {
+            char name[32];
+            snprintf(name, sizeof name, "cm1e %s", commands[i].name);
+            argv[1] = name;
+            return commands[i].run(argc - 1, argv + 1);
+        }
+    fprintf(stderr, "cm1e: there is no command \"%s\"\n\n", argv[1]);
+    print_usage(stderr);
+    return EXIT_WRONG_USE;
+}
