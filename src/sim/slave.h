@@ -69,6 +69,8 @@ typedef struct cm1e_sim_slave cm1e_sim_slave_t;
 cm1e_sim_slave_t *cm1e_sim_slave_create(const uint8_t *sii, size_t sii_size, const cm1e_sim_app_ops_t *ops, void *app);
 void cm1e_sim_slave_destroy(cm1e_sim_slave_t *slave);
 void *cm1e_sim_slave_app(cm1e_sim_slave_t *slave);
+/** The table it was created with: tells what kind of application cm1e_sim_slave_app() is. */
+const cm1e_sim_app_ops_t *cm1e_sim_slave_ops(const cm1e_sim_slave_t *slave);
 
 /** For the application: queue a CoE emergency (ETG.1000.6 5.6.4); false: the queue is full and it is dropped. */
 bool cm1e_sim_slave_emergency(cm1e_sim_slave_t *slave, uint16_t error_code, uint8_t error_register, const uint8_t data[5]);
