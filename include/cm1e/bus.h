@@ -55,6 +55,7 @@ cm1e_error_t cm1e_bus_open(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm
 
 /** Finds the slaves and brings them to Pre-Operational. Expects nothing: see cm1e_bus_identify(). @rt init */
 cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag);
+/** Slaves that the last scan found; 0 before. @rt any */
 uint32_t cm1e_bus_slave_count(const cm1e_bus_t *bus);
 /** NULL where there is no such slave (1 = first). Valid until the next scan. @rt any */
 const cm1e_slave_info_t *cm1e_bus_slave(const cm1e_bus_t *bus, uint32_t position);
@@ -72,7 +73,7 @@ cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag);
 cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Scan, identify, configure, operate. @rt init */
 cm1e_error_t cm1e_bus_start(cm1e_bus_t *bus, cm1e_diag_t *diag);
-/** Safe-Operational, then Init. The drives must be disabled before. Never fails: does what still can be done. @rt init */
+/** Safe-Operational, then Init. The drives must be disabled before. Never fails: does what it still can. @rt init */
 void cm1e_bus_stop(cm1e_bus_t *bus);
 /** Stops if need be, closes the interface, frees. NULL is allowed. @rt init */
 void cm1e_bus_close(cm1e_bus_t *bus);
@@ -85,7 +86,9 @@ void cm1e_bus_send(cm1e_bus_t *bus);
 /** CM1E_OK, or why the slaves of the bus cannot be trusted now: the last error after `lost_cycles_limit` bad cycles in
  *  a row. Returns to CM1E_OK by itself when the cycle is good again. @rt cycle */
 cm1e_error_t cm1e_bus_health(const cm1e_bus_t *bus);
+/** What went wrong so far. Lives as long as the bus. @rt cycle */
 const cm1e_bus_counters_t *cm1e_bus_counters(const cm1e_bus_t *bus);
+/** The bus's own copy, with defaults filled in. Lives as long as the bus. @rt any */
 const cm1e_bus_config_t *cm1e_bus_configuration(const cm1e_bus_t *bus);
 
 /* ---- SDO -------------------------------------------------------------------------------------------------------- */
@@ -113,9 +116,10 @@ cm1e_sdo_state_t cm1e_sdo_state(const cm1e_sdo_t *sdo);
 /** Hands a transfer to the bus; it is worked on within the cycle, one datagram at a time, never blocking it.
  *  CM1E_ERROR_FULL when 64 transfers wait. One thread at a time may submit. @rt cycle */
 cm1e_error_t cm1e_sdo_submit(cm1e_bus_t *bus, cm1e_sdo_t *sdo);
-/** Read or write and wait, for use before the cycle runs (the caller owns the bus). @rt block */
+/** Reads and waits, before the cycle runs (the caller owns the bus). `*size`: room, then bytes read. @rt block */
 cm1e_error_t cm1e_sdo_read(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex, void *data,
                            size_t *size, cm1e_diag_t *diag);
+/** Writes and waits, as cm1e_sdo_read(). @rt block */
 cm1e_error_t cm1e_sdo_write(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex, const void *data,
                             size_t size, cm1e_diag_t *diag);
 /** Text of an SDO abort code (ETG.1000.6); never NULL. @rt any */

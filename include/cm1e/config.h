@@ -72,10 +72,10 @@ typedef struct cm1e_axis_config {
     char name[CM1E_NAME_LENGTH];     /**< "": "axis<n>" */
     cm1e_address_kind_t address_kind;
     uint16_t address;                /**< position 1 ..., alias or ID; 0: position = place in the list */
-    char motor[20];                  /**< "CM1-E-17S30D", "CM1-E-17L30D", "CM1-E-23S30D" or "CM1-E-23L20D"; "": 17S30D */
-    char firmware[12];               /**< expected or, simulated, played: "1.2.0" ... "1.3.5"; "": any, simulated 1.3.5 */
+    char motor[20];                  /**< "CM1-E-17S30D", -17L30D, -23S30D or -23L20D; "": CM1-E-17S30D */
+    char firmware[12];               /**< expected, or played by the simulator: "1.2.0" ... "1.3.5"; "": any, 1.3.5 */
     cm1e_mapping_t mapping;
-    double counts_per_unit;          /**< encoder counts (50,000 a revolution) per axis unit u; 0: 50,000 (u = revolution) */
+    double counts_per_unit;          /**< encoder counts (50,000 a revolution) per unit u; 0: 50,000 (u = revolution) */
     bool invert;                     /**< TRUE: positive u is CCW */
     double max_velocity;             /**< u/s; 0: the motor's peak speed (UG 6.3), which is also the upper bound */
     double max_acceleration;         /**< u/s2; 0: 5,000,000 counts/s2 */
@@ -86,7 +86,7 @@ typedef struct cm1e_axis_config {
     double max_position_lag;         /**< u; 0: 25,000 counts (half a revolution) */
     bool velocity_in_counts_per_ms;  /**< states the unit of 0x60FF/0x606C where object 0x100A cannot be read */
     bool velocity_unit_stated;       /**< TRUE: the field above is used instead of the firmware version */
-    bool acceleration_in_kpulses;    /**< TRUE: 0x6083/0x6084 take kpulses/s2 on the wire (device-specific, UG 7.3.17/6.2.3) */
+    bool acceleration_in_kpulses;    /**< TRUE: 0x6083/0x6084 take kpulses/s2 on the wire (UG 7.3.17/6.2.3) */
     cm1e_homing_config_t homing;
     cm1e_sim_axis_config_t sim;
 } cm1e_axis_config_t;

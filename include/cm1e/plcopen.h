@@ -7,7 +7,7 @@
  *     power.Enable = TRUE;
  *     MC_Power(&power);
  *
- * Inputs come first, then outputs, in the standard's order; the member `Private` belongs to the block. Call them only in
+ * Inputs come first, then outputs, in the standard's order; the member `Private` is the block's own. Call them only in
  * programs of the scheduler that owns the axis (@rt cycle). Units: u, u/s, u/s2, u/s3 (config.h). Acceleration,
  * Deceleration, Jerk 0 mean the axis's maximum. ErrorID: cm1e_strerror(cm1e_error_from_id(ErrorID)).
  */

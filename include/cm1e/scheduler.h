@@ -61,11 +61,13 @@ typedef struct cm1e_scheduler_statistics {
  *  @rt init */
 cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus, const cm1e_scheduler_config_t *config,
                                    cm1e_diag_t *diag);
+/** NULL is allowed. Not while it runs. @rt init */
 void cm1e_scheduler_destroy(cm1e_scheduler_t *scheduler);
 /** Before the scheduler runs. The interval must be a multiple of the bus cycle. @rt init */
 cm1e_error_t cm1e_scheduler_add_task(cm1e_scheduler_t *scheduler, const cm1e_task_config_t *task, cm1e_diag_t *diag);
-/** The reference of configured axis `index` (0 = first), or of the axis called `name`; Handle 0: none. @rt any */
+/** The reference of configured axis `index` (0 = first); Handle 0: none. @rt any */
 AXIS_REF_t cm1e_scheduler_axis(const cm1e_scheduler_t *scheduler, uint32_t index);
+/** The reference of the axis called `name`; Handle 0: none. @rt any */
 AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *scheduler, const char *name);
 
 /** Runs the cycle in the calling thread for `duration_ns` (0: until cm1e_scheduler_stop()), then stops in order: axes
@@ -81,9 +83,10 @@ int64_t cm1e_scheduler_time_ns(const cm1e_scheduler_t *scheduler);
 /** After the run, or from a program. @rt cycle */
 void cm1e_scheduler_statistics(const cm1e_scheduler_t *scheduler, cm1e_scheduler_statistics_t *statistics);
 
-/** Writes the trace (time; per axis: state, set and actual position and velocity, torque) as CSV, or as an SVG plot
- *  with one panel per axis and quantity. To a temporary name, then renamed. After the run. @rt block */
+/** Writes the trace (time; per axis: state, set and actual position and velocity, torque) as CSV, to a temporary name,
+ *  then renamed. After the run. @rt block */
 cm1e_error_t cm1e_scheduler_write_csv(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);
+/** Writes the trace as a plot that a person can read: panels per axis. As cm1e_scheduler_write_csv(). @rt block */
 cm1e_error_t cm1e_scheduler_write_svg(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);
 
 #ifdef __cplusplus
