@@ -5,6 +5,11 @@
  *
  * Rules kept here whatever the caller asks: the drive goes to Operation enabled only with target position = actual
  * position and target velocity = 0; a fault reset is one short edge; nothing is re-enabled by itself after a fault.
+ *
+ * A latched fault takes the torque away until a reset succeeded, with one exception: after CM1E_ERROR_BUS_LOST and
+ * CM1E_ERROR_BUS_WORKING_COUNTER the targets still pass while `enable` stays TRUE, so that the caller can ramp down a
+ * drive that may still listen. A reset that succeeds while `enable` is TRUE enables again: who does not want that takes
+ * `enable` away first.
  */
 #ifndef CM1E_DRIVE_DRIVE_H
 #define CM1E_DRIVE_DRIVE_H
@@ -35,7 +40,8 @@ typedef struct cm1e_drive_feedback {
     cm1e_fsa_state_t state;
     int8_t mode;                    /**< 0x6061 */
     int32_t position;               /**< counts, wraps */
-    int32_t velocity;               /**< counts/s, whatever the firmware's unit; 0 where the mapping lacks it */
+    int32_t velocity;               /**< counts/s, whatever the firmware's unit; where the mapping lacks it or the
+                                         firmware shows it wrong: from the difference of two positions */
     int16_t torque;                 /**< 0.1 % of rated torque */
     uint16_t digital_inputs;
     int16_t temperature;            /**< degrees C */
@@ -65,15 +71,28 @@ typedef struct cm1e_drive {
     cm1e_drive_command_t command;
     cm1e_drive_feedback_t feedback;
     cm1e_drive_fault_t fault;       /**< latched; cleared by a successful reset */
-    /* private: drive.c */
+    /* private: drive_io.c, drive.c, drive_mode.c, drive_reset.c */
     cm1e_image_slot_t out_controlword, out_position, out_velocity, out_mode, out_digital, out_profile_velocity,
         out_profile_acceleration;
     cm1e_image_slot_t in_statusword, in_error, in_position, in_velocity, in_torque, in_digital, in_temperature, in_dc,
         in_mode;
     double velocity_scale;          /**< counts/s per unit of 0x60FF and 0x606C */
-    int64_t now_ns, enable_deadline_ns, mode_deadline_ns, reset_until_ns, reset_deadline_ns;
-    bool was_enabled, reset_before;
-    uint8_t reset_phase;
+    uint32_t profile_velocity, profile_acceleration; /**< what 0x6081 and 0x6083 carry where they are mapped */
+    cm1e_slave_watch_t watch;
+    int64_t now_ns, read_ns, enable_deadline_ns, mode_deadline_ns;
+    int32_t target_position;        /**< last one written */
+    cm1e_mode_t mode;               /**< commanded on the wire; follows `command.mode` once the last switch is shown */
+    bool seen;                      /**< inputs were valid at least once */
+    bool torque;                    /**< the last write asked for torque */
+    bool was_enabled;               /**< Operation enabled was seen since torque is asked for */
+    bool mode_confirmed;
+    bool set_point_bit;             /**< PP: controlword bit 4 */
+    int32_t set_point;              /**< PP: the target position that bit 4 announced */
+    bool reset_before;
+    uint8_t reset_phase, mode_phase;
+    int64_t reset_until_ns, reset_deadline_ns, reset_settle_ns, recovery_ns, mode_retry_ns;
+    cm1e_sdo_t mode_sdo;            /**< 0x6060 and 0x6061 where the mapping lacks them */
+    int8_t mode_data, mode_shown;
 } cm1e_drive_t;
 
 /** Resolves the objects of the mapping. A mapping that lacks an object the configured use needs is
@@ -84,9 +103,12 @@ cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis
 void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns);
 /** Encodes the outputs from `command` under the rules above. @rt cycle */
 void cm1e_drive_write(cm1e_drive_t *drive);
+/** Latches a fault that the caller saw (the bus is lost ...); an earlier one stays. @rt cycle */
+void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error);
 /** TRUE while a commanded reset is under way. @rt cycle */
 bool cm1e_drive_resetting(const cm1e_drive_t *drive);
-/** Whether the mapping allows a mode (its objects are mapped, or the mode can be set and shown). @rt cycle */
+/** Whether the mapping allows a mode: its target is mapped. The mode itself goes over SDO where 0x6060 is not mapped.
+ *  @rt cycle */
 bool cm1e_drive_supports(const cm1e_drive_t *drive, cm1e_mode_t mode);
 /** The latched fault as sentences: cause, numbers, cure. @rt block */
 void cm1e_drive_fault_text(const cm1e_drive_t *drive, char *text, size_t size);

@@ -1,0 +1,245 @@
+/* The drive in the cycle: reading, latching of faults, the way to Operation enabled, and what may pass to the motor. */
+#include "drive/drive.h"
+
+#include <string.h>
+
+#include "drive/drive_private.h"
+
+static const int64_t enable_timeout_ns = 2000 * MS_IN_NS;
+
+static cm1e_error_t velocity_unit(cm1e_drive_t *drive, cm1e_diag_t *diag)
+{
+    const cm1e_axis_config_t *config = drive->config;
+    if (config->velocity_unit_stated) {
+        drive->velocity_scale = config->velocity_in_counts_per_ms ? 1000.0 : 1.0;
+        return CM1E_OK;
+    }
+    if (!drive->firmware)
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, OBJ_100A_SOFTWARE_VERSION,
+                             "Axis \"%s\" (slave %u): the firmware version (object 0x100A) cannot be read, and the unit "
+                             "of velocities depends on it (counts/ms before V1.3.3). State the unit in the "
+                             "configuration of the axis.", config->name, drive->position);
+    drive->velocity_scale = drive->firmware->velocity_in_counts_per_ms ? 1000.0 : 1.0;
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis, cm1e_diag_t *diag)
+{
+    memset(drive, 0, sizeof *drive);
+    const cm1e_bus_config_t *config = cm1e_bus_configuration(bus);
+    if (axis >= config->axis_count)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "There is no axis %u: the configuration has %u.",
+                             (unsigned)axis, (unsigned)config->axis_count);
+    drive->bus = bus;
+    drive->axis = axis;
+    drive->config = &config->axes[axis];
+    drive->position = cm1e_bus_axis_position(bus, axis);
+    if (drive->position == 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "Axis \"%s\" has no slave on the bus.",
+                             drive->config->name);
+    drive->motor = cm1e_device_motor(drive->config->motor);
+    if (!drive->motor)
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": there is no motor \"%s\".",
+                             drive->config->name, drive->config->motor);
+    drive->firmware = cm1e_bus_slave_firmware(bus, drive->position);
+    drive->feedback.state = CM1E_FSA_UNKNOWN;
+    cm1e_error_t error = velocity_unit(drive, diag);
+    if (!error)
+        error = drive_resolve(drive, diag);
+    return error ? error : drive_mode_init(drive, diag);
+}
+
+bool cm1e_drive_supports(const cm1e_drive_t *drive, cm1e_mode_t mode)
+{
+    switch (mode) {
+    case CM1E_MODE_PP:
+    case CM1E_MODE_CSP:
+        return drive->out_position.bytes > 0;
+    case CM1E_MODE_PV:
+    case CM1E_MODE_CSV:
+        return drive->out_velocity.bytes > 0;
+    case CM1E_MODE_HM: /* UG 6.2.4: needs no special mapping */
+        return true;
+    default:
+        return false;
+    }
+}
+
+void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
+{
+    cm1e_drive_fault_t *fault = &drive->fault;
+    if (fault->error == CM1E_OK)
+        *fault = (cm1e_drive_fault_t){
+            .error = error,
+            .device_code = drive->feedback.fault ? drive->feedback.error_code : 0,
+            .statusword = drive->feedback.statusword,
+            .mode_commanded = (int8_t)drive->mode,
+            .mode_shown = drive->feedback.mode,
+        };
+    /* Details that arrive after the first sign: the device's code, and what the supervision found out. */
+    if (fault->device_code == 0 && drive->feedback.online && drive->feedback.fault)
+        fault->device_code = drive->feedback.error_code;
+    if (!drive_operational(drive)) {
+        fault->al_state = drive->watch.al_state;
+        fault->al_status_code = drive->watch.al_status_code;
+    }
+}
+
+/* The cause of what this cycle's inputs show, or CM1E_OK. */
+static cm1e_error_t cause_in_inputs(const cm1e_drive_t *drive)
+{
+    const cm1e_drive_feedback_t *f = &drive->feedback;
+    if (f->fault) /* 0xFF05: motor power, and a fault only from Operation enabled (UG 7.3.1) */
+        return f->error_code == 0xFF05 ? CM1E_ERROR_DRIVE_POWER : CM1E_ERROR_DRIVE_FAULT;
+    if (!drive->torque)
+        return CM1E_OK;
+    const bool power_stage = f->state == OPERATION_ENABLED || f->state == SWITCHED_ON;
+    if (!f->voltage && (power_stage || drive->was_enabled))
+        return CM1E_ERROR_DRIVE_POWER;
+    if (drive->was_enabled && f->state != OPERATION_ENABLED)
+        return CM1E_ERROR_DRIVE_ENABLE_LOST;
+    const bool shown = f->mode == (int8_t)drive->mode;
+    if (drive->was_enabled && !shown && drive->mode_confirmed)
+        return CM1E_ERROR_DRIVE_MODE_LOST;
+    if (drive->was_enabled && !shown && drive->now_ns >= drive->mode_deadline_ns)
+        return CM1E_ERROR_DRIVE_MODE_TIMEOUT;
+    if (!drive->was_enabled && f->state != OPERATION_ENABLED && drive->now_ns >= drive->enable_deadline_ns)
+        return !f->voltage ? CM1E_ERROR_DRIVE_POWER
+               : !shown    ? CM1E_ERROR_DRIVE_MODE_TIMEOUT : CM1E_ERROR_DRIVE_ENABLE_TIMEOUT;
+    return CM1E_OK;
+}
+
+static void latch_faults(cm1e_drive_t *drive)
+{
+    cm1e_error_t error = drive->fault.error; /* a latched one only collects its details */
+    if (!error && drive->torque && drive->watch.lost)
+        error = CM1E_ERROR_AXIS_OFFLINE;
+    if (!error && drive->torque && !drive_operational(drive))
+        error = CM1E_ERROR_BUS_STATE;
+    if (!error && drive->feedback.online)
+        error = cause_in_inputs(drive);
+    if (error)
+        cm1e_drive_fail(drive, error);
+}
+
+void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
+{
+    cm1e_drive_feedback_t *f = &drive->feedback;
+    drive->now_ns = now_ns;
+    drive->watch = cm1e_bus_slave_watch(drive->bus, drive->position);
+    drive_mode_step(drive);
+    if (bus_ok)
+        drive_decode(drive);
+    f->online = bus_ok && drive_operational(drive);
+    if (drive->reset_phase != RESET_IDLE) {
+        drive_reset_step(drive);
+        f->enabled = false;
+        return;
+    }
+    const bool operating = f->state == OPERATION_ENABLED && drive->torque;
+    const bool shown = f->mode == (int8_t)drive->mode;
+    latch_faults(drive);
+    if (operating && f->online)
+        drive->was_enabled = true;
+    if (operating && shown && f->online)
+        drive->mode_confirmed = true;
+    /* A frame lost now and then changes nothing: the last picture holds until the supervision calls the bus lost. */
+    f->enabled = operating && shown && drive->was_enabled &&
+                 (!drive->fault.error || drive_fault_allows_ramp(drive->fault.error));
+}
+
+static bool wants_torque(const cm1e_drive_t *drive)
+{
+    if (!drive->command.enable || !drive->seen || drive->reset_phase != RESET_IDLE)
+        return false;
+    if (drive->fault.error)
+        return drive_fault_allows_ramp(drive->fault.error) && drive->feedback.enabled;
+    /* A drive that still shows the torque of before is first seen without it: else its going would look like a loss. */
+    if (!drive->torque && drive->feedback.state == OPERATION_ENABLED)
+        return false;
+    /* Without fresh inputs the actual position is not known: no step towards torque then. */
+    return drive->feedback.online || drive->was_enabled;
+}
+
+static uint16_t mode_bits(cm1e_drive_t *drive, bool pass)
+{
+    const cm1e_drive_command_t *command = &drive->command;
+    const int8_t shown = drive->feedback.mode;
+    uint16_t bits = 0;
+    if (command->halt && (shown == CM1E_MODE_PP || shown == CM1E_MODE_PV || shown == CM1E_MODE_HM))
+        bits |= CONTROLWORD_HALT;
+    if (shown == CM1E_MODE_HM && pass && command->homing_start)
+        bits |= CONTROLWORD_HOMING_START;
+    if (shown == CM1E_MODE_PP && pass) { /* UG 6.2.2: edge and acknowledge announce a set-point */
+        if (drive->set_point_bit && drive->feedback.bit12) {
+            drive->set_point_bit = false;
+        } else if (!drive->set_point_bit && !drive->feedback.bit12 && command->target_position != drive->set_point) {
+            drive->set_point_bit = true;
+            drive->set_point = command->target_position;
+        }
+        if (drive->set_point_bit)
+            bits |= CONTROLWORD_NEW_SET_POINT;
+    }
+    return bits;
+}
+
+/* One command a cycle, from the state seen (UG 6.1.2). */
+static uint16_t controlword(cm1e_drive_t *drive, bool pass)
+{
+    const cm1e_drive_feedback_t *f = &drive->feedback;
+    if (drive->reset_phase == RESET_EDGE)
+        return cm1e_fsa_commands[COMMAND_FAULT_RESET].controlword;
+    const uint16_t no_torque = cm1e_fsa_commands[COMMAND_SHUTDOWN].controlword;
+    if (!drive->torque || f->state >= CM1E_FSA_STATE_COUNT)
+        return no_torque;
+    /* Switched on needs motor power, or the drive faults (UG 6.1.1); and the mode must be the right one by then. */
+    const bool ready = f->voltage && f->mode == (int8_t)drive->mode;
+    if (!ready && f->state != OPERATION_ENABLED)
+        return no_torque;
+    const cm1e_fsa_command_t command = cm1e_fsa_next_command(f->state, true);
+    if (command == COMMAND_FAULT_RESET || command >= CM1E_FSA_COMMAND_COUNT)
+        return no_torque;
+    uint16_t word = cm1e_fsa_commands[command].controlword;
+    if (f->state == OPERATION_ENABLED)
+        word |= mode_bits(drive, pass);
+    return word;
+}
+
+/* Position to write while the caller's does not pass: the actual one; but while the old, position holding mode is
+ * still shown during a switch, the last target, so that the motor does not sag by its lag. */
+static int32_t safe_position(const cm1e_drive_t *drive)
+{
+    const cm1e_drive_feedback_t *f = &drive->feedback;
+    const bool holding = f->mode == CM1E_MODE_CSP || f->mode == CM1E_MODE_PP;
+    if (drive->torque && drive->was_enabled && holding && f->mode != (int8_t)drive->mode)
+        return drive->target_position;
+    return f->position;
+}
+
+void cm1e_drive_write(cm1e_drive_t *drive)
+{
+    const cm1e_drive_command_t *command = &drive->command;
+    if (command->reset && !drive->reset_before && drive->reset_phase == RESET_IDLE)
+        drive_reset_start(drive);
+    drive->reset_before = command->reset;
+
+    const bool torque = wants_torque(drive);
+    if (torque && !drive->torque)
+        drive->enable_deadline_ns = drive->now_ns + enable_timeout_ns;
+    if (!torque) {
+        drive->was_enabled = false;
+        drive->feedback.enabled = false;
+    }
+    drive->torque = torque;
+    drive_mode_choose(drive);
+
+    const bool pass = drive->feedback.enabled && drive->feedback.mode == (int8_t)drive->mode;
+    if (!pass) {
+        drive->set_point_bit = false;
+        drive->set_point = drive->feedback.position;
+    }
+    const int32_t position = pass && drive->feedback.mode != CM1E_MODE_HM ? command->target_position
+                                                                         : safe_position(drive);
+    const uint16_t word = controlword(drive, pass);
+    drive_encode(drive, word, position, pass ? command->target_velocity : 0);
+}

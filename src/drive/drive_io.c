@@ -1,0 +1,208 @@
+/* The process data of one drive: where the objects lie, and their coding on the wire. */
+#include <math.h>
+
+#include "core/bytes.h"
+#include "drive/drive_private.h"
+
+enum { MAPPED_DYNAMIC = 1 << CM1E_MAPPING_DYNAMIC, MAPPED_CSP = 1 << CM1E_MAPPING_CSP,
+       MAPPED_CSV = 1 << CM1E_MAPPING_CSV, MAPPED_PROFILE = 1 << CM1E_MAPPING_PROFILE,
+       MAPPED_ALL = MAPPED_DYNAMIC | MAPPED_CSP | MAPPED_CSV | MAPPED_PROFILE };
+
+/** One object that the drive uses: where its slot is kept, which sizes are understood, which mappings must have it. */
+typedef struct drive_object {
+    size_t slot;
+    bool output;
+    uint16_t index;
+    uint8_t least_bytes, most_bytes;
+    uint8_t needed_in;
+    const char *name;
+} drive_object_t;
+
+#define SLOT(member) offsetof(cm1e_drive_t, member)
+/* Sizes: UG 4.4 and UG 7.2 disagree on 0x6077 (16 or 32 bits), and CiA 402 has digital I/O in 32 bits. */
+static const drive_object_t objects[] = {
+    {SLOT(out_controlword), true, OBJ_6040_CONTROLWORD, 2, 2, MAPPED_ALL, "Controlword"},
+    {SLOT(out_position), true, OBJ_607A_TARGET_POSITION, 4, 4, MAPPED_DYNAMIC | MAPPED_CSP | MAPPED_PROFILE,
+     "Target position"},
+    {SLOT(out_velocity), true, OBJ_60FF_TARGET_VELOCITY, 4, 4, MAPPED_DYNAMIC | MAPPED_CSV | MAPPED_PROFILE,
+     "Target velocity"},
+    {SLOT(out_mode), true, OBJ_6060_MODES_OF_OPERATION, 1, 1, MAPPED_DYNAMIC, "Modes of operation"},
+    {SLOT(out_digital), true, OBJ_60FE_DIGITAL_OUTPUTS, 2, 4, 0, "Digital outputs"},
+    {SLOT(out_profile_velocity), true, OBJ_6081_PROFILE_VELOCITY, 4, 4, 0, "Profile velocity"},
+    {SLOT(out_profile_acceleration), true, OBJ_6083_PROFILE_ACCELERATION, 4, 4, 0, "Profile acceleration"},
+    {SLOT(in_statusword), false, OBJ_6041_STATUSWORD, 2, 2, MAPPED_ALL, "Statusword"},
+    {SLOT(in_error), false, OBJ_603F_ERROR_CODE, 2, 2, 0, "Error code"},
+    {SLOT(in_position), false, OBJ_6064_POSITION_ACTUAL_VALUE, 4, 4, MAPPED_ALL, "Position actual value"},
+    {SLOT(in_velocity), false, OBJ_606C_VELOCITY_ACTUAL_VALUE, 4, 4, 0, "Velocity actual value"},
+    {SLOT(in_torque), false, OBJ_6077_TORQUE_ACTUAL_VALUE, 2, 4, 0, "Torque actual value"},
+    {SLOT(in_digital), false, OBJ_60FD_DIGITAL_INPUTS, 2, 4, 0, "Digital inputs"},
+    {SLOT(in_temperature), false, OBJ_2301_TEMPERATURE, 2, 4, 0, "Drive temperature"},
+    {SLOT(in_dc), false, OBJ_6079_DC_LINK_VOLTAGE, 2, 4, 0, "DC link voltage"},
+    {SLOT(in_mode), false, OBJ_6061_MODES_OF_OPERATION_DISPLAY, 1, 1, MAPPED_DYNAMIC, "Modes of operation display"},
+};
+
+static const char *const mapping_names[] = {
+    [CM1E_MAPPING_DYNAMIC] = "dynamic (0x1600/0x1A00)", [CM1E_MAPPING_CSP] = "CSP (0x1601/0x1A01)",
+    [CM1E_MAPPING_CSV] = "CSV (0x1602/0x1A02)", [CM1E_MAPPING_PROFILE] = "profile (0x1603/0x1A03)",
+};
+
+static cm1e_image_slot_t *slot_of(cm1e_drive_t *drive, const drive_object_t *object)
+{
+    return (cm1e_image_slot_t *)(void *)((char *)drive + object->slot);
+}
+
+static cm1e_error_t resolve_object(cm1e_drive_t *drive, const drive_object_t *object, cm1e_diag_t *diag)
+{
+    cm1e_image_slot_t *slot = slot_of(drive, object);
+    *slot = object->output ? cm1e_bus_find_output(drive->bus, drive->position, object->index, 0)
+                           : cm1e_bus_find_input(drive->bus, drive->position, object->index, 0);
+    const cm1e_mapping_t mapping = drive->config->mapping;
+    if (slot->bytes == 0) {
+        if (!(object->needed_in & 1 << mapping))
+            return CM1E_OK;
+        return cm1e_diag_set(diag, CM1E_ERROR_PDO_MAPPING, object->index,
+                             "Axis \"%s\" (slave %u): the mapping %s that was read from the device lacks object "
+                             "0x%04X, %s, which this mapping needs. Choose another mapping or check the firmware.",
+                             drive->config->name, drive->position, mapping_names[mapping], object->index,
+                             object->name);
+    }
+    if (slot->bytes < object->least_bytes || slot->bytes > object->most_bytes)
+        return cm1e_diag_set(diag, CM1E_ERROR_PDO_MAPPING, object->index,
+                             "Axis \"%s\" (slave %u): the mapping %s has object 0x%04X, %s, with %u bytes; %u ... %u "
+                             "are understood. Is this a CM1-E?",
+                             drive->config->name, drive->position, mapping_names[mapping], object->index,
+                             object->name, slot->bytes, object->least_bytes, object->most_bytes);
+    return CM1E_OK;
+}
+
+/* 0x6081 and 0x6083 are zero in the image until somebody writes them: the limits of the configuration then. */
+static void profile_objects(cm1e_drive_t *drive)
+{
+    const cm1e_axis_config_t *config = drive->config;
+    const double counts_per_unit = config->counts_per_unit > 0 ? config->counts_per_unit : CM1E_COUNTS_PER_REVOLUTION;
+    double velocity = config->max_velocity * counts_per_unit;
+    if (!(velocity > 0) || velocity > drive->motor->max_velocity_counts_per_s)
+        velocity = drive->motor->max_velocity_counts_per_s;
+    double kilo = config->max_acceleration > 0 ? config->max_acceleration * counts_per_unit / 1000.0 : 5000.0;
+    if (kilo < 1.0)
+        kilo = 1.0;
+    if (kilo > 32767.0)
+        kilo = 32767.0; /* UG 6.2.2: kept as 1 ... 32767 kpulses/s2 */
+    drive->profile_velocity = (uint32_t)velocity;
+    drive->profile_acceleration = (uint32_t)kilo * (config->acceleration_in_kpulses ? 1u : 1000u);
+}
+
+cm1e_error_t drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag)
+{
+    if ((unsigned)drive->config->mapping > CM1E_MAPPING_PROFILE)
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": there is no PDO mapping number %d.",
+                             drive->config->name, (int)drive->config->mapping);
+    for (size_t i = 0; i < sizeof objects / sizeof objects[0]; i++) {
+        const cm1e_error_t error = resolve_object(drive, &objects[i], diag);
+        if (error)
+            return error;
+    }
+    /* Half of the pair would leave a switch that cannot be confirmed, or one that process data undoes. */
+    if ((drive->out_mode.bytes == 0) != (drive->in_mode.bytes == 0)) {
+        const bool out = drive->out_mode.bytes == 0;
+        return cm1e_diag_set(diag, CM1E_ERROR_PDO_MAPPING,
+                             out ? OBJ_6060_MODES_OF_OPERATION : OBJ_6061_MODES_OF_OPERATION_DISPLAY,
+                             "Axis \"%s\" (slave %u): the mapping %s has object 0x%04X but not 0x%04X: a mode of "
+                             "operation could not be switched safely.",
+                             drive->config->name, drive->position, mapping_names[drive->config->mapping],
+                             out ? 0x6061 : 0x6060, out ? 0x6060 : 0x6061);
+    }
+    profile_objects(drive);
+    return CM1E_OK;
+}
+
+static int32_t clamp_i32(double value)
+{
+    if (value >= INT32_MAX)
+        return INT32_MAX;
+    return value <= INT32_MIN ? INT32_MIN : (int32_t)value;
+}
+
+static int64_t get_signed(const uint8_t *image, cm1e_image_slot_t slot)
+{
+    if (slot.bytes == 0)
+        return 0;
+    const uint64_t raw = cm1e_get_uint(image + slot.offset, slot.bytes);
+    const uint64_t sign = UINT64_C(1) << (8u * slot.bytes - 1);
+    return (int64_t)(raw ^ sign) - (int64_t)sign;
+}
+
+static uint32_t get_unsigned(const uint8_t *image, cm1e_image_slot_t slot)
+{
+    return slot.bytes ? (uint32_t)cm1e_get_uint(image + slot.offset, slot.bytes) : 0;
+}
+
+static int16_t get_i16(const uint8_t *image, cm1e_image_slot_t slot)
+{
+    const int64_t value = get_signed(image, slot);
+    return (int16_t)(value > INT16_MAX ? INT16_MAX : value < INT16_MIN ? INT16_MIN : value);
+}
+
+/* 0x606C, unless the mapping lacks it or the firmware shows a quarter of it (below V1.3.0 in HM and PP, UG 10.1). */
+static int32_t velocity_of(const cm1e_drive_t *drive, const uint8_t *in, int32_t position, int8_t mode)
+{
+    const bool quarter = drive->firmware ? drive->firmware->velocity_quarter_in_hm_pp : drive->velocity_scale > 1.0;
+    if (drive->in_velocity.bytes && !(quarter && (mode == CM1E_MODE_HM || mode == CM1E_MODE_PP)))
+        return clamp_i32((double)get_signed(in, drive->in_velocity) * drive->velocity_scale);
+    const int64_t elapsed_ns = drive->now_ns - drive->read_ns;
+    if (!drive->seen || elapsed_ns <= 0)
+        return 0;
+    const int32_t step = (int32_t)((uint32_t)position - (uint32_t)drive->feedback.position);
+    return clamp_i32((double)step * 1e9 / (double)elapsed_ns);
+}
+
+void drive_decode(cm1e_drive_t *drive)
+{
+    const uint8_t *in = cm1e_bus_inputs(drive->bus);
+    cm1e_drive_feedback_t *f = &drive->feedback;
+    f->statusword = (uint16_t)get_unsigned(in, drive->in_statusword);
+    f->state = cm1e_fsa_decode(f->statusword);
+    f->error_code = (uint16_t)get_unsigned(in, drive->in_error);
+    f->mode = drive->in_mode.bytes ? (int8_t)get_signed(in, drive->in_mode) : drive->mode_shown;
+    const int32_t position = (int32_t)get_signed(in, drive->in_position);
+    f->velocity = velocity_of(drive, in, position, f->mode);
+    f->position = position;
+    f->torque = get_i16(in, drive->in_torque);
+    f->digital_inputs = (uint16_t)get_unsigned(in, drive->in_digital);
+    f->temperature = get_i16(in, drive->in_temperature);
+    f->dc_link_decivolt = (int32_t)get_signed(in, drive->in_dc);
+    f->voltage = f->statusword & STATUSWORD_VOLTAGE_ENABLED;
+    f->fault = f->statusword & STATUSWORD_FAULT;
+    f->target_reached = f->statusword & STATUSWORD_TARGET_REACHED;
+    f->bit12 = f->statusword & STATUSWORD_BIT12;
+    f->bit13 = f->statusword & STATUSWORD_BIT13;
+    drive->read_ns = drive->now_ns;
+    drive->seen = true;
+}
+
+static void put(uint8_t *image, cm1e_image_slot_t slot, uint32_t value)
+{
+    if (slot.bytes)
+        cm1e_put_uint(image + slot.offset, slot.bytes, value);
+}
+
+/* UG 6.3: a target above the motor's peak speed is cut; in counts/ms the bound is the whole number below. */
+static int32_t velocity_on_wire(const cm1e_drive_t *drive, int32_t counts_per_s)
+{
+    const double most = floor(drive->motor->max_velocity_counts_per_s / drive->velocity_scale);
+    const double value = round(counts_per_s / drive->velocity_scale);
+    return (int32_t)(value > most ? most : value < -most ? -most : value);
+}
+
+void drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t position, int32_t velocity)
+{
+    uint8_t *out = cm1e_bus_outputs(drive->bus);
+    put(out, drive->out_controlword, controlword);
+    put(out, drive->out_position, (uint32_t)position);
+    put(out, drive->out_velocity, (uint32_t)velocity_on_wire(drive, velocity));
+    put(out, drive->out_mode, (uint8_t)drive->mode);
+    put(out, drive->out_digital, drive->command.digital_outputs);
+    put(out, drive->out_profile_velocity, drive->profile_velocity);
+    put(out, drive->out_profile_acceleration, drive->profile_acceleration);
+    drive->target_position = position;
+}

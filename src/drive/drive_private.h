@@ -1,0 +1,45 @@
+/**
+ * @file drive_private.h
+ * What the sources of the drive room share. Everything here is called in the cycle unless marked otherwise.
+ */
+#ifndef CM1E_DRIVE_DRIVE_PRIVATE_H
+#define CM1E_DRIVE_DRIVE_PRIVATE_H
+
+#include "drive/drive.h"
+
+#define MS_IN_NS INT64_C(1000000)
+
+/** Phases of a fault reset (drive_reset.c). */
+enum { RESET_IDLE = 0, RESET_WAIT_ONLINE, RESET_EDGE, RESET_RELEASED };
+
+/** The slave answers and is in Operational, as far as the supervision has seen. */
+static inline bool drive_operational(const cm1e_drive_t *drive)
+{
+    return !drive->watch.lost && (drive->watch.al_state == CM1E_AL_NONE || drive->watch.al_state == CM1E_AL_OP);
+}
+
+/** A cause after which a drive may still be under torque and listen, so that a ramp makes sense. */
+static inline bool drive_fault_allows_ramp(cm1e_error_t error)
+{
+    return error == CM1E_ERROR_BUS_LOST || error == CM1E_ERROR_BUS_WORKING_COUNTER;
+}
+
+/* drive_io.c */
+cm1e_error_t drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag);
+void drive_decode(cm1e_drive_t *drive);
+void drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t position, int32_t velocity);
+
+/* drive_mode.c */
+cm1e_mode_t drive_mapping_mode(cm1e_mapping_t mapping);
+cm1e_error_t drive_mode_init(cm1e_drive_t *drive, cm1e_diag_t *diag);
+void drive_mode_step(cm1e_drive_t *drive);
+/** Takes over `command.mode` when the last switch is confirmed. */
+void drive_mode_choose(cm1e_drive_t *drive);
+/** Show the mode again: the device may have been switched off meanwhile. */
+void drive_mode_forget(cm1e_drive_t *drive);
+
+/* drive_reset.c */
+void drive_reset_start(cm1e_drive_t *drive);
+void drive_reset_step(cm1e_drive_t *drive);
+
+#endif
