@@ -26,9 +26,10 @@ typedef struct cm1e_nic_backend {
     cm1e_error_t (*open)(cm1e_nic_t *nic, const cm1e_bus_config_t *config, cm1e_diag_t *diag);
     /** Sends one frame on a port; false: not sent. Never blocks. */
     bool (*send)(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t length);
-    /** Next frame received on a port until `deadline_ns` (clock of the nic) has passed; 0: none. A deadline in the past
-     *  means: only what is here already. Waits exactly, to the deadline and not beyond. */
-    size_t (*receive)(cm1e_nic_t *nic, int port, uint8_t *frame, size_t room, int64_t deadline_ns);
+    /** Next frame received on any port, until `deadline_ns` (clock of the nic) has passed; 0: none. `*port` says where it
+     *  came in. A deadline in the past means: only what is here already. Waits exactly, to the deadline and not beyond.
+     *  `frame` has room for CM1E_FRAME_MAX. */
+    size_t (*receive)(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t deadline_ns);
     void (*close)(cm1e_nic_t *nic);
 } cm1e_nic_backend_t;
 

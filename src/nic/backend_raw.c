@@ -1,0 +1,93 @@
+/* Network interfaces: a packet socket per port, waits that end at the deadline and not a jiffy later. */
+#include <errno.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "nic/nic_private.h"
+#include "nic/raw_socket.h"
+
+enum { NS_PER_S = 1000000000, USELESS_WAKE_UPS = 16 };
+
+typedef struct raw {
+    struct pollfd sockets[CM1E_NIC_PORTS];
+} raw_t;
+
+static bool raw_matches(const char *name) { return name[0] != 0; }
+
+static void raw_close(cm1e_nic_t *nic)
+{
+    raw_t *raw = nic->state;
+    for (int i = 0; i < nic->ports; i++)
+        if (raw->sockets[i].fd >= 0)
+            close(raw->sockets[i].fd);
+    free(raw);
+}
+
+static cm1e_error_t raw_open(cm1e_nic_t *nic, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
+{
+    raw_t *raw = calloc(1, sizeof *raw);
+    if (!raw)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the network interface.");
+    nic->state = raw;
+    for (int i = 0; i < CM1E_NIC_PORTS; i++)
+        raw->sockets[i] = (struct pollfd){.fd = -1, .events = POLLIN};
+    const char *names[CM1E_NIC_PORTS] = {nic->interface_name, config->second_interface};
+    if (nic->ports > 1 && strcmp(names[0], names[1]) == 0) {
+        raw_close(nic);
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
+                             "Both interfaces of the ring are \"%s\": a ring needs two network interfaces.", names[0]);
+    }
+    for (int i = 0; i < nic->ports; i++) {
+        const cm1e_error_t error = raw_socket_open(&raw->sockets[i].fd, names[i], diag);
+        if (error) {
+            raw_close(nic);
+            return error;
+        }
+    }
+    /* A thread without real-time priority is woken up to 50 us late by default; this is the thread that waits. */
+    prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+    return CM1E_OK;
+}
+
+static bool raw_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t length)
+{
+    const raw_t *raw = nic->state;
+    return send(raw->sockets[port].fd, frame, length, MSG_DONTWAIT | MSG_NOSIGNAL) == (ssize_t)length;
+}
+
+static size_t look(cm1e_nic_t *nic, int *port, uint8_t *frame)
+{
+    const raw_t *raw = nic->state;
+    for (int i = 0; i < nic->ports; i++) {
+        const int n = raw_socket_receive(raw->sockets[i].fd, frame, CM1E_FRAME_MAX);
+        if (n > 0) {
+            *port = i;
+            return (size_t)n;
+        }
+    }
+    return 0;
+}
+
+static size_t raw_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t deadline_ns)
+{
+    raw_t *raw = nic->state;
+    for (int useless = 0;;) {
+        const size_t length = look(nic, port, frame);
+        if (length > 0 || deadline_ns == NIC_NOW)
+            return length;
+        const int64_t left_ns = deadline_ns - cm1e_clock_now(nic->clock);
+        if (left_ns <= 0)
+            return 0;
+        const struct timespec left = {.tv_sec = left_ns / NS_PER_S, .tv_nsec = left_ns % NS_PER_S};
+        const int ready = ppoll(raw->sockets, (nfds_t)nic->ports, &left, NULL);
+        /* An interface that went away reports errors without end, which would make this a busy loop. */
+        if (ready > 0 && ++useless > USELESS_WAKE_UPS)
+            cm1e_clock_sleep_until(nic->clock, deadline_ns);
+    }
+}
+
+const cm1e_nic_backend_t backend_raw = {"raw", raw_matches, raw_open, raw_send, raw_receive, raw_close};

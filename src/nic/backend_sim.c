@@ -1,0 +1,133 @@
+/* The simulated segment in this process: "sim", or "sim:<bus file>" for a segment as that file describes it. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "nic/frame.h"
+#include "nic/nic_private.h"
+
+/** The wire on virtual time: 100 Mbit/s, and per slave the way through its controller and two PHYs, there and back. */
+enum { NS_PER_BYTE = 80, FRAME_GAP_BYTES = 24 /* preamble 8, FCS 4, gap 12 */, SHORTEST_FRAME = 60, NS_PER_SLAVE = 1200 };
+
+typedef struct sim {
+    int64_t wire_free_ns[CM1E_NIC_PORTS]; /**< a port sends one frame after the other */
+    frame_queue_t in_flight;
+} sim_t;
+
+static bool sim_matches(const char *name) { return strcmp(name, "sim") == 0 || strncmp(name, "sim:", 4) == 0; }
+
+static cm1e_error_t make_segment(cm1e_nic_t *nic, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
+{
+    /* A whole configuration is too large for a stack. */
+    cm1e_bus_config_t *described = malloc(sizeof *described);
+    if (!described)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the simulated segment.");
+    cm1e_error_t error = CM1E_OK;
+    if (strncmp(nic->interface_name, "sim:", 4) == 0)
+        error = cm1e_bus_config_load(described, nic->interface_name + 4, diag);
+    else if (config->axis_count > 0)
+        *described = *config;
+    else
+        cm1e_bus_config_init(described, "sim", 1);
+    if (!error) {
+        cm1e_diag_t why = {.error = CM1E_ERROR_NO_MEMORY};
+        nic->segment = cm1e_sim_segment_create(described, &why);
+        if (!nic->segment)
+            error = cm1e_diag_set(diag, why.error ? why.error : CM1E_ERROR_NO_MEMORY, why.foreign_code, "%s",
+                                  why.text[0] ? why.text : "No memory for the simulated segment.");
+    }
+    free(described);
+    return error;
+}
+
+static cm1e_error_t sim_open(cm1e_nic_t *nic, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
+{
+    sim_t *sim = calloc(1, sizeof *sim);
+    if (!sim)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the simulated network interface.");
+    const cm1e_error_t error = make_segment(nic, config, diag);
+    if (error) {
+        free(sim);
+        return error;
+    }
+    nic->state = sim;
+    if (config->virtual_time) {
+        cm1e_clock_init_virtual(&nic->virtual_clock, 0);
+        nic->clock = &nic->virtual_clock;
+    }
+    if (nic->ports > 1)
+        cm1e_sim_segment_close_ring(nic->segment);
+    return CM1E_OK;
+}
+
+static void sim_close(cm1e_nic_t *nic)
+{
+    cm1e_sim_segment_destroy(nic->segment);
+    free(nic->state);
+}
+
+/** When the answer is back. On real time it is there at once: waiting for a wire that does not exist helps nobody. */
+static int64_t arrival(cm1e_nic_t *nic, int port, size_t length, int64_t now_ns)
+{
+    if (nic->clock != &nic->virtual_clock)
+        return now_ns;
+    sim_t *sim = nic->state;
+    const size_t bytes = (length < SHORTEST_FRAME ? SHORTEST_FRAME : length) + FRAME_GAP_BYTES;
+    int64_t start = now_ns > sim->wire_free_ns[port] ? now_ns : sim->wire_free_ns[port];
+    sim->wire_free_ns[port] = start + (int64_t)bytes * NS_PER_BYTE;
+    return sim->wire_free_ns[port] + (int64_t)cm1e_sim_segment_slave_count(nic->segment) * NS_PER_SLAVE;
+}
+
+static bool sim_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t length)
+{
+    sim_t *sim = nic->state;
+    queued_frame_t *place = frame_queue_place(&sim->in_flight);
+    if (!place) {
+        /* Nobody takes the answers: the oldest makes room, as the newest tells most. */
+        frame_queue_remove_first(&sim->in_flight);
+        place = frame_queue_place(&sim->in_flight);
+    }
+    memcpy(place->bytes, frame, length);
+    place->length = length;
+    const int64_t now_ns = cm1e_clock_now(nic->clock);
+    const int out = cm1e_sim_segment_process(nic->segment, port, place->bytes, length, now_ns);
+    if (out < 0 || out >= nic->ports)
+        return true;
+    int64_t delay_ns = 0;
+    switch (cm1e_sim_segment_next_frame_fault(nic->segment, &delay_ns)) {
+    case CM1E_FRAME_OK:
+        break;
+    case CM1E_FRAME_LOSE:
+        return true;
+    case CM1E_FRAME_CORRUPT:
+        frame_corrupt(place->bytes, length);
+        break;
+    case CM1E_FRAME_DELAY:
+        break;
+    }
+    place->port = out;
+    frame_queue_insert(&sim->in_flight, place, arrival(nic, port, length, now_ns) + (delay_ns > 0 ? delay_ns : 0));
+    return true;
+}
+
+static size_t sim_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t deadline_ns)
+{
+    sim_t *sim = nic->state;
+    queued_frame_t *first = frame_queue_first(&sim->in_flight);
+    const bool in_time = first && (first->ready_ns <= deadline_ns || first->ready_ns <= cm1e_clock_now(nic->clock));
+    if (!in_time) {
+        /* Nothing can come while this thread, which owns the segment, sleeps. */
+        if (deadline_ns > 0) {
+            cm1e_clock_sleep_until(nic->clock, deadline_ns);
+            cm1e_sim_segment_advance(nic->segment, cm1e_clock_now(nic->clock));
+        }
+        return 0;
+    }
+    cm1e_clock_sleep_until(nic->clock, first->ready_ns);
+    const size_t length = first->length;
+    *port = first->port;
+    memcpy(frame, first->bytes, length);
+    frame_queue_remove_first(&sim->in_flight);
+    return length;
+}
+
+const cm1e_nic_backend_t backend_sim = {"sim", sim_matches, sim_open, sim_send, sim_receive, sim_close};

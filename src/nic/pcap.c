@@ -1,0 +1,69 @@
+#include "nic/pcap.h"
+
+#include <errno.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BUFFER_SIZE = 1 << 20, SNAP_LENGTH = 65535, LINK_ETHERNET = 1, NS_PER_S = 1000000000 };
+
+struct pcap_file {
+    FILE *file;
+    bool failed;
+    char buffer[BUFFER_SIZE];
+};
+
+/* Headers in the byte order of the machine: the reader tells it from the magic number. */
+typedef struct file_header {
+    uint32_t magic;
+    uint16_t major, minor;
+    int32_t zone;
+    uint32_t accuracy, snap_length, link_type;
+} file_header_t;
+
+typedef struct record_header {
+    uint32_t seconds, nanoseconds, stored_length, length;
+} record_header_t;
+
+static void put(pcap_file_t *pcap, const void *bytes, size_t size)
+{
+    if (!pcap->failed && fwrite(bytes, 1, size, pcap->file) != size)
+        pcap->failed = true;
+}
+
+cm1e_error_t pcap_open(pcap_file_t **pcap, const char *path, cm1e_diag_t *diag)
+{
+    *pcap = NULL;
+    pcap_file_t *p = calloc(1, sizeof *p);
+    if (!p)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the buffer of the pcap file.");
+    p->file = fopen(path, "wbe");
+    if (!p->file) {
+        free(p);
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The pcap file %s cannot be written: %s.", path, strerror(errno));
+    }
+    setvbuf(p->file, p->buffer, _IOFBF, sizeof p->buffer);
+    const file_header_t header = {.magic = 0xA1B23C4D, .major = 2, .minor = 4, .snap_length = SNAP_LENGTH,
+                                  .link_type = LINK_ETHERNET};
+    put(p, &header, sizeof header);
+    *pcap = p;
+    return CM1E_OK;
+}
+
+void pcap_write(pcap_file_t *pcap, int64_t time_ns, const uint8_t *frame, size_t length)
+{
+    const record_header_t header = {.seconds = (uint32_t)(time_ns / NS_PER_S),
+                                    .nanoseconds = (uint32_t)(time_ns % NS_PER_S),
+                                    .stored_length = (uint32_t)length, .length = (uint32_t)length};
+    put(pcap, &header, sizeof header);
+    put(pcap, frame, length);
+}
+
+void pcap_close(pcap_file_t *pcap)
+{
+    if (!pcap)
+        return;
+    fclose(pcap->file);
+    free(pcap);
+}

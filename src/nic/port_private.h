@@ -1,0 +1,25 @@
+/**
+ * @file port_private.h
+ * What ring.c needs of port.c. @rt cycle
+ */
+#ifndef CM1E_NIC_PORT_PRIVATE_H
+#define CM1E_NIC_PORT_PRIVATE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "nicdrv.h"
+
+/** Frames that one wait takes in beyond its deadline: so many may be here already, a flood ends there. */
+enum { PORT_FRAME_BUDGET = 64 };
+
+/** Takes in the next frame until the deadline, whosever it is; false: none came. */
+bool port_take_in(ecx_portt *port, int64_t deadline_ns);
+/** Marks an Ethernet frame as sent by interface 0 (PRI) or 1 (SEC), with the stamp of its transmission. */
+void port_stamp(ecx_portt *port, uint8_t *frame, uint8 idx, int source, uint32_t transmission);
+/** Sends on an interface and counts. */
+bool port_send(ecx_portt *port, int interface, const uint8_t *frame, int length);
+/** The answer in rxbuf[idx] goes to the caller: its working counter. */
+int port_complete(ecx_portt *port, uint8 idx);
+
+#endif

@@ -1,0 +1,138 @@
+#include "nic/raw_socket.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <linux/if_packet.h>
+#include <net/ethernet.h>
+#include <net/if.h>
+#include <net/if_arp.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+enum { ETHERTYPE_ETHERCAT = 0x88A4, RECEIVE_BUFFER = 1 << 20, DRAIN_LIMIT = 65536 };
+
+#ifndef PACKET_IGNORE_OUTGOING
+#define PACKET_IGNORE_OUTGOING 23 /* Linux 4.20 */
+#endif
+
+/** Names of the Ethernet interfaces there are, for the diagnosis. */
+static void list_interfaces(char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = 0;
+    struct if_nameindex *all = if_nameindex();
+    for (struct if_nameindex *i = all; i && i->if_index != 0 && used < size; i++)
+        if (strcmp(i->if_name, "lo") != 0) {
+            const int n = snprintf(text + used, size - used, "%s%s", used ? ", " : "", i->if_name);
+            used += n > 0 ? (size_t)n : 0;
+        }
+    if (all)
+        if_freenameindex(all);
+    if (!text[0])
+        snprintf(text, size, "none");
+}
+
+static cm1e_error_t check_interface(int fd, const char *name, cm1e_diag_t *diag)
+{
+    struct ifreq request = {0};
+    memcpy(request.ifr_name, name, strlen(name));
+    if (ioctl(fd, SIOCGIFHWADDR, &request) < 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "Network interface \"%s\" cannot be asked for its kind: %s.", name,
+                             strerror(errno));
+    if (request.ifr_hwaddr.sa_family != ARPHRD_ETHER)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
+                             "Network interface \"%s\" is not Ethernet: EtherCAT needs an Ethernet interface.", name);
+    if (ioctl(fd, SIOCGIFFLAGS, &request) < 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "Network interface \"%s\" cannot be asked for its state: %s.", name,
+                             strerror(errno));
+    if (!(request.ifr_flags & IFF_UP))
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0,
+                             "Network interface \"%s\" is down. Bring it up with: sudo ip link set %s up", name, name);
+    return CM1E_OK;
+}
+
+static cm1e_error_t no_socket(int why, cm1e_diag_t *diag)
+{
+    if (why != EPERM && why != EACCES)
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "No packet socket: %s.", strerror(why));
+    char self[160] = "<program>";
+    const ssize_t n = readlink("/proc/self/exe", self, sizeof self - 1);
+    if (n > 0)
+        self[n] = 0;
+    return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0,
+                         "EtherCAT on a network interface needs the privilege CAP_NET_RAW. Start the program with sudo, "
+                         "or give it the privilege once: sudo setcap cap_net_raw,cap_sys_nice,cap_ipc_lock+ep %s", self);
+}
+
+/** Options that only make things better: a kernel without them still works. */
+static void tune(int fd, int interface_index)
+{
+    const int on = 1, size = RECEIVE_BUFFER;
+    /* What we send must not come back as received. Older kernels mark it, see raw_socket_receive(). */
+    setsockopt(fd, SOL_PACKET, PACKET_IGNORE_OUTGOING, &on, sizeof on);
+    if (setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) < 0)
+        setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, sizeof size);
+    /* Answers carry our made-up source address and whatever destination: take all. Ends with the socket. */
+    const struct packet_mreq promiscuous = {.mr_ifindex = interface_index, .mr_type = PACKET_MR_PROMISC};
+    setsockopt(fd, SOL_PACKET, PACKET_ADD_MEMBERSHIP, &promiscuous, sizeof promiscuous);
+}
+
+static cm1e_error_t set_up(int fd, const char *name, cm1e_diag_t *diag)
+{
+    const unsigned index = strlen(name) < IFNAMSIZ ? if_nametoindex(name) : 0;
+    if (index == 0) {
+        char list[256];
+        list_interfaces(list, sizeof list);
+        return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0,
+                             "There is no network interface \"%s\". There are: %s. \"sim\" is the simulated segment.",
+                             name, list);
+    }
+    const cm1e_error_t error = check_interface(fd, name, diag);
+    if (error)
+        return error;
+    tune(fd, (int)index);
+    const struct sockaddr_ll address = {.sll_family = AF_PACKET, .sll_protocol = htons(ETHERTYPE_ETHERCAT),
+                                        .sll_ifindex = (int)index};
+    if (bind(fd, (const struct sockaddr *)&address, sizeof address) < 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The packet socket cannot be bound to \"%s\": %s.", name,
+                             strerror(errno));
+    return CM1E_OK;
+}
+
+cm1e_error_t raw_socket_open(int *fd, const char *interface_name, cm1e_diag_t *diag)
+{
+    *fd = -1;
+    /* Protocol 0: nothing is received before bind() names the interface. */
+    const int s = socket(AF_PACKET, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    if (s < 0)
+        return no_socket(errno, diag);
+    const cm1e_error_t error = set_up(s, interface_name, diag);
+    if (error) {
+        close(s);
+        return error;
+    }
+    uint8_t stale[64];
+    for (int i = 0; i < DRAIN_LIMIT && raw_socket_receive(s, stale, sizeof stale) != 0; i++)
+        ;
+    *fd = s;
+    return CM1E_OK;
+}
+
+int raw_socket_receive(int fd, uint8_t *frame, size_t room)
+{
+    struct sockaddr_ll from = {0};
+    for (int i = 0; i < DRAIN_LIMIT; i++) {
+        socklen_t size = sizeof from;
+        const ssize_t n = recvfrom(fd, frame, room, MSG_DONTWAIT | MSG_TRUNC, (struct sockaddr *)&from, &size);
+        if (n < 0)
+            return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR ? 0 : -1;
+        if (from.sll_pkttype == PACKET_OUTGOING)
+            continue;
+        return (size_t)n > room ? (int)room : (int)n;
+    }
+    return 0;
+}
