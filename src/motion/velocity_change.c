@@ -1,0 +1,114 @@
+/*
+ * The primitive under every profile: the shortest way from (v, a) to (w, 0).
+ *
+ * All functions but the last look at it mirrored so that the velocity has to grow ("up"). The ceiling of the
+ * acceleration is then the deceleration limit below standstill, where |v| shrinks, and the acceleration limit above it.
+ * Where the ceiling falls at standstill, the acceleration has to come down before: it must obey the lower limit when v
+ * gets there.
+ */
+#include <float.h>
+#include <math.h>
+
+#include "motion/pieces.h"
+
+void cm1e_pieces_append(cm1e_pieces_t *pieces, double jerk, double acceleration, double duration_s)
+{
+    if (!(duration_s > 0))
+        return;
+    if (pieces->count > 0 && jerk != 0 && pieces->piece[pieces->count - 1].jerk == jerk)
+        pieces->piece[pieces->count - 1].duration_s += duration_s;
+    else if (pieces->count < CM1E_PIECES_MAX)
+        pieces->piece[pieces->count++] = (cm1e_piece_t){jerk, acceleration, duration_s};
+}
+
+/** From acceleration a >= 0 to `a_end` >= 0 while the velocity grows by dv, at most `ceiling`. The caller knows that it
+ *  can be done, i.e. that going from a straight to a_end needs no more than dv. */
+static void append_rise(cm1e_pieces_t *pieces, double dv, double a, double a_end, double ceiling, double jerk)
+{
+    if (a > ceiling) {
+        cm1e_pieces_append(pieces, -jerk, a, (a - ceiling) / jerk);
+        dv -= (a + ceiling) * ((a - ceiling) / jerk) / 2;
+        a = ceiling;
+    }
+    const double at_ceiling = dv - (ceiling * ceiling - (a * a + a_end * a_end) / 2) / jerk;
+    double peak = ceiling;
+    if (!(at_ceiling > 0)) {
+        peak = sqrt(fmax(0, jerk * dv) + (a * a + a_end * a_end) / 2);
+        peak = fmin(fmax(peak, fmax(a, a_end)), ceiling);
+    }
+    cm1e_pieces_append(pieces, jerk, a, (peak - a) / jerk);
+    cm1e_pieces_append(pieces, 0, peak, at_ceiling / peak);
+    cm1e_pieces_append(pieces, -jerk, peak, (peak - a_end) / jerk);
+}
+
+/** From (v < 0, a >= 0) to (w > 0, 0). */
+static void append_rise_through_zero(cm1e_pieces_t *pieces, double v, double a, double w,
+                                     const cm1e_motion_limits_t *limits)
+{
+    const double above = limits->acceleration, below = limits->deceleration, jerk = limits->jerk;
+    /* What the acceleration may be at v = 0: within both limits, and not too much to arrive at w. */
+    const double lower = fmin(above, below);
+    const double allowed = 2 * jerk * w < lower * lower ? sqrt(2 * jerk * w) : lower;
+    /* Squares of the acceleration at v = 0 when jerk is applied from now on, upwards and downwards. */
+    const double pushed = a * a - 2 * jerk * v, eased = a * a + 2 * jerk * v;
+
+    if (a > below && eased >= below * below) { /* from outside the limits, and still so at v = 0 */
+        const double at_zero = sqrt(eased);
+        cm1e_pieces_append(pieces, -jerk, a, (a - at_zero) / jerk);
+        append_rise(pieces, w, at_zero, 0, above, jerk);
+    } else if (a <= below && pushed <= allowed * allowed) { /* no limit in the way below zero */
+        const double at_zero = sqrt(pushed);
+        cm1e_pieces_append(pieces, jerk, a, (at_zero - a) / jerk);
+        append_rise(pieces, w, at_zero, 0, above, jerk);
+    } else if (eased <= allowed * allowed) {
+        append_rise(pieces, -v, a, allowed, below, jerk);
+        append_rise(pieces, w, allowed, 0, above, jerk);
+    } else { /* too fast to obey the lower limit at v = 0: down to it at once */
+        append_rise(pieces, w - v, a, 0, above, jerk);
+    }
+}
+
+static void append_up(cm1e_pieces_t *pieces, double v, double a, double w, const cm1e_motion_limits_t *limits)
+{
+    const double above = limits->acceleration, below = limits->deceleration, jerk = limits->jerk;
+    if (a < 0) {
+        cm1e_pieces_append(pieces, jerk, a, -a / jerk);
+        v -= a * (a / jerk) / 2;
+        a = 0;
+    }
+    if (v < 0 && w > 0 && above != below)
+        append_rise_through_zero(pieces, v, a, w, limits);
+    else
+        append_rise(pieces, w - v, a, 0, v < 0 ? below : above, jerk);
+}
+
+static void append_up_trapezoid(cm1e_pieces_t *pieces, double v, double w, const cm1e_motion_limits_t *limits)
+{
+    if (v < 0)
+        cm1e_pieces_append(pieces, 0, limits->deceleration, (fmin(w, 0) - v) / limits->deceleration);
+    if (w > 0)
+        cm1e_pieces_append(pieces, 0, limits->acceleration, (w - fmax(v, 0)) / limits->acceleration);
+}
+
+void cm1e_pieces_append_velocity_change(cm1e_pieces_t *pieces, double velocity, double acceleration, double target,
+                                        const cm1e_motion_limits_t *limits)
+{
+    const double v = velocity, a = acceleration, w = target, jerk = limits->jerk;
+    cm1e_pieces_t up = {.count = 0};
+    double sign;
+    if (isinf(jerk)) {
+        sign = w >= v ? 1 : -1;
+        append_up_trapezoid(&up, sign * v, sign * w, limits);
+    } else {
+        /* Where the velocity gets to if the acceleration is only brought to zero; rounding makes no motion. */
+        const double ease = fabs(a) * (a / jerk) / 2, missing = w - v - ease;
+        if (fabs(missing) <= 2 * DBL_EPSILON * (fabs(v) + fabs(w) + fabs(ease))) {
+            cm1e_pieces_append(pieces, a > 0 ? -jerk : jerk, a, fabs(a) / jerk);
+            return;
+        }
+        sign = missing > 0 ? 1 : -1;
+        append_up(&up, sign * v, sign * a, sign * w, limits);
+    }
+    for (int i = 0; i < up.count; i++)
+        cm1e_pieces_append(pieces, sign * up.piece[i].jerk, sign * up.piece[i].acceleration, up.piece[i].duration_s);
+}
