@@ -2,11 +2,12 @@
 
 #include <string.h>
 
+#include "core/bytes.h"
 #include "nic/frame.h"
 #include "nic/nic_private.h"
 #include "nic/port_private.h"
 
-enum { COMMAND_BRD = 7, MISSES_IN_A_CUT_RING = 3 };
+enum { COMMAND_BRD = 7, DATAGRAM_ADDRESS = FRAME_HEADER + 2, MISSES_IN_A_CUT_RING = 3 };
 
 typedef enum action { WAIT = 0, TAKE_FIRST, TAKE_SECOND, MERGE, SEND_ON, SEND_AGAIN } action_t;
 
@@ -95,13 +96,25 @@ ring_companion_t ring_companion(const ecx_portt *port, uint8 idx)
 
 /* ---- one frame ---------------------------------------------------------------------------------------------------- */
 
-/** The original frame may go to the second interface only: the first half did not answer. With slaves in the first half
- *  that are merely not heard, a frame by position would reach the wrong slaves, and an ordered one the slaves too early:
- *  so all slaves must be known to be behind the second interface. */
-static bool may_send_again(const ecx_portt *port, uint8 idx)
+/** Slaves that the first half's answer passed: every one adds 1 to the address of a frame by position. */
+static int slaves_in_first_half(const ecx_portt *port, uint8 idx)
 {
-    return frame_order(port->txbuf[idx], (size_t)port->txbuflength[idx]) == FRAME_ANY_ORDER ||
-           port->ring.slaves_behind >= port->ring.slaves;
+    const uint8_t *answer = port->rxbuf[idx] + DATAGRAM_ADDRESS - ETHERNET_HEADER;
+    const uint8_t *sent = port->txbuf[idx] + DATAGRAM_ADDRESS;
+    return (uint16_t)(cm1e_get_u16(answer) - cm1e_get_u16(sent));
+}
+
+/** With slaves out of reach between the halves, or in a first half that is merely not heard, a frame by position would
+ *  reach slaves that are not meant, and an ordered one slaves too early. So all slaves must be known to be in reach. */
+static bool all_in_reach(const ecx_portt *port, uint8 idx, action_t action)
+{
+    const frame_order_t order = frame_order(port->txbuf[idx], (size_t)port->txbuflength[idx]);
+    if (order == FRAME_ANY_ORDER || (order == FRAME_IN_ORDER && action == SEND_ON))
+        return true;
+    if (!(port->slots[idx].answers & RING_SECOND_HALF))
+        return false; /* only this frame's own dummy tells how many are behind the break now */
+    const int before = action == SEND_ON ? slaves_in_first_half(port, idx) : 0;
+    return before + port->ring.slaves_behind >= port->ring.slaves;
 }
 
 static action_t decide(const ecx_portt *port, uint8 idx, bool ended)
@@ -117,8 +130,10 @@ static action_t decide(const ecx_portt *port, uint8 idx, bool ended)
         action = (action_t)decisions[slot->companion][halves].in_a_cut;
     if (action == WAIT && ended)
         action = (action_t)decisions[slot->companion][halves].at_the_end;
-    if (action == SEND_AGAIN && !may_send_again(port, idx))
+    if (action == SEND_AGAIN && !all_in_reach(port, idx, action))
         action = WAIT;
+    if (action == SEND_ON && !all_in_reach(port, idx, action))
+        action = ended || halves == RING_HALVES ? TAKE_FIRST : WAIT;
     /* Both halves processed it although only the second one was thought alive. */
     if (action == MERGE && frame_order(port->txbuf[idx], (size_t)port->txbuflength[idx]) != FRAME_ANY_ORDER)
         action = TAKE_SECOND;
@@ -150,26 +165,35 @@ static int take(ecx_portt *port, uint8 idx, action_t action, bool complete)
         memcpy(port->rxbuf[idx], port->redport->rxbuf[idx], body);
     else if (action == MERGE)
         frame_merge(port->rxbuf[idx], port->redport->rxbuf[idx], port->txbuf[idx] + ETHERNET_HEADER, body);
+    const bool whole = (port->slots[idx].answers & RING_WHOLE) != 0;
     const int wkc = port_complete(port, idx);
-    if (complete && port->txbuf[idx][FRAME_HEADER] == COMMAND_BRD)
+    if (complete && port->txbuf[idx][FRAME_HEADER] == COMMAND_BRD && (whole || wkc > port->ring.slaves))
         port->ring.slaves = wkc;
     return wkc;
 }
 
-/** Until when the other half is awaited. */
-static int64_t half_deadline(const ecx_portt *port, uint8 idx)
+/** Until when the other half is awaited. If the frame must be sent again without it, that needs time too: half of what
+ *  is left. */
+static int64_t half_deadline(const ecx_portt *port, uint8 idx, int64_t deadline_ns)
 {
     const cm1e_port_slot_t *slot = &port->slots[idx];
     const unsigned halves = slot->answers & RING_HALVES;
     if (halves == 0 || slot->state != EC_BUF_TX)
         return INT64_MAX;
-    return half_is_dead(port, halves) ? NIC_NOW : slot->sent_ns + RING_HALF_WAIT_NS;
+    if (half_is_dead(port, halves))
+        return NIC_NOW;
+    const int64_t half_ns = slot->sent_ns + RING_HALF_WAIT_NS;
+    if (decisions[slot->companion][halves].at_the_end != SEND_AGAIN || deadline_ns == NIC_NOW)
+        return half_ns;
+    const int64_t now_ns = cm1e_clock_now(port->nic->clock), middle_ns = now_ns + (deadline_ns - now_ns) / 2;
+    return middle_ns < half_ns ? middle_ns : half_ns;
 }
 
 int ring_wait(ecx_portt *port, uint8 idx, int64_t deadline_ns)
 {
     cm1e_port_slot_t *slot = &port->slots[idx];
     bool ended = false; /* the other half will not come any more */
+    int64_t half_ns = INT64_MAX;
     for (int frames = 0;;) {
         const action_t action = decide(port, idx, ended);
         if ((slot->answers & RING_HALVES) == RING_HALVES && slot->state == EC_BUF_TX)
@@ -177,18 +201,22 @@ int ring_wait(ecx_portt *port, uint8 idx, int64_t deadline_ns)
         if (action == SEND_ON || action == SEND_AGAIN) {
             send_second(port, idx, action);
             ended = false;
+            half_ns = INT64_MAX;
             continue;
         }
         if (action != WAIT)
             return take(port, idx, action, !ended);
-        const int64_t half = ended ? INT64_MAX : half_deadline(port, idx);
-        if (port_take_in(port, half < deadline_ns ? half : deadline_ns)) {
+        if (ended)
+            half_ns = INT64_MAX;
+        else if (half_ns == INT64_MAX)
+            half_ns = half_deadline(port, idx, deadline_ns);
+        if (port_take_in(port, half_ns < deadline_ns ? half_ns : deadline_ns)) {
             if (++frames >= PORT_FRAME_BUDGET && cm1e_clock_now(port->nic->clock) >= deadline_ns)
                 return EC_NOFRAME;
             continue;
         }
         /* A look without waiting leaves the half its time; a wait that ends takes what there is. */
-        if (half == INT64_MAX || (deadline_ns == NIC_NOW && cm1e_clock_now(port->nic->clock) < half))
+        if (half_ns == INT64_MAX || (deadline_ns == NIC_NOW && cm1e_clock_now(port->nic->clock) < half_ns))
             return EC_NOFRAME;
         ended = true;
         learn_miss(port, slot->transmission, slot->answers & RING_HALVES);

@@ -18,8 +18,8 @@
  * copy of the frame, so that one trip is enough, for all frames whose slaves may be processed in any order; for the
  * others (by position; ARMW, FRMW, BRW) the dummy stays and a second trip is made.
  *
- * A frame that came back where it left proves a break. Its other half is awaited for RING_HALF_WAIT_NS after sending,
- * and not at all once it is known to be dead. What is known changes by frames alone: both interfaces send in every
+ * A frame that came back where it left proves a break. Its other half is awaited for RING_HALF_WAIT_NS after sending
+ * (or as long as the caller's timeout allows), and not at all once it is known to be dead. What is known changes by frames alone: both interfaces send in every
  * cycle, so a mended cable shows itself within one frame.
  */
 #ifndef CM1E_NIC_RING_H
