@@ -1,0 +1,76 @@
+/**
+ * @file busfile.h
+ * What the files of this room share; private to it. Loading a bus file takes these steps, each with its own diagnosis:
+ * read the bytes, scan them for YAML that has no place in a bus file, compare every node with the schema, let libcyaml
+ * fill the structures, convert, check ranges and contradictions. libcyaml alone would take "4x" for 4, NaN for a speed
+ * and "maybe" for TRUE, and names the place of a wrong key only roughly; hence the comparison before it.
+ */
+#ifndef CM1E_BUSFILE_BUSFILE_H
+#define CM1E_BUSFILE_BUSFILE_H
+
+#include <cyaml/cyaml.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <yaml.h>
+
+#include "cm1e/config.h"
+
+/** What is wrong, and where: by line and column where they are known, else by the path of a key. */
+typedef struct cm1e_busfile_problem {
+    size_t line, column; /**< 1 ...; line 0: not known */
+    char path[96];       /**< "axes[0].limits.velocity"; "": the file as a whole */
+    char text[400];
+} cm1e_busfile_problem_t;
+
+/* ---- document.c: bytes and nodes ---------------------------------------------------------------------------------- */
+
+enum { CM1E_BUSFILE_MAX_SIZE = 1 << 20 };
+
+/** Reads a whole file into memory that the caller frees. */
+cm1e_error_t cm1e_busfile_read(const char *path, uint8_t **bytes, size_t *size, cm1e_busfile_problem_t *problem);
+/** The one document in `bytes`; the caller deletes it on success. */
+cm1e_error_t cm1e_busfile_parse(const uint8_t *bytes, size_t size, yaml_document_t *document,
+                                cm1e_busfile_problem_t *problem);
+/** Line and column of the node at problem->path, or of the deepest node on the way there that exists. */
+void cm1e_busfile_locate(yaml_document_t *document, cm1e_busfile_problem_t *problem);
+
+/* ---- schema.c, compare.c: keys and types -------------------------------------------------------------------------- */
+
+enum { CM1E_BUSFILE_VELOCITY_COUNTS_PER_S = 1, CM1E_BUSFILE_VELOCITY_COUNTS_PER_MS = 2 };
+
+/** One axis as the file has it: what goes straight into the configuration, and what is converted. */
+typedef struct cm1e_busfile_axis {
+    cm1e_axis_config_t axis;
+    uint16_t position, alias, explicit_id;
+    int velocity_unit;     /**< 0: not stated */
+    int acceleration_unit; /**< 1: kcounts/s2 */
+} cm1e_busfile_axis_t;
+
+typedef struct cm1e_busfile {
+    cm1e_bus_config_t config; /**< without axes */
+    uint32_t cycle_time_us, frame_timeout_us;
+    uint32_t axis_count;
+    cm1e_busfile_axis_t axes[CM1E_MAX_AXES];
+} cm1e_busfile_t;
+
+extern const cyaml_schema_value_t cm1e_busfile_schema;
+
+/** Range of a whole number by its key. */
+typedef struct cm1e_busfile_integer_range {
+    const char *key;
+    int64_t minimum, maximum;
+} cm1e_busfile_integer_range_t;
+extern const cm1e_busfile_integer_range_t cm1e_busfile_integer_ranges[];
+/** Keys of numbers for which 0 is a value; for the others it would silently mean the default. Ends with NULL. */
+extern const char *const cm1e_busfile_zero_allowed[];
+
+/** Compares every node of the document with the schema. Numbers are read in the thread's locale: it must be "C". */
+bool cm1e_busfile_compare(yaml_document_t *document, cm1e_busfile_problem_t *problem);
+
+/* ---- check.c: ranges and contradictions --------------------------------------------------------------------------- */
+
+/** TRUE: nothing wrong. On FALSE the problem has a path, no line. */
+bool cm1e_busfile_check(const cm1e_bus_config_t *config, cm1e_busfile_problem_t *problem);
+
+#endif

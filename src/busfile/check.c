@@ -1,0 +1,345 @@
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "busfile/busfile.h"
+#include "device/device.h"
+
+/* Every check returns FALSE with the problem filled. Paths and key names are those of a bus file; a configuration made
+ * by hand has the same names in other places. */
+typedef struct check {
+    const cm1e_bus_config_t *config;
+    cm1e_busfile_problem_t *problem;
+    const cm1e_axis_config_t *axis; /* the axis being checked */
+    uint32_t index;
+    const cm1e_motor_t *motor;
+    double counts_per_unit;
+    char name[CM1E_NAME_LENGTH + 8];
+} check_t;
+
+__attribute__((format(printf, 3, 4)))
+static bool bus_wrong(const check_t *check, const char *key, const char *format, ...)
+{
+    snprintf(check->problem->path, sizeof check->problem->path, "bus.%s", key);
+    int length = snprintf(check->problem->text, sizeof check->problem->text, "%s ", key);
+    va_list args;
+    va_start(args, format);
+    vsnprintf(check->problem->text + length, sizeof check->problem->text - (size_t)length, format, args);
+    va_end(args);
+    return false;
+}
+
+__attribute__((format(printf, 3, 4)))
+static bool axis_wrong(const check_t *check, const char *key, const char *format, ...)
+{
+    snprintf(check->problem->path, sizeof check->problem->path, "axes[%u].%s", check->index, key);
+    int length = snprintf(check->problem->text, sizeof check->problem->text, "axis %s: %s ", check->name, key);
+    va_list args;
+    va_start(args, format);
+    vsnprintf(check->problem->text + length, sizeof check->problem->text - (size_t)length, format, args);
+    va_end(args);
+    return false;
+}
+
+/* Ends within its array and holds nothing that would garble a terminal or a log. */
+static bool is_text(const char *text, size_t size)
+{
+    const char *end = memchr(text, '\0', size);
+    if (!end)
+        return false;
+    for (const char *p = text; p < end; p++)
+        if ((unsigned char)*p < 0x20 || *p == 0x7F)
+            return false;
+    return true;
+}
+#define IS_TEXT(array) is_text(array, sizeof(array))
+#define NO_TEXT "is no text that ends within %zu bytes and holds no control characters"
+
+/* ---- the bus ------------------------------------------------------------------------------------------------------ */
+
+static bool is_simulated(const char *interface_name)
+{
+    return interface_name[0] == '\0' || strcmp(interface_name, "sim") == 0 || strncmp(interface_name, "sim:", 4) == 0;
+}
+
+static bool check_cycle_time(const check_t *check)
+{
+    const int64_t cycle_time_ns = check->config->cycle_time_ns;
+    bool accepted = cycle_time_ns == 0;
+    for (size_t i = 0; i < sizeof cm1e_device_cycle_times_ns / sizeof cm1e_device_cycle_times_ns[0]; i++)
+        accepted = accepted || cycle_time_ns == cm1e_device_cycle_times_ns[i];
+    if (!accepted)
+        return bus_wrong(check, "cycle_time_us", "is %g; expected 200, 250, 500 or 1000, which the CM1-E accepts",
+                         (double)cycle_time_ns / 1000);
+    const int64_t cycle = cycle_time_ns ? cycle_time_ns : 1000000;
+    if (check->config->frame_timeout_ns < 0 || check->config->frame_timeout_ns > cycle)
+        return bus_wrong(check, "frame_timeout_us", "is %g; expected at most the cycle time, %g",
+                         (double)check->config->frame_timeout_ns / 1000, (double)cycle / 1000);
+    return true;
+}
+
+static bool check_bus(const check_t *check)
+{
+    const cm1e_bus_config_t *config = check->config;
+    if (!IS_TEXT(config->interface_name))
+        return bus_wrong(check, "interface", NO_TEXT, sizeof config->interface_name);
+    if (!IS_TEXT(config->second_interface))
+        return bus_wrong(check, "second_interface", NO_TEXT, sizeof config->second_interface);
+    if (!IS_TEXT(config->pcap_file))
+        return bus_wrong(check, "pcap_file", NO_TEXT, sizeof config->pcap_file);
+    if (config->second_interface[0] && strcmp(config->second_interface, config->interface_name) == 0)
+        return bus_wrong(check, "second_interface", "is %s like the first; expected the other end of the ring",
+                         config->second_interface);
+    if (config->virtual_time && !is_simulated(config->interface_name))
+        return bus_wrong(check, "virtual_time", "is on for the interface %s; expected it with interface sim only",
+                         config->interface_name);
+    if (config->lost_cycles_limit > 1000)
+        return bus_wrong(check, "lost_cycles_limit", "is %u; expected 1 ... 1000", config->lost_cycles_limit);
+    if (config->sim_pdo_order != CM1E_PDO_ORDER_UG_4_4 && config->sim_pdo_order != CM1E_PDO_ORDER_UG_7_2)
+        return bus_wrong(check, "sim_pdo_order", "is %d; expected one of the enumeration", (int)config->sim_pdo_order);
+    return check_cycle_time(check);
+}
+
+/* ---- numbers of an axis ------------------------------------------------------------------------------------------- */
+
+typedef enum scale { AS_IS, IN_COUNTS } scale_t;
+
+/* A number of the axis configuration; 0 is its default. Where an object is named, its range in the dictionary holds. */
+typedef struct number {
+    const char *key;
+    size_t offset;
+    scale_t scale;
+    const char *unit; /* of the range */
+    double minimum, maximum;
+    uint16_t index;
+    uint8_t subindex;
+} number_t;
+
+#define FIELD(member) offsetof(cm1e_axis_config_t, member)
+/* Bounds without an object keep the profile computable: below them a stop would take minutes, above them an axis would
+ * reach its peak speed within one cycle. */
+static const number_t numbers[] = {
+    {"limits.acceleration", FIELD(max_acceleration), IN_COUNTS, "counts/s2", 1e3, 1e11, 0, 0},
+    {"limits.deceleration", FIELD(max_deceleration), IN_COUNTS, "counts/s2", 1e3, 1e11, 0, 0},
+    {"limits.jerk", FIELD(max_jerk), IN_COUNTS, "counts/s3", 1e3, 1e15, 0, 0},
+    {"limits.position_lag", FIELD(max_position_lag), IN_COUNTS, "counts", 1, INT32_MAX, 0, 0},
+    {"homing.offset", FIELD(homing.offset), IN_COUNTS, "counts", 0, 0, OBJ_607C_HOME_OFFSET, 0},
+    {"homing.velocity", FIELD(homing.velocity), IN_COUNTS, "counts/s", 0, 0, OBJ_6099_HOMING_SPEEDS, 1},
+    {"homing.acceleration", FIELD(homing.acceleration), IN_COUNTS, "counts/s2", 0, 0, OBJ_609A_HOMING_ACCELERATION, 0},
+    {"homing.torque", FIELD(homing.torque), AS_IS, "%", 0, 0, OBJ_60F6_K_PARAMETERS, CM1E_K_PARAMETER_HOMING_TORQUE},
+    {"homing.timeout_s", FIELD(homing.timeout_s), AS_IS, "s", 0.1, 3600, 0, 0},
+    {"sim.load_inertia_kgm2", FIELD(sim.load_inertia), AS_IS, "kg m2", 1e-9, 1, 0, 0},
+    {"sim.friction_nm", FIELD(sim.friction), AS_IS, "Nm", 1e-9, 10, 0, 0},
+    {"sim.viscous_friction_nms", FIELD(sim.viscous_friction), AS_IS, "Nm s/rad", 1e-9, 1, 0, 0},
+    {"sim.stop_negative_counts", FIELD(sim.stop_negative), AS_IS, "counts", -1e12, -1, 0, 0},
+    {"sim.stop_positive_counts", FIELD(sim.stop_positive), AS_IS, "counts", 1, 1e12, 0, 0},
+    {"sim.sensor_input2_counts", FIELD(sim.sensor_input2), AS_IS, "counts", -1e12, 1e12, 0, 0},
+    {"sim.sensor_input3_counts", FIELD(sim.sensor_input3), AS_IS, "counts", -1e12, 1e12, 0, 0},
+};
+
+static bool check_range(const check_t *check, const char *key, double value, scale_t scale, double minimum,
+                        double maximum, const char *unit)
+{
+    if (!isfinite(value))
+        return axis_wrong(check, key, "is not a finite number");
+    if (scale == AS_IS) {
+        if (value >= minimum && value <= maximum)
+            return true;
+        return axis_wrong(check, key, "is %.10g; expected %.10g ... %.10g %s", value, minimum, maximum, unit);
+    }
+    /* Whole counts are what reaches the wire, so 0.3 mm of 1/3 counts is no reason to refuse the exact bound. */
+    const double counts = round(value * check->counts_per_unit);
+    if (counts >= minimum && counts <= maximum)
+        return true;
+    return axis_wrong(check, key, "is %.10g, %.10g %s; expected %.10g ... %.10g, %.10g ... %.10g %s", value, counts,
+                      unit, minimum / check->counts_per_unit, maximum / check->counts_per_unit, minimum, maximum, unit);
+}
+
+static bool check_number(const check_t *check, const number_t *number)
+{
+    double value, minimum = number->minimum, maximum = number->maximum;
+    memcpy(&value, (const char *)check->axis + number->offset, sizeof value);
+    if (value == 0)
+        return true;
+    if (number->index) {
+        const cm1e_entry_t *entry = cm1e_device_entry(number->index, number->subindex);
+        minimum = (double)entry->minimum;
+        maximum = (double)entry->maximum;
+    }
+    return check_range(check, number->key, value, number->scale, minimum, maximum, number->unit);
+}
+
+static bool check_numbers(const check_t *check)
+{
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+        if (!check_number(check, &numbers[i]))
+            return false;
+    return true;
+}
+
+/* ---- what an axis is ---------------------------------------------------------------------------------------------- */
+
+static bool check_unit(check_t *check)
+{
+    const double counts_per_unit = check->axis->counts_per_unit;
+    check->counts_per_unit = counts_per_unit == 0 ? CM1E_COUNTS_PER_REVOLUTION : counts_per_unit;
+    return check_range(check, "unit.counts_per_unit", check->counts_per_unit, AS_IS, 1e-3, 1e12, "counts per unit");
+}
+
+static bool check_motor(check_t *check)
+{
+    check->motor = IS_TEXT(check->axis->motor) ? cm1e_device_motor(check->axis->motor) : NULL;
+    if (check->motor)
+        return true;
+    return axis_wrong(check, "motor", "is '%.*s'; expected %s, %s, %s or %s", (int)sizeof check->axis->motor - 1,
+                      IS_TEXT(check->axis->motor) ? check->axis->motor : "?", cm1e_device_motors[0].name,
+                      cm1e_device_motors[1].name, cm1e_device_motors[2].name, cm1e_device_motors[3].name);
+}
+
+static bool check_firmware(const check_t *check)
+{
+    const char *version = check->axis->firmware;
+    if (version[0] == '\0')
+        return true;
+    const cm1e_firmware_info_t *info = IS_TEXT(check->axis->firmware) ? cm1e_firmware_from_version(version) : NULL;
+    if (!info || strcmp(info->version, version) != 0) {
+        char known[80] = "";
+        for (int i = 0; i < CM1E_FIRMWARE_COUNT; i++)
+            snprintf(known + strlen(known), sizeof known - strlen(known), "%s%s", i ? ", " : "",
+                     cm1e_firmware_info((cm1e_firmware_t)i)->version);
+        return axis_wrong(check, "firmware", "is '%.*s'; expected one of: %s", (int)sizeof check->axis->firmware - 1,
+                          IS_TEXT(check->axis->firmware) ? version : "?", known);
+    }
+    const int64_t cycle_time_ns = check->config->cycle_time_ns;
+    if (!info->all_cycle_times && cycle_time_ns != 0 && cycle_time_ns != 1000000)
+        return axis_wrong(check, "firmware", "is %s, which runs at 1000 us only; the cycle time is %g us", version,
+                          (double)cycle_time_ns / 1000);
+    return true;
+}
+
+static uint16_t address_of(const cm1e_axis_config_t *axis, uint32_t index)
+{
+    return axis->address_kind == CM1E_ADDRESS_POSITION && axis->address == 0 ? (uint16_t)(index + 1) : axis->address;
+}
+
+static const struct {
+    const char *key;
+    uint16_t maximum;
+} addresses[] = {
+    [CM1E_ADDRESS_POSITION] = {"position", CM1E_MAX_SLAVES},
+    [CM1E_ADDRESS_ALIAS] = {"alias", 65535},
+    [CM1E_ADDRESS_EXPLICIT_ID] = {"explicit_id", 254}, /* UG 4.2.3: 0xFF cannot be used */
+};
+
+static bool check_address(const check_t *check)
+{
+    const unsigned kind = check->axis->address_kind;
+    if (kind > CM1E_ADDRESS_EXPLICIT_ID)
+        return axis_wrong(check, "position", "is of the unknown kind %u; expected position, alias or explicit ID", kind);
+    const uint16_t address = address_of(check->axis, check->index);
+    if (address == 0 || address > addresses[kind].maximum)
+        return axis_wrong(check, addresses[kind].key, "is %u; expected 1 ... %u", address, addresses[kind].maximum);
+    for (uint32_t i = 0; i < check->index; i++)
+        if (check->config->axes[i].address_kind == kind && address_of(&check->config->axes[i], i) == address)
+            return axis_wrong(check, addresses[kind].key, "is %u, which entry %u of the list has already; expected one "
+                              "axis at each address", address, i + 1);
+    return true;
+}
+
+static void effective_name(char *name, size_t size, const cm1e_axis_config_t *axis, uint32_t index)
+{
+    if (axis->name[0])
+        snprintf(name, size, "%s", axis->name);
+    else
+        snprintf(name, size, "axis%u", index + 1);
+}
+
+static bool check_name(check_t *check)
+{
+    snprintf(check->name, sizeof check->name, "%u", check->index + 1);
+    if (!IS_TEXT(check->axis->name))
+        return axis_wrong(check, "name", NO_TEXT, sizeof check->axis->name);
+    effective_name(check->name, sizeof check->name, check->axis, check->index);
+    for (uint32_t i = 0; i < check->index; i++) {
+        char other[sizeof check->name];
+        effective_name(other, sizeof other, &check->config->axes[i], i);
+        if (strcmp(other, check->name) == 0)
+            return axis_wrong(check, "name", "is also the name of entry %u of the list; expected a name of its own",
+                              i + 1);
+    }
+    return true;
+}
+
+/* ---- contradictions within an axis -------------------------------------------------------------------------------- */
+
+static bool check_software_limits(const check_t *check)
+{
+    const double negative = check->axis->software_limit_negative, positive = check->axis->software_limit_positive;
+    /* The axis keeps positions as doubles: whole counts are exact up to 2^53. */
+    if (!check_range(check, "software_limits.negative", negative, IN_COUNTS, -9e15, 9e15, "counts") ||
+        !check_range(check, "software_limits.positive", positive, IN_COUNTS, -9e15, 9e15, "counts"))
+        return false;
+    if (negative < positive || (negative == 0 && positive == 0))
+        return true;
+    return axis_wrong(check, "software_limits.positive", "is %.10g, not above the negative one, %.10g", positive,
+                      negative);
+}
+
+/* UG 6.2.4, 4a: an offset on the far side of a hard stop drives the load into it. */
+static bool check_homing(const check_t *check)
+{
+    const cm1e_homing_config_t *homing = &check->axis->homing;
+    const cm1e_entry_t *method = cm1e_device_entry(OBJ_6098_HOMING_METHOD, 0);
+    if (homing->method < method->minimum || homing->method > method->maximum)
+        return axis_wrong(check, "homing.method", "is %d; expected %lld ... %lld", homing->method,
+                          (long long)method->minimum, (long long)method->maximum);
+    const double offset = check->axis->invert ? -homing->offset : homing->offset;
+    if ((homing->method == -1 && offset > 0) || (homing->method == -2 && offset < 0))
+        return axis_wrong(check, "homing.offset", "is %.10g, beyond the hard stop that method %d runs against; "
+                          "expected an offset of the other sign", homing->offset, homing->method);
+    return true;
+}
+
+static bool check_sim(const check_t *check)
+{
+    const cm1e_sim_axis_config_t *sim = &check->axis->sim;
+    if (sim->no_stops && (sim->stop_negative != 0 || sim->stop_positive != 0))
+        return axis_wrong(check, "sim.no_stops", "is true, and a stop is given; expected one of them");
+    if (sim->no_sensors && (sim->sensor_input2 != 0 || sim->sensor_input3 != 0))
+        return axis_wrong(check, "sim.no_sensors", "is true, and a sensor is given; expected one of them");
+    return true;
+}
+
+static bool check_axis(check_t *check)
+{
+    if (!check_name(check) || !check_address(check) || !check_motor(check) || !check_firmware(check) ||
+        !check_unit(check))
+        return false;
+    if ((unsigned)check->axis->mapping > CM1E_MAPPING_PROFILE)
+        return axis_wrong(check, "mapping", "is %d; expected one of the enumeration", (int)check->axis->mapping);
+    const double velocity = check->axis->max_velocity;
+    if (velocity != 0 && !check_range(check, "limits.velocity", velocity, IN_COUNTS, 1,
+                                      check->motor->max_velocity_counts_per_s, "counts/s"))
+        return false;
+    return check_numbers(check) && check_software_limits(check) && check_homing(check) && check_sim(check);
+}
+
+bool cm1e_busfile_check(const cm1e_bus_config_t *config, cm1e_busfile_problem_t *problem)
+{
+    check_t check = {.config = config, .problem = problem};
+    if (config->axis_count > CM1E_MAX_AXES) {
+        snprintf(problem->path, sizeof problem->path, "axes");
+        snprintf(problem->text, sizeof problem->text, "axis_count is %u; expected at most %d", config->axis_count,
+                 CM1E_MAX_AXES);
+        return false;
+    }
+    if (!check_bus(&check))
+        return false;
+    for (check.index = 0; check.index < config->axis_count; check.index++) {
+        check.axis = &config->axes[check.index];
+        if (!check_axis(&check))
+            return false;
+    }
+    return true;
+}

@@ -1,0 +1,167 @@
+#include <locale.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "busfile/busfile.h"
+
+/* ---- libcyaml ----------------------------------------------------------------------------------------------------- */
+
+/* libcyaml tells what is wrong in the first line of its log, and where in the lines of a backtrace, innermost first. */
+static void take_log_line(cyaml_log_t level, void *context, const char *format, va_list args)
+{
+    (void)level;
+    cm1e_busfile_problem_t *problem = context;
+    char line[sizeof problem->text];
+    vsnprintf(line, sizeof line, format, args);
+    line[strcspn(line, "\n")] = '\0';
+    if (problem->text[0] == '\0')
+        snprintf(problem->text, sizeof problem->text, "%s", line);
+    const char *place = strstr(line, "(line: ");
+    if (place && problem->line == 0)
+        sscanf(place, "(line: %zu, column: %zu)", &problem->line, &problem->column);
+}
+
+static void set_up_libcyaml(cyaml_config_t *settings, cm1e_busfile_problem_t *problem)
+{
+    *settings = (cyaml_config_t){
+        .log_fn = take_log_line,
+        .log_ctx = problem,
+        .mem_fn = cyaml_mem,
+        .log_level = CYAML_LOG_ERROR,
+        .flags = CYAML_CFG_NO_ALIAS,
+    };
+}
+
+/* ---- conversion --------------------------------------------------------------------------------------------------- */
+
+static bool convert_address(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *from, uint32_t index,
+                            cm1e_busfile_problem_t *problem)
+{
+    if ((from->position != 0) + (from->alias != 0) + (from->explicit_id != 0) > 1) {
+        snprintf(problem->path, sizeof problem->path, "axes[%u].%s", index, from->explicit_id ? "explicit_id" : "alias");
+        snprintf(problem->text, sizeof problem->text,
+                 "entry %u of the list is addressed twice; expected one of position, alias and explicit_id", index + 1);
+        return false;
+    }
+    axis->address_kind = from->alias         ? CM1E_ADDRESS_ALIAS
+                         : from->explicit_id ? CM1E_ADDRESS_EXPLICIT_ID
+                                             : CM1E_ADDRESS_POSITION;
+    axis->address = from->alias         ? from->alias
+                    : from->explicit_id ? from->explicit_id
+                    : from->position    ? from->position
+                                        : (uint16_t)(index + 1);
+    return true;
+}
+
+static bool convert_axis(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *from, uint32_t index,
+                         cm1e_busfile_problem_t *problem)
+{
+    *axis = from->axis;
+    if (axis->name[0] == '\0')
+        snprintf(axis->name, sizeof axis->name, "axis%u", index + 1);
+    axis->velocity_unit_stated = from->velocity_unit != 0;
+    axis->velocity_in_counts_per_ms = from->velocity_unit == CM1E_BUSFILE_VELOCITY_COUNTS_PER_MS;
+    axis->acceleration_in_kpulses = from->acceleration_unit != 0;
+    return convert_address(axis, from, index, problem);
+}
+
+static bool convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from, cm1e_busfile_problem_t *problem)
+{
+    *config = from->config;
+    if (config->interface_name[0] == '\0')
+        snprintf(config->interface_name, sizeof config->interface_name, "sim");
+    config->cycle_time_ns = (int64_t)from->cycle_time_us * 1000;
+    config->frame_timeout_ns = (int64_t)from->frame_timeout_us * 1000;
+    config->axis_count = from->axis_count;
+    for (uint32_t i = 0; i < from->axis_count; i++)
+        if (!convert_axis(&config->axes[i], &from->axes[i], i, problem))
+            return false;
+    return true;
+}
+
+/* ---- loading ------------------------------------------------------------------------------------------------------ */
+
+static cm1e_error_t fill(cm1e_bus_config_t *config, const uint8_t *bytes, size_t size,
+                         cm1e_busfile_problem_t *problem)
+{
+    cyaml_config_t settings;
+    set_up_libcyaml(&settings, problem);
+    cm1e_busfile_t *file = NULL;
+    const cyaml_err_t load_error =
+        cyaml_load_data(bytes, size, &settings, &cm1e_busfile_schema, (cyaml_data_t **)&file, NULL);
+    if (load_error != CYAML_OK || !file) {
+        if (problem->text[0] == '\0')
+            snprintf(problem->text, sizeof problem->text, "%s", cyaml_strerror(load_error));
+        return load_error == CYAML_ERR_OOM ? CM1E_ERROR_NO_MEMORY : CM1E_ERROR_CONFIG;
+    }
+    const bool good = convert(config, file, problem) && cm1e_busfile_check(config, problem);
+    cyaml_free(&settings, &cm1e_busfile_schema, file, 0);
+    return good ? CM1E_OK : CM1E_ERROR_CONFIG;
+}
+
+static cm1e_error_t load_bytes(cm1e_bus_config_t *config, const uint8_t *bytes, size_t size,
+                               cm1e_busfile_problem_t *problem)
+{
+    yaml_document_t document;
+    cm1e_error_t error = cm1e_busfile_parse(bytes, size, &document, problem);
+    if (error)
+        return error;
+    error = cm1e_busfile_compare(&document, problem) ? fill(config, bytes, size, problem) : CM1E_ERROR_CONFIG;
+    if (error && problem->line == 0)
+        cm1e_busfile_locate(&document, problem);
+    yaml_document_delete(&document);
+    return error;
+}
+
+/* strtod(), here and in libcyaml, takes the decimal point of the thread's locale: under a German one 4.5 would be 4. */
+static cm1e_error_t load_in_c_locale(cm1e_bus_config_t *config, const uint8_t *bytes, size_t size,
+                                     cm1e_busfile_problem_t *problem)
+{
+    const locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (c_locale == (locale_t)0) {
+        snprintf(problem->text, sizeof problem->text, "out of memory");
+        return CM1E_ERROR_NO_MEMORY;
+    }
+    const locale_t callers = uselocale(c_locale);
+    const cm1e_error_t error = load_bytes(config, bytes, size, problem);
+    uselocale(callers);
+    freelocale(c_locale);
+    return error;
+}
+
+/* "path:line:column: text"; of a long path the end, which tells more. */
+static cm1e_error_t report(cm1e_diag_t *diag, cm1e_error_t error, const char *path,
+                           const cm1e_busfile_problem_t *problem)
+{
+    enum { SHOWN = 160 };
+    const size_t length = strlen(path);
+    const char *dots = length > SHOWN ? "..." : "";
+    const char *shown = length > SHOWN ? path + length - SHOWN : path;
+    if (problem->line == 0)
+        return cm1e_diag_set(diag, error, 0, "%s%s: %s", dots, shown, problem->text);
+    return cm1e_diag_set(diag, error, 0, "%s%s:%zu:%zu: %s", dots, shown, problem->line, problem->column,
+                         problem->text);
+}
+
+cm1e_error_t cm1e_bus_config_load(cm1e_bus_config_t *config, const char *path, cm1e_diag_t *diag)
+{
+    if (!config || !path)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "no configuration or no path given");
+    cm1e_busfile_problem_t problem = {0};
+    uint8_t *bytes = NULL;
+    size_t size = 0;
+    cm1e_error_t error = cm1e_busfile_read(path, &bytes, &size, &problem);
+    cm1e_bus_config_t *loaded = error ? NULL : malloc(sizeof *loaded);
+    if (!error && !loaded) {
+        snprintf(problem.text, sizeof problem.text, "out of memory");
+        error = CM1E_ERROR_NO_MEMORY;
+    }
+    if (!error)
+        error = load_in_c_locale(loaded, bytes, size, &problem);
+    if (!error)
+        *config = *loaded;
+    free(loaded);
+    free(bytes);
+    return error ? report(diag, error, path, &problem) : cm1e_diag_set(diag, CM1E_OK, 0, "%s", "");
+}

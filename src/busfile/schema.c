@@ -1,0 +1,138 @@
+#include "busfile/busfile.h"
+
+/* The keys of a bus file; docs/BUS-FILE.md explains them. A group of keys (limits, homing ...) is no structure of its own
+ * in the configuration, so its fields are offsets in the whole axis. */
+
+#define COUNT_OF(array) ((uint32_t)(sizeof(array) / sizeof(array)[0]))
+#define OPTIONAL (CYAML_FLAG_OPTIONAL | CYAML_FLAG_STRICT)
+#define BUS_STRING(key, member) CYAML_FIELD_STRING(key, OPTIONAL, cm1e_busfile_t, member, 1)
+#define BUS_UINT(key, member) CYAML_FIELD_UINT(key, OPTIONAL, cm1e_busfile_t, member)
+#define BUS_BOOL(key, member) CYAML_FIELD_BOOL(key, OPTIONAL, cm1e_busfile_t, member)
+#define AXIS_STRING(key, member) CYAML_FIELD_STRING(key, OPTIONAL, cm1e_busfile_axis_t, axis.member, 1)
+#define AXIS_FLOAT(key, member) CYAML_FIELD_FLOAT(key, OPTIONAL, cm1e_busfile_axis_t, axis.member)
+#define AXIS_BOOL(key, member) CYAML_FIELD_BOOL(key, OPTIONAL, cm1e_busfile_axis_t, axis.member)
+#define ENUM_OF(key, structure, member, strings)                                                                    \
+    CYAML_FIELD_ENUM(key, OPTIONAL, structure, member, strings, COUNT_OF(strings))
+#define GROUP(key_, structure, fields_)                                                                             \
+    {.key = (key_), .data_offset = 0, .value = {CYAML_VALUE_MAPPING(CYAML_FLAG_OPTIONAL, structure, fields_)}}
+#define AXIS_GROUP(key, fields) GROUP(key, cm1e_busfile_axis_t, fields)
+
+static const cyaml_strval_t mappings[] = {
+    {"dynamic", CM1E_MAPPING_DYNAMIC},
+    {"csp", CM1E_MAPPING_CSP},
+    {"csv", CM1E_MAPPING_CSV},
+    {"profile", CM1E_MAPPING_PROFILE},
+};
+static const cyaml_strval_t pdo_orders[] = {
+    {"ug_4_4", CM1E_PDO_ORDER_UG_4_4},
+    {"ug_7_2", CM1E_PDO_ORDER_UG_7_2},
+};
+static const cyaml_strval_t velocity_units[] = {
+    {"counts_per_s", CM1E_BUSFILE_VELOCITY_COUNTS_PER_S},
+    {"counts_per_ms", CM1E_BUSFILE_VELOCITY_COUNTS_PER_MS},
+};
+static const cyaml_strval_t acceleration_units[] = {
+    {"counts_per_s2", 0},
+    {"kcounts_per_s2", 1},
+};
+
+static const cyaml_schema_field_t bus_fields[] = {
+    BUS_STRING("interface", config.interface_name),
+    BUS_STRING("second_interface", config.second_interface),
+    BUS_UINT("cycle_time_us", cycle_time_us),
+    BUS_UINT("frame_timeout_us", frame_timeout_us),
+    BUS_UINT("lost_cycles_limit", config.lost_cycles_limit),
+    BUS_STRING("pcap_file", config.pcap_file),
+    BUS_BOOL("virtual_time", config.virtual_time),
+    ENUM_OF("sim_pdo_order", cm1e_busfile_t, config.sim_pdo_order, pdo_orders),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t unit_fields[] = {
+    AXIS_FLOAT("counts_per_unit", counts_per_unit),
+    AXIS_BOOL("invert", invert),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_field_t limit_fields[] = {
+    AXIS_FLOAT("velocity", max_velocity),
+    AXIS_FLOAT("acceleration", max_acceleration),
+    AXIS_FLOAT("deceleration", max_deceleration),
+    AXIS_FLOAT("jerk", max_jerk),
+    AXIS_FLOAT("position_lag", max_position_lag),
+    CYAML_FIELD_END,
+};
+/* Both or none: one alone would leave the other at 0. */
+static const cyaml_schema_field_t software_limit_fields[] = {
+    CYAML_FIELD_FLOAT("negative", CYAML_FLAG_STRICT, cm1e_busfile_axis_t, axis.software_limit_negative),
+    CYAML_FIELD_FLOAT("positive", CYAML_FLAG_STRICT, cm1e_busfile_axis_t, axis.software_limit_positive),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_field_t wire_fields[] = {
+    ENUM_OF("velocity_unit", cm1e_busfile_axis_t, velocity_unit, velocity_units),
+    ENUM_OF("acceleration_unit", cm1e_busfile_axis_t, acceleration_unit, acceleration_units),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_field_t homing_fields[] = {
+    CYAML_FIELD_INT("method", OPTIONAL, cm1e_busfile_axis_t, axis.homing.method),
+    AXIS_FLOAT("offset", homing.offset),
+    AXIS_FLOAT("velocity", homing.velocity),
+    AXIS_FLOAT("acceleration", homing.acceleration),
+    AXIS_FLOAT("torque", homing.torque),
+    AXIS_FLOAT("timeout_s", homing.timeout_s),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_field_t sim_fields[] = {
+    AXIS_FLOAT("load_inertia_kgm2", sim.load_inertia),
+    AXIS_FLOAT("friction_nm", sim.friction),
+    AXIS_FLOAT("viscous_friction_nms", sim.viscous_friction),
+    AXIS_FLOAT("stop_negative_counts", sim.stop_negative),
+    AXIS_FLOAT("stop_positive_counts", sim.stop_positive),
+    AXIS_BOOL("no_stops", sim.no_stops),
+    AXIS_FLOAT("sensor_input2_counts", sim.sensor_input2),
+    AXIS_FLOAT("sensor_input3_counts", sim.sensor_input3),
+    AXIS_BOOL("no_sensors", sim.no_sensors),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t axis_fields[] = {
+    AXIS_STRING("name", name),
+    CYAML_FIELD_UINT("position", OPTIONAL, cm1e_busfile_axis_t, position),
+    CYAML_FIELD_UINT("alias", OPTIONAL, cm1e_busfile_axis_t, alias),
+    CYAML_FIELD_UINT("explicit_id", OPTIONAL, cm1e_busfile_axis_t, explicit_id),
+    AXIS_STRING("motor", motor),
+    AXIS_STRING("firmware", firmware),
+    ENUM_OF("mapping", cm1e_busfile_axis_t, axis.mapping, mappings),
+    AXIS_GROUP("unit", unit_fields),
+    AXIS_GROUP("limits", limit_fields),
+    AXIS_GROUP("software_limits", software_limit_fields),
+    AXIS_GROUP("homing", homing_fields),
+    AXIS_GROUP("wire", wire_fields),
+    AXIS_GROUP("sim", sim_fields),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t axis_value = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, cm1e_busfile_axis_t, axis_fields),
+};
+
+static const cyaml_schema_field_t file_fields[] = {
+    GROUP("bus", cm1e_busfile_t, bus_fields),
+    CYAML_FIELD_SEQUENCE_COUNT("axes", CYAML_FLAG_DEFAULT, cm1e_busfile_t, axes, axis_count, &axis_value, 1,
+                               CM1E_MAX_AXES),
+    CYAML_FIELD_END,
+};
+const cyaml_schema_value_t cm1e_busfile_schema = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, cm1e_busfile_t, file_fields),
+};
+
+const cm1e_busfile_integer_range_t cm1e_busfile_integer_ranges[] = {
+    {"cycle_time_us", 200, 1000},
+    {"frame_timeout_us", 1, 1000},
+    {"lost_cycles_limit", 1, 1000},
+    {"position", 1, CM1E_MAX_SLAVES},
+    {"alias", 1, 65535},
+    {"explicit_id", 1, 254}, /* UG 4.2.3 */
+    {"method", -6, 0},       /* UG 6.2.4 */
+    {NULL, INT32_MIN, INT32_MAX},
+};
+
+const char *const cm1e_busfile_zero_allowed[] = {"method", "offset", "negative", "positive", NULL};

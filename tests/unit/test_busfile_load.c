@@ -1,0 +1,275 @@
+#include <locale.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cm1e/config.h"
+#include "unity.h"
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static const char temporary[] = CM1E_TEST_OUTPUT "/busfile_load.yaml";
+static cm1e_bus_config_t config;
+static cm1e_diag_t diag;
+
+static void write_file(const char *text, size_t size)
+{
+    FILE *file = fopen(temporary, "wb");
+    TEST_ASSERT_NOT_NULL(file);
+    TEST_ASSERT_EQUAL(size, fwrite(text, 1, size, file));
+    TEST_ASSERT_EQUAL(0, fclose(file));
+}
+
+static void load(const char *text)
+{
+    write_file(text, strlen(text));
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_bus_config_load(&config, temporary, &diag), diag.text);
+}
+
+static char *read_file(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    TEST_ASSERT_NOT_NULL_MESSAGE(file, path);
+    char *text = calloc(1, 1 << 16);
+    TEST_ASSERT_NOT_NULL(text);
+    TEST_ASSERT_GREATER_THAN(0, fread(text, 1, (1 << 16) - 1, file));
+    fclose(file);
+    return text;
+}
+
+/* The example in docs/BUS-FILE.md; the caller frees it. */
+static char *documented_example(void)
+{
+    static const char begin_mark[] = "```yaml\n";
+    char *text = read_file(CM1E_SOURCE_DIR "/docs/BUS-FILE.md");
+    char *begin = strstr(text, begin_mark);
+    TEST_ASSERT_NOT_NULL(begin);
+    begin += strlen(begin_mark);
+    char *end = strstr(begin, "```");
+    TEST_ASSERT_NOT_NULL(end);
+    *end = '\0';
+    memmove(text, begin, (size_t)(end - begin) + 1);
+    return text;
+}
+
+#define ASSERT_DOUBLE(expected, actual) TEST_ASSERT_TRUE_MESSAGE((expected) == (actual), #actual)
+
+static void test_documented_example_fills_every_field_of_the_bus(void)
+{
+    char *text = documented_example();
+    load(text);
+    free(text);
+    TEST_ASSERT_EQUAL_STRING("eth1", config.interface_name);
+    TEST_ASSERT_EQUAL_STRING("eth2", config.second_interface);
+    TEST_ASSERT_EQUAL_INT64(500000, config.cycle_time_ns);
+    TEST_ASSERT_EQUAL_INT64(100000, config.frame_timeout_ns);
+    TEST_ASSERT_EQUAL(4, config.lost_cycles_limit);
+    TEST_ASSERT_EQUAL_STRING("/tmp/cell.pcap", config.pcap_file);
+    TEST_ASSERT_FALSE(config.virtual_time);
+    TEST_ASSERT_EQUAL(CM1E_PDO_ORDER_UG_7_2, config.sim_pdo_order);
+    TEST_ASSERT_EQUAL(3, config.axis_count);
+}
+
+static void test_documented_example_fills_every_field_of_an_axis(void)
+{
+    char *text = documented_example();
+    load(text);
+    free(text);
+    const cm1e_axis_config_t *axis = &config.axes[0];
+    TEST_ASSERT_EQUAL_STRING("gripper", axis->name);
+    TEST_ASSERT_EQUAL(CM1E_ADDRESS_POSITION, axis->address_kind);
+    TEST_ASSERT_EQUAL(1, axis->address);
+    TEST_ASSERT_EQUAL_STRING("CM1-E-23L20D", axis->motor);
+    TEST_ASSERT_EQUAL_STRING("1.3.5", axis->firmware);
+    TEST_ASSERT_EQUAL(CM1E_MAPPING_DYNAMIC, axis->mapping);
+    ASSERT_DOUBLE(5000, axis->counts_per_unit);
+    TEST_ASSERT_TRUE(axis->invert);
+    ASSERT_DOUBLE(250, axis->max_velocity);
+    ASSERT_DOUBLE(900, axis->max_acceleration);
+    ASSERT_DOUBLE(950.5, axis->max_deceleration);
+    ASSERT_DOUBLE(20000, axis->max_jerk);
+    ASSERT_DOUBLE(4, axis->max_position_lag);
+    ASSERT_DOUBLE(-20, axis->software_limit_negative);
+    ASSERT_DOUBLE(180, axis->software_limit_positive);
+    TEST_ASSERT_EQUAL(-1, axis->homing.method);
+    ASSERT_DOUBLE(7.5, axis->homing.offset);
+    ASSERT_DOUBLE(20, axis->homing.velocity);
+    ASSERT_DOUBLE(400, axis->homing.acceleration);
+    ASSERT_DOUBLE(35, axis->homing.torque);
+    ASSERT_DOUBLE(30, axis->homing.timeout_s);
+    TEST_ASSERT_TRUE(axis->velocity_unit_stated);
+    TEST_ASSERT_FALSE(axis->velocity_in_counts_per_ms);
+    TEST_ASSERT_TRUE(axis->acceleration_in_kpulses);
+    ASSERT_DOUBLE(4e-6, axis->sim.load_inertia);
+    ASSERT_DOUBLE(0.01, axis->sim.friction);
+    ASSERT_DOUBLE(2e-5, axis->sim.viscous_friction);
+    ASSERT_DOUBLE(-400000, axis->sim.stop_negative);
+    ASSERT_DOUBLE(500000, axis->sim.stop_positive);
+    ASSERT_DOUBLE(300000, axis->sim.sensor_input2);
+    ASSERT_DOUBLE(-200000, axis->sim.sensor_input3);
+    TEST_ASSERT_FALSE(axis->sim.no_stops);
+    TEST_ASSERT_FALSE(axis->sim.no_sensors);
+}
+
+static void test_documented_example_fills_the_other_addresses_and_units(void)
+{
+    char *text = documented_example();
+    load(text);
+    free(text);
+    TEST_ASSERT_EQUAL(CM1E_ADDRESS_ALIAS, config.axes[1].address_kind);
+    TEST_ASSERT_EQUAL(1001, config.axes[1].address);
+    TEST_ASSERT_EQUAL(CM1E_MAPPING_CSP, config.axes[1].mapping);
+    TEST_ASSERT_TRUE(config.axes[1].velocity_unit_stated);
+    TEST_ASSERT_TRUE(config.axes[1].velocity_in_counts_per_ms);
+    TEST_ASSERT_FALSE(config.axes[1].acceleration_in_kpulses);
+    TEST_ASSERT_TRUE(config.axes[1].sim.no_stops);
+    TEST_ASSERT_TRUE(config.axes[1].sim.no_sensors);
+    TEST_ASSERT_EQUAL_STRING("axis3", config.axes[2].name);
+    TEST_ASSERT_EQUAL(CM1E_ADDRESS_EXPLICIT_ID, config.axes[2].address_kind);
+    TEST_ASSERT_EQUAL(181, config.axes[2].address);
+    TEST_ASSERT_FALSE(config.axes[2].velocity_unit_stated);
+}
+
+static void test_three_axes_example_loads(void)
+{
+    TEST_ASSERT_EQUAL_MESSAGE(
+        CM1E_OK, cm1e_bus_config_load(&config, CM1E_SOURCE_DIR "/examples/three_axes.yaml", &diag), diag.text);
+    static const char *const names[3] = {"X", "Y", "Z"};
+    static const int8_t methods[3] = {-2, -6, -3};
+    TEST_ASSERT_EQUAL_STRING("sim", config.interface_name);
+    TEST_ASSERT_EQUAL(3, config.axis_count);
+    for (int i = 0; i < 3; i++) {
+        TEST_ASSERT_EQUAL_STRING(names[i], config.axes[i].name);
+        TEST_ASSERT_EQUAL(CM1E_ADDRESS_POSITION, config.axes[i].address_kind);
+        TEST_ASSERT_EQUAL(i + 1, config.axes[i].address);
+        TEST_ASSERT_EQUAL(methods[i], config.axes[i].homing.method);
+        ASSERT_DOUBLE(5000, config.axes[i].counts_per_unit);
+    }
+}
+
+static void test_smallest_file_gives_defaults(void)
+{
+    cm1e_bus_config_t expected;
+    cm1e_bus_config_init(&expected, NULL, 2);
+    load("axes: [{}, {}]");
+    TEST_ASSERT_EQUAL_MEMORY(&expected, &config, sizeof config);
+    TEST_ASSERT_EQUAL_STRING("sim", config.interface_name);
+    TEST_ASSERT_EQUAL_STRING("axis2", config.axes[1].name);
+    TEST_ASSERT_EQUAL(2, config.axes[1].address);
+}
+
+static void test_unset_fields_are_zero_after_an_earlier_load(void)
+{
+    memset(&config, 0xA5, sizeof config);
+    cm1e_bus_config_t expected;
+    cm1e_bus_config_init(&expected, "sim", 1);
+    load("axes:\n- {}\n");
+    TEST_ASSERT_EQUAL_MEMORY(&expected, &config, sizeof config);
+}
+
+static void test_values_at_the_bounds_are_accepted(void)
+{
+    load("bus: {cycle_time_us: 200, frame_timeout_us: 200, lost_cycles_limit: 1000}\n"
+         "axes:\n"
+         "- position: 128\n"
+         "  name: 1234567890123456789012345678901\n" /* 31 bytes */
+         "  unit: {counts_per_unit: 5000}\n"
+         "  limits: {velocity: 500}\n"
+         "  homing: {method: -6, offset: -655.34, velocity: 0.2, acceleration: 1000, torque: 10, timeout_s: 0.1}\n"
+         "- explicit_id: 254\n"
+         "  motor: CM1-E-23L20D\n"
+         "  limits: {velocity: 33.33332}\n"
+         "  homing: {method: 0, offset: 65.534, velocity: 10, acceleration: 0.02, torque: 1.0e+2, timeout_s: 3600}\n"
+         "- alias: 65535\n"
+         "  software_limits: {negative: 0, positive: 0.00002}\n");
+    TEST_ASSERT_EQUAL(3, config.axis_count);
+}
+
+static void test_numbers_in_every_spelling_are_read(void)
+{
+    load("axes:\n"
+         "- {unit: {counts_per_unit: +5000}, software_limits: {negative: -.5, positive: 5.}}\n"
+         "- {unit: {counts_per_unit: 5E3, invert: YES}, software_limits: {negative: -1e-1, positive: 1.5e1}}\n"
+         "- {unit: {counts_per_unit: 5.000e+03, invert: off}, software_limits: {negative: -0, positive: 007.5}}\n");
+    ASSERT_DOUBLE(-0.5, config.axes[0].software_limit_negative);
+    ASSERT_DOUBLE(5, config.axes[0].software_limit_positive);
+    ASSERT_DOUBLE(15, config.axes[1].software_limit_positive);
+    ASSERT_DOUBLE(7.5, config.axes[2].software_limit_positive);
+    TEST_ASSERT_TRUE(config.axes[1].invert);
+    TEST_ASSERT_FALSE(config.axes[2].invert);
+}
+
+static void test_text_may_be_quoted_and_utf_8(void)
+{
+    load("axes: [{name: \"Hub \xc3\xbc""ber\", motor: 'CM1-E-17L30D', firmware: \"1.2.0\"}]");
+    TEST_ASSERT_EQUAL_STRING("Hub \xc3\xbc""ber", config.axes[0].name);
+}
+
+static void test_most_axes_load(void)
+{
+    char text[8 * CM1E_MAX_AXES + 16] = "axes:\n";
+    for (int i = 0; i < CM1E_MAX_AXES; i++)
+        strcat(text, "- {}\n");
+    load(text);
+    TEST_ASSERT_EQUAL(CM1E_MAX_AXES, config.axis_count);
+    TEST_ASSERT_EQUAL_STRING("axis128", config.axes[127].name);
+    TEST_ASSERT_EQUAL(128, config.axes[127].address);
+}
+
+static void test_decimal_point_is_a_point_where_the_locale_has_a_comma(void)
+{
+    static const char *const locales[] = {"de_DE.UTF-8", "de_DE", "fr_FR.UTF-8", "fr_FR", "it_IT.UTF-8", "pl_PL.UTF-8"};
+    bool tried = false;
+    for (size_t i = 0; i < sizeof locales / sizeof locales[0]; i++) {
+        if (!setlocale(LC_ALL, locales[i]))
+            continue;
+        tried = true;
+        load("axes: [{unit: {counts_per_unit: 4.5}}]");
+        TEST_ASSERT_EQUAL_STRING(",", localeconv()->decimal_point); /* the caller's locale is back */
+        setlocale(LC_ALL, "C");
+        ASSERT_DOUBLE(4.5, config.axes[0].counts_per_unit);
+    }
+    if (!tried)
+        TEST_IGNORE_MESSAGE("no locale with a decimal comma on this machine");
+}
+
+static void test_init_makes_default_axes_that_pass_the_check(void)
+{
+    for (uint32_t count = 0; count <= CM1E_MAX_AXES; count++) {
+        cm1e_bus_config_init(&config, "eth7", count);
+        TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_bus_config_check(&config, &diag), diag.text);
+        TEST_ASSERT_EQUAL(CM1E_OK, diag.error);
+        TEST_ASSERT_EQUAL(count, config.axis_count);
+        TEST_ASSERT_EQUAL_STRING("eth7", config.interface_name);
+    }
+}
+
+static void test_init_with_too_many_axes_is_refused_by_the_check(void)
+{
+    static const uint32_t counts[] = {CM1E_MAX_AXES + 1, 1000, UINT32_MAX};
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
+        cm1e_bus_config_init(&config, "sim", counts[i]);
+        TEST_ASSERT_EQUAL(CM1E_ERROR_CONFIG, cm1e_bus_config_check(&config, &diag));
+        TEST_ASSERT_NOT_NULL(strstr(diag.text, "axis_count"));
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_documented_example_fills_every_field_of_the_bus);
+    RUN_TEST(test_documented_example_fills_every_field_of_an_axis);
+    RUN_TEST(test_documented_example_fills_the_other_addresses_and_units);
+    RUN_TEST(test_three_axes_example_loads);
+    RUN_TEST(test_smallest_file_gives_defaults);
+    RUN_TEST(test_unset_fields_are_zero_after_an_earlier_load);
+    RUN_TEST(test_values_at_the_bounds_are_accepted);
+    RUN_TEST(test_numbers_in_every_spelling_are_read);
+    RUN_TEST(test_text_may_be_quoted_and_utf_8);
+    RUN_TEST(test_most_axes_load);
+    RUN_TEST(test_decimal_point_is_a_point_where_the_locale_has_a_comma);
+    RUN_TEST(test_init_makes_default_axes_that_pass_the_check);
+    RUN_TEST(test_init_with_too_many_axes_is_refused_by_the_check);
+    return UNITY_END();
+}
