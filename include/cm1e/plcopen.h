@@ -10,6 +10,11 @@
  * Inputs come first, then outputs, in the standard's order; the member `Private` is the block's own. Call them only in
  * programs of the scheduler that owns the axis (@rt cycle). Units: u, u/s, u/s2, u/s3 (config.h). Acceleration,
  * Deceleration, Jerk 0 mean the axis's maximum. ErrorID: cm1e_strerror(cm1e_error_from_id(ErrorID)).
+ *
+ * Said once for all: the axis is latched at the rising edge of Execute or Enable; another Axis while the block is busy
+ * is CM1E_ERROR_FB_AXIS_CHANGED and touches neither axis. A motion goes on when its block is no longer called, or when
+ * its re-trigger was refused. ContinuousUpdate TRUE at the edge is CM1E_ERROR_UNSUPPORTED in this version. What a
+ * reading block shows is 0 while Valid is FALSE.
  */
 #ifndef CM1E_PLCOPEN_H
 #define CM1E_PLCOPEN_H
@@ -33,14 +38,15 @@ typedef enum MC_DIRECTION {
 
 /** State of a block that is not to be touched. */
 typedef struct cm1e_fb_private {
-    uint32_t command;      /**< cm1e_command_id_t */
+    uint32_t command;      /**< what the axis was asked for; 0: nothing */
     UINT axis_handle;      /**< latched at the rising edge */
-    BOOL execute_before;
-    BOOL busy, shown;
-    uint32_t extra[2];
+    WORD error_id;
+    BOOL trigger_before;   /**< Execute or Enable at the last call */
+    BOOL state;
 } cm1e_fb_private_t;
 
-/** 3.1. Controls the power stage. One per axis. Status: the stage is on and set-points act. */
+/** 3.1. Controls the power stage. One per axis. Status: the stage is on and set-points act. Error also while the axis is
+ *  in ErrorStop and the stage therefore stays off. Answers for the axis latched at Enable's edge until it is off. */
 typedef struct MC_Power {
     AXIS_REF_t *Axis;
     BOOL Enable, EnablePositive, EnableNegative;
@@ -64,7 +70,7 @@ typedef struct MC_Home {
 } MC_Home_t;
 void MC_Home(MC_Home_t *fb);
 
-/** 3.3. Stays in Stopping while Execute is TRUE. */
+/** 3.3. The axis stays Stopping while Execute is TRUE (Done and Active together then). */
 typedef struct MC_Stop {
     AXIS_REF_t *Axis;
     BOOL Execute;

@@ -1,0 +1,141 @@
+#include "edge.h"
+
+static void set_state(cm1e_fb_private_t *fb, fb_state_t state, cm1e_error_t error)
+{
+    fb->state = (BOOL)state;
+    fb->error_id = cm1e_error_id(error);
+}
+
+static cm1e_axis_t *axis_of_handle(UINT handle)
+{
+    const AXIS_REF_t reference = {.Handle = handle};
+    return handle ? cm1e_axis_from_reference(&reference) : NULL;
+}
+
+cm1e_axis_t *fb_axis(const cm1e_fb_private_t *fb) { return axis_of_handle(fb->axis_handle); }
+
+void fb_fail(cm1e_fb_private_t *fb, cm1e_error_t error) { set_state(fb, FB_ERROR, error); }
+
+/** TRUE once per rising edge of Execute or Enable. */
+static bool rising_edge(cm1e_fb_private_t *fb, BOOL trigger)
+{
+    const bool edge = trigger && !fb->trigger_before;
+    fb->trigger_before = trigger ? TRUE : FALSE;
+    return edge;
+}
+
+static bool is_latched_axis(const cm1e_fb_private_t *fb, const AXIS_REF_t *reference)
+{
+    return reference && reference->Handle == fb->axis_handle;
+}
+
+static cm1e_axis_t *latch_axis(cm1e_fb_private_t *fb, const AXIS_REF_t *reference)
+{
+    fb->axis_handle = reference ? reference->Handle : 0;
+    cm1e_axis_t *axis = fb_axis(fb);
+    if (!axis)
+        fb_fail(fb, CM1E_ERROR_FB_AXIS_REF);
+    return axis;
+}
+
+/** The axis of a block at work; NULL and an error where it was changed or is gone. */
+static cm1e_axis_t *check_axis(cm1e_fb_private_t *fb, const AXIS_REF_t *reference)
+{
+    if (!is_latched_axis(fb, reference)) {
+        fb_fail(fb, CM1E_ERROR_FB_AXIS_CHANGED);
+        return NULL;
+    }
+    cm1e_axis_t *axis = fb_axis(fb);
+    if (!axis)
+        fb_fail(fb, CM1E_ERROR_FB_AXIS_REF);
+    return axis;
+}
+
+/* ---- Execute --------------------------------------------------------------------------------------------------- */
+
+fb_step_t fb_execute(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, cm1e_axis_t **axis)
+{
+    const bool edge = rising_edge(fb, execute);
+    if (fb->state == FB_BUSY) {
+        *axis = check_axis(fb, reference);
+        if (!*axis)
+            return FB_STEP_NONE;
+        return edge ? FB_STEP_START : FB_STEP_POLL;
+    }
+    if (edge) {
+        *axis = latch_axis(fb, reference);
+        return *axis ? FB_STEP_START : FB_STEP_NONE;
+    }
+    /* 2.4.1: a result that came after Execute fell was shown in the call that found it, that is for one cycle. */
+    if (!execute)
+        set_state(fb, FB_IDLE, CM1E_OK);
+    return FB_STEP_NONE;
+}
+
+void fb_started(cm1e_fb_private_t *fb, cm1e_error_t error)
+{
+    set_state(fb, error == CM1E_OK ? FB_BUSY : FB_ERROR, error);
+}
+
+void fb_polled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error)
+{
+    switch (state) {
+    case CM1E_COMMAND_ACTIVE: break;
+    case CM1E_COMMAND_DONE: set_state(fb, FB_DONE, CM1E_OK); break;
+    case CM1E_COMMAND_ERROR: set_state(fb, FB_ERROR, error); break;
+    case CM1E_COMMAND_ABORTED:
+    case CM1E_COMMAND_UNKNOWN: /* so many commands came after it that the axis has forgotten it */
+    default: set_state(fb, FB_ABORTED, CM1E_OK); break;
+    }
+}
+
+fb_outputs_t fb_outputs(const cm1e_fb_private_t *fb)
+{
+    return (fb_outputs_t){
+        .done = fb->state == FB_DONE,
+        .busy = fb->state == FB_BUSY,
+        .aborted = fb->state == FB_ABORTED,
+        .error = fb->state == FB_ERROR,
+        .error_id = fb->error_id,
+    };
+}
+
+cm1e_command_status_t fb_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute,
+                                const cm1e_axis_command_t *command, cm1e_error_t refusal)
+{
+    cm1e_command_status_t status = {.state = CM1E_COMMAND_UNKNOWN};
+    cm1e_axis_t *axis = NULL;
+    switch (fb_execute(fb, reference, execute, &axis)) {
+    case FB_STEP_START:
+        fb->command = 0;
+        fb_started(fb, refusal ? refusal : cm1e_axis_start(axis, command, &fb->command));
+        break;
+    case FB_STEP_POLL:
+        status = cm1e_axis_command_status(axis, fb->command);
+        fb_polled(fb, status.state, status.error);
+        break;
+    case FB_STEP_NONE: break;
+    }
+    return status;
+}
+
+/* ---- Enable ---------------------------------------------------------------------------------------------------- */
+
+const cm1e_axis_t *fb_enable(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable)
+{
+    if (rising_edge(fb, enable)) {
+        set_state(fb, FB_BUSY, CM1E_OK);
+        return latch_axis(fb, reference);
+    }
+    if (!enable)
+        set_state(fb, FB_IDLE, CM1E_OK);
+    return fb->state == FB_BUSY ? check_axis(fb, reference) : NULL;
+}
+
+BOOL fb_read(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, cm1e_axis_info_t *info)
+{
+    const cm1e_axis_t *axis = fb_enable(fb, reference, enable);
+    if (axis)
+        cm1e_axis_get(axis, info);
+    return axis != NULL;
+}

@@ -1,0 +1,57 @@
+/**
+ * @file edge.h
+ * The edge logic of all blocks, once (PLCopen Part 1 v2.0, 2.4.1). A block of the Execute type asks fb_execute() what
+ * to do in this call, does it, reports the result and copies fb_outputs(); blocks of the Enable type do the same with
+ * fb_enable(). The axis is latched at the rising edge: giving a busy block another axis is an error of the block and
+ * leaves both axes alone. All @rt cycle.
+ */
+#ifndef CM1E_FB_EDGE_H
+#define CM1E_FB_EDGE_H
+
+#include "axis/axis.h"
+#include "cm1e/plcopen.h"
+
+/** What a block shows; exactly one of the last four while Execute is TRUE. */
+typedef enum fb_state { FB_IDLE = 0, FB_BUSY, FB_DONE, FB_ABORTED, FB_ERROR } fb_state_t;
+
+/** What a block of the Execute type has to do in this call. */
+typedef enum fb_step {
+    FB_STEP_NONE = 0,
+    FB_STEP_START, /**< a rising edge: start, then fb_started() */
+    FB_STEP_POLL,  /**< busy: ask, then fb_polled() */
+} fb_step_t;
+
+typedef struct fb_outputs {
+    BOOL done, busy, aborted, error;
+    WORD error_id;
+} fb_outputs_t;
+
+/** `*axis` is valid unless the step is FB_STEP_NONE. */
+fb_step_t fb_execute(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, cm1e_axis_t **axis);
+/** Result of the start. */
+void fb_started(cm1e_fb_private_t *fb, cm1e_error_t error);
+/** What became of it so far. */
+void fb_polled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error);
+fb_outputs_t fb_outputs(const cm1e_fb_private_t *fb);
+
+/** A whole block of the Execute type that is one motion command: starts it at the edge (unless `refusal` is an error),
+ *  polls it after. Returns the command's last status for what is special in a block. */
+cm1e_command_status_t fb_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute,
+                                const cm1e_axis_command_t *command, cm1e_error_t refusal);
+/** The axis that the block works on, latched at its last rising edge; NULL: none. */
+cm1e_axis_t *fb_axis(const cm1e_fb_private_t *fb);
+/** An error of the block itself, shown until Execute or Enable falls. */
+void fb_fail(cm1e_fb_private_t *fb, cm1e_error_t error);
+
+/** The Enable type: the axis to be read, or NULL when disabled or in error (2.2.3: such an error needs a new edge). */
+const cm1e_axis_t *fb_enable(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable);
+/** The same for blocks that read: TRUE and a copy of the axis's data when it can be read. */
+BOOL fb_read(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, cm1e_axis_info_t *info);
+
+/** Inputs that this version has no use for yet. */
+static inline cm1e_error_t fb_refuse_continuous_update(BOOL continuous_update)
+{
+    return continuous_update ? CM1E_ERROR_UNSUPPORTED : CM1E_OK;
+}
+
+#endif

@@ -1,0 +1,68 @@
+#include "edge.h"
+
+/**
+ * Enable is a level for the power stage, not for the block (3.1). The axis is latched at Enable's rising edge, and this
+ * block stays responsible for it until the stage is off: giving it another axis meanwhile is an error that is shown,
+ * but the latched axis goes on following Enable, so that the program can still switch it off.
+ */
+static void release(cm1e_fb_private_t *fb)
+{
+    fb->axis_handle = 0;
+    fb->state = FB_IDLE;
+    fb->error_id = 0;
+}
+
+static void take(cm1e_fb_private_t *fb, const AXIS_REF_t *reference)
+{
+    release(fb);
+    fb->axis_handle = reference ? reference->Handle : 0;
+    if (fb_axis(fb))
+        fb->state = FB_BUSY;
+    else
+        fb_fail(fb, CM1E_ERROR_FB_AXIS_REF);
+}
+
+/** The stage cannot come on: the axis says why. Goes away by itself after MC_Reset (2.2.3, figure 5). */
+static cm1e_error_t reason_for_no_power(const cm1e_axis_t *axis)
+{
+    cm1e_axis_info_t info;
+    cm1e_axis_get(axis, &info);
+    return info.state == CM1E_AXIS_ERROR_STOP ? info.error : CM1E_OK;
+}
+
+/** Tells the axis what the inputs say; returns an error that may pass. */
+static cm1e_error_t follow_inputs(MC_Power_t *fb, cm1e_axis_t *axis)
+{
+    const cm1e_error_t error = cm1e_axis_power(axis, fb, fb->Enable, fb->EnablePositive, fb->EnableNegative);
+    if (error == CM1E_ERROR_FB_SECOND_POWER) {
+        release(&fb->Private);
+        if (fb->Enable)
+            fb_fail(&fb->Private, error);
+        return CM1E_OK;
+    }
+    fb->Status = cm1e_axis_powered(axis);
+    if (!fb->Enable)
+        return CM1E_OK;
+    return error || fb->Status ? error : reason_for_no_power(axis);
+}
+
+void MC_Power(MC_Power_t *fb)
+{
+    cm1e_fb_private_t *private = &fb->Private;
+    cm1e_error_t passing = CM1E_OK;
+    if (fb->Enable && !private->trigger_before)
+        take(private, fb->Axis);
+    private->trigger_before = fb->Enable ? TRUE : FALSE;
+    fb->Status = FALSE;
+    cm1e_axis_t *axis = fb_axis(private);
+    if (axis)
+        passing = follow_inputs(fb, axis);
+    if (!fb->Enable && !fb->Status)
+        release(private);
+    else if (private->state == FB_BUSY && (!fb->Axis || fb->Axis->Handle != private->axis_handle))
+        fb_fail(private, axis ? CM1E_ERROR_FB_AXIS_CHANGED : CM1E_ERROR_FB_AXIS_REF);
+    const bool failed = private->state == FB_ERROR;
+    fb->Error = fb->Enable && (failed || passing);
+    fb->Valid = fb->Enable && !fb->Error;
+    fb->ErrorID = fb->Error ? (failed ? private->error_id : cm1e_error_id(passing)) : 0;
+}

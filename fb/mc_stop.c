@@ -1,0 +1,31 @@
+#include "edge.h"
+
+/** The axis stays Stopping while Execute is TRUE, also when the block itself is in error (its Axis was changed). */
+static bool hold_axis(cm1e_fb_private_t *fb)
+{
+    cm1e_axis_t *axis = fb->command ? fb_axis(fb) : NULL;
+    if (!axis)
+        return false;
+    cm1e_axis_info_t info;
+    cm1e_axis_hold_stop(axis, fb->command, fb->trigger_before);
+    cm1e_axis_get(axis, &info);
+    return fb->trigger_before && info.state == CM1E_AXIS_STOPPING;
+}
+
+void MC_Stop(MC_Stop_t *fb)
+{
+    const cm1e_axis_command_t command = {
+        .kind = CM1E_COMMAND_STOP,
+        .deceleration = fb->Deceleration,
+        .jerk = fb->Jerk,
+    };
+    fb_motion(&fb->Private, fb->Axis, fb->Execute, &command, CM1E_OK);
+    const bool held = hold_axis(&fb->Private);
+    const fb_outputs_t out = fb_outputs(&fb->Private);
+    fb->Done = out.done;
+    fb->Busy = out.busy;
+    fb->Active = out.busy || (out.done && held); /* 2.4.1: the one block that may show Active with Done */
+    fb->CommandAborted = out.aborted;
+    fb->Error = out.error;
+    fb->ErrorID = out.error_id;
+}

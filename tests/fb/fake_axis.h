@@ -1,0 +1,105 @@
+/**
+ * @file fake_axis.h
+ * Axes without anything behind them, for the tests of the function blocks' own logic: the test says what becomes of
+ * each command. Include it once in a test program; it defines the functions of axis/axis.h that blocks call.
+ */
+#ifndef CM1E_TESTS_FAKE_AXIS_H
+#define CM1E_TESTS_FAKE_AXIS_H
+
+#include <string.h>
+
+#include "axis/axis.h"
+
+enum { FAKE_AXES = 2, FAKE_COMMANDS = 8 };
+
+struct cm1e_axis {
+    cm1e_axis_info_t info;
+    cm1e_error_t start_error;       /**< answer to the next cm1e_axis_start() and cm1e_axis_reset() */
+    unsigned starts, resets;
+    cm1e_axis_command_t command;    /**< the last one */
+    cm1e_command_id_t id;           /**< of the last one */
+    cm1e_command_status_t status[FAKE_COMMANDS]; /**< by id % FAKE_COMMANDS */
+    cm1e_command_state_t reset_state;
+    cm1e_error_t reset_error;
+    bool hold;
+    cm1e_command_id_t hold_id;
+    const void *owner;
+    bool enable, positive, negative, powered;
+    cm1e_error_t power_error;
+    unsigned power_calls;
+};
+
+static cm1e_axis_t fake_axes[FAKE_AXES];
+
+static void fake_reset(void)
+{
+    memset(fake_axes, 0, sizeof fake_axes);
+    for (int i = 0; i < FAKE_AXES; i++)
+        fake_axes[i].info.online = true;
+}
+
+cm1e_axis_t *cm1e_axis_from_reference(const AXIS_REF_t *reference)
+{
+    return reference->Handle >= 1 && reference->Handle <= FAKE_AXES ? &fake_axes[reference->Handle - 1] : NULL;
+}
+
+cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+{
+    static cm1e_command_id_t next_id;
+    axis->starts++;
+    *id = 0;
+    if (axis->start_error)
+        return axis->start_error;
+    if (axis->id && axis->status[axis->id % FAKE_COMMANDS].state == CM1E_COMMAND_ACTIVE)
+        axis->status[axis->id % FAKE_COMMANDS].state = CM1E_COMMAND_ABORTED;
+    axis->command = *command;
+    axis->id = *id = ++next_id;
+    axis->status[axis->id % FAKE_COMMANDS] = (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE};
+    return CM1E_OK;
+}
+
+cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_command_id_t id)
+{
+    return id ? axis->status[id % FAKE_COMMANDS] : (cm1e_command_status_t){.state = CM1E_COMMAND_UNKNOWN};
+}
+
+void cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold)
+{
+    axis->hold = hold;
+    axis->hold_id = id;
+}
+
+cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, bool enable_positive,
+                             bool enable_negative)
+{
+    axis->power_calls++;
+    if (axis->owner && axis->owner != owner)
+        return CM1E_ERROR_FB_SECOND_POWER;
+    axis->owner = enable ? owner : NULL;
+    axis->enable = enable;
+    axis->positive = enable_positive;
+    axis->negative = enable_negative;
+    return axis->power_error;
+}
+
+bool cm1e_axis_powered(const cm1e_axis_t *axis) { return axis->powered; }
+
+cm1e_error_t cm1e_axis_reset(cm1e_axis_t *axis)
+{
+    axis->resets++;
+    axis->starts++;
+    if (axis->start_error)
+        return axis->start_error;
+    axis->reset_state = CM1E_COMMAND_ACTIVE;
+    return CM1E_OK;
+}
+
+cm1e_command_state_t cm1e_axis_reset_state(const cm1e_axis_t *axis, cm1e_error_t *error)
+{
+    *error = axis->reset_error;
+    return axis->reset_state;
+}
+
+void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info) { *info = axis->info; }
+
+#endif
