@@ -1,0 +1,346 @@
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cm1e/config.h"
+#include "unity.h"
+
+static cm1e_bus_config_t config;
+static cm1e_diag_t diag;
+
+/* Two axes in units of 5,000 counts. */
+void setUp(void)
+{
+    cm1e_bus_config_init(&config, "sim", 2);
+    for (int i = 0; i < 2; i++)
+        config.axes[i].counts_per_unit = 5000;
+}
+void tearDown(void) {}
+
+static void expect_good(void)
+{
+    memset(&diag, 0x5A, sizeof diag);
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_bus_config_check(&config, &diag), diag.text);
+    TEST_ASSERT_EQUAL(CM1E_OK, diag.error);
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_bus_config_check(&config, NULL));
+}
+
+/* Refused, and the text names the thing. */
+static void expect_wrong(const char *part)
+{
+    memset(&diag, 0x5A, sizeof diag);
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_ERROR_CONFIG, cm1e_bus_config_check(&config, &diag), part);
+    TEST_ASSERT_EQUAL(CM1E_ERROR_CONFIG, diag.error);
+    TEST_ASSERT_NOT_NULL(memchr(diag.text, '\0', sizeof diag.text));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, part), diag.text);
+    TEST_ASSERT_EQUAL(CM1E_ERROR_CONFIG, cm1e_bus_config_check(&config, NULL));
+}
+
+static void test_all_zero_configuration_is_good(void)
+{
+    memset(&config, 0, sizeof config);
+    expect_good();
+    config.axis_count = CM1E_MAX_AXES;
+    expect_good();
+}
+
+static void test_only_the_four_cycle_times_are_good(void)
+{
+    static const int64_t good[] = {0, 200000, 250000, 500000, 1000000};
+    static const int64_t wrong[] = {-1, 1, 199999, 200001, 125000, 300000, 999999, 1000001, 2000000, INT64_MIN, INT64_MAX};
+    for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
+        config.cycle_time_ns = good[i];
+        expect_good();
+    }
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        config.cycle_time_ns = wrong[i];
+        expect_wrong("cycle_time_us");
+    }
+}
+
+static void test_frame_timeout_is_within_the_cycle(void)
+{
+    config.frame_timeout_ns = 1000000;
+    expect_good();
+    config.frame_timeout_ns = 1000001;
+    expect_wrong("frame_timeout_us");
+    config.frame_timeout_ns = -1;
+    expect_wrong("frame_timeout_us");
+    config.cycle_time_ns = 200000;
+    config.frame_timeout_ns = 200000;
+    expect_good();
+    config.frame_timeout_ns = 200001;
+    expect_wrong("frame_timeout_us");
+}
+
+static void test_texts_without_end_are_refused(void)
+{
+    struct {
+        char *text;
+        size_t size;
+        const char *part;
+    } texts[] = {
+        {config.interface_name, sizeof config.interface_name, "interface"},
+        {config.second_interface, sizeof config.second_interface, "second_interface"},
+        {config.pcap_file, sizeof config.pcap_file, "pcap_file"},
+        {config.axes[1].name, sizeof config.axes[1].name, "axis 2: name"},
+        {config.axes[1].motor, sizeof config.axes[1].motor, "axis axis2: motor"},
+        {config.axes[1].firmware, sizeof config.axes[1].firmware, "axis axis2: firmware"},
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+        char before[256];
+        memcpy(before, texts[i].text, texts[i].size);
+        memset(texts[i].text, 'a', texts[i].size);
+        expect_wrong(texts[i].part);
+        memcpy(texts[i].text, before, texts[i].size);
+        texts[i].text[0] = '\033';
+        texts[i].text[1] = '\0';
+        expect_wrong(texts[i].part);
+        memcpy(texts[i].text, before, texts[i].size);
+        expect_good();
+    }
+}
+
+static void test_enumerations_out_of_range_are_refused(void)
+{
+    config.sim_pdo_order = (cm1e_pdo_order_t)2;
+    expect_wrong("sim_pdo_order");
+    setUp();
+    config.axes[0].mapping = (cm1e_mapping_t)4;
+    expect_wrong("mapping");
+    config.axes[0].mapping = (cm1e_mapping_t)-1;
+    expect_wrong("mapping");
+    setUp();
+    config.axes[0].address_kind = (cm1e_address_kind_t)3;
+    expect_wrong("position");
+    config.axes[0].address_kind = (cm1e_address_kind_t)-1;
+    expect_wrong("position");
+    setUp();
+    config.lost_cycles_limit = 1001;
+    expect_wrong("lost_cycles_limit");
+}
+
+static void test_addresses_are_in_range_and_single(void)
+{
+    config.axes[0].address = 129;
+    expect_wrong("position");
+    config.axes[0].address = 2;
+    expect_wrong("position is 2, which entry 1");
+    config.axes[0].address_kind = CM1E_ADDRESS_ALIAS;
+    expect_good();
+    config.axes[0].address = 0;
+    expect_wrong("alias is 0");
+    config.axes[0].address_kind = CM1E_ADDRESS_EXPLICIT_ID;
+    expect_wrong("explicit_id is 0");
+    config.axes[0].address = 255;
+    expect_wrong("explicit_id is 255");
+    config.axes[0].address = 254;
+    expect_good();
+}
+
+static void test_default_position_counts_as_the_place_in_the_list(void)
+{
+    config.axes[0].address = 2;
+    config.axes[1].address = 0;
+    expect_wrong("axis axis2: position is 2, which entry 1");
+    config.axes[0].address = 0;
+    expect_good();
+}
+
+static void test_names_are_single_defaults_included(void)
+{
+    strcpy(config.axes[0].name, "axis2");
+    config.axes[1].name[0] = '\0';
+    expect_wrong("name");
+    strcpy(config.axes[0].name, "axis1");
+    expect_good();
+}
+
+#define NUMBER(member, part) {&config.axes[1].member, part}
+static const struct {
+    double *value;
+    const char *part;
+} numbers[] = {
+    NUMBER(counts_per_unit, "unit.counts_per_unit"),
+    NUMBER(max_velocity, "limits.velocity"),
+    NUMBER(max_acceleration, "limits.acceleration"),
+    NUMBER(max_deceleration, "limits.deceleration"),
+    NUMBER(max_jerk, "limits.jerk"),
+    NUMBER(max_position_lag, "limits.position_lag"),
+    NUMBER(software_limit_negative, "software_limits.negative"),
+    NUMBER(software_limit_positive, "software_limits.positive"),
+    NUMBER(homing.offset, "homing.offset"),
+    NUMBER(homing.velocity, "homing.velocity"),
+    NUMBER(homing.acceleration, "homing.acceleration"),
+    NUMBER(homing.torque, "homing.torque"),
+    NUMBER(homing.timeout_s, "homing.timeout_s"),
+    NUMBER(sim.load_inertia, "sim.load_inertia"),
+    NUMBER(sim.friction, "sim.friction"),
+    NUMBER(sim.viscous_friction, "sim.viscous_friction"),
+    NUMBER(sim.stop_positive, "sim.stop_positive"),
+    NUMBER(sim.stop_negative, "sim.stop_negative"),
+    NUMBER(sim.sensor_input2, "sim.sensor_input2"),
+    NUMBER(sim.sensor_input3, "sim.sensor_input3"),
+};
+enum { NUMBERS = sizeof numbers / sizeof numbers[0] };
+
+static void test_numbers_that_are_none_or_absurd_are_refused(void)
+{
+    static const double absurd[] = {NAN, -NAN, INFINITY, -INFINITY, 1e300, -1e300};
+    for (int i = 0; i < NUMBERS; i++)
+        for (size_t k = 0; k < sizeof absurd / sizeof absurd[0]; k++) {
+            setUp();
+            *numbers[i].value = absurd[k];
+            expect_wrong(numbers[i].part);
+        }
+}
+
+static void test_only_positions_may_be_negative(void)
+{
+    for (int i = 0; i < NUMBERS; i++) {
+        setUp();
+        const bool position = strstr(numbers[i].part, "offset") || strstr(numbers[i].part, "sensor") ||
+                              strstr(numbers[i].part, "_limits.negative") || strstr(numbers[i].part, "stop_negative");
+        *numbers[i].value = -20;
+        if (position)
+            expect_good();
+        else
+            expect_wrong(numbers[i].part);
+    }
+}
+
+/* Counts at 5,000 a unit: last good and first wrong values (UG 6.2.4, 6.3). */
+static void test_bounds_are_the_devices_in_counts(void)
+{
+    static const struct {
+        int number;
+        double good, wrong;
+    } bounds[] = {
+        {1, 500, 500.0002},        {1, 0.0002, 0.00001},     {8, 655.34, 655.3402},  {8, -655.34, -655.3402},
+        {9, 0.2, 0.1998},          {9, 100, 100.0002},       {10, 0.2, 0.1998},      {10, 1000, 1000.0002},
+        {11, 10, 9.999},           {11, 100, 100.001},       {2, 0.2, 0.1998},       {3, 0.2, 0.1998},
+        {12, 0.1, 0.0999},         {12, 3600, 3600.1},
+    };
+    for (size_t i = 0; i < sizeof bounds / sizeof bounds[0]; i++) {
+        setUp();
+        *numbers[bounds[i].number].value = bounds[i].good;
+        expect_good();
+        *numbers[bounds[i].number].value = bounds[i].wrong;
+        expect_wrong(numbers[bounds[i].number].part);
+    }
+}
+
+static void test_peak_speed_is_the_motors(void)
+{
+    config.axes[0].max_velocity = 400;
+    expect_good();
+    strcpy(config.axes[0].motor, "CM1-E-23L20D");
+    expect_wrong("expected 0.0002 ... 333.3332, 1 ... 1666666 counts/s");
+    config.axes[0].max_velocity = 333.3332;
+    expect_good();
+    config.axes[0].counts_per_unit = 0; /* revolutions */
+    config.axes[0].max_velocity = 33.33332;
+    expect_good();
+    config.axes[0].max_velocity = 33.34;
+    expect_wrong("limits.velocity");
+}
+
+static void test_software_limits_both_zero_are_none(void)
+{
+    expect_good();
+    config.axes[0].software_limit_positive = 1;
+    expect_good(); /* 0 ... 1 */
+    config.axes[0].software_limit_negative = 1;
+    expect_wrong("software_limits.positive");
+    config.axes[0].software_limit_positive = -1;
+    expect_wrong("software_limits.positive");
+}
+
+/* UG 6.2.4: for each method, which sign of the offset leads into the hard stop. */
+static void test_offset_into_the_hard_stop_is_refused(void)
+{
+    for (int method = -6; method <= 0; method++)
+        for (int invert = 0; invert < 2; invert++)
+            for (int sign = -1; sign <= 1; sign++) {
+                setUp();
+                config.axes[1].homing.method = (int8_t)method;
+                config.axes[1].homing.offset = sign * 3.0;
+                config.axes[1].invert = invert;
+                const int counts_sign = invert ? -sign : sign;
+                if ((method == -1 && counts_sign > 0) || (method == -2 && counts_sign < 0))
+                    expect_wrong("homing.offset");
+                else
+                    expect_good();
+            }
+    for (int method = INT8_MIN; method <= INT8_MAX; method++) {
+        setUp();
+        config.axes[1].homing.method = (int8_t)method;
+        if (method >= -6 && method <= 0)
+            expect_good();
+        else
+            expect_wrong("homing.method");
+    }
+}
+
+static void test_old_firmware_runs_at_1_ms_only(void)
+{
+    static const char *const versions[] = {"1.2.0", "1.3.0", "1.3.2", "1.3.3", "1.3.4", "1.3.5"};
+    for (int i = 0; i < 6; i++) {
+        strcpy(config.axes[0].firmware, versions[i]);
+        config.cycle_time_ns = 0;
+        expect_good();
+        config.cycle_time_ns = 1000000;
+        expect_good();
+        config.cycle_time_ns = 500000;
+        if (i < 2)
+            expect_wrong("firmware");
+        else
+            expect_good();
+    }
+}
+
+static void test_virtual_time_needs_the_simulated_segment(void)
+{
+    static const char *const simulated[] = {"", "sim", "sim:cell.yaml"};
+    static const char *const wired[] = {"eth1", "sim0", "simulator", "veth:sim"};
+    config.virtual_time = true;
+    for (size_t i = 0; i < sizeof simulated / sizeof simulated[0]; i++) {
+        strcpy(config.interface_name, simulated[i]);
+        expect_good();
+    }
+    for (size_t i = 0; i < sizeof wired / sizeof wired[0]; i++) {
+        strcpy(config.interface_name, wired[i]);
+        expect_wrong("virtual_time");
+    }
+}
+
+static void test_only_listed_axes_are_checked(void)
+{
+    config.axes[2].max_velocity = NAN;
+    expect_good();
+    config.axis_count = 3;
+    expect_wrong("axis axis3: limits.velocity");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_all_zero_configuration_is_good);
+    RUN_TEST(test_only_the_four_cycle_times_are_good);
+    RUN_TEST(test_frame_timeout_is_within_the_cycle);
+    RUN_TEST(test_texts_without_end_are_refused);
+    RUN_TEST(test_enumerations_out_of_range_are_refused);
+    RUN_TEST(test_addresses_are_in_range_and_single);
+    RUN_TEST(test_default_position_counts_as_the_place_in_the_list);
+    RUN_TEST(test_names_are_single_defaults_included);
+    RUN_TEST(test_numbers_that_are_none_or_absurd_are_refused);
+    RUN_TEST(test_only_positions_may_be_negative);
+    RUN_TEST(test_bounds_are_the_devices_in_counts);
+    RUN_TEST(test_peak_speed_is_the_motors);
+    RUN_TEST(test_software_limits_both_zero_are_none);
+    RUN_TEST(test_offset_into_the_hard_stop_is_refused);
+    RUN_TEST(test_old_firmware_runs_at_1_ms_only);
+    RUN_TEST(test_virtual_time_needs_the_simulated_segment);
+    RUN_TEST(test_only_listed_axes_are_checked);
+    return UNITY_END();
+}
