@@ -1,0 +1,202 @@
+#include <math.h>
+#include <stdlib.h>
+
+#include "generate/sii.h"
+#include "sim/cm1e_app.h"
+
+enum {
+    STEP_NS = 250000,           /* longest integration step */
+    CATCH_UP_NS = 1000000000,   /* what a longer pause is cut to */
+    AL_CODE_UNSPECIFIED = 0x0001,
+    ID_RESERVED = 0xFF,
+};
+enum { INIT = 1, PRE_OPERATIONAL = 2, OPERATIONAL = 8 };
+enum { ERROR_OVERLOAD = 0x2310, ERROR_OVER_SPEED = 0x7310, ERROR_POSITION = 0x7320 };
+
+/* Not in the manual: of the size usual for such motors. */
+#define ROTOR_INERTIA_PER_PEAK_TORQUE 3e-5
+/* Nor are the limits of the supervision. */
+#define OVER_SPEED_RATIO 1.1      /* of the motor's peak speed */
+#define OVER_SPEED_TIME_S 0.002
+#define LAG_LIMIT_COUNTS 50000.0  /* a revolution */
+#define LAG_TIME_S 0.005
+#define FOLLOWING_WINDOW_COUNTS 1000.0
+#define OVERLOAD_LIMIT_S 0.5      /* i2t: 0.9 s at peak torque */
+
+/* ---- time --------------------------------------------------------------------------------------------------------- */
+
+static double sum_while(bool condition, double sum, double step_s) { return condition ? sum + step_s : 0; }
+
+static void supervise(cm1e_sim_cm1e_t *drive, double step_s)
+{
+    const double lag = fabs(drive->servo.reference - drive->mechanics.position);
+    const double speed = fabs(drive->mechanics.velocity);
+    const double torque = drive->servo.torque;
+    drive->following = lag <= FOLLOWING_WINDOW_COUNTS;
+    drive->lag_s = sum_while(lag > LAG_LIMIT_COUNTS, drive->lag_s, step_s);
+    drive->overspeed_s = sum_while(speed > OVER_SPEED_RATIO * drive->motor->max_velocity_counts_per_s,
+                                   drive->overspeed_s, step_s);
+    drive->overload = fmax(0, drive->overload + step_s * (torque * torque * drive->overload_gain - 1));
+    if (drive->overspeed_s > OVER_SPEED_TIME_S)
+        cm1e_sim_fsa_error(drive, ERROR_OVER_SPEED);
+    else if (drive->lag_s > LAG_TIME_S)
+        cm1e_sim_fsa_error(drive, ERROR_POSITION);
+    else if (drive->overload > OVERLOAD_LIMIT_S)
+        cm1e_sim_fsa_error(drive, ERROR_OVERLOAD);
+}
+
+static void step(cm1e_sim_cm1e_t *drive, double step_s)
+{
+    if (drive->deadline_ns <= drive->now_ns)
+        cm1e_sim_fsa_deadline(drive);
+    if (drive->state != OPERATION_ENABLED) {
+        if (!cm1e_mechanics_at_rest(&drive->mechanics))
+            cm1e_mechanics_step(&drive->mechanics, 0, step_s);
+        return;
+    }
+    drive->generator->step(drive, step_s);
+    cm1e_mechanics_step(&drive->mechanics, cm1e_servo_step(&drive->servo, &drive->mechanics, step_s), step_s);
+    supervise(drive, step_s);
+}
+
+static void advance(void *app, int64_t now_ns)
+{
+    cm1e_sim_cm1e_t *drive = app;
+    if (now_ns <= drive->now_ns && drive->running)
+        return;
+    if (!drive->running || now_ns - drive->now_ns > CATCH_UP_NS) {
+        drive->now_ns = drive->running ? now_ns - CATCH_UP_NS : now_ns;
+        drive->running = true;
+    }
+    while (drive->now_ns < now_ns) {
+        const int64_t left_ns = now_ns - drive->now_ns;
+        const int64_t step_ns = left_ns < STEP_NS ? left_ns : STEP_NS;
+        drive->now_ns += step_ns;
+        step(drive, (double)step_ns * 1e-9);
+    }
+}
+
+/* ---- EtherCAT ----------------------------------------------------------------------------------------------------- */
+
+static uint16_t explicit_device_id(void *app)
+{
+    const cm1e_sim_cm1e_t *drive = app;
+    return drive->rotary_switches == ID_RESERVED ? 0 : drive->rotary_switches; /* UG 4.2.3 */
+}
+
+static uint16_t state_change(void *app, uint8_t from, uint8_t to)
+{
+    cm1e_sim_cm1e_t *drive = app;
+    /* UG 4.2.4: with both kinds of identification set the device has an internal error. */
+    if (from <= INIT && to == PRE_OPERATIONAL && drive->alias != 0 && explicit_device_id(drive) != 0)
+        return AL_CODE_UNSPECIFIED;
+    drive->al_state = to;
+    if (from == OPERATIONAL && to != OPERATIONAL)
+        cm1e_sim_fsa_disable(drive);
+    return 0;
+}
+
+static void watchdog_expired(void *app)
+{
+    cm1e_sim_cm1e_t *drive = app;
+    if (drive->firmware->watchdog)
+        cm1e_sim_fsa_disable(drive);
+}
+
+/* ---- life --------------------------------------------------------------------------------------------------------- */
+
+/* The motor does not know where its axis stands: the position counts from 0 again. Until now it ran out without torque. */
+static void power_on(void *app, int64_t now_ns)
+{
+    cm1e_sim_cm1e_t *drive = app;
+    cm1e_sim_fsa_off(drive);
+    advance(drive, now_ns);
+    drive->last_outputs_ns = 0;
+    drive->period_ns = drive->candidate_ns = 0;
+    drive->candidate_count = 0;
+    drive->al_state = INIT;
+    drive->zero = 0;
+    drive->zero = cm1e_sim_actual_counts(drive);
+    drive->overload = 0;
+    cm1e_servo_catch(&drive->servo, &drive->mechanics);
+    cm1e_sim_dictionary_reset(drive);
+    cm1e_sim_assign_default(drive);
+    cm1e_sim_homing_reset(drive);
+    cm1e_sim_fsa_reset(drive);
+}
+
+static void destroy(void *app)
+{
+    cm1e_sim_cm1e_t *drive = app;
+    free(drive->first_entry);
+    free(drive->values);
+    free(drive);
+}
+
+const cm1e_sim_app_ops_t cm1e_sim_cm1e_ops = {
+    .advance = advance,
+    .state_change = state_change,
+    .process_data_sizes = cm1e_sim_process_data_sizes,
+    .outputs = cm1e_sim_outputs,
+    .inputs = cm1e_sim_inputs,
+    .watchdog_expired = watchdog_expired,
+    .sdo_read = cm1e_sim_sdo_read,
+    .sdo_write = cm1e_sim_sdo_write,
+    .object = cm1e_sim_object,
+    .entry = cm1e_sim_entry,
+    .explicit_device_id = explicit_device_id,
+    .power_on = power_on,
+    .destroy = destroy,
+};
+
+cm1e_sim_cm1e_t *cm1e_sim_cm1e_create_app(const cm1e_axis_config_t *config, cm1e_pdo_order_t order, uint16_t alias,
+                                          uint8_t rotary_switches)
+{
+    const cm1e_motor_t *motor = cm1e_device_motor(config->motor);
+    const cm1e_firmware_info_t *firmware = config->firmware[0] ? cm1e_firmware_from_version(config->firmware)
+                                                               : cm1e_firmware_info(CM1E_FIRMWARE_COUNT - 1);
+    cm1e_sim_cm1e_t *drive = motor && firmware ? calloc(1, sizeof *drive) : NULL;
+    if (!drive)
+        return NULL;
+    drive->motor = motor;
+    drive->firmware = firmware;
+    drive->config = *config;
+    drive->order = order;
+    drive->alias = alias;
+    drive->rotary_switches = rotary_switches;
+    drive->motor_power = true;
+    drive->deadline_ns = drive->state_deadline_ns = drive->mode_deadline_ns = INT64_MAX;
+    drive->sensor_edge[0] = config->sim.sensor_input2 != 0 ? config->sim.sensor_input2 : 150000;
+    drive->sensor_edge[1] = config->sim.sensor_input3 != 0 ? config->sim.sensor_input3 : -150000;
+    if (!cm1e_sim_dictionary_create(drive)) {
+        destroy(drive);
+        return NULL;
+    }
+    cm1e_mechanics_init(&drive->mechanics, &config->sim, motor->peak_torque_nm * ROTOR_INERTIA_PER_PEAK_TORQUE);
+    cm1e_servo_init(&drive->servo, &drive->mechanics);
+    power_on(drive, 0);
+    drive->running = false; /* the first advance() tells the time */
+    return drive;
+}
+
+cm1e_sim_slave_t *cm1e_sim_cm1e_create(const cm1e_axis_config_t *config, cm1e_pdo_order_t order, uint16_t alias,
+                                       uint8_t rotary_switches)
+{
+    cm1e_sim_cm1e_t *drive = cm1e_sim_cm1e_create_app(config, order, alias, rotary_switches);
+    if (!drive)
+        return NULL;
+    uint8_t sii[CM1E_SII_SIZE];
+    const cm1e_sii_options_t options = {.firmware = drive->firmware->firmware, .order = order, .alias = alias};
+    const size_t size = cm1e_generate_sii(sii, sizeof sii, &options);
+    cm1e_sim_slave_t *slave = cm1e_sim_slave_create(sii, size, &cm1e_sim_cm1e_ops, drive);
+    if (slave)
+        drive->slave = slave;
+    else
+        destroy(drive);
+    return slave;
+}
+
+cm1e_sim_cm1e_t *cm1e_sim_cm1e_of(cm1e_sim_slave_t *slave)
+{
+    return slave && cm1e_sim_slave_ops(slave) == &cm1e_sim_cm1e_ops ? cm1e_sim_slave_app(slave) : NULL;
+}

@@ -1,0 +1,322 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/bytes.h"
+#include "sim/cm1e_app.h"
+
+/* Objects that the drive works with, in order of index. */
+#define PLACE(member) (offsetof(cm1e_sim_objects_t, member) / sizeof(int32_t))
+static const struct {
+    uint16_t index;
+    uint8_t subindex, place;
+} places[] = {
+    {OBJ_1001_ERROR_REGISTER, 0, PLACE(error_register)},
+    {OBJ_1C32_SM_OUTPUT_PARAMETER, 2, PLACE(output_cycle_ns)},
+    {OBJ_1C33_SM_INPUT_PARAMETER, 2, PLACE(input_cycle_ns)},
+    {OBJ_2201_USER_VARIABLES, 1, PLACE(user_variable_1)},
+    {OBJ_2301_TEMPERATURE, 0, PLACE(temperature)},
+    {OBJ_603F_ERROR_CODE, 0, PLACE(error_code)},
+    {OBJ_6040_CONTROLWORD, 0, PLACE(controlword)},
+    {OBJ_6041_STATUSWORD, 0, PLACE(statusword)},
+    {OBJ_6060_MODES_OF_OPERATION, 0, PLACE(mode)},
+    {OBJ_6061_MODES_OF_OPERATION_DISPLAY, 0, PLACE(mode_display)},
+    {OBJ_6064_POSITION_ACTUAL_VALUE, 0, PLACE(position)},
+    {OBJ_606C_VELOCITY_ACTUAL_VALUE, 0, PLACE(velocity)},
+    {OBJ_6077_TORQUE_ACTUAL_VALUE, 0, PLACE(torque)},
+    {OBJ_6079_DC_LINK_VOLTAGE, 0, PLACE(dc_link)},
+    {OBJ_607A_TARGET_POSITION, 0, PLACE(target_position)},
+    {OBJ_607C_HOME_OFFSET, 0, PLACE(home_offset)},
+    {OBJ_6081_PROFILE_VELOCITY, 0, PLACE(profile_velocity)},
+    {OBJ_6083_PROFILE_ACCELERATION, 0, PLACE(profile_acceleration)},
+    {OBJ_6084_PROFILE_DECELERATION, 0, PLACE(profile_deceleration)},
+    {OBJ_6098_HOMING_METHOD, 0, PLACE(homing_method)},
+    {OBJ_6099_HOMING_SPEEDS, 1, PLACE(homing_speed)},
+    {OBJ_609A_HOMING_ACCELERATION, 0, PLACE(homing_acceleration)},
+    {OBJ_60F6_K_PARAMETERS, CM1E_K_PARAMETER_HOMING_TORQUE, PLACE(homing_torque)},
+    {OBJ_60FD_DIGITAL_INPUTS, 0, PLACE(digital_inputs)},
+    {OBJ_60FE_DIGITAL_OUTPUTS, 0, PLACE(digital_outputs)},
+    {OBJ_60FF_TARGET_VELOCITY, 0, PLACE(target_velocity)},
+    {OBJ_FE00_PDO_TIMING, 1, PLACE(cycle_time_us)},
+};
+enum { PLACE_COUNT = sizeof places / sizeof places[0] };
+
+int cm1e_sim_object_place(uint16_t index, uint8_t subindex)
+{
+    for (size_t i = 0; i < PLACE_COUNT; i++)
+        if (places[i].index == index && places[i].subindex == subindex)
+            return places[i].place;
+    return -1;
+}
+
+/* Devices that take kpulses/s2 on the wire (UG 6.2.3) have these in place of the device tables' entries. */
+static const cm1e_entry_t kpulses_entries[] = {
+    {.index = OBJ_6083_PROFILE_ACCELERATION, .access = CM1E_ACCESS_READ | CM1E_ACCESS_WRITE | CM1E_ACCESS_RXPDO,
+     .type = CM1E_TYPE_UDINT, .bits = 32, .name = "Profile acceleration", .unit = "kcounts/s2", .maximum = 32767,
+     .kept_minimum = 1},
+    {.index = OBJ_6084_PROFILE_DECELERATION, .access = CM1E_ACCESS_READ | CM1E_ACCESS_WRITE,
+     .type = CM1E_TYPE_UDINT, .bits = 32, .name = "Profile deceleration", .unit = "kcounts/s2", .default_value = 25,
+     .maximum = 32767, .kept_minimum = 1},
+};
+
+/* Where an entry is: the object's place in the dictionary and the entry's in the object. */
+typedef struct position {
+    size_t object, entry;
+} position_t;
+
+static bool find_object(const cm1e_sim_cm1e_t *drive, uint16_t index, size_t *found)
+{
+    size_t low = 0, high = drive->object_count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (drive->dictionary[middle].index < index)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    *found = low;
+    return low < drive->object_count && drive->dictionary[low].index == index &&
+           drive->dictionary[low].since <= drive->firmware->firmware;
+}
+
+static const cm1e_entry_t *find_entry(const cm1e_sim_cm1e_t *drive, uint16_t index, uint8_t subindex,
+                                      position_t *position)
+{
+    if (!find_object(drive, index, &position->object))
+        return NULL;
+    const cm1e_object_t *object = &drive->dictionary[position->object];
+    for (position->entry = 0; position->entry < object->entry_count; position->entry++) {
+        const cm1e_entry_t *entry = &object->entries[position->entry];
+        if (entry->subindex == subindex)
+            return entry->since <= drive->firmware->firmware ? entry : NULL;
+    }
+    return NULL;
+}
+
+/* The entry as this device has it. */
+static const cm1e_entry_t *own_entry(const cm1e_sim_cm1e_t *drive, const cm1e_entry_t *entry)
+{
+    if (drive->config.acceleration_in_kpulses)
+        for (size_t i = 0; i < sizeof kpulses_entries / sizeof kpulses_entries[0]; i++)
+            if (kpulses_entries[i].index == entry->index)
+                return &kpulses_entries[i];
+    return entry;
+}
+
+const cm1e_entry_t *cm1e_sim_entry(void *app, uint16_t index, uint8_t subindex)
+{
+    position_t position;
+    const cm1e_entry_t *entry = find_entry(app, index, subindex, &position);
+    return entry ? own_entry(app, entry) : NULL;
+}
+
+const cm1e_object_t *cm1e_sim_object(void *app, size_t n)
+{
+    const cm1e_sim_cm1e_t *drive = app;
+    for (size_t i = 0; i < drive->object_count; i++)
+        if (drive->dictionary[i].since <= drive->firmware->firmware && n-- == 0)
+            return &drive->dictionary[i];
+    return NULL;
+}
+
+static int64_t *value_at(cm1e_sim_cm1e_t *drive, const position_t *position)
+{
+    return &drive->values[drive->first_entry[position->object] + position->entry];
+}
+
+/* ---- creation and power-on ---------------------------------------------------------------------------------------- */
+
+bool cm1e_sim_dictionary_create(cm1e_sim_cm1e_t *drive)
+{
+    drive->dictionary = cm1e_device_objects(&drive->object_count);
+    drive->first_entry = calloc(drive->object_count, sizeof *drive->first_entry);
+    if (!drive->first_entry)
+        return false;
+    uint32_t count = 0;
+    for (size_t i = 0; i < drive->object_count; i++) {
+        drive->first_entry[i] = count;
+        count += drive->dictionary[i].entry_count;
+    }
+    drive->values = calloc(count, sizeof *drive->values);
+    if (!drive->values)
+        return false;
+    for (size_t i = 0; i < drive->object_count; i++)
+        for (uint16_t k = 0; k < drive->dictionary[i].entry_count; k++)
+            drive->values[drive->first_entry[i] + k] = drive->dictionary[i].entries[k].default_value;
+    return true;
+}
+
+static void set_value(cm1e_sim_cm1e_t *drive, uint16_t index, uint8_t subindex, int64_t value)
+{
+    position_t position;
+    if (find_entry(drive, index, subindex, &position))
+        *value_at(drive, &position) = value;
+}
+
+/* The mapping objects show the order that this device has. */
+static void set_mapping_objects(cm1e_sim_cm1e_t *drive)
+{
+    for (int transmit = 0; transmit < 2; transmit++)
+        for (int mapping = CM1E_MAPPING_DYNAMIC; mapping <= CM1E_MAPPING_PROFILE; mapping++) {
+            cm1e_pdo_t pdo;
+            cm1e_device_pdo(&pdo, (cm1e_mapping_t)mapping, transmit != 0, drive->order, drive->firmware->firmware);
+            set_value(drive, pdo.index, 0, pdo.entry_count);
+            for (uint8_t i = 0; i < pdo.entry_count; i++) {
+                const cm1e_pdo_entry_t *entry = &pdo.entries[i];
+                set_value(drive, pdo.index, (uint8_t)(i + 1),
+                          (int64_t)entry->index << 16 | (int64_t)entry->subindex << 8 | entry->bits);
+            }
+        }
+}
+
+/* UG 7.5: a 17L30D (peak 0.54 Nm, 1.8 A) shows max current 120 %, rated current 1.5 A, max torque 125 %, so its rated
+ * values are its peak values divided by these; the other motors are taken to be rated alike. */
+enum { OBJ_6072_PEAK_TORQUE = 0x6072, OBJ_6073_MAX_CURRENT, OBJ_6075_RATED_CURRENT = 0x6075, OBJ_6076_RATED_TORQUE };
+
+static void set_motor_objects(cm1e_sim_cm1e_t *drive)
+{
+    const int64_t peak_torque = cm1e_device_entry(OBJ_6072_PEAK_TORQUE, 0)->default_value;
+    const int64_t max_current = cm1e_device_entry(OBJ_6073_MAX_CURRENT, 0)->default_value;
+    drive->rated_torque = drive->motor->peak_torque_nm * 1000 / (double)peak_torque;
+    drive->overload_gain = 1 / (drive->rated_torque * drive->rated_torque);
+    set_value(drive, OBJ_6075_RATED_CURRENT, 0, (int64_t)(drive->motor->peak_current_a * 1e6 / (double)max_current + 0.5));
+    set_value(drive, OBJ_6076_RATED_TORQUE, 0, (int64_t)(drive->rated_torque * 1000 + 0.5));
+}
+
+/* UG 7.3.23, 7.4.4 */
+static bool non_volatile(uint16_t index) { return index == OBJ_60FB_H_PARAMETERS || index == OBJ_FF00_LED_BRIGHTNESS; }
+
+void cm1e_sim_dictionary_reset(cm1e_sim_cm1e_t *drive)
+{
+    for (size_t i = 0; i < drive->object_count; i++) {
+        const cm1e_object_t *object = &drive->dictionary[i];
+        for (uint16_t k = 0; k < object->entry_count && !non_volatile(object->index); k++)
+            drive->values[drive->first_entry[i] + k] = own_entry(drive, &object->entries[k])->default_value;
+    }
+    drive->objects = (cm1e_sim_objects_t){0};
+    int32_t *objects = (int32_t *)&drive->objects;
+    for (size_t i = 0; i < PLACE_COUNT; i++) {
+        const cm1e_entry_t *entry = cm1e_device_entry(places[i].index, places[i].subindex);
+        objects[places[i].place] = (int32_t)own_entry(drive, entry)->default_value;
+    }
+    set_value(drive, OBJ_1018_IDENTITY, 3, drive->firmware->revision);
+    set_mapping_objects(drive);
+    set_motor_objects(drive);
+}
+
+/* ---- access ------------------------------------------------------------------------------------------------------- */
+
+static uint32_t missing(const cm1e_sim_cm1e_t *drive, uint16_t index)
+{
+    size_t object;
+    return find_object(drive, index, &object) ? SDO_ABORT_NO_SUBINDEX : SDO_ABORT_NO_OBJECT;
+}
+
+static uint32_t read_string(const char *text, uint8_t *data, size_t *size)
+{
+    const size_t length = strlen(text);
+    if (*size < length)
+        return SDO_ABORT_MEMORY;
+    memcpy(data, text, length);
+    *size = length;
+    return 0;
+}
+
+static int64_t present_value(cm1e_sim_cm1e_t *drive, const cm1e_entry_t *entry, const position_t *position)
+{
+    if (entry->index == OBJ_1C12_RXPDO_ASSIGN || entry->index == OBJ_1C13_TXPDO_ASSIGN) {
+        const cm1e_sim_image_t *image = entry->index == OBJ_1C12_RXPDO_ASSIGN ? &drive->outputs : &drive->inputs;
+        return entry->subindex == 0 ? image->assigned : image->pdo;
+    }
+    const int place = cm1e_sim_object_place(entry->index, entry->subindex);
+    return place >= 0 ? ((const int32_t *)&drive->objects)[place] : *value_at(drive, position);
+}
+
+uint32_t cm1e_sim_sdo_read(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, uint8_t *data, size_t *size)
+{
+    (void)al_state; /* the dictionary is there in every state since V1.2.0 (UG 10.1) */
+    cm1e_sim_cm1e_t *drive = app;
+    position_t position;
+    const cm1e_entry_t *entry = find_entry(drive, index, subindex, &position);
+    if (!entry)
+        return missing(drive, index);
+    if (!(entry->access & CM1E_ACCESS_READ))
+        return SDO_ABORT_WRITE_ONLY;
+    if (entry->type == CM1E_TYPE_STRING)
+        return read_string(index == OBJ_100A_SOFTWARE_VERSION ? drive->firmware->version : entry->default_string,
+                           data, size);
+    const unsigned bytes = entry->bits / 8u;
+    if (*size < bytes)
+        return SDO_ABORT_MEMORY;
+    cm1e_sim_refresh(drive);
+    cm1e_put_uint(data, bytes, (uint64_t)present_value(drive, entry, &position));
+    *size = bytes;
+    return 0;
+}
+
+static bool is_signed(cm1e_data_type_t type)
+{
+    return type == CM1E_TYPE_SINT || type == CM1E_TYPE_INT || type == CM1E_TYPE_DINT;
+}
+
+static int64_t decode(const cm1e_entry_t *entry, const uint8_t *data)
+{
+    const uint64_t value = cm1e_get_uint(data, entry->bits / 8u);
+    if (!is_signed(entry->type))
+        return (int64_t)value;
+    const uint64_t sign = UINT64_C(1) << (entry->bits - 1);
+    return (int64_t)((value ^ sign) - sign);
+}
+
+static uint32_t check_value(const cm1e_entry_t *entry, int64_t value)
+{
+    if (value > entry->maximum)
+        return SDO_ABORT_TOO_HIGH;
+    if (value < entry->minimum)
+        return SDO_ABORT_TOO_LOW;
+    if (entry->index == OBJ_6060_MODES_OF_OPERATION && value != CM1E_MODE_NONE && !cm1e_mode_find((int8_t)value))
+        return SDO_ABORT_RANGE;
+    return 0;
+}
+
+static uint32_t check_access(const cm1e_entry_t *entry, uint8_t al_state, size_t size)
+{
+    enum { PRE_OPERATIONAL = 2 };
+    if (!(entry->access & CM1E_ACCESS_WRITE))
+        return SDO_ABORT_READ_ONLY;
+    if (size > entry->bits / 8u)
+        return SDO_ABORT_TOO_LONG;
+    if (size < entry->bits / 8u)
+        return SDO_ABORT_TOO_SHORT;
+    if ((entry->access & CM1E_ACCESS_WRITE_PREOP_ONLY) && al_state != PRE_OPERATIONAL)
+        return SDO_ABORT_STATE;
+    return 0;
+}
+
+uint32_t cm1e_sim_sdo_write(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, const uint8_t *data,
+                            size_t size)
+{
+    cm1e_sim_cm1e_t *drive = app;
+    position_t position;
+    const cm1e_entry_t *entry = find_entry(drive, index, subindex, &position);
+    if (!entry)
+        return missing(drive, index);
+    entry = own_entry(drive, entry);
+    uint32_t abort_code = check_access(entry, al_state, size);
+    if (abort_code)
+        return abort_code;
+    int64_t value = decode(entry, data);
+    if (index == OBJ_1C12_RXPDO_ASSIGN || index == OBJ_1C13_TXPDO_ASSIGN)
+        return cm1e_sim_assign_write(drive, index, subindex, (uint32_t)value);
+    abort_code = check_value(entry, value);
+    if (abort_code)
+        return abort_code;
+    value = cm1e_entry_round(entry, value);
+    const int place = cm1e_sim_object_place(index, subindex);
+    if (place >= 0)
+        ((int32_t *)&drive->objects)[place] = (int32_t)value;
+    else
+        *value_at(drive, &position) = value;
+    if (index == OBJ_6060_MODES_OF_OPERATION)
+        cm1e_sim_fsa_request_mode(drive);
+    return 0;
+}

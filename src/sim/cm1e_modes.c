@@ -1,0 +1,223 @@
+#include <math.h>
+
+#include "sim/cm1e_app.h"
+
+#define DEFAULT_CYCLE_S 1e-3        /* until the cycle time is detected */
+#define VELOCITY_MODE_LAG 2000.0    /* counts; a velocity servo does not catch up what a longer lag would be */
+#define FOLLOWING_WINDOW 5000.0     /* counts; PP, statusword bit 13 */
+#define POSITION_WINDOW 10.0        /* counts; target reached */
+#define VELOCITY_WINDOW 500.0       /* counts/s; target reached */
+#define STANDSTILL_WINDOW 100.0     /* counts/s; "velocity of axis is 0" */
+
+void cm1e_sim_ramp(double *velocity, double wanted, double acceleration, double step_s)
+{
+    const double most = acceleration * step_s;
+    if (wanted > *velocity + most)
+        *velocity += most;
+    else if (wanted < *velocity - most)
+        *velocity -= most;
+    else
+        *velocity = wanted;
+}
+
+bool cm1e_sim_move_step(cm1e_servo_t *servo, double target, double velocity, double acceleration, double step_s)
+{
+    const double distance = target - servo->reference;
+    const double most = acceleration * step_s; /* change of velocity in one step */
+    if (fabs(distance) <= most * step_s && fabs(servo->reference_velocity) <= most) {
+        servo->reference = target;
+        servo->reference_velocity = 0;
+        return true;
+    }
+    /* The velocity from which steps of `most` end at the target, from v^2 / 2a + v step / 2 = distance. */
+    double fastest = sqrt(most * most / 4 + 2 * acceleration * fabs(distance)) - most / 2;
+    fastest = fmin(fmin(fastest, fabs(distance) / step_s), velocity);
+    cm1e_sim_ramp(&servo->reference_velocity, distance < 0 ? -fastest : fastest, acceleration, step_s);
+    servo->reference += servo->reference_velocity * step_s;
+    return false;
+}
+
+/* 0x607A on the scale of the mechanics. It has 32 bits and wraps: the nearest turn of the wheel is meant. */
+static double target_position(const cm1e_sim_cm1e_t *drive)
+{
+    const int64_t actual = cm1e_sim_actual_counts(drive);
+    const int32_t distance = (int32_t)((uint32_t)drive->objects.target_position - (uint32_t)actual);
+    return (double)(drive->zero + actual + distance);
+}
+
+/* Kept in units of 1000 counts/s2, at least one (UG 6.2.2), whatever came over the process data. */
+static double acceleration(const cm1e_sim_cm1e_t *drive, int32_t object)
+{
+    const double unit = drive->config.acceleration_in_kpulses ? 1 : 1000;
+    const double thousands = floor((uint32_t)object / unit + 0.5);
+    return fmin(fmax(thousands, 1), 32767) * 1000;
+}
+
+static double motor_limited(const cm1e_sim_cm1e_t *drive, double velocity)
+{
+    const double most = drive->motor->max_velocity_counts_per_s;
+    return fmax(fmin(velocity, most), -most);
+}
+
+static bool halt_bit(const cm1e_sim_cm1e_t *drive) { return (drive->objects.controlword & CONTROLWORD_HALT) != 0; }
+static bool stands(const cm1e_sim_cm1e_t *drive) { return fabs(drive->mechanics.velocity) < STANDSTILL_WINDOW; }
+
+/* ---- cyclic synchronous position ---------------------------------------------------------------------------------- */
+
+/* The drive takes the target as it is: one that is not the actual position makes the motor jump. */
+static void csp_enter(cm1e_sim_cm1e_t *drive)
+{
+    drive->goal = target_position(drive);
+    drive->goal_left_s = 0;
+    drive->servo.reference = drive->goal;
+    drive->servo.reference_velocity = 0;
+}
+
+/* A straight line to the new target within one cycle. */
+static void csp_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
+{
+    (void)rising_bits;
+    drive->goal = target_position(drive);
+    drive->goal_left_s = drive->period_ns ? drive->period_ns * 1e-9 : DEFAULT_CYCLE_S;
+    drive->goal_velocity = (drive->goal - drive->servo.reference) / drive->goal_left_s;
+}
+
+static void csp_step(cm1e_sim_cm1e_t *drive, double step_s)
+{
+    drive->servo.reference_velocity = drive->goal_left_s > 0 ? drive->goal_velocity : 0;
+    drive->goal_left_s -= step_s;
+    if (drive->goal_left_s > step_s / 1024)
+        drive->servo.reference += drive->goal_velocity * step_s;
+    else {
+        drive->servo.reference = drive->goal;
+        drive->goal_left_s = 0;
+    }
+}
+
+static uint16_t cyclic_status_bits(const cm1e_sim_cm1e_t *drive)
+{
+    return drive->firmware->following_bit && drive->following ? STATUSWORD_BIT12 : 0;
+}
+
+/* ---- cyclic synchronous velocity ---------------------------------------------------------------------------------- */
+
+static void velocity_step(cm1e_sim_cm1e_t *drive, double step_s)
+{
+    cm1e_servo_t *servo = &drive->servo;
+    const double position = drive->mechanics.position;
+    const double reference = servo->reference + servo->reference_velocity * step_s;
+    servo->reference = fmax(fmin(reference, position + VELOCITY_MODE_LAG), position - VELOCITY_MODE_LAG);
+}
+
+static void csv_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
+{
+    (void)rising_bits;
+    drive->goal_velocity = (double)drive->objects.target_velocity * cm1e_sim_velocity_unit(drive);
+}
+
+static void csv_enter(cm1e_sim_cm1e_t *drive) { csv_outputs(drive, 0); }
+
+static void csv_step(cm1e_sim_cm1e_t *drive, double step_s)
+{
+    drive->servo.reference_velocity = drive->goal_velocity;
+    velocity_step(drive, step_s);
+}
+
+/* ---- profile velocity --------------------------------------------------------------------------------------------- */
+
+static void pv_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
+{
+    (void)rising_bits;
+    drive->goal_velocity =
+        motor_limited(drive, (double)drive->objects.target_velocity * cm1e_sim_velocity_unit(drive));
+    drive->profile_acceleration = acceleration(drive, drive->objects.profile_acceleration);
+    drive->profile_deceleration = acceleration(drive, drive->objects.profile_deceleration);
+}
+
+static void pv_enter(cm1e_sim_cm1e_t *drive) { pv_outputs(drive, 0); }
+
+/* "The deceleration value is only used when the target velocity is set to 0 or the halt bit is set" (UG 6.2.3). */
+static void pv_step(cm1e_sim_cm1e_t *drive, double step_s)
+{
+    const double wanted = halt_bit(drive) ? 0 : drive->goal_velocity;
+    cm1e_sim_ramp(&drive->servo.reference_velocity, wanted,
+                  wanted == 0 ? drive->profile_deceleration : drive->profile_acceleration, step_s);
+    velocity_step(drive, step_s);
+}
+
+static uint16_t pv_status_bits(const cm1e_sim_cm1e_t *drive)
+{
+    const double wanted = drive->state == OPERATION_ENABLED ? drive->goal_velocity : 0;
+    const bool reached = halt_bit(drive) ? stands(drive)
+                                         : fabs(drive->mechanics.velocity - wanted) < VELOCITY_WINDOW;
+    return (uint16_t)((reached ? STATUSWORD_TARGET_REACHED : 0) | (stands(drive) ? STATUSWORD_BIT12 : 0));
+}
+
+/* ---- profile position --------------------------------------------------------------------------------------------- */
+
+/* No set-point yet: where it stands, or where it can stop, is the target. */
+static void pp_enter(cm1e_sim_cm1e_t *drive)
+{
+    const cm1e_servo_t *servo = &drive->servo;
+    drive->profile_acceleration = acceleration(drive, drive->objects.profile_acceleration);
+    drive->profile_velocity = fabs(servo->reference_velocity);
+    drive->goal = servo->reference + servo->reference_velocity * fabs(servo->reference_velocity) /
+                                         (2 * drive->profile_acceleration);
+    drive->set_point_acknowledge = false;
+}
+
+/* Always absolute, immediate, single set-point (UG 6.2.2). */
+static void pp_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
+{
+    if (rising_bits & CONTROLWORD_NEW_SET_POINT) {
+        drive->goal = target_position(drive);
+        drive->profile_velocity = motor_limited(drive, (uint32_t)drive->objects.profile_velocity);
+        drive->profile_acceleration = acceleration(drive, drive->objects.profile_acceleration);
+        drive->set_point_acknowledge = true;
+    } else if (!(drive->objects.controlword & CONTROLWORD_NEW_SET_POINT)) {
+        drive->set_point_acknowledge = false;
+    }
+}
+
+static void pp_step(cm1e_sim_cm1e_t *drive, double step_s)
+{
+    cm1e_servo_t *servo = &drive->servo;
+    if (halt_bit(drive)) {
+        cm1e_sim_ramp(&servo->reference_velocity, 0, drive->profile_acceleration, step_s);
+        servo->reference += servo->reference_velocity * step_s;
+    } else
+        cm1e_sim_move_step(servo, drive->goal, drive->profile_velocity, drive->profile_acceleration, step_s);
+}
+
+static bool pp_target_reached(const cm1e_sim_cm1e_t *drive)
+{
+    if (drive->state != OPERATION_ENABLED)
+        return false;
+    if (halt_bit(drive))
+        return stands(drive) && drive->servo.reference_velocity == 0;
+    return drive->servo.reference == drive->goal &&
+           fabs(drive->goal - drive->mechanics.position) <= POSITION_WINDOW;
+}
+
+static uint16_t pp_status_bits(const cm1e_sim_cm1e_t *drive)
+{
+    const bool enabled = drive->state == OPERATION_ENABLED;
+    const double lag = fabs(drive->servo.reference - drive->mechanics.position);
+    return (uint16_t)((pp_target_reached(drive) ? STATUSWORD_TARGET_REACHED : 0) |
+                      (enabled && drive->set_point_acknowledge ? STATUSWORD_SET_POINT_ACKNOWLEDGE : 0) |
+                      (enabled && lag > FOLLOWING_WINDOW ? STATUSWORD_FOLLOWING_ERROR : 0));
+}
+
+const cm1e_sim_mode_t *cm1e_sim_mode(int8_t mode)
+{
+    static const cm1e_sim_mode_t modes[] = {
+        {CM1E_MODE_PP, pp_enter, pp_outputs, pp_step, pp_status_bits},
+        {CM1E_MODE_PV, pv_enter, pv_outputs, pv_step, pv_status_bits},
+        {CM1E_MODE_CSP, csp_enter, csp_outputs, csp_step, cyclic_status_bits},
+        {CM1E_MODE_CSV, csv_enter, csv_outputs, csv_step, cyclic_status_bits},
+    };
+    for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++)
+        if (modes[i].mode == mode)
+            return &modes[i];
+    return mode == CM1E_MODE_HM ? &cm1e_sim_homing_mode : NULL;
+}

@@ -1,0 +1,32 @@
+/**
+ * @file cm1e_servo.h
+ * The position servo inside a simulated CM1-E: from a reference position and velocity to a motor torque within a limit.
+ * @rt cycle.
+ */
+#ifndef CM1E_SIM_CM1E_SERVO_H
+#define CM1E_SIM_CM1E_SERVO_H
+
+#include <stdbool.h>
+
+#include "sim/mechanics.h"
+
+typedef struct cm1e_servo {
+    double reference;          /**< counts, on the scale of the mechanics */
+    double reference_velocity; /**< counts/s */
+    double torque_limit;       /**< Nm */
+    double integral;           /**< Nm, holds the load at rest */
+    double torque;             /**< Nm, of the last step */
+    bool saturated;            /**< the last step was at the limit */
+    double stiffness;          /**< Nm per count */
+    double damping;            /**< Nm per count/s */
+    double step_s, response;   /**< gain of the implicit step, kept for the step length used last */
+} cm1e_servo_t;
+
+/** Tuned to the mechanics as a commissioned drive is. */
+void cm1e_servo_init(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics);
+/** Starts to hold the present position with no torque. */
+void cm1e_servo_catch(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics);
+/** Torque for the next `step_s` seconds, at whose end the reference applies. */
+double cm1e_servo_step(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics, double step_s);
+
+#endif

@@ -1,0 +1,425 @@
+/*
+ * The console of a simulated segment: one line, one answer. The grammar is "<command> <slave> <arguments>"; commands
+ * that concern the frames have no slave.
+ */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sim/cm1e_app.h"
+#include "sim/esc.h"
+
+enum { LINE_MAX_BYTES = 128, WORDS_MAX = 6, FRAMES_MAX = 1000000, DELAY_MAX_US = 1000000, ABSENCE_MAX_MS = 60000 };
+enum { ABSENCE_DEFAULT_MS = 500 };
+
+typedef struct call {
+    cm1e_sim_segment_t *segment;
+    char words[WORDS_MAX][LINE_MAX_BYTES];
+    int count;               /* words */
+    uint32_t position;       /* of the slave named, where the command takes one */
+    cm1e_sim_slave_t *slave;
+    cm1e_sim_cm1e_t *drive;
+    char *answer;
+    size_t size, used;
+} call_t;
+
+typedef struct command {
+    const char *word;
+    enum { NO_SLAVE, ANY_SLAVE, DRIVE, DRIVE_OR_ALL } subject;
+    int least, most;         /* arguments behind the slave */
+    cm1e_error_t (*run)(call_t *call);
+    const char *usage, *help;
+} command_t;
+
+__attribute__((format(printf, 2, 3))) static void say(call_t *call, const char *format, ...)
+{
+    if (call->used + 1 >= call->size)
+        return;
+    va_list args;
+    va_start(args, format);
+    const int length = vsnprintf(call->answer + call->used, call->size - call->used, format, args);
+    va_end(args);
+    if (length > 0)
+        call->used += (size_t)length < call->size - call->used ? (size_t)length : call->size - call->used - 1;
+}
+
+#define REFUSE(call, ...) (say(call, __VA_ARGS__), CM1E_ERROR_INVALID_ARGUMENT)
+
+/* ---- words into numbers ------------------------------------------------------------------------------------------- */
+
+/* The n-th argument behind command and slave, "" where it is missing. */
+static const char *argument(const call_t *call, int n)
+{
+    const int i = n + (call->slave ? 2 : 1);
+    return i < call->count ? call->words[i] : "";
+}
+
+static bool parse_whole(const char *word, int base, long least, long most, long *value)
+{
+    char *end;
+    if (base == 16 && (word[0] == '0') && (word[1] == 'x' || word[1] == 'X'))
+        word += 2;
+    for (const char *c = word; *c; c++)
+        if (*c == ' ' || (base == 16 && (*c == '-' || *c == '+' || *c == 'x' || *c == 'X')))
+            return false;
+    *value = strtol(word, &end, base);
+    return end != word && *end == '\0' && *value >= least && *value <= most;
+}
+
+static bool parse_real(const char *word, double least, double most, double *value)
+{
+    char *end;
+    *value = strtod(word, &end);
+    return end != word && *end == '\0' && isfinite(*value) && *value >= least && *value <= most;
+}
+
+/* The place of a word in a list that ends with NULL; -1: not there. */
+static int choice(const char *word, const char *const *list)
+{
+    for (int i = 0; list[i]; i++)
+        if (strcmp(word, list[i]) == 0)
+            return i;
+    return -1;
+}
+
+/* ---- commands on a drive ------------------------------------------------------------------------------------------ */
+
+static const char *al_state_name(uint8_t state)
+{
+    switch (state) {
+    case 1: return "INIT";
+    case 2: return "PREOP";
+    case 4: return "SAFEOP";
+    case 8: return "OP";
+    default: return "BOOT";
+    }
+}
+
+static const char *mode_name(int32_t mode)
+{
+    const cm1e_mode_row_t *row = cm1e_mode_find((int8_t)mode);
+    return row ? row->abbreviation : "no mode";
+}
+
+static void say_status(call_t *call, uint32_t position)
+{
+    cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(call->segment, position);
+    cm1e_sim_cm1e_t *drive = cm1e_sim_cm1e_of(slave);
+    if (!drive) {
+        say(call, "%u: not a CM1-E, %s", position, al_state_name(cm1e_sim_slave_al_state(slave)));
+        return;
+    }
+    cm1e_sim_refresh(drive);
+    say(call, "%u: %s V%s, %s, %s, %s, position %d, motor power %s, error 0x%04X", position, drive->motor->name,
+        drive->firmware->version, al_state_name(cm1e_sim_slave_al_state(slave)), cm1e_fsa_name(drive->state),
+        mode_name(drive->objects.mode_display), drive->objects.position, drive->motor_power ? "on" : "off",
+        (unsigned)drive->objects.error_code);
+}
+
+static cm1e_error_t run_status(call_t *call)
+{
+    if (call->slave) {
+        say_status(call, call->position);
+        return CM1E_OK;
+    }
+    const uint32_t count = cm1e_sim_segment_slave_count(call->segment);
+    if (count == 0)
+        say(call, "the segment has no slaves");
+    for (uint32_t position = 1; position <= count; position++) {
+        if (position > 1)
+            say(call, "\n");
+        say_status(call, position);
+    }
+    return CM1E_OK;
+}
+
+static cm1e_error_t run_show(call_t *call)
+{
+    const cm1e_sim_cm1e_t *drive = call->drive;
+    const cm1e_sim_objects_t *objects = &drive->objects;
+    say_status(call, call->position);
+    say(call, "\n   %s", cm1e_device_error((uint16_t)objects->error_code)->text);
+    say(call, "\n   controlword 0x%04X, statusword 0x%04X, mode commanded %s", (unsigned)objects->controlword,
+        (unsigned)objects->statusword, mode_name(objects->mode));
+    say(call, "\n   shaft at %.1f counts since the start, %.1f counts/s, motor torque %.4f Nm, load %.4f Nm",
+        drive->mechanics.position, drive->mechanics.velocity, drive->servo.torque, drive->mechanics.load_torque);
+    say(call, "\n   inputs 0x%X, outputs 0x%X, %d degrees C, rotary switches %02X, cycle time %d us",
+        (unsigned)objects->digital_inputs, (unsigned)objects->digital_outputs, objects->temperature,
+        drive->rotary_switches, objects->cycle_time_us);
+    return CM1E_OK;
+}
+
+static cm1e_error_t run_power(call_t *call)
+{
+    static const char *const words[] = {"off", "on", NULL};
+    const int on = choice(argument(call, 0), words);
+    if (on < 0)
+        return REFUSE(call, "\"%s\": expected on or off", argument(call, 0));
+    cm1e_sim_fsa_motor_power(call->drive, on == 1);
+    say(call, "slave %u: motor power %s", call->position, words[on]);
+    return CM1E_OK;
+}
+
+static cm1e_error_t run_switches(call_t *call)
+{
+    long value;
+    if (!parse_whole(argument(call, 0), 16, 0, 0xFF, &value))
+        return REFUSE(call, "\"%s\": expected two hexadecimal digits, 00 to FF", argument(call, 0));
+    call->drive->rotary_switches = (uint8_t)value;
+    say(call, "slave %u: rotary switches %02lX%s", call->position, value,
+        value == 0xFF ? " (reserved: the device reads as ID 0)" : value == 0 ? " (no ID)" : "");
+    return CM1E_OK;
+}
+
+static cm1e_error_t run_sensor(call_t *call)
+{
+    static const char *const words[] = {"off", "on", "auto", NULL};
+    long input;
+    const int how = choice(argument(call, 1), words);
+    if (!parse_whole(argument(call, 0), 10, 1, 4, &input))
+        return REFUSE(call, "\"%s\": expected an input, 1 to 4", argument(call, 0));
+    if (how < 0)
+        return REFUSE(call, "\"%s\": expected on, off or auto", argument(call, 1));
+    cm1e_sim_cm1e_t *drive = call->drive;
+    const uint16_t bit = (uint16_t)(1u << (input - 1));
+    drive->forced_inputs = (uint16_t)(how < 2 ? drive->forced_inputs | bit : drive->forced_inputs & ~bit);
+    drive->forced_values = (uint16_t)(how == 1 ? drive->forced_values | bit : drive->forced_values & ~bit);
+    say(call, "slave %u: input %ld %s", call->position, input,
+        how == 2 ? "follows the axis" : how == 1 ? "held on" : "held off");
+    return CM1E_OK;
+}
+
+static cm1e_error_t run_load(call_t *call)
+{
+    double torque;
+    if (!parse_real(argument(call, 0), -10, 10, &torque))
+        return REFUSE(call, "\"%s\": expected a torque in Nm, -10 to 10", argument(call, 0));
+    call->drive->mechanics.load_torque = torque;
+    say(call, "slave %u: load torque %g Nm (peak torque of the motor: %g Nm)", call->position, torque,
+        call->drive->motor->peak_torque_nm);
+    return CM1E_OK;
+}
+
+static cm1e_error_t run_temperature(call_t *call)
+{
+    long degrees;
+    if (!parse_whole(argument(call, 0), 10, -40, 200, &degrees))
+        return REFUSE(call, "\"%s\": expected whole degrees C, -40 to 200", argument(call, 0));
+    cm1e_sim_fsa_temperature(call->drive, (int16_t)degrees);
+    say(call, "slave %u: %ld degrees C", call->position, degrees);
+    return CM1E_OK;
+}
+
+static cm1e_error_t run_over_torque(call_t *call)
+{
+    enum { ERROR_OVERLOAD = 0x2310 };
+    cm1e_sim_fsa_error(call->drive, ERROR_OVERLOAD);
+    say(call, "slave %u: torque overload (0x2310)", call->position);
+    return CM1E_OK;
+}
+
+static cm1e_error_t clear_error(call_t *call)
+{
+    call->drive->held_code = call->drive->shown_code = 0;
+    cm1e_sim_fsa_update_error(call->drive);
+    say(call, "slave %u: no cause of an error is left; a fault still wants a fault reset", call->position);
+    return CM1E_OK;
+}
+
+static cm1e_error_t refuse_code(call_t *call)
+{
+    say(call, "\"%s\": expected clear or one of", argument(call, 0));
+    for (size_t i = 0; i < cm1e_device_error_count; i++)
+        say(call, " %04X", cm1e_device_errors[i].code);
+    return CM1E_ERROR_INVALID_ARGUMENT;
+}
+
+static cm1e_error_t run_error(call_t *call)
+{
+    static const char *const holds[] = {"hold", NULL};
+    cm1e_sim_cm1e_t *drive = call->drive;
+    const bool hold = argument(call, 1)[0] != '\0';
+    long code;
+    if (hold && choice(argument(call, 1), holds) < 0)
+        return REFUSE(call, "\"%s\": expected hold or nothing", argument(call, 1));
+    if (!hold && strcmp(argument(call, 0), "clear") == 0)
+        return clear_error(call);
+    if (!parse_whole(argument(call, 0), 16, 0, 0xFFFF, &code) || !cm1e_device_error((uint16_t)code))
+        return refuse_code(call);
+    const cm1e_device_error_t *error = cm1e_device_error((uint16_t)code);
+    if (code == 0)
+        return clear_error(call);
+    if (error->fault) {
+        cm1e_sim_fsa_error(drive, error->code);
+        drive->held_code = hold ? error->code : drive->held_code;
+    } else
+        drive->shown_code = error->code;
+    cm1e_sim_fsa_update_error(drive);
+    say(call, "slave %u: 0x%04lX %s%s", call->position, code, error->text,
+        hold ? ", held until \"error <slave> clear\"" : "");
+    return CM1E_OK;
+}
+
+static cm1e_error_t run_power_up_fault(call_t *call)
+{
+    long count = 0;
+    const bool always = strcmp(argument(call, 0), "always") == 0;
+    if (!always && !parse_whole(argument(call, 0), 10, 0, 1000, &count))
+        return REFUSE(call, "\"%s\": expected how often, 0 to 1000, or always", argument(call, 0));
+    call->drive->failing_power_ups = always ? UINT32_MAX : (uint32_t)count;
+    if (always)
+        say(call, "slave %u: no power-up will reach the motor controller (0x7510)", call->position);
+    else
+        say(call, "slave %u: the next %ld power-ups do not reach the motor controller (0x7510)", call->position, count);
+    return CM1E_OK;
+}
+
+/* ---- commands on cables, supply and frames ------------------------------------------------------------------------ */
+
+static cm1e_error_t run_power_cycle(call_t *call)
+{
+    long ms = ABSENCE_DEFAULT_MS;
+    if (argument(call, 0)[0] && !parse_whole(argument(call, 0), 10, 1, ABSENCE_MAX_MS, &ms))
+        return REFUSE(call, "\"%s\": expected milliseconds, 1 to %d", argument(call, 0), ABSENCE_MAX_MS);
+    if (call->drive)
+        cm1e_sim_fsa_off(call->drive);
+    cm1e_sim_slave_reset(call->slave, call->slave->now_ns + ms * INT64_C(1000000));
+    say(call, "slave %u: control power off for %ld ms", call->position, ms);
+    return CM1E_OK;
+}
+
+static cm1e_error_t run_unplug(call_t *call)
+{
+    cm1e_sim_segment_cut(call->segment, call->position, true);
+    say(call, "slave %u: cable to it unplugged", call->position);
+    return CM1E_OK;
+}
+
+static cm1e_error_t run_replug(call_t *call)
+{
+    cm1e_sim_segment_cut(call->segment, call->position, false);
+    say(call, "slave %u: cable to it plugged in", call->position);
+    return CM1E_OK;
+}
+
+static cm1e_error_t frame_fault(call_t *call, cm1e_frame_fault_t kind, const char *verb)
+{
+    long count, us = 0;
+    if (!parse_whole(argument(call, 0), 10, 0, FRAMES_MAX, &count))
+        return REFUSE(call, "\"%s\": expected a number of frames, 0 to %d", argument(call, 0), FRAMES_MAX);
+    if (kind == CM1E_FRAME_DELAY && !parse_whole(argument(call, 1), 10, 1, DELAY_MAX_US, &us))
+        return REFUSE(call, "\"%s\": expected microseconds, 1 to %d", argument(call, 1), DELAY_MAX_US);
+    cm1e_sim_segment_set_frame_fault(call->segment, kind, (uint32_t)count, us * 1000);
+    say(call, "the next %ld frame%s %s", count, count == 1 ? " is" : "s are", verb);
+    if (kind == CM1E_FRAME_DELAY)
+        say(call, " by %ld us", us);
+    return CM1E_OK;
+}
+
+static cm1e_error_t run_lose(call_t *call) { return frame_fault(call, CM1E_FRAME_LOSE, "lost"); }
+static cm1e_error_t run_corrupt(call_t *call) { return frame_fault(call, CM1E_FRAME_CORRUPT, "corrupted"); }
+static cm1e_error_t run_delay(call_t *call) { return frame_fault(call, CM1E_FRAME_DELAY, "delayed"); }
+
+/* ---- the table ---------------------------------------------------------------------------------------------------- */
+
+static cm1e_error_t run_help(call_t *call);
+
+static const command_t commands[] = {
+    {"help", NO_SLAVE, 0, 0, run_help, "", "this list"},
+    {"status", DRIVE_OR_ALL, 0, 0, run_status, "[slave]", "one line a slave"},
+    {"show", DRIVE, 0, 0, run_show, "<slave>", "everything about one CM1-E"},
+    {"power", DRIVE, 1, 1, run_power, "<slave> on|off", "24 V motor power"},
+    {"switches", DRIVE, 1, 1, run_switches, "<slave> <00...FF>", "rotary switches (explicit device ID)"},
+    {"sensor", DRIVE, 2, 2, run_sensor, "<slave> <1...4> on|off|auto", "hold a digital input, or let it follow the axis"},
+    {"load", DRIVE, 1, 1, run_load, "<slave> <Nm>", "torque on the shaft from outside, positive drives CW"},
+    {"over-torque", DRIVE, 0, 0, run_over_torque, "<slave>", "torque overload, error 2310"},
+    {"temperature", DRIVE, 1, 1, run_temperature, "<slave> <degrees C>", "of the drive; error 4310 from 85 on"},
+    {"error", DRIVE, 1, 2, run_error, "<slave> <code>|clear [hold]",
+     "an error code of the guide's 7.3.1; hold: its cause stays until clear"},
+    {"power-up-fault", DRIVE, 1, 1, run_power_up_fault, "<slave> <times>|always", "error 7510 at the next power-ups"},
+    {"power-cycle", ANY_SLAVE, 0, 1, run_power_cycle, "<slave> [ms]", "control power off and on again"},
+    {"unplug", ANY_SLAVE, 0, 0, run_unplug, "<slave>", "pull the cable before it"},
+    {"replug", ANY_SLAVE, 0, 0, run_replug, "<slave>", "plug the cable in again"},
+    {"lose", NO_SLAVE, 1, 1, run_lose, "<frames>", "lose the next frames"},
+    {"corrupt", NO_SLAVE, 1, 1, run_corrupt, "<frames>", "corrupt the next frames"},
+    {"delay", NO_SLAVE, 2, 2, run_delay, "<frames> <us>", "deliver the next frames late"},
+};
+enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
+
+static cm1e_error_t run_help(call_t *call)
+{
+    for (int i = 0; i < COMMAND_COUNT; i++) {
+        char left[48];
+        snprintf(left, sizeof left, "%s %s", commands[i].word, commands[i].usage);
+        say(call, "%s%-36s %s", i ? "\n" : "", left, commands[i].help);
+    }
+    return CM1E_OK;
+}
+
+/* Words; FALSE: more or longer ones than any command has. */
+static bool split(call_t *call, const char *line)
+{
+    call->count = 0;
+    while (*line) {
+        const size_t blank = strspn(line, " \t\r\n");
+        line += blank;
+        const size_t length = strcspn(line, " \t\r\n");
+        if (length == 0)
+            break;
+        if (call->count == WORDS_MAX || length >= LINE_MAX_BYTES)
+            return false;
+        memcpy(call->words[call->count], line, length);
+        call->words[call->count++][length] = '\0';
+        line += length;
+    }
+    return true;
+}
+
+static cm1e_error_t find_slave(call_t *call, const command_t *command)
+{
+    const uint32_t count = cm1e_sim_segment_slave_count(call->segment);
+    if (command->subject == NO_SLAVE || (command->subject == DRIVE_OR_ALL && call->count < 2))
+        return CM1E_OK;
+    if (call->count < 2)
+        return REFUSE(call, "which slave? usage: %s %s", command->word, command->usage);
+    long position;
+    if (!parse_whole(call->words[1], 10, 1, (long)count, &position))
+        return REFUSE(call, "\"%s\": expected a slave, 1 to %u", call->words[1], count);
+    call->position = (uint32_t)position;
+    call->slave = cm1e_sim_segment_slave(call->segment, call->position);
+    call->drive = cm1e_sim_cm1e_of(call->slave);
+    if (command->subject == DRIVE && !call->drive)
+        return REFUSE(call, "slave %u is not a CM1-E", call->position);
+    return CM1E_OK;
+}
+
+static cm1e_error_t run_command(call_t *call, const command_t *command)
+{
+    const cm1e_error_t error = find_slave(call, command);
+    if (error != CM1E_OK)
+        return error;
+    const int arguments = call->count - (call->slave ? 2 : 1);
+    if (arguments < command->least)
+        return REFUSE(call, "something is missing; usage: %s %s", command->word, command->usage);
+    if (arguments > command->most)
+        return REFUSE(call, "\"%s\" is too much; usage: %s %s", argument(call, command->most), command->word,
+                      command->usage);
+    return command->run(call);
+}
+
+cm1e_error_t cm1e_sim_console(cm1e_sim_segment_t *segment, const char *line, char *answer, size_t size)
+{
+    call_t call = {.segment = segment, .answer = answer, .size = size};
+    if (size > 0)
+        answer[0] = '\0';
+    if (!split(&call, line))
+        return REFUSE(&call, "more or longer words than any command has; help lists the commands");
+    if (call.count == 0)
+        return REFUSE(&call, "an empty line; help lists the commands");
+    for (int i = 0; i < COMMAND_COUNT; i++)
+        if (strcmp(call.words[0], commands[i].word) == 0)
+            return run_command(&call, &commands[i]);
+    return REFUSE(&call, "\"%s\" is not a command; help lists the commands", call.words[0]);
+}

@@ -1,0 +1,38 @@
+/**
+ * @file mechanics.h
+ * What hangs on a motor's shaft: inertia, Coulomb and viscous friction, an external load torque, two hard stops.
+ * Positions in counts of the shaft since the simulation began. Integrated with the semi-implicit Euler method in steps
+ * that the caller chooses (at most 250 us); no step can add energy, whatever the parameters. @rt cycle but for init.
+ */
+#ifndef CM1E_SIM_MECHANICS_H
+#define CM1E_SIM_MECHANICS_H
+
+#include <stdbool.h>
+
+#include "cm1e/config.h"
+
+#define CM1E_COUNTS_PER_RADIAN (50000.0 / 6.283185307179586)
+
+typedef struct cm1e_mechanics {
+    double position;         /**< counts */
+    double velocity;         /**< counts/s */
+    double load_torque;      /**< Nm, from outside, positive drives CW */
+    double gain;             /**< counts/s2 that 1 Nm gives */
+    double friction;         /**< Nm, Coulomb; as large at rest as in motion */
+    double viscous_rate;     /**< 1/s by which viscous friction slows down */
+    double stop_positive, stop_negative; /**< counts; infinite: none */
+    double peak_velocity;    /**< largest absolute velocity since the last reset of the probe */
+    double travel;           /**< sum of absolute movement since then */
+    double step_s, damping;  /**< 1 / (1 + viscous_rate * step_s), kept for the step length used last */
+} cm1e_mechanics_t;
+
+/** Zeros in `config` mean the defaults of cm1e/config.h. The shaft stands at 0. */
+void cm1e_mechanics_init(cm1e_mechanics_t *mechanics, const cm1e_sim_axis_config_t *config, double rotor_inertia);
+/** Lets `step_s` seconds pass with `torque` Nm from the motor. */
+void cm1e_mechanics_step(cm1e_mechanics_t *mechanics, double torque, double step_s);
+/** Standing, and friction holds the load: without motor torque nothing will move. */
+bool cm1e_mechanics_at_rest(const cm1e_mechanics_t *mechanics);
+/** Pressed against or standing at a hard stop. */
+bool cm1e_mechanics_at_stop(const cm1e_mechanics_t *mechanics);
+
+#endif
