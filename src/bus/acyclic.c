@@ -1,0 +1,152 @@
+#include "bus/bus_internal.h"
+
+/**
+ * Datagrams beside the process data. Each slave has at most one under way; which of its state machines it serves is noted
+ * in `owner`. Nothing here waits unless told so, and nothing is written by more than one place.
+ */
+
+/** Lets the mapping job of a slave have the CoE client when it is free. */
+static void feed_mapping(cm1e_bus_slave_t *slave, int64_t now_ns)
+{
+    if (cm1e_mapping_idle(&slave->mapping) || !cm1e_coe_idle(&slave->coe))
+        return;
+    cm1e_sdo_t *sdo = cm1e_mapping_next(&slave->mapping);
+    if (sdo)
+        cm1e_coe_begin(&slave->coe, sdo, now_ns);
+}
+
+/** What this slave wants to send next, by precedence. */
+static bool next_datagram(cm1e_bus_slave_t *slave, int64_t now_ns)
+{
+    if (!cm1e_recovery_idle(&slave->recovery)) {
+        slave->owner = OWNER_RECOVERY;
+        return cm1e_recovery_next(slave, &slave->datagram, now_ns);
+    }
+    if (!cm1e_al_idle(&slave->al)) {
+        slave->owner = OWNER_AL;
+        return cm1e_al_next(&slave->al, &slave->datagram, now_ns);
+    }
+    feed_mapping(slave, now_ns);
+    slave->owner = OWNER_COE;
+    return cm1e_coe_next(&slave->coe, &slave->datagram, now_ns);
+}
+
+void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit)
+{
+    cm1e_sdo_queue_serve(bus, now_ns);
+    uint32_t place = bus->next_slave;
+    for (uint32_t n = 0; n < bus->slave_count && limit > 0; n++) {
+        if (bus->sent_count == CM1E_DATAGRAMS_IN_FLIGHT)
+            break;
+        place = place + 1 < bus->slave_count ? place + 1 : 0;
+        cm1e_bus_slave_t *slave = &bus->slaves[place];
+        if (slave->owner != OWNER_NONE)
+            continue;
+        if (!next_datagram(slave, now_ns)) {
+            slave->owner = OWNER_NONE;
+            continue;
+        }
+        cm1e_soem_post(bus->soem, &slave->datagram, now_ns);
+        bus->sent[bus->sent_count++] = slave;
+        bus->next_slave = place;
+        limit--;
+    }
+}
+
+static void deliver(cm1e_bus_slave_t *slave, int64_t now_ns)
+{
+    const cm1e_datagram_owner_t owner = slave->owner;
+    slave->owner = OWNER_NONE;
+    switch (owner) {
+    case OWNER_NONE:
+        break;
+    case OWNER_AL:
+        cm1e_al_result(&slave->al, &slave->datagram, now_ns);
+        break;
+    case OWNER_COE:
+        cm1e_coe_result(&slave->coe, &slave->datagram, now_ns);
+        break;
+    case OWNER_RECOVERY:
+        cm1e_recovery_result(slave, &slave->datagram, now_ns);
+        break;
+    }
+}
+
+void cm1e_acyclic_receive(cm1e_bus_t *bus, int64_t wait_ns)
+{
+    unsigned kept = 0;
+    for (unsigned i = 0; i < bus->sent_count; i++) {
+        cm1e_bus_slave_t *slave = bus->sent[i];
+        const bool back = cm1e_soem_take(bus->soem, &slave->datagram, wait_ns);
+        const int64_t now_ns = cm1e_clock_now(bus->clock);
+        if (!back && now_ns - slave->datagram.sent_ns < CM1E_FRAME_LOST_NS) {
+            bus->sent[kept++] = slave;
+            continue;
+        }
+        if (!back)
+            cm1e_soem_drop(bus->soem, &slave->datagram);
+        if (slave->datagram.working_counter == DATAGRAM_LOST)
+            bus->counters.mailbox_retries++;
+        deliver(slave, now_ns);
+    }
+    bus->sent_count = kept;
+}
+
+void cm1e_acyclic_cancel(cm1e_bus_t *bus)
+{
+    for (unsigned i = 0; i < bus->sent_count; i++) {
+        cm1e_soem_drop(bus->soem, &bus->sent[i]->datagram);
+        bus->sent[i]->owner = OWNER_NONE;
+    }
+    bus->sent_count = 0;
+    if (bus->watch_sent)
+        cm1e_soem_drop(bus->soem, &bus->watch_datagram);
+    bus->watch_sent = false;
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        cm1e_recovery_cancel(slave);
+        cm1e_coe_cancel(&slave->coe, CM1E_ERROR_CANCELLED);
+    }
+}
+
+/* ---- blocking phases ------------------------------------------------------------------------------------------------- */
+
+void cm1e_bus_pump(cm1e_bus_t *bus)
+{
+    const int64_t now_ns = cm1e_bus_enter(bus);
+    if (bus->exchanging) {
+        if (bus->next_cycle_ns <= now_ns - bus->config.cycle_time_ns)
+            bus->next_cycle_ns = now_ns; /* the first one, or far behind: no burst to catch up */
+        bus->next_cycle_ns += bus->config.cycle_time_ns;
+        if (bus->in_flight)
+            cm1e_bus_receive(bus);
+        cm1e_bus_send(bus);
+        cm1e_clock_sleep_until(bus->clock, bus->next_cycle_ns);
+        return;
+    }
+    cm1e_acyclic_send(bus, now_ns, CM1E_DATAGRAMS_IN_FLIGHT);
+    cm1e_acyclic_receive(bus, CM1E_FRAME_LOST_NS);
+    /* The pause bounds what a slave that always has an answer, but never the right one, can cost. */
+    cm1e_clock_sleep_until(bus->clock, now_ns + CM1E_PUMP_PERIOD_NS);
+}
+
+static bool all_idle(const cm1e_bus_t *bus)
+{
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        const cm1e_bus_slave_t *slave = &bus->slaves[i];
+        if (slave->owner != OWNER_NONE || !cm1e_al_idle(&slave->al) || !cm1e_mapping_idle(&slave->mapping) ||
+            !cm1e_coe_idle(&slave->coe))
+            return false;
+    }
+    return true;
+}
+
+bool cm1e_bus_pump_until_idle(cm1e_bus_t *bus, int64_t deadline_ns)
+{
+    while (!all_idle(bus)) {
+        if (cm1e_clock_now(bus->clock) >= deadline_ns)
+            return false;
+        cm1e_bus_pump(bus);
+    }
+    return true;
+}

@@ -1,0 +1,140 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bus/bus_internal.h"
+
+enum { DEFAULT_CYCLE_NS = 1000000, DEFAULT_LOST_CYCLES = 3 };
+
+static void copy_config(cm1e_bus_config_t *to, const cm1e_bus_config_t *from)
+{
+    *to = *from;
+    if (!to->interface_name[0])
+        strcpy(to->interface_name, "sim");
+    if (to->cycle_time_ns == 0)
+        to->cycle_time_ns = DEFAULT_CYCLE_NS;
+    if (to->frame_timeout_ns == 0)
+        to->frame_timeout_ns = to->cycle_time_ns / 4;
+    if (to->lost_cycles_limit == 0)
+        to->lost_cycles_limit = DEFAULT_LOST_CYCLES;
+    for (uint32_t i = 0; i < to->axis_count; i++) {
+        cm1e_axis_config_t *axis = &to->axes[i];
+        if (!axis->name[0])
+            snprintf(axis->name, sizeof axis->name, "axis%u", i + 1);
+        if (axis->address_kind == CM1E_ADDRESS_POSITION && axis->address == 0)
+            axis->address = (uint16_t)(i + 1);
+    }
+}
+
+static cm1e_error_t open_parts(cm1e_bus_t *bus, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
+{
+    copy_config(&bus->config, config);
+    bus->slaves = calloc(CM1E_MAX_SLAVES, sizeof *bus->slaves);
+    if (!bus->slaves)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory when opening the bus.");
+    const cm1e_error_t error = cm1e_nic_open(&bus->nic, &bus->config, diag);
+    if (error != CM1E_OK)
+        return error;
+    bus->clock = cm1e_nic_clock(bus->nic);
+    bus->soem = cm1e_soem_create(bus->nic, &bus->config);
+    if (!bus->soem)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory when opening the bus.");
+    cm1e_bus_set_phase(bus, BUS_OPEN);
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_bus_open(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
+{
+    if (!bus || !config)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_bus_open() needs a place and a configuration.");
+    *bus = NULL;
+    cm1e_error_t error = cm1e_bus_config_check(config, diag);
+    if (error != CM1E_OK)
+        return error;
+    cm1e_bus_t *made = calloc(1, sizeof *made);
+    if (!made)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory when opening the bus.");
+    error = open_parts(made, config, diag);
+    if (error != CM1E_OK) {
+        cm1e_bus_close(made);
+        return error;
+    }
+    *bus = made;
+    return CM1E_OK;
+}
+
+void cm1e_bus_free_image(cm1e_bus_t *bus)
+{
+    free(bus->image);
+    free(bus->sent_outputs);
+    free(bus->outputs);
+    free(bus->inputs);
+    bus->image = bus->sent_outputs = bus->outputs = bus->inputs = NULL;
+    bus->output_bytes = bus->input_bytes = 0;
+}
+
+void cm1e_bus_close(cm1e_bus_t *bus)
+{
+    if (!bus)
+        return;
+    cm1e_bus_stop(bus);
+    cm1e_soem_destroy(bus->soem);
+    if (bus->nic)
+        cm1e_nic_close(bus->nic);
+    cm1e_bus_free_image(bus);
+    free(bus->slaves);
+    free(bus);
+    cm1e_clock_make_current(NULL); /* the clock of the nic is gone */
+}
+
+int64_t cm1e_bus_enter(cm1e_bus_t *bus)
+{
+    cm1e_clock_make_current(bus->clock);
+    return cm1e_clock_now(bus->clock);
+}
+
+/* ---- looking ----------------------------------------------------------------------------------------------------------- */
+
+uint32_t cm1e_bus_slave_count(const cm1e_bus_t *bus) { return bus ? bus->slave_count : 0; }
+
+const cm1e_slave_info_t *cm1e_bus_slave(const cm1e_bus_t *bus, uint32_t position)
+{
+    const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
+    return slave ? &slave->info : NULL;
+}
+
+uint16_t cm1e_bus_axis_position(const cm1e_bus_t *bus, uint32_t axis)
+{
+    return bus && axis < bus->config.axis_count ? bus->axis_position[axis] : 0;
+}
+
+const cm1e_bus_counters_t *cm1e_bus_counters(const cm1e_bus_t *bus) { return &bus->counters; }
+const cm1e_bus_config_t *cm1e_bus_configuration(const cm1e_bus_t *bus) { return &bus->config; }
+cm1e_clock_t *cm1e_bus_clock(cm1e_bus_t *bus) { return bus->clock; }
+struct cm1e_nic *cm1e_bus_nic(cm1e_bus_t *bus) { return bus->nic; }
+
+const cm1e_firmware_info_t *cm1e_bus_slave_firmware(const cm1e_bus_t *bus, uint16_t position)
+{
+    const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
+    return slave ? slave->firmware : NULL;
+}
+
+const char *cm1e_bus_label(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, char label[CM1E_LABEL_LENGTH])
+{
+    const cm1e_axis_config_t *axis = cm1e_bus_axis_of(bus, slave);
+    const char *kind = slave->info.name[0] ? slave->info.name : "no name";
+    if (axis)
+        snprintf(label, CM1E_LABEL_LENGTH, "slave %u (\"%s\", %s)", slave->info.position, axis->name, kind);
+    else
+        snprintf(label, CM1E_LABEL_LENGTH, "slave %u (%s)", slave->info.position, kind);
+    return label;
+}
+
+cm1e_error_t cm1e_bus_simulate(cm1e_bus_t *bus, const char *line, char *answer, size_t size)
+{
+    cm1e_sim_segment_t *segment = cm1e_nic_segment(bus->nic);
+    if (segment)
+        return cm1e_sim_console(segment, line, answer, size);
+    snprintf(answer, size, "%s is a network interface, not a simulation", bus->config.interface_name);
+    return CM1E_ERROR_UNSUPPORTED;
+}

@@ -1,0 +1,158 @@
+/**
+ * @file bus_internal.h
+ * The bus from within: its slaves, what runs on each of them, and the functions that its files share.
+ */
+#ifndef CM1E_BUS_BUS_INTERNAL_H
+#define CM1E_BUS_BUS_INTERNAL_H
+
+#include "bus/al_machine.h"
+#include "bus/bus_image.h"
+#include "bus/coe_client.h"
+#include "bus/mapping.h"
+#include "bus/recovery.h"
+#include "bus/soem_adapter.h"
+
+enum {
+    CM1E_SDO_WAITING_MAX = 64,     /**< transfers that may wait (a power of two) */
+    CM1E_DATAGRAMS_PER_CYCLE = 4,  /**< beside the process data and one of supervision */
+    CM1E_LABEL_LENGTH = 112,
+};
+
+/** Time for one state transition, and for a mailbox answer during start-up (ETG.1020: 200 ms ... 10 s by device). */
+#define CM1E_STATE_TIMEOUT_NS INT64_C(3000000000)
+#define CM1E_START_SDO_TIMEOUT_NS INT64_C(1000000000)
+/** A frame of single datagrams that is not back by then is lost. */
+#define CM1E_FRAME_LOST_NS INT64_C(2000000)
+/** Pace of the blocking phases. */
+#define CM1E_PUMP_PERIOD_NS INT64_C(100000)
+
+/** Process data watchdog of the slaves: 100 ms, the power-on value of a slave controller (ETG.1000.4 table 49), written
+ *  so that nothing else can have been left there. The motor is disabled (firmware >= 1.3.0) when no process data came
+ *  for so long; shorter would trip on pauses that an ordinary Linux makes. */
+enum { CM1E_WATCHDOG_DIVIDER = 2498 /* x 40 ns + 80 ns = 100 us */, CM1E_WATCHDOG_TIME = 1000 /* x 100 us */ };
+
+/** Who waits for the datagram of a slave. */
+typedef enum cm1e_datagram_owner {
+    OWNER_NONE = 0,
+    OWNER_AL,
+    OWNER_COE,
+    OWNER_RECOVERY,
+} cm1e_datagram_owner_t;
+
+typedef struct cm1e_bus_slave {
+    cm1e_slave_info_t info;
+    cm1e_slave_facts_t facts;
+    const cm1e_firmware_info_t *firmware;    /**< NULL: unreadable */
+    int axis;                                /**< index of the configured axis; -1: none */
+
+    cm1e_datagram_t datagram;                /**< at most one on its way */
+    cm1e_datagram_owner_t owner;
+    cm1e_al_machine_t al;
+    cm1e_coe_client_t coe;
+    cm1e_mapping_job_t mapping;
+    cm1e_recovery_t recovery;
+    cm1e_sdo_t version_sdo;                  /**< 0x100A, read by the scan */
+    char version[64];
+
+    cm1e_mapped_direction_t mapped[2];       /**< 0 outputs, 1 inputs; as configured */
+    cm1e_slave_placement_t placement;
+    cm1e_slave_watch_t watch;
+    unsigned unanswered;                     /**< supervision datagrams in a row that nobody answered */
+} cm1e_bus_slave_t;
+
+/** Transfers handed in: the producer writes `ring` and `head`, the bus the rest. */
+typedef struct cm1e_sdo_queue {
+    cm1e_sdo_t *ring[CM1E_SDO_WAITING_MAX];
+    uint32_t head, tail;                     /**< atomic; head - tail: not yet taken over */
+    uint32_t waiting;                        /**< atomic: submitted and not begun */
+    cm1e_sdo_t *list[CM1E_SDO_WAITING_MAX];  /**< taken over, in order */
+    unsigned listed;
+} cm1e_sdo_queue_t;
+
+typedef enum cm1e_bus_phase {
+    BUS_CLOSED = 0, BUS_OPEN, BUS_SCANNED, BUS_IDENTIFIED, BUS_CONFIGURED, BUS_OPERATING,
+} cm1e_bus_phase_t;
+
+struct cm1e_bus {
+    cm1e_bus_config_t config;                /**< zeros of the bus itself replaced by their defaults */
+    int phase;                               /**< cm1e_bus_phase_t; atomic: cm1e_sdo_submit() looks at it */
+    cm1e_nic_t *nic;
+    cm1e_soem_t *soem;
+    cm1e_clock_t *clock;
+
+    uint32_t slave_count;
+    cm1e_bus_slave_t *slaves;                /**< CM1E_MAX_SLAVES; [0] is the first */
+    uint16_t axis_position[CM1E_MAX_AXES];
+
+    uint8_t *image;                          /**< what SOEM sends and receives: outputs, then inputs */
+    uint8_t *sent_outputs;                   /**< as they left, to know the frame again */
+    uint8_t *outputs, *inputs;               /**< what the upper rooms write and read */
+    size_t output_bytes, input_bytes;
+    int expected_working_counter;
+
+    bool exchanging;                         /**< process data goes with every pump or cycle */
+    bool in_flight;                          /**< a process data frame is on its way */
+    int64_t next_cycle_ns;                   /**< blocking phases only */
+    uint32_t bad_cycles;                     /**< in a row */
+    cm1e_error_t last_error;
+    cm1e_bus_counters_t counters;
+
+    cm1e_bus_slave_t *sent[CM1E_DATAGRAMS_IN_FLIGHT];
+    unsigned sent_count;
+    uint32_t next_slave;                     /**< round robin of acyclic datagrams */
+    cm1e_datagram_t watch_datagram;
+    bool watch_sent;
+    uint32_t watched_slave;
+
+    cm1e_sdo_queue_t queue;
+};
+
+static inline cm1e_bus_slave_t *cm1e_bus_at(const cm1e_bus_t *bus, uint32_t position)
+{
+    return bus && position >= 1 && position <= bus->slave_count ? &bus->slaves[position - 1] : NULL;
+}
+static inline const cm1e_axis_config_t *cm1e_bus_axis_of(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
+{
+    return slave->axis >= 0 ? &bus->config.axes[slave->axis] : NULL;
+}
+
+static inline void cm1e_bus_set_phase(cm1e_bus_t *bus, cm1e_bus_phase_t phase)
+{
+    __atomic_store_n(&bus->phase, (int)phase, __ATOMIC_RELEASE);
+}
+
+/** "slave 2 ("axis2", CM1-E)": how a slave is named in every diagnosis. */
+const char *cm1e_bus_label(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, char label[CM1E_LABEL_LENGTH]);
+/** Makes the bus's clock the one SOEM uses in this thread, and tells the time. */
+int64_t cm1e_bus_enter(cm1e_bus_t *bus);
+
+/** Hands in transfers to idle CoE clients, sends datagrams of the slaves in need (at most `limit`). */
+void cm1e_acyclic_send(cm1e_bus_t *bus, int64_t now_ns, unsigned limit);
+/** Takes in what is back; waits at most `wait_ns` for each. */
+void cm1e_acyclic_receive(cm1e_bus_t *bus, int64_t wait_ns);
+/** Forgets everything under way. */
+void cm1e_acyclic_cancel(cm1e_bus_t *bus);
+/** One round of a blocking phase: a cycle when process data is exchanged, else datagrams at the pump's pace. */
+void cm1e_bus_pump(cm1e_bus_t *bus);
+/** Pumps until every slave's AL machine, mapping job and CoE client is idle; false: not until `deadline_ns`. */
+bool cm1e_bus_pump_until_idle(cm1e_bus_t *bus, int64_t deadline_ns);
+
+/** The SDO queue: begins the next transfer for a slave whose client is idle; ends all that wait. */
+void cm1e_sdo_queue_serve(cm1e_bus_t *bus, int64_t now_ns);
+void cm1e_sdo_queue_cancel(cm1e_bus_t *bus, cm1e_error_t error);
+
+/** Supervision: one slave's AL status in every cycle. */
+void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns);
+void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns);
+void cm1e_supervision_note(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t al_status_code);
+
+/** Brings all slaves to a state together; the first failure is diagnosed. */
+cm1e_error_t cm1e_bus_all_to_state(cm1e_bus_t *bus, uint8_t target, int64_t timeout_ns, cm1e_diag_t *diag);
+/** Diagnosis of a failed transfer or transition. */
+cm1e_error_t cm1e_bus_diagnose_sdo(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, const cm1e_sdo_t *sdo,
+                                   const char *purpose, cm1e_diag_t *diag);
+cm1e_error_t cm1e_bus_diagnose_state(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag);
+/** Frees the process image. */
+void cm1e_bus_free_image(cm1e_bus_t *bus);
+
+#endif

@@ -1,0 +1,406 @@
+#include "bus/coe_client.h"
+
+#include <string.h>
+
+#include "core/bytes.h"
+
+enum { DEFAULT_TIMEOUT_NS = 1000000000 };
+/** A slave that talks about other things for so long is given up. */
+enum { DISCARD_LIMIT = 64 };
+
+/* CoE services and SDO command specifiers (ETG.1000.6 sections 5.6.1 and 5.6.2). */
+enum { SERVICE_EMERGENCY = 1, SERVICE_SDO_REQUEST = 2, SERVICE_SDO_RESPONSE = 3 };
+enum {
+    REQUEST_DOWNLOAD_SEGMENT = 0x00, REQUEST_DOWNLOAD = 0x20, REQUEST_UPLOAD = 0x40, REQUEST_UPLOAD_SEGMENT = 0x60,
+    RESPONSE_UPLOAD_SEGMENT = 0x00, RESPONSE_DOWNLOAD_SEGMENT = 0x20, RESPONSE_UPLOAD = 0x40, RESPONSE_DOWNLOAD = 0x60,
+    SDO_ABORT = 0x80, SPECIFIER_MASK = 0xE0,
+    BIT_COMPLETE_ACCESS = 0x10, BIT_TOGGLE = 0x10, BIT_EXPEDITED = 0x02, BIT_SIZE_GIVEN = 0x01, BIT_LAST = 0x01,
+};
+/** CoE header, command byte, index, sub-index, four bytes of data: the shortest SDO message. */
+enum { COE_HEADER = 2, SDO_BYTES = 10, SEGMENT_HEADER = 3, SEGMENT_MIN_DATA = 7 };
+
+cm1e_sdo_state_t cm1e_sdo_state(const cm1e_sdo_t *sdo)
+{
+    return (cm1e_sdo_state_t)__atomic_load_n(&sdo->state, __ATOMIC_ACQUIRE);
+}
+
+void cm1e_sdo_finish(cm1e_sdo_t *sdo, cm1e_error_t error, uint32_t abort_code)
+{
+    sdo->error = error;
+    sdo->abort_code = abort_code;
+    __atomic_store_n(&sdo->state, error == CM1E_OK ? CM1E_SDO_DONE : CM1E_SDO_ERROR, __ATOMIC_RELEASE);
+}
+
+static void finish(cm1e_coe_client_t *client, cm1e_error_t error, uint32_t abort_code)
+{
+    cm1e_sdo_t *sdo = client->sdo;
+    client->sdo = NULL;
+    client->phase = COE_IDLE;
+    cm1e_mailbox_stop(&client->mailbox);
+    cm1e_sdo_finish(sdo, error, abort_code);
+}
+
+/** Ends the transfer from our side; what the slave still sends for it must not be taken for the next one's answer. */
+static void give_up(cm1e_coe_client_t *client, cm1e_error_t error)
+{
+    client->doubtful = true;
+    client->last_index = client->sdo->index;
+    finish(client, error, 0);
+}
+
+void cm1e_coe_reset(cm1e_coe_client_t *client, cm1e_error_t error)
+{
+    if (client->sdo)
+        finish(client, error, 0);
+    client->phase = COE_IDLE;
+    client->doubtful = false; /* the transition empties the slave's mailbox */
+    cm1e_mailbox_reset(&client->mailbox);
+}
+
+void cm1e_coe_cancel(cm1e_coe_client_t *client, cm1e_error_t error)
+{
+    if (client->sdo)
+        give_up(client, error);
+}
+
+/* ---- requests ----------------------------------------------------------------------------------------------------- */
+
+static uint8_t *start_message(cm1e_coe_client_t *client)
+{
+    uint8_t *body = cm1e_mailbox_body(&client->mailbox);
+    memset(body, 0, SDO_BYTES);
+    cm1e_put_u16(body, SERVICE_SDO_REQUEST << 12);
+    return body;
+}
+
+static void send_message(cm1e_coe_client_t *client, size_t size)
+{
+    cm1e_mailbox_send(&client->mailbox, MAILBOX_TYPE_COE, (uint16_t)size);
+}
+
+static uint8_t *start_initiate(cm1e_coe_client_t *client, uint8_t command, uint16_t index, uint8_t subindex)
+{
+    uint8_t *body = start_message(client);
+    body[2] = command;
+    cm1e_put_u16(body + 3, index);
+    body[5] = subindex;
+    client->awaited_index = index;
+    client->awaited_subindex = subindex;
+    return body;
+}
+
+static void request_fence(cm1e_coe_client_t *client)
+{
+    /* Entries that every CoE device has (ETG.1000.6 table 67), each time another one, and not the one given up. */
+    static const struct {
+        uint16_t index;
+        uint8_t subindex;
+    } fences[] = {{0x1000, 0}, {0x1018, 0}, {0x1018, 1}, {0x1018, 2}, {0x1018, 3}};
+    do
+        client->fence = (uint8_t)((client->fence + 1) % (sizeof fences / sizeof fences[0]));
+    while (fences[client->fence].index == client->last_index);
+    client->phase = COE_FENCE;
+    start_initiate(client, REQUEST_UPLOAD, fences[client->fence].index, fences[client->fence].subindex);
+    send_message(client, SDO_BYTES);
+}
+
+static void request_upload(cm1e_coe_client_t *client)
+{
+    const cm1e_sdo_t *sdo = client->sdo;
+    client->phase = COE_UPLOAD;
+    start_initiate(client, REQUEST_UPLOAD | (sdo->complete_access ? BIT_COMPLETE_ACCESS : 0), sdo->index, sdo->subindex);
+    send_message(client, SDO_BYTES);
+}
+
+static void request_upload_segment(cm1e_coe_client_t *client)
+{
+    client->phase = COE_UPLOAD_SEGMENT;
+    uint8_t *body = start_message(client);
+    body[2] = (uint8_t)(REQUEST_UPLOAD_SEGMENT | (client->toggle ? BIT_TOGGLE : 0));
+    send_message(client, SDO_BYTES);
+}
+
+static void request_download(cm1e_coe_client_t *client)
+{
+    const cm1e_sdo_t *sdo = client->sdo;
+    const uint8_t access = sdo->complete_access ? BIT_COMPLETE_ACCESS : 0;
+    client->phase = COE_DOWNLOAD;
+    client->total = sdo->size;
+    if (sdo->size >= 1 && sdo->size <= 4) {
+        const uint8_t command =
+            (uint8_t)(REQUEST_DOWNLOAD | access | (4 - sdo->size) << 2 | BIT_EXPEDITED | BIT_SIZE_GIVEN);
+        uint8_t *body = start_initiate(client, command, sdo->index, sdo->subindex);
+        memcpy(body + 6, sdo->data, sdo->size);
+        client->done = sdo->size;
+        send_message(client, SDO_BYTES);
+        return;
+    }
+    uint8_t *body = start_initiate(client, REQUEST_DOWNLOAD | access | BIT_SIZE_GIVEN, sdo->index, sdo->subindex);
+    cm1e_put_u32(body + 6, (uint32_t)sdo->size);
+    const size_t room = (size_t)(cm1e_mailbox_room(&client->mailbox) - SDO_BYTES);
+    client->done = sdo->size < room ? sdo->size : room;
+    if (client->done)
+        memcpy(body + SDO_BYTES, sdo->data, client->done);
+    send_message(client, SDO_BYTES + client->done);
+}
+
+static void request_download_segment(cm1e_coe_client_t *client)
+{
+    const size_t room = (size_t)(cm1e_mailbox_room(&client->mailbox) - SEGMENT_HEADER);
+    const size_t rest = client->total - client->done;
+    const size_t bytes = rest < room ? rest : room;
+    const size_t unused = bytes < SEGMENT_MIN_DATA ? SEGMENT_MIN_DATA - bytes : 0;
+    client->phase = COE_DOWNLOAD_SEGMENT;
+    uint8_t *body = start_message(client);
+    body[2] = (uint8_t)(REQUEST_DOWNLOAD_SEGMENT | (client->toggle ? BIT_TOGGLE : 0) | unused << 1 |
+                        (bytes == rest ? BIT_LAST : 0));
+    memcpy(body + SEGMENT_HEADER, (const uint8_t *)client->sdo->data + client->done, bytes);
+    client->done += bytes;
+    send_message(client, SEGMENT_HEADER + bytes + unused);
+}
+
+static void start_transfer(cm1e_coe_client_t *client)
+{
+    if (client->sdo->write)
+        request_download(client);
+    else
+        request_upload(client);
+}
+
+void cm1e_coe_begin(cm1e_coe_client_t *client, cm1e_sdo_t *sdo, int64_t now_ns)
+{
+    client->sdo = sdo;
+    client->deadline_ns = now_ns + (sdo->timeout_ns > 0 ? sdo->timeout_ns : DEFAULT_TIMEOUT_NS);
+    client->done = client->total = 0;
+    client->toggle = false;
+    client->discarded = 0;
+    client->mailbox_error = 0;
+    const cm1e_mailbox_t *mailbox = &client->mailbox;
+    if (mailbox->in_length < CM1E_MAILBOX_HEADER + SDO_BYTES || mailbox->out_length < CM1E_MAILBOX_HEADER + SDO_BYTES ||
+        mailbox->in_length > CM1E_DATAGRAM_MAX || mailbox->out_length > CM1E_DATAGRAM_MAX)
+        finish(client, CM1E_ERROR_UNSUPPORTED, 0);
+    else if (client->doubtful)
+        request_fence(client);
+    else
+        start_transfer(client);
+}
+
+/* ---- answers ------------------------------------------------------------------------------------------------------ */
+
+static void discard(cm1e_coe_client_t *client)
+{
+    if (++client->discarded >= DISCARD_LIMIT)
+        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+}
+
+/** Index and sub-index of an answer are those that were asked for. */
+static bool addressed(const cm1e_coe_client_t *client, const uint8_t *body)
+{
+    return cm1e_get_u16(body + 3) == client->awaited_index && body[5] == client->awaited_subindex;
+}
+
+static void take_expedited(cm1e_coe_client_t *client, const uint8_t *body)
+{
+    cm1e_sdo_t *sdo = client->sdo;
+    const bool size_given = body[2] & BIT_SIZE_GIVEN;
+    size_t bytes = size_given ? 4u - (body[2] >> 2 & 3u) : 4u;
+    if (!size_given && bytes > sdo->size)
+        bytes = sdo->size; /* the slave does not tell how many of the four count */
+    if (bytes > sdo->size) {
+        finish(client, CM1E_ERROR_INVALID_ARGUMENT, 0);
+        return;
+    }
+    memcpy(sdo->data, body + 6, bytes);
+    sdo->size = bytes;
+    finish(client, CM1E_OK, 0);
+}
+
+static void on_upload(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
+{
+    cm1e_sdo_t *sdo = client->sdo;
+    if ((body[2] & SPECIFIER_MASK) != RESPONSE_UPLOAD) {
+        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+        return;
+    }
+    if (body[2] & BIT_EXPEDITED) {
+        take_expedited(client, body);
+        return;
+    }
+    client->total = cm1e_get_u32(body + 6);
+    if (client->total > sdo->size) {
+        give_up(client, CM1E_ERROR_INVALID_ARGUMENT); /* the caller's buffer is too small */
+        return;
+    }
+    const size_t given = size - SDO_BYTES;
+    client->done = given < client->total ? given : client->total;
+    if (client->done)
+        memcpy(sdo->data, body + SDO_BYTES, client->done);
+    if (client->done < client->total) {
+        request_upload_segment(client);
+        return;
+    }
+    sdo->size = client->total;
+    finish(client, CM1E_OK, 0);
+}
+
+static void on_upload_segment(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
+{
+    const bool toggle = body[2] & BIT_TOGGLE, last = body[2] & BIT_LAST;
+    const size_t bytes = size == SDO_BYTES ? SEGMENT_MIN_DATA - (body[2] >> 1 & 7u) : size - SEGMENT_HEADER;
+    if ((body[2] & SPECIFIER_MASK) != RESPONSE_UPLOAD_SEGMENT || toggle != client->toggle ||
+        bytes > client->total - client->done || (bytes == 0 && !last)) {
+        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+        return;
+    }
+    memcpy((uint8_t *)client->sdo->data + client->done, body + SEGMENT_HEADER, bytes);
+    client->done += bytes;
+    client->toggle = !client->toggle;
+    if (!last) {
+        request_upload_segment(client);
+    } else if (client->done != client->total) {
+        give_up(client, CM1E_ERROR_BUS_MAILBOX); /* less than announced is not the object */
+    } else {
+        client->sdo->size = client->total;
+        finish(client, CM1E_OK, 0);
+    }
+}
+
+static void after_download(cm1e_coe_client_t *client)
+{
+    if (client->done < client->total)
+        request_download_segment(client);
+    else
+        finish(client, CM1E_OK, 0);
+}
+
+static void on_download(cm1e_coe_client_t *client, const uint8_t *body)
+{
+    if ((body[2] & SPECIFIER_MASK) != RESPONSE_DOWNLOAD)
+        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+    else
+        after_download(client);
+}
+
+static void on_download_segment(cm1e_coe_client_t *client, const uint8_t *body)
+{
+    const bool toggle = body[2] & BIT_TOGGLE;
+    if ((body[2] & SPECIFIER_MASK) != RESPONSE_DOWNLOAD_SEGMENT || toggle != client->toggle) {
+        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+        return;
+    }
+    client->toggle = !client->toggle;
+    after_download(client);
+}
+
+static void on_emergency(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
+{
+    if (size < COE_HEADER + 8)
+        return;
+    client->emergency.code = cm1e_get_u16(body + 2);
+    client->emergency.error_register = body[4];
+    memcpy(client->emergency.data, body + 5, sizeof client->emergency.data);
+    client->emergency.count++;
+}
+
+static void on_abort(cm1e_coe_client_t *client, const uint8_t *body)
+{
+    if (!addressed(client, body)) {
+        discard(client);
+    } else if (client->phase == COE_FENCE) {
+        client->doubtful = false; /* an abort is an answer, too */
+        start_transfer(client);
+    } else {
+        finish(client, CM1E_ERROR_SDO_ABORT, cm1e_get_u32(body + 6));
+    }
+}
+
+/** An SDO answer of at least SDO_BYTES. */
+static void on_sdo(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
+{
+    const bool is_segment = client->phase == COE_UPLOAD_SEGMENT || client->phase == COE_DOWNLOAD_SEGMENT;
+    if (!is_segment && !addressed(client, body)) {
+        discard(client); /* of an earlier transfer */
+        return;
+    }
+    switch (client->phase) {
+    case COE_IDLE:
+        break;
+    case COE_FENCE:
+        client->doubtful = false;
+        start_transfer(client);
+        break;
+    case COE_UPLOAD:
+        on_upload(client, body, size);
+        break;
+    case COE_UPLOAD_SEGMENT:
+        on_upload_segment(client, body, size);
+        break;
+    case COE_DOWNLOAD:
+        on_download(client, body);
+        break;
+    case COE_DOWNLOAD_SEGMENT:
+        on_download_segment(client, body);
+        break;
+    }
+}
+
+static void on_coe(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
+{
+    const unsigned service = size >= COE_HEADER ? cm1e_get_u16(body) >> 12 : 0;
+    if (service == SERVICE_EMERGENCY) {
+        on_emergency(client, body, size);
+        discard(client);
+    } else if (service != SERVICE_SDO_REQUEST && service != SERVICE_SDO_RESPONSE) {
+        discard(client);
+    } else if (size < SDO_BYTES) {
+        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+    } else if ((body[2] & SPECIFIER_MASK) == SDO_ABORT) {
+        on_abort(client, body);
+    } else if (service == SERVICE_SDO_REQUEST) {
+        discard(client); /* a slave has nothing to request but an abort */
+    } else {
+        on_sdo(client, body, size);
+    }
+}
+
+static void on_message(cm1e_coe_client_t *client, const uint8_t *message)
+{
+    const size_t size = cm1e_get_u16(message);
+    const uint8_t *body = message + CM1E_MAILBOX_HEADER;
+    const uint8_t type = message[5] & 0x0F;
+    if (size > (size_t)(client->mailbox.in_length - CM1E_MAILBOX_HEADER)) {
+        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+    } else if (type == MAILBOX_TYPE_COE) {
+        on_coe(client, body, size);
+    } else if (type == MAILBOX_TYPE_ERROR) {
+        client->mailbox_error = size >= 4 ? cm1e_get_u16(body + 2) : 0;
+        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+    } else {
+        discard(client);
+    }
+}
+
+/* ---- one datagram at a time ---------------------------------------------------------------------------------------- */
+
+bool cm1e_coe_next(cm1e_coe_client_t *client, cm1e_datagram_t *datagram, int64_t now_ns)
+{
+    if (!client->sdo)
+        return false;
+    if (now_ns >= client->deadline_ns) {
+        give_up(client, CM1E_ERROR_TIMEOUT);
+        return false;
+    }
+    return cm1e_mailbox_next(&client->mailbox, datagram);
+}
+
+void cm1e_coe_result(cm1e_coe_client_t *client, const cm1e_datagram_t *datagram, int64_t now_ns)
+{
+    if (datagram->working_counter == DATAGRAM_LOST)
+        client->lost_frames++;
+    if (!client->sdo)
+        return; /* ended while the datagram was on its way */
+    if (cm1e_mailbox_result(&client->mailbox, datagram))
+        on_message(client, datagram->data);
+    if (client->sdo && now_ns >= client->deadline_ns)
+        give_up(client, CM1E_ERROR_TIMEOUT);
+}

@@ -1,0 +1,63 @@
+/**
+ * @file coe_client.h
+ * The CoE client of one slave (ETG.1000.6 section 5.6): one SDO transfer at a time, expedited, normal or segmented, with or
+ * without complete access; one datagram at a time; no clock inside, no waiting. Nothing a slave sends is trusted: type,
+ * service, command, index, sub-index, toggle and every length are checked before a byte is taken.
+ */
+#ifndef CM1E_BUS_COE_CLIENT_H
+#define CM1E_BUS_COE_CLIENT_H
+
+#include "bus/mailbox.h"
+#include "cm1e/bus.h"
+
+typedef enum cm1e_coe_phase {
+    COE_IDLE = 0,
+    COE_FENCE, /**< an upload whose answer proves that no answer of an earlier, given-up transfer can follow */
+    COE_UPLOAD,
+    COE_UPLOAD_SEGMENT,
+    COE_DOWNLOAD,
+    COE_DOWNLOAD_SEGMENT,
+} cm1e_coe_phase_t;
+
+/** Emergencies (ETG.1000.6 section 5.6.4) received so far. */
+typedef struct cm1e_emergency {
+    uint32_t count;
+    uint16_t code;
+    uint8_t error_register;
+    uint8_t data[5];
+} cm1e_emergency_t;
+
+typedef struct cm1e_coe_client {
+    cm1e_mailbox_t mailbox;
+    cm1e_sdo_t *sdo;              /**< in work; NULL: none */
+    cm1e_coe_phase_t phase;
+    int64_t deadline_ns;
+    size_t done, total;           /**< bytes */
+    bool toggle;
+    bool doubtful;                /**< the last transfer was given up: its answer may still come */
+    uint16_t last_index;          /**< of that transfer */
+    uint8_t fence;                /**< which of the fences was used last */
+    uint16_t awaited_index;
+    uint8_t awaited_subindex;
+    unsigned discarded;           /**< messages that were not for this transfer */
+    uint16_t mailbox_error;       /**< detail of the last mailbox error reply */
+    uint32_t lost_frames;         /**< only grows */
+    cm1e_emergency_t emergency;
+} cm1e_coe_client_t;
+
+/** Forgets everything but the addresses, as after Init -> Pre-Operational; a transfer in work ends with `error`. */
+void cm1e_coe_reset(cm1e_coe_client_t *client, cm1e_error_t error);
+/** Gives up the transfer in work, if there is one. */
+void cm1e_coe_cancel(cm1e_coe_client_t *client, cm1e_error_t error);
+static inline bool cm1e_coe_idle(const cm1e_coe_client_t *client) { return client->sdo == NULL; }
+/** Starts a transfer; the client must be idle. */
+void cm1e_coe_begin(cm1e_coe_client_t *client, cm1e_sdo_t *sdo, int64_t now_ns);
+/** Fills the datagram to be sent next; false: none. Ends a transfer whose time is over. */
+bool cm1e_coe_next(cm1e_coe_client_t *client, cm1e_datagram_t *datagram, int64_t now_ns);
+/** Takes a datagram that is back or lost. */
+void cm1e_coe_result(cm1e_coe_client_t *client, const cm1e_datagram_t *datagram, int64_t now_ns);
+
+/** Ends a transfer: everything in it is written before its state (release). */
+void cm1e_sdo_finish(cm1e_sdo_t *sdo, cm1e_error_t error, uint32_t abort_code);
+
+#endif

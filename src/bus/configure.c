@@ -1,0 +1,171 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "bus/bus_internal.h"
+#include "core/bytes.h"
+
+/** Some 40 transfers of at most CM1E_START_SDO_TIMEOUT_NS each, all slaves at once; in practice some milliseconds. */
+#define MAPPING_TIMEOUT_NS INT64_C(60000000000)
+
+static cm1e_mapping_t mapping_of(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
+{
+    const cm1e_axis_config_t *axis = cm1e_bus_axis_of(bus, slave);
+    return axis ? axis->mapping : CM1E_MAPPING_DYNAMIC;
+}
+
+/** UG 4.3: four cycle times; before V1.3.2 only 1 ms (UG 10.1). An unreadable version is given the benefit. */
+static cm1e_error_t check_cycle_time(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
+{
+    char label[CM1E_LABEL_LENGTH];
+    const int64_t cycle_ns = bus->config.cycle_time_ns;
+    bool known = false;
+    for (unsigned i = 0; i < 4; i++)
+        known = known || cm1e_device_cycle_times_ns[i] == cycle_ns;
+    if (!known)
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_CYCLE_TIME, 0,
+                             "The cycle time of %lld us is none of 200, 250, 500 and 1000 us, which the %s accepts.",
+                             (long long)(cycle_ns / 1000), cm1e_bus_label(bus, slave, label));
+    if (slave->firmware && !slave->firmware->all_cycle_times && cycle_ns != 1000000)
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_CYCLE_TIME, 0,
+                             "The %s has firmware %s, which accepts a cycle time of 1000 us only (V1.3.2 and later: also "
+                             "200, 250, 500 us); configured are %lld us.", cm1e_bus_label(bus, slave, label),
+                             slave->info.software_version, (long long)(cycle_ns / 1000));
+    return CM1E_OK;
+}
+
+static cm1e_error_t read_mappings(cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    const int64_t deadline_ns = cm1e_clock_now(bus->clock) + MAPPING_TIMEOUT_NS;
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        if (slave->info.is_cm1e)
+            cm1e_mapping_begin(&slave->mapping, slave->info.position, mapping_of(bus, slave));
+    }
+    const bool ended = cm1e_bus_pump_until_idle(bus, deadline_ns);
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        char label[CM1E_LABEL_LENGTH];
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        cm1e_mapping_job_t *job = &slave->mapping;
+        if (!slave->info.is_cm1e)
+            continue;
+        if (!ended && !cm1e_mapping_idle(job)) {
+            cm1e_acyclic_cancel(bus);
+            return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "The %s takes too long to tell its PDO mapping.",
+                                 cm1e_bus_label(bus, slave, label));
+        }
+        if (job->error == CM1E_ERROR_PDO_MAPPING)
+            return cm1e_diag_set(diag, job->error, 0,
+                                 "The PDO mapping 0x%04X/0x%04X of the %s cannot be used: %s (object 0x%04X:%02X).",
+                                 job->pdo[0], job->pdo[1], cm1e_bus_label(bus, slave, label), job->reason,
+                                 job->sdo.index, job->sdo.subindex);
+        if (job->error != CM1E_OK)
+            return cm1e_bus_diagnose_sdo(bus, slave, &job->sdo, "PDO mapping", diag);
+        memcpy(slave->mapped, job->mapped, sizeof slave->mapped);
+    }
+    return CM1E_OK;
+}
+
+static cm1e_error_t set_process_data(cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        const bool ok = slave->info.is_cm1e
+                            ? cm1e_soem_set_process_data(bus->soem, slave->info.position, slave->mapped[0].bits,
+                                                         slave->mapped[1].bits)
+                            : cm1e_soem_set_process_data_by_sii(bus->soem, slave->info.position);
+        char label[CM1E_LABEL_LENGTH];
+        if (!ok)
+            return cm1e_diag_set(diag, CM1E_ERROR_PDO_MAPPING, 0,
+                                 "The process data of the %s does not fit its sync managers: its SII is damaged.",
+                                 cm1e_bus_label(bus, slave, label));
+    }
+    return CM1E_OK;
+}
+
+static cm1e_error_t map_image(cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    const size_t room = cm1e_soem_image_bytes(bus->soem);
+    cm1e_bus_free_image(bus);
+    bus->image = calloc(1, room + 1);
+    bus->sent_outputs = calloc(1, room + 1);
+    bus->outputs = calloc(1, room + 1);
+    bus->inputs = calloc(1, room + 1);
+    if (!bus->image || !bus->sent_outputs || !bus->outputs || !bus->inputs)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory for the process image.");
+    if (!cm1e_soem_map(bus->soem, bus->image, room, &bus->output_bytes, &bus->input_bytes))
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
+                             "The process data of all slaves (%zu bytes) needs more than %d frames a cycle.", room,
+                             CM1E_PROCESS_FRAMES_MAX);
+    bus->expected_working_counter = cm1e_soem_expected_working_counter(bus->soem);
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        cm1e_soem_placement(bus->soem, slave->info.position, &slave->placement);
+        slave->info.output_bytes = slave->placement.output_bytes;
+        slave->info.input_bytes = slave->placement.input_bytes;
+    }
+    return CM1E_OK;
+}
+
+static void set_watchdogs(cm1e_bus_t *bus)
+{
+    uint8_t divider[2], time[2];
+    cm1e_put_u16(divider, CM1E_WATCHDOG_DIVIDER);
+    cm1e_put_u16(time, CM1E_WATCHDOG_TIME);
+    cm1e_soem_transfer(bus->soem, COMMAND_BWR, 0, REG_WATCHDOG_DIVIDER, divider, sizeof divider);
+    cm1e_soem_transfer(bus->soem, COMMAND_BWR, 0, REG_WATCHDOG_PROCESS_DATA, time, sizeof time);
+}
+
+cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    if (bus->phase < BUS_IDENTIFIED || bus->phase >= BUS_OPERATING)
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Configuring the slaves needs them identified before.");
+    if (bus->phase == BUS_CONFIGURED)
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The slaves are configured already: scan again to start anew.");
+    cm1e_bus_enter(bus);
+    cm1e_error_t error = CM1E_OK;
+    for (uint32_t i = 0; i < bus->slave_count && error == CM1E_OK; i++) {
+        if (bus->slaves[i].info.is_cm1e)
+            error = check_cycle_time(bus, &bus->slaves[i], diag);
+    }
+    if (error == CM1E_OK)
+        error = read_mappings(bus, diag);
+    if (error == CM1E_OK)
+        error = set_process_data(bus, diag);
+    if (error == CM1E_OK)
+        error = map_image(bus, diag);
+    if (error != CM1E_OK)
+        return error;
+    set_watchdogs(bus);
+    error = cm1e_bus_all_to_state(bus, CM1E_AL_SAFE_OP, CM1E_STATE_TIMEOUT_NS, diag);
+    if (error == CM1E_OK)
+        cm1e_bus_set_phase(bus, BUS_CONFIGURED);
+    return error;
+}
+
+/* ---- the image, for the drive room ------------------------------------------------------------------------------------- */
+
+static cm1e_image_slot_t find_slot(const cm1e_bus_t *bus, uint16_t position, int direction, uint16_t index,
+                                   uint8_t subindex)
+{
+    const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
+    if (!slave || !bus->image)
+        return (cm1e_image_slot_t){0};
+    const cm1e_mapped_entry_t *entry = cm1e_mapping_find(&slave->mapped[direction], index, subindex);
+    if (!entry)
+        return (cm1e_image_slot_t){0};
+    const uint32_t base = direction ? slave->placement.input_offset : slave->placement.output_offset;
+    return (cm1e_image_slot_t){.offset = base + entry->bit_offset / 8u, .bytes = (uint8_t)(entry->bits / 8)};
+}
+
+cm1e_image_slot_t cm1e_bus_find_output(const cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex)
+{
+    return find_slot(bus, position, 0, index, subindex);
+}
+
+cm1e_image_slot_t cm1e_bus_find_input(const cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex)
+{
+    return find_slot(bus, position, 1, index, subindex);
+}
+
+uint8_t *cm1e_bus_outputs(cm1e_bus_t *bus) { return bus->outputs; }
+const uint8_t *cm1e_bus_inputs(const cm1e_bus_t *bus) { return bus->inputs; }

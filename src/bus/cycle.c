@@ -1,0 +1,63 @@
+#include <string.h>
+
+#include "bus/bus_internal.h"
+
+/** What a received process image is worth. */
+static cm1e_error_t judge(cm1e_bus_t *bus, int working_counter)
+{
+    if (working_counter == DATAGRAM_LOST) {
+        bus->counters.lost_frames++;
+        return CM1E_ERROR_BUS_LOST;
+    }
+    if (working_counter != bus->expected_working_counter) {
+        bus->counters.working_counter_errors++;
+        return CM1E_ERROR_BUS_WORKING_COUNTER;
+    }
+    /* No slave changes outputs on their way. If they are not those that left, neither the inputs can be believed. */
+    if (memcmp(bus->image, bus->sent_outputs, bus->output_bytes) != 0) {
+        bus->counters.lost_frames++;
+        return CM1E_ERROR_BUS_LOST;
+    }
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus)
+{
+    if (!bus->in_flight)
+        return CM1E_ERROR_STATE;
+    cm1e_bus_enter(bus);
+    bus->in_flight = false;
+    const cm1e_error_t error = judge(bus, cm1e_soem_receive_process_data(bus->soem, bus->config.frame_timeout_ns));
+    bus->counters.cycles++;
+    if (error == CM1E_OK) {
+        memcpy(bus->inputs, bus->image + bus->output_bytes, bus->input_bytes);
+        bus->bad_cycles = 0;
+    } else {
+        bus->bad_cycles += bus->bad_cycles < UINT32_MAX;
+    }
+    bus->last_error = error;
+    bus->counters.late_frames = cm1e_soem_late_frames(bus->soem);
+    cm1e_acyclic_receive(bus, 0);
+    cm1e_supervision_receive(bus, cm1e_clock_now(bus->clock));
+    return error;
+}
+
+void cm1e_bus_send(cm1e_bus_t *bus)
+{
+    if (!bus->exchanging)
+        return;
+    const int64_t now_ns = cm1e_bus_enter(bus);
+    if (bus->in_flight) /* never two: the old one is given up */
+        cm1e_soem_receive_process_data(bus->soem, 0);
+    memcpy(bus->image, bus->outputs, bus->output_bytes);
+    memcpy(bus->sent_outputs, bus->outputs, bus->output_bytes);
+    cm1e_soem_send_process_data(bus->soem);
+    bus->in_flight = true;
+    cm1e_acyclic_send(bus, now_ns, CM1E_DATAGRAMS_PER_CYCLE);
+    cm1e_supervision_send(bus, now_ns);
+}
+
+cm1e_error_t cm1e_bus_health(const cm1e_bus_t *bus)
+{
+    return bus->bad_cycles >= bus->config.lost_cycles_limit ? bus->last_error : CM1E_OK;
+}

@@ -1,0 +1,174 @@
+#include "bus/mapping.h"
+
+#include <stddef.h>
+
+#include "core/bytes.h"
+#include "device/device.h"
+
+static const uint16_t assign_index[2] = {OBJ_1C12_RXPDO_ASSIGN, OBJ_1C13_TXPDO_ASSIGN};
+enum { SDO_TIMEOUT_NS = 1000000000, DIRECTION_BITS_MAX = 8 * 1024 };
+
+void cm1e_mapping_begin(cm1e_mapping_job_t *job, uint16_t position, cm1e_mapping_t mapping)
+{
+    *job = (cm1e_mapping_job_t){
+        .step = MAPPING_CLEAR,
+        .pdo = {(uint16_t)(0x1600 + mapping), (uint16_t)(0x1A00 + mapping)},
+        .sdo = {.position = position},
+    };
+}
+
+static void end(cm1e_mapping_job_t *job, cm1e_error_t error, const char *reason)
+{
+    job->step = MAPPING_IDLE;
+    job->error = error;
+    job->reason = reason;
+}
+
+/** Fills the transfer of the present step. */
+static cm1e_sdo_t *prepare(cm1e_mapping_job_t *job)
+{
+    if (job->step == MAPPING_IDLE)
+        return NULL; /* the last transfer stays readable */
+    const uint16_t position = job->sdo.position, pdo = job->pdo[job->direction], assign = assign_index[job->direction];
+    const bool write = job->step <= MAPPING_COUNT;
+    job->sdo = (cm1e_sdo_t){.position = position, .index = assign, .write = write, .data = job->data,
+                            .size = write ? 1 : sizeof job->data, .timeout_ns = SDO_TIMEOUT_NS, .state = CM1E_SDO_BUSY};
+    switch (job->step) {
+    case MAPPING_IDLE:
+        break;
+    case MAPPING_CLEAR:
+        job->data[0] = 0;
+        break;
+    case MAPPING_ASSIGN:
+        cm1e_put_u16(job->data, pdo);
+        job->sdo.subindex = 1;
+        job->sdo.size = 2;
+        break;
+    case MAPPING_COUNT:
+        job->data[0] = 1;
+        break;
+    case MAPPING_READ_COUNT:
+        break;
+    case MAPPING_READ_PDO:
+        job->sdo.subindex = 1;
+        break;
+    case MAPPING_READ_ENTRIES:
+        job->sdo.index = pdo;
+        break;
+    case MAPPING_READ_ENTRY:
+        job->sdo.index = pdo;
+        job->sdo.subindex = job->entry;
+        break;
+    }
+    job->started = true;
+    return &job->sdo;
+}
+
+static void next_direction(cm1e_mapping_job_t *job)
+{
+    if (job->direction == 0) {
+        job->direction = 1;
+        /* Both directions are written before the first is read: the slave may check them together. */
+        job->step = job->step <= MAPPING_COUNT ? MAPPING_CLEAR : MAPPING_READ_COUNT;
+    } else if (job->step <= MAPPING_COUNT) {
+        job->direction = 0;
+        job->step = MAPPING_READ_COUNT;
+    } else {
+        end(job, CM1E_OK, NULL);
+    }
+}
+
+static void took_entry(cm1e_mapping_job_t *job)
+{
+    cm1e_mapped_direction_t *mapped = &job->mapped[job->direction];
+    const uint32_t value = cm1e_get_u32(job->data);
+    const uint8_t bits = (uint8_t)value;
+    if (mapped->entry_count >= CM1E_MAPPED_ENTRIES || bits == 0 || mapped->bits + bits > DIRECTION_BITS_MAX) {
+        end(job, CM1E_ERROR_PDO_MAPPING, "its PDO has too many entries or an entry of no bits");
+        return;
+    }
+    mapped->entries[mapped->entry_count++] = (cm1e_mapped_entry_t){
+        .index = (uint16_t)(value >> 16), .subindex = (uint8_t)(value >> 8), .bits = bits, .bit_offset = mapped->bits};
+    mapped->bits = (uint16_t)(mapped->bits + bits);
+    if (job->entry < job->entries)
+        job->entry++;
+    else
+        next_direction(job);
+}
+
+/** What each transfer brought. */
+static void took(cm1e_mapping_job_t *job)
+{
+    switch (job->step) {
+    case MAPPING_IDLE:
+        break;
+    case MAPPING_CLEAR:
+        job->step = MAPPING_ASSIGN;
+        break;
+    case MAPPING_ASSIGN:
+        job->step = MAPPING_COUNT;
+        break;
+    case MAPPING_COUNT:
+        next_direction(job);
+        break;
+    case MAPPING_READ_COUNT:
+        job->step = MAPPING_READ_PDO;
+        if (job->data[0] != 1)
+            end(job, CM1E_ERROR_PDO_MAPPING, "it does not assign exactly one PDO");
+        break;
+    case MAPPING_READ_PDO:
+        job->step = MAPPING_READ_ENTRIES;
+        if (cm1e_get_u16(job->data) != job->pdo[job->direction])
+            end(job, CM1E_ERROR_PDO_MAPPING, "it did not keep the assigned PDO");
+        break;
+    case MAPPING_READ_ENTRIES:
+        job->entries = job->data[0];
+        job->entry = 1;
+        job->step = MAPPING_READ_ENTRY;
+        if (job->entries == 0)
+            end(job, CM1E_ERROR_PDO_MAPPING, "its PDO is empty");
+        break;
+    case MAPPING_READ_ENTRY:
+        took_entry(job);
+        break;
+    }
+}
+
+cm1e_sdo_t *cm1e_mapping_next(cm1e_mapping_job_t *job)
+{
+    if (job->started) {
+        job->started = false;
+        const size_t wanted = job->step == MAPPING_READ_ENTRY ? 4 : job->step == MAPPING_READ_PDO ? 2 : 1;
+        if (cm1e_sdo_state(&job->sdo) == CM1E_SDO_ERROR)
+            end(job, job->sdo.error, NULL);
+        else if (!job->sdo.write && job->sdo.size < wanted)
+            end(job, CM1E_ERROR_PDO_MAPPING, "an entry of its PDO mapping is too short");
+        else
+            took(job);
+    }
+    return prepare(job);
+}
+
+bool cm1e_mapping_equal(const cm1e_mapped_direction_t *a, const cm1e_mapped_direction_t *b)
+{
+    if (a->bits != b->bits || a->entry_count != b->entry_count)
+        return false;
+    for (unsigned i = 0; i < a->entry_count; i++) {
+        const cm1e_mapped_entry_t *x = &a->entries[i], *y = &b->entries[i];
+        if (x->index != y->index || x->subindex != y->subindex || x->bits != y->bits)
+            return false;
+    }
+    return true;
+}
+
+const cm1e_mapped_entry_t *cm1e_mapping_find(const cm1e_mapped_direction_t *direction, uint16_t index,
+                                             uint8_t subindex)
+{
+    for (unsigned i = 0; i < direction->entry_count; i++) {
+        const cm1e_mapped_entry_t *entry = &direction->entries[i];
+        const bool whole = entry->bit_offset % 8 == 0 && entry->bits % 8 == 0 && entry->bits <= 32;
+        if (index && entry->index == index && entry->subindex == subindex && whole)
+            return entry;
+    }
+    return NULL;
+}

@@ -1,0 +1,60 @@
+/**
+ * @file mapping.h
+ * The PDO mapping of one slave: assigns the chosen PDOs, then reads back what the slave made of it. The layout is always
+ * what the device says (the manual gives two orders, UG 4.4 and UG 7.2); gaps (entries of index 0) only take up bits.
+ * A list of SDO transfers, one after the other; who runs it owns the CoE client.
+ */
+#ifndef CM1E_BUS_MAPPING_H
+#define CM1E_BUS_MAPPING_H
+
+#include "cm1e/bus.h"
+
+enum { CM1E_MAPPED_ENTRIES = 64 };
+
+typedef struct cm1e_mapped_entry {
+    uint16_t index, bit_offset; /**< index 0: a gap */
+    uint8_t subindex, bits;
+} cm1e_mapped_entry_t;
+
+/** One direction of the process data of a slave. */
+typedef struct cm1e_mapped_direction {
+    uint16_t bits;
+    uint8_t entry_count;
+    cm1e_mapped_entry_t entries[CM1E_MAPPED_ENTRIES];
+} cm1e_mapped_direction_t;
+
+typedef enum cm1e_mapping_step {
+    MAPPING_IDLE = 0,
+    MAPPING_CLEAR,      /**< write 0 to the number of assigned PDOs */
+    MAPPING_ASSIGN,     /**< write the PDO */
+    MAPPING_COUNT,      /**< write 1 to the number */
+    MAPPING_READ_COUNT, /**< read the number of assigned PDOs: 1 */
+    MAPPING_READ_PDO,   /**< read which: the one written */
+    MAPPING_READ_ENTRIES, /**< read the number of its entries */
+    MAPPING_READ_ENTRY,
+} cm1e_mapping_step_t;
+
+typedef struct cm1e_mapping_job {
+    cm1e_mapping_step_t step;
+    uint16_t pdo[2];         /**< to assign */
+    int direction;           /**< 0 outputs, 1 inputs */
+    uint8_t entry, entries;  /**< where the reading is, from 1 */
+    bool started;            /**< `sdo` is in work or done */
+    cm1e_sdo_t sdo;
+    uint8_t data[4];
+    cm1e_error_t error;      /**< result, valid when idle; foreign code in sdo.abort_code */
+    const char *reason;      /**< with CM1E_ERROR_PDO_MAPPING: what is wrong */
+    cm1e_mapped_direction_t mapped[2];
+} cm1e_mapping_job_t;
+
+void cm1e_mapping_begin(cm1e_mapping_job_t *job, uint16_t position, cm1e_mapping_t mapping);
+static inline bool cm1e_mapping_idle(const cm1e_mapping_job_t *job) { return job->step == MAPPING_IDLE; }
+/** The transfer to begin now; NULL: the job has ended (or it is idle). The last one returned must have ended. */
+cm1e_sdo_t *cm1e_mapping_next(cm1e_mapping_job_t *job);
+/** The same entries at the same places. */
+bool cm1e_mapping_equal(const cm1e_mapped_direction_t *a, const cm1e_mapped_direction_t *b);
+/** NULL: not mapped at a whole byte with 1 ... 4 whole bytes. */
+const cm1e_mapped_entry_t *cm1e_mapping_find(const cm1e_mapped_direction_t *direction, uint16_t index,
+                                             uint8_t subindex);
+
+#endif

@@ -1,0 +1,109 @@
+#include "bus/bus_internal.h"
+#include "core/bytes.h"
+
+/** Good exchanges in a row before Operational is requested: the slaves must have valid outputs by then. */
+enum { GOOD_CYCLES_FIRST = 3 };
+#define FIRST_EXCHANGE_NS INT64_C(2000000000)
+/** For each of the two steps down of cm1e_bus_stop(). */
+#define STOP_STEP_NS INT64_C(500000000)
+
+/** Exchanges until the process data is good; a bus that cannot even do that does not go to Operational. */
+static cm1e_error_t exchange_until_good(cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    const int64_t deadline_ns = cm1e_clock_now(bus->clock) + FIRST_EXCHANGE_NS;
+    unsigned good = 0;
+    while (good < GOOD_CYCLES_FIRST) {
+        const uint64_t before = bus->counters.cycles;
+        cm1e_bus_pump(bus);
+        if (bus->counters.cycles != before)
+            good = bus->last_error == CM1E_OK ? good + 1 : 0;
+        if (cm1e_clock_now(bus->clock) < deadline_ns)
+            continue;
+        return cm1e_diag_set(diag, bus->last_error == CM1E_OK ? CM1E_ERROR_TIMEOUT : bus->last_error, 0,
+                             "The process data does not come back as it must after configuration (working counter %d "
+                             "expected): %s.", bus->expected_working_counter, cm1e_strerror(bus->last_error));
+    }
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    if (bus->phase != BUS_CONFIGURED)
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Going to OP needs the slaves configured before.");
+    bus->next_cycle_ns = cm1e_bus_enter(bus);
+    bus->exchanging = true;
+    bus->bad_cycles = 0;
+    cm1e_error_t error = exchange_until_good(bus, diag);
+    if (error == CM1E_OK)
+        error = cm1e_bus_all_to_state(bus, CM1E_AL_OP, CM1E_STATE_TIMEOUT_NS, diag);
+    if (error == CM1E_OK)
+        cm1e_bus_set_phase(bus, BUS_OPERATING);
+    else
+        cm1e_bus_stop(bus);
+    return error;
+}
+
+cm1e_error_t cm1e_bus_start(cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    cm1e_error_t error = cm1e_bus_scan(bus, diag);
+    if (error == CM1E_OK)
+        error = cm1e_bus_identify(bus, diag);
+    if (error == CM1E_OK)
+        error = cm1e_bus_configure(bus, diag);
+    if (error == CM1E_OK)
+        error = cm1e_bus_operate(bus, diag);
+    if (error != CM1E_OK && bus->phase != BUS_OPERATING)
+        cm1e_bus_stop(bus);
+    return error;
+}
+
+/** All slaves, also those that the scan does not know, in one broadcast; waits until none is above `state`. */
+static void all_down_to(cm1e_bus_t *bus, uint8_t state)
+{
+    const int64_t deadline_ns = cm1e_clock_now(bus->clock) + STOP_STEP_NS;
+    const unsigned above = AL_STATE_MASK & ~(2u * state - 1u); /* the broadcast read gives the states of all, ORed */
+    uint8_t control[2], status[2];
+    cm1e_put_u16(control, (uint16_t)(state | AL_ERROR_FLAG)); /* acknowledges errors on the way */
+    cm1e_soem_transfer(bus->soem, COMMAND_BWR, 0, REG_AL_CONTROL, control, sizeof control);
+    while (cm1e_clock_now(bus->clock) < deadline_ns) {
+        const int answered = cm1e_soem_transfer(bus->soem, COMMAND_BRD, 0, REG_AL_STATUS, status, sizeof status);
+        if (answered <= 0 || !(status[0] & above))
+            return;
+        cm1e_clock_sleep_until(bus->clock, cm1e_clock_now(bus->clock) + CM1E_PUMP_PERIOD_NS);
+    }
+}
+
+/** What is left of each slave; ends at the first lost frame: then nothing can be said of the others either. */
+static void look_at_states(cm1e_bus_t *bus)
+{
+    uint8_t status[6];
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        const int answered = cm1e_soem_transfer(bus->soem, COMMAND_FPRD, slave->facts.station, REG_AL_STATUS, status,
+                                                sizeof status);
+        if (answered == DATAGRAM_LOST)
+            return;
+        if (answered == 1)
+            cm1e_supervision_note(slave, cm1e_get_u16(status), cm1e_get_u16(status + 4));
+    }
+}
+
+void cm1e_bus_stop(cm1e_bus_t *bus)
+{
+    if (!bus || bus->phase < BUS_OPEN || !bus->soem)
+        return;
+    cm1e_bus_enter(bus);
+    if (bus->in_flight)
+        cm1e_soem_receive_process_data(bus->soem, bus->config.frame_timeout_ns);
+    bus->in_flight = bus->exchanging = false;
+    const bool configured = bus->phase >= BUS_CONFIGURED;
+    cm1e_bus_set_phase(bus, BUS_OPEN); /* from here on transfers are refused */
+    cm1e_acyclic_cancel(bus);
+    cm1e_sdo_queue_cancel(bus, CM1E_ERROR_CANCELLED);
+    if (bus->slave_count > 0) {
+        if (configured)
+            all_down_to(bus, CM1E_AL_SAFE_OP);
+        all_down_to(bus, CM1E_AL_INIT);
+        look_at_states(bus);
+    }
+}

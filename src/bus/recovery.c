@@ -1,0 +1,357 @@
+#include "bus/recovery.h"
+
+#include <string.h>
+
+#include "bus/bus_internal.h"
+#include "core/bytes.h"
+
+/** Between two attempts: a CM1-E takes longer than that to start (UG 4.1), a missing one costs one datagram. */
+#define PAUSE_NS INT64_C(50000000)
+/** For one datagram step. */
+#define STEP_NS INT64_C(100000000)
+#define SDO_STEP_NS INT64_C(1000000000)
+#define MAPPING_STEP_NS INT64_C(10000000000)
+
+typedef struct cm1e_recovery_action {
+    int64_t time_ns;
+    /** Fills a datagram, or starts and runs a sub-machine; false: nothing to send now. */
+    bool (*next)(cm1e_bus_slave_t *slave, cm1e_datagram_t *datagram, int64_t now_ns);
+    /** The datagram is back with working counter 1. */
+    void (*result)(cm1e_bus_slave_t *slave, const cm1e_datagram_t *datagram, int64_t now_ns);
+} cm1e_recovery_action_t;
+
+static const cm1e_recovery_action_t actions[];
+
+static void enter(cm1e_bus_slave_t *slave, cm1e_recovery_step_t step, int64_t now_ns)
+{
+    slave->recovery.step = step;
+    slave->recovery.entered = false;
+    slave->recovery.deadline_ns = now_ns + (step == RECOVERY_PAUSE ? PAUSE_NS : actions[step].time_ns);
+}
+
+static void advance(cm1e_bus_slave_t *slave, int64_t now_ns)
+{
+    cm1e_recovery_t *recovery = &slave->recovery;
+    if (recovery->step != RECOVERY_OP) {
+        enter(slave, (cm1e_recovery_step_t)(recovery->step + 1), now_ns);
+        return;
+    }
+    recovery->step = RECOVERY_IDLE;
+    recovery->successes++;
+}
+
+static void fail(cm1e_bus_slave_t *slave, int64_t now_ns)
+{
+    slave->recovery.failed_at = slave->recovery.step;
+    cm1e_al_cancel(&slave->al);
+    slave->mapping.step = MAPPING_IDLE;
+    cm1e_coe_cancel(&slave->coe, CM1E_ERROR_BUS_LOST);
+    enter(slave, RECOVERY_PAUSE, now_ns);
+}
+
+void cm1e_recovery_begin(cm1e_bus_slave_t *slave)
+{
+    if (!cm1e_recovery_idle(&slave->recovery))
+        return;
+    slave->recovery.step = RECOVERY_PAUSE;
+    slave->recovery.deadline_ns = 0; /* over */
+}
+
+void cm1e_recovery_cancel(cm1e_bus_slave_t *slave)
+{
+    slave->recovery.step = RECOVERY_IDLE;
+    cm1e_al_cancel(&slave->al);
+    slave->mapping.step = MAPPING_IDLE;
+}
+
+/* ---- registers ------------------------------------------------------------------------------------------------------ */
+
+static uint16_t by_place(const cm1e_bus_slave_t *slave) { return (uint16_t)(1 - slave->info.position); }
+
+static bool next_find(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    (void)now_ns;
+    cm1e_datagram_set(d, COMMAND_APRD, by_place(slave), REG_STATION_ADDRESS, 4);
+    return true;
+}
+
+static void result_find(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
+{
+    const uint16_t station = cm1e_get_u16(d->data), alias = cm1e_get_u16(d->data + 2);
+    /* Another station address: a slave further down now stands at this place, ours is still away. */
+    if ((station != 0 && station != slave->facts.station) || alias != slave->facts.alias)
+        fail(slave, now_ns);
+    else
+        enter(slave, station ? RECOVERY_LOOK : RECOVERY_ADDRESS, now_ns);
+}
+
+static bool next_address(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    (void)now_ns;
+    cm1e_datagram_set(d, COMMAND_APWR, by_place(slave), REG_STATION_ADDRESS, 2);
+    cm1e_put_u16(d->data, slave->facts.station);
+    return true;
+}
+
+static void result_next_step(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
+{
+    (void)d;
+    advance(slave, now_ns);
+}
+
+static bool next_look(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    (void)now_ns;
+    cm1e_datagram_set(d, COMMAND_FPRD, slave->facts.station, REG_AL_STATUS, 6);
+    return true;
+}
+
+static void result_look(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
+{
+    /* In Safe-Operational or above it never lost its configuration: only the watchdog or a request took it out of OP. */
+    const unsigned state = cm1e_get_u16(d->data) & AL_STATE_MASK;
+    const bool configured = state == CM1E_AL_SAFE_OP || state == CM1E_AL_OP;
+    enter(slave, configured ? RECOVERY_OP : RECOVERY_EEPROM, now_ns);
+}
+
+static bool next_eeprom(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    (void)now_ns;
+    cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_EEPROM_CONFIG, 1);
+    d->data[0] = 1;
+    return true;
+}
+
+static bool next_mailbox(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    (void)now_ns;
+    cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_SM0, 2 * SYNC_MANAGER_BYTES);
+    memcpy(d->data, slave->placement.sync_managers[0], 2 * SYNC_MANAGER_BYTES);
+    cm1e_coe_reset(&slave->coe, CM1E_ERROR_BUS_LOST);
+    return true;
+}
+
+static bool next_process_data(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    (void)now_ns;
+    cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_SM2, 2 * SYNC_MANAGER_BYTES);
+    memcpy(d->data, slave->placement.sync_managers[2], 2 * SYNC_MANAGER_BYTES);
+    return true;
+}
+
+static bool next_fmmus(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    const cm1e_slave_placement_t *placement = &slave->placement;
+    if (placement->fmmu_count == 0) {
+        advance(slave, now_ns);
+        return false;
+    }
+    cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_FMMU0, (uint16_t)(placement->fmmu_count * FMMU_BYTES));
+    memcpy(d->data, placement->fmmus, placement->fmmu_count * FMMU_BYTES);
+    return true;
+}
+
+static bool next_watchdog_divider(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    (void)now_ns;
+    cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_WATCHDOG_DIVIDER, 2);
+    cm1e_put_u16(d->data, CM1E_WATCHDOG_DIVIDER);
+    return true;
+}
+
+static bool next_watchdog(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    (void)now_ns;
+    cm1e_datagram_set(d, COMMAND_FPWR, slave->facts.station, REG_WATCHDOG_PROCESS_DATA, 2);
+    cm1e_put_u16(d->data, CM1E_WATCHDOG_TIME);
+    return true;
+}
+
+/* ---- states ------------------------------------------------------------------------------------------------------------ */
+
+static bool run_al(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns, uint8_t target)
+{
+    cm1e_recovery_t *recovery = &slave->recovery;
+    if (!recovery->entered) {
+        recovery->entered = true;
+        if (target)
+            cm1e_al_request(&slave->al, target, recovery->deadline_ns);
+        else
+            cm1e_al_read_id(&slave->al, recovery->deadline_ns);
+    }
+    if (cm1e_al_next(&slave->al, d, now_ns))
+        return true;
+    if (cm1e_al_idle(&slave->al)) {
+        const bool wrong_id = !target && slave->al.explicit_id != slave->info.explicit_id;
+        if (slave->al.error != CM1E_OK || wrong_id)
+            fail(slave, now_ns);
+        else
+            advance(slave, now_ns);
+    }
+    return false;
+}
+
+static bool next_init(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    return run_al(slave, d, now_ns, CM1E_AL_INIT);
+}
+static bool next_pre_op(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    return run_al(slave, d, now_ns, CM1E_AL_PRE_OP);
+}
+static bool next_safe_op(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    return run_al(slave, d, now_ns, CM1E_AL_SAFE_OP);
+}
+static bool next_op(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    return run_al(slave, d, now_ns, CM1E_AL_OP);
+}
+static bool next_id(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    if (slave->info.explicit_id == 0) {
+        advance(slave, now_ns);
+        return false;
+    }
+    return run_al(slave, d, now_ns, 0);
+}
+
+static void result_al(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
+{
+    cm1e_al_result(&slave->al, d, now_ns);
+}
+
+/* ---- mailbox ------------------------------------------------------------------------------------------------------------- */
+
+/** Reads one sub-index of the identity object and compares it with what the scan found in the SII. */
+static bool check_identity(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns, uint8_t subindex,
+                           uint32_t expected)
+{
+    cm1e_recovery_t *recovery = &slave->recovery;
+    if (!slave->facts.coe) {
+        advance(slave, now_ns);
+        return false;
+    }
+    if (!recovery->entered) {
+        recovery->entered = true;
+        recovery->sdo = (cm1e_sdo_t){.position = slave->info.position, .index = OBJ_1018_IDENTITY,
+                                     .subindex = subindex, .data = recovery->data, .size = sizeof recovery->data,
+                                     .timeout_ns = SDO_STEP_NS, .state = CM1E_SDO_BUSY};
+        cm1e_coe_begin(&slave->coe, &recovery->sdo, now_ns);
+    }
+    if (cm1e_coe_next(&slave->coe, d, now_ns))
+        return true;
+    if (cm1e_coe_idle(&slave->coe)) {
+        /* A device that does not have the sub-index (the serial number is optional) leaves it unchecked. */
+        const bool absent = recovery->sdo.error == CM1E_ERROR_SDO_ABORT;
+        const bool same = recovery->sdo.error == CM1E_OK && recovery->sdo.size == 4 &&
+                          cm1e_get_u32(recovery->data) == expected;
+        if (absent || same)
+            advance(slave, now_ns);
+        else
+            fail(slave, now_ns);
+    }
+    return false;
+}
+
+static bool next_vendor(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    return check_identity(slave, d, now_ns, 1, slave->info.vendor_id);
+}
+static bool next_product(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    return check_identity(slave, d, now_ns, 2, slave->info.product_code);
+}
+static bool next_serial(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    if (slave->info.serial_number == 0) {
+        advance(slave, now_ns);
+        return false;
+    }
+    return check_identity(slave, d, now_ns, 4, slave->info.serial_number);
+}
+
+/** The same PDOs again, and the same layout must come out: the image of the running bus cannot change. */
+static bool next_mapping(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    cm1e_mapping_job_t *job = &slave->mapping;
+    if (!slave->info.is_cm1e) {
+        advance(slave, now_ns);
+        return false;
+    }
+    if (!slave->recovery.entered) {
+        slave->recovery.entered = true;
+        cm1e_mapping_begin(job, slave->info.position, (cm1e_mapping_t)(job->pdo[0] & 3));
+    }
+    if (cm1e_coe_idle(&slave->coe)) {
+        cm1e_sdo_t *sdo = cm1e_mapping_next(job);
+        if (sdo) {
+            cm1e_coe_begin(&slave->coe, sdo, now_ns);
+        } else {
+            const bool same = job->error == CM1E_OK && cm1e_mapping_equal(&job->mapped[0], &slave->mapped[0]) &&
+                              cm1e_mapping_equal(&job->mapped[1], &slave->mapped[1]);
+            if (same)
+                advance(slave, now_ns);
+            else
+                fail(slave, now_ns);
+            return false;
+        }
+    }
+    return cm1e_coe_next(&slave->coe, d, now_ns);
+}
+
+static void result_coe(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
+{
+    cm1e_coe_result(&slave->coe, d, now_ns);
+}
+
+/* ---- the sequence ------------------------------------------------------------------------------------------------------- */
+
+static const cm1e_recovery_action_t actions[] = {
+    [RECOVERY_FIND] = {STEP_NS, next_find, result_find},
+    [RECOVERY_ADDRESS] = {STEP_NS, next_address, result_next_step},
+    [RECOVERY_LOOK] = {STEP_NS, next_look, result_look},
+    [RECOVERY_EEPROM] = {STEP_NS, next_eeprom, result_next_step},
+    [RECOVERY_INIT] = {CM1E_STATE_TIMEOUT_NS, next_init, result_al},
+    [RECOVERY_MAILBOX] = {STEP_NS, next_mailbox, result_next_step},
+    [RECOVERY_PRE_OP] = {CM1E_STATE_TIMEOUT_NS, next_pre_op, result_al},
+    [RECOVERY_ID] = {STEP_NS, next_id, result_al},
+    [RECOVERY_VENDOR] = {SDO_STEP_NS, next_vendor, result_coe},
+    [RECOVERY_PRODUCT] = {SDO_STEP_NS, next_product, result_coe},
+    [RECOVERY_SERIAL] = {SDO_STEP_NS, next_serial, result_coe},
+    [RECOVERY_MAPPING] = {MAPPING_STEP_NS, next_mapping, result_coe},
+    [RECOVERY_PROCESS_DATA] = {STEP_NS, next_process_data, result_next_step},
+    [RECOVERY_FMMUS] = {STEP_NS, next_fmmus, result_next_step},
+    [RECOVERY_WATCHDOG_DIVIDER] = {STEP_NS, next_watchdog_divider, result_next_step},
+    [RECOVERY_WATCHDOG] = {STEP_NS, next_watchdog, result_next_step},
+    [RECOVERY_SAFE_OP] = {CM1E_STATE_TIMEOUT_NS, next_safe_op, result_al},
+    [RECOVERY_OP] = {CM1E_STATE_TIMEOUT_NS, next_op, result_al},
+};
+
+bool cm1e_recovery_next(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    cm1e_recovery_t *recovery = &slave->recovery;
+    if (recovery->step == RECOVERY_IDLE)
+        return false;
+    if (recovery->step == RECOVERY_PAUSE) {
+        if (now_ns < recovery->deadline_ns)
+            return false;
+        recovery->attempts++;
+        enter(slave, RECOVERY_FIND, now_ns);
+    } else if (now_ns >= recovery->deadline_ns) {
+        fail(slave, now_ns);
+        return false;
+    }
+    return actions[recovery->step].next(slave, d, now_ns);
+}
+
+void cm1e_recovery_result(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
+{
+    const cm1e_recovery_step_t step = slave->recovery.step;
+    if (step <= RECOVERY_PAUSE)
+        return;
+    /* The sub-machines judge losses themselves; a register that was not answered is asked for again until the deadline. */
+    const bool machine = actions[step].result == result_al || actions[step].result == result_coe;
+    if (machine || d->working_counter == 1)
+        actions[step].result(slave, d, now_ns);
+}

@@ -1,0 +1,55 @@
+/**
+ * @file recovery.h
+ * Brings one slave that left the network state (watchdog, reset, power cycle, replug) back to Operational while the
+ * others keep running: found again by its place, proved to be the same device, configured as before. One datagram or SDO
+ * transfer at a time, no clock inside. As long as it does not succeed it starts again, after a pause.
+ */
+#ifndef CM1E_BUS_RECOVERY_H
+#define CM1E_BUS_RECOVERY_H
+
+#include "bus/datagram.h"
+#include "cm1e/bus.h"
+
+struct cm1e_bus_slave;
+
+typedef enum cm1e_recovery_step {
+    RECOVERY_IDLE = 0,
+    RECOVERY_PAUSE,
+    RECOVERY_FIND,           /**< station address and alias at its place on the wire */
+    RECOVERY_ADDRESS,        /**< give it its station address again */
+    RECOVERY_LOOK,           /**< AL status: how much is left of its configuration? */
+    RECOVERY_EEPROM,         /**< leave the SII to the device */
+    RECOVERY_INIT,
+    RECOVERY_MAILBOX,        /**< SM0, SM1 */
+    RECOVERY_PRE_OP,
+    RECOVERY_ID,             /**< rotary switches */
+    RECOVERY_VENDOR,
+    RECOVERY_PRODUCT,
+    RECOVERY_SERIAL,
+    RECOVERY_MAPPING,
+    RECOVERY_PROCESS_DATA,   /**< SM2, SM3 */
+    RECOVERY_FMMUS,
+    RECOVERY_WATCHDOG_DIVIDER,
+    RECOVERY_WATCHDOG,
+    RECOVERY_SAFE_OP,
+    RECOVERY_OP,
+} cm1e_recovery_step_t;
+
+typedef struct cm1e_recovery {
+    cm1e_recovery_step_t step;
+    bool entered;            /**< the sub-machine of this step has been started */
+    int64_t deadline_ns;     /**< of the step; in RECOVERY_PAUSE: its end */
+    uint32_t attempts, successes; /**< only grow */
+    cm1e_recovery_step_t failed_at;
+    cm1e_sdo_t sdo;
+    uint8_t data[4];
+} cm1e_recovery_t;
+
+static inline bool cm1e_recovery_idle(const cm1e_recovery_t *recovery) { return recovery->step == RECOVERY_IDLE; }
+void cm1e_recovery_begin(struct cm1e_bus_slave *slave);
+void cm1e_recovery_cancel(struct cm1e_bus_slave *slave);
+/** Fills the datagram to be sent next; false: none in this cycle. */
+bool cm1e_recovery_next(struct cm1e_bus_slave *slave, cm1e_datagram_t *datagram, int64_t now_ns);
+void cm1e_recovery_result(struct cm1e_bus_slave *slave, const cm1e_datagram_t *datagram, int64_t now_ns);
+
+#endif

@@ -1,0 +1,102 @@
+#include <stdio.h>
+#include <string.h>
+
+#include "bus/bus_internal.h"
+
+/** The explicit device ID comes at once or never (ETG.1020: a device without it ignores the request). */
+#define ID_TIMEOUT_NS INT64_C(100000000)
+
+static void set_up_slave(cm1e_bus_t *bus, uint16_t position)
+{
+    cm1e_bus_slave_t *slave = &bus->slaves[position - 1];
+    memset(slave, 0, sizeof *slave);
+    slave->axis = -1;
+    cm1e_slave_facts_t *facts = &slave->facts;
+    cm1e_soem_facts(bus->soem, position, facts);
+    slave->info = (cm1e_slave_info_t){
+        .position = position,
+        .vendor_id = facts->vendor_id,
+        .product_code = facts->product_code,
+        .revision = facts->revision,
+        .serial_number = facts->serial_number,
+        .alias = facts->alias,
+        .is_cm1e = facts->vendor_id == CM1E_VENDOR_ID && facts->product_code == CM1E_PRODUCT_CODE,
+    };
+    memcpy(slave->info.name, facts->name, sizeof slave->info.name);
+    slave->al.station = facts->station;
+    slave->coe.mailbox = (cm1e_mailbox_t){
+        .station = facts->station,
+        .out_start = facts->mailbox_out_start,
+        .out_length = facts->coe ? facts->mailbox_out_length : 0,
+        .in_start = facts->mailbox_in_start,
+        .in_length = facts->coe ? facts->mailbox_in_length : 0,
+    };
+}
+
+static void read_explicit_ids(cm1e_bus_t *bus)
+{
+    const int64_t deadline_ns = cm1e_clock_now(bus->clock) + ID_TIMEOUT_NS;
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        if (bus->slaves[i].info.is_cm1e)
+            cm1e_al_read_id(&bus->slaves[i].al, deadline_ns);
+    }
+    cm1e_bus_pump_until_idle(bus, deadline_ns + CM1E_STATE_TIMEOUT_NS);
+    for (uint32_t i = 0; i < bus->slave_count; i++)
+        bus->slaves[i].info.explicit_id = bus->slaves[i].al.explicit_id;
+}
+
+/** Object 0x100A of every slave that has a mailbox; one that does not answer stays "". */
+static void read_software_versions(cm1e_bus_t *bus)
+{
+    const int64_t now_ns = cm1e_clock_now(bus->clock);
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        slave->version_sdo = (cm1e_sdo_t){.position = slave->info.position, .index = OBJ_100A_SOFTWARE_VERSION,
+                                          .data = slave->version, .size = sizeof slave->version - 1,
+                                          .timeout_ns = CM1E_START_SDO_TIMEOUT_NS, .state = CM1E_SDO_BUSY};
+        if (slave->facts.coe)
+            cm1e_coe_begin(&slave->coe, &slave->version_sdo, now_ns);
+    }
+    cm1e_bus_pump_until_idle(bus, now_ns + 2 * CM1E_START_SDO_TIMEOUT_NS);
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        if (cm1e_sdo_state(&slave->version_sdo) != CM1E_SDO_DONE)
+            continue;
+        slave->version[slave->version_sdo.size] = 0;
+        for (char *c = slave->version; *c; c++)
+            *c = *c >= ' ' && *c <= '~' ? *c : '?';
+        snprintf(slave->info.software_version, sizeof slave->info.software_version, "%.15s", slave->version);
+        if (slave->info.is_cm1e)
+            slave->firmware = cm1e_firmware_from_version(slave->info.software_version);
+    }
+}
+
+cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    if (bus->phase >= BUS_OPERATING)
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The bus is in operation: stop it before scanning.");
+    cm1e_bus_enter(bus);
+    cm1e_acyclic_cancel(bus);
+    cm1e_bus_free_image(bus);
+    cm1e_bus_set_phase(bus, BUS_OPEN);
+    bus->slave_count = 0;
+    memset(bus->axis_position, 0, sizeof bus->axis_position);
+    const int found = cm1e_soem_scan(bus->soem);
+    if (found < 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "More than %d slaves answer on %s.", CM1E_MAX_SLAVES,
+                             bus->config.interface_name);
+    if (found == 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_NO_SLAVES, 0,
+                             "No EtherCAT slave answers on %s. Check the cable to IN of the first slave, the power of "
+                             "the slaves and the name of the interface.", bus->config.interface_name);
+    for (int position = 1; position <= found; position++)
+        set_up_slave(bus, (uint16_t)position);
+    bus->slave_count = (uint32_t)found;
+    const cm1e_error_t error = cm1e_bus_all_to_state(bus, CM1E_AL_PRE_OP, CM1E_STATE_TIMEOUT_NS, diag);
+    if (error != CM1E_OK)
+        return error;
+    read_explicit_ids(bus);
+    read_software_versions(bus);
+    cm1e_bus_set_phase(bus, BUS_SCANNED);
+    return CM1E_OK;
+}

@@ -1,0 +1,138 @@
+#include "bus/bus_internal.h"
+
+/** The whole transfer of a blocking call; the client's own time is shorter. */
+#define BLOCKING_TIMEOUT_NS INT64_C(5000000000)
+enum { SDO_MAX_BYTES = 1 << 24 };
+
+/** What can be said of a transfer without asking the slave. */
+static cm1e_error_t check(const cm1e_bus_t *bus, const cm1e_sdo_t *sdo)
+{
+    if (__atomic_load_n(&bus->phase, __ATOMIC_ACQUIRE) < BUS_SCANNED)
+        return CM1E_ERROR_STATE;
+    const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, sdo->position);
+    if (!slave || (!sdo->data && sdo->size > 0) || sdo->size > SDO_MAX_BYTES)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    return slave->facts.coe ? CM1E_OK : CM1E_ERROR_UNSUPPORTED;
+}
+
+cm1e_error_t cm1e_sdo_submit(cm1e_bus_t *bus, cm1e_sdo_t *sdo)
+{
+    if (!bus || !sdo)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    if (cm1e_sdo_state(sdo) == CM1E_SDO_BUSY)
+        return CM1E_ERROR_BUSY;
+    const cm1e_error_t error = check(bus, sdo);
+    if (error != CM1E_OK) {
+        cm1e_sdo_finish(sdo, error, 0);
+        return error;
+    }
+    cm1e_sdo_queue_t *queue = &bus->queue;
+    if (__atomic_load_n(&queue->waiting, __ATOMIC_ACQUIRE) >= CM1E_SDO_WAITING_MAX)
+        return CM1E_ERROR_FULL;
+    __atomic_fetch_add(&queue->waiting, 1, __ATOMIC_ACQ_REL);
+    sdo->error = CM1E_OK;
+    sdo->abort_code = 0;
+    __atomic_store_n(&sdo->state, CM1E_SDO_BUSY, __ATOMIC_RELAXED);
+    const uint32_t head = queue->head; /* written by this side only */
+    queue->ring[head % CM1E_SDO_WAITING_MAX] = sdo;
+    __atomic_store_n(&queue->head, head + 1, __ATOMIC_RELEASE);
+    return CM1E_OK;
+}
+
+/** Takes over what was handed in. Never overflows: `waiting` counts ring and list together. */
+static void take_over(cm1e_sdo_queue_t *queue)
+{
+    const uint32_t head = __atomic_load_n(&queue->head, __ATOMIC_ACQUIRE);
+    while (queue->tail != head && queue->listed < CM1E_SDO_WAITING_MAX)
+        queue->list[queue->listed++] = queue->ring[queue->tail++ % CM1E_SDO_WAITING_MAX];
+}
+
+/** Begins a transfer, or ends it at once where the slave cannot answer. False: its slave is at work for another. */
+static bool dispatch(cm1e_bus_t *bus, cm1e_sdo_t *sdo, int64_t now_ns)
+{
+    const cm1e_error_t error = check(bus, sdo);
+    cm1e_bus_slave_t *slave = cm1e_bus_at(bus, sdo->position);
+    if (error != CM1E_OK)
+        cm1e_sdo_finish(sdo, error, 0);
+    else if (slave->watch.lost || !cm1e_recovery_idle(&slave->recovery))
+        cm1e_sdo_finish(sdo, CM1E_ERROR_BUS_LOST, 0);
+    else if (cm1e_coe_idle(&slave->coe) && cm1e_mapping_idle(&slave->mapping))
+        cm1e_coe_begin(&slave->coe, sdo, now_ns);
+    else
+        return false;
+    return true;
+}
+
+void cm1e_sdo_queue_serve(cm1e_bus_t *bus, int64_t now_ns)
+{
+    cm1e_sdo_queue_t *queue = &bus->queue;
+    take_over(queue);
+    unsigned kept = 0;
+    for (unsigned i = 0; i < queue->listed; i++) {
+        cm1e_sdo_t *sdo = queue->list[i];
+        if (dispatch(bus, sdo, now_ns))
+            __atomic_fetch_sub(&queue->waiting, 1, __ATOMIC_ACQ_REL);
+        else
+            queue->list[kept++] = sdo;
+    }
+    queue->listed = kept;
+}
+
+void cm1e_sdo_queue_cancel(cm1e_bus_t *bus, cm1e_error_t error)
+{
+    cm1e_sdo_queue_t *queue = &bus->queue;
+    take_over(queue);
+    for (unsigned i = 0; i < queue->listed; i++) {
+        cm1e_sdo_finish(queue->list[i], error, 0);
+        __atomic_fetch_sub(&queue->waiting, 1, __ATOMIC_ACQ_REL);
+    }
+    queue->listed = 0;
+}
+
+/* ---- blocking -------------------------------------------------------------------------------------------------------------- */
+
+static cm1e_error_t transfer(cm1e_bus_t *bus, cm1e_sdo_t *sdo, cm1e_diag_t *diag)
+{
+    if (!bus || bus->phase < BUS_SCANNED)
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "SDO transfers need a scan of the bus before.");
+    cm1e_bus_enter(bus);
+    const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, sdo->position);
+    if (!slave)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "There is no slave %u; %u were found.", sdo->position,
+                             bus->slave_count);
+    const cm1e_error_t error = cm1e_sdo_submit(bus, sdo);
+    if (error == CM1E_ERROR_FULL)
+        return cm1e_diag_set(diag, error, 0, "Too many SDO transfers wait.");
+    if (error != CM1E_OK)
+        return cm1e_bus_diagnose_sdo(bus, slave, sdo, "SDO transfer", diag);
+    /* The transfer is on this stack frame's caller: it must have ended before we return, and the client sees to that. */
+    while (cm1e_sdo_state(sdo) == CM1E_SDO_BUSY)
+        cm1e_bus_pump(bus);
+    if (cm1e_sdo_state(sdo) == CM1E_SDO_ERROR)
+        return cm1e_bus_diagnose_sdo(bus, slave, sdo, "SDO transfer", diag);
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_sdo_read(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex, void *data,
+                           size_t *size, cm1e_diag_t *diag)
+{
+    if (!size || (!data && *size > 0))
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_sdo_read() needs a buffer and its size.");
+    cm1e_sdo_t sdo = {.position = position, .index = index, .subindex = subindex, .data = data, .size = *size};
+    const cm1e_error_t error = transfer(bus, &sdo, diag);
+    if (error == CM1E_OK)
+        *size = sdo.size;
+    return error;
+}
+
+cm1e_error_t cm1e_sdo_write(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex, const void *data,
+                            size_t size, cm1e_diag_t *diag)
+{
+    union { /* the transfer reads only when it writes */
+        const void *in;
+        void *out;
+    } bytes = {.in = data};
+    cm1e_sdo_t sdo = {.position = position, .index = index, .subindex = subindex, .write = true, .data = bytes.out,
+                      .size = size};
+    return transfer(bus, &sdo, diag);
+}

@@ -1,0 +1,51 @@
+#include "bus/bus_internal.h"
+
+cm1e_error_t cm1e_bus_diagnose_state(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
+{
+    char label[CM1E_LABEL_LENGTH];
+    const cm1e_al_machine_t *al = &slave->al;
+    const char *target = cm1e_al_state_text(al->target);
+    cm1e_bus_label(bus, slave, label);
+    if (!al->answered)
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, 0,
+                             "The %s does not answer when asked to go to %s: check its power and its cable.", label,
+                             target);
+    if (al->state & AL_ERROR_FLAG)
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code, "The %s refuses %s and is in %s: AL status 0x%04X, %s.",
+                             label, target, cm1e_al_state_text(al->state), al->code, cm1e_al_status_text(al->code));
+    return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code, "The %s did not reach %s in time; it stays in %s.", label,
+                         target, cm1e_al_state_text(al->state));
+}
+
+cm1e_error_t cm1e_bus_all_to_state(cm1e_bus_t *bus, uint8_t target, int64_t timeout_ns, cm1e_diag_t *diag)
+{
+    const int64_t deadline_ns = cm1e_clock_now(bus->clock) + timeout_ns;
+    for (uint32_t i = 0; i < bus->slave_count; i++)
+        cm1e_al_request(&bus->slaves[i].al, target, deadline_ns);
+    /* The machines end by themselves; the margin is for datagrams still under way then. */
+    cm1e_bus_pump_until_idle(bus, deadline_ns + CM1E_STATE_TIMEOUT_NS);
+    cm1e_error_t first = CM1E_OK;
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        slave->info.al_state = slave->al.state;
+        slave->info.al_status_code = slave->al.code;
+        slave->watch = (cm1e_slave_watch_t){.al_state = slave->al.state, .al_status_code = slave->al.code};
+        if (slave->al.error != CM1E_OK && first == CM1E_OK)
+            first = cm1e_bus_diagnose_state(bus, slave, diag);
+    }
+    return first;
+}
+
+cm1e_error_t cm1e_bus_diagnose_sdo(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, const cm1e_sdo_t *sdo,
+                                   const char *purpose, cm1e_diag_t *diag)
+{
+    char label[CM1E_LABEL_LENGTH];
+    cm1e_bus_label(bus, slave, label);
+    const char *verb = sdo->write ? "write" : "read";
+    if (sdo->error == CM1E_ERROR_SDO_ABORT)
+        return cm1e_diag_set(diag, sdo->error, sdo->abort_code,
+                             "%s: the %s refuses to %s object 0x%04X:%02X: SDO abort 0x%08X, %s.", purpose, label, verb,
+                             sdo->index, sdo->subindex, sdo->abort_code, cm1e_sdo_abort_text(sdo->abort_code));
+    return cm1e_diag_set(diag, sdo->error, slave->coe.mailbox_error, "%s: the %s did not %s object 0x%04X:%02X: %s.",
+                         purpose, label, verb, sdo->index, sdo->subindex, cm1e_strerror(sdo->error));
+}

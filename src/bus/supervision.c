@@ -1,0 +1,58 @@
+#include "bus/bus_internal.h"
+#include "core/bytes.h"
+
+/** One slave's AL status in each cycle, in turn. A slave is called lost after two questions in a row that came back
+ *  unanswered: a single one may be a disturbed frame. */
+enum { AL_STATUS_BYTES = 6, UNANSWERED_LIMIT = 2 };
+
+void cm1e_supervision_note(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t al_status_code)
+{
+    slave->unanswered = 0;
+    slave->watch = (cm1e_slave_watch_t){.al_state = al_state, .al_status_code = al_status_code};
+    slave->info.al_state = al_state;
+    slave->info.al_status_code = al_status_code;
+}
+
+void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns)
+{
+    if (bus->watch_sent || bus->slave_count == 0)
+        return;
+    bus->watched_slave = bus->watched_slave + 1 < bus->slave_count ? bus->watched_slave + 1 : 0;
+    cm1e_datagram_set(&bus->watch_datagram, COMMAND_FPRD, bus->slaves[bus->watched_slave].facts.station, REG_AL_STATUS,
+                      AL_STATUS_BYTES);
+    cm1e_soem_post(bus->soem, &bus->watch_datagram, now_ns);
+    bus->watch_sent = true;
+}
+
+void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
+{
+    cm1e_datagram_t *d = &bus->watch_datagram;
+    cm1e_bus_slave_t *slave = &bus->slaves[bus->watched_slave];
+    if (!bus->watch_sent)
+        return;
+    if (!cm1e_soem_take(bus->soem, d, 0)) {
+        if (now_ns - d->sent_ns < CM1E_FRAME_LOST_NS)
+            return;
+        cm1e_soem_drop(bus->soem, d);
+    }
+    bus->watch_sent = false;
+    if (d->working_counter == 1) {
+        cm1e_supervision_note(slave, cm1e_get_u16(d->data), cm1e_get_u16(d->data + 4));
+    } else if (d->working_counter == 0 && ++slave->unanswered >= UNANSWERED_LIMIT) {
+        slave->watch = (cm1e_slave_watch_t){.lost = true};
+        slave->info.al_state = slave->info.al_status_code = 0;
+    }
+}
+
+cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position)
+{
+    const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
+    return slave ? slave->watch : (cm1e_slave_watch_t){.lost = true};
+}
+
+void cm1e_bus_request_recovery(cm1e_bus_t *bus, uint16_t position)
+{
+    cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
+    if (slave && bus->phase == BUS_OPERATING && cm1e_recovery_idle(&slave->recovery))
+        cm1e_recovery_begin(slave);
+}

@@ -1,0 +1,762 @@
+/**
+ * The CoE client against a mailbox made by hand: sync managers with full bits, counters and repeat request, and a small
+ * SDO server that is right unless a test tells it to lie. Frames are lost on the way there or on the way back.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unity.h>
+
+#include "bus/coe_client.h"
+#include "core/bytes.h"
+
+enum { STATION = 0x1001, OUT = 0x1000, IN = 0x1080, MAILBOX = 64, STORE = 2048, STEP_NS = 100000 };
+enum { WAY_OK = 0, WAY_THERE, WAY_BACK };
+
+typedef struct slave slave_t;
+/** Changes an answer (mailbox header included) before it is put into SM1; false: it is not sent at all. */
+typedef bool (*lie_fn)(slave_t *slave, uint8_t *answer);
+
+struct slave {
+    bool out_full, in_full, acknowledge, lock_in;
+    uint8_t out[MAILBOX], in[MAILBOX], last[MAILBOX], queued[MAILBOX];
+    bool last_valid, queued_valid;
+    uint8_t activate, seen_counter, counter;
+    unsigned latency, wait; /* datagrams between the request and its answer */
+    uint8_t store[STORE];   /* the one object, 0x2000:01 */
+    size_t size;
+    uint8_t incoming[STORE];
+    size_t incoming_size, incoming_total, outgoing;
+    unsigned writes;        /* finished downloads */
+    unsigned requests;      /* SDO requests executed */
+    lie_fn lie;
+    unsigned lies, lie_from; /* answers seen by `lie`; from which one on it lies */
+    unsigned emergency_before; /* an emergency goes out before that answer */
+};
+
+static slave_t slave;
+static cm1e_coe_client_t client;
+static uint8_t buffer[STORE];
+static int64_t now_ns;
+
+/* ---- the server --------------------------------------------------------------------------------------------------------- */
+
+static void put_in(slave_t *s, const uint8_t *message)
+{
+    if (s->in_full) {
+        memcpy(s->queued, message, MAILBOX);
+        s->queued_valid = true;
+    } else {
+        memcpy(s->in, message, MAILBOX);
+        s->in_full = true;
+    }
+}
+
+static void send_answer(slave_t *s, uint8_t *answer, uint16_t body_bytes)
+{
+    cm1e_put_u16(answer, body_bytes);
+    s->counter = (uint8_t)(s->counter % 7 + 1);
+    answer[5] = (uint8_t)(3 | s->counter << 4);
+    s->lies++;
+    if (s->lie && s->lies >= s->lie_from && !s->lie(s, answer))
+        return;
+    put_in(s, answer);
+}
+
+static void send_emergency(slave_t *s)
+{
+    uint8_t message[MAILBOX] = {0};
+    cm1e_put_u16(message, 10);
+    s->counter = (uint8_t)(s->counter % 7 + 1);
+    message[5] = (uint8_t)(3 | s->counter << 4);
+    cm1e_put_u16(message + 6, 1 << 12);
+    cm1e_put_u16(message + 8, 0xFF05);
+    message[10] = 0x81;
+    put_in(s, message);
+}
+
+static void answer_abort(slave_t *s, const uint8_t *request, uint32_t code)
+{
+    uint8_t answer[MAILBOX] = {0};
+    cm1e_put_u16(answer + 6, 2 << 12);
+    answer[8] = 0x80;
+    memcpy(answer + 9, request + 9, 3);
+    cm1e_put_u32(answer + 12, code);
+    send_answer(s, answer, 10);
+}
+
+static void serve_upload(slave_t *s, const uint8_t *request)
+{
+    uint8_t answer[MAILBOX] = {0};
+    uint8_t fence[4] = {1, 2, 3, 4};
+    const bool ours = cm1e_get_u16(request + 9) == 0x2000;
+    const uint8_t *value = ours ? s->store : fence;
+    const size_t size = ours ? s->size : sizeof fence;
+    cm1e_put_u16(answer + 6, 3 << 12);
+    memcpy(answer + 9, request + 9, 3);
+    if (size >= 1 && size <= 4) {
+        answer[8] = (uint8_t)(0x43 | (4 - size) << 2);
+        memcpy(answer + 12, value, size);
+        send_answer(s, answer, 10);
+        return;
+    }
+    const size_t room = MAILBOX - 16, first = size < room ? size : room;
+    answer[8] = 0x41;
+    cm1e_put_u32(answer + 12, (uint32_t)size);
+    memcpy(answer + 16, value, first);
+    s->outgoing = first;
+    send_answer(s, answer, (uint16_t)(10 + first));
+}
+
+static void serve_upload_segment(slave_t *s, const uint8_t *request)
+{
+    uint8_t answer[MAILBOX] = {0};
+    const size_t room = MAILBOX - 9, rest = s->size - s->outgoing, bytes = rest < room ? rest : room;
+    const size_t unused = bytes < 7 ? 7 - bytes : 0;
+    cm1e_put_u16(answer + 6, 3 << 12);
+    answer[8] = (uint8_t)((request[8] & 0x10) | unused << 1 | (bytes == rest));
+    memcpy(answer + 9, s->store + s->outgoing, bytes);
+    s->outgoing += bytes;
+    send_answer(s, answer, (uint16_t)(3 + bytes + unused));
+}
+
+static void take_bytes(slave_t *s, const uint8_t *bytes, size_t size, bool last)
+{
+    TEST_ASSERT_TRUE(s->incoming_size + size <= s->incoming_total);
+    memcpy(s->incoming + s->incoming_size, bytes, size);
+    s->incoming_size += size;
+    if (!last)
+        return;
+    TEST_ASSERT_EQUAL_size_t(s->incoming_total, s->incoming_size);
+    memcpy(s->store, s->incoming, s->incoming_size);
+    s->size = s->incoming_size;
+    s->writes++;
+}
+
+static void serve_download(slave_t *s, const uint8_t *request, uint16_t length)
+{
+    uint8_t answer[MAILBOX] = {0};
+    s->incoming_size = 0;
+    if (request[8] & 2) {
+        s->incoming_total = 4u - (request[8] >> 2 & 3);
+        take_bytes(s, request + 12, s->incoming_total, true);
+    } else {
+        s->incoming_total = cm1e_get_u32(request + 12);
+        const size_t given = length - 10u;
+        take_bytes(s, request + 16, given, given == s->incoming_total);
+    }
+    cm1e_put_u16(answer + 6, 3 << 12);
+    answer[8] = 0x60;
+    memcpy(answer + 9, request + 9, 3);
+    send_answer(s, answer, 10);
+}
+
+static void serve_download_segment(slave_t *s, const uint8_t *request, uint16_t length)
+{
+    uint8_t answer[MAILBOX] = {0};
+    const size_t bytes = length == 10 ? 7u - (request[8] >> 1 & 7) : length - 3u;
+    take_bytes(s, request + 9, bytes, request[8] & 1);
+    cm1e_put_u16(answer + 6, 3 << 12);
+    answer[8] = (uint8_t)(0x20 | (request[8] & 0x10));
+    send_answer(s, answer, 10);
+}
+
+static void serve(slave_t *s)
+{
+    const uint8_t *request = s->out;
+    const uint16_t length = cm1e_get_u16(request), index = cm1e_get_u16(request + 9);
+    const uint8_t counter = request[5] >> 4;
+    s->out_full = false;
+    TEST_ASSERT_TRUE(length <= MAILBOX - 6);
+    TEST_ASSERT_TRUE(length >= 10);
+    TEST_ASSERT_EQUAL_HEX8(3, request[5] & 0x0F);
+    TEST_ASSERT_TRUE(counter >= 1 && counter <= 7);
+    if (counter == s->seen_counter)
+        return; /* a repeated message */
+    s->seen_counter = counter;
+    s->requests++;
+    if (s->emergency_before && s->requests >= s->emergency_before)
+        send_emergency(s);
+    const unsigned specifier = request[8] >> 5;
+    const bool initiates = specifier == 1 || specifier == 2;
+    if (initiates && index != 0x2000 && index != 0x1000 && index != 0x1018)
+        answer_abort(s, request, 0x06020000);
+    else if (specifier == 2)
+        serve_upload(s, request);
+    else if (specifier == 3)
+        serve_upload_segment(s, request);
+    else if (specifier == 1)
+        serve_download(s, request, length);
+    else
+        serve_download_segment(s, request, length);
+}
+
+/* ---- the controller ------------------------------------------------------------------------------------------------------ */
+
+static void repeat_last(slave_t *s, uint8_t activate)
+{
+    if ((activate ^ s->activate) & 2) {
+        const bool there = s->in_full && !memcmp(s->in, s->last, MAILBOX);
+        if (s->last_valid && !there) { /* what was read last comes again, before what waits */
+            if (s->in_full) {
+                memcpy(s->queued, s->in, MAILBOX);
+                s->queued_valid = true;
+            }
+            memcpy(s->in, s->last, MAILBOX);
+            s->in_full = true;
+        }
+        s->acknowledge = activate & 2;
+    }
+    s->activate = activate;
+}
+
+static void read_sm(const slave_t *s, uint8_t *out, uint8_t *in)
+{
+    if (out)
+        out[5] = s->out_full ? 8 : 0;
+    in[5] = s->in_full ? 8 : 0;
+    in[6] = s->activate;
+    in[7] = s->acknowledge ? 2 : 0;
+}
+
+static void handle(slave_t *s, cm1e_datagram_t *d)
+{
+    TEST_ASSERT_EQUAL_HEX16(STATION, d->address);
+    d->working_counter = 1;
+    if (s->out_full && s->wait-- == 0)
+        serve(s);
+    if (!s->in_full && s->queued_valid) {
+        memcpy(s->in, s->queued, MAILBOX);
+        s->in_full = true;
+        s->queued_valid = false;
+    }
+    if (d->command == COMMAND_FPWR && d->offset == OUT) {
+        TEST_ASSERT_EQUAL_UINT16(MAILBOX, d->length);
+        d->working_counter = s->out_full ? 0 : 1;
+        if (!s->out_full) {
+            memcpy(s->out, d->data, MAILBOX);
+            s->wait = s->latency;
+            s->out_full = true;
+        }
+    } else if (d->command == COMMAND_FPRD && d->offset == IN) {
+        TEST_ASSERT_EQUAL_UINT16(MAILBOX, d->length);
+        d->working_counter = s->in_full ? 1 : 0;
+        if (s->in_full) {
+            memcpy(d->data, s->in, MAILBOX);
+            memcpy(s->last, s->in, MAILBOX);
+            s->last_valid = true;
+            s->in_full = false;
+        }
+    } else if (d->command == COMMAND_FPRD && d->offset == REG_SM0) {
+        memset(d->data, 0, 16);
+        read_sm(s, d->data, d->data + 8);
+    } else if (d->command == COMMAND_FPRD && d->offset == REG_SM1) {
+        memset(d->data, 0, 8);
+        read_sm(s, NULL, d->data);
+    } else if (d->command == COMMAND_FPWR && d->offset == REG_SM1 + 6) {
+        repeat_last(s, d->data[0]);
+    } else {
+        TEST_FAIL_MESSAGE("a datagram that nobody should send");
+    }
+}
+
+/* ---- running --------------------------------------------------------------------------------------------------------------- */
+
+/** Which datagrams get lost, and on which way. */
+static int (*loss)(unsigned n);
+static unsigned datagrams;
+
+static int no_loss(unsigned n)
+{
+    (void)n;
+    return WAY_OK;
+}
+
+static unsigned lost_1, lost_2;
+static int way_1, way_2;
+static int two_losses(unsigned n) { return n == lost_1 ? way_1 : n == lost_2 ? way_2 : WAY_OK; }
+static int random_losses(unsigned n)
+{
+    (void)n;
+    return rand() % 10 < 3 ? 1 + rand() % 2 : WAY_OK;
+}
+
+/** Runs until the transfer ends; every run must. */
+static void run(cm1e_sdo_t *sdo)
+{
+    static cm1e_datagram_t d;
+    datagrams = 0;
+    sdo->state = CM1E_SDO_BUSY;
+    cm1e_coe_begin(&client, sdo, now_ns);
+    while (cm1e_sdo_state(sdo) == CM1E_SDO_BUSY) {
+        now_ns += STEP_NS;
+        if (!cm1e_coe_next(&client, &d, now_ns))
+            continue;
+        const int way = loss(++datagrams);
+        uint8_t sent[MAILBOX];
+        memcpy(sent, d.data, MAILBOX);
+        if (way != WAY_THERE)
+            handle(&slave, &d);
+        if (way != WAY_OK) {
+            memset(d.data, 0xEE, MAILBOX);
+            d.working_counter = DATAGRAM_LOST;
+        }
+        cm1e_coe_result(&client, &d, now_ns);
+        TEST_ASSERT_TRUE_MESSAGE(datagrams < 20000, "endless");
+    }
+    TEST_ASSERT_TRUE(cm1e_coe_idle(&client));
+}
+
+static void fill(uint8_t *bytes, size_t size, unsigned seed)
+{
+    for (size_t i = 0; i < size; i++)
+        bytes[i] = (uint8_t)(seed + i * 7 + i / 251);
+}
+
+void setUp(void)
+{
+    slave = (slave_t){.latency = 2, .size = 4};
+    fill(slave.store, STORE, 1);
+    client = (cm1e_coe_client_t){.mailbox = {.station = STATION, .out_start = OUT, .out_length = MAILBOX,
+                                             .in_start = IN, .in_length = MAILBOX}};
+    loss = no_loss;
+    memset(buffer, 0xCC, sizeof buffer);
+}
+void tearDown(void) {}
+
+static cm1e_sdo_t reading(size_t room)
+{
+    return (cm1e_sdo_t){.position = 1, .index = 0x2000, .subindex = 1, .data = buffer, .size = room};
+}
+static cm1e_sdo_t writing(size_t size)
+{
+    return (cm1e_sdo_t){.position = 1, .index = 0x2000, .subindex = 1, .write = true, .data = buffer, .size = size};
+}
+
+/* ---- transfers --------------------------------------------------------------------------------------------------------------- */
+
+static void test_read_of_every_size_gives_the_bytes_of_the_slave(void)
+{
+    for (size_t size = 0; size <= 400; size++) {
+        setUp();
+        slave.size = size;
+        cm1e_sdo_t sdo = reading(sizeof buffer);
+        run(&sdo);
+        TEST_ASSERT_EQUAL_INT(CM1E_SDO_DONE, cm1e_sdo_state(&sdo));
+        TEST_ASSERT_EQUAL_size_t(size, sdo.size);
+        TEST_ASSERT_EQUAL_INT(0, memcmp(slave.store, buffer, size));
+        TEST_ASSERT_EACH_EQUAL_HEX8(0xCC, buffer + size, 100);
+    }
+}
+
+static void test_write_of_every_size_arrives_once(void)
+{
+    for (size_t size = 0; size <= 400; size++) {
+        setUp();
+        fill(buffer, size, 77);
+        cm1e_sdo_t sdo = writing(size);
+        run(&sdo);
+        TEST_ASSERT_EQUAL_INT(CM1E_SDO_DONE, cm1e_sdo_state(&sdo));
+        TEST_ASSERT_EQUAL_UINT(1, slave.writes);
+        TEST_ASSERT_EQUAL_size_t(size, slave.size);
+        TEST_ASSERT_EQUAL_INT(0, memcmp(slave.store, buffer, size));
+    }
+}
+
+static void test_read_into_a_buffer_that_just_fits_or_is_a_byte_too_small(void)
+{
+    static const size_t sizes[] = {1, 2, 3, 4, 5, 48, 49, 200};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        setUp();
+        slave.size = sizes[i];
+        cm1e_sdo_t sdo = reading(sizes[i]);
+        run(&sdo);
+        TEST_ASSERT_EQUAL_INT(CM1E_SDO_DONE, cm1e_sdo_state(&sdo));
+        sdo = reading(sizes[i] - 1);
+        memset(buffer, 0xCC, sizeof buffer);
+        run(&sdo);
+        TEST_ASSERT_EQUAL_INT(CM1E_SDO_ERROR, cm1e_sdo_state(&sdo));
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, sdo.error);
+        TEST_ASSERT_EACH_EQUAL_HEX8(0xCC, buffer + sizes[i] - 1, 50);
+        /* and the client is fit for the next */
+        slave.size = 4;
+        sdo = reading(4);
+        run(&sdo);
+        TEST_ASSERT_EQUAL_INT(CM1E_SDO_DONE, cm1e_sdo_state(&sdo));
+    }
+}
+
+static void test_abort_gives_its_code(void)
+{
+    cm1e_sdo_t sdo = reading(4);
+    sdo.index = 0x3000;
+    run(&sdo);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_SDO_ABORT, sdo.error);
+    TEST_ASSERT_EQUAL_HEX32(0x06020000, sdo.abort_code);
+}
+
+static void test_emergency_in_between_is_taken_and_does_not_disturb(void)
+{
+    slave.emergency_before = 1;
+    slave.size = 200;
+    cm1e_sdo_t sdo = reading(200);
+    run(&sdo);
+    TEST_ASSERT_EQUAL_INT(CM1E_SDO_DONE, cm1e_sdo_state(&sdo));
+    TEST_ASSERT_EQUAL_INT(0, memcmp(slave.store, buffer, 200));
+    TEST_ASSERT_EQUAL_UINT(slave.requests, client.emergency.count);
+    TEST_ASSERT_EQUAL_HEX16(0xFF05, client.emergency.code);
+    TEST_ASSERT_EQUAL_HEX8(0x81, client.emergency.error_register);
+}
+
+/* ---- lost frames ------------------------------------------------------------------------------------------------------------- */
+
+static void check_with_losses(bool write, size_t size, const char *where)
+{
+    setUp();
+    if (write) {
+        fill(buffer, size, 77);
+        cm1e_sdo_t sdo = writing(size);
+        loss = two_losses;
+        run(&sdo);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, sdo.error, where);
+        TEST_ASSERT_EQUAL_UINT_MESSAGE(1, slave.writes, where);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, memcmp(slave.store, buffer, size), where);
+    } else {
+        slave.size = size;
+        cm1e_sdo_t sdo = reading(sizeof buffer);
+        loss = two_losses;
+        run(&sdo);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, sdo.error, where);
+        TEST_ASSERT_EQUAL_size_t(size, sdo.size);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, memcmp(slave.store, buffer, size), where);
+    }
+}
+
+static void test_any_two_lost_frames_neither_lose_nor_double_a_transfer(void)
+{
+    static const size_t sizes[] = {4, 30, 150};
+    for (int write = 0; write < 2; write++) {
+        for (size_t i = 0; i < 3; i++) {
+            lost_1 = lost_2 = 0;
+            check_with_losses(write, sizes[i], "no loss");
+            const unsigned last = datagrams;
+            TEST_ASSERT_TRUE(last >= 4);
+            for (lost_1 = 1; lost_1 <= last; lost_1++) {
+                for (lost_2 = lost_1 + 1; lost_2 <= last + 8; lost_2++) {
+                    for (way_1 = WAY_THERE; way_1 <= WAY_BACK; way_1++) {
+                        for (way_2 = WAY_OK; way_2 <= WAY_BACK; way_2++) {
+                            char where[80];
+                            snprintf(where, sizeof where, "write %d, %zu bytes, lost %u (%d) and %u (%d)", write,
+                                     sizes[i], lost_1, way_1, lost_2, way_2);
+                            check_with_losses(write, sizes[i], where);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+static void test_three_in_ten_frames_lost_is_slow_but_right(void)
+{
+    const unsigned seed = 20250301;
+    printf("seed %u\n", seed);
+    srand(seed);
+    unsigned timeouts = 0;
+    for (int round = 0; round < 2000; round++) {
+        const size_t size = (size_t)(rand() % 300);
+        const bool write = rand() % 2;
+        const unsigned writes = slave.writes;
+        slave.latency = (unsigned)(rand() % 5);
+        loss = random_losses;
+        cm1e_sdo_t sdo = write ? writing(size) : reading(sizeof buffer);
+        if (write) {
+            fill(buffer, size, (unsigned)round);
+        } else {
+            slave.size = size;
+            fill(slave.store, size, (unsigned)round);
+        }
+        sdo.timeout_ns = 200 * STEP_NS;
+        run(&sdo);
+        if (sdo.error != CM1E_OK) {
+            TEST_ASSERT_EQUAL_INT(CM1E_ERROR_TIMEOUT, sdo.error);
+            timeouts++;
+            continue;
+        }
+        TEST_ASSERT_EQUAL_UINT(writes + (write ? 1 : 0), slave.writes);
+        TEST_ASSERT_EQUAL_size_t(size, slave.size);
+        TEST_ASSERT_EQUAL_INT(0, memcmp(slave.store, buffer, size));
+    }
+    TEST_ASSERT_TRUE(timeouts < 1000);
+}
+
+/* ---- time ---------------------------------------------------------------------------------------------------------------------- */
+
+static bool say_nothing(slave_t *s, uint8_t *answer)
+{
+    (void)s, (void)answer;
+    return false;
+}
+
+static uint8_t kept_answer[MAILBOX];
+static bool keep_back(slave_t *s, uint8_t *answer)
+{
+    if (s->lies > 1)
+        return true;
+    memcpy(kept_answer, answer, MAILBOX);
+    return false;
+}
+
+static void test_silent_slave_ends_at_the_timeout(void)
+{
+    slave.lie = say_nothing;
+    slave.lie_from = 1;
+    const int64_t begin_ns = now_ns;
+    cm1e_sdo_t sdo = reading(4);
+    sdo.timeout_ns = 50 * STEP_NS;
+    run(&sdo);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_TIMEOUT, sdo.error);
+    TEST_ASSERT_EQUAL_INT64(50 * STEP_NS, now_ns - begin_ns);
+    sdo = reading(4);
+    const int64_t again_ns = now_ns;
+    run(&sdo);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_TIMEOUT, sdo.error);
+    TEST_ASSERT_EQUAL_INT64(1000000000, now_ns - again_ns); /* the default */
+}
+
+static void test_answer_after_the_timeout_is_not_taken_for_the_next_one(void)
+{
+    slave.lie = keep_back;
+    slave.lie_from = 1;
+    fill(slave.store, 4, 1);
+    cm1e_sdo_t sdo = reading(4);
+    sdo.timeout_ns = 50 * STEP_NS;
+    run(&sdo);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_TIMEOUT, sdo.error);
+    /* The value changes, then the old answer comes, to the very same question. */
+    fill(slave.store, 4, 99);
+    put_in(&slave, kept_answer);
+    sdo = reading(4);
+    run(&sdo);
+    TEST_ASSERT_EQUAL_INT(CM1E_SDO_DONE, cm1e_sdo_state(&sdo));
+    TEST_ASSERT_EQUAL_INT(0, memcmp(slave.store, buffer, 4));
+}
+
+static void test_reset_ends_the_transfer_and_starts_the_counters_anew(void)
+{
+    static cm1e_datagram_t d;
+    cm1e_sdo_t sdo = reading(4);
+    sdo.state = CM1E_SDO_BUSY;
+    cm1e_coe_begin(&client, &sdo, now_ns);
+    TEST_ASSERT_TRUE(cm1e_coe_next(&client, &d, now_ns));
+    cm1e_coe_reset(&client, CM1E_ERROR_BUS_LOST);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_BUS_LOST, sdo.error);
+    d.working_counter = 1;
+    cm1e_coe_result(&client, &d, now_ns); /* comes late, must not matter */
+    slave.seen_counter = 0;
+    sdo = reading(4);
+    run(&sdo);
+    TEST_ASSERT_EQUAL_INT(CM1E_SDO_DONE, cm1e_sdo_state(&sdo));
+    TEST_ASSERT_EQUAL_HEX8(1, slave.seen_counter);
+}
+
+static void test_mailbox_that_is_too_small_is_unsupported(void)
+{
+    static const uint16_t sizes[] = {0, 6, 15, 1487};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        setUp();
+        client.mailbox.in_length = sizes[i];
+        cm1e_sdo_t sdo = reading(4);
+        run(&sdo);
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_UNSUPPORTED, sdo.error);
+        setUp();
+        client.mailbox.out_length = sizes[i];
+        sdo = reading(4);
+        run(&sdo);
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_UNSUPPORTED, sdo.error);
+    }
+}
+
+/* ---- lies ------------------------------------------------------------------------------------------------------------------------- */
+
+#define LIE(name, change)                                                                                              \
+    static bool name(slave_t *s, uint8_t *a)                                                                           \
+    {                                                                                                                  \
+        (void)s;                                                                                                       \
+        change;                                                                                                        \
+        return true;                                                                                                   \
+    }
+LIE(lie_index, a[9] ^= 1)
+LIE(lie_subindex, a[11] ^= 1)
+LIE(lie_type, a[5] = (uint8_t)((a[5] & 0xF0) | 2))
+LIE(lie_error_reply, (a[5] &= 0xF0, cm1e_put_u16(a, 4), cm1e_put_u16(a + 6, 1), cm1e_put_u16(a + 8, 5)))
+LIE(lie_service, a[7] = 0x50)
+LIE(lie_as_request, a[7] = 0x20)
+LIE(lie_command_7, a[8] |= 0xE0)
+LIE(lie_command_other, a[8] ^= 0x20)
+LIE(lie_toggle, a[8] ^= 0x10)
+LIE(lie_length_0, cm1e_put_u16(a, 0))
+LIE(lie_length_1, cm1e_put_u16(a, 1))
+LIE(lie_length_2, cm1e_put_u16(a, 2))
+LIE(lie_length_3, cm1e_put_u16(a, 3))
+LIE(lie_length_9, cm1e_put_u16(a, 9))
+LIE(lie_length_huge, cm1e_put_u16(a, 0xFFFF))
+LIE(lie_length_one_too_many, cm1e_put_u16(a, MAILBOX - 5))
+LIE(lie_total_huge, cm1e_put_u32(a + 12, 0xFFFFFFFF))
+LIE(lie_total_more, cm1e_put_u32(a + 12, cm1e_get_u32(a + 12) + 1))
+LIE(lie_total_less, cm1e_put_u32(a + 12, cm1e_get_u32(a + 12) - 1))
+LIE(lie_never_last, a[8] &= 0xFE)
+LIE(lie_last_at_once, a[8] |= 1)
+LIE(lie_empty_segment, (cm1e_put_u16(a, 10), a[8] = (uint8_t)((a[8] & 0xF0) | 7 << 1)))
+LIE(lie_everything_zero, memset(a, 0, MAILBOX))
+LIE(lie_everything_ff, memset(a, 0xFF, MAILBOX))
+
+typedef struct lie_case {
+    const char *name;
+    lie_fn lie;
+    bool write;
+    size_t size;
+    unsigned from;      /* which answer, from 1 */
+    cm1e_error_t error; /* expected */
+} lie_case_t;
+
+static const lie_case_t lies[] = {
+    {"read: index", lie_index, false, 4, 1, CM1E_ERROR_TIMEOUT},
+    {"read: subindex", lie_subindex, false, 4, 1, CM1E_ERROR_TIMEOUT},
+    {"read: mailbox type", lie_type, false, 4, 1, CM1E_ERROR_TIMEOUT},
+    {"read: mailbox error", lie_error_reply, false, 4, 1, CM1E_ERROR_BUS_MAILBOX},
+    {"read: service", lie_service, false, 4, 1, CM1E_ERROR_TIMEOUT},
+    {"read: answer as a request", lie_as_request, false, 4, 1, CM1E_ERROR_TIMEOUT},
+    {"read: command 7", lie_command_7, false, 4, 1, CM1E_ERROR_BUS_MAILBOX},
+    {"read: answered as a write", lie_command_other, false, 4, 1, CM1E_ERROR_BUS_MAILBOX},
+    {"read: length 0", lie_length_0, false, 4, 1, CM1E_ERROR_TIMEOUT},
+    {"read: length 1", lie_length_1, false, 4, 1, CM1E_ERROR_TIMEOUT},
+    {"read: length 2", lie_length_2, false, 4, 1, CM1E_ERROR_BUS_MAILBOX},
+    {"read: length 3", lie_length_3, false, 4, 1, CM1E_ERROR_BUS_MAILBOX},
+    {"read: length 9", lie_length_9, false, 4, 1, CM1E_ERROR_BUS_MAILBOX},
+    {"read: length 65535", lie_length_huge, false, 4, 1, CM1E_ERROR_BUS_MAILBOX},
+    {"read: length beyond the mailbox", lie_length_one_too_many, false, 4, 1, CM1E_ERROR_BUS_MAILBOX},
+    {"read: zeros", lie_everything_zero, false, 4, 1, CM1E_ERROR_BUS_MAILBOX},
+    {"read: ones", lie_everything_ff, false, 4, 1, CM1E_ERROR_BUS_MAILBOX},
+    {"segmented read: huge total", lie_total_huge, false, 150, 1, CM1E_ERROR_INVALID_ARGUMENT},
+    {"segmented read: total one more", lie_total_more, false, 150, 1, CM1E_ERROR_BUS_MAILBOX},
+    {"segmented read: total one less", lie_total_less, false, 150, 1, CM1E_ERROR_BUS_MAILBOX},
+    {"segmented read: toggle 1", lie_toggle, false, 150, 2, CM1E_ERROR_BUS_MAILBOX},
+    {"segmented read: toggle 2", lie_toggle, false, 150, 3, CM1E_ERROR_BUS_MAILBOX},
+    {"segmented read: command", lie_command_other, false, 150, 2, CM1E_ERROR_BUS_MAILBOX},
+    {"segmented read: length 0", lie_length_0, false, 150, 2, CM1E_ERROR_TIMEOUT},
+    {"segmented read: length 2", lie_length_2, false, 150, 2, CM1E_ERROR_BUS_MAILBOX},
+    {"segmented read: length 3", lie_length_3, false, 150, 2, CM1E_ERROR_BUS_MAILBOX},
+    {"segmented read: length 65535", lie_length_huge, false, 150, 2, CM1E_ERROR_BUS_MAILBOX},
+    {"segmented read: never the last", lie_never_last, false, 150, 2, CM1E_ERROR_BUS_MAILBOX},
+    {"segmented read: last at once", lie_last_at_once, false, 150, 2, CM1E_ERROR_BUS_MAILBOX},
+    {"segmented read: empty segments", lie_empty_segment, false, 150, 2, CM1E_ERROR_BUS_MAILBOX},
+    {"segmented read: mailbox error", lie_error_reply, false, 150, 3, CM1E_ERROR_BUS_MAILBOX},
+    {"write: index", lie_index, true, 4, 1, CM1E_ERROR_TIMEOUT},
+    {"write: subindex", lie_subindex, true, 4, 1, CM1E_ERROR_TIMEOUT},
+    {"write: answered as a read", lie_command_other, true, 4, 1, CM1E_ERROR_BUS_MAILBOX},
+    {"write: length 9", lie_length_9, true, 4, 1, CM1E_ERROR_BUS_MAILBOX},
+    {"segmented write: toggle", lie_toggle, true, 150, 2, CM1E_ERROR_BUS_MAILBOX},
+    {"segmented write: command", lie_command_other, true, 150, 2, CM1E_ERROR_BUS_MAILBOX},
+    {"segmented write: mailbox error", lie_error_reply, true, 150, 2, CM1E_ERROR_BUS_MAILBOX},
+};
+
+static void test_lies_of_a_slave_are_refused_with_the_right_error(void)
+{
+    for (size_t i = 0; i < sizeof lies / sizeof lies[0]; i++) {
+        const lie_case_t *c = &lies[i];
+        setUp();
+        slave.size = c->size;
+        slave.lie = c->lie;
+        slave.lie_from = c->from;
+        cm1e_sdo_t sdo = c->write ? writing(c->size) : reading(400);
+        run(&sdo);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_SDO_ERROR, cm1e_sdo_state(&sdo), c->name);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(c->error, sdo.error, c->name);
+        TEST_ASSERT_EACH_EQUAL_HEX8_MESSAGE(0xCC, buffer + 400, 100, c->name);
+        /* A slave that comes to its senses is believed again, and nothing old is taken for new. */
+        slave.lie = NULL;
+        slave.size = 4;
+        fill(slave.store, 4, 200);
+        sdo = reading(4);
+        run(&sdo);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, sdo.error, c->name);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, memcmp(slave.store, buffer, 4), c->name);
+    }
+}
+
+static bool lie_at_random(slave_t *s, uint8_t *a)
+{
+    (void)s;
+    for (int n = 1 + rand() % 3; n > 0; n--)
+        a[rand() % 16] = (uint8_t)rand();
+    return rand() % 8 != 0;
+}
+
+static void test_random_answers_never_overrun_nor_hang(void)
+{
+    const unsigned seed = 20250302;
+    printf("seed %u\n", seed);
+    srand(seed);
+    for (int round = 0; round < 20000; round++) {
+        setUp();
+        slave.size = (size_t)(rand() % 200);
+        slave.lie = lie_at_random;
+        slave.lie_from = 1u + (unsigned)(rand() % 4);
+        const size_t room = (size_t)(rand() % 200);
+        cm1e_sdo_t sdo = reading(room);
+        sdo.timeout_ns = 40 * STEP_NS;
+        run(&sdo);
+        TEST_ASSERT_EACH_EQUAL_HEX8(0xCC, buffer + room, 64);
+        if (sdo.error == CM1E_OK)
+            TEST_ASSERT_TRUE(sdo.size <= room);
+    }
+}
+
+static bool chatter(slave_t *s, uint8_t *a)
+{
+    a[9] ^= 1;
+    memcpy(s->queued, a, MAILBOX);
+    s->queued_valid = true;
+    return true;
+}
+
+static void test_slave_that_never_stops_talking_is_given_up(void)
+{
+    cm1e_sdo_t sdo = reading(4);
+    static cm1e_datagram_t d;
+    slave.lie = chatter;
+    slave.lie_from = 1;
+    sdo.state = CM1E_SDO_BUSY;
+    cm1e_coe_begin(&client, &sdo, now_ns);
+    unsigned n = 0;
+    while (cm1e_sdo_state(&sdo) == CM1E_SDO_BUSY) { /* time stands still: the number of messages is the bound */
+        TEST_ASSERT_TRUE(cm1e_coe_next(&client, &d, now_ns));
+        if (slave.lies)
+            slave.queued_valid = true;
+        handle(&slave, &d);
+        cm1e_coe_result(&client, &d, now_ns);
+        TEST_ASSERT_TRUE(++n < 1000);
+    }
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_BUS_MAILBOX, sdo.error);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_read_of_every_size_gives_the_bytes_of_the_slave);
+    RUN_TEST(test_write_of_every_size_arrives_once);
+    RUN_TEST(test_read_into_a_buffer_that_just_fits_or_is_a_byte_too_small);
+    RUN_TEST(test_abort_gives_its_code);
+    RUN_TEST(test_emergency_in_between_is_taken_and_does_not_disturb);
+    RUN_TEST(test_any_two_lost_frames_neither_lose_nor_double_a_transfer);
+    RUN_TEST(test_three_in_ten_frames_lost_is_slow_but_right);
+    RUN_TEST(test_silent_slave_ends_at_the_timeout);
+    RUN_TEST(test_answer_after_the_timeout_is_not_taken_for_the_next_one);
+    RUN_TEST(test_reset_ends_the_transfer_and_starts_the_counters_anew);
+    RUN_TEST(test_mailbox_that_is_too_small_is_unsupported);
+    RUN_TEST(test_lies_of_a_slave_are_refused_with_the_right_error);
+    RUN_TEST(test_random_answers_never_overrun_nor_hang);
+    RUN_TEST(test_slave_that_never_stops_talking_is_given_up);
+    return UNITY_END();
+}
