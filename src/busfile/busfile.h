@@ -23,7 +23,7 @@ typedef struct cm1e_busfile_problem {
     char text[400];
 } cm1e_busfile_problem_t;
 
-/* ---- document.c: bytes and nodes ---------------------------------------------------------------------------------- */
+/* ---- document.c: bytes and nodes --------------------------------------------------------------------------------- */
 
 enum { CM1E_BUSFILE_MAX_SIZE = 1 << 20 };
 
@@ -35,7 +35,7 @@ cm1e_error_t cm1e_busfile_parse(const uint8_t *bytes, size_t size, yaml_document
 /** Line and column of the node at problem->path, or of the deepest node on the way there that exists. */
 void cm1e_busfile_locate(yaml_document_t *document, cm1e_busfile_problem_t *problem);
 
-/* ---- schema.c, compare.c: keys and types -------------------------------------------------------------------------- */
+/* ---- schema.c, compare.c: keys and types ------------------------------------------------------------------------- */
 
 enum { CM1E_BUSFILE_VELOCITY_COUNTS_PER_S = 1, CM1E_BUSFILE_VELOCITY_COUNTS_PER_MS = 2 };
 
@@ -68,7 +68,7 @@ extern const char *const cm1e_busfile_zero_allowed[];
 /** Compares every node of the document with the schema. Numbers are read in the thread's locale: it must be "C". */
 bool cm1e_busfile_compare(yaml_document_t *document, cm1e_busfile_problem_t *problem);
 
-/* ---- check.c: ranges and contradictions --------------------------------------------------------------------------- */
+/* ---- check.c: ranges and contradictions -------------------------------------------------------------------------- */
 
 /** TRUE: nothing wrong. On FALSE the problem has a path, no line. */
 bool cm1e_busfile_check(const cm1e_bus_config_t *config, cm1e_busfile_problem_t *problem);

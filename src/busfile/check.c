@@ -56,7 +56,7 @@ static bool is_text(const char *text, size_t size)
 #define IS_TEXT(array) is_text(array, sizeof(array))
 #define NO_TEXT "is no text that ends within %zu bytes and holds no control characters"
 
-/* ---- the bus ------------------------------------------------------------------------------------------------------ */
+/* ---- the bus ----------------------------------------------------------------------------------------------------- */
 
 static bool is_simulated(const char *interface_name)
 {
@@ -101,7 +101,7 @@ static bool check_bus(const check_t *check)
     return check_cycle_time(check);
 }
 
-/* ---- numbers of an axis ------------------------------------------------------------------------------------------- */
+/* ---- numbers of an axis ------------------------------------------------------------------------------------------ */
 
 typedef enum scale { AS_IS, IN_COUNTS } scale_t;
 
@@ -178,7 +178,7 @@ static bool check_numbers(const check_t *check)
     return true;
 }
 
-/* ---- what an axis is ---------------------------------------------------------------------------------------------- */
+/* ---- what an axis is --------------------------------------------------------------------------------------------- */
 
 static bool check_unit(check_t *check)
 {
@@ -236,7 +236,8 @@ static bool check_address(const check_t *check)
 {
     const unsigned kind = check->axis->address_kind;
     if (kind > CM1E_ADDRESS_EXPLICIT_ID)
-        return axis_wrong(check, "position", "is of the unknown kind %u; expected position, alias or explicit ID", kind);
+        return axis_wrong(check, "position", "is of the unknown kind %u; expected position, alias or explicit ID",
+                          kind);
     const uint16_t address = address_of(check->axis, check->index);
     if (address == 0 || address > addresses[kind].maximum)
         return axis_wrong(check, addresses[kind].key, "is %u; expected 1 ... %u", address, addresses[kind].maximum);
@@ -271,7 +272,7 @@ static bool check_name(check_t *check)
     return true;
 }
 
-/* ---- contradictions within an axis -------------------------------------------------------------------------------- */
+/* ---- contradictions within an axis ------------------------------------------------------------------------------- */
 
 static bool check_software_limits(const check_t *check)
 {

@@ -24,7 +24,7 @@ static bool wrong(const compare_t *compare, const yaml_node_t *node, const char 
     return false;
 }
 
-/* ---- texts -------------------------------------------------------------------------------------------------------- */
+/* ---- texts ------------------------------------------------------------------------------------------------------- */
 
 enum { SHOWN = 48 };
 
@@ -71,7 +71,7 @@ static void list_strings(char *text, size_t size, const cyaml_schema_value_t *sc
     }
 }
 
-/* ---- scalars ------------------------------------------------------------------------------------------------------ */
+/* ---- scalars ----------------------------------------------------------------------------------------------------- */
 
 static const char *skip_digits(const char *text)
 {
@@ -187,7 +187,7 @@ static bool compare_scalar(const compare_t *compare, const yaml_node_t *node, co
     return true;
 }
 
-/* ---- groups and lists --------------------------------------------------------------------------------------------- */
+/* ---- groups and lists -------------------------------------------------------------------------------------------- */
 
 enum { MAX_FIELDS = 32 };
 

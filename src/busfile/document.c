@@ -8,7 +8,7 @@
 
 #include "busfile/busfile.h"
 
-/* ---- reading ------------------------------------------------------------------------------------------------------ */
+/* ---- reading ----------------------------------------------------------------------------------------------------- */
 
 static cm1e_error_t os_error(cm1e_busfile_problem_t *problem, int number)
 {
@@ -63,7 +63,7 @@ cm1e_error_t cm1e_busfile_read(const char *path, uint8_t **bytes, size_t *size, 
     return error;
 }
 
-/* ---- parsing ------------------------------------------------------------------------------------------------------ */
+/* ---- parsing ----------------------------------------------------------------------------------------------------- */
 
 enum { MAX_DEPTH = 8 }; /* the schema needs 4 */
 
@@ -203,7 +203,7 @@ cm1e_error_t cm1e_busfile_parse(const uint8_t *bytes, size_t size, yaml_document
     return load_error;
 }
 
-/* ---- finding a node ----------------------------------------------------------------------------------------------- */
+/* ---- finding a node ---------------------------------------------------------------------------------------------- */
 
 static yaml_node_t *find_key(yaml_document_t *document, const yaml_node_t *node, const char *key, size_t length)
 {

@@ -5,7 +5,7 @@
 
 #include "busfile/busfile.h"
 
-/* ---- libcyaml ----------------------------------------------------------------------------------------------------- */
+/* ---- libcyaml ---------------------------------------------------------------------------------------------------- */
 
 /* libcyaml tells what is wrong in the first line of its log, and where in the lines of a backtrace, innermost first. */
 static void take_log_line(cyaml_log_t level, void *context, const char *format, va_list args)
@@ -33,13 +33,14 @@ static void set_up_libcyaml(cyaml_config_t *settings, cm1e_busfile_problem_t *pr
     };
 }
 
-/* ---- conversion --------------------------------------------------------------------------------------------------- */
+/* ---- conversion -------------------------------------------------------------------------------------------------- */
 
 static bool convert_address(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *from, uint32_t index,
                             cm1e_busfile_problem_t *problem)
 {
     if ((from->position != 0) + (from->alias != 0) + (from->explicit_id != 0) > 1) {
-        snprintf(problem->path, sizeof problem->path, "axes[%u].%s", index, from->explicit_id ? "explicit_id" : "alias");
+        snprintf(problem->path, sizeof problem->path, "axes[%u].%s", index,
+                 from->explicit_id ? "explicit_id" : "alias");
         snprintf(problem->text, sizeof problem->text,
                  "entry %u of the list is addressed twice; expected one of position, alias and explicit_id", index + 1);
         return false;
@@ -80,7 +81,7 @@ static bool convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from, cm1e_
     return true;
 }
 
-/* ---- loading ------------------------------------------------------------------------------------------------------ */
+/* ---- loading ----------------------------------------------------------------------------------------------------- */
 
 static cm1e_error_t fill(cm1e_bus_config_t *config, const uint8_t *bytes, size_t size,
                          cm1e_busfile_problem_t *problem)

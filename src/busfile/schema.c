@@ -1,7 +1,7 @@
 #include "busfile/busfile.h"
 
-/* The keys of a bus file; docs/BUS-FILE.md explains them. A group of keys (limits, homing ...) is no structure of its own
- * in the configuration, so its fields are offsets in the whole axis. */
+/* The keys of a bus file; docs/BUS-FILE.md explains them. A group of keys (limits, homing ...) is no structure of its
+ * own in the configuration, so its fields are offsets in the whole axis. */
 
 #define COUNT_OF(array) ((uint32_t)(sizeof(array) / sizeof(array)[0]))
 #define OPTIONAL (CYAML_FLAG_OPTIONAL | CYAML_FLAG_STRICT)

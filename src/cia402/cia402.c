@@ -1,6 +1,6 @@
 #include "cia402/cia402.h"
 
-/* UG 6.1.3, to the letter: Switch on disabled is only told from the rest by bits 4 and 5 at 0, unlike in the standard. */
+/* UG 6.1.3, to the letter: Switch on disabled has bits 4 and 5 at 0, which the standard leaves open. */
 const cm1e_fsa_row_t cm1e_fsa_table[CM1E_FSA_STATE_COUNT] = {
     {NOT_READY_TO_SWITCH_ON, 0x004F, 0x0000, "Not ready to switch on"},
     {SWITCH_ON_DISABLED, 0x007F, 0x0040, "Switch on disabled"},
@@ -25,8 +25,8 @@ const char *cm1e_fsa_name(cm1e_fsa_state_t state)
     return (unsigned)state < CM1E_FSA_STATE_COUNT ? cm1e_fsa_table[state].name : "unknown state";
 }
 
-/* The CM1-E ignores the quick stop bit (UG 6.1.2), so no mask below looks at it and the quick stop command, which differs
- * from the others in nothing else, is never decoded. Every controlword is exactly one command. */
+/* The CM1-E ignores the quick stop bit (UG 6.1.2), so no mask below looks at it and the quick stop command, which
+ * differs from the others in nothing else, is never decoded. Every controlword is exactly one command. */
 const cm1e_fsa_command_row_t cm1e_fsa_commands[CM1E_FSA_COMMAND_COUNT] = {
     {COMMAND_DISABLE_VOLTAGE, 0x0082, 0x0000, 0x0000, "Disable voltage"},
     {COMMAND_SHUTDOWN, 0x0083, 0x0002, 0x0006, "Shutdown"},

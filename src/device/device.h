@@ -13,7 +13,7 @@
 
 #include "cm1e/config.h"
 
-/* ---- objects by name: OBJ_<index>_<NAME> -------------------------------------------------------------------------- */
+/* ---- objects by name: OBJ_<index>_<NAME> ------------------------------------------------------------------------- */
 enum {
     OBJ_1000_DEVICE_TYPE = 0x1000,
     OBJ_1001_ERROR_REGISTER = 0x1001,
@@ -57,7 +57,7 @@ enum {
 };
 #define CM1E_K_PARAMETER_HOMING_TORQUE 0x1B /**< sub-index of 0x60F6: K47, % of rated torque (UG 6.2.4) */
 
-/* ---- firmware ----------------------------------------------------------------------------------------------------- */
+/* ---- firmware ---------------------------------------------------------------------------------------------------- */
 
 /** Firmware versions with documented differences (UG 10.1), oldest first. */
 typedef enum cm1e_firmware {
@@ -91,7 +91,7 @@ const cm1e_firmware_info_t *cm1e_firmware_info(cm1e_firmware_t firmware);
  *  version; NULL where it cannot be parsed. */
 const cm1e_firmware_info_t *cm1e_firmware_from_version(const char *version);
 
-/* ---- object dictionary -------------------------------------------------------------------------------------------- */
+/* ---- object dictionary ------------------------------------------------------------------------------------------- */
 
 /** CoE data types (ETG.1020): the numbers go over the wire in SDO information. */
 typedef enum cm1e_data_type {
@@ -140,7 +140,7 @@ const cm1e_object_t *cm1e_device_objects(size_t *count);
 /** NULL: no such object or sub-index in any firmware. */
 const cm1e_entry_t *cm1e_device_entry(uint16_t index, uint8_t subindex);
 
-/* ---- process data ------------------------------------------------------------------------------------------------- */
+/* ---- process data ------------------------------------------------------------------------------------------------ */
 
 /** One entry of a PDO mapping object: index, sub-index, length in bits. */
 typedef struct cm1e_pdo_entry {
@@ -170,7 +170,7 @@ typedef struct cm1e_sync_manager {
 } cm1e_sync_manager_t;
 extern const cm1e_sync_manager_t cm1e_device_sync_managers[4];
 
-/* ---- identity, motors, errors ------------------------------------------------------------------------------------- */
+/* ---- identity, motors, errors ------------------------------------------------------------------------------------ */
 
 #define CM1E_VENDOR_ID 0x00004441u
 #define CM1E_PRODUCT_CODE 0x44412002u
@@ -202,7 +202,8 @@ extern const size_t cm1e_device_error_count;
 const cm1e_device_error_t *cm1e_device_error(uint16_t code);
 
 /** Homing parameter ranges and rounding as the dictionary has them are in cm1e_device_entry(); this rounds a value as
- *  the device does (nearest multiple of round_to, half away from zero, at least kept_minimum), without checking the range. */
+ *  the device does (nearest multiple of round_to, half away from zero, at least kept_minimum), without checking the
+ *  range. */
 int64_t cm1e_entry_round(const cm1e_entry_t *entry, int64_t value);
 
 #endif

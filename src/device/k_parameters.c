@@ -1,7 +1,7 @@
 #include "device/objects.h"
 
-/* UG 7.3.22: 81 parameters of the motor itself, K number = 20 + sub-index. The guide explains two of them, K34 (output 2,
- * UG 7.3.25) and K47 (homing torque, UG 6.2.4), and names no range for the others. */
+/* UG 7.3.22: 81 parameters of the motor itself, K number = 20 + sub-index. The guide explains two of them, K34 (output
+ * 2, UG 7.3.25) and K47 (homing torque, UG 6.2.4), and names no range for the others. */
 #define K(sub, number) ENTRY(OBJ_60F6_K_PARAMETERS, sub, RW, UINT, "K" #number, "", 0, )
 
 const cm1e_entry_t cm1e_device_k_parameters[1 + K_PARAMETER_COUNT] = {

@@ -47,7 +47,7 @@
 #define PEAK_SPEED 2500000
 /* UG 6.2.3: 32767 kpulses/s2; the text of UG 7.3.17 gives the unit pulses/s2. */
 #define PEAK_ACCELERATION 32767000
-/* Kept in units of 1000 pulses/s2, at least one of them (UG 6.2.2). The screenshot's default of 6084 is no such value. */
+/* Kept in units of 1000 pulses/s2, at least one of them (UG 6.2.2). The screenshot's default of 6084 is no multiple. */
 #define ACCELERATION_STEPS .round_to = 1000, .kept_minimum = 1000
 
 static const cm1e_object_t objects[] = {

@@ -6,7 +6,8 @@ enum { MAPPINGS = 4, ORDERS = 2 };
 
 #define PDO_ENTRY(place, index, bits, name) {0x##index, 0, bits},
 #define PDO_COUNT(place, index, bits, name) +1
-#define PDO(index, name, order) {0x##index, name, 0 PDO_##index##_##order(PDO_COUNT), {PDO_##index##_##order(PDO_ENTRY)}}
+#define PDO(index, name, order)                                                                                     \
+    {0x##index, name, 0 PDO_##index##_##order(PDO_COUNT), {PDO_##index##_##order(PDO_ENTRY)}}
 #define PDO_ORDERS(index, name) {PDO(index, name, UG_4_4), PDO(index, name, UG_7_2)}
 
 static const cm1e_pdo_t receive_pdos[MAPPINGS][ORDERS] = {

@@ -47,7 +47,7 @@ static const struct {
     const char *parts[3]; /* of the diagnosis: what was found, what was expected */
 } broken[] = {
     /* wrong keys */
-    {"axes:\n  - name: X\n    speed: 3\n", "3:5", {"unknown key 'speed' in axes[0]", "expected one of: name, position"}},
+    {"axes:\n  - name: X\n    speed: 3\n", "3:5", {"unknown key 'speed' in axes[0]", "one of: name, position"}},
     {"axis:\n  - {}\n", "1:1", {"unknown key 'axis' in the file", "expected one of: bus, axes"}},
     {"bus:\n  intreface: sim\naxes: [{}]\n", "2:3", {"'intreface' in bus", "interface, second_interface"}},
     {"axes:\n  - name: X\n    limits:\n      velocity: 1\n      Jerk: 3\n", "5:7", {"'Jerk' in limits", "jerk"}},
@@ -141,7 +141,8 @@ static const struct {
     {"axes:\n- unit: {counts_per_unit: 5000}\n  homing:\n    velocity: 0.1\n", "4:15",
      {"homing.velocity is 0.1, 500 counts/s", "0.2 ... 100, 1000 ... 500000 counts/s"}},
     {"axes:\n- unit: {counts_per_unit: 5000}\n  homing:\n    velocity: 100.0002\n", "4:15", {"500001 counts/s"}},
-    {"axes:\n- unit: {counts_per_unit: 5000}\n  homing: {acceleration: 1001}\n", "3:26", {"1000 ... 5000000 counts/s2"}},
+    {"axes:\n- unit: {counts_per_unit: 5000}\n  homing: {acceleration: 1001}\n", "3:26",
+     {"1000 ... 5000000 counts/s2"}},
     {"axes:\n- unit: {counts_per_unit: 5000}\n  homing: {offset: 655.3402}\n", "3:20",
      {"3276701 counts", "-3276700 ... 3276700"}},
     {"axes:\n- unit: {counts_per_unit: 5000}\n  homing: {offset: -1e300}\n", "3:20", {"homing.offset"}},
@@ -214,8 +215,8 @@ static void test_every_broken_file_is_told_by_line_and_column(void)
         for (size_t k = 0; k < 3; k++)
             good = good && (!broken[i].parts[k] || strstr(diag.text, broken[i].parts[k]));
         if (!good) {
-            printf("----\n%s=> %s (%d)\nexpected at %s: %s / %s\n", broken[i].text, diag.text + strlen(temporary), error,
-                   broken[i].place, broken[i].parts[0], broken[i].parts[1] ? broken[i].parts[1] : "");
+            printf("----\n%s=> %s (%d)\nexpected at %s: %s / %s\n", broken[i].text, diag.text + strlen(temporary),
+                   error, broken[i].place, broken[i].parts[0], broken[i].parts[1] ? broken[i].parts[1] : "");
             failures++;
         }
     }
@@ -348,7 +349,7 @@ static void test_no_arguments_and_no_diagnosis_are_survived(void)
     TEST_ASSERT_EQUAL(CM1E_ERROR_NOT_FOUND, cm1e_bus_config_load(&config, "/no/such/file", NULL));
 }
 
-/* ---- random damage ------------------------------------------------------------------------------------------------ */
+/* ---- random damage ----------------------------------------------------------------------------------------------- */
 
 static uint64_t seed;
 

@@ -47,7 +47,8 @@ static void test_all_zero_configuration_is_good(void)
 static void test_only_the_four_cycle_times_are_good(void)
 {
     static const int64_t good[] = {0, 200000, 250000, 500000, 1000000};
-    static const int64_t wrong[] = {-1, 1, 199999, 200001, 125000, 300000, 999999, 1000001, 2000000, INT64_MIN, INT64_MAX};
+    static const int64_t wrong[] = {-1,     1,       199999,  200001,    125000,   300000,
+                                    999999, 1000001, 2000000, INT64_MIN, INT64_MAX};
     for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
         config.cycle_time_ns = good[i];
         expect_good();

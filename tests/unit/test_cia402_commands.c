@@ -135,7 +135,7 @@ static void test_enable_operation_alone_reaches_operation_enabled(void)
     TEST_ASSERT_EQUAL(OPERATION_ENABLED, step(state, COMMAND_ENABLE_OPERATION));
 }
 
-/* CiA 402's numbers: where each transition starts and ends in the standard; those of the CM1-E that end elsewhere: 15. */
+/* CiA 402's numbers: where each transition starts and ends; on the CM1-E 15 ends elsewhere than in the standard. */
 static void test_transitions_have_the_standards_numbers(void)
 {
     static const struct {

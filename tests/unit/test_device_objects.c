@@ -65,7 +65,12 @@ static void test_object_code_fits_the_entries(void)
 
 static int64_t type_minimum(cm1e_data_type_t type)
 {
-    return type == CM1E_TYPE_SINT ? INT8_MIN : type == CM1E_TYPE_INT ? INT16_MIN : type == CM1E_TYPE_DINT ? INT32_MIN : 0;
+    switch (type) {
+    case CM1E_TYPE_SINT: return INT8_MIN;
+    case CM1E_TYPE_INT: return INT16_MIN;
+    case CM1E_TYPE_DINT: return INT32_MIN;
+    default: return 0;
+    }
 }
 
 static int64_t type_maximum(cm1e_data_type_t type)
