@@ -1,0 +1,126 @@
+/* The axis from its making to its cycle: inputs, then (after the programs) outputs. */
+#include "axis/axis.h"
+
+#include <stdlib.h>
+
+#include "axis/axis_handle.h"
+#include "axis/axis_private.h"
+
+cm1e_error_t cm1e_axis_create(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t index, cm1e_diag_t *diag)
+{
+    *result = NULL;
+    cm1e_axis_t *axis = calloc(1, sizeof *axis);
+    if (!axis)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for axis %u.", (unsigned)index);
+    cm1e_error_t error = cm1e_drive_init(&axis->drive, bus, index, diag);
+    if (!error) {
+        axis->config = axis->drive.config;
+        error = axis_limits_init(axis, diag);
+    }
+    if (!error && !axis_handle_take(axis, &axis->handle))
+        error = cm1e_diag_set(diag, CM1E_ERROR_FULL, 0, "There are already %d axes in this process.",
+                              CM1E_AXIS_HANDLES);
+    if (error) {
+        free(axis);
+        return error;
+    }
+    const int64_t cycle_ns = cm1e_bus_configuration(bus)->cycle_time_ns;
+    axis->cycle_s = (double)(cycle_ns > 0 ? cycle_ns : MS_IN_NS) * 1e-9;
+    axis->mode = cm1e_drive_supports(&axis->drive, CM1E_MODE_CSP) ? CM1E_MODE_CSP : CM1E_MODE_CSV;
+    axis->drive.command.mode = axis->mode;
+    axis->positive_before = true;
+    axis->reset_state = CM1E_COMMAND_DONE;
+    *result = axis;
+    return CM1E_OK;
+}
+
+void cm1e_axis_destroy(cm1e_axis_t *axis)
+{
+    if (!axis)
+        return;
+    axis_handle_give_back(axis->handle);
+    free(axis);
+}
+
+AXIS_REF_t cm1e_axis_reference(const cm1e_axis_t *axis) { return (AXIS_REF_t){.Handle = axis->handle}; }
+
+const cm1e_axis_config_t *cm1e_axis_configuration(const cm1e_axis_t *axis) { return axis->config; }
+
+static bool powered_state(cm1e_axis_state_t state)
+{
+    return state != CM1E_AXIS_DISABLED && state != CM1E_AXIS_ERROR_STOP;
+}
+
+static void watch_lag(cm1e_axis_t *axis)
+{
+    const cm1e_drive_feedback_t *f = &axis->drive.feedback;
+    const bool own = axis->activity == ACTIVITY_HOLD || axis->activity == ACTIVITY_PROFILE;
+    if (!powered_state(axis->state) || !own || !f->online)
+        return;
+    const double lag = position_minus(axis->set, axis_actual(axis)) / axis->scale;
+    if (lag > axis->max_lag || lag < -axis->max_lag)
+        axis_fail(axis, CM1E_ERROR_AXIS_LAG, lag, axis->max_lag);
+}
+
+/* An axis that is neither under torque nor to be so has nothing to lose while the bus is away. */
+static bool depends_on_bus(const cm1e_axis_t *axis)
+{
+    return axis->drive.command.enable || axis->state != CM1E_AXIS_DISABLED;
+}
+
+void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t health, int64_t now_ns)
+{
+    cm1e_drive_t *drive = &axis->drive;
+    axis->now_ns = now_ns;
+    cm1e_drive_read(drive, received == CM1E_OK, now_ns);
+    if (received == CM1E_OK)
+        axis_track(axis);
+    if (drive->watch.lost || (drive->watch.al_state & 0x0F) == CM1E_AL_INIT)
+        axis->homed = false; /* it may have been without power, and count from somewhere else now */
+    if (cm1e_drive_resetting(drive))
+        return;
+    if (health && depends_on_bus(axis))
+        cm1e_drive_fail(drive, health);
+    else if (powered_state(axis->state) && axis->activity != ACTIVITY_HOMING && !drive->feedback.enabled)
+        cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_ENABLE_LOST); /* an earlier and better reason stays */
+    if (drive->fault.error) {
+        axis_fail(axis, drive->fault.error, 0.0, 0.0);
+        if (axis->error == drive->fault.error)
+            axis->device_error = drive->fault.device_code; /* it may come a cycle later */
+    }
+    watch_lag(axis);
+}
+
+void cm1e_axis_outputs(cm1e_axis_t *axis)
+{
+    axis_reset_step(axis);
+    axis_motion_step(axis);
+    axis_power_step(axis);
+    axis_write_set_point(axis);
+    cm1e_drive_write(&axis->drive);
+}
+
+void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info)
+{
+    const cm1e_drive_feedback_t *f = &axis->drive.feedback;
+    *info = (cm1e_axis_info_t){
+        .state = axis->state,
+        .set_position = axis_units(axis, axis->set),
+        .set_velocity = axis->set_velocity,
+        .set_acceleration = axis->set_acceleration,
+        .actual_position = axis_units(axis, axis_actual(axis)),
+        .actual_velocity = f->velocity / axis->scale,
+        .actual_torque = f->torque * (axis->scale < 0.0 ? -0.1 : 0.1),
+        .position_lag = position_minus(axis->set, axis_actual(axis)) / axis->scale,
+        .powered = cm1e_axis_powered(axis),
+        .homed = axis->homed,
+        .online = f->online,
+        .error = axis->error,
+        .device_error = axis->device_error,
+        .digital_inputs = f->digital_inputs,
+        .statusword = f->statusword,
+        .mode = f->mode,
+        .temperature = f->temperature,
+        .dc_link_voltage = f->dc_link_decivolt * 0.1,
+    };
+}

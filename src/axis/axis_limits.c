@@ -1,0 +1,122 @@
+/* What the axis may do: dynamics, software limits, enabled directions. */
+#include <math.h>
+
+#include "axis/axis_private.h"
+
+/* Nobody means a difference of a hundredth of a count; sums of doubles make smaller ones. */
+static const double tolerance_counts = 0.01;
+static const double relative_tolerance = 1e-9;
+
+static const double default_acceleration_counts = 5e6;
+static const double default_jerk_counts = 1e8;
+static const double default_lag_counts = 25000.0;
+
+static double or_default(double value, double otherwise) { return value > 0.0 ? value : otherwise; }
+
+static bool usable(double value) { return isfinite(value) && value >= 0.0; }
+
+cm1e_error_t axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
+{
+    const cm1e_axis_config_t *c = axis->config;
+    const double counts = or_default(c->counts_per_unit, CM1E_COUNTS_PER_REVOLUTION);
+    if (!usable(c->counts_per_unit) || !usable(c->max_velocity) || !usable(c->max_acceleration) ||
+        !usable(c->max_deceleration) || !usable(c->max_jerk) || !usable(c->max_position_lag) ||
+        !isfinite(c->software_limit_negative) || !isfinite(c->software_limit_positive))
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": a limit or the scale of the axis is negative "
+                             "or not a finite number.", c->name);
+    axis->software_limits = c->software_limit_negative != 0.0 || c->software_limit_positive != 0.0;
+    if (axis->software_limits && !(c->software_limit_negative < c->software_limit_positive))
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": the negative software limit %g is not below "
+                             "the positive one %g.", c->name, c->software_limit_negative, c->software_limit_positive);
+    axis->scale = c->invert ? -counts : counts;
+    axis->lower = c->software_limit_negative;
+    axis->upper = c->software_limit_positive;
+    const double peak = axis->drive.motor->max_velocity_counts_per_s / counts;
+    axis->maximum.velocity = fmin(or_default(c->max_velocity, peak), peak);
+    axis->maximum.acceleration = or_default(c->max_acceleration, default_acceleration_counts / counts);
+    axis->maximum.deceleration = or_default(c->max_deceleration, axis->maximum.acceleration);
+    axis->maximum.jerk = or_default(c->max_jerk, default_jerk_counts / counts);
+    axis->max_lag = or_default(c->max_position_lag, default_lag_counts / counts);
+    return CM1E_OK;
+}
+
+/* One dynamic value: 0 is the maximum; above it, cut or refused. */
+static bool choose(double asked, double maximum, bool stopping, double *value)
+{
+    *value = asked == 0.0 ? maximum : asked;
+    if (!isfinite(asked) || asked < 0.0)
+        return false;
+    if (*value <= maximum * (1.0 + relative_tolerance))
+        return true;
+    *value = maximum;
+    return stopping;
+}
+
+cm1e_error_t axis_limits_of(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, bool stopping,
+                            cm1e_motion_limits_t *limits)
+{
+    const cm1e_motion_limits_t *most = &axis->maximum;
+    const double acceleration = stopping ? 0.0 : command->acceleration;
+    if (!choose(acceleration, most->acceleration, stopping, &limits->acceleration) ||
+        !choose(command->deceleration, most->deceleration, stopping, &limits->deceleration) ||
+        !choose(command->jerk, most->jerk, stopping, &limits->jerk))
+        return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
+    limits->velocity = most->velocity;
+    if (stopping)
+        return CM1E_OK;
+    /* The sign of a velocity is a direction, and only MC_MoveVelocity's has one (3.10). */
+    const double speed = command->kind == CM1E_COMMAND_MOVE_VELOCITY ? fabs(command->velocity) : command->velocity;
+    if (!(speed > 0.0) || !(speed <= most->velocity * (1.0 + relative_tolerance)))
+        return CM1E_ERROR_AXIS_VELOCITY_RANGE;
+    limits->velocity = fmin(speed, most->velocity);
+    return CM1E_OK;
+}
+
+bool axis_direction_enabled(const cm1e_axis_t *axis, double velocity)
+{
+    return velocity > 0.0 ? axis->enable_positive : velocity < 0.0 ? axis->enable_negative : true;
+}
+
+/* A disabled direction allows what the braking needs that is going on anyway, nothing more. */
+static bool directions_allow(const cm1e_axis_t *axis, double lowest, double highest, double tolerance)
+{
+    if (axis->enable_positive && axis->enable_negative)
+        return true;
+    cm1e_profile_t brake;
+    double brake_lowest, brake_highest;
+    if (axis_plan_stop(axis, &axis->maximum, &brake))
+        return false;
+    cm1e_profile_extent(&brake, &brake_lowest, &brake_highest);
+    return (axis->enable_positive || highest <= fmax(brake_highest, 0.0) + tolerance) &&
+           (axis->enable_negative || lowest >= fmin(brake_lowest, 0.0) - tolerance);
+}
+
+cm1e_error_t axis_limits_check(const cm1e_axis_t *axis, const cm1e_profile_t *profile)
+{
+    const double tolerance = tolerance_counts / fabs(axis->scale);
+    double lowest, highest;
+    cm1e_profile_extent(profile, &lowest, &highest);
+    if (axis->software_limits) {
+        /* An axis that stands outside, pushed there without torque, may come back but go no farther. */
+        const double now = axis_units(axis, axis->set);
+        if (now + highest > fmax(axis->upper, now) + tolerance || now + lowest < fmin(axis->lower, now) - tolerance)
+            return CM1E_ERROR_AXIS_POSITION_RANGE;
+    }
+    return directions_allow(axis, lowest, highest, tolerance) ? CM1E_OK : CM1E_ERROR_AXIS_DIRECTION_DISABLED;
+}
+
+bool axis_limits_can_stop(const cm1e_axis_t *axis, position_t base, const cm1e_motion_state_t *next)
+{
+    if (!axis->software_limits)
+        return true;
+    const double origin = axis_units(axis, base);
+    cm1e_profile_t brake;
+    double lowest, highest;
+    if (cm1e_profile_to_velocity(&brake, next, 0.0, &axis->maximum))
+        return false;
+    cm1e_profile_extent(&brake, &lowest, &highest);
+    const double tolerance = tolerance_counts / fabs(axis->scale);
+    if (next->velocity > 0.0 && origin + highest > axis->upper + tolerance)
+        return false;
+    return !(next->velocity < 0.0 && origin + lowest < axis->lower - tolerance);
+}

@@ -1,0 +1,144 @@
+/* The set-point of every cycle: planned once at the command, sampled here. */
+#include <math.h>
+
+#include "axis/axis_private.h"
+
+/* CSV only (a mapping without target position): the position loop is ours then. 1/s. */
+static const double csv_position_gain = 20.0;
+
+void axis_run_profile(cm1e_axis_t *axis, const cm1e_profile_t *profile, position_t target)
+{
+    axis->profile = *profile;
+    axis->base = axis->set;
+    axis->target = target;
+    axis->profile_cycles = 0;
+    axis->in_velocity = false;
+    axis->activity = ACTIVITY_PROFILE;
+}
+
+cm1e_error_t axis_plan_stop(const cm1e_axis_t *axis, const cm1e_motion_limits_t *limits, cm1e_profile_t *profile)
+{
+    const cm1e_motion_state_t start = {0.0, axis->set_velocity, axis->set_acceleration};
+    return cm1e_profile_to_velocity(profile, &start, 0.0, limits);
+}
+
+/* Down to standstill with the axis's own limits, for everybody who needs a stop without a command. */
+void axis_ramp_down(cm1e_axis_t *axis)
+{
+    cm1e_profile_t profile;
+    if (axis_plan_stop(axis, &axis->maximum, &profile) == CM1E_OK)
+        axis_run_profile(axis, &profile, position_plus(axis->set, profile.end.position * axis->scale));
+    else
+        axis->activity = ACTIVITY_HOLD;
+}
+
+/* Where a profile has ended, the state goes on (figure 2; ramps without a command: axis_power.c). */
+static void profile_ended(cm1e_axis_t *axis)
+{
+    axis->set = axis->target;
+    axis->set_velocity = 0.0;
+    axis->set_acceleration = 0.0;
+    axis->activity = ACTIVITY_HOLD;
+    if (axis->active)
+        axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
+    if (axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION)
+        axis->state = CM1E_AXIS_STANDSTILL;
+}
+
+static bool commanded_motion(const cm1e_axis_t *axis)
+{
+    const bool moving = axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION;
+    return moving && axis->active && axis->kind != CM1E_COMMAND_HALT;
+}
+
+void axis_stop_direction(cm1e_axis_t *axis)
+{
+    if (!commanded_motion(axis))
+        return;
+    axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
+    axis->state = CM1E_AXIS_DISCRETE_MOTION;
+    axis_ramp_down(axis);
+}
+
+/* FALSE: the motion must not go on, and a ramp has replaced the profile. */
+static bool may_go_on(cm1e_axis_t *axis, const cm1e_motion_state_t *next)
+{
+    if (!commanded_motion(axis))
+        return true;
+    /* Braking in a disabled direction goes on, beginning in it does not. */
+    const bool faster = fabs(next->velocity) > fabs(axis->set_velocity) || next->velocity * axis->set_velocity < 0.0;
+    if (faster && !axis_direction_enabled(axis, next->velocity)) {
+        axis_stop_direction(axis);
+        return false;
+    }
+    /* Moves to a position were checked as a whole when they were planned. */
+    if (axis->kind == CM1E_COMMAND_MOVE_VELOCITY && !axis_limits_can_stop(axis, axis->base, next)) {
+        axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, axis_units(axis, axis->set),
+                  next->velocity > 0.0 ? axis->upper : axis->lower);
+        return false;
+    }
+    return true;
+}
+
+static void profile_step(cm1e_axis_t *axis)
+{
+    cm1e_motion_state_t next;
+    double time_s = (double)(axis->profile_cycles + 1) * axis->cycle_s;
+    cm1e_profile_sample(&axis->profile, time_s, &next);
+    if (!may_go_on(axis, &next)) {
+        if (axis->activity != ACTIVITY_PROFILE)
+            return;
+        time_s = axis->cycle_s;
+        cm1e_profile_sample(&axis->profile, time_s, &next);
+    }
+    axis->profile_cycles++;
+    const bool ended = time_s >= axis->profile.duration_s - 1e-6 * axis->cycle_s;
+    const bool endless = axis->active && axis->kind == CM1E_COMMAND_MOVE_VELOCITY;
+    if (ended && !endless) {
+        profile_ended(axis);
+        return;
+    }
+    axis->set = position_plus(axis->base, next.position * axis->scale);
+    axis->set_velocity = next.velocity;
+    axis->set_acceleration = ended ? 0.0 : next.acceleration;
+    axis->in_velocity = ended;
+    if (next.velocity != 0.0)
+        axis->positive_before = next.velocity > 0.0;
+    if (!axis_position_in_range(axis->set))
+        axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, axis_units(axis, axis->set), 0.0);
+}
+
+void axis_motion_step(cm1e_axis_t *axis)
+{
+    switch (axis->activity) {
+    case ACTIVITY_FREE:
+        axis_set_to_actual(axis);
+        break;
+    case ACTIVITY_HOLD:
+        break;
+    case ACTIVITY_PROFILE:
+        profile_step(axis);
+        break;
+    case ACTIVITY_HOMING:
+        axis_home_step(axis);
+        break;
+    }
+    /* Note 6: MC_Stop done and its Execute FALSE. */
+    if (axis->state == CM1E_AXIS_STOPPING && axis->activity == ACTIVITY_HOLD && !axis->stop_held)
+        axis->state = CM1E_AXIS_STANDSTILL;
+}
+
+static int32_t clamp_i32(double value)
+{
+    return value >= INT32_MAX ? INT32_MAX : value <= INT32_MIN ? INT32_MIN : (int32_t)value;
+}
+
+void axis_write_set_point(cm1e_axis_t *axis)
+{
+    cm1e_drive_command_t *command = &axis->drive.command;
+    /* The drive's counts and ours differ by whole turns of 2^32 only. */
+    const int64_t counts = axis->set.counts + (axis->set.fraction >= 0.5);
+    command->target_position = (int32_t)(uint32_t)(uint64_t)counts;
+    const double lag_counts = position_minus(axis->set, axis_actual(axis));
+    command->target_velocity = clamp_i32(round(axis->set_velocity * axis->scale + csv_position_gain * lag_counts));
+}

@@ -1,0 +1,174 @@
+/*
+ * Power, errors and their reset: the transitions of figure 2 that no motion command makes.
+ *
+ * MC_Power.Enable FALSE while the axis moves: the commands are aborted and the state is Disabled at once (note 2), the
+ * motor is ramped down with the axis's deceleration, and only then loses its torque; MC_Power.Status stays TRUE so long.
+ * ErrorStop ends the same way without torque, so that MC_Reset leads to Disabled (note 3), and from there, if
+ * MC_Power.Enable is TRUE, on to Standstill.
+ */
+#include "axis/axis_private.h"
+
+/* How long a drive that cannot be heard any more counts as "still there" at the end. */
+static const int64_t gone_after_ns = 100 * MS_IN_NS;
+
+bool axis_wants_enable(const cm1e_axis_t *axis)
+{
+    return axis->power_enable && !axis->shutting_down && axis->state != CM1E_AXIS_ERROR_STOP;
+}
+
+void axis_become_free(cm1e_axis_t *axis)
+{
+    axis->activity = ACTIVITY_FREE;
+    axis->energized = false;
+    axis->free_ns = axis->now_ns;
+    axis_set_to_actual(axis);
+}
+
+/* Whatever moves is stopped, by a ramp of ours or by the drive in its homing; without torque there is nothing to stop. */
+static void wind_down(cm1e_axis_t *axis)
+{
+    if (!axis->drive.feedback.enabled && axis->activity != ACTIVITY_HOMING)
+        axis_become_free(axis);
+    else if (axis->activity == ACTIVITY_HOMING)
+        axis_home_abort(axis, HOME_GOAL_OFF);
+    else if (axis->activity == ACTIVITY_PROFILE || axis->activity == ACTIVITY_HOLD)
+        axis_ramp_down(axis);
+}
+
+void axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound)
+{
+    if (axis->state == CM1E_AXIS_ERROR_STOP)
+        return; /* the first cause is the one to tell */
+    const bool homing_broke = axis->activity == ACTIVITY_HOMING &&
+                              (error == CM1E_ERROR_AXIS_HOMING_FAILED || error == CM1E_ERROR_AXIS_HOMING_TIMEOUT);
+    /* 2.2.2: the blocks that lose the axis show an error, not CommandAborted. */
+    axis_command_end(axis, CM1E_COMMAND_ERROR, homing_broke ? error : CM1E_ERROR_AXIS_ERROR_STOP);
+    axis->error = error;
+    axis->device_error = axis->drive.fault.device_code;
+    axis->error_value = value;
+    axis->error_bound = bound;
+    axis->state = CM1E_AXIS_ERROR_STOP;
+    wind_down(axis);
+}
+
+static void power_off(cm1e_axis_t *axis)
+{
+    if (axis->state == CM1E_AXIS_DISABLED || axis->state == CM1E_AXIS_ERROR_STOP)
+        return;
+    axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+    axis->state = CM1E_AXIS_DISABLED;
+    wind_down(axis);
+}
+
+cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, bool enable_positive,
+                             bool enable_negative)
+{
+    if (axis->power_owner != owner) {
+        /* A block that does not enable may be replaced, one that does may not. */
+        if (axis->power_owner && (axis->power_enable || axis->energized))
+            return CM1E_ERROR_FB_SECOND_POWER;
+        axis->power_owner = owner;
+    }
+    const bool allowed_before = axis_direction_enabled(axis, axis->set_velocity);
+    axis->shutting_down = false;
+    axis->power_enable = enable;
+    axis->enable_positive = enable_positive;
+    axis->enable_negative = enable_negative;
+    if (!enable) {
+        power_off(axis);
+    } else if (allowed_before && !axis_direction_enabled(axis, axis->set_velocity)) {
+        axis_stop_direction(axis);
+    } else if (axis->state == CM1E_AXIS_HOMING && axis->active && !(enable_positive && enable_negative)) {
+        axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
+        axis_home_abort(axis, HOME_GOAL_HOLD);
+    }
+    return CM1E_OK;
+}
+
+bool cm1e_axis_powered(const cm1e_axis_t *axis)
+{
+    return axis->energized && axis->drive.feedback.state == OPERATION_ENABLED;
+}
+
+/* The enabled drive is taken over (note 5); the set-point begins where the motor is in this very cycle. */
+static void take_over(cm1e_axis_t *axis)
+{
+    if (axis->activity == ACTIVITY_FREE)
+        axis_set_to_actual(axis);
+    axis->activity = ACTIVITY_HOLD;
+    axis->energized = true;
+    axis->state = CM1E_AXIS_STANDSTILL;
+}
+
+void axis_power_step(cm1e_axis_t *axis)
+{
+    const cm1e_drive_feedback_t *feedback = &axis->drive.feedback;
+    const bool acting = feedback->enabled && feedback->mode == (int8_t)axis->mode;
+    const bool wanted = axis_wants_enable(axis);
+    const bool still = axis->activity == ACTIVITY_FREE || axis->activity == ACTIVITY_HOLD;
+    if (axis->state == CM1E_AXIS_DISABLED && wanted && acting && still)
+        take_over(axis);
+    else if (axis->activity == ACTIVITY_HOLD && !wanted)
+        axis_become_free(axis); /* a ramp has ended */
+    else if (axis->activity != ACTIVITY_FREE && axis->activity != ACTIVITY_HOMING && !acting)
+        axis_become_free(axis); /* the torque went in the middle of a ramp */
+    axis->drive.command.enable = axis->activity != ACTIVITY_FREE || wanted;
+    if (!axis->drive.command.enable && axis->activity == ACTIVITY_FREE)
+        axis->energized = false;
+}
+
+/* ---- reset -------------------------------------------------------------------------------------------------------- */
+
+cm1e_error_t cm1e_axis_reset(cm1e_axis_t *axis)
+{
+    axis->reset_error = CM1E_OK;
+    if (axis->state != CM1E_AXIS_ERROR_STOP) {
+        axis->reset_state = CM1E_COMMAND_DONE; /* nothing to reset, and nothing happens */
+    } else if (axis->reset_state != CM1E_COMMAND_ACTIVE) {
+        axis->reset_state = CM1E_COMMAND_ACTIVE;
+        axis->reset_sent = false;
+    }
+    return CM1E_OK;
+}
+
+cm1e_command_state_t cm1e_axis_reset_state(const cm1e_axis_t *axis, cm1e_error_t *error)
+{
+    if (error)
+        *error = axis->reset_error;
+    return axis->reset_state;
+}
+
+static void reset_finished(cm1e_axis_t *axis)
+{
+    const cm1e_error_t error = axis->drive.fault.error;
+    axis->drive.command.reset = false;
+    axis->reset_error = error;
+    axis->reset_state = error ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE;
+    axis->error = error;
+    axis->device_error = axis->drive.fault.device_code;
+    if (!error)
+        axis->state = CM1E_AXIS_DISABLED;
+}
+
+/* After the ramp of ErrorStop has ended: the drive's reset, which also brings back a slave that was away. */
+void axis_reset_step(cm1e_axis_t *axis)
+{
+    if (axis->reset_state != CM1E_COMMAND_ACTIVE || axis->activity != ACTIVITY_FREE)
+        return;
+    if (!axis->reset_sent) {
+        axis->drive.command.reset = true;
+        axis->reset_sent = true;
+    } else if (!cm1e_drive_resetting(&axis->drive)) {
+        reset_finished(axis);
+    }
+}
+
+bool cm1e_axis_shut_down(cm1e_axis_t *axis)
+{
+    axis->shutting_down = true;
+    power_off(axis);
+    if (axis->activity != ACTIVITY_FREE || axis->drive.torque)
+        return false;
+    const bool gone = axis->now_ns - axis->free_ns >= gone_after_ns;
+    return axis->drive.feedback.state != OPERATION_ENABLED || (gone && !axis->drive.feedback.online);
+}

@@ -1,0 +1,170 @@
+/**
+ * @file axis_private.h
+ * The axis as the sources of its room see it. Everything here runs in the cycle unless marked otherwise.
+ */
+#ifndef CM1E_AXIS_AXIS_PRIVATE_H
+#define CM1E_AXIS_AXIS_PRIVATE_H
+
+#include "axis/axis.h"
+#include "motion/profile.h"
+
+#define MS_IN_NS INT64_C(1000000)
+
+/** A position in counts without loss: whole counts and 0 <= fraction < 1. A double would lose the fraction after days
+ *  in one direction. */
+typedef struct position {
+    int64_t counts;
+    double fraction;
+} position_t;
+
+/** Where the set-point comes from. */
+typedef enum activity {
+    ACTIVITY_FREE = 0, /**< nowhere: no torque, the set-point is the actual position */
+    ACTIVITY_HOLD,     /**< it stands */
+    ACTIVITY_PROFILE,  /**< a profile, of a command or of a stopping ramp */
+    ACTIVITY_HOMING,   /**< the drive's own homing (axis_home.c) */
+} activity_t;
+
+enum { COMMANDS_REMEMBERED = 64, HOMING_PARAMETERS = 5 };
+
+typedef struct command_record {
+    cm1e_command_id_t id;
+    cm1e_command_state_t state;
+    cm1e_error_t error;
+} command_record_t;
+
+typedef enum home_step {
+    HOME_WRITE = 0, /**< parameters over SDO; the axis still holds its position */
+    HOME_SWITCH,    /**< to homing mode */
+    HOME_START,     /**< start bit set; the status bits are still those of before */
+    HOME_RUN,
+    HOME_HALT,      /**< halt bit set, until the motor stands */
+    HOME_RETURN,    /**< back to the axis's own mode */
+} home_step_t;
+
+/** What comes after the drive has stopped homing. */
+typedef enum home_goal { HOME_GOAL_DONE = 0, HOME_GOAL_HOLD, HOME_GOAL_OFF } home_goal_t;
+
+typedef struct homing {
+    home_step_t step;
+    home_goal_t goal;
+    double position;       /**< u, at the reference */
+    int32_t raw[HOMING_PARAMETERS]; /**< in the order of homing_objects (axis_home.c) */
+    uint8_t next;          /**< parameter to write next */
+    bool submitted;
+    cm1e_sdo_t sdo;
+    uint8_t data[4];
+    int64_t timeout_ns, deadline_ns, step_ns; /**< step_ns: when the step began */
+    int64_t quiet_ns;      /**< since when the motor stands, or the bits say "interrupted" */
+    int32_t quiet_position;
+    uint8_t bits_before;   /**< statusword bits 13, 12, 10 before the start */
+    cm1e_error_t refused;  /**< why the last homing could not start, for the text; with the numbers in `sdo` */
+} homing_t;
+
+struct cm1e_axis {
+    cm1e_drive_t drive;
+    const cm1e_axis_config_t *config;
+    uint16_t handle;
+    double cycle_s;
+    cm1e_mode_t mode;               /**< of the set-points: CSP, or CSV where the mapping has no target position */
+
+    double scale;                   /**< counts per u; negative: inverted */
+    cm1e_motion_limits_t maximum;   /**< u */
+    bool software_limits;
+    double lower, upper;            /**< u */
+    double max_lag;                 /**< u */
+
+    cm1e_axis_state_t state;
+    cm1e_error_t error;
+    uint16_t device_error;
+    double error_value, error_bound; /**< numbers for the text */
+    int64_t now_ns;
+
+    bool position_known, homed;
+    int32_t raw;                    /**< counts of the drive, last seen */
+    int64_t actual_counts;          /**< the same without wrap-around */
+    int64_t origin_counts;          /**< position origin_units is there */
+    double origin_units;
+
+    activity_t activity;
+    position_t set, base, target;   /**< base: where the profile began; target: where it ends, exactly */
+    double set_velocity, set_acceleration; /**< u/s, u/s2 */
+    cm1e_profile_t profile;         /**< relative to base, in u */
+    int64_t profile_cycles;
+
+    command_record_t records[COMMANDS_REMEMBERED];
+    cm1e_command_id_t last_id;
+    cm1e_command_id_t active;       /**< 0: none */
+    cm1e_command_kind_t kind;       /**< of the active one */
+    bool in_velocity, positive_before;
+    cm1e_command_id_t stop;         /**< whose MC_Stop holds the axis in Stopping */
+    bool stop_held;
+
+    const void *power_owner;
+    bool power_enable, enable_positive, enable_negative;
+    bool energized;                 /**< the axis has taken over the enabled drive */
+    bool shutting_down;
+    int64_t free_ns;                /**< since when no torque is asked for */
+
+    cm1e_command_state_t reset_state;
+    cm1e_error_t reset_error;
+    bool reset_sent;
+
+    homing_t home;
+};
+
+/* axis_position.c */
+position_t position_plus(position_t position, double counts);
+double position_minus(position_t a, position_t b);
+double axis_units(const cm1e_axis_t *axis, position_t position);
+/** FALSE: not finite, or farther away than the axis counts. */
+bool axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position);
+bool axis_position_in_range(position_t position);
+static inline position_t axis_actual(const cm1e_axis_t *axis) { return (position_t){axis->actual_counts, 0.0}; }
+void axis_track(cm1e_axis_t *axis);
+void axis_set_to_actual(cm1e_axis_t *axis);
+
+/* axis_limits.c */
+cm1e_error_t axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */
+/** The dynamics of a command; `stopping`: too large ones are cut to the axis's instead of refused. */
+cm1e_error_t axis_limits_of(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, bool stopping,
+                            cm1e_motion_limits_t *limits);
+/** Software limits and disabled directions along a profile that starts at the present set-point. */
+cm1e_error_t axis_limits_check(const cm1e_axis_t *axis, const cm1e_profile_t *profile);
+/** Whether the axis's own ramp from `next` (its position counted from `base`) would end inside the software limits. */
+bool axis_limits_can_stop(const cm1e_axis_t *axis, position_t base, const cm1e_motion_state_t *next);
+bool axis_direction_enabled(const cm1e_axis_t *axis, double velocity);
+
+/* axis_state.c */
+typedef struct state_rule {
+    cm1e_error_t refusal; /**< CM1E_OK: accepted */
+    cm1e_axis_state_t next;
+} state_rule_t;
+const state_rule_t *axis_state_rule(cm1e_axis_state_t state, cm1e_command_kind_t kind);
+
+/* axis_motion.c */
+void axis_run_profile(cm1e_axis_t *axis, const cm1e_profile_t *profile, position_t target);
+void axis_ramp_down(cm1e_axis_t *axis);
+/** A direction is no longer enabled: the command fails, the axis stops (MC_Power, 3.1). */
+void axis_stop_direction(cm1e_axis_t *axis);
+cm1e_error_t axis_plan_stop(const cm1e_axis_t *axis, const cm1e_motion_limits_t *limits, cm1e_profile_t *profile);
+void axis_motion_step(cm1e_axis_t *axis);
+void axis_write_set_point(cm1e_axis_t *axis);
+
+/* axis_command.c */
+void axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
+
+/* axis_power.c */
+bool axis_wants_enable(const cm1e_axis_t *axis);
+void axis_become_free(cm1e_axis_t *axis);
+void axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound);
+void axis_power_step(cm1e_axis_t *axis);
+void axis_reset_step(cm1e_axis_t *axis);
+
+/* axis_home.c */
+cm1e_error_t axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *command);
+void axis_home_begin(cm1e_axis_t *axis);
+void axis_home_abort(cm1e_axis_t *axis, home_goal_t goal);
+void axis_home_step(cm1e_axis_t *axis);
+
+#endif

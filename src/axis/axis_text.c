@@ -1,0 +1,90 @@
+/* What happened to an axis, in sentences. */
+#include <stdio.h>
+
+#include "axis/axis_private.h"
+
+static void lag_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    snprintf(text, size,
+             "Axis \"%s\": %s: %.6g u, allowed are %.6g u. The motor did not follow the set-point: look for a blocked "
+             "axis, reduce load, velocity or acceleration, or raise max_position_lag; then reset the axis with "
+             "MC_Reset.",
+             axis->config->name, cm1e_strerror(axis->error), axis->error_value, axis->error_bound);
+}
+
+static void range_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    snprintf(text, size,
+             "Axis \"%s\": the motion was braked at %.6g u because it would have run over the limit at %.6g u. Reset "
+             "the axis with MC_Reset and move away from the limit.",
+             axis->config->name, axis->error_value, axis->error_bound);
+}
+
+static void homing_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const unsigned bits = (unsigned)axis->error_value;
+    const homing_t *home = &axis->home;
+    snprintf(text, size,
+             "Axis \"%s\": %s. Method %d; statusword bits 13 (error), 12 (attained), 10 (reached) were %u %u %u; "
+             "homing began with %u %u %u. Check that the %s is reached in this direction, speed, torque limit and "
+             "timeout; then reset the axis with MC_Reset.",
+             axis->config->name, cm1e_strerror(axis->error), (int)home->raw[1], bits >> 2 & 1u, bits >> 1 & 1u,
+             bits & 1u, home->bits_before >> 2 & 1u, home->bits_before >> 1 & 1u, home->bits_before & 1u,
+             home->raw[1] <= -3 ? "sensor" : "hard stop");
+}
+
+static void other_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    snprintf(text, size, "Axis \"%s\": %s. Remove the cause, then reset the axis with MC_Reset.", axis->config->name,
+             cm1e_strerror(axis->error));
+}
+
+static void refused_homing_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const cm1e_sdo_t *sdo = &axis->home.sdo;
+    const int value = (int)axis->home.raw[axis->home.next];
+    if (axis->home.refused == CM1E_ERROR_SDO_ABORT)
+        snprintf(text, size,
+                 "Axis \"%s\": homing was not started: the drive refused %d for object 0x%04X:%02X with SDO abort code "
+                 "0x%08X (%s).",
+                 axis->config->name, value, sdo->index, sdo->subindex, (unsigned)sdo->abort_code,
+                 cm1e_sdo_abort_text(sdo->abort_code));
+    else
+        snprintf(text, size, "Axis \"%s\": homing was not started: object 0x%04X:%02X could not be written: %s.",
+                 axis->config->name, sdo->index, sdo->subindex, cm1e_strerror(axis->home.refused));
+}
+
+static const struct {
+    cm1e_error_t error;
+    void (*text)(const cm1e_axis_t *axis, char *text, size_t size);
+} texts[] = {
+    {CM1E_ERROR_AXIS_LAG, lag_text},
+    {CM1E_ERROR_AXIS_POSITION_RANGE, range_text},
+    {CM1E_ERROR_AXIS_HOMING_FAILED, homing_text},
+    {CM1E_ERROR_AXIS_HOMING_TIMEOUT, homing_text},
+};
+
+void cm1e_axis_error_text(AXIS_REF_t reference, char *text, size_t size)
+{
+    if (!text || size == 0)
+        return;
+    text[0] = '\0';
+    const cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
+    if (!axis)
+        return;
+    if (axis->error == CM1E_OK) {
+        if (axis->home.refused)
+            refused_homing_text(axis, text, size);
+        return;
+    }
+    if (axis->error == axis->drive.fault.error) {
+        cm1e_drive_fault_text(&axis->drive, text, size);
+        return;
+    }
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
+        if (texts[i].error == axis->error) {
+            texts[i].text(axis, text, size);
+            return;
+        }
+    other_text(axis, text, size);
+}
