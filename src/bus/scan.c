@@ -81,8 +81,13 @@ cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)
     cm1e_bus_set_phase(bus, BUS_OPEN);
     bus->slave_count = 0;
     memset(bus->axis_position, 0, sizeof bus->axis_position);
-    const int found = cm1e_soem_scan(bus->soem);
-    if (found < 0)
+    uint16_t damaged;
+    const int found = cm1e_soem_scan(bus->soem, &damaged);
+    if (found == SCAN_DAMAGED_SII)
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0,
+                             "The SII (EEPROM) of slave %u is damaged: its categories have no end. Write it anew, or take "
+                             "the slave off the bus.", damaged);
+    if (found == SCAN_TOO_MANY)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "More than %d slaves answer on %s.", CM1E_MAX_SLAVES,
                              bus->config.interface_name);
     if (found == 0)

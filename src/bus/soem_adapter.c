@@ -79,13 +79,53 @@ void cm1e_soem_destroy(cm1e_soem_t *soem)
 
 /* ---- slaves -------------------------------------------------------------------------------------------------------- */
 
-int cm1e_soem_scan(cm1e_soem_t *soem)
+/** SOEM walks through the categories of a SII with a 16-bit address and no other end than their own end mark: a length
+ *  that leads backwards would keep it for ever. So the way is walked before, by us, with bounds. */
+static bool sii_can_be_walked(cm1e_soem_t *soem, int position)
 {
+    enum { FIRST_WORD = 0x40, LAST_WORD = 0x3FFF, CATEGORIES_MAX = 64, END_MARK = 0xFFFF };
+    uint32 word = FIRST_WORD;
+    for (int n = 0; n < CATEGORIES_MAX; n++) {
+        const uint64 read = ecx_readeepromAP(&soem->context, (uint16)(1 - position), (uint16)word, EC_TIMEOUTEEP);
+        const uint32 header = etohl((uint32)read);
+        if ((header & 0xFFFF) == END_MARK || word >= (EC_MAXEEPBUF) / 2)
+            return true; /* SOEM's buffer reads as end marks behind its end */
+        word += 2 + (header >> 16);
+        if (word > LAST_WORD)
+            return false;
+    }
+    return false;
+}
+
+static int first_damaged_sii(cm1e_soem_t *soem, int count)
+{
+    uint8 take = 2, release = 0; /* EEPROM configuration: taken from the devices, then given to the master */
+    ecx_BWR(&soem->port, 0, ECT_REG_EEPCFG, 1, &take, EC_TIMEOUTRET3);
+    ecx_BWR(&soem->port, 0, ECT_REG_EEPCFG, 1, &release, EC_TIMEOUTRET3);
+    for (int position = 1; position <= count; position++) {
+        if (!sii_can_be_walked(soem, position))
+            return position;
+    }
+    return 0;
+}
+
+int cm1e_soem_scan(cm1e_soem_t *soem, uint16_t *position)
+{
+    uint16 type;
+    const int count = ecx_BRD(&soem->port, 0, ECT_REG_TYPE, sizeof type, &type, EC_TIMEOUTSAFE);
+    *position = 0;
+    if (count <= 0)
+        return 0;
+    if (count > CM1E_MAX_SLAVES)
+        return SCAN_TOO_MANY;
+    *position = (uint16_t)first_damaged_sii(soem, count);
+    if (*position)
+        return SCAN_DAMAGED_SII;
     soem->context.manualstatechange = 0; /* Pre-Operational is requested by the scan ... */
     const int found = ecx_config_init(&soem->context, FALSE);
     soem->context.manualstatechange = 1; /* ... everything above it by us */
     if (found == EC_SLAVECOUNTEXCEEDED)
-        return -1;
+        return SCAN_TOO_MANY;
     return found > 0 ? soem->slave_count : 0;
 }
 

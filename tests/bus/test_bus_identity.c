@@ -1,0 +1,126 @@
+/* A wrong, missing, doubled or extra slave is an error that names what was expected and what was found. */
+#include "bus_support.h"
+
+typedef enum kind { END = 0, MOTOR, IO } kind_t;
+/** What hangs on the wire ... */
+typedef struct device {
+    kind_t kind;
+    uint16_t alias;
+    uint8_t switches;
+    const char *firmware;
+} device_t;
+/** ... and what the configuration expects. */
+typedef struct expected {
+    cm1e_address_kind_t kind;
+    uint16_t address;
+    const char *firmware;
+} expected_t;
+
+typedef struct identity_case {
+    const char *name;
+    device_t devices[4];
+    uint32_t axes;
+    expected_t expected[4];
+    cm1e_error_t error;
+    uint16_t positions[4];  /* of the axes, where it is right */
+    const char *words[3];   /* that the diagnosis must contain */
+} identity_case_t;
+
+#define POSITION CM1E_ADDRESS_POSITION
+#define ALIAS CM1E_ADDRESS_ALIAS
+#define ID CM1E_ADDRESS_EXPLICIT_ID
+#define WRONG CM1E_ERROR_BUS_IDENTITY
+
+/* What a case leaves out is 0. */
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+static const identity_case_t cases[] = {
+    {"by position", {{MOTOR}, {MOTOR}}, 2, {{POSITION, 2}, {POSITION, 1}}, CM1E_OK, {2, 1}, {0}},
+    {"by default position", {{MOTOR}, {MOTOR}}, 2, {{POSITION, 0}, {POSITION, 0}}, CM1E_OK, {1, 2}, {0}},
+    {"by alias, in any order", {{MOTOR, 30}, {MOTOR, 10}, {MOTOR, 20}}, 3, {{ALIAS, 10}, {ALIAS, 20}, {ALIAS, 30}},
+     CM1E_OK, {2, 3, 1}, {0}},
+    {"by ID, in any order", {{MOTOR, 0, 0xFE}, {MOTOR, 0, 1}}, 2, {{ID, 1}, {ID, 0xFE}}, CM1E_OK, {2, 1}, {0}},
+    {"mixed", {{MOTOR}, {MOTOR, 7}, {MOTOR, 0, 9}}, 3, {{ID, 9}, {ALIAS, 7}, {POSITION, 1}}, CM1E_OK, {3, 2, 1}, {0}},
+    {"another device in between", {{MOTOR}, {IO}, {MOTOR}}, 2, {{POSITION, 1}, {POSITION, 3}}, CM1E_OK, {1, 3}, {0}},
+    {"whatever is there", {{MOTOR}, {IO}, {MOTOR, 5}}, 0, {{0}}, CM1E_OK, {0}, {0}},
+    {"missing at a position", {{MOTOR}}, 2, {{POSITION, 1}, {POSITION, 2}}, WRONG, {0},
+     {"position 2", "missing", "Found 1 slave:"}},
+    {"missing alias", {{MOTOR, 1}, {MOTOR, 2}}, 2, {{ALIAS, 1}, {ALIAS, 3}}, WRONG, {0},
+     {"alias 3", "missing", "alias 2"}},
+    {"missing ID", {{MOTOR, 0, 1}}, 1, {{ID, 2}}, WRONG, {0}, {"explicit device ID 2", "missing", "ID 1"}},
+    {"no ID set", {{MOTOR}}, 1, {{ID, 1}}, WRONG, {0}, {"explicit device ID 1", "missing", "ID 0"}},
+    {"of another kind", {{MOTOR}, {IO}}, 2, {{POSITION, 1}, {POSITION, 2}}, WRONG, {0},
+     {"expected a CM1-E", "slave 2", "another kind"}},
+    {"doubled alias", {{MOTOR, 4}, {MOTOR, 4}}, 2, {{ALIAS, 4}, {POSITION, 2}}, WRONG, {0},
+     {"alias 4", "doubled", "slaves 1 and 2"}},
+    {"doubled ID", {{MOTOR, 0, 6}, {MOTOR}, {MOTOR, 0, 6}}, 3, {{POSITION, 2}, {ID, 6}, {POSITION, 1}}, WRONG, {0},
+     {"explicit device ID 6", "doubled", "slaves 1 and 3"}},
+    {"two axes on one slave", {{MOTOR, 4}, {MOTOR}}, 2, {{ALIAS, 4}, {POSITION, 1}}, WRONG, {0},
+     {"axis1", "axis2", "slave 1"}},
+    {"an extra motor", {{MOTOR}, {MOTOR}, {MOTOR}}, 2, {{POSITION, 1}, {POSITION, 2}}, WRONG, {0},
+     {"Slave 3", "extra", "Found 3 slaves"}},
+    {"an extra motor in the middle", {{MOTOR, 1}, {MOTOR}, {MOTOR, 2}}, 2, {{ALIAS, 1}, {ALIAS, 2}}, WRONG, {0},
+     {"Slave 2", "extra", "Found 3 slaves"}},
+    {"firmware as expected", {{MOTOR, 0, 0, "1.3.4"}}, 1, {{POSITION, 1, "1.3.4"}}, CM1E_OK, {1}, {0}},
+    {"another firmware", {{MOTOR, 0, 0, "1.2.0"}}, 1, {{POSITION, 1, "1.3.5"}}, WRONG, {0},
+     {"1.2.0", "1.3.5", "0x100A"}},
+};
+
+static cm1e_bus_t *bus_of_case(const identity_case_t *c)
+{
+    sim_config(c->axes);
+    for (uint32_t i = 0; i < c->axes; i++) {
+        cm1e_axis_config_t *axis = &config.axes[i];
+        axis->address_kind = c->expected[i].kind;
+        axis->address = c->expected[i].address;
+        if (c->expected[i].firmware)
+            strcpy(axis->firmware, c->expected[i].firmware);
+    }
+    /* The segment that the nic makes of the configuration is replaced, so it must not depend on it. */
+    static cm1e_bus_config_t kept;
+    kept = config;
+    sim_config(1);
+    cm1e_sim_segment_t *segment = cm1e_sim_segment_create_empty();
+    for (const device_t *device = c->devices; device->kind != END; device++) {
+        static cm1e_axis_config_t motor;
+        memset(&motor, 0, sizeof motor);
+        strcpy(motor.firmware, device->firmware ? device->firmware : "1.3.5");
+        cm1e_sim_slave_t *slave =
+            device->kind == IO ? cm1e_sim_io_module_create()
+                               : cm1e_sim_cm1e_create(&motor, CM1E_PDO_ORDER_UG_4_4, device->alias, device->switches);
+        ck_assert_int_eq(cm1e_sim_segment_add(segment, slave), CM1E_OK);
+    }
+    config = kept;
+    cm1e_bus_t *bus = open_bus();
+    cm1e_nic_replace_segment(cm1e_bus_nic(bus), segment);
+    return bus;
+}
+
+START_TEST(identity)
+{
+    const identity_case_t *c = &cases[_i];
+    cm1e_bus_t *bus = bus_of_case(c);
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s: %s", c->name, diag.text);
+    const cm1e_error_t error = cm1e_bus_identify(bus, &diag);
+    ck_assert_msg(error == c->error, "%s: %s: %s", c->name, cm1e_strerror(error), diag.text);
+    for (int i = 0; i < 3 && c->words[i]; i++)
+        ck_assert_msg(strstr(diag.text, c->words[i]) != NULL, "%s: \"%s\" lacks \"%s\"", c->name, diag.text,
+                      c->words[i]);
+    for (uint32_t axis = 0; axis < c->axes && c->error == CM1E_OK; axis++)
+        ck_assert_msg(cm1e_bus_axis_position(bus, axis) == c->positions[axis], "%s: axis %u", c->name, axis);
+    ck_assert_uint_eq(cm1e_bus_axis_position(bus, c->axes), 0);
+    if (c->error == CM1E_OK)
+        ck_assert_msg(cm1e_bus_configure(bus, &diag) == CM1E_OK, "%s: %s", c->name, diag.text);
+    else
+        ck_assert_int_eq(cm1e_bus_configure(bus, &diag), CM1E_ERROR_STATE);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("bus_identity");
+    TCase *tests = tcase_create("identity");
+    tcase_add_loop_test(tests, identity, 0, sizeof cases / sizeof cases[0]);
+    suite_add_tcase(suite, tests);
+    return run_suite(suite);
+}

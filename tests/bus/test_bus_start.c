@@ -1,0 +1,212 @@
+/* From the wire to Operational: scan, identify, configure, operate, stop. */
+#include "bus_support.h"
+
+static const char *const firmwares[] = {"1.2.0", "1.3.0", "1.3.2", "1.3.3", "1.3.4", "1.3.5"};
+enum { FIRMWARES = 6, MAPPINGS = 4 };
+
+START_TEST(scan_finds_every_slave_from_1_to_16)
+{
+    const uint32_t count = (uint32_t)_i;
+    sim_config(count);
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_uint_eq(cm1e_bus_slave_count(bus), count);
+    for (uint32_t position = 1; position <= count; position++) {
+        const cm1e_slave_info_t *info = cm1e_bus_slave(bus, position);
+        ck_assert_uint_eq(info->position, position);
+        ck_assert_uint_eq(info->vendor_id, CM1E_VENDOR_ID);
+        ck_assert_uint_eq(info->product_code, CM1E_PRODUCT_CODE);
+        ck_assert(info->is_cm1e);
+        ck_assert_uint_eq(info->al_state, CM1E_AL_PRE_OP);
+        ck_assert_str_ne(info->name, "");
+        ck_assert_msg(strstr(info->software_version, "1.3.5") != NULL, "%s", info->software_version);
+    }
+    ck_assert_ptr_null(cm1e_bus_slave(bus, 0));
+    ck_assert_ptr_null(cm1e_bus_slave(bus, count + 1));
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+static void check_direction(cm1e_bus_t *bus, uint16_t position, const cm1e_axis_config_t *axis, bool transmit,
+                            uint32_t base)
+{
+    cm1e_pdo_t pdo;
+    const cm1e_firmware_info_t *firmware = cm1e_firmware_from_version(axis->firmware);
+    cm1e_device_pdo(&pdo, axis->mapping, transmit, config.sim_pdo_order, firmware->firmware);
+    uint32_t bits = 0;
+    for (unsigned i = 0; i < pdo.entry_count; i++) {
+        const cm1e_pdo_entry_t *entry = &pdo.entries[i];
+        const cm1e_image_slot_t slot = transmit
+                                           ? cm1e_bus_find_input(bus, position, entry->index, entry->subindex)
+                                           : cm1e_bus_find_output(bus, position, entry->index, entry->subindex);
+        if (entry->index) {
+            ck_assert_uint_eq(slot.bytes, entry->bits / 8);
+            ck_assert_uint_eq(slot.offset, base + bits / 8);
+        }
+        bits += entry->bits;
+    }
+    const cm1e_slave_info_t *info = cm1e_bus_slave(bus, position);
+    ck_assert_uint_eq(transmit ? info->input_bytes : info->output_bytes, bits / 8);
+    /* What is not in this mapping is not found in it. */
+    ck_assert_uint_eq(cm1e_bus_find_input(bus, position, 0x6040, 0).bytes, 0);
+    ck_assert_uint_eq(cm1e_bus_find_output(bus, position, 0x6041, 0).bytes, 0);
+    ck_assert_uint_eq(cm1e_bus_find_output(bus, position, 0, 0).bytes, 0);
+}
+
+/** Both orders, every firmware, every mapping; three axes with different mappings, so that places differ. */
+START_TEST(start_resolves_every_object_in_every_order_firmware_and_mapping)
+{
+    sim_config(3);
+    config.sim_pdo_order = (cm1e_pdo_order_t)(_i / (FIRMWARES * MAPPINGS));
+    for (unsigned i = 0; i < 3; i++) {
+        strcpy(config.axes[i].firmware, firmwares[_i / MAPPINGS % FIRMWARES]);
+        config.axes[i].mapping = (cm1e_mapping_t)(((unsigned)_i + i) % MAPPINGS);
+    }
+    cm1e_bus_t *bus = start_bus();
+    uint32_t output = 0, input = 0;
+    for (uint16_t position = 1; position <= 3; position++) {
+        const cm1e_axis_config_t *axis = &config.axes[position - 1];
+        ck_assert_uint_eq(cm1e_bus_axis_position(bus, position - 1u), position);
+        check_direction(bus, position, axis, false, output);
+        check_direction(bus, position, axis, true, input);
+        output += cm1e_bus_slave(bus, position)->output_bytes;
+        input += cm1e_bus_slave(bus, position)->input_bytes;
+        ck_assert_str_eq(cm1e_bus_slave_firmware(bus, position)->version, axis->firmware);
+    }
+    cycles(bus, 20);
+    for (uint16_t position = 1; position <= 3; position++) {
+        ck_assert_uint_eq(cm1e_bus_slave_watch(bus, position).al_state, CM1E_AL_OP);
+        const cm1e_image_slot_t slot = cm1e_bus_find_input(bus, position, 0x6041, 0);
+        cm1e_sim_probe_t probe;
+        cm1e_sim_probe(segment_of(bus), position, &probe);
+        ck_assert_uint_eq(cm1e_get_u16(cm1e_bus_inputs(bus) + slot.offset), probe.statusword);
+        ck_assert_uint_eq(probe.controlword, 0);
+    }
+    ck_assert_uint_eq(cm1e_bus_counters(bus)->working_counter_errors, 0);
+    ck_assert_uint_eq(cm1e_bus_counters(bus)->lost_frames, 0);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(stop_brings_all_slaves_to_init_and_start_works_again)
+{
+    sim_config(2);
+    cm1e_bus_t *bus = start_bus();
+    for (int round = 0; round < 3; round++) {
+        cycles(bus, 10);
+        cm1e_bus_stop(bus);
+        for (uint32_t position = 1; position <= 2; position++)
+            ck_assert_uint_eq(cm1e_sim_slave_al_state(cm1e_sim_segment_slave(segment_of(bus), position)), CM1E_AL_INIT);
+        ck_assert_int_eq(cm1e_bus_receive(bus), CM1E_ERROR_STATE);
+        ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    }
+    cm1e_bus_stop(bus);
+    cm1e_bus_stop(bus);
+    cm1e_bus_close(bus);
+    cm1e_bus_close(NULL);
+    cm1e_bus_stop(NULL);
+}
+END_TEST
+
+START_TEST(steps_out_of_order_are_refused)
+{
+    sim_config(1);
+    cm1e_bus_t *bus = open_bus();
+    uint8_t byte;
+    size_t size = 1;
+    ck_assert_int_eq(cm1e_bus_identify(bus, &diag), CM1E_ERROR_STATE);
+    ck_assert_int_eq(cm1e_bus_configure(bus, &diag), CM1E_ERROR_STATE);
+    ck_assert_int_eq(cm1e_bus_operate(bus, &diag), CM1E_ERROR_STATE);
+    ck_assert_int_eq(cm1e_sdo_read(bus, 1, 0x1001, 0, &byte, &size, &diag), CM1E_ERROR_STATE);
+    ck_assert_int_eq(cm1e_bus_receive(bus), CM1E_ERROR_STATE);
+    cm1e_bus_send(bus);
+    ck_assert_int_eq(cm1e_bus_scan(bus, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_bus_configure(bus, &diag), CM1E_ERROR_STATE);
+    ck_assert_int_eq(cm1e_bus_identify(bus, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_bus_identify(bus, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_bus_operate(bus, &diag), CM1E_ERROR_STATE);
+    ck_assert_int_eq(cm1e_bus_configure(bus, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_bus_configure(bus, &diag), CM1E_ERROR_STATE);
+    ck_assert_int_eq(cm1e_bus_operate(bus, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_bus_operate(bus, &diag), CM1E_ERROR_STATE);
+    ck_assert_int_eq(cm1e_bus_scan(bus, &diag), CM1E_ERROR_STATE);
+    cycles(bus, 5); /* the refused calls did not disturb it */
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(cycle_time_must_suit_the_firmware)
+{
+    static const int64_t times[] = {200000, 250000, 500000, 1000000};
+    for (int f = 0; f < FIRMWARES; f++) {
+        for (int t = 0; t < 4; t++) {
+            static cm1e_bus_config_t real;
+            strcpy(sim_config(1)->axes[0].firmware, firmwares[f]);
+            real = config;
+            sim_config(1)->cycle_time_ns = times[t];
+            const bool good = times[t] == 1000000 || f >= 2; /* all four from V1.3.2 on (UG 10.1) */
+            cm1e_bus_t *bus = open_bus_on(&real);
+            const cm1e_error_t error = cm1e_bus_start(bus, &diag);
+            ck_assert_msg(error == (good ? CM1E_OK : CM1E_ERROR_BUS_CYCLE_TIME), "%s %d: %s", firmwares[f], t,
+                          diag.text);
+            if (good) {
+                const int64_t begin_ns = now_of(bus);
+                cycles(bus, 100);
+                ck_assert_int_eq(now_of(bus) - begin_ns, 100 * times[t]);
+            } else {
+                ck_assert_msg(strstr(diag.text, firmwares[f]) && strstr(diag.text, "1000"), "%s", diag.text);
+            }
+            cm1e_bus_close(bus);
+        }
+    }
+}
+END_TEST
+
+START_TEST(no_slaves_is_an_error_that_names_the_interface)
+{
+    sim_config(1);
+    cm1e_bus_t *bus = open_bus();
+    cm1e_nic_replace_segment(cm1e_bus_nic(bus), cm1e_sim_segment_create_empty());
+    ck_assert_int_eq(cm1e_bus_start(bus, &diag), CM1E_ERROR_BUS_NO_SLAVES);
+    ck_assert_ptr_nonnull(strstr(diag.text, "sim"));
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(io_module_between_the_axes_is_mapped_by_its_sii)
+{
+    sim_config(2);
+    config.axes[0].address = 1;
+    config.axes[1].address = 3;
+    cm1e_bus_t *bus = open_bus();
+    cm1e_sim_segment_t *segment = cm1e_sim_segment_create_empty();
+    cm1e_sim_segment_add(segment, cm1e_sim_cm1e_create(&config.axes[0], CM1E_PDO_ORDER_UG_4_4, 0, 0));
+    cm1e_sim_segment_add(segment, cm1e_sim_io_module_create());
+    cm1e_sim_segment_add(segment, cm1e_sim_cm1e_create(&config.axes[1], CM1E_PDO_ORDER_UG_4_4, 0, 0));
+    cm1e_nic_replace_segment(cm1e_bus_nic(bus), segment);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_uint_eq(cm1e_bus_slave(bus, 2)->output_bytes, 1);
+    ck_assert_uint_eq(cm1e_bus_slave(bus, 2)->input_bytes, 1);
+    ck_assert(!cm1e_bus_slave(bus, 2)->is_cm1e);
+    ck_assert_uint_eq(cm1e_bus_find_output(bus, 1, 0x6040, 0).offset, 0);
+    ck_assert_uint_eq(cm1e_bus_find_output(bus, 3, 0x6040, 0).offset, 14);
+    cycles(bus, 100);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("bus_start");
+    TCase *tests = tcase_create("start");
+    tcase_add_loop_test(tests, scan_finds_every_slave_from_1_to_16, 1, 17);
+    tcase_add_loop_test(tests, start_resolves_every_object_in_every_order_firmware_and_mapping, 0,
+                        2 * FIRMWARES * MAPPINGS);
+    tcase_add_test(tests, stop_brings_all_slaves_to_init_and_start_works_again);
+    tcase_add_test(tests, steps_out_of_order_are_refused);
+    tcase_add_test(tests, cycle_time_must_suit_the_firmware);
+    tcase_add_test(tests, no_slaves_is_an_error_that_names_the_interface);
+    tcase_add_test(tests, io_module_between_the_axes_is_mapped_by_its_sii);
+    suite_add_tcase(suite, tests);
+    return run_suite(suite);
+}
