@@ -45,7 +45,8 @@ typedef struct cm1e_sim_app_ops {
     void (*outputs)(void *app, const uint8_t *data, uint16_t size, int64_t now_ns);
     /** Fill SM3 with fresh inputs (Safe-Operational and Operational). */
     void (*inputs)(void *app, uint8_t *data, uint16_t size);
-    /** The process data watchdog (0x0420) expired in Operational. */
+    /** The process data watchdog (0x0420) expired in Operational; the controller then falls back to Safe-Operational.
+     *  NULL: the device takes no notice of it (firmware before V1.3.0). */
     void (*watchdog_expired)(void *app);
     /** Object dictionary. Return 0 or an SDO abort code. `size`: in: bytes given or room; out (read): bytes of the
      *  value. `al_state` is the present AL state. */

@@ -1,0 +1,174 @@
+#include "sim/esc.h"
+
+#include <string.h>
+
+#include "cm1e/bus.h"
+#include "core/bytes.h"
+
+/* Registers of a sync manager (0x0800 + 8 n). */
+enum { SM_BYTES = 8, AT_START = 0, AT_LENGTH = 2, AT_CONTROL = 4, AT_STATUS = 5, AT_ACTIVATE = 6, AT_PDI = 7 };
+enum { CONTROL_MODE = 0x03, MODE_MAILBOX = 0x02, CONTROL_DIRECTION = 0x0C, DIRECTION_WRITE = 0x04, CONTROL_WATCHDOG = 0x40 };
+enum {
+    STATUS_WRITTEN = 0x01, STATUS_READ = 0x02, STATUS_FULL = 0x08, STATUS_BUFFER_SHIFT = 4, STATUS_BUFFER = 0x30,
+    BUFFERS = 3, NO_BUFFER = 3,
+};
+
+static uint8_t *registers(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm)
+{
+    return slave->memory + ESC_SM + sm->number * SM_BYTES;
+}
+
+static void show_full(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm)
+{
+    uint8_t *status = registers(slave, sm) + AT_STATUS;
+    *status = (uint8_t)(sm->full ? *status | STATUS_FULL : *status & ~STATUS_FULL);
+    cm1e_sim_esc_event(slave, (uint16_t)(ESC_EVENT_SM0 << sm->number), sm->full);
+}
+
+/* A complete buffer was written from either side: the three take turns. */
+static void next_buffer(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm)
+{
+    uint8_t *status = registers(slave, sm) + AT_STATUS;
+    const unsigned buffer = *status >> STATUS_BUFFER_SHIFT & NO_BUFFER;
+    const unsigned next = buffer == NO_BUFFER ? 0 : (buffer + 1) % BUFFERS;
+    *status = (uint8_t)((*status & ~STATUS_BUFFER) | next << STATUS_BUFFER_SHIFT);
+}
+
+static void set_status(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm, uint8_t set, uint8_t clear)
+{
+    uint8_t *status = registers(slave, sm) + AT_STATUS;
+    *status = (uint8_t)((*status & ~clear) | set);
+}
+
+static void reset_buffers(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm)
+{
+    sm->open = sm->full = false;
+    registers(slave, sm)[AT_STATUS] = sm->active && !sm->mailbox ? STATUS_BUFFER : 0;
+    show_full(slave, sm);
+}
+
+void cm1e_sim_esc_sm_decode(cm1e_sim_slave_t *slave, unsigned number)
+{
+    esc_sync_manager_t *sm = &slave->managers[number];
+    const uint8_t *r = registers(slave, sm);
+    const esc_sync_manager_t before = *sm;
+    sm->start = cm1e_get_u16(r + AT_START);
+    sm->length = cm1e_get_u16(r + AT_LENGTH);
+    sm->active = (r[AT_ACTIVATE] & 0x01) && sm->length > 0;
+    sm->mailbox = (r[AT_CONTROL] & CONTROL_MODE) == MODE_MAILBOX;
+    sm->master_writes = (r[AT_CONTROL] & CONTROL_DIRECTION) == DIRECTION_WRITE;
+    sm->triggers_watchdog = (r[AT_CONTROL] & CONTROL_WATCHDOG) != 0;
+    sm->locked = (r[AT_PDI] & 0x01) != 0;
+    /* Nothing but the activate bit can change while the sync manager is on. */
+    if (before.active != sm->active || before.locked != sm->locked)
+        reset_buffers(slave, sm);
+}
+
+void cm1e_sim_esc_sm_lock(cm1e_sim_slave_t *slave, unsigned role, bool locked)
+{
+    esc_sync_manager_t *sm = cm1e_sim_esc_sm(slave, role);
+    if (!sm)
+        return;
+    uint8_t *pdi = registers(slave, sm) + AT_PDI;
+    *pdi = (uint8_t)(locked ? *pdi | 0x01 : *pdi & ~0x01);
+    cm1e_sim_esc_sm_decode(slave, sm->number);
+}
+
+esc_sync_manager_t *cm1e_sim_esc_sm(cm1e_sim_slave_t *slave, unsigned role)
+{
+    const unsigned number = slave->role_manager[role];
+    return number < ESC_SYNC_MANAGERS ? &slave->managers[number] : NULL;
+}
+
+size_t cm1e_sim_esc_sm_span(cm1e_sim_slave_t *slave, uint32_t address, uint32_t end, esc_sync_manager_t **manager)
+{
+    *manager = NULL;
+    if (end > ESC_MEMORY_BYTES)
+        end = ESC_MEMORY_BYTES;
+    for (int i = 0; i < ESC_SYNC_MANAGERS; i++) {
+        esc_sync_manager_t *sm = &slave->managers[i];
+        if (!sm->active)
+            continue;
+        const uint32_t sm_end = (uint32_t)sm->start + sm->length;
+        if (address >= sm->start && address < sm_end) {
+            *manager = sm;
+            return (end < sm_end ? end : sm_end) - address;
+        }
+        if (sm->start > address && sm->start < end)
+            end = sm->start;
+    }
+    return end - address;
+}
+
+/* Fresh inputs, once for a frame, and not until somebody reads them. */
+static void refresh_inputs(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm)
+{
+    if (sm->role != ESC_ROLE_INPUTS || !slave->inputs_stale || slave->al_state < CM1E_AL_SAFE_OP || !slave->ops->inputs)
+        return;
+    slave->inputs_stale = false;
+    slave->ops->inputs(slave->app, slave->memory + sm->start, sm->length);
+    next_buffer(slave, sm);
+    set_status(slave, sm, STATUS_WRITTEN, STATUS_READ);
+}
+
+bool cm1e_sim_esc_sm_read(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, uint16_t offset, uint8_t *data, size_t length)
+{
+    if (sm->locked || sm->master_writes)
+        return false;
+    /* A buffer is opened at its first byte and given back at its last. */
+    if (offset == 0) {
+        if (sm->mailbox && !sm->full)
+            return false;
+        sm->open = true;
+        refresh_inputs(slave, sm);
+    } else if (!sm->open) {
+        return false;
+    }
+    memcpy(data, slave->memory + sm->start + offset, length);
+    if (offset + length < sm->length)
+        return true;
+    sm->open = false;
+    set_status(slave, sm, STATUS_READ, STATUS_WRITTEN);
+    if (sm->mailbox) {
+        cm1e_sim_esc_sm_set_full(slave, sm, false);
+        if (sm->role == ESC_ROLE_MAILBOX_IN)
+            cm1e_sim_mailbox_read(slave);
+    }
+    return true;
+}
+
+bool cm1e_sim_esc_sm_write(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, uint16_t offset, const uint8_t *data,
+                           size_t length)
+{
+    if (sm->locked || !sm->master_writes)
+        return false;
+    if (offset == 0) {
+        if (sm->mailbox && sm->full)
+            return false;
+        sm->open = true;
+    } else if (!sm->open) {
+        return false;
+    }
+    memcpy(slave->memory + sm->start + offset, data, length);
+    if (offset + length < sm->length)
+        return true;
+    sm->open = false;
+    set_status(slave, sm, STATUS_WRITTEN, STATUS_READ);
+    if (sm->triggers_watchdog)
+        cm1e_sim_al_watchdog_trigger(slave);
+    if (sm->mailbox) {
+        cm1e_sim_esc_sm_set_full(slave, sm, true);
+        if (sm->role == ESC_ROLE_MAILBOX_OUT)
+            cm1e_sim_mailbox_written(slave);
+    } else {
+        next_buffer(slave, sm);
+        slave->outputs_arrived |= sm->role == ESC_ROLE_OUTPUTS;
+    }
+    return true;
+}
+
+void cm1e_sim_esc_sm_set_full(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, bool full)
+{
+    sm->full = full;
+    show_full(slave, sm);
+}

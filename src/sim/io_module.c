@@ -1,0 +1,73 @@
+#include <stdlib.h>
+
+#include "cm1e/bus.h"
+#include "generate/sii.h"
+#include "sim/esc.h"
+
+/* A plain module with eight outputs and eight inputs, each input wired to the output of its number. */
+typedef struct io_module {
+    uint8_t outputs;
+} io_module_t;
+
+static void process_data_sizes(void *app, uint16_t *output_bytes, uint16_t *input_bytes)
+{
+    (void)app;
+    *output_bytes = *input_bytes = 1;
+}
+
+static void take_outputs(void *app, const uint8_t *data, uint16_t size, int64_t now_ns)
+{
+    (void)now_ns;
+    if (size)
+        ((io_module_t *)app)->outputs = data[0];
+}
+
+static void give_inputs(void *app, uint8_t *data, uint16_t size)
+{
+    if (size)
+        data[0] = ((io_module_t *)app)->outputs;
+}
+
+static uint16_t state_change(void *app, uint8_t from, uint8_t to)
+{
+    (void)from;
+    if (to != CM1E_AL_OP)
+        ((io_module_t *)app)->outputs = 0;
+    return AL_CODE_NONE;
+}
+
+static void watchdog_expired(void *app) { ((io_module_t *)app)->outputs = 0; }
+
+static void power_on(void *app, int64_t now_ns)
+{
+    (void)now_ns;
+    ((io_module_t *)app)->outputs = 0;
+}
+
+static const cm1e_sim_app_ops_t ops = {
+    .state_change = state_change,
+    .process_data_sizes = process_data_sizes,
+    .outputs = take_outputs,
+    .inputs = give_inputs,
+    .watchdog_expired = watchdog_expired,
+    .power_on = power_on,
+    .destroy = free,
+};
+
+cm1e_sim_slave_t *cm1e_sim_io_module_create(void)
+{
+    uint8_t sii[CM1E_SII_SIZE];
+    io_module_t *module = calloc(1, sizeof *module);
+    if (!module)
+        return NULL;
+    cm1e_sim_slave_t *slave =
+        cm1e_sim_slave_create(sii, cm1e_generate_sii_io_module(sii, sizeof sii), &ops, module);
+    if (!slave) {
+        free(module);
+        return NULL;
+    }
+    /* Small controllers give four bytes of the SII at a time. */
+    slave->sii_reads_8_bytes = false;
+    cm1e_sim_esc_power_on(slave, 0);
+    return slave;
+}

@@ -1,0 +1,290 @@
+#include "sim/segment.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/bytes.h"
+#include "sim/esc.h"
+
+enum {
+    SOURCE_MAC = 6, ETHER_TYPE = 12, ECAT_HEADER = 14, DATAGRAMS = 16, DATAGRAM_HEADER = 10, WORKING_COUNTER = 2,
+    DATAGRAM_LENGTH = 6,
+};
+enum { LENGTH_MASK = 0x07FF, CIRCULATED = 0x4000, MORE_FOLLOW = 0x8000, TYPE_SHIFT = 12, TYPE_COMMANDS = 1 };
+enum { LOCALLY_ADMINISTERED = 0x02, LOOP_CLOSED_ALWAYS = 3, PORT_1_SHIFT = 2 };
+
+struct cm1e_sim_segment {
+    cm1e_sim_slave_t **slaves;
+    uint32_t count;
+    bool *cuts;              /* [1] = before the first slave ... [count + 1] = behind the last */
+    bool ring;
+    bool topology_changed;
+    int64_t now_ns;
+    /* Where frames go, from the topology: slaves that a frame passes (first, count), and the port it comes out of. */
+    struct route {
+        uint32_t first, count;
+        int exit_port;
+        bool circulates;     /* turned around at a closed port 0: the frame is marked */
+    } routes[2];
+    cm1e_frame_fault_t fault;
+    uint32_t fault_count;
+    int64_t fault_delay_ns;
+};
+
+cm1e_sim_segment_t *cm1e_sim_segment_create_empty(void)
+{
+    cm1e_sim_segment_t *segment = calloc(1, sizeof *segment);
+    bool *cuts = calloc(2, sizeof *cuts);
+    if (!segment || !cuts) {
+        free(segment);
+        free(cuts);
+        return NULL;
+    }
+    segment->cuts = cuts;
+    segment->topology_changed = true;
+    return segment;
+}
+
+cm1e_error_t cm1e_sim_segment_add(cm1e_sim_segment_t *segment, cm1e_sim_slave_t *slave)
+{
+    if (!slave)
+        return CM1E_ERROR_NO_MEMORY;
+    const uint32_t count = segment->count + 1;
+    cm1e_sim_slave_t **slaves = realloc(segment->slaves, count * sizeof *slaves);
+    if (slaves)
+        segment->slaves = slaves;
+    bool *cuts = slaves ? realloc(segment->cuts, (count + 2) * sizeof *cuts) : NULL;
+    if (!cuts)
+        return CM1E_ERROR_NO_MEMORY;
+    cuts[count + 1] = false;
+    segment->cuts = cuts;
+    segment->slaves[segment->count] = slave;
+    segment->count = count;
+    slave->topology_changed = &segment->topology_changed;
+    segment->topology_changed = true;
+    return CM1E_OK;
+}
+
+void cm1e_sim_segment_destroy(cm1e_sim_segment_t *segment)
+{
+    if (!segment)
+        return;
+    for (uint32_t i = 0; i < segment->count; i++)
+        cm1e_sim_slave_destroy(segment->slaves[i]);
+    free(segment->slaves);
+    free(segment->cuts);
+    free(segment);
+}
+
+uint32_t cm1e_sim_segment_slave_count(const cm1e_sim_segment_t *segment) { return segment->count; }
+
+cm1e_sim_slave_t *cm1e_sim_segment_slave(cm1e_sim_segment_t *segment, uint32_t position)
+{
+    return position >= 1 && position <= segment->count ? segment->slaves[position - 1] : NULL;
+}
+
+void cm1e_sim_segment_close_ring(cm1e_sim_segment_t *segment)
+{
+    segment->ring = true;
+    segment->topology_changed = true;
+}
+
+void cm1e_sim_segment_cut(cm1e_sim_segment_t *segment, uint32_t position, bool cut)
+{
+    if (position < 1 || position > segment->count + 1)
+        return;
+    segment->cuts[position] = cut;
+    segment->topology_changed = true;
+}
+
+/* ---- topology ------------------------------------------------------------------------------------------------------ */
+
+/* Whether the cable before slave `position` connects two partners that are switched on (count + 1: the ring's last). */
+static bool cable_connects(const cm1e_sim_segment_t *segment, uint32_t position)
+{
+    const uint32_t count = segment->count;
+    if (segment->cuts[position] || (position == count + 1 && !segment->ring))
+        return false;
+    const bool before = position == 1 || cm1e_sim_esc_present(segment->slaves[position - 2]);
+    const bool behind = position == count + 1 || cm1e_sim_esc_present(segment->slaves[position - 1]);
+    return before && behind;
+}
+
+/* The master may order port 1 closed (0x0101); port 0 follows its link. */
+static bool port_1_ordered_closed(const cm1e_sim_slave_t *slave)
+{
+    return (slave->memory[ESC_DL_PORTS] >> PORT_1_SHIFT & 3) == LOOP_CLOSED_ALWAYS;
+}
+
+static bool port_1_open(const cm1e_sim_segment_t *segment, uint32_t position)
+{
+    return cable_connects(segment, position + 1) && !port_1_ordered_closed(segment->slaves[position - 1]);
+}
+
+/* From the first slave on, until a port 1 is closed. */
+static struct route primary_route(const cm1e_sim_segment_t *segment)
+{
+    struct route route = {.exit_port = CM1E_SIM_PORT_LOST};
+    if (!cable_connects(segment, 1))
+        return route;
+    uint32_t position = 1;
+    while (position <= segment->count && port_1_open(segment, position))
+        position++;
+    /* Out of the last open port the ring's end is reached. */
+    const bool through = position == segment->count + 1;
+    route.count = through ? segment->count : position;
+    route.exit_port = through ? CM1E_SIM_PORT_SECONDARY : CM1E_SIM_PORT_PRIMARY;
+    return route;
+}
+
+/* Backwards a frame passes no processing unit. Where port 0 of a slave is closed it turns around and is processed from
+ * there to the end of the ring. */
+static struct route secondary_route(const cm1e_sim_segment_t *segment)
+{
+    struct route route = {.exit_port = CM1E_SIM_PORT_LOST};
+    uint32_t position = segment->count;
+    if (!cable_connects(segment, position + 1) || (position && port_1_ordered_closed(segment->slaves[position - 1])))
+        return route;
+    while (position >= 1 && cable_connects(segment, position)) {
+        position--;
+        /* Frames do not enter by a port that is ordered closed. */
+        if (position >= 1 && port_1_ordered_closed(segment->slaves[position - 1]))
+            return route;
+    }
+    if (position == 0) {
+        route.exit_port = CM1E_SIM_PORT_PRIMARY;
+        return route;
+    }
+    route.first = position - 1;
+    route.count = segment->count - route.first;
+    route.exit_port = CM1E_SIM_PORT_SECONDARY;
+    route.circulates = true;
+    return route;
+}
+
+static void update_topology(cm1e_sim_segment_t *segment)
+{
+    segment->topology_changed = false;
+    for (uint32_t position = 1; position <= segment->count; position++) {
+        cm1e_sim_slave_t *slave = segment->slaves[position - 1];
+        if (!cm1e_sim_esc_present(slave))
+            continue;
+        const bool link[2] = {cable_connects(segment, position), cable_connects(segment, position + 1)};
+        const bool open[2] = {link[0], port_1_open(segment, position)};
+        cm1e_sim_esc_links(slave, link, open);
+    }
+    segment->routes[CM1E_SIM_PORT_PRIMARY] = primary_route(segment);
+    segment->routes[CM1E_SIM_PORT_SECONDARY] = secondary_route(segment);
+}
+
+void cm1e_sim_segment_advance(cm1e_sim_segment_t *segment, int64_t now_ns)
+{
+    if (now_ns > segment->now_ns)
+        segment->now_ns = now_ns;
+    for (uint32_t i = 0; i < segment->count; i++)
+        cm1e_sim_esc_advance(segment->slaves[i], segment->now_ns);
+    if (segment->topology_changed)
+        update_topology(segment);
+}
+
+/* ---- frames -------------------------------------------------------------------------------------------------------- */
+
+/* Walks the datagrams; returns the end of the last one that is whole, 0 where not even the first is. */
+static size_t whole_datagrams(const uint8_t *frame, size_t end)
+{
+    size_t at = DATAGRAMS, whole = 0;
+    while (end - at >= DATAGRAM_HEADER + WORKING_COUNTER) {
+        const uint16_t length = cm1e_get_u16(frame + at + DATAGRAM_LENGTH);
+        const size_t bytes = DATAGRAM_HEADER + (size_t)(length & LENGTH_MASK) + WORKING_COUNTER;
+        if (bytes > end - at)
+            return whole;
+        at += bytes;
+        whole = at;
+        if (!(length & MORE_FOLLOW))
+            break;
+    }
+    return whole;
+}
+
+/* The end of the datagrams to process; 0: not a frame for slaves. Padding behind the EtherCAT length is ignored. */
+static size_t frame_end(const uint8_t *frame, size_t length)
+{
+    if (length < DATAGRAMS || frame[ETHER_TYPE] != 0x88 || frame[ETHER_TYPE + 1] != 0xA4)
+        return 0;
+    const uint16_t header = cm1e_get_u16(frame + ECAT_HEADER);
+    if (header >> TYPE_SHIFT != TYPE_COMMANDS)
+        return 0;
+    const size_t end = DATAGRAMS + (size_t)(header & LENGTH_MASK);
+    return end <= length ? whole_datagrams(frame, end) : 0;
+}
+
+static void mark_circulated(uint8_t *frame, size_t end)
+{
+    for (size_t at = DATAGRAMS; at < end;) {
+        const uint16_t length = cm1e_get_u16(frame + at + DATAGRAM_LENGTH);
+        cm1e_put_u16(frame + at + DATAGRAM_LENGTH, (uint16_t)(length | CIRCULATED));
+        at += DATAGRAM_HEADER + (size_t)(length & LENGTH_MASK) + WORKING_COUNTER;
+    }
+}
+
+static void pass_slaves(cm1e_sim_segment_t *segment, const struct route *route, uint8_t *frame, size_t end)
+{
+    for (uint32_t i = 0; i < route->count; i++) {
+        cm1e_sim_slave_t *slave = segment->slaves[route->first + i];
+        const bool last = i + 1 == route->count && route->exit_port == CM1E_SIM_PORT_PRIMARY;
+        slave->frame_ns = segment->now_ns + (int64_t)i * ESC_HOP_NS;
+        slave->return_ns =
+            last || route->exit_port != CM1E_SIM_PORT_PRIMARY
+                ? -1
+                : segment->now_ns + (int64_t)(2 * (route->count - 1) - i) * ESC_HOP_NS;
+        cm1e_sim_esc_frame(slave, frame + DATAGRAMS, frame + end);
+    }
+    if (route->count)
+        frame[SOURCE_MAC] |= LOCALLY_ADMINISTERED;
+}
+
+int cm1e_sim_segment_process(cm1e_sim_segment_t *segment, int entry_port, uint8_t *frame, size_t length, int64_t now_ns)
+{
+    cm1e_sim_segment_advance(segment, now_ns);
+    if (entry_port != CM1E_SIM_PORT_PRIMARY && entry_port != CM1E_SIM_PORT_SECONDARY)
+        return CM1E_SIM_PORT_LOST;
+    const struct route route = segment->routes[entry_port];
+    if (route.exit_port == CM1E_SIM_PORT_LOST)
+        return CM1E_SIM_PORT_LOST;
+    const size_t end = frame_end(frame, length);
+    if (end == 0) {
+        /* The first processing unit counts what it cannot read. */
+        if (route.count)
+            cm1e_sim_esc_count(segment->slaves[route.first], ESC_UNIT_ERRORS);
+        return CM1E_SIM_PORT_LOST;
+    }
+    if (route.circulates) {
+        /* A frame that comes by a second time goes round for ever: it is destroyed. */
+        if (cm1e_get_u16(frame + DATAGRAMS + DATAGRAM_LENGTH) & CIRCULATED)
+            return CM1E_SIM_PORT_LOST;
+        mark_circulated(frame, end);
+    }
+    pass_slaves(segment, &route, frame, end);
+    return route.exit_port;
+}
+
+/* ---- faults on frames ---------------------------------------------------------------------------------------------- */
+
+void cm1e_sim_segment_set_frame_fault(cm1e_sim_segment_t *segment, cm1e_frame_fault_t kind, uint32_t count,
+                                      int64_t delay_ns)
+{
+    segment->fault = kind;
+    segment->fault_count = count;
+    segment->fault_delay_ns = delay_ns;
+}
+
+cm1e_frame_fault_t cm1e_sim_segment_next_frame_fault(cm1e_sim_segment_t *segment, int64_t *delay_ns)
+{
+    *delay_ns = 0;
+    if (segment->fault_count == 0)
+        return CM1E_FRAME_OK;
+    segment->fault_count--;
+    if (segment->fault == CM1E_FRAME_DELAY)
+        *delay_ns = segment->fault_delay_ns;
+    return segment->fault;
+}
