@@ -45,8 +45,8 @@ typedef struct cm1e_fb_private {
     BOOL state;
 } cm1e_fb_private_t;
 
-/** 3.1. Controls the power stage. One per axis. Status: the stage is on and set-points act. Error also while the axis is
- *  in ErrorStop and the stage therefore stays off. Answers for the axis latched at Enable's edge until it is off. */
+/** 3.1. Controls the power stage. One per axis. Status: the stage is on and set-points act. Error also while the axis
+ *  is in ErrorStop and the stage therefore stays off. Answers for the axis latched at Enable's edge until it is off. */
 typedef struct MC_Power {
     AXIS_REF_t *Axis;
     BOOL Enable, EnablePositive, EnableNegative;

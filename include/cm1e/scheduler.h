@@ -42,7 +42,8 @@ typedef struct cm1e_scheduler_config {
 
 enum { CM1E_MAX_TASKS = 16, CM1E_HISTOGRAM_BUCKETS = 32 };
 
-/** Distribution of a time in ns; bucket n counts values below 2^n us ... in steps of a factor 2 from 1 us. */
+/** Distribution of a time in ns. Bucket n counts times from 2^(n-1) us to below 2^n us; the first one all below 1 us,
+ *  the last one all that are longer. */
 typedef struct cm1e_distribution {
     int64_t minimum_ns, maximum_ns, sum_ns;
     uint64_t count;
@@ -57,8 +58,8 @@ typedef struct cm1e_scheduler_statistics {
     char advice[256];            /**< what to do where a privilege is missing; "" if none is */
 } cm1e_scheduler_statistics_t;
 
-/** For a bus in Operational; makes one axis per configured axis. `config` NULL: defaults. The bus must outlive it.
- *  @rt init */
+/** For a bus in Operational; makes one axis per configured axis. `config` NULL: defaults. The bus must outlive it. The
+ *  slaves' watchdog is running: add the tasks and run soon. @rt init */
 cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus, const cm1e_scheduler_config_t *config,
                                    cm1e_diag_t *diag);
 /** NULL is allowed. Not while it runs. @rt init */
@@ -71,20 +72,24 @@ AXIS_REF_t cm1e_scheduler_axis(const cm1e_scheduler_t *scheduler, uint32_t index
 AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *scheduler, const char *name);
 
 /** Runs the cycle in the calling thread for `duration_ns` (0: until cm1e_scheduler_stop()), then stops in order: axes
- *  ramp down, drives are disabled, slaves go to Safe-Operational and Init. Returns the first error that ended it early
- *  (bus lost for good ...), else CM1E_OK. @rt init */
+ *  ramp down, drives are disabled, slaves go to Safe-Operational and Init. Once per scheduler. A missed cycle is left
+ *  out, never caught up. A lost bus does not end the run: the axes are in ErrorStop, programs see it, and what comes
+ *  back can be reset. CM1E_ERROR_PERMISSION: real time is required and refused, no cycle was run;
+ *  CM1E_ERROR_TIMEOUT: an axis was not disabled within the stop timeout. The bus is stopped in any case.
+ *  @rt init */
 cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns, cm1e_diag_t *diag);
 /** Asks the run to end in order. Any thread, any program, any signal handler. @rt any */
 void cm1e_scheduler_stop(cm1e_scheduler_t *scheduler);
-/** SIGINT and SIGTERM stop this scheduler in order. One scheduler per process. @rt init */
+/** SIGINT and SIGTERM stop this scheduler in order, until it is destroyed. One scheduler per process. @rt init */
 void cm1e_scheduler_stop_on_signals(cm1e_scheduler_t *scheduler);
-/** Time since the first cycle, the same for a whole scan. @rt cycle */
+/** Planned time of this cycle since the first one, the same for a whole scan. @rt cycle */
 int64_t cm1e_scheduler_time_ns(const cm1e_scheduler_t *scheduler);
-/** After the run, or from a program. @rt cycle */
+/** Before, during and after the run, from any thread. Each number is right; while it runs, two of them may be of
+ *  neighbouring cycles. @rt any */
 void cm1e_scheduler_statistics(const cm1e_scheduler_t *scheduler, cm1e_scheduler_statistics_t *statistics);
 
-/** Writes the trace (time; per axis: state, set and actual position and velocity, torque) as CSV, to a temporary name,
- *  then renamed. After the run. @rt block */
+/** Writes the trace (time; per axis: state, set and actual position and velocity, torque) as CSV, to <path>.part, then
+ *  renamed. After the run. @rt block */
 cm1e_error_t cm1e_scheduler_write_csv(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);
 /** Writes the trace as a plot that a person can read: panels per axis. As cm1e_scheduler_write_csv(). @rt block */
 cm1e_error_t cm1e_scheduler_write_svg(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);

@@ -1,0 +1,31 @@
+/**
+ * @file realtime.h
+ * What the operating system can do for the thread that runs the cycle: SCHED_FIFO, locked memory, a touched stack, one
+ * CPU, exact timers. A missing privilege is told in words that say what to do.
+ */
+#ifndef CM1E_SCHEDULER_REALTIME_H
+#define CM1E_SCHEDULER_REALTIME_H
+
+#include <sched.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "cm1e/error.h"
+#include "cm1e/scheduler.h"
+
+enum { REALTIME_DEFAULT_PRIORITY = 80 };
+
+/** How the thread was before. */
+typedef struct realtime {
+    bool fifo, bound;
+    int policy, timer_slack_ns;
+    struct sched_param parameters;
+    cpu_set_t cpus;
+} realtime_t;
+
+/** For the calling thread. TRUE: real time is in force; else `advice` says what is missing, "" if nothing was asked. */
+bool realtime_begin(realtime_t *realtime, const cm1e_scheduler_config_t *config, char *advice, size_t size);
+/** The thread is again as it was. Locked memory stays locked. */
+void realtime_end(const realtime_t *realtime);
+
+#endif

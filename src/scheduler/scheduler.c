@@ -1,0 +1,283 @@
+#include "cm1e/scheduler.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "axis/axis.h"
+#include "bus/bus_image.h"
+#include "scheduler/realtime.h"
+#include "scheduler/signals.h"
+#include "scheduler/statistics.h"
+#include "scheduler/tasks.h"
+#include "scheduler/trace.h"
+
+#define DEFAULT_STOP_TIMEOUT_NS INT64_C(10000000000)
+
+struct cm1e_scheduler {
+    cm1e_bus_t *bus;
+    cm1e_clock_t *clock;
+    cm1e_scheduler_config_t config;
+    int64_t cycle_time_ns;
+    cm1e_axis_t *axes[CM1E_MAX_AXES];
+    uint32_t axis_count;
+    task_list_t tasks;
+    trace_t trace;
+    statistics_t statistics;
+    atomic_bool stop;      /**< asked for, by anybody */
+    bool run;              /**< cm1e_scheduler_run() was called */
+    bool shutting_down;    /**< programs no longer run */
+    bool shut_down;        /**< every drive is disabled, or gone */
+    int64_t start_ns;      /**< of cycle 0 */
+    int64_t number;        /**< of this cycle; skipped ones count */
+    int64_t begin_ns;      /**< when this cycle really began */
+};
+
+/* ---- the cycle ------------------------------------------------------------------------------------------------- */
+
+static int64_t planned_ns(const cm1e_scheduler_t *s, int64_t number) { return s->start_ns + number * s->cycle_time_ns; }
+
+static void take_inputs(cm1e_scheduler_t *s, cm1e_error_t received)
+{
+    const cm1e_error_t health = cm1e_bus_health(s->bus);
+    for (uint32_t i = 0; i < s->axis_count; i++)
+        cm1e_axis_inputs(s->axes[i], received, health, planned_ns(s, s->number));
+}
+
+static void shut_down_axes(cm1e_scheduler_t *s)
+{
+    s->shut_down = true;
+    for (uint32_t i = 0; i < s->axis_count; i++)
+        s->shut_down &= cm1e_axis_shut_down(s->axes[i]);
+}
+
+static void set_outputs(cm1e_scheduler_t *s)
+{
+    for (uint32_t i = 0; i < s->axis_count; i++)
+        cm1e_axis_outputs(s->axes[i]);
+}
+
+/** receive -> inputs -> programs -> axes -> outputs -> send. At the end of a run the programs' place is taken by the
+ *  axes' shut-down. */
+static void scan(cm1e_scheduler_t *s)
+{
+    take_inputs(s, cm1e_bus_receive(s->bus));
+    if (s->shutting_down)
+        shut_down_axes(s);
+    else
+        tasks_run(&s->tasks, s->number);
+    set_outputs(s);
+    cm1e_bus_send(s->bus);
+}
+
+/** Waits for the planned start. A thread that is woken a whole cycle late or more takes the cycle that it finds. */
+static void wait_for_start(cm1e_scheduler_t *s)
+{
+    cm1e_clock_sleep_until(s->clock, planned_ns(s, s->number));
+    const int64_t now_ns = cm1e_clock_now(s->clock);
+    const int64_t missed = (now_ns - planned_ns(s, s->number)) / s->cycle_time_ns;
+    if (s->statistics.cycles > 0)
+        distribution_add(&s->statistics.cycle_time, now_ns - s->begin_ns);
+    distribution_add(&s->statistics.wake_up_latency, now_ns - planned_ns(s, s->number));
+    s->begin_ns = now_ns;
+    if (missed > 0) {
+        s->number += missed;
+        atomic_fetch_add_explicit(&s->statistics.overruns, 1, memory_order_relaxed);
+    }
+}
+
+/** The next cycle is the first whose start is still to come: missed ones are left out, never caught up in a burst. */
+static void end_cycle(cm1e_scheduler_t *s)
+{
+    const int64_t end_ns = cm1e_clock_now(s->clock);
+    distribution_add(&s->statistics.execution_time, end_ns - s->begin_ns);
+    statistics_note_bus(&s->statistics, cm1e_bus_counters(s->bus));
+    atomic_fetch_add_explicit(&s->statistics.cycles, 1, memory_order_relaxed);
+    s->number++;
+    if (end_ns <= planned_ns(s, s->number))
+        return;
+    atomic_fetch_add_explicit(&s->statistics.overruns, 1, memory_order_relaxed);
+    s->number = (end_ns - s->start_ns + s->cycle_time_ns - 1) / s->cycle_time_ns;
+}
+
+static void cycle(cm1e_scheduler_t *s)
+{
+    wait_for_start(s);
+    scan(s);
+    trace_record(&s->trace, s->axes, cm1e_scheduler_time_ns(s));
+    end_cycle(s);
+}
+
+/* ---- a run ----------------------------------------------------------------------------------------------------- */
+
+static bool stop_asked(const cm1e_scheduler_t *s) { return atomic_load_explicit(&s->stop, memory_order_relaxed); }
+
+static cm1e_error_t shut_down(cm1e_scheduler_t *s, cm1e_diag_t *diag)
+{
+    const int64_t deadline_ns = cm1e_scheduler_time_ns(s) + s->config.stop_timeout_ns;
+    s->shutting_down = true;
+    while (!s->shut_down && cm1e_scheduler_time_ns(s) <= deadline_ns)
+        cycle(s);
+    if (s->shut_down)
+        return CM1E_OK;
+    return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0,
+                         "The axes were not at rest and disabled within %.1f s after the stop; the bus was stopped all "
+                         "the same.", (double)s->config.stop_timeout_ns * 1e-9);
+}
+
+static cm1e_error_t take_real_time(cm1e_scheduler_t *s, realtime_t *realtime, cm1e_diag_t *diag)
+{
+    char advice[sizeof s->statistics.advice] = "";
+    const bool is_virtual = s->clock != cm1e_clock_monotonic();
+    const bool in_force = !is_virtual && realtime_begin(realtime, &s->config, advice, sizeof advice);
+    statistics_publish_realtime(&s->statistics, in_force, advice);
+    if (s->config.realtime_required && advice[0])
+        return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0, "%s", advice);
+    return CM1E_OK;
+}
+
+static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *diag)
+{
+    realtime_t realtime = {0};
+    cm1e_error_t error = take_real_time(s, &realtime, diag);
+    if (error == CM1E_OK) {
+        s->start_ns = cm1e_clock_now(s->clock);
+        while (!stop_asked(s) && (duration_ns == 0 || cm1e_scheduler_time_ns(s) < duration_ns))
+            cycle(s);
+        error = shut_down(s, diag);
+    }
+    cm1e_bus_stop(s->bus);
+    realtime_end(&realtime);
+    return error;
+}
+
+cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns, cm1e_diag_t *diag)
+{
+    if (duration_ns < 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The duration of the run is negative.");
+    if (scheduler->run)
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
+                             "A scheduler runs once; start the bus again and make a new one.");
+    scheduler->run = true;
+    cm1e_clock_t *clock_before = cm1e_clock_current();
+    cm1e_clock_make_current(scheduler->clock); /* this thread may not be the one that opened the bus */
+    const cm1e_error_t error = run(scheduler, duration_ns, diag);
+    cm1e_clock_make_current(clock_before);
+    return error;
+}
+
+void cm1e_scheduler_stop(cm1e_scheduler_t *scheduler)
+{
+    atomic_store_explicit(&scheduler->stop, true, memory_order_relaxed);
+}
+
+void cm1e_scheduler_stop_on_signals(cm1e_scheduler_t *scheduler) { signals_attach(scheduler); }
+
+int64_t cm1e_scheduler_time_ns(const cm1e_scheduler_t *scheduler)
+{
+    return scheduler->number * scheduler->cycle_time_ns;
+}
+
+void cm1e_scheduler_statistics(const cm1e_scheduler_t *scheduler, cm1e_scheduler_statistics_t *statistics)
+{
+    statistics_read(&scheduler->statistics, statistics);
+}
+
+cm1e_error_t cm1e_scheduler_write_csv(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag)
+{
+    return trace_write_file(&scheduler->trace, path, trace_print_csv, diag);
+}
+
+cm1e_error_t cm1e_scheduler_write_svg(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag)
+{
+    return trace_write_file(&scheduler->trace, path, trace_print_svg, diag);
+}
+
+/* ---- before and after ------------------------------------------------------------------------------------------ */
+
+static cm1e_error_t take_config(cm1e_scheduler_t *s, const cm1e_scheduler_config_t *config, cm1e_diag_t *diag)
+{
+    if (config)
+        s->config = *config;
+    if (s->config.realtime_priority == 0)
+        s->config.realtime_priority = REALTIME_DEFAULT_PRIORITY;
+    if (s->config.stop_timeout_ns == 0)
+        s->config.stop_timeout_ns = DEFAULT_STOP_TIMEOUT_NS;
+    if (s->config.realtime_priority < -1 || s->config.realtime_priority > 98)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
+                             "The real-time priority %d is not one of 1 ... 98, 0 (the default) or -1 (none).",
+                             s->config.realtime_priority);
+    if (s->config.cpu < 0 || s->config.stop_timeout_ns < 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The CPU or the stop timeout is negative.");
+    return CM1E_OK;
+}
+
+static cm1e_error_t make_axes(cm1e_scheduler_t *s, cm1e_diag_t *diag)
+{
+    const uint32_t count = cm1e_bus_configuration(s->bus)->axis_count;
+    for (uint32_t i = 0; i < count && i < CM1E_MAX_AXES; i++) {
+        const cm1e_error_t error = cm1e_axis_create(&s->axes[i], s->bus, i, diag);
+        if (error != CM1E_OK)
+            return error;
+        s->axis_count++;
+    }
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus, const cm1e_scheduler_config_t *config,
+                                   cm1e_diag_t *diag)
+{
+    *scheduler = NULL;
+    if (!bus)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A scheduler needs a bus.");
+    cm1e_scheduler_t *s = calloc(1, sizeof *s);
+    if (!s)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the scheduler.");
+    s->bus = bus;
+    s->clock = cm1e_bus_clock(bus);
+    s->cycle_time_ns = cm1e_bus_configuration(bus)->cycle_time_ns;
+    cm1e_error_t error = take_config(s, config, diag);
+    if (error == CM1E_OK)
+        error = make_axes(s, diag);
+    if (error == CM1E_OK)
+        error = trace_init(&s->trace, s->axes, s->axis_count, s->config.trace_capacity, s->config.trace_every, diag);
+    if (error != CM1E_OK) {
+        cm1e_scheduler_destroy(s);
+        return error;
+    }
+    *scheduler = s;
+    return CM1E_OK;
+}
+
+void cm1e_scheduler_destroy(cm1e_scheduler_t *scheduler)
+{
+    if (!scheduler)
+        return;
+    signals_detach(scheduler);
+    trace_free(&scheduler->trace);
+    for (uint32_t i = 0; i < scheduler->axis_count; i++)
+        cm1e_axis_destroy(scheduler->axes[i]);
+    free(scheduler);
+}
+
+cm1e_error_t cm1e_scheduler_add_task(cm1e_scheduler_t *scheduler, const cm1e_task_config_t *task, cm1e_diag_t *diag)
+{
+    if (scheduler->run)
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Tasks are added before the scheduler runs.");
+    return tasks_add(&scheduler->tasks, task, scheduler->cycle_time_ns, diag);
+}
+
+AXIS_REF_t cm1e_scheduler_axis(const cm1e_scheduler_t *scheduler, uint32_t index)
+{
+    return index < scheduler->axis_count ? cm1e_axis_reference(scheduler->axes[index]) : (AXIS_REF_t){0};
+}
+
+AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *scheduler, const char *name)
+{
+    for (uint32_t i = 0; i < scheduler->axis_count; i++) {
+        const AXIS_REF_t reference = cm1e_axis_reference(scheduler->axes[i]);
+        if (strcmp(cm1e_axis_name(reference), name) == 0)
+            return reference;
+    }
+    return (AXIS_REF_t){0};
+}

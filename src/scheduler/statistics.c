@@ -1,0 +1,76 @@
+#include "scheduler/statistics.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define READ(number) atomic_load_explicit(&(number), memory_order_relaxed)
+#define WRITE(number, value) atomic_store_explicit(&(number), (value), memory_order_relaxed)
+
+/** Bucket n holds times from 2^(n-1) us to below 2^n us, the first all below 1 us, the last all that are longer. */
+static unsigned bucket_of(int64_t time_ns)
+{
+    unsigned bucket = 0;
+    for (int64_t us = time_ns / 1000; us > 0 && bucket < CM1E_HISTOGRAM_BUCKETS - 1; us >>= 1)
+        bucket++;
+    return bucket;
+}
+
+void distribution_add(distribution_t *distribution, int64_t time_ns)
+{
+    const uint64_t count = READ(distribution->count);
+    _Atomic uint64_t *bucket = &distribution->histogram[bucket_of(time_ns)];
+    if (count == 0 || time_ns < READ(distribution->minimum_ns))
+        WRITE(distribution->minimum_ns, time_ns);
+    if (count == 0 || time_ns > READ(distribution->maximum_ns))
+        WRITE(distribution->maximum_ns, time_ns);
+    WRITE(distribution->sum_ns, READ(distribution->sum_ns) + time_ns);
+    WRITE(*bucket, READ(*bucket) + 1);
+    WRITE(distribution->count, count + 1);
+}
+
+void statistics_note_bus(statistics_t *statistics, const cm1e_bus_counters_t *counters)
+{
+    WRITE(statistics->bus_cycles, counters->cycles);
+    WRITE(statistics->lost_frames, counters->lost_frames);
+    WRITE(statistics->working_counter_errors, counters->working_counter_errors);
+    WRITE(statistics->late_frames, counters->late_frames);
+    WRITE(statistics->mailbox_retries, counters->mailbox_retries);
+}
+
+void statistics_publish_realtime(statistics_t *statistics, bool realtime, const char *advice)
+{
+    snprintf(statistics->advice, sizeof statistics->advice, "%s", advice);
+    WRITE(statistics->realtime, realtime);
+    atomic_store_explicit(&statistics->ready, true, memory_order_release);
+}
+
+static void read_distribution(const distribution_t *distribution, cm1e_distribution_t *copy)
+{
+    copy->minimum_ns = READ(distribution->minimum_ns);
+    copy->maximum_ns = READ(distribution->maximum_ns);
+    copy->sum_ns = READ(distribution->sum_ns);
+    copy->count = READ(distribution->count);
+    for (unsigned i = 0; i < CM1E_HISTOGRAM_BUCKETS; i++)
+        copy->histogram[i] = READ(distribution->histogram[i]);
+}
+
+void statistics_read(const statistics_t *statistics, cm1e_scheduler_statistics_t *copy)
+{
+    *copy = (cm1e_scheduler_statistics_t){0};
+    read_distribution(&statistics->cycle_time, &copy->cycle_time);
+    read_distribution(&statistics->wake_up_latency, &copy->wake_up_latency);
+    read_distribution(&statistics->execution_time, &copy->execution_time);
+    copy->cycles = READ(statistics->cycles);
+    copy->overruns = READ(statistics->overruns);
+    copy->bus = (cm1e_bus_counters_t){
+        .cycles = READ(statistics->bus_cycles),
+        .lost_frames = READ(statistics->lost_frames),
+        .working_counter_errors = READ(statistics->working_counter_errors),
+        .late_frames = READ(statistics->late_frames),
+        .mailbox_retries = READ(statistics->mailbox_retries),
+    };
+    if (atomic_load_explicit(&statistics->ready, memory_order_acquire)) {
+        copy->realtime = READ(statistics->realtime);
+        memcpy(copy->advice, statistics->advice, sizeof copy->advice);
+    }
+}

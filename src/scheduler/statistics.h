@@ -1,0 +1,36 @@
+/**
+ * @file statistics.h
+ * Numbers that the cycle writes and any thread may read: relaxed atomics with one writer. Each number read is right;
+ * two of them may be of neighbouring cycles.
+ */
+#ifndef CM1E_SCHEDULER_STATISTICS_H
+#define CM1E_SCHEDULER_STATISTICS_H
+
+#include <stdatomic.h>
+
+#include "cm1e/scheduler.h"
+
+typedef struct distribution {
+    _Atomic int64_t minimum_ns, maximum_ns, sum_ns;
+    _Atomic uint64_t count;
+    _Atomic uint64_t histogram[CM1E_HISTOGRAM_BUCKETS];
+} distribution_t;
+
+typedef struct statistics {
+    distribution_t cycle_time, wake_up_latency, execution_time;
+    _Atomic uint64_t cycles, overruns;
+    _Atomic uint64_t bus_cycles, lost_frames, working_counter_errors, late_frames, mailbox_retries;
+    char advice[sizeof((cm1e_scheduler_statistics_t *)0)->advice]; /**< written once, before `ready` */
+    _Atomic bool realtime, ready;
+} statistics_t;
+
+/** @rt cycle */
+void distribution_add(distribution_t *distribution, int64_t time_ns);
+/** @rt cycle */
+void statistics_note_bus(statistics_t *statistics, const cm1e_bus_counters_t *counters);
+/** What real-time privileges came to; once, before the first cycle. */
+void statistics_publish_realtime(statistics_t *statistics, bool realtime, const char *advice);
+/** @rt any */
+void statistics_read(const statistics_t *statistics, cm1e_scheduler_statistics_t *copy);
+
+#endif

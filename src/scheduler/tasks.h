@@ -1,0 +1,30 @@
+/**
+ * @file tasks.h
+ * IEC 61131-3 tasks: programs with an interval and a priority, called in the cycle one after the other.
+ */
+#ifndef CM1E_SCHEDULER_TASKS_H
+#define CM1E_SCHEDULER_TASKS_H
+
+#include "cm1e/scheduler.h"
+
+typedef struct task {
+    char name[CM1E_NAME_LENGTH];
+    cm1e_program_t program;
+    void *context;
+    uint32_t priority;
+    int64_t every;       /**< cycles */
+    int64_t next_cycle;  /**< number of the cycle that it is due in */
+} task_t;
+
+/** In the order in which they run. */
+typedef struct task_list {
+    task_t tasks[CM1E_MAX_TASKS];
+    uint32_t count;
+} task_list_t;
+
+/** @rt init */
+cm1e_error_t tasks_add(task_list_t *list, const cm1e_task_config_t *config, int64_t cycle_time_ns, cm1e_diag_t *diag);
+/** Calls what is due in cycle `number` (0 = first; numbers grow, some may be missing). @rt cycle */
+void tasks_run(task_list_t *list, int64_t number);
+
+#endif

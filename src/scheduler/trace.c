@@ -1,0 +1,155 @@
+#include "scheduler/trace.h"
+
+#include <errno.h>
+#include <locale.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* ---- recording ------------------------------------------------------------------------------------------------- */
+
+cm1e_error_t trace_init(trace_t *trace, cm1e_axis_t *const axes[], uint32_t count, uint32_t capacity, uint32_t every,
+                        cm1e_diag_t *diag)
+{
+    *trace = (trace_t){.axes = count, .every = every ? every : 1};
+    if (capacity == 0)
+        return CM1E_OK;
+    trace->names = calloc(count + 1, sizeof *trace->names);
+    trace->times_ns = calloc(capacity, sizeof *trace->times_ns);
+    trace->samples = calloc(capacity, ((size_t)count + 1) * sizeof *trace->samples);
+    if (!trace->names || !trace->times_ns || !trace->samples) {
+        trace_free(trace);
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for a trace of %u cycles of %u axes.", capacity,
+                             count);
+    }
+    for (uint32_t i = 0; i < count; i++)
+        trace->names[i] = cm1e_axis_name(cm1e_axis_reference(axes[i]));
+    trace->capacity = capacity;
+    return CM1E_OK;
+}
+
+void trace_free(trace_t *trace)
+{
+    free(trace->names);
+    free(trace->times_ns);
+    free(trace->samples);
+    *trace = (trace_t){0};
+}
+
+void trace_record(trace_t *trace, cm1e_axis_t *const axes[], int64_t time_ns)
+{
+    if (trace->capacity == 0 || trace->until_next-- > 0)
+        return;
+    trace->until_next = trace->every - 1;
+    const uint32_t place = (uint32_t)(((uint64_t)trace->first + trace->used) % trace->capacity);
+    if (trace->used < trace->capacity)
+        trace->used++;
+    else
+        trace->first = (trace->first + 1) % trace->capacity;
+    trace->times_ns[place] = time_ns;
+    for (uint32_t i = 0; i < trace->axes; i++) {
+        cm1e_axis_info_t info;
+        cm1e_axis_get(axes[i], &info);
+        trace->samples[(size_t)place * trace->axes + i] = (trace_sample_t){
+            .set_position = info.set_position,
+            .actual_position = info.actual_position,
+            .set_velocity = info.set_velocity,
+            .actual_velocity = info.actual_velocity,
+            .torque = info.actual_torque,
+            .state = info.state,
+        };
+    }
+}
+
+/* ---- reading --------------------------------------------------------------------------------------------------- */
+
+static uint32_t place_of(const trace_t *trace, uint32_t n)
+{
+    return (uint32_t)(((uint64_t)trace->first + n) % trace->capacity);
+}
+
+int64_t trace_time_ns(const trace_t *trace, uint32_t n) { return trace->times_ns[place_of(trace, n)]; }
+
+const trace_sample_t *trace_sample(const trace_t *trace, uint32_t n, uint32_t axis)
+{
+    return &trace->samples[(size_t)place_of(trace, n) * trace->axes + axis];
+}
+
+/* ---- writing --------------------------------------------------------------------------------------------------- */
+
+/** A field of a CSV file (RFC 4180): quoted, quotes doubled. */
+static void print_quoted(FILE *file, const char *name, const char *what)
+{
+    fputs(",\"", file);
+    for (const char *c = name; *c; c++) {
+        if (*c == '"')
+            fputc('"', file);
+        fputc(*c, file);
+    }
+    fprintf(file, " %s\"", what);
+}
+
+void trace_print_csv(const trace_t *trace, FILE *file)
+{
+    static const char *const columns[] = {"state", "set position [u]", "actual position [u]", "set velocity [u/s]",
+                                          "actual velocity [u/s]", "torque [%]"};
+    fputs("\"time [s]\"", file);
+    for (uint32_t axis = 0; axis < trace->axes; axis++)
+        for (size_t i = 0; i < sizeof columns / sizeof columns[0]; i++)
+            print_quoted(file, trace->names[axis], columns[i]);
+    fputc('\n', file);
+    for (uint32_t n = 0; n < trace->used; n++) {
+        fprintf(file, "%.6f", (double)trace_time_ns(trace, n) * 1e-9);
+        for (uint32_t axis = 0; axis < trace->axes; axis++) {
+            const trace_sample_t *s = trace_sample(trace, n, axis);
+            fprintf(file, ",%s,%.9g,%.9g,%.9g,%.9g,%.4g", cm1e_axis_state_name(s->state), s->set_position,
+                    s->actual_position, s->set_velocity, s->actual_velocity, s->torque);
+        }
+        fputc('\n', file);
+    }
+}
+
+static cm1e_error_t cannot_write(const char *path, cm1e_diag_t *diag)
+{
+    return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "%s cannot be written: %s.", path, strerror(errno));
+}
+
+/** A device or a pipe (/dev/stdout) is written to directly. */
+static bool is_special(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 && !S_ISREG(status.st_mode);
+}
+
+static bool print_in_c_locale(const trace_t *trace, FILE *file, void (*print)(const trace_t *trace, FILE *file))
+{
+    const locale_t locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
+    const locale_t before = locale ? uselocale(locale) : (locale_t)0;
+    print(trace, file);
+    if (locale) {
+        uselocale(before);
+        freelocale(locale);
+    }
+    const bool written = fflush(file) == 0 && !ferror(file);
+    return fclose(file) == 0 && written;
+}
+
+cm1e_error_t trace_write_file(const trace_t *trace, const char *path, void (*print)(const trace_t *trace, FILE *file),
+                              cm1e_diag_t *diag)
+{
+    char temporary[4096];
+    const bool direct = path && is_special(path);
+    if (!path || snprintf(temporary, sizeof temporary, direct ? "%s" : "%s.part", path) >= (int)sizeof temporary)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The name of the file is missing or too long.");
+    FILE *file = fopen(temporary, "w");
+    if (!file)
+        return cannot_write(temporary, diag);
+    const bool written = print_in_c_locale(trace, file, print);
+    if (written && (direct || rename(temporary, path) == 0))
+        return CM1E_OK;
+    const cm1e_error_t error = cannot_write(path, diag);
+    if (!direct)
+        unlink(temporary);
+    return error;
+}

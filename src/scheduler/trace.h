@@ -1,0 +1,45 @@
+/**
+ * @file trace.h
+ * The last cycles of every axis in a ring that is allocated before the cycle starts, and its writers.
+ */
+#ifndef CM1E_SCHEDULER_TRACE_H
+#define CM1E_SCHEDULER_TRACE_H
+
+#include <stdio.h>
+
+#include "axis/axis.h"
+#include "cm1e/scheduler.h"
+
+typedef struct trace_sample {
+    double set_position, actual_position, set_velocity, actual_velocity, torque;
+    cm1e_axis_state_t state;
+} trace_sample_t;
+
+typedef struct trace {
+    uint32_t axes, capacity, every;
+    uint32_t first, used;     /**< samples: the oldest one, and how many there are */
+    uint32_t until_next;      /**< cycles until the next one is recorded */
+    const char **names;       /**< of the axes */
+    int64_t *times_ns;        /**< [capacity] */
+    trace_sample_t *samples;  /**< [capacity][axes] */
+} trace_t;
+
+/** `capacity` 0: a trace that records nothing. @rt init */
+cm1e_error_t trace_init(trace_t *trace, cm1e_axis_t *const axes[], uint32_t count, uint32_t capacity, uint32_t every,
+                        cm1e_diag_t *diag);
+void trace_free(trace_t *trace);
+/** @rt cycle */
+void trace_record(trace_t *trace, cm1e_axis_t *const axes[], int64_t time_ns);
+
+/** Sample n, 0 = oldest. */
+int64_t trace_time_ns(const trace_t *trace, uint32_t n);
+const trace_sample_t *trace_sample(const trace_t *trace, uint32_t n, uint32_t axis);
+
+/** Writers of a file's content. */
+void trace_print_csv(const trace_t *trace, FILE *file);
+void trace_print_svg(const trace_t *trace, FILE *file);
+/** Writes under a temporary name and renames, so that nobody ever sees half a file; in the "C" locale. @rt block */
+cm1e_error_t trace_write_file(const trace_t *trace, const char *path, void (*print)(const trace_t *trace, FILE *file),
+                              cm1e_diag_t *diag);
+
+#endif

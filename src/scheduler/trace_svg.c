@@ -1,0 +1,397 @@
+/*
+ * The trace as a picture: a column of panels per axis (position, velocity, torque over time), above them a band that
+ * shows the axis's state in colour. Every curve is thinned to the smallest and largest value of each of a few hundred
+ * slices of time, so that nothing that happened is lost and the file stays below half a megabyte.
+ */
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "scheduler/trace.h"
+
+/* ---- layout, in pixels ----------------------------------------------------------------------------------------- */
+
+enum {
+    COLUMNS_PER_ROW = 3,
+    COLUMN_LEFT = 72, COLUMN_RIGHT = 18, PLOT_WIDTH = 400,
+    COLUMN_WIDTH = COLUMN_LEFT + PLOT_WIDTH + COLUMN_RIGHT,
+    HEAD = 84, NAME = 24, BAND = 12, PANEL_GAP = 16, TIME_AXIS = 44,
+    BYTES_FOR_CURVES = 380000, BYTES_PER_POINT = 13,
+};
+
+typedef struct box {
+    double x, y, width, height;
+} box_t;
+
+typedef struct curve {
+    size_t offset; /**< of the value in trace_sample_t */
+    const char *css;
+} curve_t;
+
+static const struct panel {
+    const char *title, *unit;
+    double height, smallest_range;
+    curve_t curves[2]; /**< the first one is drawn below */
+} panels[] = {
+    {"position", "u", 170, 1e-3,
+     {{offsetof(trace_sample_t, actual_position), "actual"}, {offsetof(trace_sample_t, set_position), "set"}}},
+    {"velocity", "u/s", 150, 1e-2,
+     {{offsetof(trace_sample_t, actual_velocity), "actual"}, {offsetof(trace_sample_t, set_velocity), "set"}}},
+    {"torque", "% of rated", 110, 1.0, {{offsetof(trace_sample_t, torque), "torque"}, {0, NULL}}},
+};
+enum { PANELS = sizeof panels / sizeof panels[0] };
+
+/** The more a reader must not miss a state, the higher its rank: it wins the slice of time that it falls into. */
+static const struct {
+    const char *colour;
+    int rank;
+} states[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {"#b9bec6", 1},          [CM1E_AXIS_STANDSTILL] = {"#7cc68d", 0},
+    [CM1E_AXIS_HOMING] = {"#f2c230", 5},            [CM1E_AXIS_DISCRETE_MOTION] = {"#4c8eda", 2},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {"#8a6fd1", 3}, [CM1E_AXIS_SYNCHRONIZED_MOTION] = {"#2fa8a0", 4},
+    [CM1E_AXIS_STOPPING] = {"#ef8632", 6},          [CM1E_AXIS_ERROR_STOP] = {"#d5343b", 7},
+};
+
+typedef struct plot {
+    FILE *file;
+    const trace_t *trace;
+    double begin_s, end_s;
+    uint32_t slices;
+} plot_t;
+
+static double time_s(const plot_t *plot, uint32_t n) { return (double)trace_time_ns(plot->trace, n) * 1e-9; }
+
+static uint32_t slice_of(const plot_t *plot, uint32_t n)
+{
+    const double share = (time_s(plot, n) - plot->begin_s) / (plot->end_s - plot->begin_s);
+    const uint32_t slice = (uint32_t)(share * plot->slices);
+    return slice < plot->slices ? slice : plot->slices - 1;
+}
+
+static double x_of(const plot_t *plot, const box_t *box, double seconds)
+{
+    return box->x + (seconds - plot->begin_s) / (plot->end_s - plot->begin_s) * box->width;
+}
+
+static double value_of(const plot_t *plot, uint32_t n, uint32_t axis, const curve_t *curve)
+{
+    double value;
+    memcpy(&value, (const char *)trace_sample(plot->trace, n, axis) + curve->offset, sizeof value);
+    return value;
+}
+
+static void print_escaped(FILE *file, const char *text)
+{
+    for (const char *c = text; *c; c++)
+        switch (*c) {
+        case '&': fputs("&amp;", file); break;
+        case '<': fputs("&lt;", file); break;
+        case '>': fputs("&gt;", file); break;
+        case '"': fputs("&quot;", file); break;
+        default: fputc((unsigned char)*c < ' ' ? ' ' : *c, file);
+        }
+}
+
+/* ---- scales ---------------------------------------------------------------------------------------------------- */
+
+typedef struct scale {
+    double low, high, step; /**< step: between two ticks, 1, 2 or 5 times a power of 10 */
+} scale_t;
+
+static double nice_step(double range, int ticks)
+{
+    const double raw = range / ticks, power = pow(10, floor(log10(raw))), share = raw / power;
+    return power * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10);
+}
+
+static scale_t scale_of_panel(const plot_t *plot, uint32_t axis, const struct panel *panel)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (int c = 0; c < 2 && panel->curves[c].css; c++)
+        for (uint32_t n = 0; n < plot->trace->used; n++) {
+            const double value = value_of(plot, n, axis, &panel->curves[c]);
+            if (isfinite(value)) {
+                low = fmin(low, value);
+                high = fmax(high, value);
+            }
+        }
+    if (low > high)
+        low = high = 0;
+    const double smallest = fmax(panel->smallest_range, 1e-9 * fmax(fabs(low), fabs(high)));
+    const double margin = fmax(0.06 * (high - low), (smallest - (high - low)) / 2);
+    return (scale_t){low - margin, high + margin, nice_step(high - low + 2 * margin, 5)};
+}
+
+/** As many decimals as the step between two ticks needs. */
+static void print_tick(FILE *file, double value, double step)
+{
+    const int decimals = step >= 1 ? 0 : (int)ceil(-log10(step) - 1e-9);
+    if (fabs(value) < step / 2)
+        value = 0;
+    if (decimals <= 6 && fabs(value) < 1e7)
+        fprintf(file, "%.*f", decimals, value);
+    else
+        fprintf(file, "%.4g", value);
+}
+
+static double y_of(const box_t *box, const scale_t *scale, double value)
+{
+    return box->y + box->height - (value - scale->low) / (scale->high - scale->low) * box->height;
+}
+
+/* ---- a curve --------------------------------------------------------------------------------------------------- */
+
+/** Draws a polyline and leaves out the inner points of level stretches. Coordinates in tenths of a pixel. */
+typedef struct pen {
+    FILE *file;
+    bool started, pending;
+    long last_y, x, y; /**< last_y: of the point drawn last; x, y: of the pending one */
+} pen_t;
+
+static void print_tenths(FILE *file, long tenths)
+{
+    if (tenths % 10)
+        fprintf(file, "%.1f", (double)tenths / 10);
+    else
+        fprintf(file, "%ld", tenths / 10);
+}
+
+static void pen_flush(pen_t *pen)
+{
+    if (!pen->pending)
+        return;
+    fputs(pen->started ? " " : "M", pen->file);
+    print_tenths(pen->file, pen->x);
+    fputc(',', pen->file);
+    print_tenths(pen->file, pen->y);
+    pen->started = true;
+    pen->pending = false;
+    pen->last_y = pen->y;
+}
+
+static void pen_to(pen_t *pen, double x, double y)
+{
+    const long new_x = lround(x * 10), new_y = lround(y * 10);
+    if (pen->pending && !(pen->started && pen->y == pen->last_y && new_y == pen->y))
+        pen_flush(pen);
+    pen->x = new_x;
+    pen->y = new_y;
+    pen->pending = true;
+}
+
+/** The extremes of one slice of time, by sample number. */
+typedef struct extremes {
+    uint32_t first, last; /**< the one that came first, the one that came last */
+} extremes_t;
+
+static extremes_t extremes_of_slice(const plot_t *plot, uint32_t axis, const curve_t *curve, uint32_t *n)
+{
+    const uint32_t slice = slice_of(plot, *n);
+    uint32_t low = *n, high = *n;
+    for (; *n < plot->trace->used && slice_of(plot, *n) == slice; ++*n) {
+        const double value = value_of(plot, *n, axis, curve);
+        if (value < value_of(plot, low, axis, curve))
+            low = *n;
+        if (value > value_of(plot, high, axis, curve))
+            high = *n;
+    }
+    return low < high ? (extremes_t){low, high} : (extremes_t){high, low};
+}
+
+static void print_curve(const plot_t *plot, const box_t *box, const scale_t *scale, uint32_t axis, const curve_t *curve)
+{
+    pen_t pen = {.file = plot->file};
+    fprintf(plot->file, "<path class=\"%s\" d=\"", curve->css);
+    for (uint32_t n = 0; n < plot->trace->used;) {
+        const extremes_t e = extremes_of_slice(plot, axis, curve, &n);
+        const double first = value_of(plot, e.first, axis, curve), last = value_of(plot, e.last, axis, curve);
+        if (isfinite(first))
+            pen_to(&pen, x_of(plot, box, time_s(plot, e.first)), y_of(box, scale, first));
+        if (e.last != e.first && isfinite(last))
+            pen_to(&pen, x_of(plot, box, time_s(plot, e.last)), y_of(box, scale, last));
+    }
+    pen_flush(&pen);
+    fputs("\"/>\n", plot->file);
+}
+
+/* ---- states ---------------------------------------------------------------------------------------------------- */
+
+static cm1e_axis_state_t state_of_slice(const plot_t *plot, uint32_t axis, uint32_t *n)
+{
+    const uint32_t slice = slice_of(plot, *n);
+    cm1e_axis_state_t state = trace_sample(plot->trace, *n, axis)->state;
+    for (; *n < plot->trace->used && slice_of(plot, *n) == slice; ++*n) {
+        const cm1e_axis_state_t other = trace_sample(plot->trace, *n, axis)->state;
+        if (states[other].rank > states[state].rank)
+            state = other;
+    }
+    return state;
+}
+
+static void print_state(const plot_t *plot, const box_t *band, double bottom, double from_s, double to_s,
+                        cm1e_axis_state_t state)
+{
+    const double x = x_of(plot, band, from_s), width = x_of(plot, band, to_s) - x;
+    fprintf(plot->file, "<g fill=\"%s\"><title>%s, %.3f to %.3f s</title>", states[state].colour,
+            cm1e_axis_state_name(state), from_s, to_s);
+    fprintf(plot->file, "<rect x=\"%.1f\" y=\"%.0f\" width=\"%.1f\" height=\"%.0f\"/>", x, band->y, width,
+            band->height);
+    fprintf(plot->file, "<rect x=\"%.1f\" y=\"%.0f\" width=\"%.1f\" height=\"%.0f\" opacity=\".13\"/></g>\n", x,
+            band->y + band->height, width, bottom - band->y - band->height);
+}
+
+/** The band, and the same colours faintly behind the panels down to `bottom`. */
+static void print_states(const plot_t *plot, const box_t *band, double bottom, uint32_t axis)
+{
+    uint32_t n = 0;
+    double from_s = plot->begin_s;
+    cm1e_axis_state_t shown = state_of_slice(plot, axis, &n);
+    while (n < plot->trace->used) {
+        const double at_s = time_s(plot, n);
+        const cm1e_axis_state_t state = state_of_slice(plot, axis, &n);
+        if (state == shown)
+            continue;
+        print_state(plot, band, bottom, from_s, at_s, shown);
+        from_s = at_s;
+        shown = state;
+    }
+    print_state(plot, band, bottom, from_s, plot->end_s, shown);
+}
+
+/* ---- panels ---------------------------------------------------------------------------------------------------- */
+
+static void print_value_axis(const plot_t *plot, const box_t *box, const scale_t *scale, const struct panel *panel)
+{
+    FILE *file = plot->file;
+    for (double value = ceil(scale->low / scale->step) * scale->step; value <= scale->high; value += scale->step) {
+        const double y = y_of(box, scale, value);
+        const bool zero = fabs(value) < scale->step / 2;
+        fprintf(file, "<path class=\"%s\" d=\"M%.0f,%.1fh%.0f\"/>", zero ? "zero" : "grid", box->x, y, box->width);
+        fprintf(file, "<text class=\"tick\" text-anchor=\"end\" x=\"%.0f\" y=\"%.1f\">", box->x - 6, y + 3.5);
+        print_tick(file, value, scale->step);
+        fputs("</text>\n", file);
+    }
+    const double middle = box->y + box->height / 2;
+    fprintf(file, "<text class=\"unit\" text-anchor=\"middle\" transform=\"translate(%.0f,%.0f) rotate(-90)\">"
+            "%s [%s]</text>\n", box->x - COLUMN_LEFT + 16, middle, panel->title, panel->unit);
+}
+
+static void print_time_grid(const plot_t *plot, const box_t *box, bool with_text)
+{
+    FILE *file = plot->file;
+    const double step = nice_step(plot->end_s - plot->begin_s, 8);
+    for (double t = ceil(plot->begin_s / step - 1e-9) * step; t <= plot->end_s + step * 1e-6; t += step) {
+        const double x = x_of(plot, box, t);
+        fprintf(file, "<path class=\"grid\" d=\"M%.1f,%.0fv%.0f\"/>", x, box->y, box->height);
+        if (!with_text)
+            continue;
+        fprintf(file, "<text class=\"tick\" text-anchor=\"middle\" x=\"%.1f\" y=\"%.0f\">", x,
+                box->y + box->height + 16);
+        print_tick(file, t, step);
+        fputs("</text>\n", file);
+    }
+    if (with_text)
+        fprintf(file, "<text class=\"unit\" text-anchor=\"middle\" x=\"%.0f\" y=\"%.0f\">time [s]</text>\n",
+                box->x + box->width / 2, box->y + box->height + 34);
+}
+
+static void print_panel(const plot_t *plot, const box_t *box, uint32_t axis, unsigned number)
+{
+    const struct panel *panel = &panels[number];
+    const scale_t scale = scale_of_panel(plot, axis, panel);
+    print_time_grid(plot, box, number == PANELS - 1);
+    print_value_axis(plot, box, &scale, panel);
+    for (int c = 0; c < 2 && panel->curves[c].css; c++)
+        print_curve(plot, box, &scale, axis, &panel->curves[c]);
+    fprintf(plot->file, "<rect class=\"frame\" x=\"%.0f\" y=\"%.0f\" width=\"%.0f\" height=\"%.0f\"/>\n", box->x,
+            box->y, box->width, box->height);
+}
+
+static double column_height(void)
+{
+    double height = NAME + BAND + TIME_AXIS + 20;
+    for (unsigned i = 0; i < PANELS; i++)
+        height += PANEL_GAP + panels[i].height;
+    return height;
+}
+
+static void print_column(const plot_t *plot, double x, double y, uint32_t axis)
+{
+    box_t box = {x + COLUMN_LEFT, y + NAME, PLOT_WIDTH, BAND};
+    fprintf(plot->file, "<text class=\"name\" x=\"%.0f\" y=\"%.0f\">", box.x, y + 16);
+    print_escaped(plot->file, plot->trace->names[axis]);
+    fputs("</text>\n", plot->file);
+    print_states(plot, &box, y + column_height() - TIME_AXIS - 20, axis);
+    for (unsigned i = 0; i < PANELS; i++) {
+        box.y += box.height + PANEL_GAP;
+        box.height = panels[i].height;
+        print_panel(plot, &box, axis, i);
+    }
+}
+
+/* ---- the picture ----------------------------------------------------------------------------------------------- */
+
+static const char style[] =
+    "<style>\n"
+    "text{font-family:'DejaVu Sans',Arial,Helvetica,sans-serif;fill:#22272e}\n"
+    ".title{font-size:18px;font-weight:bold}.name{font-size:15px;font-weight:bold}\n"
+    ".tick{font-size:10.5px;fill:#4a525c}.unit,.key{font-size:11.5px}\n"
+    "path{fill:none;stroke-linejoin:round;stroke-linecap:round}\n"
+    ".grid{stroke:#000;stroke-opacity:.09}.zero{stroke:#000;stroke-opacity:.35}\n"
+    ".frame{fill:none;stroke:#6b7480}\n"
+    ".actual{stroke:#f08a24;stroke-width:3}.set{stroke:#12395f;stroke-width:1.1}\n"
+    ".torque{stroke:#2b7a4b;stroke-width:1.1}\n"
+    "</style>\n";
+
+static void print_key_line(FILE *file, double x, const char *css, const char *text)
+{
+    fprintf(file, "<path class=\"%s\" d=\"M%.0f,46h22\"/><text class=\"key\" x=\"%.0f\" y=\"50\">%s</text>\n", css, x,
+            x + 28, text);
+}
+
+static void print_head(const plot_t *plot)
+{
+    FILE *file = plot->file;
+    fprintf(file, "<text class=\"title\" x=\"16\" y=\"26\">%u %s, %.3f s to %.3f s, %u samples</text>\n",
+            plot->trace->axes, plot->trace->axes == 1 ? "axis" : "axes", plot->begin_s,
+            time_s(plot, plot->trace->used - 1), plot->trace->used);
+    print_key_line(file, 16, "set", "set value");
+    print_key_line(file, 116, "actual", "actual value");
+    print_key_line(file, 236, "torque", "actual torque");
+    double x = 16;
+    for (int i = 0; i < CM1E_AXIS_STATE_COUNT; i++) {
+        const char *name = cm1e_axis_state_name((cm1e_axis_state_t)i);
+        fprintf(file, "<rect x=\"%.0f\" y=\"62\" width=\"12\" height=\"12\" fill=\"%s\"/>", x, states[i].colour);
+        fprintf(file, "<text class=\"tick\" x=\"%.0f\" y=\"72\">%s</text>\n", x + 16, name);
+        x += 30 + 6.2 * (double)strlen(name);
+    }
+}
+
+/** Slices of time per curve: one a pixel, fewer where many axes share the bytes. */
+static uint32_t slices_for(uint32_t axes)
+{
+    const uint32_t curves = axes * 5, affordable = BYTES_FOR_CURVES / (curves * 2 * BYTES_PER_POINT);
+    return affordable > PLOT_WIDTH ? PLOT_WIDTH : affordable < 20 ? 20 : affordable;
+}
+
+void trace_print_svg(const trace_t *trace, FILE *file)
+{
+    const uint32_t columns = trace->axes < COLUMNS_PER_ROW ? (trace->axes ? trace->axes : 1) : COLUMNS_PER_ROW;
+    const uint32_t rows = (trace->axes + COLUMNS_PER_ROW - 1) / COLUMNS_PER_ROW;
+    const double width = fmax(columns * COLUMN_WIDTH, 720), height = HEAD + rows * column_height();
+    fprintf(file,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" viewBox=\"0 0 %.0f %.0f\">\n"
+            "%s<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n", width, height, width, height, style);
+    if (trace->used == 0 || trace->axes == 0) {
+        fputs("<text class=\"title\" x=\"16\" y=\"26\">The trace is empty.</text>\n</svg>\n", file);
+        return;
+    }
+    plot_t plot = {.file = file, .trace = trace, .slices = slices_for(trace->axes)};
+    plot.begin_s = time_s(&plot, 0);
+    plot.end_s = fmax(time_s(&plot, trace->used - 1), plot.begin_s + 1e-6);
+    print_head(&plot);
+    for (uint32_t axis = 0; axis < trace->axes; axis++)
+        print_column(&plot, (axis % COLUMNS_PER_ROW) * (double)COLUMN_WIDTH,
+                     HEAD + (axis / COLUMNS_PER_ROW) * column_height(), axis);
+    fputs("</svg>\n", file);
+}
