@@ -6,7 +6,12 @@
 #include "nic/nic_private.h"
 
 /** The wire on virtual time: 100 Mbit/s, and per slave the way through its controller and two PHYs, there and back. */
-enum { NS_PER_BYTE = 80, FRAME_GAP_BYTES = 24 /* preamble 8, FCS 4, gap 12 */, SHORTEST_FRAME = 60, NS_PER_SLAVE = 1200 };
+enum {
+    NS_PER_BYTE = 80,
+    FRAME_GAP_BYTES = 24, /* preamble 8, FCS 4, gap 12 */
+    SHORTEST_FRAME = 60,
+    NS_PER_SLAVE = 1200,
+};
 
 typedef struct sim {
     int64_t wire_free_ns[CM1E_NIC_PORTS]; /**< a port sends one frame after the other */
@@ -109,6 +114,13 @@ static bool sim_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t len
     return true;
 }
 
+/** Lets the time come; on a real clock a sleep until a time in the past costs a system call. */
+static void wait_until(cm1e_clock_t *clock, int64_t time_ns)
+{
+    if (time_ns > cm1e_clock_now(clock))
+        cm1e_clock_sleep_until(clock, time_ns);
+}
+
 static size_t sim_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t deadline_ns)
 {
     sim_t *sim = nic->state;
@@ -116,13 +128,11 @@ static size_t sim_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t de
     const bool in_time = first && (first->ready_ns <= deadline_ns || first->ready_ns <= cm1e_clock_now(nic->clock));
     if (!in_time) {
         /* Nothing can come while this thread, which owns the segment, sleeps. */
-        if (deadline_ns > 0) {
-            cm1e_clock_sleep_until(nic->clock, deadline_ns);
-            cm1e_sim_segment_advance(nic->segment, cm1e_clock_now(nic->clock));
-        }
+        wait_until(nic->clock, deadline_ns);
+        cm1e_sim_segment_advance(nic->segment, cm1e_clock_now(nic->clock));
         return 0;
     }
-    cm1e_clock_sleep_until(nic->clock, first->ready_ns);
+    wait_until(nic->clock, first->ready_ns);
     const size_t length = first->length;
     *port = first->port;
     memcpy(frame, first->bytes, length);

@@ -55,8 +55,8 @@ void frame_merge(uint8_t *a, const uint8_t *b, const uint8_t *sent, size_t lengt
  *  closed, so it must not be sent again with it. */
 void frame_clear_circulating(uint8_t *frame, size_t length);
 
-/** Damages a frame as the console asks for. There is no FCS here, which has damaged frames thrown away on a wire: so the
- *  damage is put where the receiver finds it, in the first datagram's header, and never makes believable process data. */
+/** Damages a frame as the console asks for. There is no FCS here, which has damaged frames thrown away on a wire: so
+ *  the damage is put where the receiver finds it, in the first datagram's header, and never makes believable data. */
 void frame_corrupt(uint8_t *frame, size_t length);
 
 #endif

@@ -1,7 +1,7 @@
 /**
  * @file frame_queue.h
- * Frames that become ready at a time: in flight in the simulated segment, delayed or injected by the tap. A fixed number
- * of places, nothing is allocated; frames leave in order of time, equal times in order of arrival. @rt cycle
+ * Frames that become ready at a time: in flight in the simulated segment, delayed or injected by the tap. A fixed
+ * number of places, nothing is allocated; frames leave in order of time, equal times in order of arrival. @rt cycle
  */
 #ifndef CM1E_NIC_FRAME_QUEUE_H
 #define CM1E_NIC_FRAME_QUEUE_H

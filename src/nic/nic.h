@@ -26,9 +26,9 @@ typedef struct cm1e_nic_backend {
     cm1e_error_t (*open)(cm1e_nic_t *nic, const cm1e_bus_config_t *config, cm1e_diag_t *diag);
     /** Sends one frame on a port; false: not sent. Never blocks. */
     bool (*send)(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t length);
-    /** Next frame received on any port, until `deadline_ns` (clock of the nic) has passed; 0: none. `*port` says where it
-     *  came in. A deadline in the past means: only what is here already. Waits exactly, to the deadline and not beyond.
-     *  `frame` has room for CM1E_FRAME_MAX. */
+    /** Next frame received on any port, until `deadline_ns` (clock of the nic) has passed; 0: none. `*port` says where
+     *  it came in. A deadline in the past means: only what is here already. Waits exactly, to the deadline and not
+     *  beyond. `frame` has room for CM1E_FRAME_MAX. */
     size_t (*receive)(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t deadline_ns);
     void (*close)(cm1e_nic_t *nic);
 } cm1e_nic_backend_t;
@@ -43,7 +43,7 @@ cm1e_sim_segment_t *cm1e_nic_segment(cm1e_nic_t *nic);
 /** Takes the place of the segment that cm1e_nic_open() made for "sim" (tests with slaves of their own); owns it. */
 void cm1e_nic_replace_segment(cm1e_nic_t *nic, cm1e_sim_segment_t *segment);
 
-/* ---- tap ---------------------------------------------------------------------------------------------------------- */
+/* ---- tap --------------------------------------------------------------------------------------------------------- */
 
 typedef enum cm1e_tap_direction { CM1E_TAP_SENT = 0, CM1E_TAP_RECEIVED } cm1e_tap_direction_t;
 
@@ -73,10 +73,10 @@ bool cm1e_frame_change_working_counter(uint8_t *frame, size_t length, unsigned n
 /** Starts to write every frame (after the tap) to a pcap file (nanosecond pcap, Ethernet). */
 cm1e_error_t cm1e_nic_pcap(cm1e_nic_t *nic, const char *path, cm1e_diag_t *diag);
 
-/* ---- serving a segment on a network interface (`cm1e sim -i`) ------------------------------------------------------- */
+/* ---- serving a segment on a network interface (`cm1e sim -i`) ---------------------------------------------------- */
 
-/** Answers frames on `interface_name` with `segment` until `*stop` is not 0; lines from `console_fd` (-1: none) go to the
- *  console, answers to `answer_fd`. */
+/** Answers frames on `interface_name` with `segment` until `*stop` is not 0; lines from `console_fd` (-1: none) go to
+ *  the console, answers to `answer_fd`. */
 cm1e_error_t cm1e_nic_serve(cm1e_sim_segment_t *segment, const char *interface_name, int console_fd, int answer_fd,
                             const volatile int *stop, cm1e_diag_t *diag);
 

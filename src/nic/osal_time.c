@@ -6,8 +6,8 @@
 
 enum { NS_PER_US = 1000, US_PER_S = 1000000 };
 
-/** SOEM's distributed clocks start at 2000-01-01 and get there by subtracting this from the time of day. What counts for
- *  them is that time is monotonic and starts after it. */
+/** SOEM's distributed clocks start at 2000-01-01 and get there by subtracting this from the time of day. What counts
+ *  for them is that time is monotonic and starts after it. */
 enum { EPOCH_2000_S = 946684800 };
 
 static ec_timet from_us(int64_t us)

@@ -19,7 +19,7 @@ const uint16 secMAC[3] = {0x0404, 0x0404, 0x0404};
 
 enum { NS_PER_US = 1000, LOCALLY_ADMINISTERED = 0x02, MAC_ROUTE = 8, MAC_STAMP = 11, NO_ROUTE = -1 };
 
-/* ---- opening and closing ------------------------------------------------------------------------------------------ */
+/* ---- opening and closing ----------------------------------------------------------------------------------------- */
 
 void ec_setupheader(void *p)
 {
@@ -87,7 +87,7 @@ int ecx_closenic(ecx_portt *port)
     return 0;
 }
 
-/* ---- indices ------------------------------------------------------------------------------------------------------ */
+/* ---- indices ----------------------------------------------------------------------------------------------------- */
 
 /** With all in use, the index that is missed least: an answer handed over already, one that waits to be collected, a
  *  frame on its way, one not yet sent; of these the oldest. */
@@ -133,7 +133,7 @@ void ecx_setbufstat(ecx_portt *port, uint8 idx, int bufstat)
     port->slots[idx].answers = 0;
 }
 
-/* ---- sending ------------------------------------------------------------------------------------------------------ */
+/* ---- sending ----------------------------------------------------------------------------------------------------- */
 
 void port_stamp(ecx_portt *port, uint8_t *frame, uint8 idx, int source, uint32_t transmission)
 {
@@ -157,7 +157,8 @@ bool port_send(ecx_portt *port, int interface, const uint8_t *frame, int length)
 
 static bool can_send(const ecx_portt *port, uint8 idx)
 {
-    return port->nic && idx < EC_MAXBUF && port->txbuflength[idx] >= FRAME_MINIMUM && port->txbuflength[idx] <= EC_BUFSIZE;
+    return port->nic && idx < EC_MAXBUF && port->txbuflength[idx] >= FRAME_MINIMUM &&
+           port->txbuflength[idx] <= EC_BUFSIZE;
 }
 
 static void send_companion(ecx_portt *port, uint8 idx, uint32_t transmission)
@@ -213,7 +214,7 @@ int ecx_outframe(ecx_portt *port, uint8 idx, int stacknumber)
     return port_send(port, interface, port->txbuf[idx], port->txbuflength[idx]) ? port->txbuflength[idx] : -1;
 }
 
-/* ---- receiving ---------------------------------------------------------------------------------------------------- */
+/* ---- receiving --------------------------------------------------------------------------------------------------- */
 
 /** Which of our interfaces a frame was sent by; NO_ROUTE: not one of our source addresses. */
 static int route(const uint8_t *frame)

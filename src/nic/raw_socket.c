@@ -47,8 +47,8 @@ static cm1e_error_t check_interface(int fd, const char *name, cm1e_diag_t *diag)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
                              "Network interface \"%s\" is not Ethernet: EtherCAT needs an Ethernet interface.", name);
     if (ioctl(fd, SIOCGIFFLAGS, &request) < 0)
-        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "Network interface \"%s\" cannot be asked for its state: %s.", name,
-                             strerror(errno));
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "Network interface \"%s\" cannot be asked for its state: %s.",
+                             name, strerror(errno));
     if (!(request.ifr_flags & IFF_UP))
         return cm1e_diag_set(diag, CM1E_ERROR_IO, 0,
                              "Network interface \"%s\" is down. Bring it up with: sudo ip link set %s up", name, name);
@@ -64,8 +64,9 @@ static cm1e_error_t no_socket(int why, cm1e_diag_t *diag)
     if (n > 0)
         self[n] = 0;
     return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0,
-                         "EtherCAT on a network interface needs the privilege CAP_NET_RAW. Start the program with sudo, "
-                         "or give it the privilege once: sudo setcap cap_net_raw,cap_sys_nice,cap_ipc_lock+ep %s", self);
+                         "EtherCAT on a network interface needs the privilege CAP_NET_RAW. Start the program with "
+                         "sudo, or give it the privilege once: "
+                         "sudo setcap cap_net_raw,cap_sys_nice,cap_ipc_lock+ep %s", self);
 }
 
 /** Options that only make things better: a kernel without them still works. */

@@ -11,8 +11,8 @@ enum { COMMAND_BRD = 7, DATAGRAM_ADDRESS = FRAME_HEADER + 2, MISSES_IN_A_CUT_RIN
 
 typedef enum action { WAIT = 0, TAKE_FIRST, TAKE_SECOND, MERGE, SEND_ON, SEND_AGAIN } action_t;
 
-/** What follows from the companion that was sent and the halves that came back: at once, at once if the ring is known to
- *  be cut, and when the other half will not come any more. A whole answer (RING_WHOLE) is taken without asking. */
+/** What follows from the companion that was sent and the halves that came back: at once, at once if the ring is known
+ *  to be cut, and when the other half will not come any more. A whole answer (RING_WHOLE) is taken without asking. */
 static const struct {
     uint8_t at_once, in_a_cut, at_the_end;
 } decisions[RING_COMPANIONS][RING_HALVES + 1] = {
@@ -36,7 +36,7 @@ static const struct {
     },
 };
 
-/* ---- what is known about the ring --------------------------------------------------------------------------------- */
+/* ---- what is known about the ring -------------------------------------------------------------------------------- */
 
 static void learn(ecx_portt *port, ring_state_t state, uint32_t transmission)
 {
@@ -94,7 +94,7 @@ ring_companion_t ring_companion(const ecx_portt *port, uint8 idx)
     return orders_for_copy[port->ring.state] & 1 << order ? RING_COPY : RING_DUMMY;
 }
 
-/* ---- one frame ---------------------------------------------------------------------------------------------------- */
+/* ---- one frame --------------------------------------------------------------------------------------------------- */
 
 /** Slaves that the first half's answer passed: every one adds 1 to the address of a frame by position. */
 static int slaves_in_first_half(const ecx_portt *port, uint8 idx)

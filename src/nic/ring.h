@@ -13,14 +13,15 @@
  *  | cut between two slaves | first, slaves 1 ... k| second, k + 1 ... n  | both merged, if SEC was a copy;         |
  *  |                        |                      |                      | else PRI's answer sent on at the second |
  *
- * On the way back, from a slave's port 1 to its port 0, frames are not processed: hence "no slave". In an intact ring the
- * companion is SOEM's dummy, a broadcast read, which shows where the ring is broken once it is. In a broken one it is a
- * copy of the frame, so that one trip is enough, for all frames whose slaves may be processed in any order; for the
- * others (by position; ARMW, FRMW, BRW) the dummy stays and a second trip is made.
+ * On the way back, from a slave's port 1 to its port 0, frames are not processed: hence "no slave". In an intact ring
+ * the companion is SOEM's dummy, a broadcast read, which shows where the ring is broken once it is. In a broken one it
+ * is a copy of the frame, so that one trip is enough, for all frames that slaves may process in any order; for the
+ * others (by position; ARMW, FRMW, BRW) the dummy stays and a second trip is made, but never with a frame by position
+ * that might reach other slaves than those that are meant.
  *
  * A frame that came back where it left proves a break. Its other half is awaited for RING_HALF_WAIT_NS after sending
- * (or as long as the caller's timeout allows), and not at all once it is known to be dead. What is known changes by frames alone: both interfaces send in every
- * cycle, so a mended cable shows itself within one frame.
+ * (or as long as the caller's timeout allows), and not at all once it is known to be dead. What is known changes by
+ * frames alone: both interfaces send in every cycle, so a mended cable shows itself within one frame.
  */
 #ifndef CM1E_NIC_RING_H
 #define CM1E_NIC_RING_H

@@ -1,5 +1,6 @@
 /* A simulated segment on a network interface: frames in, answers out, a console beside it. */
 #include <errno.h>
+#include <limits.h>
 #include <poll.h>
 #include <sched.h>
 #include <stdlib.h>
@@ -15,7 +16,8 @@
 #include "nic/raw_socket.h"
 
 enum {
-    NS_PER_S = 1000000000, TICK_NS = 1000000, PRIORITY = 60, FRAMES_AT_ONCE = 64, LINE_LENGTH = 256, ANSWER_LENGTH = 4096,
+    NS_PER_S = 1000000000, TICK_NS = 1000000, PRIORITY = 60, FRAMES_AT_ONCE = 64, LINE_LENGTH = 256,
+    ANSWER_LENGTH = 1 << 15,            /* the status of 128 slaves */
 };
 
 typedef struct server {
@@ -24,36 +26,41 @@ typedef struct server {
     int socket_fd, console_fd, answer_fd;
     frame_queue_t delayed;              /**< answers that the console delays */
     uint8_t frame[CM1E_FRAME_MAX];
-    char line[LINE_LENGTH];
+    char line[LINE_LENGTH], answer[ANSWER_LENGTH];
     size_t line_length;
     bool line_too_long;
 } server_t;
 
-/* ---- console ------------------------------------------------------------------------------------------------------ */
+/* ---- console ----------------------------------------------------------------------------------------------------- */
 
-/** Writes what the reader takes: a reader that stopped reading, or left, must not stop the segment. */
-static void put_answer(const server_t *server, const char *answer)
+/** Writes the answer as far as the reader takes it: a reader that stopped reading, or left, must not stop the segment.
+ *  A pipe that is ready takes PIPE_BUF bytes without blocking. */
+static void put_answer(server_t *server, const char *answer)
 {
-    struct pollfd out = {.fd = server->answer_fd, .events = POLLOUT};
-    if (server->answer_fd < 0 || poll(&out, 1, 0) != 1 || (out.revents & (POLLERR | POLLHUP | POLLNVAL)))
-        return;
-    char text[ANSWER_LENGTH + 1];
-    const size_t n = strnlen(answer, ANSWER_LENGTH - 1);
-    memcpy(text, answer, n);
-    text[n] = '\n';
-    const ssize_t written = write(server->answer_fd, text, n + 1);
-    (void)written;
+    const size_t length = strnlen(answer, ANSWER_LENGTH - 1);
+    memmove(server->answer, answer, length);
+    server->answer[length] = '\n';
+    for (size_t done = 0; done < length + 1;) {
+        struct pollfd out = {.fd = server->answer_fd, .events = POLLOUT};
+        if (server->answer_fd < 0 || poll(&out, 1, 0) != 1 || out.revents != POLLOUT)
+            return;
+        const size_t rest = length + 1 - done;
+        const ssize_t n = write(server->answer_fd, server->answer + done, rest < PIPE_BUF ? rest : PIPE_BUF);
+        if (n <= 0)
+            return;
+        done += (size_t)n;
+    }
 }
 
 static void run_line(server_t *server)
 {
-    char answer[ANSWER_LENGTH] = "";
     server->line[server->line_length] = 0;
     if (server->line_too_long)
         put_answer(server, "error: the line is too long");
     else if (server->line_length > 0) {
-        cm1e_sim_console(server->segment, server->line, answer, sizeof answer);
-        put_answer(server, answer);
+        server->answer[0] = 0;
+        cm1e_sim_console(server->segment, server->line, server->answer, sizeof server->answer);
+        put_answer(server, server->answer);
     }
     server->line_length = 0;
     server->line_too_long = false;
@@ -81,7 +88,7 @@ static bool read_console(server_t *server)
     return n > 0;
 }
 
-/* ---- frames ------------------------------------------------------------------------------------------------------- */
+/* ---- frames ------------------------------------------------------------------------------------------------------ */
 
 static void reply(const server_t *server, const uint8_t *frame, size_t length)
 {
@@ -92,8 +99,10 @@ static void reply(const server_t *server, const uint8_t *frame, size_t length)
 
 static void answer_frame(server_t *server, size_t length, int64_t now_ns)
 {
-    if (length < ETHERNET_HEADER || cm1e_sim_segment_process(server->segment, CM1E_SIM_PORT_PRIMARY, server->frame, length,
-                                                             now_ns) != CM1E_SIM_PORT_PRIMARY)
+    if (length < ETHERNET_HEADER)
+        return;
+    const int out = cm1e_sim_segment_process(server->segment, CM1E_SIM_PORT_PRIMARY, server->frame, length, now_ns);
+    if (out != CM1E_SIM_PORT_PRIMARY)
         return;
     int64_t delay_ns = 0;
     queued_frame_t *place;
@@ -163,7 +172,7 @@ static void run(server_t *server, const volatile int *stop)
     }
 }
 
-/* ---- low latency, where the system allows it ----------------------------------------------------------------------- */
+/* ---- low latency, where the system allows it --------------------------------------------------------------------- */
 
 typedef struct scheduling {
     int policy;

@@ -1,7 +1,7 @@
 /**
  * @file veth.h
- * For tests with real network interfaces: a network namespace of the test's own with a veth pair "wire0" - "wire1", which
- * vanishes with the test. Where the machine does not allow that, veth_make() is false and the test is skipped.
+ * For tests with real network interfaces: a network namespace of the test's own with a veth pair "wire0" - "wire1",
+ * which vanishes with the test. Where the machine does not allow that, veth_make() is false and the test is skipped.
  */
 #ifndef CM1E_TEST_VETH_H
 #define CM1E_TEST_VETH_H
@@ -13,8 +13,8 @@
 static bool veth_make(void)
 {
     return (unshare(CLONE_NEWNET) == 0 || unshare(CLONE_NEWUSER | CLONE_NEWNET) == 0) &&
-           system("ip link add wire0 type veth peer name wire1 2>/dev/null && ip link set wire0 up && ip link set wire1 up")
-               == 0;
+           system("ip link add wire0 type veth peer name wire1 2>/dev/null && "
+                  "ip link set wire0 up && ip link set wire1 up") == 0;
 }
 
 #endif

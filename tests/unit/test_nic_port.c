@@ -1,4 +1,5 @@
-/* SOEM's port contract on a wire of the test's own: indices, answers in and out of order, hostile answers, exact waits. */
+/* SOEM's port contract on a wire of the test's own: indices, answers in and out of order, hostile answers, exact
+ * waits. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -45,7 +46,7 @@ static void expect_slave(uint8 idx, int slave)
     TEST_ASSERT_EQUAL_HEX8(slave * 16 + 3, port.rxbuf[idx][EC_HEADERSIZE + 1]);
 }
 
-/* ---- the plain contract -------------------------------------------------------------------------------------------- */
+/* ---- the plain contract ------------------------------------------------------------------------------------------ */
 
 static void test_headers_are_prepared_in_all_buffers(void)
 {
@@ -139,7 +140,7 @@ static void test_without_a_nic_nothing_works_and_nothing_crashes(void)
     TEST_ASSERT_EQUAL_INT(0, ecx_closenic(&none));
 }
 
-/* ---- indices ------------------------------------------------------------------------------------------------------- */
+/* ---- indices ----------------------------------------------------------------------------------------------------- */
 
 static void test_indices_are_given_once_each_until_released(void)
 {
@@ -163,7 +164,8 @@ static void test_with_all_indices_in_use_the_least_missed_is_taken_and_counted(v
         idx[i] = send_read(1);
     idx[14] = ecx_getindex(&port);
     idx[15] = ecx_getindex(&port);
-    TEST_ASSERT_EQUAL_INT(1, ecx_waitinframe(&port, idx[9], 100)); /* all others are received meanwhile, or on the way */
+    /* All others are received meanwhile, or on the way. */
+    TEST_ASSERT_EQUAL_INT(1, ecx_waitinframe(&port, idx[9], 100));
     TEST_ASSERT_EQUAL_UINT8(idx[9], ecx_getindex(&port));
     TEST_ASSERT_EQUAL_UINT64(1, port.counters.index_reused);
     /* Now nothing is complete: the oldest received one goes. */
@@ -175,7 +177,7 @@ static void test_with_all_indices_in_use_the_least_missed_is_taken_and_counted(v
     TEST_ASSERT_EQUAL_UINT64(5002, port.counters.index_reused);
 }
 
-/* ---- late, doubled, foreign ---------------------------------------------------------------------------------------- */
+/* ---- late, doubled, foreign -------------------------------------------------------------------------------------- */
 
 static void test_an_answer_to_a_released_index_is_dropped_and_counted(void)
 {
@@ -336,7 +338,7 @@ static void test_a_flood_does_not_hold_the_caller_beyond_its_deadline(void)
     TEST_ASSERT_EQUAL_INT64(before + 50000, now());
 }
 
-/* ---- time ---------------------------------------------------------------------------------------------------------- */
+/* ---- time -------------------------------------------------------------------------------------------------------- */
 
 static void test_a_lost_frame_costs_the_timeout_and_nothing_more(void)
 {

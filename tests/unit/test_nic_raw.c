@@ -1,5 +1,5 @@
-/* The raw socket on a veth pair of the test's own network namespace (skipped where that is not allowed), and what it says
- * when it cannot be opened. */
+/* The raw socket on a veth pair of the test's own network namespace (skipped where that is not allowed), and what it
+ * says when it cannot be opened. */
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -45,7 +45,7 @@ static int64_t cpu_ns(void)
 
 static int64_t now(void) { return cm1e_clock_now(cm1e_clock_monotonic()); }
 
-/* ---- the far end: gives every frame back with working counter 1 ------------------------------------------------------ */
+/* ---- the far end: gives every frame back with working counter 1 -------------------------------------------------- */
 
 static struct {
     pthread_t thread;
@@ -91,7 +91,7 @@ static void stop_echo(void)
     close(echo.fd);
 }
 
-/* ---- exchange ------------------------------------------------------------------------------------------------------- */
+/* ---- exchange ---------------------------------------------------------------------------------------------------- */
 
 static void test_frames_go_out_and_come_back(void)
 {
@@ -229,7 +229,7 @@ static void test_an_interface_that_goes_away_is_no_busy_loop(void)
     cm1e_nic_close(nic);
 }
 
-/* ---- redundant ring on two real interfaces --------------------------------------------------------------------------- */
+/* ---- redundant ring on two real interfaces ----------------------------------------------------------------------- */
 
 static void test_two_interfaces_make_a_ring(void)
 {
@@ -250,7 +250,7 @@ static void test_two_interfaces_make_a_ring(void)
     TEST_ASSERT_NULL(nic);
 }
 
-/* ---- what it says ---------------------------------------------------------------------------------------------------- */
+/* ---- what it says ------------------------------------------------------------------------------------------------ */
 
 static void expect_failure(const char *interface_name, cm1e_error_t error, const char *a, const char *b)
 {

@@ -1,5 +1,5 @@
-/* Cable redundancy on a ring of very simple slaves: data, working counter and cost in virtual time for every place where
- * the ring may be broken, for every kind of frame, and for changes from any such state to any other. */
+/* Cable redundancy on a ring of very simple slaves: data, working counter and cost in virtual time for every place
+ * where the ring may be broken, for every kind of frame, and for changes from any such state to any other. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -53,7 +53,7 @@ static int64_t one_trip(int place)
     return trip(first > second ? first : second);
 }
 
-/* ---- the frames that are exchanged --------------------------------------------------------------------------------- */
+/* ---- the frames that are exchanged ------------------------------------------------------------------------------- */
 
 static uint8_t round_number;
 
@@ -143,7 +143,7 @@ static const struct {
 };
 enum { EXCHANGES = sizeof exchanges / sizeof exchanges[0] };
 
-/* ---- cases --------------------------------------------------------------------------------------------------------- */
+/* ---- cases ------------------------------------------------------------------------------------------------------- */
 
 static void test_every_exchange_is_right_and_cheap_in_every_state_of_the_ring(void)
 {

@@ -231,7 +231,7 @@ static void test_injection_refuses_what_does_not_fit(void)
     TEST_ASSERT_TRUE(cm1e_nic_inject(nic, 0, frame, 60, 0));
 }
 
-/* ---- frame queue --------------------------------------------------------------------------------------------------- */
+/* ---- frame queue ------------------------------------------------------------------------------------------------- */
 
 static void test_the_frame_queue_sorts_by_time_and_keeps_the_order_of_equals(void)
 {
@@ -264,7 +264,7 @@ static void test_the_frame_queue_sorts_by_time_and_keeps_the_order_of_equals(voi
     TEST_ASSERT_NULL(frame_queue_place(&queue));
 }
 
-/* ---- pcap ---------------------------------------------------------------------------------------------------------- */
+/* ---- pcap -------------------------------------------------------------------------------------------------------- */
 
 static uint32_t u32(const uint8_t *p) { return cm1e_get_u32(p); }
 
