@@ -1,4 +1,5 @@
 /** cm1e move, cm1e home: one axis, enabled, moved or homed, and disabled again, by a program of function blocks. */
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -292,7 +293,8 @@ int command_move(int argc, char **argv)
                                      "Enables one axis (name or number, default 1), moves it, disables it. Without a bus "
                                      "file the unit is the revolution.", children, NULL, NULL};
     motion_options_t options = {0};
-    argp_parse(&argp, argc, argv, 0, NULL, &options);
+    if (argp_parse(&argp, argc, argv, 0, NULL, &options))
+        return EXIT_WRONG_USE;
     return move_or_home(&options, "move");
 }
 
@@ -315,6 +317,7 @@ int command_home(int argc, char **argv)
                                      "Enables one axis (name or number, default 1), homes it, disables it.", children,
                                      NULL, NULL};
     motion_options_t options = {.kind = MOTION_HOME};
-    argp_parse(&argp, argc, argv, 0, NULL, &options);
+    if (argp_parse(&argp, argc, argv, 0, NULL, &options))
+        return EXIT_WRONG_USE;
     return move_or_home(&options, "home");
 }

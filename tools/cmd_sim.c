@@ -67,7 +67,8 @@ int command_sim(int argc, char **argv)
         "Serves a simulated network until SIGINT or SIGTERM; without a bus file one CM1-E-17S30D, firmware 1.3.5. "
         "Lines on standard input act on it; `help` lists them.", NULL, NULL, NULL};
     sim_options_t options = {0};
-    argp_parse(&argp, argc, argv, 0, NULL, &options);
+    if (argp_parse(&argp, argc, argv, 0, NULL, &options))
+        return EXIT_WRONG_USE;
 
     static cm1e_bus_config_t config;
     if (!describe(&options, &config))

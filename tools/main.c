@@ -14,6 +14,7 @@ static const struct {
     {"home", "home one axis", command_home},
     {"move", "move one axis", command_move},
     {"sim", "serve a simulated network on a network interface", command_sim},
+    {"generate", "write files for other masters", command_generate},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
