@@ -51,33 +51,39 @@ static bool commanded_motion(const cm1e_axis_t *axis)
     return moving && axis->active && axis->kind != CM1E_COMMAND_HALT;
 }
 
-void axis_stop_direction(cm1e_axis_t *axis)
+/* Whether the running profile still goes that way: now, at its end, or in between, where each stretch of one direction
+ * that begins and ends at rest has a border of two segments in it. */
+static bool goes(const cm1e_axis_t *axis, double sign)
 {
-    if (!commanded_motion(axis))
+    const cm1e_profile_t *profile = &axis->profile;
+    const double now_s = (double)axis->profile_cycles * axis->cycle_s;
+    if (axis->set_velocity * sign > 0.0 || profile->end.velocity * sign > 0.0)
+        return true;
+    for (int i = 0; i < profile->segment_count; i++)
+        if (profile->segments[i].start_s > now_s && profile->segments[i].start.velocity * sign > 0.0)
+            return true;
+    return false;
+}
+
+void axis_direction_disabled(cm1e_axis_t *axis, double sign)
+{
+    if (!commanded_motion(axis) || !goes(axis, sign))
         return;
     axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
     axis->state = CM1E_AXIS_DISCRETE_MOTION;
     axis_ramp_down(axis);
 }
 
-/* FALSE: the motion must not go on, and a ramp has replaced the profile. */
+/* Moves to a position were checked as a whole when they were planned; a velocity goes on until it meets a limit.
+ * FALSE: it does, and a ramp has replaced the profile. */
 static bool may_go_on(cm1e_axis_t *axis, const cm1e_motion_state_t *next)
 {
-    if (!commanded_motion(axis))
+    if (!commanded_motion(axis) || axis->kind != CM1E_COMMAND_MOVE_VELOCITY ||
+        axis_limits_can_stop(axis, axis->base, next))
         return true;
-    /* Braking in a disabled direction goes on, beginning in it does not. */
-    const bool faster = fabs(next->velocity) > fabs(axis->set_velocity) || next->velocity * axis->set_velocity < 0.0;
-    if (faster && !axis_direction_enabled(axis, next->velocity)) {
-        axis_stop_direction(axis);
-        return false;
-    }
-    /* Moves to a position were checked as a whole when they were planned. */
-    if (axis->kind == CM1E_COMMAND_MOVE_VELOCITY && !axis_limits_can_stop(axis, axis->base, next)) {
-        axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, axis_units(axis, axis->set),
-                  next->velocity > 0.0 ? axis->upper : axis->lower);
-        return false;
-    }
-    return true;
+    axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, axis_units(axis, axis->set),
+              next->velocity > 0.0 ? axis->upper : axis->lower);
+    return false;
 }
 
 static void profile_step(cm1e_axis_t *axis)

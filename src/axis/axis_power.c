@@ -69,18 +69,21 @@ cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, 
             return CM1E_ERROR_FB_SECOND_POWER;
         axis->power_owner = owner;
     }
-    const bool allowed_before = axis_direction_enabled(axis, axis->set_velocity);
+    const bool positive_fell = axis->enable_positive && !enable_positive;
+    const bool negative_fell = axis->enable_negative && !enable_negative;
     axis->shutting_down = false;
     axis->power_enable = enable;
     axis->enable_positive = enable_positive;
     axis->enable_negative = enable_negative;
-    if (!enable) {
+    if (!enable)
         power_off(axis);
-    } else if (allowed_before && !axis_direction_enabled(axis, axis->set_velocity)) {
-        axis_stop_direction(axis);
-    } else if (axis->state == CM1E_AXIS_HOMING && axis->active && !(enable_positive && enable_negative)) {
+    if (positive_fell)
+        axis_direction_disabled(axis, 1.0);
+    if (negative_fell)
+        axis_direction_disabled(axis, -1.0);
+    if ((positive_fell || negative_fell) && axis->state == CM1E_AXIS_HOMING && axis->active) {
         axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
-        axis_home_abort(axis, HOME_GOAL_HOLD);
+        axis_home_abort(axis, HOME_GOAL_HOLD); /* every method moves both ways */
     }
     return CM1E_OK;
 }

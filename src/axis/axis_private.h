@@ -145,8 +145,9 @@ const state_rule_t *axis_state_rule(cm1e_axis_state_t state, cm1e_command_kind_t
 /* axis_motion.c */
 void axis_run_profile(cm1e_axis_t *axis, const cm1e_profile_t *profile, position_t target);
 void axis_ramp_down(cm1e_axis_t *axis);
-/** A direction is no longer enabled: the command fails, the axis stops (MC_Power, 3.1). */
-void axis_stop_direction(cm1e_axis_t *axis);
+/** Motion in the direction of `sign` is no longer enabled (MC_Power, 3.1): a command that goes there fails, the axis
+ *  stops. */
+void axis_direction_disabled(cm1e_axis_t *axis, double sign);
 cm1e_error_t axis_plan_stop(const cm1e_axis_t *axis, const cm1e_motion_limits_t *limits, cm1e_profile_t *profile);
 void axis_motion_step(cm1e_axis_t *axis);
 void axis_write_set_point(cm1e_axis_t *axis);

@@ -136,6 +136,8 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
         f->enabled = false;
         return;
     }
+    if (f->state != OPERATION_ENABLED || (f->mode != CM1E_MODE_CSP && f->mode != CM1E_MODE_PP))
+        drive->target_holds = false;
     const bool operating = f->state == OPERATION_ENABLED && drive->torque;
     const bool shown = f->mode == (int8_t)drive->mode;
     latch_faults(drive);
@@ -205,15 +207,11 @@ static uint16_t controlword(cm1e_drive_t *drive, bool pass)
     return word;
 }
 
-/* Position to write while the caller's does not pass: the actual one; but while the old, position holding mode is
- * still shown during a switch, the last target, so that the motor does not sag by its lag. */
+/* Position to write while the caller's does not pass: the actual one; but as long as the drive shows torque in a mode that
+ * holds a position, the last target: it neither sags by its lag, nor can a stale actual position move it. */
 static int32_t safe_position(const cm1e_drive_t *drive)
 {
-    const cm1e_drive_feedback_t *f = &drive->feedback;
-    const bool holding = f->mode == CM1E_MODE_CSP || f->mode == CM1E_MODE_PP;
-    if (drive->torque && drive->was_enabled && holding && f->mode != (int8_t)drive->mode)
-        return drive->target_position;
-    return f->position;
+    return drive->target_holds ? drive->target_position : drive->feedback.position;
 }
 
 void cm1e_drive_write(cm1e_drive_t *drive)
@@ -238,8 +236,9 @@ void cm1e_drive_write(cm1e_drive_t *drive)
         drive->set_point_bit = false;
         drive->set_point = drive->feedback.position;
     }
-    const int32_t position = pass && drive->feedback.mode != CM1E_MODE_HM ? command->target_position
-                                                                         : safe_position(drive);
+    const bool holding_mode = drive->feedback.mode == CM1E_MODE_CSP || drive->feedback.mode == CM1E_MODE_PP;
+    drive->target_holds |= pass && holding_mode;
+    const int32_t position = pass && holding_mode ? command->target_position : safe_position(drive);
     const uint16_t word = controlword(drive, pass);
     drive_encode(drive, word, position, pass ? command->target_velocity : 0);
 }

@@ -81,6 +81,7 @@ typedef struct cm1e_drive {
     cm1e_slave_watch_t watch;
     int64_t now_ns, read_ns, enable_deadline_ns, mode_deadline_ns;
     int32_t target_position;        /**< last one written */
+    bool target_holds;              /**< it was the caller's, and the drive is still seen holding a position */
     cm1e_mode_t mode;               /**< commanded on the wire; follows `command.mode` once the last switch is shown */
     bool seen;                      /**< inputs were valid at least once */
     bool torque;                    /**< the last write asked for torque */

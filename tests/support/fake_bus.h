@@ -38,6 +38,7 @@ struct cm1e_bus {
     /* the device */
     cm1e_fsa_state_t state;
     bool power, frozen;          /**< frozen: it ignores the controlword and the mode */
+    bool blocked;                /**< the shaft does not move */
     bool fault_stays;            /**< a reset does not clear the fault */
     uint16_t error_code, controlword, digital_outputs, digital_inputs;
     int8_t mode, sdo_mode;
@@ -200,7 +201,8 @@ static inline void fake_bus_cycle(cm1e_bus_t *bus, int64_t cycle_ns)
         const int64_t size = step < 0 ? -(int64_t)step : step;
         if (size > bus->torque_step)
             bus->torque_step = size;
-        bus->position = bus->target_position;
+        if (!bus->blocked)
+            bus->position = bus->target_position;
     }
     if (bus->mode == CM1E_MODE_HM && bus->homing)
         bus->homing(bus);
