@@ -96,17 +96,12 @@ static uint16_t state_change(void *app, uint8_t from, uint8_t to)
     return 0;
 }
 
-static void watchdog_expired(void *app)
-{
-    cm1e_sim_cm1e_t *drive = app;
-    if (drive->firmware->watchdog)
-        cm1e_sim_fsa_disable(drive);
-}
+static void watchdog_expired(void *app) { cm1e_sim_fsa_disable(app); }
 
 /* ---- life --------------------------------------------------------------------------------------------------------- */
 
 /* The motor does not know where its axis stands: the position counts from 0 again. Until now it ran out without torque. */
-static void power_on(void *app, int64_t now_ns)
+void cm1e_sim_cm1e_power_on(void *app, int64_t now_ns)
 {
     cm1e_sim_cm1e_t *drive = app;
     cm1e_sim_fsa_off(drive);
@@ -133,21 +128,20 @@ static void destroy(void *app)
     free(drive);
 }
 
-const cm1e_sim_app_ops_t cm1e_sim_cm1e_ops = {
-    .advance = advance,
-    .state_change = state_change,
-    .process_data_sizes = cm1e_sim_process_data_sizes,
-    .outputs = cm1e_sim_outputs,
-    .inputs = cm1e_sim_inputs,
-    .watchdog_expired = watchdog_expired,
-    .sdo_read = cm1e_sim_sdo_read,
-    .sdo_write = cm1e_sim_sdo_write,
-    .object = cm1e_sim_object,
-    .entry = cm1e_sim_entry,
-    .explicit_device_id = explicit_device_id,
-    .power_on = power_on,
-    .destroy = destroy,
-};
+#define COMMON_OPS                                                                                                  \
+    .advance = advance, .state_change = state_change, .process_data_sizes = cm1e_sim_process_data_sizes,            \
+    .outputs = cm1e_sim_outputs, .inputs = cm1e_sim_inputs, .sdo_read = cm1e_sim_sdo_read,                          \
+    .sdo_write = cm1e_sim_sdo_write, .object = cm1e_sim_object, .entry = cm1e_sim_entry,                            \
+    .explicit_device_id = explicit_device_id, .power_on = cm1e_sim_cm1e_power_on, .destroy = destroy
+
+/* The watchdog came with V1.3.0 (UG 10.1): before it a drive goes on with the outputs that it had last. */
+static const cm1e_sim_app_ops_t ops_without_watchdog = {COMMON_OPS};
+static const cm1e_sim_app_ops_t ops_with_watchdog = {COMMON_OPS, .watchdog_expired = watchdog_expired};
+
+const cm1e_sim_app_ops_t *cm1e_sim_cm1e_ops(const cm1e_sim_cm1e_t *drive)
+{
+    return drive->firmware->watchdog ? &ops_with_watchdog : &ops_without_watchdog;
+}
 
 cm1e_sim_cm1e_t *cm1e_sim_cm1e_create_app(const cm1e_axis_config_t *config, cm1e_pdo_order_t order, uint16_t alias,
                                           uint8_t rotary_switches)
@@ -174,7 +168,7 @@ cm1e_sim_cm1e_t *cm1e_sim_cm1e_create_app(const cm1e_axis_config_t *config, cm1e
     }
     cm1e_mechanics_init(&drive->mechanics, &config->sim, motor->peak_torque_nm * ROTOR_INERTIA_PER_PEAK_TORQUE);
     cm1e_servo_init(&drive->servo, &drive->mechanics);
-    power_on(drive, 0);
+    cm1e_sim_cm1e_power_on(drive, 0);
     drive->running = false; /* the first advance() tells the time */
     return drive;
 }
@@ -188,7 +182,7 @@ cm1e_sim_slave_t *cm1e_sim_cm1e_create(const cm1e_axis_config_t *config, cm1e_pd
     uint8_t sii[CM1E_SII_SIZE];
     const cm1e_sii_options_t options = {.firmware = drive->firmware->firmware, .order = order, .alias = alias};
     const size_t size = cm1e_generate_sii(sii, sizeof sii, &options);
-    cm1e_sim_slave_t *slave = cm1e_sim_slave_create(sii, size, &cm1e_sim_cm1e_ops, drive);
+    cm1e_sim_slave_t *slave = cm1e_sim_slave_create(sii, size, cm1e_sim_cm1e_ops(drive), drive);
     if (slave)
         drive->slave = slave;
     else
@@ -198,5 +192,6 @@ cm1e_sim_slave_t *cm1e_sim_cm1e_create(const cm1e_axis_config_t *config, cm1e_pd
 
 cm1e_sim_cm1e_t *cm1e_sim_cm1e_of(cm1e_sim_slave_t *slave)
 {
-    return slave && cm1e_sim_slave_ops(slave) == &cm1e_sim_cm1e_ops ? cm1e_sim_slave_app(slave) : NULL;
+    const cm1e_sim_app_ops_t *ops = slave ? cm1e_sim_slave_ops(slave) : NULL;
+    return ops == &ops_with_watchdog || ops == &ops_without_watchdog ? cm1e_sim_slave_app(slave) : NULL;
 }

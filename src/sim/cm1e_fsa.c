@@ -171,7 +171,7 @@ static void restart(cm1e_sim_cm1e_t *drive)
     if (drive->slave)
         cm1e_sim_slave_reset(drive->slave, drive->now_ns + RESTART_NS);
     else
-        cm1e_sim_cm1e_ops.power_on(drive, drive->now_ns);
+        cm1e_sim_cm1e_power_on(drive, drive->now_ns);
 }
 
 /* The rising edge of controlword bit 7. */

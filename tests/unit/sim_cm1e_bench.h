@@ -155,9 +155,9 @@ static inline void bench_open(bench_t *b, const cm1e_axis_config_t *config, cm1e
 {
     static const cm1e_axis_config_t defaults;
     memset(b, 0, sizeof *b);
-    b->ops = &cm1e_sim_cm1e_ops;
     b->drive = cm1e_sim_cm1e_create_app(config ? config : &defaults, order, 0, 0);
     TEST_ASSERT_NOT_NULL(b->drive);
+    b->ops = cm1e_sim_cm1e_ops(b->drive);
     b->now_ns = 1000 * (int64_t)BENCH_MS;
     b->cycle_ns = BENCH_MS;
     b->ops->power_on(b->drive, b->now_ns);
