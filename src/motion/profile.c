@@ -14,7 +14,7 @@
 
 #include "motion/pieces.h"
 
-enum { SOLVER_STEPS_MAX = 80 };
+enum { SOLVER_STEPS_MAX = 120 };
 
 /** The piece of the push within which the stop begins, and the state in which it is entered. */
 typedef struct {
@@ -22,24 +22,32 @@ typedef struct {
     double position, velocity;
 } push_t;
 
-static bool is_positive(double limit) { return limit > 0 && isfinite(limit); }
+/** Beyond these the powers and products of the numbers would leave the range of doubles. */
+static const double LARGEST = 1e30, SMALLEST_LIMIT = 1e-30;
+
+static bool is_number(double value) { return fabs(value) <= LARGEST; }
+
+static bool is_limit(double value) { return value >= SMALLEST_LIMIT && value <= LARGEST; }
 
 static bool is_valid(const cm1e_motion_state_t *start, double target, const cm1e_motion_limits_t *limits)
 {
-    return isfinite(start->position) && isfinite(start->velocity) && isfinite(start->acceleration) &&
-           isfinite(target) && is_positive(limits->velocity) && is_positive(limits->acceleration) &&
-           is_positive(limits->deceleration) && limits->jerk > 0;
+    return is_number(start->position) && is_number(start->velocity) && is_number(start->acceleration) &&
+           is_number(target) && is_limit(limits->velocity) && is_limit(limits->acceleration) &&
+           is_limit(limits->deceleration) && (is_limit(limits->jerk) || limits->jerk == INFINITY);
 }
 
 /** Makes the profile out of pieces that were planned mirrored by `sign` and relative to the start. The start and the
- *  end state are taken as they are, not as rounding left them. */
+ *  end state are taken as they are, not as rounding left them. Refuses pieces that do not lead to the end: the numbers
+ *  are then too far apart for doubles. */
 static cm1e_error_t build(cm1e_profile_t *profile, const cm1e_motion_state_t *start, const cm1e_pieces_t *pieces,
-                          double sign, const cm1e_motion_state_t *end)
+                          double sign, const cm1e_motion_state_t *end, const cm1e_motion_limits_t *limits)
 {
-    double time = 0, position = 0, velocity = sign * start->velocity;
+    double time = 0, position = 0, farthest = 0, velocity = sign * start->velocity;
     profile->segment_count = pieces->count;
     for (int i = 0; i < pieces->count; i++) {
         const cm1e_piece_t *piece = &pieces->piece[i];
+        if (piece->jerk == 0 && piece->acceleration == 0) /* the cruise may be long: no rounded velocity there */
+            velocity = limits->velocity;
         profile->segments[i] = (cm1e_profile_segment_t){
             .start_s = time,
             .jerk = sign * piece->jerk,
@@ -48,11 +56,16 @@ static cm1e_error_t build(cm1e_profile_t *profile, const cm1e_motion_state_t *st
         const cm1e_motion_state_t next = cm1e_piece_state(piece, position, velocity, piece->duration_s);
         position = next.position;
         velocity = next.velocity;
+        farthest = fmax(farthest, fabs(position));
         time += piece->duration_s;
     }
     profile->duration_s = time;
-    profile->end = end ? *end : (cm1e_motion_state_t){start->position + sign * position, sign * velocity, 0};
-    return isfinite(time) && isfinite(profile->end.position) ? CM1E_OK : CM1E_ERROR_INVALID_ARGUMENT;
+    profile->end = *end;
+    if (isnan(end->position))
+        profile->end.position = start->position + sign * position;
+    const double missing = profile->end.position - start->position - sign * position;
+    const double noise = 1e-9 * farthest + 16 * DBL_EPSILON * (fabs(start->position) + fabs(profile->end.position));
+    return isfinite(time) && isfinite(noise) && fabs(missing) <= noise ? CM1E_OK : CM1E_ERROR_INVALID_ARGUMENT;
 }
 
 static double displacement(const cm1e_pieces_t *pieces, double velocity)
@@ -93,8 +106,6 @@ static double growth_start(const push_t *push, const cm1e_motion_limits_t *limit
 {
     const cm1e_piece_t *piece = &push->piece;
     const double v = push->velocity, a = piece->acceleration, jerk = limits->jerk;
-    if (isinf(jerk))
-        return v >= 0 && a > 0 ? 0 : piece->duration_s;
     if (piece->jerk < 0 || (piece->jerk == 0 && a <= 0))
         return piece->duration_s;
     if (piece->jerk == 0)
@@ -104,28 +115,28 @@ static double growth_start(const push_t *push, const cm1e_motion_limits_t *limit
     return fmax(0, (from - a) / jerk);
 }
 
-/** The switching time between low and high: Newton's method, bisection where that leaves the bracket. */
+/** The switching time between low and high. The reach grows from `low` on like a power of the time, with an exponent
+ *  between 1 and 4 that changes on the way: Newton's method on its logarithm comes close from anywhere, Newton's method
+ *  proper does the rest, and bisection takes over where that leaves the bracket or its steps do not get shorter. */
 static double solve(const push_t *push, const cm1e_motion_limits_t *limits, double target, double low, double high)
 {
-    double slope, low_reach = reach(push, limits, low, &slope);
-    const double high_reach = reach(push, limits, high, &slope);
-    const double precision = DBL_EPSILON * (fabs(target) + fabs(push->position)) / 2;
-    double time = low + (high - low) * cbrt((target - low_reach) / (high_reach - low_reach));
-    if (!(time > low && time < high))
-        time = high;
+    const double origin = low;
+    double slope, time = high, last_step = 2 * (high - low);
+    const double origin_reach = reach(push, limits, low, &slope), missing = target - origin_reach;
     for (int i = 0; i < SOLVER_STEPS_MAX; i++) {
-        const double excess = reach(push, limits, time, &slope) - target;
-        if (fabs(excess) <= precision)
-            break;
+        const double grown = reach(push, limits, time, &slope) - origin_reach, excess = grown - missing;
+        double next = time - excess / slope;
+        if (fabs(excess) <= 1e-8 * missing || fabs(next - time) <= DBL_EPSILON * time) /* quadratic: that was it */
+            return fmin(fmax(next, low), high);
         if (excess > 0)
             high = time;
         else
             low = time;
-        double next = time - excess / slope;
-        if (!(next > low && next < high))
+        if (grown > 2 * missing)
+            next = origin + (time - origin) * pow(missing / grown, grown / (slope * (time - origin)));
+        if (!(next > low && next < high) || fabs(next - time) > last_step / 2)
             next = low + (high - low) / 2;
-        if (next == time || !(next > low && next < high))
-            break;
+        last_step = fabs(next - time);
         time = next;
     }
     return time;
@@ -168,22 +179,19 @@ cm1e_error_t cm1e_profile_to_position(cm1e_profile_t *profile, const cm1e_motion
 {
     if (!is_valid(start, target, limits))
         return CM1E_ERROR_INVALID_ARGUMENT;
-    const double distance = target - start->position;
-    if (!isfinite(distance))
-        return CM1E_ERROR_INVALID_ARGUMENT;
     const cm1e_motion_state_t end = {target, 0, 0};
     cm1e_pieces_t pieces = {.count = 0};
     cm1e_pieces_append_velocity_change(&pieces, start->velocity, start->acceleration, 0, limits);
-    const double stop = displacement(&pieces, start->velocity);
+    const double distance = target - start->position, stop = displacement(&pieces, start->velocity);
     /* What rounding of the positions alone can make of a target that is where the axis stops anyway. */
     const double noise = 4 * DBL_EPSILON * (fabs(start->position) + fabs(target) + fabs(stop));
     if (fabs(distance - stop) <= noise)
-        return build(profile, start, &pieces, 1, &end);
+        return build(profile, start, &pieces, 1, &end, limits);
 
     const double sign = distance > stop ? 1 : -1;
     pieces.count = 0;
     append_push_and_stop(&pieces, sign * start->velocity, sign * start->acceleration, sign * distance, limits);
-    return build(profile, start, &pieces, sign, &end);
+    return build(profile, start, &pieces, sign, &end, limits);
 }
 
 cm1e_error_t cm1e_profile_to_velocity(cm1e_profile_t *profile, const cm1e_motion_state_t *start, double velocity,
@@ -194,7 +202,6 @@ cm1e_error_t cm1e_profile_to_velocity(cm1e_profile_t *profile, const cm1e_motion
     velocity = fmax(-limits->velocity, fmin(limits->velocity, velocity));
     cm1e_pieces_t pieces = {.count = 0};
     cm1e_pieces_append_velocity_change(&pieces, start->velocity, start->acceleration, velocity, limits);
-    const cm1e_error_t error = build(profile, start, &pieces, 1, NULL);
-    profile->end.velocity = velocity;
-    return error;
+    const cm1e_motion_state_t end = {NAN, velocity, 0}; /* wherever it is reached */
+    return build(profile, start, &pieces, 1, &end, limits);
 }

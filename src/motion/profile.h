@@ -1,8 +1,8 @@
 /**
  * @file profile.h
  * Online trajectories of one axis: from any state (position, velocity, acceleration) to a target position at rest, or
- * to a target velocity, with limits on velocity, acceleration, deceleration and jerk. Pure functions, no clock, no heap.
- * Units: u, u/s, u/s2, u/s3, s. @rt cycle throughout.
+ * to a target velocity, with limits on velocity, acceleration, deceleration and jerk. Pure functions, no clock, no
+ * heap. Units: u, u/s, u/s2, u/s3, s. @rt cycle throughout.
  */
 #ifndef CM1E_MOTION_PROFILE_H
 #define CM1E_MOTION_PROFILE_H
@@ -29,12 +29,15 @@ enum { CM1E_PROFILE_MAX_SEGMENTS = 24 };
 
 typedef struct cm1e_profile {
     int segment_count;
-    double duration_s;       /**< until the target is reached; afterwards the end state continues at constant velocity */
+    double duration_s;       /**< until the target is reached; afterwards the end state goes on at constant velocity */
     cm1e_motion_state_t end; /**< exactly the target */
     cm1e_profile_segment_t segments[CM1E_PROFILE_MAX_SEGMENTS];
 } cm1e_profile_t;
 
-/** To `target` at rest. A start that violates the limits is brought inside first. Never fails for finite input. */
+/** To `target` at rest, in the shortest time. A start that violates the limits is brought inside first. Fails only
+ *  (with CM1E_ERROR_INVALID_ARGUMENT, and then the profile is of no use) for input that is not finite, for limits that
+ *  are not positive, and for numbers so large, so small or so far apart that doubles cannot hold the motion; never
+ *  while all are zero or within 15 decades of 1. */
 cm1e_error_t cm1e_profile_to_position(cm1e_profile_t *profile, const cm1e_motion_state_t *start, double target,
                                       const cm1e_motion_limits_t *limits);
 /** To `velocity` (signed; beyond limits->velocity it is clamped) with acceleration 0, at no particular position. */

@@ -58,6 +58,8 @@ static inline cm1e_motion_limits_t random_limits(void)
     };
     if (one_in(3))
         limits.deceleration = limits.acceleration;
+    if (one_in(10))
+        limits.jerk = INFINITY;
     return limits;
 }
 
@@ -87,7 +89,7 @@ static inline bool is_inside(const cm1e_motion_state_t *state, const cm1e_motion
 /** A start within the limits: at rest, cruising, at limits to the last bit, or anything. */
 static inline cm1e_motion_state_t random_start(const cm1e_motion_limits_t *limits)
 {
-    cm1e_motion_state_t start = {.position = random_between(-1, 1) * random_decade(1e-3, 1e4)};
+    cm1e_motion_state_t start = {.position = random_between(-1, 1) * random_decade(1e-3, one_in(4) ? 1e12 : 1e4)};
     if (one_in(4))
         return start;
     for (int i = 0; i < 100; i++) {

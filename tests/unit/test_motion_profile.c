@@ -157,7 +157,7 @@ static void test_infinite_jerk_gives_the_trapezoid(void)
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, moves[i].duration_s, profile.duration_s);
     }
     /* An infinite jerk is the limit of large ones. */
-    const cm1e_profile_t sharp = to_position(at_zero, 6, (cm1e_motion_limits_t){300, 1000, 3000, 1e300});
+    const cm1e_profile_t sharp = to_position(at_zero, 6, (cm1e_motion_limits_t){300, 1000, 3000, 1e30});
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, moves[2].duration_s, sharp.duration_s);
 }
 

@@ -8,12 +8,15 @@ enum { PROBLEMS = 200000, SAMPLES = 40 };
 void setUp(void) {}
 void tearDown(void) {}
 
-/** What a rounded position costs: it has to be made good by a motion of the third order. */
+/** What a rounded position costs: it has to be made good by a move of that length, with any limit in its way. */
 static double detour(const cm1e_profile_t *profile, const problem_t *problem)
 {
     double low, high;
     cm1e_profile_extent(profile, &low, &high);
-    return 4 * cbrt(16 * DBL_EPSILON * (fabs(low) + fabs(high)) / problem->limits.jerk);
+    const cm1e_motion_limits_t *limits = &problem->limits;
+    const double length = 16 * DBL_EPSILON * (fabs(low) + fabs(high));
+    return 4 * (cbrt(length / limits->jerk) + sqrt(length / fmin(limits->acceleration, limits->deceleration)) +
+                length / limits->velocity);
 }
 
 static void check_limits(const cm1e_profile_t *profile, const problem_t *problem)
@@ -34,7 +37,7 @@ static void check_limits(const cm1e_profile_t *profile, const problem_t *problem
                                    : acceleration_limit(state.velocity, state.acceleration, limits);
         CHECK(fabs(state.acceleration) <= a_limit * (1 + 1e-9), problem);
         CHECK(state.position >= low - p_noise && state.position <= high + p_noise, problem);
-        if (i > 0)
+        if (i > 0 && step > 0)
             CHECK(fabs(state.acceleration - before.acceleration) <= limits->jerk * step + 1e-9 * a_limit, problem);
         before = state;
     }
@@ -58,6 +61,69 @@ static void test_every_profile_keeps_limits_and_ends_exactly(void)
         CHECK(profile.end.velocity == velocity, &problem);
         check_continuity(&profile, &problem);
         check_limits(&profile, &problem);
+    }
+}
+
+static void test_start_outside_the_limits_is_brought_inside_and_stays_there(void)
+{
+    for (int i = 0; i < PROBLEMS; i++) {
+        problem_t problem = random_problem();
+        const cm1e_motion_limits_t *limits = &problem.limits;
+        problem.start.velocity = random_between(-3, 3) * limits->velocity;
+        problem.start.acceleration = random_between(-3, 3) * fmax(limits->acceleration, limits->deceleration);
+        cm1e_profile_t profile;
+        CHECK(cm1e_profile_to_position(&profile, &problem.start, problem.target, limits) == CM1E_OK, &problem);
+        CHECK(profile.end.position == problem.target && profile.end.velocity == 0, &problem);
+        check_continuity(&profile, &problem);
+        /* A state a hair inside; what follows may be a hair outside. (The trapezoid is always at a limit.) */
+        const double hair = isinf(limits->jerk) ? 0 : 1e-6;
+        const cm1e_motion_limits_t tighter = {limits->velocity * (1 - 1e-6), limits->acceleration * (1 - hair),
+                                              limits->deceleration * (1 - hair), limits->jerk};
+        bool inside = false;
+        for (int k = 0; k <= SAMPLES; k++) {
+            cm1e_motion_state_t state;
+            cm1e_profile_sample(&profile, profile.duration_s * k / SAMPLES, &state);
+            if (inside)
+                CHECK(is_inside(&state, limits, 1 + 1e-6), &problem);
+            inside = inside || is_inside(&state, &tighter, 1);
+        }
+        CHECK(inside, &problem);
+    }
+}
+
+static double any_number(double decades)
+{
+    return one_in(8) ? 0 : (one_in(2) ? 1 : -1) * random_decade(pow(10, -decades), pow(10, decades));
+}
+
+static void test_numbers_of_any_size_give_a_profile_or_a_refusal(void)
+{
+    static const double decades[] = {3, 6, 12, 15, 30, 300};
+    for (int i = 0; i < PROBLEMS; i++) {
+        const double size = decades[i % 6];
+        const double jerk = one_in(8) ? INFINITY : random_decade(pow(10, -size), pow(10, size));
+        const problem_t problem = {
+            .start = {any_number(size), any_number(size), any_number(size)},
+            .target = any_number(size),
+            .limits = {random_decade(pow(10, -size), pow(10, size)), random_decade(pow(10, -size), pow(10, size)),
+                       random_decade(pow(10, -size), pow(10, size)), jerk},
+        };
+        cm1e_profile_t profile;
+        if (cm1e_profile_to_position(&profile, &problem.start, problem.target, &problem.limits) != CM1E_OK) {
+            CHECK(size > 15, &problem);
+            continue;
+        }
+        CHECK(isfinite(profile.duration_s) && profile.end.position == problem.target, &problem);
+        if (size <= 15)
+            check_continuity(&profile, &problem);
+        for (int k = 0; k <= SAMPLES; k++) {
+            cm1e_motion_state_t state;
+            cm1e_profile_sample(&profile, profile.duration_s * k / SAMPLES, &state);
+            CHECK(isfinite(state.position) && isfinite(state.velocity) && isfinite(state.acceleration), &problem);
+        }
+        double low, high;
+        cm1e_profile_extent(&profile, &low, &high);
+        CHECK(isfinite(low) && isfinite(high) && low <= high, &problem);
     }
 }
 
@@ -198,6 +264,8 @@ int main(void)
     seed_random();
     UNITY_BEGIN();
     RUN_TEST(test_every_profile_keeps_limits_and_ends_exactly);
+    RUN_TEST(test_start_outside_the_limits_is_brought_inside_and_stays_there);
+    RUN_TEST(test_numbers_of_any_size_give_a_profile_or_a_refusal);
     RUN_TEST(test_from_rest_the_position_stays_between_start_and_target);
     RUN_TEST(test_a_mirrored_problem_gives_the_mirrored_profile);
     RUN_TEST(test_replanning_on_the_way_takes_the_remaining_time);
