@@ -64,10 +64,12 @@ bool cm1e_mailbox_next(cm1e_mailbox_t *mailbox, cm1e_datagram_t *d)
         memcpy(d->data, mailbox->message, mailbox->size);
         memset(d->data + mailbox->size, 0, (size_t)(mailbox->out_length - mailbox->size));
         return true;
-    case MAILBOX_WRITE_DOUBT:
-        cm1e_datagram_set(d, COMMAND_FPRD, mailbox->station, REG_SM0, 2 * SYNC_MANAGER_BYTES);
-        return true;
     case MAILBOX_POLL:
+        if (mailbox->write_lost) {
+            cm1e_datagram_set(d, COMMAND_FPRD, mailbox->station, REG_SM0, 2 * SYNC_MANAGER_BYTES);
+            return true;
+        }
+        /* fall through */
     case MAILBOX_REPEAT_WAIT:
         cm1e_datagram_set(d, COMMAND_FPRD, mailbox->station, REG_SM1, SYNC_MANAGER_BYTES);
         return true;
@@ -85,25 +87,28 @@ bool cm1e_mailbox_next(cm1e_mailbox_t *mailbox, cm1e_datagram_t *d)
 static void after_write(cm1e_mailbox_t *mailbox, int working_counter)
 {
     if (working_counter == 1) {
+        mailbox->write_lost = false;
         enter(mailbox, MAILBOX_POLL);
     } else if (working_counter == DATAGRAM_LOST) {
         mailbox->write_lost = true;
-        enter(mailbox, MAILBOX_WRITE_DOUBT);
+        enter(mailbox, MAILBOX_POLL);
     } else if (mailbox->write_lost) {
-        /* Refused because it is full: perhaps of the very message that we try to write again. */
-        enter(mailbox, MAILBOX_WRITE_DOUBT);
+        enter(mailbox, MAILBOX_POLL); /* refused because full: perhaps of the very message that we write again */
     }
 }
 
-static void after_doubt(cm1e_mailbox_t *mailbox, const cm1e_datagram_t *d)
+/** A full SM1 proves nothing about a lost write: it may be an emergency, or an answer that we have already. */
+static void after_poll(cm1e_mailbox_t *mailbox, const cm1e_datagram_t *d)
 {
     if (d->working_counter != 1)
         return;
-    const bool arrived = (d->data[SM_STATUS] & SM_STATUS_FULL) ||
-                         (d->data[SYNC_MANAGER_BYTES + SM_STATUS] & SM_STATUS_FULL);
-    if (arrived)
-        enter(mailbox, MAILBOX_POLL);
-    else if (++mailbox->tries >= DOUBT_LOOKS)
+    const uint8_t *in = mailbox->write_lost ? d->data + SYNC_MANAGER_BYTES : d->data;
+    const bool out_full = mailbox->write_lost && d->data[SM_STATUS] & SM_STATUS_FULL;
+    if (out_full)
+        mailbox->write_lost = false; /* it is there, the slave will read it */
+    if (in[SM_STATUS] & SM_STATUS_FULL)
+        enter(mailbox, MAILBOX_READ);
+    else if (mailbox->write_lost && ++mailbox->tries >= DOUBT_LOOKS)
         enter(mailbox, MAILBOX_WRITE); /* with the same counter: a slave that has had it drops the second one */
 }
 
@@ -139,12 +144,8 @@ bool cm1e_mailbox_result(cm1e_mailbox_t *mailbox, const cm1e_datagram_t *d)
     case MAILBOX_WRITE:
         after_write(mailbox, d->working_counter);
         break;
-    case MAILBOX_WRITE_DOUBT:
-        after_doubt(mailbox, d);
-        break;
     case MAILBOX_POLL:
-        if (d->working_counter == 1 && d->data[SM_STATUS] & SM_STATUS_FULL)
-            enter(mailbox, MAILBOX_READ);
+        after_poll(mailbox, d);
         break;
     case MAILBOX_READ:
         return after_read(mailbox, d);

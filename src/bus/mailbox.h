@@ -16,11 +16,10 @@ enum { MAILBOX_TYPE_ERROR = 0, MAILBOX_TYPE_COE = 3 };
 
 typedef enum cm1e_mailbox_state {
     MAILBOX_IDLE = 0,
-    MAILBOX_WRITE,       /**< the message goes into SM0 */
-    MAILBOX_WRITE_DOUBT, /**< the frame that carried it is lost: did it arrive? */
-    MAILBOX_POLL,        /**< is SM1 full? */
+    MAILBOX_WRITE,  /**< the message goes into SM0 */
+    MAILBOX_POLL,   /**< is SM1 full? And, after a lost write: is SM0? */
     MAILBOX_READ,
-    MAILBOX_REPEAT,      /**< the frame with the answer is lost: ask for it again */
+    MAILBOX_REPEAT, /**< the frame with the answer is lost: ask for it again */
     MAILBOX_REPEAT_WAIT,
 } cm1e_mailbox_state_t;
 
@@ -32,7 +31,7 @@ typedef struct cm1e_mailbox {
     uint8_t sent_counter;             /**< 1 ... 7, of the last message sent; 0: none yet */
     uint8_t received_counter;         /**< of the last message accepted */
     bool repeat_bit;                  /**< as last written to SM1 activate */
-    bool write_lost;                  /**< the message may have been delivered already */
+    bool write_lost;                  /**< nobody knows whether the message was delivered */
     unsigned suspects;                /**< so many of the next answers may be ones that we have already */
     enum { COUNTING_UNKNOWN = 0, COUNTING, NOT_COUNTING } counting; /**< does the slave number its answers? */
     unsigned tries;                   /**< in the present state */

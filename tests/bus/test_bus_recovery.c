@@ -1,0 +1,212 @@
+/* A slave that left the network comes back: reset, power cycle, replug, watchdog; while the others keep running. */
+#include "bus_support.h"
+
+/** Cycles as a program would run them: whoever is not in OP is asked back. Returns how many it took until all are. */
+static unsigned cycles_until_recovered(cm1e_bus_t *bus, unsigned limit)
+{
+    const uint32_t count = cm1e_bus_slave_count(bus);
+    for (unsigned n = 1; n <= limit; n++) {
+        const cm1e_error_t error = cycle(bus);
+        bool all = error == CM1E_OK && cm1e_bus_health(bus) == CM1E_OK;
+        for (uint16_t position = 1; position <= count; position++) {
+            const cm1e_slave_watch_t watch = cm1e_bus_slave_watch(bus, position);
+            if (!watch.lost && watch.al_state == CM1E_AL_OP)
+                continue;
+            all = false;
+            cm1e_bus_request_recovery(bus, position);
+        }
+        if (all)
+            return n;
+    }
+    return 0;
+}
+
+/** Whoever looks at the simulated slaves themselves. */
+static unsigned state_of(cm1e_bus_t *bus, uint32_t position)
+{
+    return cm1e_sim_slave_al_state(cm1e_sim_segment_slave(segment_of(bus), position));
+}
+
+/** Acts on the segment and lets the frame that was already on its way come back. */
+static void strike(cm1e_bus_t *bus, const char *line)
+{
+    simulate(bus, line);
+    cycle(bus);
+}
+
+static void check_all_run(cm1e_bus_t *bus)
+{
+    for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++)
+        ck_assert_uint_eq(state_of(bus, position), CM1E_AL_OP);
+    cycles(bus, 200);
+}
+
+START_TEST(power_cycled_slave_comes_back)
+{
+    sim_config(3);
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, 50);
+    char line[40];
+    snprintf(line, sizeof line, "power-cycle %d 80", _i);
+    strike(bus, line);
+    bool seen_lost = false;
+    for (int n = 0; n < 60; n++) {
+        ck_assert_int_ne(cycle(bus), CM1E_OK);
+        seen_lost = seen_lost || cm1e_bus_slave_watch(bus, (uint16_t)_i).lost;
+        if (_i > 1)
+            ck_assert_uint_eq(state_of(bus, 1), CM1E_AL_OP);
+    }
+    ck_assert(seen_lost || _i == 1); /* without the first slave all frames are lost: nothing can be said of one of them */
+    ck_assert_int_ne(cm1e_bus_health(bus), CM1E_OK);
+    const unsigned n = cycles_until_recovered(bus, 3000);
+    ck_assert_uint_gt(n, 0);
+    ck_assert_uint_lt(n, 1500);
+    check_all_run(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(without_request_nothing_is_recovered)
+{
+    sim_config(2);
+    cm1e_bus_t *bus = start_bus();
+    strike(bus, "power-cycle 2 20");
+    for (int n = 0; n < 500; n++)
+        cycle(bus);
+    ck_assert_uint_eq(state_of(bus, 2), CM1E_AL_INIT);
+    ck_assert_uint_eq(state_of(bus, 1), CM1E_AL_OP);
+    ck_assert(cm1e_bus_slave_watch(bus, 2).lost);
+    ck_assert_uint_gt(cycles_until_recovered(bus, 3000), 0);
+    check_all_run(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(unplugged_slaves_trip_their_watchdog_and_come_back_with_the_cable)
+{
+    sim_config(3);
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, 20);
+    strike(bus, "unplug 2");
+    for (int n = 0; n < 300; n++)
+        ck_assert_int_ne(cycle(bus), CM1E_OK);
+    ck_assert(cm1e_bus_slave_watch(bus, 2).lost);
+    ck_assert(cm1e_bus_slave_watch(bus, 3).lost);
+    ck_assert(!cm1e_bus_slave_watch(bus, 1).lost);
+    simulate(bus, "replug 2");
+    for (int n = 0; n < 20; n++)
+        cycle(bus);
+    const cm1e_slave_watch_t watch = cm1e_bus_slave_watch(bus, 3);
+    ck_assert_uint_eq(watch.al_state, CM1E_AL_SAFE_OP | CM1E_AL_ERROR);
+    ck_assert_uint_eq(watch.al_status_code, 0x001B);
+    const unsigned n = cycles_until_recovered(bus, 1000);
+    ck_assert_uint_gt(n, 0);
+    ck_assert_uint_lt(n, 300);
+    check_all_run(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+typedef struct disturbance {
+    unsigned one_in;
+    uint64_t dropped;
+} disturbance_t;
+
+/** Loses one in n frames that are not process data (LRW, command 12), by chance. */
+static cm1e_tap_verdict_t lose_some(void *context, cm1e_tap_frame_t *frame)
+{
+    disturbance_t *d = context;
+    if (frame->bytes[16] == 12 || rand() % (int)d->one_in)
+        return CM1E_TAP_PASS;
+    d->dropped++;
+    return CM1E_TAP_DROP;
+}
+
+START_TEST(recovery_survives_lost_frames)
+{
+    sim_config(2);
+    cm1e_bus_t *bus = start_bus();
+    disturbance_t disturbance = {.one_in = (unsigned)_i};
+    srand((unsigned)_i);
+    printf("seed %d\n", _i);
+    strike(bus, "power-cycle 1 30");
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), lose_some, &disturbance);
+    ck_assert_uint_gt(cycles_until_recovered(bus, 20000), 0);
+    ck_assert_uint_gt(disturbance.dropped, 5);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+    check_all_run(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(power_cycle_at_every_moment_of_a_recovery_ends_in_operational)
+{
+    sim_config(2);
+    cm1e_bus_t *bus = start_bus();
+    strike(bus, "power-cycle 2 10");
+    for (int n = 0; n < _i * 3; n++) { /* some way into the first recovery */
+        cycle(bus);
+        if (cm1e_bus_slave_watch(bus, 2).al_state != CM1E_AL_OP)
+            cm1e_bus_request_recovery(bus, 2);
+    }
+    strike(bus, "power-cycle 2 10");
+    for (int n = 0; n < 60; n++)
+        cycle(bus);
+    ck_assert_uint_gt(cycles_until_recovered(bus, 5000), 0);
+    check_all_run(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(slave_with_other_switches_is_not_taken_for_the_old_one)
+{
+    sim_config(2);
+    config.axes[1].address_kind = CM1E_ADDRESS_EXPLICIT_ID;
+    config.axes[1].address = 5;
+    cm1e_bus_t *bus = start_bus();
+    simulate(bus, "switches 2 07");
+    strike(bus, "power-cycle 2 20");
+    ck_assert_uint_eq(cycles_until_recovered(bus, 1500), 0);
+    ck_assert_uint_le(state_of(bus, 2), CM1E_AL_PRE_OP);
+    simulate(bus, "switches 2 05");
+    ck_assert_uint_gt(cycles_until_recovered(bus, 1500), 0);
+    check_all_run(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(sdo_to_a_lost_slave_ends_and_works_again_after_recovery)
+{
+    sim_config(2);
+    cm1e_bus_t *bus = start_bus();
+    uint8_t data[4];
+    cm1e_sdo_t sdo = {.position = 2, .index = 0x1000, .data = data, .size = 4};
+    ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
+    strike(bus, "power-cycle 2 300");
+    ck_assert_uint_le(finish_sdo(bus, &sdo), 1001);
+    ck_assert_int_eq(cm1e_sdo_state(&sdo), CM1E_SDO_ERROR);
+    ck_assert(sdo.error == CM1E_ERROR_TIMEOUT || sdo.error == CM1E_ERROR_BUS_LOST);
+    ck_assert_uint_gt(cycles_until_recovered(bus, 3000), 0);
+    sdo = (cm1e_sdo_t){.position = 2, .index = 0x1000, .data = data, .size = 4};
+    ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
+    finish_sdo(bus, &sdo);
+    ck_assert_int_eq(cm1e_sdo_state(&sdo), CM1E_SDO_DONE);
+    ck_assert_uint_eq(cm1e_get_u32(data), 0x00040192);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("bus_recovery");
+    TCase *tests = tcase_create("recovery");
+    tcase_add_loop_test(tests, power_cycled_slave_comes_back, 1, 4);
+    tcase_add_test(tests, without_request_nothing_is_recovered);
+    tcase_add_test(tests, unplugged_slaves_trip_their_watchdog_and_come_back_with_the_cable);
+    tcase_add_loop_test(tests, recovery_survives_lost_frames, 2, 12);
+    tcase_add_loop_test(tests, power_cycle_at_every_moment_of_a_recovery_ends_in_operational, 0, 60);
+    tcase_add_test(tests, slave_with_other_switches_is_not_taken_for_the_old_one);
+    tcase_add_test(tests, sdo_to_a_lost_slave_ends_and_works_again_after_recovery);
+    suite_add_tcase(suite, tests);
+    return run_suite(suite);
+}
