@@ -54,6 +54,14 @@ def check_sdos(pysoem, slave):
     slave.sdo_write(0x6060, 0, b"\0")
 
 
+def acknowledge(master, slave, state):
+    """Asks for a state with the error acknowledged, and waits until the slave is there without an error."""
+    slave.state = state | 0x10
+    slave.write_state()
+    wire.wait_for(lambda: (master.read_state(), slave.state == state)[1], 1.0,
+                  f"state {state:#x} without an error not reached")
+
+
 def check_wrong_requests(pysoem, master, slave):
     """The AL status codes of three wrong requests, each from the state that makes it wrong."""
     for start, asked, code, why in [
@@ -61,9 +69,7 @@ def check_wrong_requests(pysoem, master, slave):
         (pysoem.PREOP_STATE, 0x07, 0x0012, "an unknown state"),
         (pysoem.PREOP_STATE, pysoem.OP_STATE, 0x0011, "Pre-Op -> Op"),
     ]:
-        slave.state = start | 0x10
-        slave.write_state()
-        wire.check(slave.state_check(start, 500_000) == start, f"state {start:#x} not reached before {why}")
+        acknowledge(master, slave, start)
         slave.state = asked
         slave.write_state()
         wire.wait_for(lambda: (master.read_state(), slave.state & 0x10)[1], 1.0, f"{why} was not refused")
@@ -79,12 +85,11 @@ def run_master():
     slave = master.slaves[0]
     wire.check((slave.man, slave.id) == (VENDOR, PRODUCT), f"identity {slave.man:08X} {slave.id:08X}")
     wire.check(slave.name == "CM1-E", f"name {slave.name!r}")
+    wire.wait_for(lambda: (master.read_state(), slave.state == pysoem.PREOP_STATE)[1], 2.0, "Pre-Op not reached")
     check_sdos(pysoem, slave)
     check_wrong_requests(pysoem, master, slave)
 
-    slave.state = pysoem.PREOP_STATE | 0x10
-    slave.write_state()
-    slave.state_check(pysoem.PREOP_STATE, 500_000)
+    acknowledge(master, slave, pysoem.PREOP_STATE)
     master.config_map()
     wire.check(master.state_check(pysoem.SAFEOP_STATE, 1_000_000) == pysoem.SAFEOP_STATE, "Safe-Op not reached")
     wire.check((len(slave.output), len(slave.input)) == (13, 21), f"{len(slave.output)} + {len(slave.input)} bytes")
@@ -98,6 +103,7 @@ def run_master():
         master.receive_processdata(10_000)
         if master.state_check(pysoem.OP_STATE, 1_000) == pysoem.OP_STATE:
             break
+    master.read_state()
     wire.check(slave.state == pysoem.OP_STATE, f"Op not reached: {slave.state:#x}, AL status {slave.al_status:#x}")
 
     errors, next_cycle = 0, time.monotonic()
