@@ -17,7 +17,6 @@ enum {
     DATAGRAM_OVERHEAD = 12,    /**< datagram header and working counter */
     FRAME_MINIMUM = FRAME_HEADER + DATAGRAM_OVERHEAD,
     DATAGRAM_LENGTH_MASK = 0x07FF,
-    DATAGRAM_CIRCULATING = 0x4000, /**< the frame passed a slave whose port 0 is closed */
     DATAGRAM_MORE = 0x8000,
 };
 
@@ -42,7 +41,8 @@ typedef enum frame_order {
 frame_order_t frame_order(const uint8_t *frame, size_t length);
 
 /** `reply` is what a segment makes of `sent`: EtherCAT, long enough, the same datagrams (commands, indices, lengths)
- *  with the first one's index = `index`. Addresses, data and working counters may differ. */
+ *  with the first one's index = `index`. Addresses, data and working counters may differ, and the circulating bit,
+ *  which a slave sets whose port 0 is closed. */
 bool frame_is_reply(const uint8_t *reply, size_t reply_length, const uint8_t *sent, size_t sent_length, uint8_t index);
 
 /** Frame bodies (from the EtherCAT header on, without Ethernet header) of two halves of a ring that processed copies of
@@ -50,10 +50,6 @@ bool frame_is_reply(const uint8_t *reply, size_t reply_length, const uint8_t *se
  *  has the bits that either half changed. Working counters are added. All have `length` bytes and passed
  *  frame_is_reply(). */
 void frame_merge(uint8_t *a, const uint8_t *b, const uint8_t *sent, size_t length);
-
-/** Clears the circulating bit of every datagram: a frame that carries it is destroyed by the next slave whose port 0 is
- *  closed, so it must not be sent again with it. */
-void frame_clear_circulating(uint8_t *frame, size_t length);
 
 /** Damages a frame as the console asks for. There is no FCS here, which has damaged frames thrown away on a wire: so
  *  the damage is put where the receiver finds it, in the first datagram's header, and never makes believable data. */

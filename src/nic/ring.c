@@ -146,10 +146,8 @@ static void send_second(ecx_portt *port, uint8 idx, action_t action)
     cm1e_port_slot_t *slot = &port->slots[idx];
     const size_t length = (size_t)port->txbuflength[idx];
     memcpy(port->scratch, port->txbuf[idx], length);
-    if (action == SEND_ON) {
+    if (action == SEND_ON)
         memcpy(port->scratch + ETHERNET_HEADER, port->rxbuf[idx], length - ETHERNET_HEADER);
-        frame_clear_circulating(port->scratch, length);
-    }
     slot->companion = action == SEND_ON ? RING_SENT_ON : RING_COPY;
     slot->answers &= (uint8_t)~(RING_SECOND_HALF | RING_THROUGH);
     port_stamp(port, port->scratch, idx, 1, ++port->transmissions);

@@ -59,16 +59,18 @@ static uint8_t round_number;
 
 static int cyclic(void)
 {
-    uint8_t image[2 * N];
+    uint8_t image[2 * N + 3], sent[2 * N + 3]; /* three bytes are nobody's */
     round_number++;
+    for (size_t i = N; i < sizeof image; i++)
+        image[i] = (uint8_t)rand();
     for (int i = 0; i < N; i++) {
         image[i] = (uint8_t)(round_number * 3 + i);
-        image[N + i] = (uint8_t)rand();
         wire.slave[i + 1].input = (uint8_t)rand();
     }
-    uint8_t sent[2 * N];
     memcpy(sent, image, sizeof image);
     const int wkc = ecx_LRW(&port, 0, sizeof image, image, 250);
+    if (wkc > 0)
+        TEST_ASSERT_EQUAL_MEMORY(sent + 2 * N, image + 2 * N, 3);
     if (wkc == 3 * N)
         for (int i = 0; i < N; i++) {
             TEST_ASSERT_EQUAL_HEX8(wire.slave[i + 1].input, image[N + i]);
@@ -272,7 +274,8 @@ static void test_two_breaks_give_the_reachable_slaves_and_a_short_working_counte
                 TEST_ASSERT_LESS_OR_EQUAL_INT64(250000, now() - before);
             }
             TEST_ASSERT_EQUAL_INT(reachable > 0 ? 3 * reachable : EC_NOFRAME, wkc);
-            /* No frame by position may reach a slave that is not meant. */
+            /* No frame by position may reach a slave that is not meant, also after a broadcast counted fewer slaves. */
+            broadcast();
             for (int i = 1; i <= N; i++)
                 wire.slave[i].writes = 0;
             uint8_t data[2] = {1, 2};
@@ -283,6 +286,82 @@ static void test_two_breaks_give_the_reachable_slaves_and_a_short_working_counte
                 wire.slave[i].writes = 0;
             }
         }
+}
+
+/** The count of slaves behind the break is only as good as the frame that brought it: here slave 3 is where slave 2
+ *  was, and its half answers last. */
+static void test_a_second_break_between_two_frames_by_position_is_noticed(void)
+{
+    TEST_ASSERT_EQUAL_INT(N, broadcast());
+    break_at(2);
+    TEST_ASSERT_EQUAL_INT(N, write_each_by_position());
+    wire.cut[3] = true;
+    const int writes = wire.slave[3].writes;
+    uint8_t data[2] = {1, 2};
+    TEST_ASSERT_NOT_EQUAL(1, ecx_APWR(&port, (uint16)-1, 20, 2, data, EC_TIMEOUTRET));
+    TEST_ASSERT_EQUAL_INT(writes, wire.slave[3].writes);
+}
+
+/** A copy of FRMW is right while all slaves are behind the second interface. When they are not any more, half of them
+ *  got the time too early: the working counter must not say that all is well. */
+static void test_an_ordered_frame_that_both_halves_processed_is_not_called_complete(void)
+{
+    TEST_ASSERT_EQUAL_INT(N, broadcast());
+    break_at(FIRST_DEAD);
+    for (int i = 0; i < 3; i++)
+        TEST_ASSERT_EQUAL_INT(N, distribute_time());
+    break_at(3);
+    uint8_t data[8] = {0};
+    TEST_ASSERT_NOT_EQUAL(N, ecx_FRMW(&port, WIRE_STATION, 24, 8, data, EC_TIMEOUTRET));
+    TEST_ASSERT_EQUAL_INT(N, distribute_time());
+}
+
+static cm1e_tap_verdict_t delay_through(void *unused, cm1e_tap_frame_t *frame)
+{
+    (void)unused;
+    if (frame->direction == CM1E_TAP_RECEIVED && frame->port == 0 && frame->bytes[8] == 4)
+        frame->delay_ns = 3 * trip(N);
+    return CM1E_TAP_PASS;
+}
+
+static void test_frames_from_before_a_break_do_not_unteach_it(void)
+{
+    for (int place = FIRST_DEAD; place < PLACES; place++) {
+        tearDown();
+        setUp();
+        cm1e_nic_set_tap(nic, delay_through, NULL);
+        for (int i = 0; i < 5; i++)
+            TEST_ASSERT_EQUAL_INT(3 * N, cyclic());
+        break_at(place);
+        TEST_ASSERT_EQUAL_INT(3 * N, cyclic());
+        for (int i = 0; i < 10; i++) {
+            const int64_t before = now();
+            TEST_ASSERT_EQUAL_INT(3 * N, cyclic());
+            TEST_ASSERT_EQUAL_INT64(one_trip(place), now() - before);
+        }
+    }
+}
+
+/** One look a cycle, shorter than the wait for the other half: what a release finds unfinished is learned from, too. */
+static void test_one_look_a_cycle_without_waiting_is_enough_to_learn(void)
+{
+    for (int place = 0; place < PLACES; place++) {
+        tearDown();
+        setUp();
+        TEST_ASSERT_EQUAL_INT(N, broadcast());
+        break_at(place);
+        int good = 0;
+        for (int cycle = 0; cycle < 10; cycle++) {
+            uint8_t image[2 * N] = {0};
+            const uint8 idx = ecx_getindex(&port);
+            ecx_setupdatagram(&port, &port.txbuf[idx], EC_CMD_LRW, idx, 0, 0, sizeof image, image);
+            ecx_outframe_red(&port, idx);
+            cm1e_clock_sleep_until(cm1e_nic_clock(nic), now() + 250000);
+            good += ecx_waitinframe(&port, idx, 0) == 3 * N;
+            ecx_setbufstat(&port, idx, EC_BUF_EMPTY);
+        }
+        TEST_ASSERT_GREATER_OR_EQUAL_INT(9, good);
+    }
 }
 
 static unsigned loss_percent;
@@ -359,6 +438,10 @@ int main(void)
     RUN_TEST(test_in_the_cycle_a_break_costs_no_waiting_once_it_is_known);
     RUN_TEST(test_polling_with_timeout_zero_also_gets_the_whole_answer);
     RUN_TEST(test_two_breaks_give_the_reachable_slaves_and_a_short_working_counter);
+    RUN_TEST(test_a_second_break_between_two_frames_by_position_is_noticed);
+    RUN_TEST(test_an_ordered_frame_that_both_halves_processed_is_not_called_complete);
+    RUN_TEST(test_frames_from_before_a_break_do_not_unteach_it);
+    RUN_TEST(test_one_look_a_cycle_without_waiting_is_enough_to_learn);
     RUN_TEST(test_random_losses_and_breaks_never_give_wrong_data);
     RUN_TEST(test_one_lost_half_in_a_cut_ring_costs_one_cycle);
     RUN_TEST(test_without_a_second_interface_set_up_fails);
