@@ -11,8 +11,8 @@
 static void print_slave(const cm1e_slave_info_t *slave)
 {
     printf("%3u  %-16s %-12s vendor 0x%08X  product 0x%08X  revision 0x%08X  alias %u  switches 0x%02X\n",
-           slave->position, slave->name, slave->software_version, slave->vendor_id, slave->product_code, slave->revision,
-           slave->alias, slave->explicit_id);
+           slave->position, slave->name, slave->software_version, slave->vendor_id, slave->product_code,
+           slave->revision, slave->alias, slave->explicit_id);
 }
 
 int main(int argc, char **argv)

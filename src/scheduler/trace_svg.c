@@ -101,7 +101,7 @@ typedef struct scale {
 static double nice_step(double range, int ticks)
 {
     const double raw = range / ticks, power = pow(10, floor(log10(raw))), share = raw / power;
-    return power * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10);
+    return power * (share <= 1.4 ? 1 : share <= 3 ? 2 : share <= 7 ? 5 : 10);
 }
 
 static scale_t scale_of_panel(const plot_t *plot, uint32_t axis, const struct panel *panel)
@@ -339,7 +339,7 @@ static const char style[] =
     "path{fill:none;stroke-linejoin:round;stroke-linecap:round}\n"
     ".grid{stroke:#000;stroke-opacity:.09}.zero{stroke:#000;stroke-opacity:.35}\n"
     ".frame{fill:none;stroke:#6b7480}\n"
-    ".actual{stroke:#f08a24;stroke-width:3}.set{stroke:#12395f;stroke-width:1.1}\n"
+    ".actual{stroke:#f08a24;stroke-width:3}.set{stroke:#12395f;stroke-width:1.3}\n"
     ".torque{stroke:#2b7a4b;stroke-width:1.1}\n"
     "</style>\n";
 
@@ -363,7 +363,7 @@ static void print_head(const plot_t *plot)
         const char *name = cm1e_axis_state_name((cm1e_axis_state_t)i);
         fprintf(file, "<rect x=\"%.0f\" y=\"62\" width=\"12\" height=\"12\" fill=\"%s\"/>", x, states[i].colour);
         fprintf(file, "<text class=\"tick\" x=\"%.0f\" y=\"72\">%s</text>\n", x + 16, name);
-        x += 30 + 6.2 * (double)strlen(name);
+        x += 34 + 6.6 * (double)strlen(name);
     }
 }
 
