@@ -46,7 +46,7 @@ static const struct {
     [FAULT_WORKING_COUNTER] = {"a working counter wrong", false, true, NULL, {0}, ""},
     [FAULT_WORKING_COUNTERS] = {"all working counters wrong", true, false, NULL, {CM1E_ERROR_BUS_WORKING_COUNTER},
                                 "working counter"},
-    [FAULT_POWER_OFF] = {"motor power off", true, false, "power off 1",
+    [FAULT_POWER_OFF] = {"motor power off", true, false, "power 1 off",
                          {CM1E_ERROR_DRIVE_POWER, CM1E_ERROR_DRIVE_FAULT}, "power"},
     [FAULT_SLAVE_GONE] = {"slave gone", true, false, "unplug 1",
                           {CM1E_ERROR_BUS_LOST, CM1E_ERROR_BUS_WORKING_COUNTER, CM1E_ERROR_AXIS_OFFLINE}, ""},
@@ -206,8 +206,10 @@ static double allowed_travel(const run_t *run)
     const bool drive_goes_on = run->fault_phase == PHASE_HOME || run->kind == FAULT_FRAMES_LOST
                                || run->kind == FAULT_SLAVE_GONE;
     const double inertia = 2e-6 + 5e-6, friction = 0.005, rad_per_s = top_speed / 50000.0 * 6.2832;
+    /* A ramp from top speed that the axis's jerk (1e8 counts/s3) rules: twice sqrt(v / j) long, at half the speed. */
+    const double ramp = speed * sqrt(speed / 1e8);
     const double coast = inertia * rad_per_s * rad_per_s / (2 * friction) / 6.2832 * 50000.0;
-    return 50 + speed * (drive_goes_on ? watchdog_s : notice_s) + (speed > 0 ? coast : 0);
+    return 50 + speed * (drive_goes_on ? watchdog_s : notice_s) + (speed > 0 ? coast + ramp : 0);
 }
 
 static void check_end(const run_t *run)
