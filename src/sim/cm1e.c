@@ -32,7 +32,7 @@ static void supervise(cm1e_sim_cm1e_t *drive, double step_s)
     const double lag = fabs(drive->servo.reference - drive->mechanics.position);
     const double speed = fabs(drive->mechanics.velocity);
     const double torque = drive->servo.torque;
-    drive->following = lag <= FOLLOWING_WINDOW_COUNTS;
+    drive->following = lag <= FOLLOWING_WINDOW_COUNTS && !drive->servo.saturated;
     drive->lag_s = sum_while(lag > LAG_LIMIT_COUNTS, drive->lag_s, step_s);
     drive->overspeed_s = sum_while(speed > OVER_SPEED_RATIO * drive->motor->max_velocity_counts_per_s,
                                    drive->overspeed_s, step_s);

@@ -6,7 +6,8 @@
 #define ENCODER_TOOTH_PHASE 500.0   /* where the teeth lie on the scale of the mechanics */
 #define STALL_VELOCITY 200.0        /* counts/s; slower than this at the torque limit is no motion */
 #define STALL_TIME_S 0.03           /* so long at the torque limit means a hard stop */
-#define IN_POSITION 0.5             /* counts */
+#define IN_POSITION 0.3             /* counts */
+#define SETTLED_VELOCITY 20.0       /* counts/s */
 #define SETTLE_TIME_S 0.5           /* a move ends after this, in position or not */
 #define STANDSTILL_WINDOW 100.0     /* counts/s */
 enum { INPUT_2 = 0x0002, INPUT_3 = 0x0004 };
@@ -120,7 +121,7 @@ static cm1e_sim_homing_phase_t search_stop(cm1e_sim_cm1e_t *drive, double step_s
     return HOMING_APPROACH;
 }
 
-/* TRUE: there, and standing. */
+/* TRUE: there, and standing; this place is 0 now, to the count. */
 static bool move(cm1e_sim_cm1e_t *drive, double step_s)
 {
     cm1e_sim_homing_t *homing = &drive->homing;
@@ -130,11 +131,12 @@ static bool move(cm1e_sim_cm1e_t *drive, double step_s)
     }
     homing->stalled_s += step_s;
     const bool there = fabs(homing->target - drive->mechanics.position) < IN_POSITION &&
-                       fabs(drive->mechanics.velocity) < STANDSTILL_WINDOW;
+                       fabs(drive->mechanics.velocity) < SETTLED_VELOCITY;
     if (!there && homing->stalled_s < SETTLE_TIME_S)
         return false;
     homing->stalled_s = 0;
-    drive->zero = (int64_t)homing->target;
+    drive->zero += cm1e_sim_actual_counts(drive);
+    drive->servo.reference = homing->target = (double)drive->zero;
     return true;
 }
 

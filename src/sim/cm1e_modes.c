@@ -3,7 +3,6 @@
 #include "sim/cm1e_app.h"
 
 #define DEFAULT_CYCLE_S 1e-3        /* until the cycle time is detected */
-#define VELOCITY_MODE_LAG 2000.0    /* counts; a velocity servo does not catch up what a longer lag would be */
 #define FOLLOWING_WINDOW 5000.0     /* counts; PP, statusword bit 13 */
 #define POSITION_WINDOW 10.0        /* counts; target reached */
 #define VELOCITY_WINDOW 500.0       /* counts/s; target reached */
@@ -29,10 +28,13 @@ bool cm1e_sim_move_step(cm1e_servo_t *servo, double target, double velocity, dou
         servo->reference_velocity = 0;
         return true;
     }
-    /* The velocity from which steps of `most` end at the target, from v^2 / 2a + v step / 2 = distance. */
-    double fastest = sqrt(most * most / 4 + 2 * acceleration * fabs(distance)) - most / 2;
-    fastest = fmin(fmin(fastest, fabs(distance) / step_s), velocity);
+    /* The velocity from which steps of `most` end at the target, from v^2 / 2a + v step / 2 = distance. The last step is
+     * cut to what is left where that is nearly what it would be anyway. */
+    const double stopping = sqrt(most * most / 4 + 2 * acceleration * fabs(distance)) - most / 2;
+    const double fastest = fmin(stopping, velocity), last = distance / step_s;
     cm1e_sim_ramp(&servo->reference_velocity, distance < 0 ? -fastest : fastest, acceleration, step_s);
+    if (fabs(servo->reference_velocity) > fabs(last) && fabs(servo->reference_velocity - last) <= most)
+        servo->reference_velocity = last;
     servo->reference += servo->reference_velocity * step_s;
     return false;
 }
@@ -101,12 +103,11 @@ static uint16_t cyclic_status_bits(const cm1e_sim_cm1e_t *drive)
 
 /* ---- cyclic synchronous velocity ---------------------------------------------------------------------------------- */
 
+/* While the torque limit holds the motor back the reference moves with it: a velocity servo does not catch up. */
 static void velocity_step(cm1e_sim_cm1e_t *drive, double step_s)
 {
     cm1e_servo_t *servo = &drive->servo;
-    const double position = drive->mechanics.position;
-    const double reference = servo->reference + servo->reference_velocity * step_s;
-    servo->reference = fmax(fmin(reference, position + VELOCITY_MODE_LAG), position - VELOCITY_MODE_LAG);
+    servo->reference += (servo->saturated ? drive->mechanics.velocity : servo->reference_velocity) * step_s;
 }
 
 static void csv_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
