@@ -94,8 +94,9 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
 void cm1e_axis_outputs(cm1e_axis_t *axis)
 {
     axis_reset_step(axis);
-    axis_motion_step(axis);
     axis_power_step(axis);
+    axis_motion_step(axis);
+    axis_enable_step(axis);
     axis_write_set_point(axis);
     cm1e_drive_write(&axis->drive);
 }

@@ -114,7 +114,6 @@ static cm1e_error_t plan_velocity(const cm1e_axis_t *axis, const cm1e_axis_comma
     return axis_limits_can_stop(axis, axis->set, &next) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
 }
 
-/* A stop never runs over a software limit: it brakes harder than asked instead. */
 static cm1e_error_t plan_stop(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, plan_t *plan)
 {
     cm1e_motion_limits_t limits;
@@ -122,8 +121,6 @@ static cm1e_error_t plan_stop(const cm1e_axis_t *axis, const cm1e_axis_command_t
     if (error)
         return error;
     error = axis_plan_stop(axis, &limits, &plan->profile);
-    if (!error && axis_limits_check(axis, &plan->profile) == CM1E_ERROR_AXIS_POSITION_RANGE)
-        error = axis_plan_stop(axis, &axis->maximum, &plan->profile);
     plan->target = position_plus(axis->set, plan->profile.end.position * axis->scale);
     return error;
 }

@@ -10,7 +10,7 @@
 #include "core/bytes.h"
 
 static const int64_t start_timeout_ns = 500 * MS_IN_NS;
-static const int64_t halt_timeout_ns = 5000 * MS_IN_NS;
+static const int64_t longest_halt_ns = 10000 * MS_IN_NS;
 static const int64_t standing_ns = 50 * MS_IN_NS;
 static const int64_t interrupted_ns = 100 * MS_IN_NS;
 static const int32_t standing_counts = 10;
@@ -247,6 +247,17 @@ static void step_run(cm1e_axis_t *axis)
         timed_out(axis);
 }
 
+/* How long the halt may take: the speed over the deceleration (UG 6.2.4: that of 0x609A). Who sees the motor gives it
+ * twice that and a second more; who does not, because the bus is gone, waits for it and then takes the torque away. */
+static int64_t halt_bound_ns(const cm1e_axis_t *axis)
+{
+    const int32_t *raw = axis->home.raw;
+    const int64_t braking_ns = INT64_C(1000000000) * raw[SPEED] / raw[ACCELERATION];
+    const bool blind = axis->drive.fault.error != CM1E_OK;
+    const int64_t bound_ns = blind ? braking_ns + standing_ns : 2 * braking_ns + 1000 * MS_IN_NS;
+    return bound_ns < longest_halt_ns ? bound_ns : longest_halt_ns;
+}
+
 /* Halt first and the mode later: before V1.3.0 a halt together with a switch of the mode did not stop (UG 10.1). */
 static void step_halt(cm1e_axis_t *axis)
 {
@@ -257,7 +268,7 @@ static void step_halt(cm1e_axis_t *axis)
         home->quiet_ns = axis->now_ns;
         home->quiet_position = axis->raw;
     }
-    const bool expired = axis->now_ns - home->step_ns >= halt_timeout_ns;
+    const bool expired = axis->now_ns - home->step_ns >= halt_bound_ns(axis);
     if (!expired && axis->now_ns - home->quiet_ns < standing_ns)
         return;
     if (off(axis))

@@ -36,6 +36,8 @@ cm1e_error_t axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
     axis->maximum.acceleration = or_default(c->max_acceleration, default_acceleration_counts / counts);
     axis->maximum.deceleration = or_default(c->max_deceleration, axis->maximum.acceleration);
     axis->maximum.jerk = or_default(c->max_jerk, default_jerk_counts / counts);
+    axis->emergency = axis->maximum;
+    axis->emergency.jerk = INFINITY;
     axis->max_lag = or_default(c->max_position_lag, default_lag_counts / counts);
     return CM1E_OK;
 }
@@ -77,6 +79,18 @@ bool axis_direction_enabled(const cm1e_axis_t *axis, double velocity)
     return velocity > 0.0 ? axis->enable_positive : velocity < 0.0 ? axis->enable_negative : true;
 }
 
+bool axis_limits_contain(const cm1e_axis_t *axis, const cm1e_profile_t *profile)
+{
+    if (!axis->software_limits)
+        return true;
+    const double tolerance = tolerance_counts / fabs(axis->scale);
+    double lowest, highest;
+    cm1e_profile_extent(profile, &lowest, &highest);
+    /* An axis that stands outside, pushed there without torque, may come back but go no farther. */
+    const double now = axis_units(axis, axis->set);
+    return now + highest <= fmax(axis->upper, now) + tolerance && now + lowest >= fmin(axis->lower, now) - tolerance;
+}
+
 /* A disabled direction allows what the braking needs that is going on anyway, nothing more. */
 static bool directions_allow(const cm1e_axis_t *axis, double lowest, double highest, double tolerance)
 {
@@ -93,15 +107,11 @@ static bool directions_allow(const cm1e_axis_t *axis, double lowest, double high
 
 cm1e_error_t axis_limits_check(const cm1e_axis_t *axis, const cm1e_profile_t *profile)
 {
-    const double tolerance = tolerance_counts / fabs(axis->scale);
+    if (!axis_limits_contain(axis, profile))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
     double lowest, highest;
     cm1e_profile_extent(profile, &lowest, &highest);
-    if (axis->software_limits) {
-        /* An axis that stands outside, pushed there without torque, may come back but go no farther. */
-        const double now = axis_units(axis, axis->set);
-        if (now + highest > fmax(axis->upper, now) + tolerance || now + lowest < fmin(axis->lower, now) - tolerance)
-            return CM1E_ERROR_AXIS_POSITION_RANGE;
-    }
+    const double tolerance = tolerance_counts / fabs(axis->scale);
     return directions_allow(axis, lowest, highest, tolerance) ? CM1E_OK : CM1E_ERROR_AXIS_DIRECTION_DISABLED;
 }
 
@@ -112,7 +122,7 @@ bool axis_limits_can_stop(const cm1e_axis_t *axis, position_t base, const cm1e_m
     const double origin = axis_units(axis, base);
     cm1e_profile_t brake;
     double lowest, highest;
-    if (cm1e_profile_to_velocity(&brake, next, 0.0, &axis->maximum))
+    if (cm1e_profile_to_velocity(&brake, next, 0.0, &axis->emergency))
         return false;
     cm1e_profile_extent(&brake, &lowest, &highest);
     const double tolerance = tolerance_counts / fabs(axis->scale);

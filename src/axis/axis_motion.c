@@ -19,14 +19,17 @@ void axis_run_profile(cm1e_axis_t *axis, const cm1e_profile_t *profile, position
 cm1e_error_t axis_plan_stop(const cm1e_axis_t *axis, const cm1e_motion_limits_t *limits, cm1e_profile_t *profile)
 {
     const cm1e_motion_state_t start = {0.0, axis->set_velocity, axis->set_acceleration};
-    return cm1e_profile_to_velocity(profile, &start, 0.0, limits);
+    const cm1e_error_t error = cm1e_profile_to_velocity(profile, &start, 0.0, limits);
+    if (error || axis_limits_contain(axis, profile))
+        return error;
+    return cm1e_profile_to_velocity(profile, &start, 0.0, &axis->emergency);
 }
 
-/* Down to standstill with the axis's own limits, for everybody who needs a stop without a command. */
-void axis_ramp_down(cm1e_axis_t *axis)
+/* Down to standstill without a command. */
+void axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits)
 {
     cm1e_profile_t profile;
-    if (axis_plan_stop(axis, &axis->maximum, &profile) == CM1E_OK)
+    if (axis_plan_stop(axis, limits, &profile) == CM1E_OK)
         axis_run_profile(axis, &profile, position_plus(axis->set, profile.end.position * axis->scale));
     else
         axis->activity = ACTIVITY_HOLD;
@@ -71,7 +74,7 @@ void axis_direction_disabled(cm1e_axis_t *axis, double sign)
         return;
     axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
     axis->state = CM1E_AXIS_DISCRETE_MOTION;
-    axis_ramp_down(axis);
+    axis_ramp_down(axis, &axis->maximum);
 }
 
 /* Moves to a position were checked as a whole when they were planned; a velocity goes on until it meets a limit.

@@ -3,8 +3,8 @@
  *
  * MC_Power.Enable FALSE while the axis moves: the commands are aborted and the state is Disabled at once (note 2), the
  * motor is ramped down with the axis's deceleration, and only then loses its torque; MC_Power.Status stays TRUE so long.
- * ErrorStop ends the same way without torque, so that MC_Reset leads to Disabled (note 3), and from there, if
- * MC_Power.Enable is TRUE, on to Standstill.
+ * ErrorStop ramps down without a limit of jerk, and ends without torque as well, so that MC_Reset leads to Disabled
+ * (note 3), and from there, if MC_Power.Enable is TRUE, on to Standstill.
  */
 #include "axis/axis_private.h"
 
@@ -25,14 +25,14 @@ void axis_become_free(cm1e_axis_t *axis)
 }
 
 /* Whatever moves is stopped, by a ramp of ours or by the drive in its homing; without torque there is nothing to stop. */
-static void wind_down(cm1e_axis_t *axis)
+static void wind_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp)
 {
     if (!axis->drive.feedback.enabled && axis->activity != ACTIVITY_HOMING)
         axis_become_free(axis);
     else if (axis->activity == ACTIVITY_HOMING)
         axis_home_abort(axis, HOME_GOAL_OFF);
     else if (axis->activity == ACTIVITY_PROFILE || axis->activity == ACTIVITY_HOLD)
-        axis_ramp_down(axis);
+        axis_ramp_down(axis, ramp);
 }
 
 void axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound)
@@ -48,7 +48,7 @@ void axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound
     axis->error_value = value;
     axis->error_bound = bound;
     axis->state = CM1E_AXIS_ERROR_STOP;
-    wind_down(axis);
+    wind_down(axis, &axis->emergency);
 }
 
 static void power_off(cm1e_axis_t *axis)
@@ -57,7 +57,7 @@ static void power_off(cm1e_axis_t *axis)
         return;
     axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     axis->state = CM1E_AXIS_DISABLED;
-    wind_down(axis);
+    wind_down(axis, &axis->maximum);
 }
 
 cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, bool enable_positive,
@@ -112,10 +112,14 @@ void axis_power_step(cm1e_axis_t *axis)
     if (axis->state == CM1E_AXIS_DISABLED && wanted && acting && still)
         take_over(axis);
     else if (axis->activity == ACTIVITY_HOLD && !wanted)
-        axis_become_free(axis); /* a ramp has ended */
+        axis_become_free(axis); /* a ramp has ended, and its last set-point is out */
     else if (axis->activity != ACTIVITY_FREE && axis->activity != ACTIVITY_HOMING && !acting)
         axis_become_free(axis); /* the torque went in the middle of a ramp */
-    axis->drive.command.enable = axis->activity != ACTIVITY_FREE || wanted;
+}
+
+void axis_enable_step(cm1e_axis_t *axis)
+{
+    axis->drive.command.enable = axis->activity != ACTIVITY_FREE || axis_wants_enable(axis);
     if (!axis->drive.command.enable && axis->activity == ACTIVITY_FREE)
         axis->energized = false;
 }

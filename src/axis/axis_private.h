@@ -70,6 +70,7 @@ struct cm1e_axis {
 
     double scale;                   /**< counts per u; negative: inverted */
     cm1e_motion_limits_t maximum;   /**< u */
+    cm1e_motion_limits_t emergency; /**< u; the ramp of an error: the maximum without a limit of jerk */
     bool software_limits;
     double lower, upper;            /**< u */
     double max_lag;                 /**< u */
@@ -129,9 +130,11 @@ cm1e_error_t axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init
 /** The dynamics of a command; `stopping`: too large ones are cut to the axis's instead of refused. */
 cm1e_error_t axis_limits_of(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, bool stopping,
                             cm1e_motion_limits_t *limits);
-/** Software limits and disabled directions along a profile that starts at the present set-point. */
+/** Whether a profile that starts at the present set-point stays inside the software limits. */
+bool axis_limits_contain(const cm1e_axis_t *axis, const cm1e_profile_t *profile);
+/** The same, and no disabled direction in it. */
 cm1e_error_t axis_limits_check(const cm1e_axis_t *axis, const cm1e_profile_t *profile);
-/** Whether the axis's own ramp from `next` (its position counted from `base`) would end inside the software limits. */
+/** Whether the emergency ramp from `next` (its position counted from `base`) would end inside the software limits. */
 bool axis_limits_can_stop(const cm1e_axis_t *axis, position_t base, const cm1e_motion_state_t *next);
 bool axis_direction_enabled(const cm1e_axis_t *axis, double velocity);
 
@@ -144,10 +147,11 @@ const state_rule_t *axis_state_rule(cm1e_axis_state_t state, cm1e_command_kind_t
 
 /* axis_motion.c */
 void axis_run_profile(cm1e_axis_t *axis, const cm1e_profile_t *profile, position_t target);
-void axis_ramp_down(cm1e_axis_t *axis);
+void axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits);
 /** Motion in the direction of `sign` is no longer enabled (MC_Power, 3.1): a command that goes there fails, the axis
  *  stops. */
 void axis_direction_disabled(cm1e_axis_t *axis, double sign);
+/** A stop from the present set-point; one that would run over a software limit brakes as an error does instead. */
 cm1e_error_t axis_plan_stop(const cm1e_axis_t *axis, const cm1e_motion_limits_t *limits, cm1e_profile_t *profile);
 void axis_motion_step(cm1e_axis_t *axis);
 void axis_write_set_point(cm1e_axis_t *axis);
@@ -160,6 +164,7 @@ bool axis_wants_enable(const cm1e_axis_t *axis);
 void axis_become_free(cm1e_axis_t *axis);
 void axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound);
 void axis_power_step(cm1e_axis_t *axis);
+void axis_enable_step(cm1e_axis_t *axis);
 void axis_reset_step(cm1e_axis_t *axis);
 
 /* axis_home.c */

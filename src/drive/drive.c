@@ -6,6 +6,9 @@
 #include "drive/drive_private.h"
 
 static const int64_t enable_timeout_ns = 2000 * MS_IN_NS;
+/* A controlword shows in the statusword some cycles later. Who took the torque away waits so long before he asks for it
+ * again; else the answer to the old command would look like a loss of the new one. */
+static const int64_t torque_pause_ns = 20 * MS_IN_NS;
 
 static cm1e_error_t velocity_unit(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
@@ -156,8 +159,7 @@ static bool wants_torque(const cm1e_drive_t *drive)
         return false;
     if (drive->fault.error)
         return drive_fault_allows_ramp(drive->fault.error) && drive->feedback.enabled;
-    /* A drive that still shows the torque of before is first seen without it: else its going would look like a loss. */
-    if (!drive->torque && drive->feedback.state == OPERATION_ENABLED)
+    if (!drive->torque && (drive->feedback.state == OPERATION_ENABLED || drive->now_ns < drive->torque_from_ns))
         return false;
     /* Without fresh inputs the actual position is not known: no step towards torque then. */
     return drive->feedback.online || drive->was_enabled;
@@ -224,6 +226,8 @@ void cm1e_drive_write(cm1e_drive_t *drive)
     const bool torque = wants_torque(drive);
     if (torque && !drive->torque)
         drive->enable_deadline_ns = drive->now_ns + enable_timeout_ns;
+    if (!torque && drive->torque)
+        drive->torque_from_ns = drive->now_ns + torque_pause_ns;
     if (!torque) {
         drive->was_enabled = false;
         drive->feedback.enabled = false;

@@ -79,7 +79,7 @@ typedef struct cm1e_drive {
     double velocity_scale;          /**< counts/s per unit of 0x60FF and 0x606C */
     uint32_t profile_velocity, profile_acceleration; /**< what 0x6081 and 0x6083 carry where they are mapped */
     cm1e_slave_watch_t watch;
-    int64_t now_ns, read_ns, enable_deadline_ns, mode_deadline_ns;
+    int64_t now_ns, read_ns, enable_deadline_ns, mode_deadline_ns, torque_from_ns;
     int32_t target_position;        /**< last one written */
     bool target_holds;              /**< it was the caller's, and the drive is still seen holding a position */
     cm1e_mode_t mode;               /**< commanded on the wire; follows `command.mode` once the last switch is shown */

@@ -500,6 +500,34 @@ static void test_lost_frames_during_homing_do_not_disturb(void)
     }
 }
 
+static void test_bus_lost_during_homing_halts_and_disables_in_bounded_time(void)
+{
+    static const struct {
+        cm1e_homing_config_t config;
+        int longest;
+    } rows[] = {
+        {{.method = -2, .velocity = 2.0, .acceleration = 40.0}, 150},
+        {{.method = -2, .velocity = 10.0, .acceleration = 10.0}, 1100},
+        {{.method = -2, .velocity = 10.0, .acceleration = 0.02}, 10100},
+    };
+    for (int row = 0; row < 3; row++) {
+        start_bench();
+        run_cycles = 100000;
+        reference = -100000 * 100;
+        const cm1e_command_id_t id = home(0.0, &rows[row].config);
+        bench_cycles(100);
+        received = health = CM1E_ERROR_BUS_WORKING_COUNTER;
+        bench_cycles(2);
+        TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, bench_state_of(id));
+        TEST_ASSERT_TRUE(bus.controlword & CONTROLWORD_HALT); /* it may still listen */
+        int n = 0;
+        while (bus.state == OPERATION_ENABLED && n++ < 20000)
+            bench_cycles(1);
+        TEST_ASSERT_INT_WITHIN(rows[row].longest / 4, rows[row].longest * 3 / 4, n);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -522,5 +550,6 @@ int main(void)
     RUN_TEST(test_direction_disabled_during_homing_stops_it);
     RUN_TEST(test_mode_that_does_not_come_ends_in_error_stop);
     RUN_TEST(test_lost_frames_during_homing_do_not_disturb);
+    RUN_TEST(test_bus_lost_during_homing_halts_and_disables_in_bounded_time);
     return UNITY_END();
 }

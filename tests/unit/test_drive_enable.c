@@ -146,7 +146,7 @@ static void test_enable_dropped_for_one_cycle_is_no_fault_and_does_not_jump(void
     drive.command.enable = false;
     cm1e_drive_write(&drive);
     drive.command.enable = true;
-    for (int i = 0; i < 20; i++) {
+    for (int i = 0; i < 60; i++) {
         cycle();
         cm1e_drive_write(&drive);
         drive.command.target_position = drive.feedback.position;
