@@ -89,7 +89,7 @@ static void after_write(cm1e_mailbox_t *mailbox, int working_counter)
     if (working_counter == 1) {
         mailbox->write_lost = false;
         enter(mailbox, MAILBOX_POLL);
-    } else if (working_counter == DATAGRAM_LOST) {
+    } else if (working_counter != 0) {
         mailbox->write_lost = true;
         enter(mailbox, MAILBOX_POLL);
     } else if (mailbox->write_lost) {
@@ -114,15 +114,14 @@ static void after_poll(cm1e_mailbox_t *mailbox, const cm1e_datagram_t *d)
 
 static bool after_read(cm1e_mailbox_t *mailbox, const cm1e_datagram_t *d)
 {
-    if (d->working_counter == DATAGRAM_LOST) {
+    /* Lost; or not answered, although it was seen to be full: who knows whether it was emptied? */
+    if (d->working_counter != 1) {
         mailbox->repeat_bit = !mailbox->repeat_bit;
         mailbox->suspects = SUSPECTS_AFTER_REPEAT;
         enter(mailbox, MAILBOX_REPEAT);
         return false;
     }
     enter(mailbox, MAILBOX_POLL);
-    if (d->working_counter != 1)
-        return false;
     const uint8_t counter = d->data[5] >> 4 & 7;
     const bool same = counter && counter == mailbox->received_counter;
     /* One that we have already: the lost frame had not reached the slave, or it was repeated twice. A slave that gives

@@ -1,9 +1,9 @@
 #include "bus/bus_internal.h"
 #include "core/bytes.h"
 
-/** One slave's AL status in each cycle, in turn. A slave is called lost after two questions in a row that came back
+/** One slave's AL status in each cycle, in turn. A slave is called lost after three questions in a row that came back
  *  unanswered: a single one may be a disturbed frame. */
-enum { AL_STATUS_BYTES = 6, UNANSWERED_LIMIT = 2 };
+enum { AL_STATUS_BYTES = 6, UNANSWERED_LIMIT = 3 };
 
 void cm1e_supervision_note(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t al_status_code)
 {

@@ -203,7 +203,7 @@ int main(void)
     tcase_add_loop_test(tests, power_cycled_slave_comes_back, 1, 4);
     tcase_add_test(tests, without_request_nothing_is_recovered);
     tcase_add_test(tests, unplugged_slaves_trip_their_watchdog_and_come_back_with_the_cable);
-    tcase_add_loop_test(tests, recovery_survives_lost_frames, 2, 12);
+    tcase_add_loop_test(tests, recovery_survives_lost_frames, 3, 13);
     tcase_add_loop_test(tests, power_cycle_at_every_moment_of_a_recovery_ends_in_operational, 0, 60);
     tcase_add_test(tests, slave_with_other_switches_is_not_taken_for_the_old_one);
     tcase_add_test(tests, sdo_to_a_lost_slave_ends_and_works_again_after_recovery);
