@@ -8,7 +8,7 @@
 #include "command.h"
 
 enum { KEY_TO = 0x300, KEY_BY, KEY_SPEED, KEY_FOR, KEY_JERK, KEY_METHOD, KEY_OFFSET, KEY_TORQUE, KEY_POSITION, KEY_CSV,
-       KEY_SVG };
+       KEY_SVG, KEY_RESET };
 
 typedef enum motion_kind { MOTION_NONE = 0, MOTION_TO, MOTION_BY, MOTION_SPEED, MOTION_HOME } motion_kind_t;
 
@@ -18,10 +18,10 @@ typedef struct motion_options {
     motion_kind_t kind;
     double target, velocity, acceleration, deceleration, jerk, seconds, home_position;
     cm1e_homing_config_t homing;
-    bool homing_given;
+    bool homing_given, reset;
 } motion_options_t;
 
-typedef enum motion_step { STEP_POWER, STEP_RUN, STEP_HALT, STEP_POWER_OFF, STEP_END } motion_step_t;
+typedef enum motion_step { STEP_POWER, STEP_RESET, STEP_RUN, STEP_HALT, STEP_POWER_OFF, STEP_END } motion_step_t;
 
 /** The program: its blocks, its step, and what came out. */
 typedef struct motion_program {
@@ -30,6 +30,7 @@ typedef struct motion_program {
     AXIS_REF_t axis;
     motion_step_t step;
     MC_Power_t power;
+    MC_Reset_t reset;
     MC_MoveAbsolute_t move_absolute;
     MC_MoveRelative_t move_relative;
     MC_MoveVelocity_t move_velocity;
@@ -38,7 +39,7 @@ typedef struct motion_program {
     cm1e_axis_info_t before, after;
     int64_t started_ns, ended_ns;
     WORD error_id;
-    BOOL failed, done;
+    BOOL failed, done, before_power_failed;
 } motion_program_t;
 
 static error_t set_kind(struct argp_state *state, motion_options_t *options, motion_kind_t kind, double *value,
@@ -76,6 +77,7 @@ static error_t parse_move(int key, char *arg, struct argp_state *state)
     case 'a': return parse_real_option(arg, "the acceleration", &options->acceleration);
     case 'd': return parse_real_option(arg, "the deceleration", &options->deceleration);
     case KEY_JERK: return parse_real_option(arg, "the jerk", &options->jerk);
+    case KEY_RESET: options->reset = true; return 0;
     case KEY_CSV: options->csv_file = arg; return 0;
     case KEY_SVG: options->svg_file = arg; return 0;
     case ARGP_KEY_ARG: return parse_axis(arg, state, options);
@@ -107,6 +109,7 @@ static error_t parse_home(int key, char *arg, struct argp_state *state)
     case KEY_TORQUE: return parse_real_option(arg, "the torque", &options->homing.torque);
     case KEY_FOR: return parse_real_option(arg, "the time", &options->homing.timeout_s);
     case KEY_POSITION: return parse_real_option(arg, "the position", &options->home_position);
+    case KEY_RESET: options->reset = true; return 0;
     case KEY_CSV: options->csv_file = arg; return 0;
     case KEY_SVG: options->svg_file = arg; return 0;
     case ARGP_KEY_ARG: return parse_axis(arg, state, options);
@@ -117,6 +120,7 @@ static error_t parse_home(int key, char *arg, struct argp_state *state)
 static void finish(motion_program_t *p, BOOL done, BOOL failed, WORD error_id)
 {
     p->done = done;
+    p->before_power_failed = failed && p->step == STEP_POWER;
     p->failed = failed;
     p->error_id = error_id;
     p->step = STEP_POWER_OFF;
@@ -127,6 +131,7 @@ static void finish(motion_program_t *p, BOOL done, BOOL failed, WORD error_id)
 static void call_blocks(motion_program_t *p)
 {
     MC_Power(&p->power);
+    MC_Reset(&p->reset);
     MC_MoveAbsolute(&p->move_absolute);
     MC_MoveRelative(&p->move_relative);
     MC_MoveVelocity(&p->move_velocity);
@@ -161,6 +166,16 @@ static void watch_motion(motion_program_t *p)
     }
 }
 
+static void wait_for_power(motion_program_t *p, const cm1e_axis_info_t *info)
+{
+    if (info->state == CM1E_AXIS_ERROR_STOP && p->options->reset && !p->reset.Execute)
+        p->step = STEP_RESET;
+    else if (p->power.Error || info->state == CM1E_AXIS_ERROR_STOP)
+        finish(p, FALSE, TRUE, p->power.Error ? p->power.ErrorID : cm1e_error_id(info->error));
+    else if (p->power.Status)
+        start_motion(p);
+}
+
 static void program(void *context)
 {
     motion_program_t *p = context;
@@ -170,10 +185,14 @@ static void program(void *context)
     call_blocks(p);
     switch (p->step) {
     case STEP_POWER:
-        if (p->power.Error || info.state == CM1E_AXIS_ERROR_STOP)
-            finish(p, FALSE, TRUE, p->power.Error ? p->power.ErrorID : cm1e_error_id(info.error));
-        else if (p->power.Status)
-            start_motion(p);
+        wait_for_power(p, &info);
+        break;
+    case STEP_RESET:
+        p->reset.Execute = TRUE;
+        if (p->reset.Done)
+            p->step = STEP_POWER;
+        else if (p->reset.Error)
+            finish(p, FALSE, TRUE, p->reset.ErrorID);
         break;
     case STEP_RUN:
     case STEP_HALT:
@@ -193,6 +212,7 @@ static void prepare(motion_program_t *p, const motion_options_t *options)
 {
     p->options = options;
     p->power = (MC_Power_t){.Axis = &p->axis, .EnablePositive = TRUE, .EnableNegative = TRUE};
+    p->reset = (MC_Reset_t){.Axis = &p->axis};
     p->halt = (MC_Halt_t){.Axis = &p->axis, .Deceleration = options->deceleration, .Jerk = options->jerk};
     p->home = (MC_Home_t){.Axis = &p->axis, .Position = options->home_position,
                           .Parameters = options->homing_given ? &options->homing : NULL};
@@ -221,7 +241,8 @@ static int report(const motion_program_t *p, const char *what)
         printf("%s: %s done in %.3f s, from %.6g to %.6g\n", cm1e_axis_name(p->axis), what, seconds,
                p->before.actual_position, p->after.actual_position);
     if (p->failed)
-        complain("%s: %s. %s", cm1e_axis_name(p->axis), cm1e_strerror(cm1e_error_from_id(p->error_id)), text);
+        complain("%s: %s. %s%s", cm1e_axis_name(p->axis), cm1e_strerror(cm1e_error_from_id(p->error_id)), text,
+                 p->before_power_failed ? " (--reset does that here.)" : "");
     else if (!p->done)
         complain("%s: %s was interrupted", cm1e_axis_name(p->axis), what);
     return p->done ? EXIT_OK : EXIT_FAILED;
@@ -285,6 +306,7 @@ int command_move(int argc, char **argv)
         {"acceleration", 'a', "ACCELERATION", 0, "Units/s2; default: the axis's maximum", 0},
         {"deceleration", 'd', "DECELERATION", 0, "Units/s2; default: the axis's maximum", 0},
         {"jerk", KEY_JERK, "JERK", 0, "Units/s3; default: the axis's maximum", 0},
+        {"reset", KEY_RESET, NULL, 0, "Reset an error of the drive first", 0},
         {"csv", KEY_CSV, "FILE", 0, "Write a trace", 0},
         {"svg", KEY_SVG, "FILE", 0, "Write a plot", 0},
         {0}};
@@ -309,6 +331,7 @@ int command_home(int argc, char **argv)
         {"torque", KEY_TORQUE, "PERCENT", 0, "10 ... 100 % of rated torque", 0},
         {"position", KEY_POSITION, "POSITION", 0, "What the home position is called; default 0", 0},
         {"for", KEY_FOR, "SECONDS", 0, "Longest time; default 60", 0},
+        {"reset", KEY_RESET, NULL, 0, "Reset an error of the drive first", 0},
         {"csv", KEY_CSV, "FILE", 0, "Write a trace", 0},
         {"svg", KEY_SVG, "FILE", 0, "Write a plot", 0},
         {0}};
