@@ -1,0 +1,333 @@
+/* SDO transfers with the simulated CM1-E: every object, before and within the cycle, many at once, from another thread. */
+#include <pthread.h>
+
+#include "bus_support.h"
+
+static cm1e_bus_t *scanned_bus(uint32_t axes)
+{
+    sim_config(axes);
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    return bus;
+}
+
+typedef void (*entry_fn)(cm1e_bus_t *bus, const cm1e_entry_t *entry);
+
+static unsigned for_each_entry(cm1e_bus_t *bus, entry_fn function)
+{
+    size_t count;
+    unsigned entries = 0;
+    const cm1e_object_t *objects = cm1e_device_objects(&count);
+    for (size_t i = 0; i < count; i++) {
+        for (unsigned n = 0; n < objects[i].entry_count; n++, entries++)
+            function(bus, &objects[i].entries[n]);
+    }
+    return entries;
+}
+
+static void check_read(cm1e_bus_t *bus, const cm1e_entry_t *entry)
+{
+    uint8_t data[128];
+    size_t size = sizeof data;
+    const cm1e_error_t error = cm1e_sdo_read(bus, 1, entry->index, entry->subindex, data, &size, &diag);
+    if (!(entry->access & CM1E_ACCESS_READ)) {
+        ck_assert_int_eq(error, CM1E_ERROR_SDO_ABORT);
+        ck_assert_uint_eq(diag.foreign_code, SDO_ABORT_WRITE_ONLY);
+        return;
+    }
+    ck_assert_msg(error == CM1E_OK, "%04X:%02X %s", entry->index, entry->subindex, diag.text);
+    if (entry->type != CM1E_TYPE_STRING)
+        ck_assert_msg(size == entry->bits / 8u, "%04X:%02X has %zu bytes", entry->index, entry->subindex, size);
+    else if (entry->default_string && entry->default_string[0])
+        ck_assert_uint_gt(size, 0);
+}
+
+START_TEST(every_entry_of_the_dictionary_is_read)
+{
+    cm1e_bus_t *bus = scanned_bus(1);
+    ck_assert_uint_gt(for_each_entry(bus, check_read), 150);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** Writes back what was read: a value that the device itself gave is one that it takes. */
+static void check_write(cm1e_bus_t *bus, const cm1e_entry_t *entry)
+{
+    uint8_t data[128], again[128];
+    size_t size = sizeof data, size_again = sizeof again;
+    if (!(entry->access & CM1E_ACCESS_READ))
+        return;
+    ck_assert_int_eq(cm1e_sdo_read(bus, 1, entry->index, entry->subindex, data, &size, &diag), CM1E_OK);
+    const cm1e_error_t error = cm1e_sdo_write(bus, 1, entry->index, entry->subindex, data, size, &diag);
+    if (!(entry->access & CM1E_ACCESS_WRITE)) {
+        ck_assert_msg(error == CM1E_ERROR_SDO_ABORT, "%04X:%02X", entry->index, entry->subindex);
+        ck_assert_uint_eq(diag.foreign_code, SDO_ABORT_READ_ONLY);
+        ck_assert_ptr_nonnull(strstr(diag.text, "read-only"));
+        return;
+    }
+    /* An assigned PDO cannot be changed while the number of PDOs is not 0. */
+    if (error != CM1E_OK)
+        ck_assert_msg(entry->subindex > 0 && entry->access & CM1E_ACCESS_WRITE_PREOP_ONLY, "%04X:%02X %s",
+                      entry->index, entry->subindex, diag.text);
+    ck_assert_int_eq(cm1e_sdo_read(bus, 1, entry->index, entry->subindex, again, &size_again, &diag), CM1E_OK);
+    ck_assert_uint_eq(size, size_again);
+    if (entry->kept_minimum == 0) /* 0 means another value there (UG 6.2.2) */
+        ck_assert_msg(!memcmp(data, again, size), "%04X:%02X", entry->index, entry->subindex);
+}
+
+START_TEST(every_entry_is_written_or_refused_by_its_access)
+{
+    cm1e_bus_t *bus = scanned_bus(1);
+    for_each_entry(bus, check_write);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(abort_names_the_slave_the_object_and_the_reason)
+{
+    static const struct {
+        uint16_t index;
+        uint8_t subindex;
+        uint32_t abort;
+        const char *text;
+    } cases[] = {
+        {0x5FFF, 0, SDO_ABORT_NO_OBJECT, "does not exist"},
+        {0x1018, 9, SDO_ABORT_NO_SUBINDEX, "sub-index"},
+    };
+    uint8_t data[64];
+    cm1e_bus_t *bus = scanned_bus(2);
+    for (unsigned i = 0; i < 2; i++) {
+        size_t size = sizeof data;
+        ck_assert_int_eq(cm1e_sdo_read(bus, 2, cases[i].index, cases[i].subindex, data, &size, &diag),
+                         CM1E_ERROR_SDO_ABORT);
+        ck_assert_uint_eq(diag.foreign_code, cases[i].abort);
+        char object[16];
+        snprintf(object, sizeof object, "0x%04X:%02X", cases[i].index, cases[i].subindex);
+        ck_assert_msg(strstr(diag.text, "slave 2") && strstr(diag.text, object) && strstr(diag.text, cases[i].text),
+                      "%s", diag.text);
+    }
+    const uint8_t high[300] = {0xFF, 0xFF, 0xFF, 0x7F};
+    ck_assert_int_eq(cm1e_sdo_write(bus, 1, 0x609A, 0, high, 4, &diag), CM1E_ERROR_SDO_ABORT);
+    ck_assert_int_eq(cm1e_sdo_write(bus, 1, 0x609A, 0, high, 3, &diag), CM1E_ERROR_SDO_ABORT);
+    ck_assert_int_eq(cm1e_sdo_write(bus, 1, 0x609A, 0, high, 64, &diag), CM1E_ERROR_SDO_ABORT);
+    ck_assert_int_eq(cm1e_sdo_write(bus, 1, 0x609A, 0, high, sizeof high, &diag), CM1E_ERROR_SDO_ABORT);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(wrong_arguments_are_refused_at_once)
+{
+    uint8_t data[4];
+    size_t size = 4;
+    cm1e_bus_t *bus = scanned_bus(2);
+    ck_assert_int_eq(cm1e_sdo_read(bus, 0, 0x1000, 0, data, &size, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_sdo_read(bus, 3, 0x1000, 0, data, &size, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_msg(strstr(diag.text, "no slave 3") && strstr(diag.text, "2"), "%s", diag.text);
+    ck_assert_int_eq(cm1e_sdo_read(bus, 1, 0x1000, 0, NULL, &size, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_sdo_read(bus, 1, 0x1000, 0, data, NULL, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_sdo_write(bus, 1, 0x1000, 0, NULL, 4, NULL), CM1E_ERROR_INVALID_ARGUMENT);
+    size = 2;
+    ck_assert_int_eq(cm1e_sdo_read(bus, 1, 0x1000, 0, data, &size, NULL), CM1E_ERROR_INVALID_ARGUMENT);
+    cm1e_sdo_t sdo = {.position = 9, .index = 0x1000, .data = data, .size = 4};
+    ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_sdo_state(&sdo), CM1E_SDO_ERROR);
+    ck_assert_int_eq(sdo.error, CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_sdo_submit(bus, NULL), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_sdo_submit(NULL, &sdo), CM1E_ERROR_INVALID_ARGUMENT);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(complete_access_reads_what_the_single_reads_read)
+{
+    static const uint16_t indices[] = {0x1018, 0x1C00, 0x1C12, 0x1600, 0x1A00, 0x60F6};
+    cm1e_bus_t *bus = start_bus();
+    for (unsigned i = 0; i < sizeof indices / sizeof indices[0]; i++) {
+        static uint8_t whole[1024];
+        cm1e_sdo_t sdo = {.position = 1, .index = indices[i], .complete_access = true, .data = whole,
+                          .size = sizeof whole};
+        ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
+        finish_sdo(bus, &sdo);
+        if (sdo.error == CM1E_ERROR_SDO_ABORT) { /* a device may refuse it, but only with this reason */
+            ck_assert_uint_eq(sdo.abort_code, SDO_ABORT_COMPLETE_ACCESS);
+            continue;
+        }
+        ck_assert_msg(sdo.error == CM1E_OK, "%04X: %s", indices[i], cm1e_strerror(sdo.error));
+        size_t place = 2; /* sub-index 0 takes two bytes (ETG.1000.6 5.6.2) */
+        for (unsigned subindex = 1; subindex <= whole[0]; subindex++) {
+            uint8_t one[4];
+            size_t size = sizeof one;
+            const cm1e_error_t error =
+                cm1e_sdo_read(bus, 1, indices[i], (uint8_t)subindex, one, &size, &diag);
+            if (error != CM1E_OK)
+                break;
+            ck_assert_uint_le(place + size, sdo.size);
+            ck_assert_msg(!memcmp(whole + place, one, size), "%04X:%02X", indices[i], subindex);
+            place += size;
+        }
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/* ---- in the cycle ------------------------------------------------------------------------------------------------------------ */
+
+START_TEST(transfers_ride_in_the_cycle_without_disturbing_it)
+{
+    enum { SLAVES = 8, ROUNDS = 20 };
+    sim_config(SLAVES);
+    cm1e_bus_t *bus = start_bus();
+    for (int round = 0; round < ROUNDS; round++) {
+        uint8_t data[SLAVES][16];
+        cm1e_sdo_t sdos[SLAVES];
+        for (uint16_t i = 0; i < SLAVES; i++) {
+            sdos[i] = (cm1e_sdo_t){.position = (uint16_t)(i + 1), .index = 0x1008, .data = data[i], .size = 16};
+            ck_assert_int_eq(cm1e_sdo_submit(bus, &sdos[i]), CM1E_OK);
+            ck_assert_int_eq(cm1e_sdo_submit(bus, &sdos[i]), CM1E_ERROR_BUSY);
+        }
+        for (int n = 0, busy = 1; busy; n++) {
+            ck_assert_int_eq(cycle(bus), CM1E_OK);
+            ck_assert_int_lt(n, 100); /* all at once, not one after the other */
+            busy = 0;
+            for (int i = 0; i < SLAVES; i++)
+                busy += cm1e_sdo_state(&sdos[i]) == CM1E_SDO_BUSY;
+        }
+        for (int i = 0; i < SLAVES; i++) {
+            ck_assert_int_eq(cm1e_sdo_state(&sdos[i]), CM1E_SDO_DONE);
+            ck_assert_uint_ge(sdos[i].size, 5);
+            ck_assert(!memcmp(data[i], "CM1-E", 5));
+        }
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(queue_takes_64_and_refuses_the_65th)
+{
+    static cm1e_sdo_t sdos[66];
+    static uint8_t data[66][4];
+    cm1e_bus_t *bus = scanned_bus(1);
+    for (int round = 0; round < 3; round++) {
+        for (int i = 0; i < 66; i++) {
+            sdos[i] = (cm1e_sdo_t){.position = 1, .index = 0x1000, .data = data[i], .size = 4};
+            ck_assert_int_eq(cm1e_sdo_submit(bus, &sdos[i]), i < 64 ? CM1E_OK : CM1E_ERROR_FULL);
+            ck_assert_int_eq(cm1e_sdo_state(&sdos[i]), i < 64 ? CM1E_SDO_BUSY : CM1E_SDO_IDLE);
+        }
+        uint8_t own[4];
+        size_t size = 4;
+        ck_assert_int_eq(cm1e_sdo_read(bus, 1, 0x1001, 0, own, &size, &diag), CM1E_ERROR_FULL);
+        if (round == 2)
+            break;
+        if (round == 0)
+            ck_assert_int_eq(cm1e_bus_start(bus, &diag), CM1E_OK); /* the scan ends them all */
+        else
+            for (int i = 0; i < 64; i++)
+                finish_sdo(bus, &sdos[i]);
+        for (int i = 0; i < 64; i++)
+            ck_assert_int_ne(cm1e_sdo_state(&sdos[i]), CM1E_SDO_BUSY);
+    }
+    cm1e_bus_stop(bus);
+    for (int i = 0; i < 64; i++) {
+        ck_assert_int_eq(cm1e_sdo_state(&sdos[i]), CM1E_SDO_ERROR);
+        ck_assert_int_eq(sdos[i].error, CM1E_ERROR_CANCELLED);
+    }
+    ck_assert_int_eq(cm1e_sdo_submit(bus, &sdos[0]), CM1E_ERROR_STATE);
+    ck_assert_int_eq(cm1e_sdo_state(&sdos[0]), CM1E_SDO_ERROR);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(blocking_transfer_in_operation_keeps_the_cycle_going)
+{
+    sim_config(2);
+    cm1e_bus_t *bus = start_bus();
+    const uint64_t before = cm1e_bus_counters(bus)->cycles;
+    for (int n = 0; n < 200; n++) {
+        uint8_t data[64];
+        size_t size = sizeof data;
+        ck_assert_int_eq(cm1e_sdo_read(bus, 1u + (unsigned)n % 2, 0x1008, 0, data, &size, &diag), CM1E_OK);
+    }
+    ck_assert_uint_gt(cm1e_bus_counters(bus)->cycles, before + 200);
+    ck_assert_uint_eq(cm1e_bus_counters(bus)->working_counter_errors, 0);
+    cycles(bus, 50);
+    ck_assert_uint_eq(cm1e_bus_slave_watch(bus, 1).al_state, CM1E_AL_OP);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+typedef struct other_thread {
+    cm1e_bus_t *bus;
+    int done;
+    unsigned good, refused;
+} other_thread_t;
+
+static void *submit_many(void *context)
+{
+    other_thread_t *other = context;
+    for (int n = 0; n < 300; n++) {
+        uint8_t data[2][4];
+        cm1e_sdo_t sdos[2];
+        for (int i = 0; i < 2; i++) {
+            sdos[i] = (cm1e_sdo_t){.position = (uint16_t)(1 + i), .index = 0x1018, .subindex = 2, .data = data[i],
+                                   .size = 4};
+            if (cm1e_sdo_submit(other->bus, &sdos[i]) != CM1E_OK)
+                other->refused++;
+        }
+        for (int i = 0; i < 2; i++) {
+            while (cm1e_sdo_state(&sdos[i]) == CM1E_SDO_BUSY)
+                sched_yield();
+            other->good += cm1e_sdo_state(&sdos[i]) == CM1E_SDO_DONE && cm1e_get_u32(data[i]) == CM1E_PRODUCT_CODE;
+        }
+    }
+    __atomic_store_n(&other->done, 1, __ATOMIC_RELEASE);
+    return NULL;
+}
+
+START_TEST(another_thread_submits_while_the_cycle_runs)
+{
+    sim_config(2);
+    other_thread_t other = {.bus = start_bus()};
+    pthread_t thread;
+    ck_assert_int_eq(pthread_create(&thread, NULL, submit_many, &other), 0);
+    while (!__atomic_load_n(&other.done, __ATOMIC_ACQUIRE))
+        ck_assert_int_eq(cycle(other.bus), CM1E_OK);
+    pthread_join(thread, NULL);
+    ck_assert_uint_eq(other.refused, 0);
+    ck_assert_uint_eq(other.good, 600);
+    cm1e_bus_close(other.bus);
+}
+END_TEST
+
+START_TEST(texts_exist_for_every_code)
+{
+    static const uint32_t aborts[] = {0x05030000, 0x05040000, 0x05040001, 0x05040005, 0x06010000, 0x06010001, 0x06010002,
+                                      0x06010004, 0x06020000, 0x06040041, 0x06070010, 0x06070012, 0x06070013, 0x06090011,
+                                      0x06090030, 0x06090031, 0x06090032, 0x08000000, 0x08000021, 0x08000022};
+    static const uint16_t states[] = {0x11, 0x12, 0x13, 0x15, 0x16, 0x17, 0x18, 0x19, 0x1A, 0x1B, 0x1D, 0x1E, 0x1F};
+    const char *unknown_abort = cm1e_sdo_abort_text(0x12345678), *unknown_state = cm1e_al_status_text(0xABCD);
+    ck_assert_str_ne(unknown_abort, "");
+    ck_assert_str_ne(unknown_state, "");
+    for (size_t i = 0; i < sizeof aborts / sizeof aborts[0]; i++)
+        ck_assert_str_ne(cm1e_sdo_abort_text(aborts[i]), unknown_abort);
+    for (size_t i = 0; i < sizeof states / sizeof states[0]; i++)
+        ck_assert_str_ne(cm1e_al_status_text(states[i]), unknown_state);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("bus_sdo");
+    TCase *tests = tcase_create("sdo");
+    tcase_add_test(tests, every_entry_of_the_dictionary_is_read);
+    tcase_add_test(tests, every_entry_is_written_or_refused_by_its_access);
+    tcase_add_test(tests, abort_names_the_slave_the_object_and_the_reason);
+    tcase_add_test(tests, wrong_arguments_are_refused_at_once);
+    tcase_add_test(tests, complete_access_reads_what_the_single_reads_read);
+    tcase_add_test(tests, transfers_ride_in_the_cycle_without_disturbing_it);
+    tcase_add_test(tests, queue_takes_64_and_refuses_the_65th);
+    tcase_add_test(tests, blocking_transfer_in_operation_keeps_the_cycle_going);
+    tcase_add_test(tests, another_thread_submits_while_the_cycle_runs);
+    tcase_add_test(tests, texts_exist_for_every_code);
+    suite_add_tcase(suite, tests);
+    return run_suite(suite);
+}
