@@ -1,0 +1,79 @@
+/**
+ * @file machine.h
+ * A bus of simulated axes with a scheduler, for tests of the whole stack. Include it once in a test program.
+ */
+#ifndef CM1E_TESTS_MACHINE_H
+#define CM1E_TESTS_MACHINE_H
+
+#include <check.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "bus/bus_image.h"
+#include "cm1e/plcopen.h"
+#include "cm1e/scheduler.h"
+
+enum { MACHINE_AXES = 4 };
+
+typedef struct machine {
+    uint32_t axis_count;
+    bool real_time;                      /**< FALSE: virtual time */
+    int64_t cycle_time_ns;               /**< 0: 1 ms */
+    cm1e_scheduler_config_t config;
+    cm1e_bus_t *bus;
+    cm1e_scheduler_t *scheduler;
+    AXIS_REF_t axis[MACHINE_AXES];
+} machine_t;
+
+/** Axes of 1000 counts a unit, hard stops 10 u to either side, homing on the negative one. */
+static void machine_describe(const machine_t *machine, cm1e_bus_config_t *config)
+{
+    cm1e_bus_config_init(config, "sim", machine->axis_count);
+    config->virtual_time = !machine->real_time;
+    config->cycle_time_ns = machine->cycle_time_ns;
+    for (uint32_t i = 0; i < machine->axis_count; i++) {
+        cm1e_axis_config_t *axis = &config->axes[i];
+        axis->counts_per_unit = 1000;
+        axis->homing = (cm1e_homing_config_t){.method = -2, .velocity = 100, .acceleration = 2000, .torque = 30};
+        axis->sim.stop_negative = -10000;
+        axis->sim.stop_positive = 10000;
+    }
+}
+
+/** An Operational bus and a scheduler; the caller has filled what is above `bus`. */
+static void machine_open(machine_t *machine)
+{
+    static cm1e_bus_config_t config;
+    cm1e_diag_t diag = {0};
+    machine_describe(machine, &config);
+    ck_assert_msg(cm1e_bus_open(&machine->bus, &config, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_msg(cm1e_bus_start(machine->bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_msg(cm1e_scheduler_create(&machine->scheduler, machine->bus, &machine->config, &diag) == CM1E_OK, "%s",
+                  diag.text);
+    for (uint32_t i = 0; i < machine->axis_count; i++) {
+        machine->axis[i] = cm1e_scheduler_axis(machine->scheduler, i);
+        ck_assert_uint_ne(machine->axis[i].Handle, 0);
+    }
+}
+
+static void machine_add(machine_t *machine, const char *name, int64_t interval_ns, uint32_t priority,
+                        cm1e_program_t program, void *context)
+{
+    cm1e_diag_t diag = {0};
+    const cm1e_task_config_t task = {name, interval_ns, priority, program, context};
+    ck_assert_msg(cm1e_scheduler_add_task(machine->scheduler, &task, &diag) == CM1E_OK, "%s", diag.text);
+}
+
+static void machine_run(machine_t *machine, int64_t duration_ns)
+{
+    cm1e_diag_t diag = {0};
+    ck_assert_msg(cm1e_scheduler_run(machine->scheduler, duration_ns, &diag) == CM1E_OK, "%s", diag.text);
+}
+
+static void machine_close(machine_t *machine)
+{
+    cm1e_scheduler_destroy(machine->scheduler);
+    cm1e_bus_close(machine->bus);
+}
+
+#endif
