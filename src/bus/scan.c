@@ -90,6 +90,10 @@ cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)
     if (found == SCAN_TOO_MANY)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "More than %d slaves answer on %s.", CM1E_MAX_SLAVES,
                              bus->config.interface_name);
+    if (found == SCAN_GAVE_UP)
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_LOST, 0,
+                             "In the middle of the scan of %s frames or slaves stopped answering. Check cables and the "
+                             "power of the slaves, then scan again.", bus->config.interface_name);
     if (found == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_NO_SLAVES, 0,
                              "No EtherCAT slave answers on %s. Check the cable to IN of the first slave, the power of "

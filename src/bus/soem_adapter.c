@@ -1,13 +1,18 @@
 #include "bus/soem_adapter.h"
 
+#include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/bytes.h"
+#include "core/clock.h"
 #include "device/device.h"
 #include "ethercat.h"
 
 enum { NS_PER_US = 1000 };
+#define NS_PER_S INT64_C(1000000000)
+/** A scan is given up after 0.2 s without any frame, or when it takes longer than this. */
+enum { SCAN_SILENT_FRAMES = 100, SCAN_BASE_S = 5, SCAN_SLAVE_S = 1 };
 /** SOEM reads the SII in groups of 8 bytes and may write a group past its buffer and its map. */
 enum { SII_SLACK_BYTES = 8, SII_SLACK_WORDS = 1 };
 
@@ -109,15 +114,8 @@ static int first_damaged_sii(cm1e_soem_t *soem, int count)
     return 0;
 }
 
-int cm1e_soem_scan(cm1e_soem_t *soem, uint16_t *position)
+static int scan(cm1e_soem_t *soem, int count, uint16_t *position)
 {
-    uint16 type;
-    const int count = ecx_BRD(&soem->port, 0, ECT_REG_TYPE, sizeof type, &type, EC_TIMEOUTSAFE);
-    *position = 0;
-    if (count <= 0)
-        return 0;
-    if (count > CM1E_MAX_SLAVES)
-        return SCAN_TOO_MANY;
     *position = (uint16_t)first_damaged_sii(soem, count);
     if (*position)
         return SCAN_DAMAGED_SII;
@@ -127,6 +125,33 @@ int cm1e_soem_scan(cm1e_soem_t *soem, uint16_t *position)
     if (found == EC_SLAVECOUNTEXCEEDED)
         return SCAN_TOO_MANY;
     return found > 0 ? soem->slave_count : 0;
+}
+
+static void leave_scan(void *context) { longjmp(*(jmp_buf *)context, 1); }
+
+/* SOEM's scan asks on, a minute and more for every slave, when nobody answers any more: it is left then. */
+int cm1e_soem_scan(cm1e_soem_t *soem, uint16_t *position)
+{
+    uint16 type;
+    const int count = ecx_BRD(&soem->port, 0, ECT_REG_TYPE, sizeof type, &type, EC_TIMEOUTSAFE);
+    *position = 0;
+    if (count <= 0)
+        return 0;
+    if (count > CM1E_MAX_SLAVES)
+        return SCAN_TOO_MANY;
+    jmp_buf gave_up;
+    const cm1e_nic_patience_t patience = {
+        .silent_frames = SCAN_SILENT_FRAMES,
+        .deadline_ns = cm1e_clock_now(cm1e_clock_current()) + (SCAN_BASE_S + count * SCAN_SLAVE_S) * NS_PER_S,
+        .give_up = leave_scan,
+        .context = &gave_up,
+    };
+    cm1e_nic_set_patience(soem->port.nic, &patience);
+    int found = SCAN_GAVE_UP;
+    if (setjmp(gave_up) == 0)
+        found = scan(soem, count, position);
+    cm1e_nic_set_patience(soem->port.nic, NULL);
+    return found;
 }
 
 static void copy_name(char *to, size_t room, const char *from, size_t from_size)

@@ -40,8 +40,9 @@ cm1e_soem_t *cm1e_soem_create(cm1e_nic_t *nic, const cm1e_bus_config_t *config);
 void cm1e_soem_destroy(cm1e_soem_t *soem);
 
 /** Finds the slaves, gives them station addresses, reads their SII, requests Pre-Operational. Returns how many; 0: none;
- *  SCAN_TOO_MANY: more than CM1E_MAX_SLAVES; SCAN_DAMAGED_SII: the SII of slave `*position` cannot be walked through. */
-enum { SCAN_TOO_MANY = -1, SCAN_DAMAGED_SII = -2 };
+ *  SCAN_TOO_MANY: more than CM1E_MAX_SLAVES; SCAN_DAMAGED_SII: the SII of slave `*position` cannot be walked through;
+ *  SCAN_GAVE_UP: frames or slaves stopped answering in the middle. */
+enum { SCAN_TOO_MANY = -1, SCAN_DAMAGED_SII = -2, SCAN_GAVE_UP = -3 };
 int cm1e_soem_scan(cm1e_soem_t *soem, uint16_t *position);
 void cm1e_soem_facts(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_facts_t *facts);
 

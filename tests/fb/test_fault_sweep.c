@@ -334,7 +334,7 @@ static uint64_t start_with_fault(fault_kind_t kind, uint64_t frame)
     const int64_t begin = cm1e_clock_now(cm1e_bus_clock(fault.bus));
     const cm1e_error_t error = cm1e_bus_start(fault.bus, &diag);
     const int64_t took_ns = cm1e_clock_now(cm1e_bus_clock(fault.bus)) - begin;
-    ck_assert_msg(took_ns < INT64_C(60) * 1000000000, "%s at frame %llu: start-up took %.1f s", faults[kind].name,
+    ck_assert_msg(took_ns < INT64_C(20) * 1000000000, "%s at frame %llu: start-up took %.1f s", faults[kind].name,
                   (unsigned long long)frame, (double)took_ns * 1e-9);
     if (error != CM1E_OK)
         ck_assert_msg(strlen(diag.text) > 20, "%s at frame %llu: error %d without a sentence: \"%s\"", faults[kind].name,
@@ -358,7 +358,8 @@ START_TEST(test_fault_at_every_frame_of_start_up_ends_defined)
     const uint64_t frames = start_with_fault(FAULT_NONE, 0);
     printf("start-up: %llu frames, %s at each\n", (unsigned long long)frames, faults[_i].name);
     ck_assert_uint_gt(frames, 50);
-    for (uint64_t frame = 0; frame + 2 < frames; frame++)
+    /* A fault at the very last frames is left to the cycle to notice. */
+    for (uint64_t frame = 0; frame + 6 < frames; frame++)
         start_with_fault((fault_kind_t)_i, frame);
 }
 END_TEST
