@@ -294,8 +294,8 @@ size_t cm1e_generate_sii(uint8_t *image, size_t room, const cm1e_sii_options_t *
     for (unsigned i = 0; options->distributed_clocks && i < 2; i++)
         string_number(&w, dc_mode_names[i]);
     write_strings(&w);
-    write_general(&w, name, group,
-                  COE_SDO | COE_SDO_INFO | COE_PDO_ASSIGN | (options->complete_access ? COE_COMPLETE_ACCESS : 0), true, 1);
+    const unsigned complete_access = options->complete_access ? COE_COMPLETE_ACCESS : 0;
+    write_general(&w, name, group, COE_SDO | COE_SDO_INFO | COE_PDO_ASSIGN | complete_access, true, 1);
     write_fmmus(&w, true);
     write_sync_managers(&w, managers, 4);
     write_pdos(&w, true, options);

@@ -34,17 +34,11 @@ static bool overlaps_another(const cm1e_sim_slave_t *slave, const esc_sync_manag
     return false;
 }
 
-static bool in_ram(const esc_sync_manager_t *sm)
-{
-    return sm->start >= ESC_REGISTER_BYTES && (uint32_t)sm->start + sm->length <= ESC_MEMORY_BYTES;
-}
-
 static bool mailbox_valid(cm1e_sim_slave_t *slave, unsigned role)
 {
     const esc_sync_manager_t *sm = cm1e_sim_esc_sm(slave, role);
     return sm && sm->active && sm->mailbox && sm->master_writes == (role == ESC_ROLE_MAILBOX_OUT) &&
-           sm->length >= MAILBOX_MIN_BYTES && sm->length <= MAILBOX_MAX_BYTES && in_ram(sm) &&
-           !overlaps_another(slave, sm);
+           sm->length >= MAILBOX_MIN_BYTES && sm->length <= MAILBOX_MAX_BYTES && !overlaps_another(slave, sm);
 }
 
 static bool process_data_valid(cm1e_sim_slave_t *slave, unsigned role, uint16_t bytes)
@@ -53,14 +47,17 @@ static bool process_data_valid(cm1e_sim_slave_t *slave, unsigned role, uint16_t 
     if (bytes == 0)
         return !sm || !sm->active;
     return sm && sm->active && !sm->mailbox && sm->master_writes == (role == ESC_ROLE_OUTPUTS) && sm->length == bytes &&
-           in_ram(sm) && !overlaps_another(slave, sm);
+           !overlaps_another(slave, sm);
+}
+
+bool cm1e_sim_al_mailboxes_valid(cm1e_sim_slave_t *slave)
+{
+    return mailbox_valid(slave, ESC_ROLE_MAILBOX_OUT) && mailbox_valid(slave, ESC_ROLE_MAILBOX_IN);
 }
 
 static uint16_t check_mailbox(cm1e_sim_slave_t *slave)
 {
-    const bool valid = !has_mailbox(slave) || (mailbox_valid(slave, ESC_ROLE_MAILBOX_OUT) &&
-                                               mailbox_valid(slave, ESC_ROLE_MAILBOX_IN));
-    return valid ? AL_CODE_NONE : AL_CODE_INVALID_MAILBOX_PREOP;
+    return !has_mailbox(slave) || cm1e_sim_al_mailboxes_valid(slave) ? AL_CODE_NONE : AL_CODE_INVALID_MAILBOX_PREOP;
 }
 
 static uint16_t check_process_data(cm1e_sim_slave_t *slave)

@@ -35,8 +35,8 @@ typedef struct coe_server {
 } coe_server_t;
 
 void cm1e_sim_coe_reset(cm1e_sim_slave_t *slave);
-/** Handles a request of `length` bytes (CoE header first); fills `answer` with at most `room` bytes, or leaves its length
- *  0 where there is nothing to say. Returns 0 or a mailbox error detail. */
+/** Handles a request of `length` bytes (CoE header first); fills `answer` with at most `room` bytes, or leaves its
+ *  length 0 where there is nothing to say. Returns 0 or a mailbox error detail. */
 uint16_t cm1e_sim_coe_request(cm1e_sim_slave_t *slave, const uint8_t *request, size_t length, mailbox_message_t *answer,
                               size_t room);
 /** The next fragment of a list under way; false: none. */

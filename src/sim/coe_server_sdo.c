@@ -11,7 +11,8 @@ enum {
 };
 enum {
     COMMAND_SHIFT = 5,
-    REQUEST_DOWNLOAD_SEGMENT = 0, REQUEST_DOWNLOAD = 1, REQUEST_UPLOAD = 2, REQUEST_UPLOAD_SEGMENT = 3, REQUEST_ABORT = 4,
+    REQUEST_DOWNLOAD_SEGMENT = 0, REQUEST_DOWNLOAD = 1, REQUEST_UPLOAD = 2, REQUEST_UPLOAD_SEGMENT = 3,
+    REQUEST_ABORT = 4,
     RESPONSE_UPLOAD_SEGMENT = 0x00, RESPONSE_DOWNLOAD_SEGMENT = 0x20, RESPONSE_UPLOAD = 0x40, RESPONSE_DOWNLOAD = 0x60,
     COMMAND_ABORT = 0x80,
 };
@@ -66,7 +67,7 @@ static void transfer_begin(sdo_t *sdo, enum coe_transfer transfer, size_t size, 
     coe->done = done;
 }
 
-/* ---- download ------------------------------------------------------------------------------------------------------ */
+/* ---- download ---------------------------------------------------------------------------------------------------- */
 
 static void download_finish(sdo_t *sdo, const uint8_t *data, size_t size)
 {
@@ -170,7 +171,7 @@ static void download_segment(sdo_t *sdo)
     segment_answer(sdo, (uint8_t)(RESPONSE_DOWNLOAD_SEGMENT | (sdo->command & TOGGLE)));
 }
 
-/* ---- upload -------------------------------------------------------------------------------------------------------- */
+/* ---- upload ------------------------------------------------------------------------------------------------------ */
 
 static void upload(sdo_t *sdo)
 {

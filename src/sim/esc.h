@@ -154,9 +154,12 @@ void cm1e_sim_esc_sm_lock(cm1e_sim_slave_t *slave, unsigned role, bool locked);
 esc_sync_manager_t *cm1e_sim_esc_sm(cm1e_sim_slave_t *slave, unsigned role);
 /** The number of bytes from `address` on that the same rule holds for, and the sync manager that rules (NULL: none). */
 size_t cm1e_sim_esc_sm_span(cm1e_sim_slave_t *slave, uint32_t address, uint32_t end, esc_sync_manager_t **manager);
-bool cm1e_sim_esc_sm_read(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, uint16_t offset, uint8_t *data, size_t length);
+bool cm1e_sim_esc_sm_read(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, uint16_t offset, uint8_t *data,
+                          size_t length);
 bool cm1e_sim_esc_sm_write(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, uint16_t offset, const uint8_t *data,
                            size_t length);
+/** Hands outputs that arrived in this frame to the application. */
+void cm1e_sim_esc_deliver_outputs(cm1e_sim_slave_t *slave);
 /** The slave's side of a mailbox: fills or empties it. */
 void cm1e_sim_esc_sm_set_full(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, bool full);
 
@@ -179,6 +182,8 @@ void cm1e_sim_al_power_on(cm1e_sim_slave_t *slave);
 /** The master wrote AL control. */
 void cm1e_sim_al_control(cm1e_sim_slave_t *slave);
 void cm1e_sim_al_due(cm1e_sim_slave_t *slave);
+/** Both mailboxes are there and set as Pre-Operational demands. */
+bool cm1e_sim_al_mailboxes_valid(cm1e_sim_slave_t *slave);
 
 /* al_watchdog.c */
 void cm1e_sim_al_watchdog_trigger(cm1e_sim_slave_t *slave);

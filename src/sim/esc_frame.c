@@ -2,7 +2,6 @@
 
 #include <string.h>
 
-#include "cm1e/bus.h"
 #include "core/bytes.h"
 
 /* Datagram header (ETG.1000.4 5.4.1). */
@@ -51,10 +50,8 @@ static unsigned access_physical(cm1e_sim_slave_t *slave, unsigned access, bool c
     uint8_t found[DATA_MAX];
     bool was_read = false, was_written = false;
     if (access & READS) {
-        if (access == READS && !collect) {
-            was_read = cm1e_sim_esc_read(slave, offset, data, length);
-            return was_read;
-        }
+        if (access == READS && !collect)
+            return cm1e_sim_esc_read(slave, offset, data, length);
         /* A broadcast collects the content of all slaves by OR; else what cannot be read stays as it came. */
         if (collect)
             memset(found, 0, length);
@@ -75,7 +72,8 @@ static unsigned access_physical(cm1e_sim_slave_t *slave, unsigned access, bool c
 }
 
 /* The write comes first: bytes that are both written and read leave with what was read. */
-static unsigned access_logical(cm1e_sim_slave_t *slave, unsigned access, uint32_t address, uint8_t *data, uint16_t length)
+static unsigned access_logical(cm1e_sim_slave_t *slave, unsigned access, uint32_t address, uint8_t *data,
+                               uint16_t length)
 {
     const bool was_written = (access & WRITES) && cm1e_sim_esc_logical_write(slave, address, data, length);
     const bool was_read = (access & READS) && cm1e_sim_esc_logical_read(slave, address, data, length);
@@ -122,10 +120,6 @@ void cm1e_sim_esc_frame(cm1e_sim_slave_t *slave, uint8_t *begin, const uint8_t *
             cm1e_put_u16(datagram + AT_EVENT, (uint16_t)(cm1e_get_u16(datagram + AT_EVENT) | events));
         datagram = counter + COUNTER_BYTES;
     }
-    if (!slave->outputs_arrived)
-        return;
-    slave->outputs_arrived = false;
-    const esc_sync_manager_t *sm = cm1e_sim_esc_sm(slave, ESC_ROLE_OUTPUTS);
-    if (sm && slave->al_state == CM1E_AL_OP && slave->ops->outputs)
-        slave->ops->outputs(slave->app, slave->memory + sm->start, sm->length, slave->now_ns);
+    /* After the whole frame: its inputs are those from before its outputs. */
+    cm1e_sim_esc_deliver_outputs(slave);
 }

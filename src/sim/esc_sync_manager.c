@@ -7,7 +7,9 @@
 
 /* Registers of a sync manager (0x0800 + 8 n). */
 enum { SM_BYTES = 8, AT_START = 0, AT_LENGTH = 2, AT_CONTROL = 4, AT_STATUS = 5, AT_ACTIVATE = 6, AT_PDI = 7 };
-enum { CONTROL_MODE = 0x03, MODE_MAILBOX = 0x02, CONTROL_DIRECTION = 0x0C, DIRECTION_WRITE = 0x04, CONTROL_WATCHDOG = 0x40 };
+enum {
+    CONTROL_MODE = 0x03, MODE_MAILBOX = 0x02, CONTROL_DIRECTION = 0x0C, DIRECTION_WRITE = 0x04, CONTROL_WATCHDOG = 0x40,
+};
 enum {
     STATUS_WRITTEN = 0x01, STATUS_READ = 0x02, STATUS_FULL = 0x08, STATUS_BUFFER_SHIFT = 4, STATUS_BUFFER = 0x30,
     BUFFERS = 3, NO_BUFFER = 3,
@@ -54,7 +56,9 @@ void cm1e_sim_esc_sm_decode(cm1e_sim_slave_t *slave, unsigned number)
     const esc_sync_manager_t before = *sm;
     sm->start = cm1e_get_u16(r + AT_START);
     sm->length = cm1e_get_u16(r + AT_LENGTH);
-    sm->active = (r[AT_ACTIVATE] & 0x01) && sm->length > 0;
+    /* One that does not lie in the RAM has nothing to guard. */
+    sm->active = (r[AT_ACTIVATE] & 0x01) && sm->length > 0 && sm->start >= ESC_REGISTER_BYTES &&
+                 (uint32_t)sm->start + sm->length <= ESC_MEMORY_BYTES;
     sm->mailbox = (r[AT_CONTROL] & CONTROL_MODE) == MODE_MAILBOX;
     sm->master_writes = (r[AT_CONTROL] & CONTROL_DIRECTION) == DIRECTION_WRITE;
     sm->triggers_watchdog = (r[AT_CONTROL] & CONTROL_WATCHDOG) != 0;
@@ -111,7 +115,8 @@ static void refresh_inputs(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm
     set_status(slave, sm, STATUS_WRITTEN, STATUS_READ);
 }
 
-bool cm1e_sim_esc_sm_read(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, uint16_t offset, uint8_t *data, size_t length)
+bool cm1e_sim_esc_sm_read(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, uint16_t offset, uint8_t *data,
+                          size_t length)
 {
     if (sm->locked || sm->master_writes)
         return false;
@@ -146,6 +151,9 @@ bool cm1e_sim_esc_sm_write(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, uint
         if (sm->mailbox && sm->full)
             return false;
         sm->open = true;
+        /* The slave reads a complete buffer while the next one fills. */
+        if (sm->role == ESC_ROLE_OUTPUTS)
+            cm1e_sim_esc_deliver_outputs(slave);
     } else if (!sm->open) {
         return false;
     }
@@ -165,6 +173,16 @@ bool cm1e_sim_esc_sm_write(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, uint
         slave->outputs_arrived |= sm->role == ESC_ROLE_OUTPUTS;
     }
     return true;
+}
+
+void cm1e_sim_esc_deliver_outputs(cm1e_sim_slave_t *slave)
+{
+    if (!slave->outputs_arrived)
+        return;
+    slave->outputs_arrived = false;
+    const esc_sync_manager_t *sm = cm1e_sim_esc_sm(slave, ESC_ROLE_OUTPUTS);
+    if (sm && slave->al_state == CM1E_AL_OP && slave->ops->outputs)
+        slave->ops->outputs(slave->app, slave->memory + sm->start, sm->length, slave->now_ns);
 }
 
 void cm1e_sim_esc_sm_set_full(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, bool full)

@@ -70,7 +70,8 @@ void cm1e_sim_mailbox_repeat(cm1e_sim_slave_t *slave)
         wake(slave, RELOAD_NS);
 }
 
-bool cm1e_sim_slave_emergency(cm1e_sim_slave_t *slave, uint16_t error_code, uint8_t error_register, const uint8_t data[5])
+bool cm1e_sim_slave_emergency(cm1e_sim_slave_t *slave, uint16_t error_code, uint8_t error_register,
+                              const uint8_t data[5])
 {
     mailbox_t *mailbox = &slave->mailbox;
     if (!mailbox->running || mailbox->emergency_count == MAILBOX_EMERGENCIES)
@@ -84,7 +85,7 @@ bool cm1e_sim_slave_emergency(cm1e_sim_slave_t *slave, uint16_t error_code, uint
     return true;
 }
 
-/* ---- the read mailbox ---------------------------------------------------------------------------------------------- */
+/* ---- the read mailbox -------------------------------------------------------------------------------------------- */
 
 /* Into the mailbox, and kept beside the one before it. */
 static void load(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, const uint8_t *bytes, uint16_t length)
@@ -161,7 +162,7 @@ static void repeat_last(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm)
     load(slave, sm, bytes, mailbox->kept_length[last_read]);
 }
 
-/* ---- the write mailbox --------------------------------------------------------------------------------------------- */
+/* ---- the write mailbox ------------------------------------------------------------------------------------------- */
 
 static void answer_error(mailbox_message_t *answer, uint16_t detail)
 {
@@ -212,7 +213,8 @@ void cm1e_sim_mailbox_due(cm1e_sim_slave_t *slave)
     esc_sync_manager_t *out = cm1e_sim_esc_sm(slave, ESC_ROLE_MAILBOX_OUT);
     esc_sync_manager_t *in = cm1e_sim_esc_sm(slave, ESC_ROLE_MAILBOX_IN);
     slave->mailbox_due_ns = ESC_NEVER;
-    if (!mailbox->running || !out || !in || !out->active || !in->active)
+    /* The master may have changed the sync managers since Pre-Operational. */
+    if (!mailbox->running || !cm1e_sim_al_mailboxes_valid(slave))
         return;
     const uint16_t room = (uint16_t)(in->length - MAILBOX_HEADER);
     repeat_last(slave, in);
