@@ -13,6 +13,7 @@
 
 enum { LINE_MAX_BYTES = 128, WORDS_MAX = 6, FRAMES_MAX = 1000000, DELAY_MAX_US = 1000000, ABSENCE_MAX_MS = 60000 };
 enum { ABSENCE_DEFAULT_MS = 500 };
+enum { ERROR_OVERLOAD = 0x2310, ERROR_MOTOR_POWER = 0xFF05 };
 
 typedef struct call {
     cm1e_sim_segment_t *segment;
@@ -23,6 +24,7 @@ typedef struct call {
     cm1e_sim_cm1e_t *drive;
     char *answer;
     size_t size, used;
+    bool cut;                /* the answer was longer than its room */
 } call_t;
 
 typedef struct command {
@@ -35,14 +37,19 @@ typedef struct command {
 
 __attribute__((format(printf, 2, 3))) static void say(call_t *call, const char *format, ...)
 {
-    if (call->used + 1 >= call->size)
+    if (call->used + 1 >= call->size) {
+        call->cut = true;
         return;
+    }
     va_list args;
     va_start(args, format);
     const int length = vsnprintf(call->answer + call->used, call->size - call->used, format, args);
     va_end(args);
-    if (length > 0)
-        call->used += (size_t)length < call->size - call->used ? (size_t)length : call->size - call->used - 1;
+    const size_t room = call->size - call->used - 1;
+    if (length <= 0)
+        return;
+    call->cut |= (size_t)length > room;
+    call->used += (size_t)length < room ? (size_t)length : room;
 }
 
 #define REFUSE(call, ...) (say(call, __VA_ARGS__), CM1E_ERROR_INVALID_ARGUMENT)
@@ -214,9 +221,15 @@ static cm1e_error_t run_temperature(call_t *call)
 
 static cm1e_error_t run_over_torque(call_t *call)
 {
-    enum { ERROR_OVERLOAD = 0x2310 };
     cm1e_sim_fsa_error(call->drive, ERROR_OVERLOAD);
     say(call, "slave %u: torque overload (0x2310)", call->position);
+    return CM1E_OK;
+}
+
+static cm1e_error_t motor_power_missing(call_t *call)
+{
+    cm1e_sim_fsa_motor_power(call->drive, false);
+    say(call, "slave %u: motor power off (0xFF05) until \"power %u on\"", call->position, call->position);
     return CM1E_OK;
 }
 
@@ -251,6 +264,8 @@ static cm1e_error_t run_error(call_t *call)
     const cm1e_device_error_t *error = cm1e_device_error((uint16_t)code);
     if (code == 0)
         return clear_error(call);
+    if (code == ERROR_MOTOR_POWER)
+        return motor_power_missing(call);
     if (error->fault) {
         cm1e_sim_fsa_error(drive, error->code);
         drive->held_code = hold ? error->code : drive->held_code;
@@ -409,17 +424,26 @@ static cm1e_error_t run_command(call_t *call, const command_t *command)
     return command->run(call);
 }
 
+static cm1e_error_t run_line(call_t *call, const char *line)
+{
+    if (!split(call, line))
+        return REFUSE(call, "more or longer words than any command has; help lists the commands");
+    if (call->count == 0)
+        return REFUSE(call, "an empty line; help lists the commands");
+    for (int i = 0; i < COMMAND_COUNT; i++)
+        if (strcmp(call->words[0], commands[i].word) == 0)
+            return run_command(call, &commands[i]);
+    return REFUSE(call, "\"%s\" is not a command; help lists the commands", call->words[0]);
+}
+
 cm1e_error_t cm1e_sim_console(cm1e_sim_segment_t *segment, const char *line, char *answer, size_t size)
 {
+    static const char continued[] = "...";
     call_t call = {.segment = segment, .answer = answer, .size = size};
     if (size > 0)
         answer[0] = '\0';
-    if (!split(&call, line))
-        return REFUSE(&call, "more or longer words than any command has; help lists the commands");
-    if (call.count == 0)
-        return REFUSE(&call, "an empty line; help lists the commands");
-    for (int i = 0; i < COMMAND_COUNT; i++)
-        if (strcmp(call.words[0], commands[i].word) == 0)
-            return run_command(&call, &commands[i]);
-    return REFUSE(&call, "\"%s\" is not a command; help lists the commands", call.words[0]);
+    const cm1e_error_t error = run_line(&call, line);
+    if (call.cut && size >= sizeof continued)
+        memcpy(answer + size - sizeof continued, continued, sizeof continued);
+    return error;
 }
