@@ -115,18 +115,14 @@ cm1e_error_t axis_limits_check(const cm1e_axis_t *axis, const cm1e_profile_t *pr
     return directions_allow(axis, lowest, highest, tolerance) ? CM1E_OK : CM1E_ERROR_AXIS_DIRECTION_DISABLED;
 }
 
+/* Without a limit of jerk the way of a stop is known in closed form, whatever the acceleration is. */
 bool axis_limits_can_stop(const cm1e_axis_t *axis, position_t base, const cm1e_motion_state_t *next)
 {
     if (!axis->software_limits)
         return true;
-    const double origin = axis_units(axis, base);
-    cm1e_profile_t brake;
-    double lowest, highest;
-    if (cm1e_profile_to_velocity(&brake, next, 0.0, &axis->emergency))
-        return false;
-    cm1e_profile_extent(&brake, &lowest, &highest);
     const double tolerance = tolerance_counts / fabs(axis->scale);
-    if (next->velocity > 0.0 && origin + highest > axis->upper + tolerance)
-        return false;
-    return !(next->velocity < 0.0 && origin + lowest < axis->lower - tolerance);
+    const double braking = next->velocity * fabs(next->velocity) / (2.0 * axis->emergency.deceleration);
+    const double end = axis_units(axis, base) + next->position + braking;
+    return next->velocity > 0.0 ? end <= axis->upper + tolerance
+           : next->velocity < 0.0 ? end >= axis->lower - tolerance : true;
 }

@@ -114,7 +114,7 @@ static void profile_step(cm1e_axis_t *axis)
     if (next.velocity != 0.0)
         axis->positive_before = next.velocity > 0.0;
     if (!axis_position_in_range(axis->set))
-        axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, axis_units(axis, axis->set), 0.0);
+        axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, axis_units(axis, axis->set), axis_farthest(axis));
 }
 
 void axis_motion_step(cm1e_axis_t *axis)

@@ -28,6 +28,8 @@ bool axis_position_in_range(position_t position)
     return position.counts < farthest_counts && position.counts > -farthest_counts;
 }
 
+double axis_farthest(const cm1e_axis_t *axis) { return (double)farthest_counts / fabs(axis->scale); }
+
 double axis_units(const cm1e_axis_t *axis, position_t position)
 {
     const position_t origin = {axis->origin_counts, 0.0};

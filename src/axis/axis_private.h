@@ -121,6 +121,8 @@ double axis_units(const cm1e_axis_t *axis, position_t position);
 /** FALSE: not finite, or farther away than the axis counts. */
 bool axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position);
 bool axis_position_in_range(position_t position);
+/** u; about where that range ends. */
+double axis_farthest(const cm1e_axis_t *axis);
 static inline position_t axis_actual(const cm1e_axis_t *axis) { return (position_t){axis->actual_counts, 0.0}; }
 void axis_track(cm1e_axis_t *axis);
 void axis_set_to_actual(cm1e_axis_t *axis);

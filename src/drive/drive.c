@@ -82,6 +82,7 @@ void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
     /* Details that arrive after the first sign: the device's code, and what the supervision found out. */
     if (fault->device_code == 0 && drive->feedback.online && drive->feedback.fault)
         fault->device_code = drive->feedback.error_code;
+    fault->slave_lost |= drive->watch.lost;
     if (!drive_operational(drive)) {
         fault->al_state = drive->watch.al_state;
         fault->al_status_code = drive->watch.al_status_code;

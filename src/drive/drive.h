@@ -59,6 +59,7 @@ typedef struct cm1e_drive_fault {
     uint16_t statusword;
     int8_t mode_commanded, mode_shown;
     uint16_t al_state, al_status_code;
+    bool slave_lost;                /**< it did not answer at its address, then or later */
 } cm1e_drive_fault_t;
 
 typedef struct cm1e_drive {

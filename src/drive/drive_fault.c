@@ -32,7 +32,7 @@ static const advice_t advices[] = {
     {CM1E_ERROR_BUS_WORKING_COUNTER, "A slave did not take part in the cycle. Look for a slave without power, a loose "
                                      "cable, or one that left Operational"},
     {CM1E_ERROR_BUS_STATE, "The slave left Operational. Remove what the AL status code names"},
-    {CM1E_ERROR_AXIS_OFFLINE, "The slave does not answer at its address. Check its power and its cables"},
+    {CM1E_ERROR_AXIS_OFFLINE, "Check its power and its cables"},
     {CM1E_ERROR_DRIVE_POWER, "Motor power (24 V, statusword bit 4) is missing: check supply, fuse and emergency stop"},
     {CM1E_ERROR_DRIVE_ENABLE_LOST, "The drive dropped its torque without a fault. Check its watchdog, its power and "
                                    "whether another tool controls it"},
@@ -75,7 +75,9 @@ void cm1e_drive_fault_text(const cm1e_drive_t *drive, char *text, size_t size)
         if (device)
             say(&w, " Cure: %s.", device->cure);
     }
-    if (fault->al_state)
+    if (fault->slave_lost)
+        say(&w, " This slave does not answer at its address.");
+    else if (fault->al_state)
         say(&w, " EtherCAT state %u, AL status code 0x%04X: %s.", fault->al_state & 0x0Fu, fault->al_status_code,
             cm1e_al_status_text(fault->al_status_code));
     say(&w, " Statusword 0x%04X (%s)", fault->statusword, cm1e_fsa_name(cm1e_fsa_decode(fault->statusword)));

@@ -272,6 +272,11 @@ static void test_bus_lost_lets_the_caller_ramp_then_disables(void)
     bus.watch.al_status_code = 0x001B;
     cycle();
     TEST_ASSERT_EQUAL_HEX16(0x001B, drive.fault.al_status_code);
+    assert_text_has("0x001B");
+    bus.watch.lost = true;
+    cycle();
+    assert_text_has("does not answer");
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_BUS_LOST, drive.fault.error);
 }
 
 static void test_reset_is_one_bounded_edge(void)
