@@ -9,7 +9,7 @@
 #include "core/bytes.h"
 #include "device/device.h"
 
-enum { KEY_TYPE = 0x200, MAX_SDO_BYTES = 4096 };
+enum { KEY_TYPE = 0x200, MAX_SDO_BYTES = 4096, MAX_WORDS = 32 };
 
 static const struct {
     const char *name;
@@ -175,6 +175,26 @@ static int transfer(cm1e_bus_t *bus, const sdo_options_t *options, cm1e_diag_t *
     return cm1e_sdo_write(bus, (uint16_t)position, index, subindex, data, size, diag) == CM1E_OK ? EXIT_OK : fail(diag);
 }
 
+/** A negative value looks like an option: such a word goes to the end, behind a "--". */
+static int shelter_negative_value(int argc, char **argv, char **sheltered)
+{
+    static char end_of_options[] = "--";
+    int count = 0;
+    char *value = NULL;
+    for (int i = 0; i < argc; i++) {
+        if (!value && i > 0 && argv[i][0] == '-' && argv[i][1] >= '0' && argv[i][1] <= '9')
+            value = argv[i];
+        else
+            sheltered[count++] = argv[i];
+    }
+    if (value) {
+        sheltered[count++] = end_of_options;
+        sheltered[count++] = value;
+    }
+    sheltered[count] = NULL;
+    return count;
+}
+
 int command_sdo(int argc, char **argv)
 {
     static const struct argp_option table[] = {
@@ -184,7 +204,13 @@ int command_sdo(int argc, char **argv)
                                      "Reads or writes an object, e.g. `cm1e sdo read -i eth1 1 0x1018:2`.", children,
                                      NULL, NULL};
     sdo_options_t options = {0};
-    argp_parse(&argp, argc, argv, 0, NULL, &options);
+    char *words[MAX_WORDS + 2];
+    if (argc >= MAX_WORDS) {
+        complain("too many arguments");
+        return EXIT_WRONG_USE;
+    }
+    const int count = shelter_negative_value(argc, argv, words);
+    argp_parse(&argp, count, words, 0, NULL, &options);
 
     static cm1e_bus_config_t config;
     if (!load_configuration(&options.common, &config))

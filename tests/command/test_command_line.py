@@ -1,0 +1,120 @@
+#!/usr/bin/env python3
+"""The command `cm1e` and the examples as a user calls them, on the simulated segment: what is right works and can be read
+by a program, what is wrong is refused with the exit status and the word that helps.
+
+test_command_line.py BIN-DIRECTORY SOURCE-DIRECTORY
+"""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree
+
+BIN, SOURCE = sys.argv[1], sys.argv[2]
+FAILED, WRONG_USE = 1, 2
+faults = []
+
+
+def run(program, *words, stdin=""):
+    return subprocess.run([os.path.join(BIN, program), *words], capture_output=True, text=True, timeout=60, input=stdin)
+
+
+def expect(condition, what, result):
+    if not condition:
+        faults.append(f"{what}: exit status {result.returncode}\n{result.stdout}{result.stderr}")
+
+
+def check_good(folder):
+    scan = run("cm1e", "scan", "-i", "sim", "--json")
+    slaves = json.loads(scan.stdout)
+    expect(len(slaves) == 1 and slaves[0]["vendor_id"] == 0x4441 and slaves[0]["software_version"] == "1.3.5", "scan", scan)
+    bus = run("cm1e", "scan", "-i", "sim", "-b", f"{SOURCE}/examples/three_axes.yaml")
+    expect(bus.returncode == 0 and bus.stdout.count("CM1-E") == 3, "scan of a bus file", bus)
+    status = run("cm1e", "status", "-i", "sim", "--json")
+    expect(json.loads(status.stdout)[0]["dc_link_volt"] > 20, "status", status)
+    for index, value in (("0x1018:1", 0x4441), ("0x6502", 0x1A5), ("0x607C", 0)):
+        sdo = run("cm1e", "sdo", "-i", "sim", "--json", "read", "1", index)
+        expect(json.loads(sdo.stdout)["value"] == value, f"sdo read {index}", sdo)
+    text = run("cm1e", "sdo", "-i", "sim", "read", "1", "0x1008")
+    expect(text.stdout == "CM1-E\n", "sdo read of a text", text)
+    write = run("cm1e", "sdo", "-i", "sim", "write", "1", "0x607C", "-1200")
+    expect(write.returncode == 0, "sdo write", write)
+    svg, csv, pcap = (os.path.join(folder, name) for name in ("trace.svg", "trace.csv", "frames.pcap"))
+    move = run("cm1e", "move", "-i", "sim", "--json", "--by", "-0.25", "--svg", svg, "--csv", csv, "--pcap", pcap)
+    expect(move.returncode == 0 and json.loads(move.stdout)["done"], "move", move)
+    xml.etree.ElementTree.parse(svg)
+    with open(csv, encoding="utf-8") as file:
+        expect(len(file.readlines()) > 100, "trace as CSV", move)
+    expect(os.path.getsize(pcap) > 10000, "pcap", move)
+    home = run("cm1e", "home", "-i", "sim", "--method", "-3", "--velocity", "5", "--acceleration", "90", "--position", "7.5", "--json")
+    expect(home.returncode == 0 and abs(json.loads(home.stdout)["to"] - 7.5) < 0.01, "home", home)
+    sii = os.path.join(folder, "cm1e.sii")
+    generate = run("cm1e", "generate", "sii", "-o", sii)
+    expect(generate.returncode == 0 and os.path.getsize(sii) == 2048, "generate sii", generate)
+
+
+def check_examples(folder):
+    for words in (["01_scan"], ["02_move_one_axis"],
+                  ["03_plc_program", "-b", f"{SOURCE}/examples/three_axes.yaml", "--seconds", "6",
+                   "--svg", os.path.join(folder, "example.svg")]):
+        result = run(*words)
+        expect(result.returncode == 0, " ".join(words), result)
+    xml.etree.ElementTree.parse(os.path.join(folder, "example.svg"))
+
+
+# Wrong use: words, exit status, and what the complaint must contain.
+WRONG = [
+    ([], WRONG_USE, "Usage"),
+    (["fly"], WRONG_USE, "fly"),
+    (["scan"], WRONG_USE, "-i"),
+    (["scan", "-i", "no-such-interface"], FAILED, "no-such-interface"),
+    (["scan", "-b", "no-such-file.yaml"], WRONG_USE, "no-such-file.yaml"),
+    (["scan", "-i", "x" * 100], WRONG_USE, "too long"),
+    (["scan", "-i", "sim:no-such-file.yaml"], FAILED, "no-such-file.yaml"),
+    (["sdo", "-i", "sim", "read"], WRONG_USE, "read POSITION"),
+    (["sdo", "-i", "sim", "read", "1", "0x99999"], WRONG_USE, "index"),
+    (["sdo", "-i", "sim", "read", "2", "0x1008"], FAILED, "no slave 2"),
+    (["sdo", "-i", "sim", "read", "1", "0x5555"], FAILED, "does not exist"),
+    (["sdo", "-i", "sim", "write", "1", "0x6041", "0"], FAILED, "0x6041"),
+    (["sdo", "-i", "sim", "write", "1", "0x607C", "99999999999"], WRONG_USE, "expected"),
+    (["sdo", "-i", "sim", "write", "1", "0x6099:1", "999999"], FAILED, "0x6099"),
+    (["sdo", "-i", "sim", "write", "1", "0x5555", "1"], WRONG_USE, "--type"),
+    (["move", "-i", "sim"], WRONG_USE, "--to"),
+    (["move", "-i", "sim", "--to", "nan"], WRONG_USE, "number"),
+    (["move", "-i", "sim", "--to", "1", "--by", "1"], WRONG_USE, "exclude"),
+    (["move", "-i", "sim", "--speed", "1"], WRONG_USE, "--for"),
+    (["move", "-i", "sim", "2", "--by", "1"], WRONG_USE, "no axis"),
+    (["move", "-i", "sim", "--by", "1", "--velocity", "1000"], FAILED, "velocity"),
+    (["move", "-i", "sim", "--by", "1", "--acceleration", "-1"], FAILED, "acceleration"),
+    (["home", "-i", "sim", "--method", "-7"], WRONG_USE, "method"),
+    (["home", "-i", "sim", "--method", "0"], FAILED, "method"),
+    (["home", "-i", "sim", "--method", "-2", "--velocity", "100"], FAILED, "homing parameter"),
+    (["sim"], WRONG_USE, "-i"),
+    (["sim", "-i", "no-such-interface"], FAILED, "no-such-interface"),
+    (["sim", "-i", "lo", "--pdo-order", "up"], WRONG_USE, "ug-4.4"),
+    (["generate", "esi", "-o", "x"], WRONG_USE, "sii"),
+    (["generate", "sii"], WRONG_USE, "-o"),
+    (["generate", "sii", "-o", "/no/such/folder/x"], FAILED, "/no/such/folder"),
+    (["generate", "sii", "-o", "x", "--firmware", "9.9"], WRONG_USE, "1.3.5"),
+]
+
+
+def check_wrong():
+    for words, status, word in WRONG:
+        result = run("cm1e", *words)
+        expect(result.returncode == status and word in result.stderr, f"cm1e {' '.join(words)[:80]}: expected exit status "
+               f"{status} and \"{word}\"", result)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        check_good(folder)
+        check_examples(folder)
+    check_wrong()
+    print("\n".join(faults) or f"the command line: good use and {len(WRONG)} kinds of wrong use")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
