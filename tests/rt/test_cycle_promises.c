@@ -1,0 +1,280 @@
+/**
+ * Nothing in the cycle allocates, locks, formats, writes or sleeps: every such function that our code could call is
+ * wrapped at link time (the list is in tests/CMakeLists.txt) and counted between cm1e_bus_receive() and
+ * cm1e_bus_stop(). Enabling, homing, moves, stops, faults and resets of three axes, a lost bus and the orderly end.
+ */
+#include <pthread.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "machine.h"
+
+#define MS INT64_C(1000000)
+
+static bool running, in_cycle; /* running: cm1e_scheduler_run() was called */
+static unsigned violations;
+static const char *violator;
+static const void *caller;
+
+static void note(const char *name, const void *from)
+{
+    if (!in_cycle)
+        return;
+    if (violations++ == 0) {
+        violator = name;
+        caller = from;
+    }
+}
+#define NOTE(name) note(name, __builtin_return_address(0))
+
+/* ---- what must not be called ----------------------------------------------------------------------------------- */
+
+#define WRAP(TYPE, NAME, PARAMETERS, ARGUMENTS)                                                                      \
+    TYPE __real_##NAME PARAMETERS;                                                                                   \
+    TYPE __wrap_##NAME PARAMETERS;                                                                                   \
+    TYPE __wrap_##NAME PARAMETERS                                                                                    \
+    {                                                                                                                \
+        NOTE(#NAME);                                                                                                 \
+        return __real_##NAME ARGUMENTS;                                                                              \
+    }
+
+WRAP(void *, malloc, (size_t size), (size))
+WRAP(void *, calloc, (size_t count, size_t size), (count, size))
+WRAP(void *, realloc, (void *memory, size_t size), (memory, size))
+WRAP(char *, strdup, (const char *text), (text))
+WRAP(int, pthread_mutex_lock, (pthread_mutex_t *mutex), (mutex))
+WRAP(int, pthread_cond_wait, (pthread_cond_t *condition, pthread_mutex_t *mutex), (condition, mutex))
+WRAP(int, pthread_create, (pthread_t *thread, const pthread_attr_t *attributes, void *(*run)(void *), void *context),
+     (thread, attributes, run, context))
+WRAP(int, vsnprintf, (char *text, size_t size, const char *format, va_list args), (text, size, format, args))
+WRAP(int, vfprintf, (FILE *file, const char *format, va_list args), (file, format, args))
+WRAP(int, puts, (const char *text), (text))
+WRAP(int, fputs, (const char *text, FILE *file), (text, file))
+WRAP(size_t, fwrite, (const void *data, size_t size, size_t count, FILE *file), (data, size, count, file))
+WRAP(int, fflush, (FILE *file), (file))
+WRAP(ssize_t, write, (int fd, const void *data, size_t size), (fd, data, size))
+WRAP(ssize_t, read, (int fd, void *data, size_t size), (fd, data, size))
+WRAP(int, nanosleep, (const struct timespec *time, struct timespec *rest), (time, rest))
+WRAP(int, usleep, (useconds_t us), (us))
+WRAP(int, clock_nanosleep, (clockid_t clock, int flags, const struct timespec *time, struct timespec *rest),
+     (clock, flags, time, rest))
+
+void __real_free(void *memory);
+void __wrap_free(void *memory);
+void __wrap_free(void *memory)
+{
+    NOTE("free");
+    __real_free(memory);
+}
+
+int __wrap_snprintf(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+int __wrap_snprintf(char *text, size_t size, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    NOTE("snprintf");
+    const int length = __real_vsnprintf(text, size, format, args);
+    va_end(args);
+    return length;
+}
+
+int __wrap_printf(const char *format, ...) __attribute__((format(printf, 1, 2)));
+int __wrap_printf(const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    NOTE("printf");
+    const int length = __real_vfprintf(stdout, format, args);
+    va_end(args);
+    return length;
+}
+
+int __wrap_fprintf(FILE *file, const char *format, ...) __attribute__((format(printf, 2, 3)));
+int __wrap_fprintf(FILE *file, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    NOTE("fprintf");
+    const int length = __real_vfprintf(file, format, args);
+    va_end(args);
+    return length;
+}
+
+/* ---- what the cycle is ----------------------------------------------------------------------------------------- */
+
+cm1e_error_t __real_cm1e_bus_receive(cm1e_bus_t *bus);
+cm1e_error_t __wrap_cm1e_bus_receive(cm1e_bus_t *bus);
+cm1e_error_t __wrap_cm1e_bus_receive(cm1e_bus_t *bus)
+{
+    in_cycle = running;
+    return __real_cm1e_bus_receive(bus);
+}
+
+void __real_cm1e_bus_stop(cm1e_bus_t *bus);
+void __wrap_cm1e_bus_stop(cm1e_bus_t *bus);
+void __wrap_cm1e_bus_stop(cm1e_bus_t *bus)
+{
+    running = in_cycle = false;
+    __real_cm1e_bus_stop(bus);
+}
+
+/** The simulator's console formats its answer: that is the test's doing, not the cycle's. */
+static void act(cm1e_bus_t *bus, const char *line)
+{
+    char answer[128];
+    in_cycle = false;
+    ck_assert_msg(cm1e_bus_simulate(bus, line, answer, sizeof answer) == CM1E_OK, "%s: %s", line, answer);
+    in_cycle = true;
+}
+
+/* ---- a busy machine -------------------------------------------------------------------------------------------- */
+
+enum { AXES = 3 };
+
+typedef struct blocks {
+    MC_Power_t power;
+    MC_Reset_t reset;
+    MC_Home_t home;
+    MC_MoveAbsolute_t absolute;
+    MC_MoveRelative_t relative;
+    MC_MoveVelocity_t velocity;
+    MC_Halt_t halt;
+    MC_Stop_t stop;
+    MC_ReadStatus_t status;
+    MC_ReadActualPosition_t position;
+    MC_ReadActualVelocity_t actual_velocity;
+    MC_ReadAxisError_t error;
+    unsigned homed, done, aborted, errors, resets;
+} blocks_t;
+
+static machine_t machine;
+static blocks_t axes[AXES];
+static int64_t cycle_number;
+
+static void make_blocks(blocks_t *b, AXIS_REF_t *axis)
+{
+    *b = (blocks_t){
+        .power = {.Axis = axis, .Enable = TRUE, .EnablePositive = TRUE, .EnableNegative = TRUE},
+        .reset = {.Axis = axis},
+        .home = {.Axis = axis},
+        .absolute = {.Axis = axis, .Position = 6, .Velocity = 50, .Acceleration = 900},
+        .relative = {.Axis = axis, .Distance = -2, .Velocity = 30, .Jerk = 90000},
+        .velocity = {.Axis = axis, .Velocity = 8, .Acceleration = 500},
+        .halt = {.Axis = axis},
+        .stop = {.Axis = axis},
+        .status = {.Axis = axis, .Enable = TRUE},
+        .position = {.Axis = axis, .Enable = TRUE},
+        .actual_velocity = {.Axis = axis, .Enable = TRUE},
+        .error = {.Axis = axis, .Enable = TRUE},
+    };
+}
+
+/** A second of every kind of motion after homing, each aborting the one before; reset whenever it helps. */
+static void busy_program(void *context)
+{
+    blocks_t *b = context;
+    const int64_t phase = cycle_number % 1000;
+    b->home.Execute = b->power.Status && b->homed < 2 && !b->home.Done && !b->home.CommandAborted && !b->home.Error;
+    const BOOL homed = b->homed >= 2;
+    b->absolute.Execute = homed && phase < 200;
+    b->relative.Execute = homed && phase >= 180 && phase < 400;
+    b->velocity.Execute = homed && phase >= 400 && phase < 600;
+    b->halt.Execute = homed && phase >= 600 && phase < 800;
+    b->stop.Execute = homed && phase >= 850 && phase < 950;
+    b->reset.Execute = b->status.ErrorStop && cycle_number % 100 < 50;
+    b->power.Enable = cycle_number % 7000 != 6990;
+    MC_Power(&b->power);
+    MC_ReadStatus(&b->status);
+    MC_Reset(&b->reset);
+    MC_Home(&b->home);
+    MC_MoveAbsolute(&b->absolute);
+    MC_MoveRelative(&b->relative);
+    MC_MoveVelocity(&b->velocity);
+    MC_Halt(&b->halt);
+    MC_Stop(&b->stop);
+    MC_ReadActualPosition(&b->position);
+    MC_ReadActualVelocity(&b->actual_velocity);
+    MC_ReadAxisError(&b->error);
+    b->homed += b->home.Done;
+    b->done += b->absolute.Done + b->relative.Done + b->halt.Done + b->stop.Done;
+    b->aborted += b->absolute.CommandAborted + b->velocity.CommandAborted;
+    b->errors += b->status.ErrorStop;
+    b->resets += b->reset.Done;
+}
+
+static const struct {
+    int64_t cycle;
+    const char *line;
+} acts[] = {
+    {20, "lose 1"},           {8000, "power 1 off"},   {8300, "power 1 on"},     {9050, "over-torque 2"},
+    {10100, "lose 2"},        {11300, "lose 40"},      {12500, "corrupt 20"},    {13600, "delay 30 800"},
+    {15000, "unplug 2"},      {15500, "replug 2"},     {18000, "power-cycle 3"}, {21000, "error 1 7500"},
+    {21500, "error 1 clear"}, {23000, "error 2 4310"}, {23400, "error 2 clear"},
+};
+
+static void acting_program(void *context)
+{
+    (void)context;
+    for (size_t i = 0; i < sizeof acts / sizeof acts[0]; i++)
+        if (acts[i].cycle == cycle_number)
+            act(machine.bus, acts[i].line);
+    cm1e_scheduler_statistics_t statistics;
+    cm1e_scheduler_statistics(machine.scheduler, &statistics);
+    cycle_number++;
+}
+
+START_TEST(test_cycle_calls_nothing_that_allocates_locks_formats_or_sleeps)
+{
+    machine = (machine_t){.axis_count = AXES, .config = {.trace_capacity = 2000}};
+    machine_open(&machine);
+    for (int i = 0; i < AXES; i++) {
+        make_blocks(&axes[i], &machine.axis[i]);
+        machine_add(&machine, "", 0, 1, busy_program, &axes[i]);
+    }
+    machine_add(&machine, "", 0, 2, acting_program, NULL);
+    cycle_number = 0;
+    running = true;
+    machine_run(&machine, 30000 * MS);
+    ck_assert_msg(violations == 0, "%u calls in the cycle; the first: %s from %p", violations, violator, caller);
+    ck_assert_int_eq(cycle_number, 30000);
+    unsigned errors = 0;
+    for (int i = 0; i < AXES; i++) {
+        ck_assert_uint_ge(axes[i].homed, 2);
+        ck_assert_uint_ge(axes[i].done, 20);
+        ck_assert_uint_ge(axes[i].aborted, 5);
+        ck_assert_uint_ge(axes[i].resets, 1);
+        errors += axes[i].errors > 0;
+    }
+    ck_assert_uint_eq(errors, AXES);
+    machine_close(&machine);
+}
+END_TEST
+
+START_TEST(test_wrapping_works)
+{
+    in_cycle = true;
+    char text[8];
+    void *volatile memory = malloc(1);
+    free(memory);
+    snprintf(text, sizeof text, "%d", rand());
+    in_cycle = false;
+    ck_assert_uint_eq(violations, 3);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("promises of the cycle");
+    TCase *all = tcase_create("all");
+    tcase_set_timeout(all, 60);
+    tcase_add_test(all, test_wrapping_works);
+    tcase_add_test(all, test_cycle_calls_nothing_that_allocates_locks_formats_or_sleeps);
+    suite_add_tcase(suite, all);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_ENV);
+    const int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
