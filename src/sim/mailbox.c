@@ -229,6 +229,8 @@ void cm1e_sim_mailbox_due(cm1e_sim_slave_t *slave)
             slave->mailbox_due_ns = mailbox->request_due_ns;
         }
     }
-    if (!in->full && mailbox->answer.length == 0 && cm1e_sim_coe_next_fragment(slave, &mailbox->answer, room))
+    /* A list goes on where no new request ends it. */
+    if (!in->full && !out->full && mailbox->answer.length == 0 &&
+        cm1e_sim_coe_next_fragment(slave, &mailbox->answer, room))
         load_next(slave, in);
 }
