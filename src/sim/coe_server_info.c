@@ -46,7 +46,7 @@ static void append_name(mailbox_message_t *answer, const char *name, size_t room
     answer->length = (uint16_t)(answer->length + n);
 }
 
-/* ---- lists ------------------------------------------------------------------------------------------------------- */
+/* ---- lists ----------------------------------------------------------------------------------------------------- */
 
 static bool has_access(const cm1e_object_t *object, uint8_t access)
 {
@@ -138,7 +138,7 @@ bool cm1e_sim_coe_next_fragment(cm1e_sim_slave_t *slave, mailbox_message_t *answ
     return true;
 }
 
-/* ---- descriptions ------------------------------------------------------------------------------------------------ */
+/* ---- descriptions ---------------------------------------------------------------------------------------------- */
 
 /* Types of records (ETG.1020, ETG.1000.6 table 64): a mapping, an identity; of arrays that of their elements. */
 static uint16_t object_type(cm1e_sim_slave_t *slave, const cm1e_object_t *object)

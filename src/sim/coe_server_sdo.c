@@ -67,7 +67,7 @@ static void transfer_begin(sdo_t *sdo, enum coe_transfer transfer, size_t size, 
     coe->done = done;
 }
 
-/* ---- download ---------------------------------------------------------------------------------------------------- */
+/* ---- download -------------------------------------------------------------------------------------------------- */
 
 static void download_finish(sdo_t *sdo, const uint8_t *data, size_t size)
 {
@@ -171,7 +171,7 @@ static void download_segment(sdo_t *sdo)
     segment_answer(sdo, (uint8_t)(RESPONSE_DOWNLOAD_SEGMENT | (sdo->command & TOGGLE)));
 }
 
-/* ---- upload ------------------------------------------------------------------------------------------------------ */
+/* ---- upload ---------------------------------------------------------------------------------------------------- */
 
 static void upload(sdo_t *sdo)
 {

@@ -85,7 +85,7 @@ bool cm1e_sim_slave_emergency(cm1e_sim_slave_t *slave, uint16_t error_code, uint
     return true;
 }
 
-/* ---- the read mailbox -------------------------------------------------------------------------------------------- */
+/* ---- the read mailbox ------------------------------------------------------------------------------------------ */
 
 /* Into the mailbox, and kept beside the one before it. */
 static void load(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, const uint8_t *bytes, uint16_t length)
@@ -162,7 +162,7 @@ static void repeat_last(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm)
     load(slave, sm, bytes, mailbox->kept_length[last_read]);
 }
 
-/* ---- the write mailbox ------------------------------------------------------------------------------------------- */
+/* ---- the write mailbox ----------------------------------------------------------------------------------------- */
 
 static void answer_error(mailbox_message_t *answer, uint16_t detail)
 {

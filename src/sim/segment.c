@@ -97,7 +97,7 @@ void cm1e_sim_segment_cut(cm1e_sim_segment_t *segment, uint32_t position, bool c
     segment->topology_changed = true;
 }
 
-/* ---- topology ---------------------------------------------------------------------------------------------------- */
+/* ---- topology -------------------------------------------------------------------------------------------------- */
 
 /* Whether the cable before slave `position` connects two partners that are switched on (count + 1: the ring's last). */
 static bool cable_connects(const cm1e_sim_segment_t *segment, uint32_t position)
@@ -187,7 +187,7 @@ void cm1e_sim_segment_advance(cm1e_sim_segment_t *segment, int64_t now_ns)
         update_topology(segment);
 }
 
-/* ---- frames ------------------------------------------------------------------------------------------------------ */
+/* ---- frames ---------------------------------------------------------------------------------------------------- */
 
 /* Walks the datagrams; returns the end of the last one that is whole, 0 where not even the first is. */
 static size_t whole_datagrams(const uint8_t *frame, size_t end)
@@ -268,7 +268,7 @@ int cm1e_sim_segment_process(cm1e_sim_segment_t *segment, int entry_port, uint8_
     return route.exit_port;
 }
 
-/* ---- faults on frames -------------------------------------------------------------------------------------------- */
+/* ---- faults on frames ------------------------------------------------------------------------------------------ */
 
 void cm1e_sim_segment_set_frame_fault(cm1e_sim_segment_t *segment, cm1e_frame_fault_t kind, uint32_t count,
                                       int64_t delay_ns)

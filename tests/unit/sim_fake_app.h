@@ -1,4 +1,4 @@
-/* Doubles for the tests of the slave controller: an application that only records, a master that sends single frames. */
+/* Doubles for the tests of the slave controller: an application that records, a master that sends single frames. */
 #ifndef SIM_FAKE_APP_H
 #define SIM_FAKE_APP_H
 
@@ -14,7 +14,7 @@
 #include "sim/slave.h"
 #include "unity.h"
 
-/* ---- dictionary ---------------------------------------------------------------------------------------------------- */
+/* ---- dictionary ------------------------------------------------------------------------------------------------ */
 
 enum { FAKE_OBJECTS = 170, FAKE_ENTRIES = 400, FAKE_VALUE_MAX = 700 };
 
@@ -59,8 +59,9 @@ static inline fake_value_t *fake_entry(fake_app_t *app, uint8_t subindex, uint8_
 {
     cm1e_object_t *object = &app->objects[app->object_count - 1];
     fake_value_t *v = &app->values[app->value_count];
-    v->entry = (cm1e_entry_t){.index = object->index, .subindex = subindex, .access = access, .type = type, .bits = bits,
-                              .name = "entry", .unit = "", .default_value = (int64_t)value, .minimum = -5, .maximum = 7};
+    v->entry = (cm1e_entry_t){.index = object->index, .subindex = subindex, .access = access, .type = type,
+                              .bits = bits, .name = "entry", .unit = "", .default_value = (int64_t)value,
+                              .minimum = -5, .maximum = 7};
     v->size = (bits + 7u) / 8u;
     cm1e_put_uint(v->bytes, v->size < 8 ? (unsigned)v->size : 8, value);
     app->entries[app->value_count++] = v->entry;
@@ -107,7 +108,7 @@ static inline void fake_dictionary(fake_app_t *app)
     }
 }
 
-/* ---- application --------------------------------------------------------------------------------------------------- */
+/* ---- application ----------------------------------------------------------------------------------------------- */
 
 static inline uint16_t fake_state_change(void *context, uint8_t from, uint8_t to)
 {
@@ -203,7 +204,7 @@ static const cm1e_sim_app_ops_t fake_ops = {
     .destroy = fake_destroy,
 };
 
-/* ---- segment and master -------------------------------------------------------------------------------------------- */
+/* ---- segment and master ---------------------------------------------------------------------------------------- */
 
 enum { COMMAND_NOP, APRD, APWR, APRW, FPRD, FPWR, FPRW, BRD, BWR, BRW, LRD, LWR, LRW, ARMW, FRMW };
 enum { FRAME_MAX = 1514, FAKE_SLAVES_MAX = 8, STATION = 0x1001 };
@@ -345,8 +346,8 @@ static inline int write_u8(bench_t *b, unsigned slave, uint16_t ado, uint8_t val
     return write_bytes(b, slave, ado, &value, 1);
 }
 
-static inline void write_sm(bench_t *b, unsigned slave, unsigned number, uint16_t start, uint16_t length, uint8_t control,
-                            uint8_t activate)
+static inline void write_sm(bench_t *b, unsigned slave, unsigned number, uint16_t start, uint16_t length,
+                            uint8_t control, uint8_t activate)
 {
     uint8_t sm[8] = {0};
     cm1e_put_u16(sm, start);
@@ -405,7 +406,7 @@ static inline void bring_to(bench_t *b, unsigned slave, uint8_t state)
         TEST_ASSERT_EQUAL_HEX16(CM1E_AL_OP, request_state(b, slave, CM1E_AL_OP));
 }
 
-/* ---- mailbox ------------------------------------------------------------------------------------------------------- */
+/* ---- mailbox --------------------------------------------------------------------------------------------------- */
 
 /* Writes a mailbox with the given counter; the working counter. */
 static inline int mailbox_put(bench_t *b, uint8_t type, uint8_t counter, const void *data, uint16_t length)

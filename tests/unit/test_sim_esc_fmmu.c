@@ -72,7 +72,7 @@ static void test_addresses_at_the_end_of_the_logical_space_do_not_wrap(void)
     TEST_ASSERT_EQUAL_INT(0, send_logical(&b, LRW, 0, data, 16));
 }
 
-/* ---- model: bit by bit --------------------------------------------------------------------------------------------- */
+/* ---- model: bit by bit ----------------------------------------------------------------------------------------- */
 
 typedef struct map {
     uint32_t logical;

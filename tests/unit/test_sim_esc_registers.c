@@ -58,7 +58,7 @@ static void test_error_counters_are_cleared_by_any_write(void)
     TEST_ASSERT_EQUAL_HEX8(0, read_u8(&b, 0, 0x030C));
 }
 
-/* ---- sync managers ------------------------------------------------------------------------------------------------- */
+/* ---- sync managers --------------------------------------------------------------------------------------------- */
 
 static void test_a_sync_manager_can_only_be_changed_while_it_is_off(void)
 {
@@ -209,7 +209,7 @@ static void test_buffers_take_turns(void)
     }
 }
 
-/* ---- watchdog ------------------------------------------------------------------------------------------------------ */
+/* ---- watchdog -------------------------------------------------------------------------------------------------- */
 
 static void test_watchdog_expires_after_its_time_and_not_before(void)
 {

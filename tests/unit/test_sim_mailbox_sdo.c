@@ -75,7 +75,8 @@ static size_t upload(uint16_t index, uint8_t subindex, bool complete, uint8_t *v
 }
 
 /* Downloads `size` bytes, `first` of them with the first message, then segments; the abort code. */
-static uint32_t download(uint16_t index, uint8_t subindex, bool complete, const uint8_t *value, size_t size, size_t first)
+static uint32_t download(uint16_t index, uint8_t subindex, bool complete, const uint8_t *value, size_t size,
+                         size_t first)
 {
     uint8_t sdo[120] = {complete ? 0x31 : 0x21};
     cm1e_put_u16(sdo + 1, index);
@@ -100,7 +101,7 @@ static uint32_t download(uint16_t index, uint8_t subindex, bool complete, const 
     return b.answer[2] == 0x80 ? cm1e_get_u32(b.answer + 6) : 0;
 }
 
-/* ---- upload ------------------------------------------------------------------------------------------------------- */
+/* ---- upload ---------------------------------------------------------------------------------------------------- */
 
 static void test_values_up_to_four_bytes_come_expedited(void)
 {
@@ -154,7 +155,7 @@ static void test_the_first_message_may_hold_less_than_it_could(void)
     }
 }
 
-/* ---- download ----------------------------------------------------------------------------------------------------- */
+/* ---- download -------------------------------------------------------------------------------------------------- */
 
 static void test_expedited_download_says_its_size_or_takes_the_entrys(void)
 {
@@ -258,7 +259,7 @@ static void test_a_new_request_ends_a_transfer_under_way(void)
     expect_abort(SDO_ABORT_COMMAND, 0, 0);
 }
 
-/* ---- complete access ---------------------------------------------------------------------------------------------- */
+/* ---- complete access ------------------------------------------------------------------------------------------- */
 
 static void test_complete_access_reads_the_row_of_entries(void)
 {
@@ -312,7 +313,7 @@ static void test_complete_access_refuses_what_does_not_fit(void)
     TEST_ASSERT_EQUAL_HEX32(SDO_ABORT_READ_ONLY, download(0x2010, 0, true, number, 3, 3));
 }
 
-/* ---- SDO information ---------------------------------------------------------------------------------------------- */
+/* ---- SDO information ------------------------------------------------------------------------------------------- */
 
 static void ask_information(uint8_t opcode, const uint8_t *data, uint16_t bytes)
 {

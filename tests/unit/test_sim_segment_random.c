@@ -57,8 +57,9 @@ static size_t random_datagram(uint8_t *frame, size_t at)
     for (unsigned i = 0; i < length; i++)
         data[i] = (uint8_t)(below(3) ? next() : 0);
     const uint8_t command = (uint8_t)below(16);
-    const uint32_t address = command >= LRD && command <= LRW ? below(64)
-                                                              : (uint16_t)(0 - below(SLAVES + 1)) | (uint32_t)random_address() << 16;
+    const bool logical = command >= LRD && command <= LRW;
+    const uint32_t physical = (uint16_t)(0 - below(SLAVES + 1)) | (uint32_t)random_address() << 16;
+    const uint32_t address = logical ? below(64) : physical;
     return frame_add(frame, at, command, address, data, length);
 }
 
@@ -93,7 +94,8 @@ static void reconfigure(void)
 /* A mailbox with a plausible begin. */
 static void random_mailbox(void)
 {
-    static const uint8_t commands[] = {0x00, 0x01, 0x10, 0x20, 0x21, 0x22, 0x23, 0x2F, 0x30, 0x31, 0x40, 0x50, 0x60, 0x70, 0x80};
+    static const uint8_t commands[] = {0x00, 0x01, 0x10, 0x20, 0x21, 0x22, 0x23, 0x2F,
+                                       0x30, 0x31, 0x40, 0x50, 0x60, 0x70, 0x80};
     static const uint16_t indices[] = {0x1000, 0x1008, 0x1009, 0x2000, 0x2001, 0x2003, 0x2010, 0x2011, 0x2012, 0x5555};
     uint8_t box[128], answer[128];
     for (unsigned i = 0; i < sizeof box; i++)
