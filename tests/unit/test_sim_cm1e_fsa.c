@@ -397,6 +397,25 @@ static void test_leaving_op_takes_the_torque_away(void)
     }
 }
 
+/* What a controlword was before OP was left does not count: bits that are set when OP is back have risen. */
+static void test_controlword_starts_anew_in_op(void)
+{
+    bench_t b;
+    bench_open(&b, NULL, CM1E_PDO_ORDER_UG_4_4);
+    to_state(&b, FAULT);
+    b.controlword = 0x86;
+    bench_cycle(&b);
+    TEST_ASSERT_EQUAL(READY_TO_SWITCH_ON, bench_state(&b));
+    TEST_ASSERT_EQUAL_HEX16(0, b.ops->state_change(b.drive, BENCH_OP, BENCH_SAFEOP));
+    cm1e_sim_fsa_error(b.drive, 0x7500);
+    b.ops->advance(b.drive, b.now_ns += 10 * BENCH_MS);
+    TEST_ASSERT_EQUAL(FAULT, b.drive->state);
+    TEST_ASSERT_EQUAL_HEX16(0, b.ops->state_change(b.drive, BENCH_SAFEOP, BENCH_OP));
+    bench_cycle(&b);
+    TEST_ASSERT_EQUAL(READY_TO_SWITCH_ON, bench_state(&b));
+    bench_close(&b);
+}
+
 static void test_watchdog_disables_the_motor_since_1_3_0(void)
 {
     static const char *const firmwares[] = {"1.2.0", "1.3.0", "1.3.5"};
@@ -468,6 +487,13 @@ static void test_a_long_pause_is_caught_up_within_bounds(void)
     bench_cycle(&b);
     TEST_ASSERT_EQUAL(OPERATION_ENABLED, bench_state(&b));
     TEST_ASSERT_EQUAL(0, b.position);
+    b.controlword = 0x06;
+    bench_cycle(&b);
+    b.drive->mechanics.velocity = 500000; /* runs out within a second, of which nothing may get lost */
+    b.now_ns += INT64_C(1000000000) * 3600;
+    bench_cycle(&b);
+    TEST_ASSERT_INT32_WITHIN(2000, 17000, b.position);
+    TEST_ASSERT_EQUAL(0, b.velocity);
     b.ops->advance(b.drive, b.now_ns - BENCH_MS);
     TEST_ASSERT_EQUAL_MESSAGE(b.now_ns, b.drive->now_ns, "time does not run backwards");
     bench_close(&b);
@@ -501,5 +527,6 @@ int main(void)
     RUN_TEST(test_user_variable_bits_show_in_the_statusword_since_1_3_4);
     RUN_TEST(test_unknown_motor_or_firmware_gives_no_drive);
     RUN_TEST(test_a_long_pause_is_caught_up_within_bounds);
+    RUN_TEST(test_controlword_starts_anew_in_op);
     return UNITY_END();
 }

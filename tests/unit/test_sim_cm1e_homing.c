@@ -211,6 +211,11 @@ static void test_start_needs_an_edge_while_enabled(void)
     TEST_ASSERT_EQUAL(OPERATION_ENABLED, bench_state(&b));
     TEST_ASSERT_EQUAL_HEX16(INTERRUPTED, b.statusword & BITS);
     TEST_ASSERT_EQUAL(0, b.position);
+    b.controlword = 0x10F;
+    bench_cycle(&b);
+    b.controlword = 0x11F; /* "enable bit 4" needs halt at 0 */
+    bench_run(&b, 0.1);
+    TEST_ASSERT_EQUAL(HOMING_IDLE, b.drive->homing.phase);
     begin(&b);
     TEST_ASSERT_EQUAL_HEX16(IN_PROGRESS, b.statusword & BITS);
     bench_close(&b);
@@ -369,6 +374,7 @@ static void test_homing_torque_limits_and_decides(void)
         most = fmax(most, fabs((double)b.torque));
     }
     TEST_ASSERT_DOUBLE_WITHIN(1, 200, most);
+    TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(b.drive->motor->peak_torque_nm, b.drive->servo.torque_limit, "only during it");
     bench_close(&b);
 
     open_at(&b, &places[0], 0); /* friction that needs more torque than K47 allows looks like a stop */
@@ -408,6 +414,7 @@ static void test_leaving_the_mode_on_the_way_stops_first(void)
     TEST_ASSERT_EQUAL_MESSAGE(HM, b.mode_display, "still slowing down");
     bench_run(&b, 0.15);
     TEST_ASSERT_EQUAL(3, b.mode_display);
+    TEST_ASSERT_EQUAL_DOUBLE(b.drive->motor->peak_torque_nm, b.drive->servo.torque_limit);
     TEST_ASSERT_DOUBLE_WITHIN(1000, 0, b.drive->mechanics.velocity);
     b.mode = HM;
     b.controlword = 0x0F;

@@ -173,7 +173,9 @@ static void test_csv_goes_to_its_target_at_once(void)
     open_endless(&b, "1.3.5");
     bench_enable(&b, CSV);
     b.target_velocity = 1000000;
-    bench_run(&b, 0.03);
+    bench_run(&b, 0.004);
+    TEST_ASSERT_EQUAL_MESSAGE(0, b.statusword & BIT12, "at its torque limit it does not follow");
+    bench_run(&b, 0.026);
     TEST_ASSERT_DOUBLE_WITHIN(20000, 1000000, speed(&b));
     bench_run(&b, 0.2);
     TEST_ASSERT_DOUBLE_WITHIN(100, 1000000, speed(&b));
@@ -342,12 +344,39 @@ static void test_pp_velocity_and_acceleration_are_kept(void)
     while (!(b.statusword & BIT10)) {
         bench_cycle(&b);
         peak = fmax(peak, b.drive->servo.reference_velocity);
+        TEST_ASSERT_EQUAL_DOUBLE(1000000, b.drive->profile_acceleration);
         steepest = fmax(steepest, fabs(b.drive->servo.reference_velocity - last));
         last = b.drive->servo.reference_velocity;
     }
     TEST_ASSERT_EQUAL_DOUBLE(300000, peak);
     TEST_ASSERT_DOUBLE_WITHIN(260, 1000, steepest); /* per cycle of 1 ms; the last step lands */
     bench_close(&b);
+}
+
+/* Over the process data of 0x1603 nothing is checked or refused: the drive rounds when it uses the value. */
+static void test_pp_values_over_the_process_data_are_rounded_and_limited(void)
+{
+    static const struct {
+        uint32_t written;
+        double used;
+    } rows[] = {{0, 1000}, {1, 1000}, {1499, 1000}, {1500, 2000}, {1000400, 1000000}, {32767000, 32767000},
+                {UINT32_MAX, 32767000}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        bench_t b;
+        open_endless(&b, "1.3.5");
+        b.drive->al_state = BENCH_PREOP;
+        bench_write(&b, 0x1C12, 0, 0);
+        bench_write(&b, 0x1C12, 1, 0x1603);
+        bench_write(&b, 0x1C12, 0, 1);
+        bench_to_op(&b);
+        bench_enable(&b, PP);
+        b.profile_acceleration = rows[i].written;
+        b.profile_velocity = UINT32_MAX;
+        set_point(&b, 1000);
+        TEST_ASSERT_EQUAL_DOUBLE(rows[i].used, b.drive->profile_acceleration);
+        TEST_ASSERT_EQUAL_DOUBLE(2500000, b.drive->profile_velocity);
+        bench_close(&b);
+    }
 }
 
 static void test_pp_smallest_acceleration_is_1000(void)
@@ -373,6 +402,21 @@ static void test_pp_new_set_point_on_the_way_acts_at_once(void)
     TEST_ASSERT_TRUE(bench_until(&b, BIT10, BIT10, 5));
     TEST_ASSERT_INT32_WITHIN(10, -100000, b.position);
     TEST_ASSERT_DOUBLE_WITHIN(5000, 400000, b.drive->mechanics.peak_velocity);
+    bench_close(&b);
+}
+
+static void test_pp_target_is_not_reached_while_running_over_it(void)
+{
+    bench_t b;
+    open_pp(&b, 200000, 1000000);
+    set_point(&b, 200000);
+    bench_run(&b, 0.4);
+    set_point(&b, b.position + 400); /* 20,000 counts are needed to stop */
+    while (!(b.statusword & BIT10))
+        bench_cycle(&b);
+    TEST_ASSERT_TRUE(fabs(speed(&b)) < 5000);
+    TEST_ASSERT_INT32_WITHIN(10, b.target_position, b.position);
+    TEST_ASSERT_TRUE(b.drive->mechanics.travel > b.position + 30000);
     bench_close(&b);
 }
 
@@ -454,6 +498,13 @@ static void test_overload_raises_2310_and_rated_load_does_not(void)
     b.drive->mechanics.load_torque = 0.110;
     TEST_ASSERT_TRUE(bench_until(&b, 0x4F, 0x08, 5));
     TEST_ASSERT_EQUAL_HEX16(0x2310, b.error_code);
+    b.controlword = 0x86; /* a reset forgives what was: the same load is carried as long again */
+    bench_cycle(&b);
+    b.target_position = b.position;
+    b.controlword = 0x0F;
+    b.drive->mechanics.load_torque = 0.110;
+    bench_run(&b, 0.3);
+    TEST_ASSERT_EQUAL(OPERATION_ENABLED, bench_state(&b));
     bench_close(&b);
 }
 
@@ -624,5 +675,7 @@ int main(void)
     RUN_TEST(test_switching_from_motion_to_pp_or_hm_stops_in_a_ramp);
     RUN_TEST(test_losing_torque_at_speed_runs_out);
     RUN_TEST(test_the_same_run_repeats_exactly);
+    RUN_TEST(test_pp_target_is_not_reached_while_running_over_it);
+    RUN_TEST(test_pp_values_over_the_process_data_are_rounded_and_limited);
     return UNITY_END();
 }

@@ -241,6 +241,18 @@ static void test_power_cycle_stops_torque_and_lets_the_axis_run_out(void)
     pass(500);
     TEST_ASSERT_DOUBLE_WITHIN(2000, 17000, d->mechanics.position);
     TEST_ASSERT_EQUAL_DOUBLE(0, d->mechanics.velocity);
+    const cm1e_sim_app_ops_t *ops = cm1e_sim_cm1e_ops(d);
+    for (int i = 0; i < 20; i++) {
+        uint8_t image[13] = {0x0F, [12] = CM1E_MODE_CSP};
+        pass(1);
+        ops->outputs(d, image, sizeof image, now_ns);
+    }
+    cm1e_sim_probe_t probe;
+    cm1e_sim_probe(segment, 1, &probe);
+    TEST_ASSERT_TRUE(probe.torque_on);
+    accept("power-cycle 1");
+    cm1e_sim_probe(segment, 1, &probe);
+    TEST_ASSERT_FALSE(probe.torque_on);
     accept("power-cycle 4");
     TEST_ASSERT_NOT_NULL(strstr(answer, "500 ms"));
 }

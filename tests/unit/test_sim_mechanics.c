@@ -66,6 +66,15 @@ static void test_free_acceleration_is_that_of_the_inertia(void)
     TEST_ASSERT_DOUBLE_WITHIN(acceleration * 0.005 * 0.01, acceleration * 0.1 * 0.1 / 2, m.position);
 }
 
+static void test_viscous_friction_sets_the_highest_speed(void)
+{
+    cm1e_mechanics_t m;
+    cm1e_mechanics_init(&m, &(cm1e_sim_axis_config_t){.viscous_friction = 1e-3, .no_stops = true}, ROTOR_INERTIA);
+    run(&m, 0.1, 2);
+    const double highest = (0.1 - 0.005) / 1e-3 * CM1E_COUNTS_PER_RADIAN;
+    TEST_ASSERT_DOUBLE_WITHIN(highest * 0.01, highest, m.velocity);
+}
+
 static void test_a_shaft_left_alone_slows_down_and_stays(void)
 {
     cm1e_mechanics_t m = standard();
@@ -211,5 +220,6 @@ int main(void)
     RUN_TEST(test_servo_settles_within_a_count_for_any_step_and_load);
     RUN_TEST(test_servo_lags_by_some_counts_at_speed);
     RUN_TEST(test_servo_torque_stays_within_its_limit);
+    RUN_TEST(test_viscous_friction_sets_the_highest_speed);
     return UNITY_END();
 }
