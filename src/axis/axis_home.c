@@ -99,6 +99,7 @@ void axis_home_begin(cm1e_axis_t *axis)
     axis->home.submitted = false;
     axis->home.refused = CM1E_OK;
     axis->home.goal = HOME_GOAL_DONE;
+    axis->home.deadline_ns = axis->now_ns + axis->home.timeout_ns;
     axis->activity = ACTIVITY_HOMING;
     enter(axis, HOME_WRITE);
 }
@@ -113,7 +114,7 @@ static void leave(cm1e_axis_t *axis)
         axis->state = CM1E_AXIS_STANDSTILL;
 }
 
-/* ---- the steps ---------------------------------------------------------------------------------------------------- */
+/* ---- the steps --------------------------------------------------------------------------------------------------- */
 
 static void refuse(cm1e_axis_t *axis, cm1e_error_t error)
 {
@@ -141,6 +142,10 @@ static void submit(cm1e_axis_t *axis)
 static void step_write(cm1e_axis_t *axis)
 {
     homing_t *home = &axis->home;
+    if (axis->now_ns >= home->deadline_ns) {
+        refuse(axis, CM1E_ERROR_TIMEOUT); /* a transfer under way ends by itself */
+        return;
+    }
     if (!home->submitted) {
         submit(axis);
         return;

@@ -2,7 +2,7 @@
  * Power, errors and their reset: the transitions of figure 2 that no motion command makes.
  *
  * MC_Power.Enable FALSE while the axis moves: the commands are aborted and the state is Disabled at once (note 2), the
- * motor is ramped down with the axis's deceleration, and only then loses its torque; MC_Power.Status stays TRUE so long.
+ * motor is ramped down with the axis's deceleration and only then loses its torque; MC_Power.Status is TRUE so long.
  * ErrorStop ramps down without a limit of jerk, and ends without torque as well, so that MC_Reset leads to Disabled
  * (note 3), and from there, if MC_Power.Enable is TRUE, on to Standstill.
  */
@@ -24,7 +24,7 @@ void axis_become_free(cm1e_axis_t *axis)
     axis_set_to_actual(axis);
 }
 
-/* Whatever moves is stopped, by a ramp of ours or by the drive in its homing; without torque there is nothing to stop. */
+/* Whatever moves is stopped, by a ramp of ours or by the drive in its homing; without torque nothing is to stop. */
 static void wind_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp)
 {
     if (!axis->drive.feedback.enabled && axis->activity != ACTIVITY_HOMING)
@@ -124,7 +124,7 @@ void axis_enable_step(cm1e_axis_t *axis)
         axis->energized = false;
 }
 
-/* ---- reset -------------------------------------------------------------------------------------------------------- */
+/* ---- reset ------------------------------------------------------------------------------------------------------- */
 
 cm1e_error_t cm1e_axis_reset(cm1e_axis_t *axis)
 {

@@ -19,8 +19,8 @@ static cm1e_error_t velocity_unit(cm1e_drive_t *drive, cm1e_diag_t *diag)
     }
     if (!drive->firmware)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, OBJ_100A_SOFTWARE_VERSION,
-                             "Axis \"%s\" (slave %u): the firmware version (object 0x100A) cannot be read, and the unit "
-                             "of velocities depends on it (counts/ms before V1.3.3). State the unit in the "
+                             "Axis \"%s\" (slave %u): the firmware version (object 0x100A) cannot be read, and the "
+                             "unit of velocities depends on it (counts/ms before V1.3.3). State the unit in the "
                              "configuration of the axis.", config->name, drive->position);
     drive->velocity_scale = drive->firmware->velocity_in_counts_per_ms ? 1000.0 : 1.0;
     return CM1E_OK;
@@ -135,13 +135,13 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
     if (bus_ok)
         drive_decode(drive);
     f->online = bus_ok && drive_operational(drive);
+    if (f->state != OPERATION_ENABLED || (f->mode != CM1E_MODE_CSP && f->mode != CM1E_MODE_PP))
+        drive->target_holds = false;
     if (drive->reset_phase != RESET_IDLE) {
         drive_reset_step(drive);
         f->enabled = false;
         return;
     }
-    if (f->state != OPERATION_ENABLED || (f->mode != CM1E_MODE_CSP && f->mode != CM1E_MODE_PP))
-        drive->target_holds = false;
     const bool operating = f->state == OPERATION_ENABLED && drive->torque;
     const bool shown = f->mode == (int8_t)drive->mode;
     latch_faults(drive);
@@ -210,8 +210,8 @@ static uint16_t controlword(cm1e_drive_t *drive, bool pass)
     return word;
 }
 
-/* Position to write while the caller's does not pass: the actual one; but as long as the drive shows torque in a mode that
- * holds a position, the last target: it neither sags by its lag, nor can a stale actual position move it. */
+/* Position to write while the caller's does not pass: the actual one; but as long as the drive shows torque in a mode
+ * that holds a position, the last target: it neither sags by its lag, nor can a stale actual position move it. */
 static int32_t safe_position(const cm1e_drive_t *drive)
 {
     return drive->target_holds ? drive->target_position : drive->feedback.position;

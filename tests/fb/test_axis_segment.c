@@ -1,10 +1,10 @@
 /*
- * The axis on the simulated segment, through the real bus and the real frames, on virtual time: enabling, homing by every
- * method, moves, random commands, on every mapping, both orders of objects, several firmware versions and cycle times.
+ * The axis on the simulated segment, through the real bus and the real frames, on virtual time: enabling, homing by
+ * every method, moves, random commands, on every mapping, both orders of objects, every firmware and cycle time.
  */
 #include "axis_segment.h"
 
-/* ---- the variants ---------------------------------------------------------------------------------------------------- */
+/* ---- the variants ------------------------------------------------------------------------------------------------ */
 
 static const char *const firmwares[] = {"1.2.0", "1.3.0", "1.3.2", "1.3.3", "1.3.4", "1.3.5"};
 enum { FIRMWARES = 6, MAPPINGS = 4, ORDERS = 2, VARIANTS = FIRMWARES * MAPPINGS * ORDERS };
@@ -94,7 +94,7 @@ START_TEST(test_every_homing_method)
     const double offset_counts = offset ? sign * 20000.0 : 0.0;
     const cm1e_homing_config_t homing = {.method = methods[method].method, .velocity = 100.0, .acceleration = 2000.0,
                                          .offset = offset_counts / (invert ? -1000.0 : 1000.0), .torque = 40.0};
-    for (int round = 0; round < 2; round++) { /* the second one begins at the reference: on the sensor, or at the stop */
+    for (int round = 0; round < 2; round++) { /* the second one begins at the reference */
         await(command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_HOME, .position = 33.0, .homing = &homing}), 60.0);
         cycles(200);
         ck_assert_double_eq_tol(info().actual_position, 33.0, 0.05);
@@ -336,7 +336,7 @@ START_TEST(test_slave_unplugged_and_back_is_brought_to_operational_by_reset)
 }
 END_TEST
 
-/* ---- random commands ---------------------------------------------------------------------------------------------------- */
+/* ---- random commands --------------------------------------------------------------------------------------------- */
 
 static uint64_t seed;
 static double uniform(double low, double high)

@@ -3,8 +3,8 @@
  * A bus for unit tests of drive and axis, without frames: one CM1-E as the process data shows it, in a few lines.
  * Include it once in a test program; it defines the functions of bus.h and bus_image.h that the two rooms call.
  *
- * The drive behind it follows the controlword (UG 6.1), one cycle late, with motor power, faults, modes and a shaft that
- * follows the target position exactly. A test may overwrite every member at any time.
+ * The drive behind it follows the controlword (UG 6.1), one cycle late, with motor power, faults, modes and a shaft
+ * that follows the target position exactly. A test may overwrite every member at any time.
  */
 #ifndef CM1E_TESTS_FAKE_BUS_H
 #define CM1E_TESTS_FAKE_BUS_H
@@ -58,7 +58,8 @@ struct cm1e_bus {
     cm1e_sdo_t *sdo;
 };
 
-static inline void fake_bus_init(cm1e_bus_t *bus, cm1e_mapping_t mapping, cm1e_pdo_order_t order, cm1e_firmware_t firmware)
+static inline void fake_bus_init(cm1e_bus_t *bus, cm1e_mapping_t mapping, cm1e_pdo_order_t order,
+                                 cm1e_firmware_t firmware)
 {
     memset(bus, 0, sizeof *bus);
     cm1e_clock_init_virtual(&bus->clock, 0);
@@ -215,7 +216,7 @@ static inline void fake_bus_fault(cm1e_bus_t *bus, uint16_t code)
     bus->error_code = code;
 }
 
-/* ---- the seam ----------------------------------------------------------------------------------------------------- */
+/* ---- the seam ---------------------------------------------------------------------------------------------------- */
 
 uint8_t *cm1e_bus_outputs(cm1e_bus_t *bus) { return bus->outputs; }
 const uint8_t *cm1e_bus_inputs(const cm1e_bus_t *bus) { return bus->inputs; }

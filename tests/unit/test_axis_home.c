@@ -5,7 +5,7 @@
 
 static const int8_t methods[] = {-1, -2, -3, -4, -5, -6};
 
-/* ---- a device that homes: the shaft runs, finds its reference, goes to the offset, and calls that 0 ----------------- */
+/* ---- a device that homes: the shaft runs, finds its reference, goes to the offset, and calls that 0 -------------- */
 
 static int run_cycles, start_latency;
 static int32_t reference; /* counts from where it began */
@@ -106,7 +106,7 @@ static void cycles_until_step(home_step_t step)
     TEST_FAIL_MESSAGE("the step of homing was not reached");
 }
 
-/* ---- the good case -------------------------------------------------------------------------------------------------- */
+/* ---- the good case ----------------------------------------------------------------------------------------------- */
 
 static void test_every_method_homes_and_sets_the_position(void)
 {
@@ -193,6 +193,26 @@ static void test_full_queue_only_delays(void)
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
 }
 
+static void test_parameters_that_find_no_way_to_the_device_time_out(void)
+{
+    for (int stuck_transfer = 0; stuck_transfer < 2; stuck_transfer++) {
+        start_bench();
+        bus.sdo_full = !stuck_transfer;
+        bus.sdo_delay = 100000;
+        const cm1e_command_id_t id = home(0.0, &(cm1e_homing_config_t){.method = -1, .timeout_s = 0.2});
+        const int n = bench_wait(id, 1000);
+        TEST_ASSERT_INT_WITHIN(10, 200, n);
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_TIMEOUT, cm1e_axis_command_status(axis, id).error);
+        TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+        assert_text_has("0x607C");
+        cm1e_command_id_t again; /* the buffer of a transfer under way is not touched */
+        const cm1e_homing_config_t config = {.method = -1};
+        TEST_ASSERT_EQUAL_INT(stuck_transfer ? CM1E_ERROR_BUSY : CM1E_OK,
+                              cm1e_axis_start(axis, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HOME,
+                                                                           .homing = &config}, &again));
+    }
+}
+
 static void test_position_counter_renamed_by_homing_near_the_wrap(void)
 {
     bench_start();
@@ -222,7 +242,7 @@ static void test_homing_in_the_fixed_csp_mapping_switches_over_sdo(void)
     TEST_ASSERT_EQUAL_INT64(0, bus.torque_step);
 }
 
-/* ---- refused before anything happens ---------------------------------------------------------------------------------- */
+/* ---- refused before anything happens ----------------------------------------------------------------------------- */
 
 static void test_parameters_outside_the_device_are_refused_before_the_wire(void)
 {
@@ -307,7 +327,7 @@ static void test_sdo_abort_of_each_parameter_refuses_without_moving(void)
     }
 }
 
-/* ---- going wrong on the way -------------------------------------------------------------------------------------------- */
+/* ---- going wrong on the way -------------------------------------------------------------------------------------- */
 
 static void assert_homing_error(cm1e_command_id_t id, cm1e_error_t error)
 {
@@ -535,6 +555,7 @@ int main(void)
     RUN_TEST(test_default_parameters_and_rounding);
     RUN_TEST(test_homing_again_is_not_fooled_by_the_bits_of_the_last_one);
     RUN_TEST(test_full_queue_only_delays);
+    RUN_TEST(test_parameters_that_find_no_way_to_the_device_time_out);
     RUN_TEST(test_position_counter_renamed_by_homing_near_the_wrap);
     RUN_TEST(test_homing_in_the_fixed_csp_mapping_switches_over_sdo);
     RUN_TEST(test_parameters_outside_the_device_are_refused_before_the_wire);

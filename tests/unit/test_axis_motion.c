@@ -4,8 +4,20 @@
 
 #include "../support/axis_bench.h"
 
-void setUp(void) { bench_start(); }
-void tearDown(void) { bench_end(); }
+static uint64_t run, seed;
+
+void setUp(void)
+{
+    run = 0;
+    bench_start();
+}
+
+void tearDown(void)
+{
+    if (Unity.CurrentTestFailed && run)
+        printf("it was run %llu\n", (unsigned long long)run);
+    bench_end();
+}
 
 static cm1e_error_t try_command(const cm1e_axis_command_t *command)
 {
@@ -19,7 +31,7 @@ static cm1e_command_id_t move_by(double distance, double velocity)
                                                       .velocity = velocity});
 }
 
-/* ---- enabling ------------------------------------------------------------------------------------------------------- */
+/* ---- enabling ---------------------------------------------------------------------------------------------------- */
 
 static void test_enable_never_moves_also_with_a_turning_shaft(void)
 {
@@ -76,7 +88,7 @@ static void test_enable_waits_without_motor_power_and_ends_in_words(void)
     TEST_ASSERT_NOT_NULL(strstr(text, "24 V"));
 }
 
-/* ---- positions -------------------------------------------------------------------------------------------------------- */
+/* ---- positions --------------------------------------------------------------------------------------------------- */
 
 static void test_moves_end_exactly_and_in_time(void)
 {
@@ -182,7 +194,7 @@ static void test_units_and_inverted_direction(void)
     TEST_ASSERT_EQUAL_DOUBLE(10.0, bench_info().set_velocity);
 }
 
-/* ---- refusals ----------------------------------------------------------------------------------------------------------- */
+/* ---- refusals ---------------------------------------------------------------------------------------------------- */
 
 static void test_bad_numbers_are_refused_and_change_nothing(void)
 {
@@ -257,7 +269,7 @@ static void test_stops_take_the_maximum_where_more_is_asked(void)
     TEST_ASSERT_LESS_OR_EQUAL_INT64(7, worst_change);
 }
 
-/* ---- velocity ------------------------------------------------------------------------------------------------------------ */
+/* ---- velocity ---------------------------------------------------------------------------------------------------- */
 
 static void test_velocity_signs_and_directions(void)
 {
@@ -285,7 +297,7 @@ static void test_velocity_signs_and_directions(void)
     TEST_ASSERT_LESS_OR_EQUAL_INT64(7, worst_change);
 }
 
-/* ---- software limits ------------------------------------------------------------------------------------------------------ */
+/* ---- software limits --------------------------------------------------------------------------------------------- */
 
 static void with_limits(double negative, double positive)
 {
@@ -374,7 +386,7 @@ static void test_an_axis_outside_its_limits_may_only_come_back(void)
     TEST_ASSERT_EQUAL_INT(CM1E_OK, bench_info().error);
 }
 
-/* ---- enabled directions ----------------------------------------------------------------------------------------------------- */
+/* ---- enabled directions ------------------------------------------------------------------------------------------ */
 
 static void test_motion_in_a_disabled_direction_is_refused(void)
 {
@@ -454,7 +466,7 @@ static void test_a_direction_that_a_motion_does_not_need_may_be_disabled(void)
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(back));
 }
 
-/* ---- lag ------------------------------------------------------------------------------------------------------------------------ */
+/* ---- lag --------------------------------------------------------------------------------------------------------- */
 
 static void test_a_motor_that_does_not_follow_ends_in_error_stop(void)
 {
@@ -471,7 +483,7 @@ static void test_a_motor_that_does_not_follow_ends_in_error_stop(void)
     TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
 }
 
-/* ---- the bus goes ------------------------------------------------------------------------------------------------------------------ */
+/* ---- the bus goes ------------------------------------------------------------------------------------------------ */
 
 static void test_bus_trouble_while_moving_ramps_down_blindly_then_disables(void)
 {
@@ -526,7 +538,7 @@ static void test_a_slave_that_was_away_is_no_longer_homed(void)
     TEST_ASSERT_FALSE(bench_info().homed);
 }
 
-/* ---- velocity mapping ------------------------------------------------------------------------------------------------------------ */
+/* ---- velocity mapping -------------------------------------------------------------------------------------------- */
 
 static void test_csv_mapping_moves_to_positions_with_a_loop_of_ours(void)
 {
@@ -546,7 +558,7 @@ static void test_csv_mapping_moves_to_positions_with_a_loop_of_ours(void)
     TEST_ASSERT_EQUAL_INT(CM1E_OK, bench_info().error);
 }
 
-/* ---- configuration ------------------------------------------------------------------------------------------------------------------ */
+/* ---- configuration ----------------------------------------------------------------------------------------------- */
 
 static void test_configurations_that_contradict_themselves_are_refused(void)
 {
@@ -569,9 +581,8 @@ static void test_configurations_that_contradict_themselves_are_refused(void)
     TEST_ASSERT_NOT_NULL(strstr(diag.text, "software limit"));
 }
 
-/* ---- random commands ---------------------------------------------------------------------------------------------------------------- */
+/* ---- random commands --------------------------------------------------------------------------------------------- */
 
-static uint64_t seed;
 static double uniform(double low, double high)
 {
     seed ^= seed << 13;
@@ -642,13 +653,11 @@ static void random_run(void)
 
 static void test_random_commands_keep_every_limit(void)
 {
-    for (uint64_t run = 1; run <= 30; run++) {
+    for (run = 1; run <= 30; run++) {
         seed = run * UINT64_C(0x9E3779B97F4A7C15);
-        printf("seed %llu\r", (unsigned long long)run);
         bench_start();
         random_run();
     }
-    printf("\n");
 }
 
 int main(void)

@@ -29,7 +29,8 @@ static void cycle(void)
     cm1e_drive_read(&drive, true, bus.clock.virtual_now_ns);
 }
 
-static const int32_t positions[] = {0, 1, -1, 123456789, -123456789, INT32_MAX, INT32_MIN, INT32_MAX - 1, INT32_MIN + 1};
+static const int32_t positions[] = {0, 1, -1, 123456789, -123456789, INT32_MAX, INT32_MIN, INT32_MAX - 1,
+                                    INT32_MIN + 1};
 static const cm1e_mode_t modes[] = {CM1E_MODE_PP, CM1E_MODE_PV, CM1E_MODE_HM, CM1E_MODE_CSP, CM1E_MODE_CSV};
 
 /* The caller asks for wild targets from the beginning: none of them may reach the wire before `enabled`. */

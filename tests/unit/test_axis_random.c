@@ -1,0 +1,193 @@
+/* A device and programs that do anything: states, commands and set-points stay what the standard and the limits allow. */
+#include <math.h>
+
+#include "../support/axis_bench.h"
+
+static uint64_t seed;
+static unsigned number; /* of the run, from which the seed is made */
+
+void setUp(void) {}
+void tearDown(void)
+{
+    if (Unity.CurrentTestFailed)
+        printf("it was run %u\n", number);
+    bench_end();
+}
+
+static uint32_t draw(uint32_t below)
+{
+    seed ^= seed << 13;
+    seed ^= seed >> 7;
+    seed ^= seed << 17;
+    return (uint32_t)(seed >> 33) % below;
+}
+
+static double wild(double size)
+{
+    static const double special[] = {0.0, -0.0, NAN, INFINITY, -INFINITY, 1e300, -1e300, 1e-300, 1e15, -1e15};
+    if (draw(12) == 0)
+        return special[draw(10)];
+    return size * ((double)draw(2000001) / 1e6 - 1.0);
+}
+
+static double positive(double size) { return draw(3) ? fabs(wild(size)) : 0.0; }
+
+/* ---- the device ------------------------------------------------------------------------------------------------------ */
+
+static void device(void)
+{
+    if (draw(400) == 0)
+        fake_bus_fault(&bus, cm1e_device_errors[draw((uint32_t)cm1e_device_error_count)].code);
+    if (draw(300) == 0)
+        bus.power = draw(4) > 0;
+    if (draw(500) == 0)
+        bus.frozen = draw(4) == 0;
+    if (draw(500) == 0)
+        bus.position = (int32_t)draw(UINT32_MAX);
+    if (draw(500) == 0)
+        bus.watch = (cm1e_slave_watch_t){.al_state = draw(2) ? CM1E_AL_OP : (uint16_t)draw(32), .lost = draw(4) == 0};
+    else if (draw(80) == 0)
+        bus.watch = (cm1e_slave_watch_t){.al_state = CM1E_AL_OP};
+    bus.mode_status = (uint16_t)(draw(8) << 10 & 0x3400);
+    bus.sdo_abort_index = draw(30) ? 0 : 0x6099;
+    bus.sdo_full = draw(10) == 0;
+    bus.sdo_delay = draw(20);
+    received = draw(15) ? CM1E_OK : CM1E_ERROR_BUS_LOST;
+    if (draw(400) == 0)
+        health = CM1E_ERROR_BUS_WORKING_COUNTER;
+    else if (draw(10) == 0)
+        health = CM1E_OK;
+}
+
+/* ---- the programs ---------------------------------------------------------------------------------------------------- */
+
+enum { IDS = 16 };
+static cm1e_command_id_t ids[IDS];
+static cm1e_command_state_t states[IDS];
+
+static void post(void)
+{
+    const cm1e_homing_config_t homing = {.method = (int8_t)((int)draw(9) - 7), .velocity = positive(2.0),
+                                         .torque = positive(90.0), .timeout_s = 0.3};
+    const cm1e_axis_command_t command = {
+        .kind = (cm1e_command_kind_t)draw(CM1E_COMMAND_KIND_COUNT), .position = wild(5.0),
+        .velocity = draw(4) ? positive(40.0) : wild(60.0), .acceleration = positive(90.0),
+        .deceleration = positive(90.0), .jerk = positive(1900.0), .direction = (MC_DIRECTION)draw(6),
+        .buffer_mode = draw(20) ? mcAborting : mcBuffered, .homing = draw(2) ? &homing : NULL,
+    };
+    cm1e_command_id_t id;
+    const cm1e_error_t error = cm1e_axis_start(axis, &command, &id);
+    TEST_ASSERT_EQUAL_INT(error == CM1E_OK, id != 0);
+    if (id) {
+        ids[id % IDS] = id;
+        states[id % IDS] = CM1E_COMMAND_ACTIVE;
+    }
+}
+
+static void programs(void)
+{
+    if (draw(40) == 0)
+        post();
+    if (draw(30) == 0)
+        cm1e_axis_hold_stop(axis, ids[draw(IDS)], draw(4) == 0);
+    if (draw(60) == 0)
+        cm1e_axis_power(axis, draw(20) ? (void *)&owner : (void *)&number, draw(5) > 0, draw(8) > 0, draw(8) > 0);
+    if (draw(80) == 0)
+        cm1e_axis_reset(axis);
+    if (draw(3000) == 0)
+        (void)cm1e_axis_shut_down(axis);
+}
+
+/* ---- what must hold -------------------------------------------------------------------------------------------------- */
+
+static activity_t activity_before;
+static position_t set_before;
+
+static void check_commands(void)
+{
+    int active = 0;
+    for (int i = 0; i < IDS; i++) {
+        if (!ids[i])
+            continue;
+        const cm1e_command_state_t state = cm1e_axis_command_status(axis, ids[i]).state;
+        active += state == CM1E_COMMAND_ACTIVE;
+        if (states[i] != CM1E_COMMAND_ACTIVE) /* what has ended stays as it ended */
+            TEST_ASSERT_EQUAL_INT(states[i], state);
+        states[i] = state;
+    }
+    TEST_ASSERT_LESS_OR_EQUAL_INT(1, active);
+    const cm1e_axis_state_t state = axis->state;
+    if (state == CM1E_AXIS_DISABLED || state == CM1E_AXIS_ERROR_STOP || state == CM1E_AXIS_STANDSTILL)
+        TEST_ASSERT_EQUAL_INT(0, active);
+    if (state == CM1E_AXIS_CONTINUOUS_MOTION)
+        TEST_ASSERT_EQUAL_INT(1, active);
+}
+
+static void check_axis(void)
+{
+    const cm1e_axis_info_t info = bench_info();
+    TEST_ASSERT_LESS_THAN_INT(CM1E_AXIS_STATE_COUNT, info.state);
+    TEST_ASSERT_NOT_EQUAL_INT(CM1E_AXIS_SYNCHRONIZED_MOTION, info.state);
+    TEST_ASSERT_EQUAL_INT(info.state == CM1E_AXIS_ERROR_STOP, info.error != CM1E_OK);
+    TEST_ASSERT_TRUE(isfinite(info.set_position) && isfinite(info.actual_position));
+    TEST_ASSERT_TRUE(fabs(info.set_velocity) <= 50.0 + 1e-6);
+    if (info.state == CM1E_AXIS_STANDSTILL)
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, info.set_velocity);
+    const bool ours = axis->activity == ACTIVITY_HOLD || axis->activity == ACTIVITY_PROFILE;
+    const bool was_ours = activity_before == ACTIVITY_HOLD || activity_before == ACTIVITY_PROFILE;
+    if (ours && was_ours) /* peak speed: 2500 counts a cycle */
+        TEST_ASSERT_TRUE(fabs(position_minus(axis->set, set_before)) < 2501.0);
+    if (axis->activity == ACTIVITY_FREE) {
+        TEST_ASSERT_EQUAL_INT64(axis->actual_counts, axis->set.counts);
+        TEST_ASSERT_TRUE(!axis->drive.command.enable || axis_wants_enable(axis));
+    }
+    TEST_ASSERT_TRUE(axis->set.fraction >= 0.0 && axis->set.fraction < 1.0);
+    TEST_ASSERT_EQUAL_INT32(axis->raw, (int32_t)(uint32_t)(uint64_t)axis->actual_counts);
+    activity_before = axis->activity;
+    set_before = axis->set;
+}
+
+static unsigned moving_cycles;
+
+static void run(void)
+{
+    seed = UINT64_C(0x9E3779B97F4A7C15) * (number + 1);
+    fake_bus_init(&bus, draw(2) ? CM1E_MAPPING_DYNAMIC : CM1E_MAPPING_CSP, (cm1e_pdo_order_t)draw(2),
+                  (cm1e_firmware_t)draw(CM1E_FIRMWARE_COUNT));
+    bus.config.axes[0].invert = draw(2);
+    bus.config.axes[0].homing.method = -1;
+    if (draw(2)) {
+        bus.config.axes[0].software_limit_negative = -20.0;
+        bus.config.axes[0].software_limit_positive = 20.0;
+    }
+    memset(ids, 0, sizeof ids);
+    bench_create();
+    bench_power(true);
+    activity_before = ACTIVITY_FREE;
+    char text[400];
+    for (int i = 0; i < 5000; i++) {
+        device();
+        bench_inputs();
+        programs();
+        bench_outputs();
+        check_commands();
+        check_axis();
+        moving_cycles += axis->activity == ACTIVITY_PROFILE;
+        if (i % 100 == 0)
+            cm1e_axis_error_text(cm1e_axis_reference(axis), text, sizeof text);
+    }
+}
+
+static void test_anything_keeps_states_commands_and_set_points_legal(void)
+{
+    for (number = 0; number < 150; number++)
+        run();
+    TEST_ASSERT_GREATER_THAN_UINT(20000, moving_cycles); /* else it was too wild to test anything */
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_anything_keeps_states_commands_and_set_points_legal);
+    return UNITY_END();
+}
