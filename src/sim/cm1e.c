@@ -23,7 +23,7 @@ enum { ERROR_OVERLOAD = 0x2310, ERROR_OVER_SPEED = 0x7310, ERROR_POSITION = 0x73
 #define FOLLOWING_WINDOW_COUNTS 1000.0
 #define OVERLOAD_LIMIT_S 0.5      /* i2t: 0.9 s at peak torque */
 
-/* ---- time --------------------------------------------------------------------------------------------------------- */
+/* ---- time ------------------------------------------------------------------------------------------------------- */
 
 static double sum_while(bool condition, double sum, double step_s) { return condition ? sum + step_s : 0; }
 
@@ -76,7 +76,7 @@ static void advance(void *app, int64_t now_ns)
     }
 }
 
-/* ---- EtherCAT ----------------------------------------------------------------------------------------------------- */
+/* ---- EtherCAT --------------------------------------------------------------------------------------------------- */
 
 static uint16_t explicit_device_id(void *app)
 {
@@ -98,9 +98,9 @@ static uint16_t state_change(void *app, uint8_t from, uint8_t to)
 
 static void watchdog_expired(void *app) { cm1e_sim_fsa_disable(app); }
 
-/* ---- life --------------------------------------------------------------------------------------------------------- */
+/* ---- life ------------------------------------------------------------------------------------------------------- */
 
-/* The motor does not know where its axis stands: the position counts from 0 again. Until now it ran out without torque. */
+/* Until now the axis ran out without torque. The motor does not know where it stands: the position counts from 0. */
 void cm1e_sim_cm1e_power_on(void *app, int64_t now_ns)
 {
     cm1e_sim_cm1e_t *drive = app;

@@ -138,7 +138,7 @@ struct cm1e_sim_cm1e {
     uint16_t forced_inputs, forced_values; /**< bits of 0x60FD that the console holds, and how */
 };
 
-/* ---- cm1e.c ---- */
+/* ---- cm1e.c ----------------------------------------------------------------------------------------------------- */
 const cm1e_sim_app_ops_t *cm1e_sim_cm1e_ops(const cm1e_sim_cm1e_t *drive);
 /** The application alone; destroyed by its ops. NULL: unknown motor or firmware, or no memory. */
 cm1e_sim_cm1e_t *cm1e_sim_cm1e_create_app(const cm1e_axis_config_t *config, cm1e_pdo_order_t order, uint16_t alias,
@@ -150,7 +150,7 @@ cm1e_sim_cm1e_t *cm1e_sim_cm1e_of(cm1e_sim_slave_t *slave);
 /** 0x6064's view of the shaft. */
 int64_t cm1e_sim_actual_counts(const cm1e_sim_cm1e_t *drive);
 
-/* ---- cm1e_dictionary.c ---- */
+/* ---- cm1e_dictionary.c ------------------------------------------------------------------------------------------ */
 bool cm1e_sim_dictionary_create(cm1e_sim_cm1e_t *drive);
 void cm1e_sim_dictionary_reset(cm1e_sim_cm1e_t *drive);
 const cm1e_object_t *cm1e_sim_object(void *app, size_t n);
@@ -161,7 +161,7 @@ uint32_t cm1e_sim_sdo_write(void *app, uint16_t index, uint8_t subindex, uint8_t
 /** Which int32_t of cm1e_sim_objects_t an object is; -1: it is not among them. */
 int cm1e_sim_object_place(uint16_t index, uint8_t subindex);
 
-/* ---- cm1e_image.c ---- */
+/* ---- cm1e_image.c ----------------------------------------------------------------------------------------------- */
 /** Writing 0x1C12 or 0x1C13; 0 or an abort code. */
 uint32_t cm1e_sim_assign_write(cm1e_sim_cm1e_t *drive, uint16_t index, uint8_t subindex, uint32_t value);
 void cm1e_sim_assign_default(cm1e_sim_cm1e_t *drive);
@@ -171,7 +171,7 @@ void cm1e_sim_inputs(void *app, uint8_t *data, uint16_t size);
 /** Brings the objects that the drive shows up to date. */
 void cm1e_sim_refresh(cm1e_sim_cm1e_t *drive);
 
-/* ---- cm1e_fsa.c ---- */
+/* ---- cm1e_fsa.c ------------------------------------------------------------------------------------------------- */
 void cm1e_sim_fsa_reset(cm1e_sim_cm1e_t *drive);
 /** New process data has come: controlword and mode of operation take effect. */
 void cm1e_sim_fsa_outputs(cm1e_sim_cm1e_t *drive);
@@ -192,7 +192,7 @@ void cm1e_sim_fsa_temperature(cm1e_sim_cm1e_t *drive, int16_t degrees);
 void cm1e_sim_fsa_update_error(cm1e_sim_cm1e_t *drive);
 uint16_t cm1e_sim_fsa_statusword(const cm1e_sim_cm1e_t *drive);
 
-/* ---- cm1e_modes.c, cm1e_homing.c ---- */
+/* ---- cm1e_modes.c, cm1e_homing.c -------------------------------------------------------------------------------- */
 extern const cm1e_sim_mode_t cm1e_sim_homing_mode;
 /** NULL: not a mode of the device. */
 const cm1e_sim_mode_t *cm1e_sim_mode(int8_t mode);

@@ -123,7 +123,7 @@ static int64_t *value_at(cm1e_sim_cm1e_t *drive, const position_t *position)
     return &drive->values[drive->first_entry[position->object] + position->entry];
 }
 
-/* ---- creation and power-on ---------------------------------------------------------------------------------------- */
+/* ---- creation and power-on -------------------------------------------------------------------------------------- */
 
 bool cm1e_sim_dictionary_create(cm1e_sim_cm1e_t *drive)
 {
@@ -178,7 +178,8 @@ static void set_motor_objects(cm1e_sim_cm1e_t *drive)
     const int64_t max_current = cm1e_device_entry(OBJ_6073_MAX_CURRENT, 0)->default_value;
     drive->rated_torque = drive->motor->peak_torque_nm * 1000 / (double)peak_torque;
     drive->overload_gain = 1 / (drive->rated_torque * drive->rated_torque);
-    set_value(drive, OBJ_6075_RATED_CURRENT, 0, (int64_t)(drive->motor->peak_current_a * 1e6 / (double)max_current + 0.5));
+    const double rated_current_ma = drive->motor->peak_current_a * 1e6 / (double)max_current;
+    set_value(drive, OBJ_6075_RATED_CURRENT, 0, (int64_t)(rated_current_ma + 0.5));
     set_value(drive, OBJ_6076_RATED_TORQUE, 0, (int64_t)(drive->rated_torque * 1000 + 0.5));
 }
 
@@ -203,7 +204,7 @@ void cm1e_sim_dictionary_reset(cm1e_sim_cm1e_t *drive)
     set_motor_objects(drive);
 }
 
-/* ---- access ------------------------------------------------------------------------------------------------------- */
+/* ---- access ----------------------------------------------------------------------------------------------------- */
 
 static uint32_t missing(const cm1e_sim_cm1e_t *drive, uint16_t index)
 {

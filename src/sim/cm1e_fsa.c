@@ -77,7 +77,7 @@ void cm1e_sim_fsa_off(cm1e_sim_cm1e_t *drive)
     drive->settled = true;
 }
 
-/* ---- errors (UG 7.3.1) -------------------------------------------------------------------------------------------- */
+/* ---- errors (UG 7.3.1) ------------------------------------------------------------------------------------------ */
 
 static uint16_t present_code(const cm1e_sim_cm1e_t *drive)
 {
@@ -193,7 +193,7 @@ static void fault_reset(cm1e_sim_cm1e_t *drive)
     cm1e_sim_fsa_update_error(drive);
 }
 
-/* ---- controlword (UG 6.1.2) --------------------------------------------------------------------------------------- */
+/* ---- controlword (UG 6.1.2) ------------------------------------------------------------------------------------- */
 
 static cm1e_fsa_command_t decode_command(uint16_t controlword)
 {
@@ -244,7 +244,7 @@ void cm1e_sim_fsa_outputs(cm1e_sim_cm1e_t *drive)
         drive->generator->outputs(drive, rising);
 }
 
-/* ---- modes of operation (UG 6.2.1) -------------------------------------------------------------------------------- */
+/* ---- modes of operation (UG 6.2.1) ------------------------------------------------------------------------------ */
 
 void cm1e_sim_fsa_request_mode(cm1e_sim_cm1e_t *drive)
 {
@@ -297,7 +297,7 @@ void cm1e_sim_fsa_deadline(cm1e_sim_cm1e_t *drive)
     cm1e_sim_fsa_update_error(drive);
 }
 
-/* ---- status ------------------------------------------------------------------------------------------------------- */
+/* ---- status ----------------------------------------------------------------------------------------------------- */
 
 uint16_t cm1e_sim_fsa_statusword(const cm1e_sim_cm1e_t *drive)
 {

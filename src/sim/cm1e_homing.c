@@ -53,7 +53,7 @@ void cm1e_sim_homing_abort(cm1e_sim_cm1e_t *drive)
         drive->homing.phase = HOMING_IDLE;
 }
 
-/* ---- the phases: each moves the reference and returns the next ---------------------------------------------------- */
+/* ---- the phases: each moves the reference and returns the next -------------------------------------------------- */
 
 static void run(cm1e_sim_cm1e_t *drive, double velocity, double step_s)
 {
@@ -167,7 +167,7 @@ static cm1e_sim_homing_phase_t stand(cm1e_sim_cm1e_t *drive, double step_s)
     return drive->homing.phase;
 }
 
-/* ---- the mode ----------------------------------------------------------------------------------------------------- */
+/* ---- the mode --------------------------------------------------------------------------------------------------- */
 
 static void homing_step(cm1e_sim_cm1e_t *drive, double step_s)
 {

@@ -6,7 +6,7 @@
 /* ETG.1000.6: a sub-index cannot be written while sub-index 0 is not 0. */
 #define SDO_ABORT_SUBINDEX_0_NOT_ZERO 0x06010003u
 
-/* ---- assignment --------------------------------------------------------------------------------------------------- */
+/* ---- assignment ------------------------------------------------------------------------------------------------- */
 
 static uint8_t sign_shift(const cm1e_pdo_entry_t *entry)
 {
@@ -70,7 +70,7 @@ void cm1e_sim_process_data_sizes(void *app, uint16_t *output_bytes, uint16_t *in
     *input_bytes = drive->inputs.bytes;
 }
 
-/* ---- cycle time (UG 4.3) ------------------------------------------------------------------------------------------ */
+/* ---- cycle time (UG 4.3) ---------------------------------------------------------------------------------------- */
 
 enum {
     /* Frames come with jitter: an interval counts for the cycle time it is nearest to, and a cycle time is believed
@@ -118,7 +118,7 @@ static void detect_cycle_time(cm1e_sim_cm1e_t *drive, int64_t now_ns)
     drive->objects.output_cycle_ns = drive->objects.input_cycle_ns = (int32_t)nearest_ns;
 }
 
-/* ---- process data ------------------------------------------------------------------------------------------------- */
+/* ---- process data ----------------------------------------------------------------------------------------------- */
 
 static int32_t get_slot(const cm1e_sim_slot_t *slot, const uint8_t *data)
 {

@@ -28,8 +28,8 @@ bool cm1e_sim_move_step(cm1e_servo_t *servo, double target, double velocity, dou
         servo->reference_velocity = 0;
         return true;
     }
-    /* The velocity from which steps of `most` end at the target, from v^2 / 2a + v step / 2 = distance. The last step is
-     * cut to what is left where that is nearly what it would be anyway. */
+    /* The velocity from which steps of `most` end at the target, from v^2 / 2a + v step / 2 = distance. The last step
+     * is cut to what is left where that is nearly what it would be anyway. */
     const double stopping = sqrt(most * most / 4 + 2 * acceleration * fabs(distance)) - most / 2;
     const double fastest = fmin(stopping, velocity), last = distance / step_s;
     cm1e_sim_ramp(&servo->reference_velocity, distance < 0 ? -fastest : fastest, acceleration, step_s);
@@ -64,7 +64,7 @@ static double motor_limited(const cm1e_sim_cm1e_t *drive, double velocity)
 static bool halt_bit(const cm1e_sim_cm1e_t *drive) { return (drive->objects.controlword & CONTROLWORD_HALT) != 0; }
 static bool stands(const cm1e_sim_cm1e_t *drive) { return fabs(drive->mechanics.velocity) < STANDSTILL_WINDOW; }
 
-/* ---- cyclic synchronous position ---------------------------------------------------------------------------------- */
+/* ---- cyclic synchronous position -------------------------------------------------------------------------------- */
 
 /* The drive takes the target as it is: one that is not the actual position makes the motor jump. */
 static void csp_enter(cm1e_sim_cm1e_t *drive)
@@ -101,7 +101,7 @@ static uint16_t cyclic_status_bits(const cm1e_sim_cm1e_t *drive)
     return drive->firmware->following_bit && drive->following ? STATUSWORD_BIT12 : 0;
 }
 
-/* ---- cyclic synchronous velocity ---------------------------------------------------------------------------------- */
+/* ---- cyclic synchronous velocity -------------------------------------------------------------------------------- */
 
 /* While the torque limit holds the motor back the reference moves with it: a velocity servo does not catch up. */
 static void velocity_step(cm1e_sim_cm1e_t *drive, double step_s)
@@ -124,7 +124,7 @@ static void csv_step(cm1e_sim_cm1e_t *drive, double step_s)
     velocity_step(drive, step_s);
 }
 
-/* ---- profile velocity --------------------------------------------------------------------------------------------- */
+/* ---- profile velocity ------------------------------------------------------------------------------------------- */
 
 static void pv_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
 {
@@ -154,7 +154,7 @@ static uint16_t pv_status_bits(const cm1e_sim_cm1e_t *drive)
     return (uint16_t)((reached ? STATUSWORD_TARGET_REACHED : 0) | (stands(drive) ? STATUSWORD_BIT12 : 0));
 }
 
-/* ---- profile position --------------------------------------------------------------------------------------------- */
+/* ---- profile position ------------------------------------------------------------------------------------------- */
 
 /* No set-point yet: where it stands, or where it can stop, is the target. */
 static void pp_enter(cm1e_sim_cm1e_t *drive)

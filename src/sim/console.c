@@ -54,7 +54,7 @@ __attribute__((format(printf, 2, 3))) static void say(call_t *call, const char *
 
 #define REFUSE(call, ...) (say(call, __VA_ARGS__), CM1E_ERROR_INVALID_ARGUMENT)
 
-/* ---- words into numbers ------------------------------------------------------------------------------------------- */
+/* ---- words into numbers ----------------------------------------------------------------------------------------- */
 
 /* The n-th argument behind command and slave, "" where it is missing. */
 static const char *argument(const call_t *call, int n)
@@ -91,7 +91,7 @@ static int choice(const char *word, const char *const *list)
     return -1;
 }
 
-/* ---- commands on a drive ------------------------------------------------------------------------------------------ */
+/* ---- commands on a drive ---------------------------------------------------------------------------------------- */
 
 static const char *al_state_name(uint8_t state)
 {
@@ -291,7 +291,7 @@ static cm1e_error_t run_power_up_fault(call_t *call)
     return CM1E_OK;
 }
 
-/* ---- commands on cables, supply and frames ------------------------------------------------------------------------ */
+/* ---- commands on cables, supply and frames ---------------------------------------------------------------------- */
 
 static cm1e_error_t run_power_cycle(call_t *call)
 {
@@ -337,7 +337,7 @@ static cm1e_error_t run_lose(call_t *call) { return frame_fault(call, CM1E_FRAME
 static cm1e_error_t run_corrupt(call_t *call) { return frame_fault(call, CM1E_FRAME_CORRUPT, "corrupted"); }
 static cm1e_error_t run_delay(call_t *call) { return frame_fault(call, CM1E_FRAME_DELAY, "delayed"); }
 
-/* ---- the table ---------------------------------------------------------------------------------------------------- */
+/* ---- the table -------------------------------------------------------------------------------------------------- */
 
 static cm1e_error_t run_help(call_t *call);
 
@@ -347,7 +347,8 @@ static const command_t commands[] = {
     {"show", DRIVE, 0, 0, run_show, "<slave>", "everything about one CM1-E"},
     {"power", DRIVE, 1, 1, run_power, "<slave> on|off", "24 V motor power"},
     {"switches", DRIVE, 1, 1, run_switches, "<slave> <00...FF>", "rotary switches (explicit device ID)"},
-    {"sensor", DRIVE, 2, 2, run_sensor, "<slave> <1...4> on|off|auto", "hold a digital input, or let it follow the axis"},
+    {"sensor", DRIVE, 2, 2, run_sensor, "<slave> <1...4> on|off|auto",
+     "hold a digital input, or let it follow the axis"},
     {"load", DRIVE, 1, 1, run_load, "<slave> <Nm>", "torque on the shaft from outside, positive drives CW"},
     {"over-torque", DRIVE, 0, 0, run_over_torque, "<slave>", "torque overload, error 2310"},
     {"temperature", DRIVE, 1, 1, run_temperature, "<slave> <degrees C>", "of the drive; error 4310 from 85 on"},

@@ -173,6 +173,14 @@ static inline cm1e_axis_config_t bench_firmware(const char *version)
     return config;
 }
 
+/* ... on an axis without stops and sensors. */
+static inline void bench_open_endless(bench_t *b, const char *firmware)
+{
+    cm1e_axis_config_t config = bench_firmware(firmware);
+    config.sim.no_stops = config.sim.no_sensors = true;
+    bench_open(b, &config, CM1E_PDO_ORDER_UG_4_4);
+}
+
 static inline cm1e_fsa_state_t bench_state(const bench_t *b) { return cm1e_fsa_decode(b->statusword); }
 
 /* Mode shown and Operation enabled, targets at the actual position. */

@@ -40,7 +40,7 @@ static size_t bytes_of(const cm1e_entry_t *entry) { return entry->bits / 8u; }
 
 static bool is_assignment(const cm1e_entry_t *entry) { return entry->index == 0x1C12 || entry->index == 0x1C13; }
 
-/* ---- reading ------------------------------------------------------------------------------------------------------ */
+/* ---- reading ---------------------------------------------------------------------------------------------------- */
 
 static void check_read(bench_t *b, const cm1e_entry_t *entry)
 {
@@ -153,7 +153,7 @@ static void test_object_list_is_in_order_and_complete(void)
     }
 }
 
-/* ---- writing ------------------------------------------------------------------------------------------------------ */
+/* ---- writing ---------------------------------------------------------------------------------------------------- */
 
 static void check_read_only(bench_t *b, const cm1e_entry_t *entry)
 {
@@ -175,7 +175,8 @@ static void check_size(bench_t *b, const cm1e_entry_t *entry)
 
 static bool fits(const cm1e_entry_t *entry, int64_t value)
 {
-    const bool is_signed = entry->type == CM1E_TYPE_SINT || entry->type == CM1E_TYPE_INT || entry->type == CM1E_TYPE_DINT;
+    const cm1e_data_type_t type = entry->type;
+    const bool is_signed = type == CM1E_TYPE_SINT || type == CM1E_TYPE_INT || type == CM1E_TYPE_DINT;
     const int64_t most = (INT64_C(1) << (entry->bits - (is_signed ? 1 : 0))) - 1;
     return value <= most && value >= (is_signed ? -most - 1 : 0);
 }
@@ -272,9 +273,8 @@ static void test_only_modes_of_the_device_can_be_written(void)
     bench_open(&b, NULL, CM1E_PDO_ORDER_UG_4_4);
     for (int mode = -128; mode <= 127; mode++) {
         const bool good = mode == 0 || mode == 1 || mode == 3 || mode == 6 || mode == 8 || mode == 9;
-        const uint32_t code = bench_try_write(&b, 0x6060, 0, mode);
-        TEST_ASSERT_EQUAL_HEX32(good ? 0 : mode < 0 ? SDO_ABORT_TOO_LOW : mode > 9 ? SDO_ABORT_TOO_HIGH : SDO_ABORT_RANGE,
-                                code);
+        const uint32_t refusal = mode < 0 ? SDO_ABORT_TOO_LOW : mode > 9 ? SDO_ABORT_TOO_HIGH : SDO_ABORT_RANGE;
+        TEST_ASSERT_EQUAL_HEX32(good ? 0 : refusal, bench_try_write(&b, 0x6060, 0, mode));
     }
     bench_close(&b);
 }

@@ -1,4 +1,4 @@
-/** The power drive system of the simulated CM1-E: every state under every controlword, power, errors (UG 6.1, 7.3.1). */
+/** The power drive system of the simulated CM1-E: all states under all controlwords, power, errors (UG 6.1, 7.3.1). */
 #include <math.h>
 #include <stdio.h>
 
@@ -37,7 +37,7 @@ static void to_state(bench_t *b, cm1e_fsa_state_t state)
     TEST_ASSERT_EQUAL_STRING(cm1e_fsa_name(state), cm1e_fsa_name(bench_state(b)));
 }
 
-/* UG 6.1, restated: where a controlword leads to that comes while the one before had bits 0-3 as the state needs them. */
+/* UG 6.1, restated: where a controlword leads to that comes after the one that the state needs. */
 static cm1e_fsa_state_t expected_state(cm1e_fsa_state_t from, uint16_t controlword)
 {
     const bool on = controlword & 1, voltage = controlword & 2, enable = controlword & 8, reset = controlword & 0x80;
@@ -176,7 +176,7 @@ static void test_fault_reset_needs_an_edge(void)
     bench_close(&b);
 }
 
-/* ---- motor power -------------------------------------------------------------------------------------------------- */
+/* ---- motor power ------------------------------------------------------------------------------------------------ */
 
 static void test_power_off_in_each_state(void)
 {
@@ -215,7 +215,7 @@ static void test_power_off_in_each_state(void)
     }
 }
 
-/* ---- errors (UG 7.3.1) -------------------------------------------------------------------------------------------- */
+/* ---- errors (UG 7.3.1) ------------------------------------------------------------------------------------------ */
 
 /* The guide's table, restated. */
 static const struct {
@@ -380,7 +380,7 @@ static void test_7510_while_running_is_cleared_without_a_restart(void)
     bench_close(&b);
 }
 
-/* ---- EtherCAT states, watchdog, identification -------------------------------------------------------------------- */
+/* ---- EtherCAT states, watchdog, identification ------------------------------------------------------------------ */
 
 static void test_leaving_op_takes_the_torque_away(void)
 {

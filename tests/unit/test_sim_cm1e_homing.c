@@ -398,7 +398,7 @@ static void test_endless_axis_never_finds_a_stop(void)
     bench_close(&b);
 }
 
-/* ---- leaving the mode --------------------------------------------------------------------------------------------- */
+/* ---- leaving the mode ------------------------------------------------------------------------------------------- */
 
 static void test_leaving_the_mode_on_the_way_stops_first(void)
 {

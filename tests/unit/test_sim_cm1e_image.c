@@ -117,7 +117,8 @@ static void test_sizes_are_those_of_the_guide(void)
 
 static void test_orders_differ_as_the_guide_has_them(void)
 {
-    static const uint16_t rows[2][5] = {{0x6040, 0x60FE, 0x607A, 0x60FF, 0x6060}, {0x6040, 0x607A, 0x60FF, 0x60FE, 0x6060}};
+    static const uint16_t rows[2][5] = {{0x6040, 0x60FE, 0x607A, 0x60FF, 0x6060},
+                                         {0x6040, 0x607A, 0x60FF, 0x60FE, 0x6060}};
     for (int order = 0; order < 2; order++) {
         bench_t b;
         bench_open(&b, NULL, (cm1e_pdo_order_t)order);
@@ -168,7 +169,7 @@ static void test_outputs_that_are_too_short_are_ignored(void)
     bench_close(&b);
 }
 
-/* ---- cycle time (UG 4.3) ------------------------------------------------------------------------------------------ */
+/* ---- cycle time (UG 4.3) ---------------------------------------------------------------------------------------- */
 
 static int64_t detected(const char *firmware, int64_t cycle_ns, double jitter)
 {

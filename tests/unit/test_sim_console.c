@@ -16,7 +16,8 @@ void setUp(void)
     static const cm1e_axis_config_t config;
     segment = cm1e_sim_segment_create_empty();
     for (int i = 1; i < SLAVES; i++)
-        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_sim_segment_add(segment, cm1e_sim_cm1e_create(&config, CM1E_PDO_ORDER_UG_4_4, 0, 0)));
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_sim_segment_add(
+                                       segment, cm1e_sim_cm1e_create(&config, CM1E_PDO_ORDER_UG_4_4, 0, 0)));
     TEST_ASSERT_EQUAL(CM1E_OK, cm1e_sim_segment_add(segment, cm1e_sim_io_module_create()));
     now_ns = 1000 * (int64_t)MS;
     cm1e_sim_segment_advance(segment, now_ns);
@@ -87,7 +88,8 @@ static void test_wrong_lines_are_refused_in_words(void)
         TEST_ASSERT_EQUAL_MESSAGE(CM1E_ERROR_INVALID_ARGUMENT, say(rows[i].line), rows[i].line);
         if (!strstr(answer, rows[i].words)) {
             char text[300];
-            snprintf(text, sizeof text, "\"%s\" answered \"%.150s\", without \"%s\"", rows[i].line, answer, rows[i].words);
+            snprintf(text, sizeof text, "\"%s\" answered \"%.150s\", without \"%s\"", rows[i].line, answer,
+                     rows[i].words);
             TEST_FAIL_MESSAGE(text);
         }
         TEST_ASSERT_NULL_MESSAGE(strchr(answer, '#'), rows[i].line);

@@ -141,7 +141,7 @@ static void test_probe_values_follow_the_shaft(void)
     TEST_ASSERT_TRUE(m.peak_velocity > 0);
 }
 
-/* ---- the position servo on it ------------------------------------------------------------------------------------- */
+/* ---- the position servo on it ----------------------------------------------------------------------------------- */
 
 static cm1e_servo_t servo_on(const cm1e_mechanics_t *m)
 {
