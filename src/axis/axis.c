@@ -15,9 +15,9 @@ cm1e_error_t cm1e_axis_create(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t in
     cm1e_error_t error = cm1e_drive_init(&axis->drive, bus, index, diag);
     if (!error) {
         axis->config = axis->drive.config;
-        error = axis_limits_init(axis, diag);
+        error = cm1e_axis_limits_init(axis, diag);
     }
-    if (!error && !axis_handle_take(axis, &axis->handle))
+    if (!error && !cm1e_axis_handle_take(axis, &axis->handle))
         error = cm1e_diag_set(diag, CM1E_ERROR_FULL, 0, "There are already %d axes in this process.",
                               CM1E_AXIS_HANDLES);
     if (error) {
@@ -38,7 +38,7 @@ void cm1e_axis_destroy(cm1e_axis_t *axis)
 {
     if (!axis)
         return;
-    axis_handle_give_back(axis->handle);
+    cm1e_axis_handle_give_back(axis->handle);
     free(axis);
 }
 
@@ -57,9 +57,9 @@ static void watch_lag(cm1e_axis_t *axis)
     const bool own = axis->activity == ACTIVITY_HOLD || axis->activity == ACTIVITY_PROFILE;
     if (!powered_state(axis->state) || !own || !f->online)
         return;
-    const double lag = position_minus(axis->set, axis_actual(axis)) / axis->scale;
+    const double lag = cm1e_position_minus(axis->set, axis_actual(axis)) / axis->scale;
     if (lag > axis->max_lag || lag < -axis->max_lag)
-        axis_fail(axis, CM1E_ERROR_AXIS_LAG, lag, axis->max_lag);
+        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, lag, axis->max_lag);
 }
 
 /* An axis that is neither under torque nor to be so has nothing to lose while the bus is away. */
@@ -74,7 +74,7 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
     axis->now_ns = now_ns;
     cm1e_drive_read(drive, received == CM1E_OK, now_ns);
     if (received == CM1E_OK)
-        axis_track(axis);
+        cm1e_axis_track(axis);
     if (drive->watch.lost || (drive->watch.al_state & 0x0F) == CM1E_AL_INIT)
         axis->homed = false; /* it may have been without power, and count from somewhere else now */
     if (cm1e_drive_resetting(drive))
@@ -84,7 +84,7 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
     else if (powered_state(axis->state) && axis->activity != ACTIVITY_HOMING && !drive->feedback.enabled)
         cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_ENABLE_LOST); /* an earlier and better reason stays */
     if (drive->fault.error) {
-        axis_fail(axis, drive->fault.error, 0.0, 0.0);
+        cm1e_axis_fail(axis, drive->fault.error, 0.0, 0.0);
         if (axis->error == drive->fault.error)
             axis->device_error = drive->fault.device_code; /* it may come a cycle later */
     }
@@ -93,11 +93,11 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
 
 void cm1e_axis_outputs(cm1e_axis_t *axis)
 {
-    axis_reset_step(axis);
-    axis_power_step(axis);
-    axis_motion_step(axis);
-    axis_enable_step(axis);
-    axis_write_set_point(axis);
+    cm1e_axis_reset_step(axis);
+    cm1e_axis_power_step(axis);
+    cm1e_axis_motion_step(axis);
+    cm1e_axis_enable_step(axis);
+    cm1e_axis_write_set_point(axis);
     cm1e_drive_write(&axis->drive);
 }
 
@@ -106,13 +106,13 @@ void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info)
     const cm1e_drive_feedback_t *f = &axis->drive.feedback;
     *info = (cm1e_axis_info_t){
         .state = axis->state,
-        .set_position = axis_units(axis, axis->set),
+        .set_position = cm1e_axis_units(axis, axis->set),
         .set_velocity = axis->set_velocity,
         .set_acceleration = axis->set_acceleration,
-        .actual_position = axis_units(axis, axis_actual(axis)),
+        .actual_position = cm1e_axis_units(axis, axis_actual(axis)),
         .actual_velocity = f->velocity / axis->scale,
         .actual_torque = f->torque * (axis->scale < 0.0 ? -0.1 : 0.1),
-        .position_lag = position_minus(axis->set, axis_actual(axis)) / axis->scale,
+        .position_lag = cm1e_position_minus(axis->set, axis_actual(axis)) / axis->scale,
         .powered = cm1e_axis_powered(axis),
         .homed = axis->homed,
         .online = f->online,

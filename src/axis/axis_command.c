@@ -8,7 +8,7 @@ static command_record_t *record_of(cm1e_axis_t *axis, cm1e_command_id_t id)
     return &axis->records[id % COMMANDS_REMEMBERED];
 }
 
-void axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
+void cm1e_axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
 {
     if (!axis->active)
         return;
@@ -23,7 +23,7 @@ void axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_
 
 static cm1e_command_id_t begin(cm1e_axis_t *axis, cm1e_command_kind_t kind)
 {
-    axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+    cm1e_axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     if (++axis->last_id == 0)
         axis->last_id = 1; /* 0 is no command */
     *record_of(axis, axis->last_id) = (command_record_t){.id = axis->last_id, .state = CM1E_COMMAND_ACTIVE};
@@ -41,18 +41,18 @@ typedef struct plan {
 static cm1e_error_t plan_position(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, plan_t *plan)
 {
     cm1e_motion_limits_t limits;
-    cm1e_error_t error = axis_limits_of(axis, command, false, &limits);
+    cm1e_error_t error = cm1e_axis_limits_of(axis, command, false, &limits);
     if (error)
         return error;
     const cm1e_motion_state_t start = {0.0, axis->set_velocity, axis->set_acceleration};
-    const double distance = position_minus(plan->target, axis->set) / axis->scale;
+    const double distance = cm1e_position_minus(plan->target, axis->set) / axis->scale;
     error = cm1e_profile_to_position(&plan->profile, &start, distance, &limits);
-    return error ? CM1E_ERROR_AXIS_POSITION_RANGE : axis_limits_check(axis, &plan->profile);
+    return error ? CM1E_ERROR_AXIS_POSITION_RANGE : cm1e_axis_limits_check(axis, &plan->profile);
 }
 
 static cm1e_error_t plan_absolute(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, plan_t *plan)
 {
-    if (!axis_position_from_units(axis, command->position, &plan->target))
+    if (!cm1e_axis_position_from_units(axis, command->position, &plan->target))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     return plan_position(axis, command, plan);
 }
@@ -62,8 +62,8 @@ static cm1e_error_t plan_relative(const cm1e_axis_t *axis, const cm1e_axis_comma
     const double counts = command->position * axis->scale;
     if (!isfinite(counts) || fabs(counts) > 4.5e15)
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    plan->target = position_plus(axis->set, counts);
-    if (!axis_position_in_range(plan->target))
+    plan->target = cm1e_position_plus(axis->set, counts);
+    if (!cm1e_axis_position_in_range(plan->target))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     return plan_position(axis, command, plan);
 }
@@ -94,14 +94,14 @@ static cm1e_error_t plan_velocity(const cm1e_axis_t *axis, const cm1e_axis_comma
 {
     cm1e_motion_limits_t limits;
     double velocity;
-    cm1e_error_t error = axis_limits_of(axis, command, false, &limits);
+    cm1e_error_t error = cm1e_axis_limits_of(axis, command, false, &limits);
     if (!error)
         error = signed_velocity(axis, command, &velocity);
     if (error)
         return error;
-    if (!axis_direction_enabled(axis, velocity))
+    if (!cm1e_axis_direction_enabled(axis, velocity))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
-    const double now = axis_units(axis, axis->set);
+    const double now = cm1e_axis_units(axis, axis->set);
     if (axis->software_limits && (velocity > 0.0 ? now >= axis->upper : now <= axis->lower))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     velocity = velocity > 0.0 ? fmin(velocity, limits.velocity) : fmax(velocity, -limits.velocity);
@@ -111,17 +111,17 @@ static cm1e_error_t plan_velocity(const cm1e_axis_t *axis, const cm1e_axis_comma
         return CM1E_ERROR_AXIS_VELOCITY_RANGE;
     cm1e_motion_state_t next;
     cm1e_profile_sample(&plan->profile, axis->cycle_s, &next);
-    return axis_limits_can_stop(axis, axis->set, &next) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+    return cm1e_axis_limits_can_stop(axis, axis->set, &next) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
 }
 
 static cm1e_error_t plan_stop(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, plan_t *plan)
 {
     cm1e_motion_limits_t limits;
-    cm1e_error_t error = axis_limits_of(axis, command, true, &limits);
+    cm1e_error_t error = cm1e_axis_limits_of(axis, command, true, &limits);
     if (error)
         return error;
-    error = axis_plan_stop(axis, &limits, &plan->profile);
-    plan->target = position_plus(axis->set, plan->profile.end.position * axis->scale);
+    error = cm1e_axis_plan_stop(axis, &limits, &plan->profile);
+    plan->target = cm1e_position_plus(axis->set, plan->profile.end.position * axis->scale);
     return error;
 }
 
@@ -149,7 +149,7 @@ cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *comma
     *id = 0;
     if ((unsigned)command->kind >= CM1E_COMMAND_KIND_COUNT)
         return CM1E_ERROR_INVALID_ARGUMENT;
-    const state_rule_t *rule = axis_state_rule(axis->state, command->kind);
+    const state_rule_t *rule = cm1e_axis_state_rule(axis->state, command->kind);
     if (rule->refusal)
         return rule->refusal;
     if (axis->state == CM1E_AXIS_STOPPING && axis->stop_held)
@@ -158,19 +158,19 @@ cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *comma
         return CM1E_ERROR_AXIS_BUFFER_MODE;
 
     if (command->kind == CM1E_COMMAND_HOME) {
-        const cm1e_error_t error = axis_home_prepare(axis, command);
+        const cm1e_error_t error = cm1e_axis_home_prepare(axis, command);
         if (error)
             return error;
         *id = begin(axis, command->kind);
-        axis_home_begin(axis);
+        cm1e_axis_home_begin(axis);
     } else if (axis->activity == ACTIVITY_HOMING) { /* only MC_Stop gets here: the drive has to stop itself first */
         cm1e_motion_limits_t unused;
-        const cm1e_error_t error = axis_limits_of(axis, command, true, &unused);
+        const cm1e_error_t error = cm1e_axis_limits_of(axis, command, true, &unused);
         if (error)
             return error;
         *id = begin(axis, command->kind);
         take_stop(axis, *id);
-        axis_home_abort(axis, HOME_GOAL_HOLD);
+        cm1e_axis_home_abort(axis, HOME_GOAL_HOLD);
     } else {
         plan_t plan;
         const cm1e_error_t error = planners[command->kind](axis, command, &plan);
@@ -179,7 +179,7 @@ cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *comma
         *id = begin(axis, command->kind);
         if (command->kind == CM1E_COMMAND_STOP)
             take_stop(axis, *id);
-        axis_run_profile(axis, &plan.profile, plan.target);
+        cm1e_axis_run_profile(axis, &plan.profile, plan.target);
     }
     axis->state = rule->next;
     return CM1E_OK;

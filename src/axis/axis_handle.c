@@ -8,7 +8,7 @@
 static _Atomic(cm1e_axis_t *) table[CM1E_AXIS_HANDLES];
 static _Atomic uint8_t uses[CM1E_AXIS_HANDLES];
 
-bool axis_handle_take(cm1e_axis_t *axis, uint16_t *handle)
+bool cm1e_axis_handle_take(cm1e_axis_t *axis, uint16_t *handle)
 {
     for (unsigned i = 0; i < CM1E_AXIS_HANDLES; i++) {
         cm1e_axis_t *none = NULL;
@@ -23,7 +23,7 @@ bool axis_handle_take(cm1e_axis_t *axis, uint16_t *handle)
     return false;
 }
 
-void axis_handle_give_back(uint16_t handle) { atomic_store(&table[handle & 0xFF], NULL); }
+void cm1e_axis_handle_give_back(uint16_t handle) { atomic_store(&table[handle & 0xFF], NULL); }
 
 cm1e_axis_t *cm1e_axis_from_reference(const AXIS_REF_t *reference)
 {

@@ -14,8 +14,8 @@
 enum { CM1E_AXIS_HANDLES = 256 };
 
 /** FALSE: the table is full. @rt init */
-bool axis_handle_take(cm1e_axis_t *axis, uint16_t *handle);
+bool cm1e_axis_handle_take(cm1e_axis_t *axis, uint16_t *handle);
 /** @rt init */
-void axis_handle_give_back(uint16_t handle);
+void cm1e_axis_handle_give_back(uint16_t handle);
 
 #endif

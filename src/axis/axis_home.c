@@ -54,12 +54,12 @@ static cm1e_error_t parameter(homing_t *home, int which, double value)
     return CM1E_OK;
 }
 
-cm1e_error_t axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *command)
+cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *command)
 {
     const cm1e_homing_config_t *c = command->homing ? command->homing : &axis->config->homing;
     homing_t *home = &axis->home;
     position_t position;
-    if (!axis_position_from_units(axis, command->position, &position))
+    if (!cm1e_axis_position_from_units(axis, command->position, &position))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     if (!(axis->enable_positive && axis->enable_negative))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED; /* every method moves both ways */
@@ -93,7 +93,7 @@ static void enter(cm1e_axis_t *axis, home_step_t step)
     axis->home.quiet_position = axis->raw;
 }
 
-void axis_home_begin(cm1e_axis_t *axis)
+void cm1e_axis_home_begin(cm1e_axis_t *axis)
 {
     axis->home.next = 0;
     axis->home.submitted = false;
@@ -109,7 +109,7 @@ static void leave(cm1e_axis_t *axis)
 {
     axis->activity = ACTIVITY_HOLD;
     if (axis->active)
-        axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK); /* of MC_Home, or of the MC_Stop that ended it */
+        cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK); /* of MC_Home, or of the MC_Stop that ended it */
     if (axis->state == CM1E_AXIS_HOMING)
         axis->state = CM1E_AXIS_STANDSTILL;
 }
@@ -119,7 +119,7 @@ static void leave(cm1e_axis_t *axis)
 static void refuse(cm1e_axis_t *axis, cm1e_error_t error)
 {
     axis->home.refused = error;
-    axis_command_end(axis, CM1E_COMMAND_ERROR, error);
+    cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, error);
     leave(axis); /* nothing has moved: no reason for ErrorStop */
 }
 
@@ -180,13 +180,13 @@ static bool off(cm1e_axis_t *axis)
     axis->drive.command.homing_start = false;
     axis->drive.command.halt = false;
     axis->drive.command.mode = axis->mode;
-    axis_become_free(axis);
+    cm1e_axis_become_free(axis);
     return true;
 }
 
 static void step_switch(cm1e_axis_t *axis)
 {
-    axis_set_to_actual(axis);
+    cm1e_axis_set_to_actual(axis);
     if (!acting_in(axis, CM1E_MODE_HM)) /* the drive's mode timeout bounds this */
         return;
     if (axis->home.goal != HOME_GOAL_DONE) {
@@ -212,7 +212,7 @@ static void complete(cm1e_axis_t *axis)
     enter(axis, HOME_RETURN);
 }
 
-static void fail(cm1e_axis_t *axis, cm1e_error_t error) { axis_fail(axis, error, bits(axis), 0.0); }
+static void fail(cm1e_axis_t *axis, cm1e_error_t error) { cm1e_axis_fail(axis, error, bits(axis), 0.0); }
 
 static bool timed_out(cm1e_axis_t *axis)
 {
@@ -225,7 +225,7 @@ static bool timed_out(cm1e_axis_t *axis)
 /* The bits of the last homing stay until the new one has begun: only a change, or "in progress", is news. */
 static void step_start(cm1e_axis_t *axis)
 {
-    axis_set_to_actual(axis);
+    cm1e_axis_set_to_actual(axis);
     if (!axis->drive.feedback.online || timed_out(axis))
         return;
     const uint8_t now = bits(axis);
@@ -238,7 +238,7 @@ static void step_start(cm1e_axis_t *axis)
 
 static void step_run(cm1e_axis_t *axis)
 {
-    axis_set_to_actual(axis);
+    cm1e_axis_set_to_actual(axis);
     if (!axis->drive.feedback.online)
         return;
     const meaning_t meaning = meanings[bits(axis)];
@@ -267,7 +267,7 @@ static int64_t halt_bound_ns(const cm1e_axis_t *axis)
 static void step_halt(cm1e_axis_t *axis)
 {
     homing_t *home = &axis->home;
-    axis_set_to_actual(axis);
+    cm1e_axis_set_to_actual(axis);
     const int32_t moved = (int32_t)((uint32_t)axis->raw - (uint32_t)home->quiet_position);
     if (!axis->drive.feedback.online || abs(moved) > standing_counts) {
         home->quiet_ns = axis->now_ns;
@@ -289,14 +289,14 @@ static void step_halt(cm1e_axis_t *axis)
 
 static void step_return(cm1e_axis_t *axis)
 {
-    axis_set_to_actual(axis);
+    cm1e_axis_set_to_actual(axis);
     if (!acting_in(axis, axis->mode))
         return;
     axis->drive.command.halt = false;
     leave(axis);
 }
 
-void axis_home_step(cm1e_axis_t *axis)
+void cm1e_axis_home_step(cm1e_axis_t *axis)
 {
     static void (*const steps[])(cm1e_axis_t *) = {
         [HOME_WRITE] = step_write, [HOME_SWITCH] = step_switch, [HOME_START] = step_start,
@@ -309,7 +309,7 @@ void axis_home_step(cm1e_axis_t *axis)
     steps[axis->home.step](axis);
 }
 
-void axis_home_abort(cm1e_axis_t *axis, home_goal_t goal)
+void cm1e_axis_home_abort(cm1e_axis_t *axis, home_goal_t goal)
 {
     homing_t *home = &axis->home;
     home->goal = goal;

@@ -15,7 +15,7 @@ static double or_default(double value, double otherwise) { return value > 0.0 ? 
 
 static bool usable(double value) { return isfinite(value) && value >= 0.0; }
 
-cm1e_error_t axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
+cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {
     const cm1e_axis_config_t *c = axis->config;
     const double counts = or_default(c->counts_per_unit, CM1E_COUNTS_PER_REVOLUTION);
@@ -54,8 +54,8 @@ static bool choose(double asked, double maximum, bool stopping, double *value)
     return stopping;
 }
 
-cm1e_error_t axis_limits_of(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, bool stopping,
-                            cm1e_motion_limits_t *limits)
+cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, bool stopping,
+                                 cm1e_motion_limits_t *limits)
 {
     const cm1e_motion_limits_t *most = &axis->maximum;
     const double acceleration = stopping ? 0.0 : command->acceleration;
@@ -74,12 +74,12 @@ cm1e_error_t axis_limits_of(const cm1e_axis_t *axis, const cm1e_axis_command_t *
     return CM1E_OK;
 }
 
-bool axis_direction_enabled(const cm1e_axis_t *axis, double velocity)
+bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity)
 {
     return velocity > 0.0 ? axis->enable_positive : velocity < 0.0 ? axis->enable_negative : true;
 }
 
-bool axis_limits_contain(const cm1e_axis_t *axis, const cm1e_profile_t *profile)
+bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const cm1e_profile_t *profile)
 {
     if (!axis->software_limits)
         return true;
@@ -87,7 +87,7 @@ bool axis_limits_contain(const cm1e_axis_t *axis, const cm1e_profile_t *profile)
     double lowest, highest;
     cm1e_profile_extent(profile, &lowest, &highest);
     /* An axis that stands outside, pushed there without torque, may come back but go no farther. */
-    const double now = axis_units(axis, axis->set);
+    const double now = cm1e_axis_units(axis, axis->set);
     return now + highest <= fmax(axis->upper, now) + tolerance && now + lowest >= fmin(axis->lower, now) - tolerance;
 }
 
@@ -98,16 +98,16 @@ static bool directions_allow(const cm1e_axis_t *axis, double lowest, double high
         return true;
     cm1e_profile_t brake;
     double brake_lowest, brake_highest;
-    if (axis_plan_stop(axis, &axis->maximum, &brake))
+    if (cm1e_axis_plan_stop(axis, &axis->maximum, &brake))
         return false;
     cm1e_profile_extent(&brake, &brake_lowest, &brake_highest);
     return (axis->enable_positive || highest <= fmax(brake_highest, 0.0) + tolerance) &&
            (axis->enable_negative || lowest >= fmin(brake_lowest, 0.0) - tolerance);
 }
 
-cm1e_error_t axis_limits_check(const cm1e_axis_t *axis, const cm1e_profile_t *profile)
+cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const cm1e_profile_t *profile)
 {
-    if (!axis_limits_contain(axis, profile))
+    if (!cm1e_axis_limits_contain(axis, profile))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     double lowest, highest;
     cm1e_profile_extent(profile, &lowest, &highest);
@@ -116,13 +116,13 @@ cm1e_error_t axis_limits_check(const cm1e_axis_t *axis, const cm1e_profile_t *pr
 }
 
 /* Without a limit of jerk the way of a stop is known in closed form, whatever the acceleration is. */
-bool axis_limits_can_stop(const cm1e_axis_t *axis, position_t base, const cm1e_motion_state_t *next)
+bool cm1e_axis_limits_can_stop(const cm1e_axis_t *axis, position_t base, const cm1e_motion_state_t *next)
 {
     if (!axis->software_limits)
         return true;
     const double tolerance = tolerance_counts / fabs(axis->scale);
     const double braking = next->velocity * fabs(next->velocity) / (2.0 * axis->emergency.deceleration);
-    const double end = axis_units(axis, base) + next->position + braking;
+    const double end = cm1e_axis_units(axis, base) + next->position + braking;
     return next->velocity > 0.0 ? end <= axis->upper + tolerance
            : next->velocity < 0.0 ? end >= axis->lower - tolerance : true;
 }

@@ -6,7 +6,7 @@
 /* CSV only (a mapping without target position): the position loop is ours then. 1/s. */
 static const double csv_position_gain = 20.0;
 
-void axis_run_profile(cm1e_axis_t *axis, const cm1e_profile_t *profile, position_t target)
+void cm1e_axis_run_profile(cm1e_axis_t *axis, const cm1e_profile_t *profile, position_t target)
 {
     axis->profile = *profile;
     axis->base = axis->set;
@@ -16,21 +16,21 @@ void axis_run_profile(cm1e_axis_t *axis, const cm1e_profile_t *profile, position
     axis->activity = ACTIVITY_PROFILE;
 }
 
-cm1e_error_t axis_plan_stop(const cm1e_axis_t *axis, const cm1e_motion_limits_t *limits, cm1e_profile_t *profile)
+cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const cm1e_motion_limits_t *limits, cm1e_profile_t *profile)
 {
     const cm1e_motion_state_t start = {0.0, axis->set_velocity, axis->set_acceleration};
     const cm1e_error_t error = cm1e_profile_to_velocity(profile, &start, 0.0, limits);
-    if (error || axis_limits_contain(axis, profile))
+    if (error || cm1e_axis_limits_contain(axis, profile))
         return error;
     return cm1e_profile_to_velocity(profile, &start, 0.0, &axis->emergency);
 }
 
 /* Down to standstill without a command. */
-void axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits)
+void cm1e_axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits)
 {
     cm1e_profile_t profile;
-    if (axis_plan_stop(axis, limits, &profile) == CM1E_OK)
-        axis_run_profile(axis, &profile, position_plus(axis->set, profile.end.position * axis->scale));
+    if (cm1e_axis_plan_stop(axis, limits, &profile) == CM1E_OK)
+        cm1e_axis_run_profile(axis, &profile, cm1e_position_plus(axis->set, profile.end.position * axis->scale));
     else
         axis->activity = ACTIVITY_HOLD;
 }
@@ -43,7 +43,7 @@ static void profile_ended(cm1e_axis_t *axis)
     axis->set_acceleration = 0.0;
     axis->activity = ACTIVITY_HOLD;
     if (axis->active)
-        axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
+        cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
     if (axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION)
         axis->state = CM1E_AXIS_STANDSTILL;
 }
@@ -68,13 +68,13 @@ static bool goes(const cm1e_axis_t *axis, double sign)
     return false;
 }
 
-void axis_direction_disabled(cm1e_axis_t *axis, double sign)
+void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign)
 {
     if (!commanded_motion(axis) || !goes(axis, sign))
         return;
-    axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
+    cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
     axis->state = CM1E_AXIS_DISCRETE_MOTION;
-    axis_ramp_down(axis, &axis->maximum);
+    cm1e_axis_ramp_down(axis, &axis->maximum);
 }
 
 /* Moves to a position were checked as a whole when they were planned; a velocity goes on until it meets a limit.
@@ -82,10 +82,10 @@ void axis_direction_disabled(cm1e_axis_t *axis, double sign)
 static bool may_go_on(cm1e_axis_t *axis, const cm1e_motion_state_t *next)
 {
     if (!commanded_motion(axis) || axis->kind != CM1E_COMMAND_MOVE_VELOCITY ||
-        axis_limits_can_stop(axis, axis->base, next))
+        cm1e_axis_limits_can_stop(axis, axis->base, next))
         return true;
-    axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, axis_units(axis, axis->set),
-              next->velocity > 0.0 ? axis->upper : axis->lower);
+    cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->set),
+                   next->velocity > 0.0 ? axis->upper : axis->lower);
     return false;
 }
 
@@ -107,21 +107,22 @@ static void profile_step(cm1e_axis_t *axis)
         profile_ended(axis);
         return;
     }
-    axis->set = position_plus(axis->base, next.position * axis->scale);
+    axis->set = cm1e_position_plus(axis->base, next.position * axis->scale);
     axis->set_velocity = next.velocity;
     axis->set_acceleration = ended ? 0.0 : next.acceleration;
     axis->in_velocity = ended;
     if (next.velocity != 0.0)
         axis->positive_before = next.velocity > 0.0;
-    if (!axis_position_in_range(axis->set))
-        axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, axis_units(axis, axis->set), axis_farthest(axis));
+    if (!cm1e_axis_position_in_range(axis->set))
+        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->set),
+                       cm1e_axis_farthest(axis));
 }
 
-void axis_motion_step(cm1e_axis_t *axis)
+void cm1e_axis_motion_step(cm1e_axis_t *axis)
 {
     switch (axis->activity) {
     case ACTIVITY_FREE:
-        axis_set_to_actual(axis);
+        cm1e_axis_set_to_actual(axis);
         break;
     case ACTIVITY_HOLD:
         break;
@@ -129,7 +130,7 @@ void axis_motion_step(cm1e_axis_t *axis)
         profile_step(axis);
         break;
     case ACTIVITY_HOMING:
-        axis_home_step(axis);
+        cm1e_axis_home_step(axis);
         break;
     }
     /* Note 6: MC_Stop done and its Execute FALSE. */
@@ -142,12 +143,12 @@ static int32_t clamp_i32(double value)
     return value >= INT32_MAX ? INT32_MAX : value <= INT32_MIN ? INT32_MIN : (int32_t)value;
 }
 
-void axis_write_set_point(cm1e_axis_t *axis)
+void cm1e_axis_write_set_point(cm1e_axis_t *axis)
 {
     cm1e_drive_command_t *command = &axis->drive.command;
     /* The drive's counts and ours differ by whole turns of 2^32 only. */
     const int64_t counts = axis->set.counts + (axis->set.fraction >= 0.5);
     command->target_position = (int32_t)(uint32_t)(uint64_t)counts;
-    const double lag_counts = position_minus(axis->set, axis_actual(axis));
+    const double lag_counts = cm1e_position_minus(axis->set, axis_actual(axis));
     command->target_velocity = clamp_i32(round(axis->set_velocity * axis->scale + csv_position_gain * lag_counts));
 }

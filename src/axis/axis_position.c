@@ -6,7 +6,7 @@
 /* Beyond 2^52 a double no longer resolves half a count; at full speed that is 57 years away. */
 static const int64_t farthest_counts = INT64_C(1) << 52;
 
-position_t position_plus(position_t position, double counts)
+position_t cm1e_position_plus(position_t position, double counts)
 {
     const double whole = floor(counts);
     position.counts += (int64_t)whole;
@@ -18,35 +18,35 @@ position_t position_plus(position_t position, double counts)
     return position;
 }
 
-double position_minus(position_t a, position_t b)
+double cm1e_position_minus(position_t a, position_t b)
 {
     return (double)(a.counts - b.counts) + (a.fraction - b.fraction);
 }
 
-bool axis_position_in_range(position_t position)
+bool cm1e_axis_position_in_range(position_t position)
 {
     return position.counts < farthest_counts && position.counts > -farthest_counts;
 }
 
-double axis_farthest(const cm1e_axis_t *axis) { return (double)farthest_counts / fabs(axis->scale); }
+double cm1e_axis_farthest(const cm1e_axis_t *axis) { return (double)farthest_counts / fabs(axis->scale); }
 
-double axis_units(const cm1e_axis_t *axis, position_t position)
+double cm1e_axis_units(const cm1e_axis_t *axis, position_t position)
 {
     const position_t origin = {axis->origin_counts, 0.0};
-    return axis->origin_units + position_minus(position, origin) / axis->scale;
+    return axis->origin_units + cm1e_position_minus(position, origin) / axis->scale;
 }
 
-bool axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position)
+bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position)
 {
     const double counts = (units - axis->origin_units) * axis->scale;
     if (!isfinite(units) || !(fabs(counts) < (double)farthest_counts))
         return false;
-    *position = position_plus((position_t){axis->origin_counts, 0.0}, counts);
-    return axis_position_in_range(*position);
+    *position = cm1e_position_plus((position_t){axis->origin_counts, 0.0}, counts);
+    return cm1e_axis_position_in_range(*position);
 }
 
 /* Differences of wrapping counts are exact as long as the motor moves less than half the range between two looks. */
-void axis_track(cm1e_axis_t *axis)
+void cm1e_axis_track(cm1e_axis_t *axis)
 {
     const int32_t raw = axis->drive.feedback.position;
     if (axis->position_known) {
@@ -58,7 +58,7 @@ void axis_track(cm1e_axis_t *axis)
     axis->raw = raw;
 }
 
-void axis_set_to_actual(cm1e_axis_t *axis)
+void cm1e_axis_set_to_actual(cm1e_axis_t *axis)
 {
     axis->set = axis_actual(axis);
     axis->set_velocity = 0.0;

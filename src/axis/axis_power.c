@@ -11,38 +11,38 @@
 /* How long a drive that cannot be heard any more counts as "still there" at the end. */
 static const int64_t gone_after_ns = 100 * MS_IN_NS;
 
-bool axis_wants_enable(const cm1e_axis_t *axis)
+bool cm1e_axis_wants_enable(const cm1e_axis_t *axis)
 {
     return axis->power_enable && !axis->shutting_down && axis->state != CM1E_AXIS_ERROR_STOP;
 }
 
-void axis_become_free(cm1e_axis_t *axis)
+void cm1e_axis_become_free(cm1e_axis_t *axis)
 {
     axis->activity = ACTIVITY_FREE;
     axis->energized = false;
     axis->free_ns = axis->now_ns;
-    axis_set_to_actual(axis);
+    cm1e_axis_set_to_actual(axis);
 }
 
 /* Whatever moves is stopped, by a ramp of ours or by the drive in its homing; without torque nothing is to stop. */
 static void wind_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp)
 {
     if (!axis->drive.feedback.enabled && axis->activity != ACTIVITY_HOMING)
-        axis_become_free(axis);
+        cm1e_axis_become_free(axis);
     else if (axis->activity == ACTIVITY_HOMING)
-        axis_home_abort(axis, HOME_GOAL_OFF);
+        cm1e_axis_home_abort(axis, HOME_GOAL_OFF);
     else if (axis->activity == ACTIVITY_PROFILE || axis->activity == ACTIVITY_HOLD)
-        axis_ramp_down(axis, ramp);
+        cm1e_axis_ramp_down(axis, ramp);
 }
 
-void axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound)
+void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound)
 {
     if (axis->state == CM1E_AXIS_ERROR_STOP)
         return; /* the first cause is the one to tell */
     const bool homing_broke = axis->activity == ACTIVITY_HOMING &&
                               (error == CM1E_ERROR_AXIS_HOMING_FAILED || error == CM1E_ERROR_AXIS_HOMING_TIMEOUT);
     /* 2.2.2: the blocks that lose the axis show an error, not CommandAborted. */
-    axis_command_end(axis, CM1E_COMMAND_ERROR, homing_broke ? error : CM1E_ERROR_AXIS_ERROR_STOP);
+    cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, homing_broke ? error : CM1E_ERROR_AXIS_ERROR_STOP);
     axis->error = error;
     axis->device_error = axis->drive.fault.device_code;
     axis->error_value = value;
@@ -55,7 +55,7 @@ static void power_off(cm1e_axis_t *axis)
 {
     if (axis->state == CM1E_AXIS_DISABLED || axis->state == CM1E_AXIS_ERROR_STOP)
         return;
-    axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+    cm1e_axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     axis->state = CM1E_AXIS_DISABLED;
     wind_down(axis, &axis->maximum);
 }
@@ -78,12 +78,12 @@ cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, 
     if (!enable)
         power_off(axis);
     if (positive_fell)
-        axis_direction_disabled(axis, 1.0);
+        cm1e_axis_direction_disabled(axis, 1.0);
     if (negative_fell)
-        axis_direction_disabled(axis, -1.0);
+        cm1e_axis_direction_disabled(axis, -1.0);
     if ((positive_fell || negative_fell) && axis->state == CM1E_AXIS_HOMING && axis->active) {
-        axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
-        axis_home_abort(axis, HOME_GOAL_HOLD); /* every method moves both ways */
+        cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
+        cm1e_axis_home_abort(axis, HOME_GOAL_HOLD); /* every method moves both ways */
     }
     return CM1E_OK;
 }
@@ -97,29 +97,29 @@ bool cm1e_axis_powered(const cm1e_axis_t *axis)
 static void take_over(cm1e_axis_t *axis)
 {
     if (axis->activity == ACTIVITY_FREE)
-        axis_set_to_actual(axis);
+        cm1e_axis_set_to_actual(axis);
     axis->activity = ACTIVITY_HOLD;
     axis->energized = true;
     axis->state = CM1E_AXIS_STANDSTILL;
 }
 
-void axis_power_step(cm1e_axis_t *axis)
+void cm1e_axis_power_step(cm1e_axis_t *axis)
 {
     const cm1e_drive_feedback_t *feedback = &axis->drive.feedback;
     const bool acting = feedback->enabled && feedback->mode == (int8_t)axis->mode;
-    const bool wanted = axis_wants_enable(axis);
+    const bool wanted = cm1e_axis_wants_enable(axis);
     const bool still = axis->activity == ACTIVITY_FREE || axis->activity == ACTIVITY_HOLD;
     if (axis->state == CM1E_AXIS_DISABLED && wanted && acting && still)
         take_over(axis);
     else if (axis->activity == ACTIVITY_HOLD && !wanted)
-        axis_become_free(axis); /* a ramp has ended, and its last set-point is out */
+        cm1e_axis_become_free(axis); /* a ramp has ended, and its last set-point is out */
     else if (axis->activity != ACTIVITY_FREE && axis->activity != ACTIVITY_HOMING && !acting)
-        axis_become_free(axis); /* the torque went in the middle of a ramp */
+        cm1e_axis_become_free(axis); /* the torque went in the middle of a ramp */
 }
 
-void axis_enable_step(cm1e_axis_t *axis)
+void cm1e_axis_enable_step(cm1e_axis_t *axis)
 {
-    axis->drive.command.enable = axis->activity != ACTIVITY_FREE || axis_wants_enable(axis);
+    axis->drive.command.enable = axis->activity != ACTIVITY_FREE || cm1e_axis_wants_enable(axis);
     if (!axis->drive.command.enable && axis->activity == ACTIVITY_FREE)
         axis->energized = false;
 }
@@ -158,7 +158,7 @@ static void reset_finished(cm1e_axis_t *axis)
 }
 
 /* After the ramp of ErrorStop has ended: the drive's reset, which also brings back a slave that was away. */
-void axis_reset_step(cm1e_axis_t *axis)
+void cm1e_axis_reset_step(cm1e_axis_t *axis)
 {
     if (axis->reset_state != CM1E_COMMAND_ACTIVE || axis->activity != ACTIVITY_FREE)
         return;

@@ -115,64 +115,64 @@ struct cm1e_axis {
 };
 
 /* axis_position.c */
-position_t position_plus(position_t position, double counts);
-double position_minus(position_t a, position_t b);
-double axis_units(const cm1e_axis_t *axis, position_t position);
+position_t cm1e_position_plus(position_t position, double counts);
+double cm1e_position_minus(position_t a, position_t b);
+double cm1e_axis_units(const cm1e_axis_t *axis, position_t position);
 /** FALSE: not finite, or farther away than the axis counts. */
-bool axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position);
-bool axis_position_in_range(position_t position);
+bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position);
+bool cm1e_axis_position_in_range(position_t position);
 /** u; about where that range ends. */
-double axis_farthest(const cm1e_axis_t *axis);
+double cm1e_axis_farthest(const cm1e_axis_t *axis);
 static inline position_t axis_actual(const cm1e_axis_t *axis) { return (position_t){axis->actual_counts, 0.0}; }
-void axis_track(cm1e_axis_t *axis);
-void axis_set_to_actual(cm1e_axis_t *axis);
+void cm1e_axis_track(cm1e_axis_t *axis);
+void cm1e_axis_set_to_actual(cm1e_axis_t *axis);
 
 /* axis_limits.c */
-cm1e_error_t axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */
+cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */
 /** The dynamics of a command; `stopping`: too large ones are cut to the axis's instead of refused. */
-cm1e_error_t axis_limits_of(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, bool stopping,
-                            cm1e_motion_limits_t *limits);
+cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, bool stopping,
+                                 cm1e_motion_limits_t *limits);
 /** Whether a profile that starts at the present set-point stays inside the software limits. */
-bool axis_limits_contain(const cm1e_axis_t *axis, const cm1e_profile_t *profile);
+bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const cm1e_profile_t *profile);
 /** The same, and no disabled direction in it. */
-cm1e_error_t axis_limits_check(const cm1e_axis_t *axis, const cm1e_profile_t *profile);
+cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const cm1e_profile_t *profile);
 /** Whether the emergency ramp from `next` (its position counted from `base`) would end inside the software limits. */
-bool axis_limits_can_stop(const cm1e_axis_t *axis, position_t base, const cm1e_motion_state_t *next);
-bool axis_direction_enabled(const cm1e_axis_t *axis, double velocity);
+bool cm1e_axis_limits_can_stop(const cm1e_axis_t *axis, position_t base, const cm1e_motion_state_t *next);
+bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity);
 
 /* axis_state.c */
 typedef struct state_rule {
     cm1e_error_t refusal; /**< CM1E_OK: accepted */
     cm1e_axis_state_t next;
 } state_rule_t;
-const state_rule_t *axis_state_rule(cm1e_axis_state_t state, cm1e_command_kind_t kind);
+const state_rule_t *cm1e_axis_state_rule(cm1e_axis_state_t state, cm1e_command_kind_t kind);
 
 /* axis_motion.c */
-void axis_run_profile(cm1e_axis_t *axis, const cm1e_profile_t *profile, position_t target);
-void axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits);
+void cm1e_axis_run_profile(cm1e_axis_t *axis, const cm1e_profile_t *profile, position_t target);
+void cm1e_axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits);
 /** Motion in the direction of `sign` is no longer enabled (MC_Power, 3.1): a command that goes there fails, the axis
  *  stops. */
-void axis_direction_disabled(cm1e_axis_t *axis, double sign);
+void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign);
 /** A stop from the present set-point; one that would run over a software limit brakes as an error does instead. */
-cm1e_error_t axis_plan_stop(const cm1e_axis_t *axis, const cm1e_motion_limits_t *limits, cm1e_profile_t *profile);
-void axis_motion_step(cm1e_axis_t *axis);
-void axis_write_set_point(cm1e_axis_t *axis);
+cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const cm1e_motion_limits_t *limits, cm1e_profile_t *profile);
+void cm1e_axis_motion_step(cm1e_axis_t *axis);
+void cm1e_axis_write_set_point(cm1e_axis_t *axis);
 
 /* axis_command.c */
-void axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
+void cm1e_axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
 
 /* axis_power.c */
-bool axis_wants_enable(const cm1e_axis_t *axis);
-void axis_become_free(cm1e_axis_t *axis);
-void axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound);
-void axis_power_step(cm1e_axis_t *axis);
-void axis_enable_step(cm1e_axis_t *axis);
-void axis_reset_step(cm1e_axis_t *axis);
+bool cm1e_axis_wants_enable(const cm1e_axis_t *axis);
+void cm1e_axis_become_free(cm1e_axis_t *axis);
+void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound);
+void cm1e_axis_power_step(cm1e_axis_t *axis);
+void cm1e_axis_enable_step(cm1e_axis_t *axis);
+void cm1e_axis_reset_step(cm1e_axis_t *axis);
 
 /* axis_home.c */
-cm1e_error_t axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *command);
-void axis_home_begin(cm1e_axis_t *axis);
-void axis_home_abort(cm1e_axis_t *axis, home_goal_t goal);
-void axis_home_step(cm1e_axis_t *axis);
+cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *command);
+void cm1e_axis_home_begin(cm1e_axis_t *axis);
+void cm1e_axis_home_abort(cm1e_axis_t *axis, home_goal_t goal);
+void cm1e_axis_home_step(cm1e_axis_t *axis);
 
 #endif

@@ -85,7 +85,10 @@ static const char *const names[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_ERROR_STOP] = "ErrorStop",
 };
 
-const state_rule_t *axis_state_rule(cm1e_axis_state_t state, cm1e_command_kind_t kind) { return &rules[state][kind]; }
+const state_rule_t *cm1e_axis_state_rule(cm1e_axis_state_t state, cm1e_command_kind_t kind)
+{
+    return &rules[state][kind];
+}
 
 const char *cm1e_axis_state_name(cm1e_axis_state_t state)
 {

@@ -48,8 +48,8 @@ cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis
     drive->feedback.state = CM1E_FSA_UNKNOWN;
     cm1e_error_t error = velocity_unit(drive, diag);
     if (!error)
-        error = drive_resolve(drive, diag);
-    return error ? error : drive_mode_init(drive, diag);
+        error = cm1e_drive_resolve(drive, diag);
+    return error ? error : cm1e_drive_mode_init(drive, diag);
 }
 
 bool cm1e_drive_supports(const cm1e_drive_t *drive, cm1e_mode_t mode)
@@ -131,14 +131,14 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
     cm1e_drive_feedback_t *f = &drive->feedback;
     drive->now_ns = now_ns;
     drive->watch = cm1e_bus_slave_watch(drive->bus, drive->position);
-    drive_mode_step(drive);
+    cm1e_drive_mode_step(drive);
     if (bus_ok)
-        drive_decode(drive);
+        cm1e_drive_decode(drive);
     f->online = bus_ok && drive_operational(drive);
     if (f->state != OPERATION_ENABLED || (f->mode != CM1E_MODE_CSP && f->mode != CM1E_MODE_PP))
         drive->target_holds = false;
     if (drive->reset_phase != RESET_IDLE) {
-        drive_reset_step(drive);
+        cm1e_drive_reset_step(drive);
         f->enabled = false;
         return;
     }
@@ -221,7 +221,7 @@ void cm1e_drive_write(cm1e_drive_t *drive)
 {
     const cm1e_drive_command_t *command = &drive->command;
     if (command->reset && !drive->reset_before && drive->reset_phase == RESET_IDLE)
-        drive_reset_start(drive);
+        cm1e_drive_reset_start(drive);
     drive->reset_before = command->reset;
 
     const bool torque = wants_torque(drive);
@@ -234,7 +234,7 @@ void cm1e_drive_write(cm1e_drive_t *drive)
         drive->feedback.enabled = false;
     }
     drive->torque = torque;
-    drive_mode_choose(drive);
+    cm1e_drive_mode_choose(drive);
 
     const bool pass = drive->feedback.enabled && drive->feedback.mode == (int8_t)drive->mode;
     if (!pass) {
@@ -245,5 +245,5 @@ void cm1e_drive_write(cm1e_drive_t *drive)
     drive->target_holds |= pass && holding_mode;
     const int32_t position = pass && holding_mode ? command->target_position : safe_position(drive);
     const uint16_t word = controlword(drive, pass);
-    drive_encode(drive, word, position, pass ? command->target_velocity : 0);
+    cm1e_drive_encode(drive, word, position, pass ? command->target_velocity : 0);
 }

@@ -92,7 +92,7 @@ static void profile_objects(cm1e_drive_t *drive)
     drive->profile_acceleration = (uint32_t)kilo * (config->acceleration_in_kpulses ? 1u : 1000u);
 }
 
-cm1e_error_t drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag)
+cm1e_error_t cm1e_drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
     if ((unsigned)drive->config->mapping > CM1E_MAPPING_PROFILE)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": there is no PDO mapping number %d.",
@@ -156,7 +156,7 @@ static int32_t velocity_of(const cm1e_drive_t *drive, const uint8_t *in, int32_t
     return clamp_i32((double)step * 1e9 / (double)elapsed_ns);
 }
 
-void drive_decode(cm1e_drive_t *drive)
+void cm1e_drive_decode(cm1e_drive_t *drive)
 {
     const uint8_t *in = cm1e_bus_inputs(drive->bus);
     cm1e_drive_feedback_t *f = &drive->feedback;
@@ -194,7 +194,7 @@ static int32_t velocity_on_wire(const cm1e_drive_t *drive, int32_t counts_per_s)
     return (int32_t)(value > most ? most : value < -most ? -most : value);
 }
 
-void drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t position, int32_t velocity)
+void cm1e_drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t position, int32_t velocity)
 {
     uint8_t *out = cm1e_bus_outputs(drive->bus);
     put(out, drive->out_controlword, controlword);

@@ -12,11 +12,11 @@ static const cm1e_mode_t mapping_modes[] = {
     [CM1E_MAPPING_CSV] = CM1E_MODE_CSV, [CM1E_MAPPING_PROFILE] = CM1E_MODE_CSP,
 };
 
-cm1e_mode_t drive_mapping_mode(cm1e_mapping_t mapping) { return mapping_modes[mapping]; }
+cm1e_mode_t cm1e_drive_mapping_mode(cm1e_mapping_t mapping) { return mapping_modes[mapping]; }
 
-cm1e_error_t drive_mode_init(cm1e_drive_t *drive, cm1e_diag_t *diag)
+cm1e_error_t cm1e_drive_mode_init(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
-    drive->mode = drive_mapping_mode(drive->config->mapping);
+    drive->mode = cm1e_drive_mapping_mode(drive->config->mapping);
     drive->command.mode = drive->mode;
     if (drive->out_mode.bytes)
         return CM1E_OK;
@@ -33,7 +33,7 @@ cm1e_error_t drive_mode_init(cm1e_drive_t *drive, cm1e_diag_t *diag)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_MAILBOX, 0,
                              "Axis \"%s\" (slave %u): object 0x6061 was read with %zu bytes instead of 1.",
                              drive->config->name, drive->position, size);
-    /* A device that needs its time shows the mode later: the cycle asks again (drive_mode_step). */
+    /* A device that needs its time shows the mode later: the cycle asks again (cm1e_drive_mode_step). */
     drive->mode_shown = shown == mode ? shown : CM1E_MODE_NONE;
     return CM1E_OK;
 }
@@ -62,7 +62,7 @@ static void read_done(cm1e_drive_t *drive)
         drive->mode_retry_ns = drive->now_ns + sdo_retry_ns;
 }
 
-void drive_mode_step(cm1e_drive_t *drive)
+void cm1e_drive_mode_step(cm1e_drive_t *drive)
 {
     if (drive->out_mode.bytes)
         return;
@@ -89,7 +89,7 @@ void drive_mode_step(cm1e_drive_t *drive)
     }
 }
 
-void drive_mode_forget(cm1e_drive_t *drive)
+void cm1e_drive_mode_forget(cm1e_drive_t *drive)
 {
     if (drive->mode_phase == PHASE_IDLE)
         drive->mode_shown = CM1E_MODE_NONE;
@@ -97,7 +97,7 @@ void drive_mode_forget(cm1e_drive_t *drive)
 }
 
 /* One switch at a time: until the display shows the last one, nobody knows which mode the next process data meet. */
-void drive_mode_choose(cm1e_drive_t *drive)
+void cm1e_drive_mode_choose(cm1e_drive_t *drive)
 {
     const cm1e_mode_t wanted = drive->command.mode;
     if (wanted == drive->mode || wanted == CM1E_MODE_NONE || !cm1e_mode_find((int8_t)wanted))

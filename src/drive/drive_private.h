@@ -25,21 +25,21 @@ static inline bool drive_fault_allows_ramp(cm1e_error_t error)
 }
 
 /* drive_io.c */
-cm1e_error_t drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag);
-void drive_decode(cm1e_drive_t *drive);
-void drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t position, int32_t velocity);
+cm1e_error_t cm1e_drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag);
+void cm1e_drive_decode(cm1e_drive_t *drive);
+void cm1e_drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t position, int32_t velocity);
 
 /* drive_mode.c */
-cm1e_mode_t drive_mapping_mode(cm1e_mapping_t mapping);
-cm1e_error_t drive_mode_init(cm1e_drive_t *drive, cm1e_diag_t *diag);
-void drive_mode_step(cm1e_drive_t *drive);
+cm1e_mode_t cm1e_drive_mapping_mode(cm1e_mapping_t mapping);
+cm1e_error_t cm1e_drive_mode_init(cm1e_drive_t *drive, cm1e_diag_t *diag);
+void cm1e_drive_mode_step(cm1e_drive_t *drive);
 /** Takes over `command.mode` when the last switch is confirmed. */
-void drive_mode_choose(cm1e_drive_t *drive);
+void cm1e_drive_mode_choose(cm1e_drive_t *drive);
 /** Show the mode again: the device may have been switched off meanwhile. */
-void drive_mode_forget(cm1e_drive_t *drive);
+void cm1e_drive_mode_forget(cm1e_drive_t *drive);
 
 /* drive_reset.c */
-void drive_reset_start(cm1e_drive_t *drive);
-void drive_reset_step(cm1e_drive_t *drive);
+void cm1e_drive_reset_start(cm1e_drive_t *drive);
+void cm1e_drive_reset_step(cm1e_drive_t *drive);
 
 #endif

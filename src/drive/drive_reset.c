@@ -11,7 +11,7 @@ static const int64_t clear_timeout_ns = 2000 * MS_IN_NS;
 static const int64_t settle_ns = 200 * MS_IN_NS;
 static const int64_t recovery_interval_ns = 1000 * MS_IN_NS;
 
-void drive_reset_start(cm1e_drive_t *drive)
+void cm1e_drive_reset_start(cm1e_drive_t *drive)
 {
     drive->reset_phase = RESET_WAIT_ONLINE;
     drive->reset_deadline_ns = drive->now_ns + online_timeout_ns;
@@ -34,7 +34,7 @@ static void finish(cm1e_drive_t *drive, cm1e_error_t error)
     drive->torque = false;
     if (error == CM1E_OK) {
         drive->fault = (cm1e_drive_fault_t){0};
-        drive_mode_forget(drive);
+        cm1e_drive_mode_forget(drive);
         return;
     }
     drive->fault.error = CM1E_OK;
@@ -89,7 +89,7 @@ static void released(cm1e_drive_t *drive)
         finish(drive, CM1E_OK);
 }
 
-void drive_reset_step(cm1e_drive_t *drive)
+void cm1e_drive_reset_step(cm1e_drive_t *drive)
 {
     static void (*const steps[])(cm1e_drive_t *) = {
         [RESET_WAIT_ONLINE] = wait_online, [RESET_EDGE] = edge, [RESET_RELEASED] = released,

@@ -1,4 +1,4 @@
-/* A device and programs that do anything: states, commands and set-points stay what the standard and the limits allow. */
+/* A device and programs that do anything: states, commands and set-points stay what standard and limits allow. */
 #include <math.h>
 
 #include "../support/axis_bench.h"
@@ -32,7 +32,7 @@ static double wild(double size)
 
 static double positive(double size) { return draw(3) ? fabs(wild(size)) : 0.0; }
 
-/* ---- the device ------------------------------------------------------------------------------------------------------ */
+/* ---- the device -------------------------------------------------------------------------------------------------- */
 
 static void device(void)
 {
@@ -59,7 +59,7 @@ static void device(void)
         health = CM1E_OK;
 }
 
-/* ---- the programs ---------------------------------------------------------------------------------------------------- */
+/* ---- the programs ------------------------------------------------------------------------------------------------ */
 
 enum { IDS = 16 };
 static cm1e_command_id_t ids[IDS];
@@ -98,7 +98,7 @@ static void programs(void)
         (void)cm1e_axis_shut_down(axis);
 }
 
-/* ---- what must hold -------------------------------------------------------------------------------------------------- */
+/* ---- what must hold ---------------------------------------------------------------------------------------------- */
 
 static activity_t activity_before;
 static position_t set_before;
@@ -136,10 +136,10 @@ static void check_axis(void)
     const bool ours = axis->activity == ACTIVITY_HOLD || axis->activity == ACTIVITY_PROFILE;
     const bool was_ours = activity_before == ACTIVITY_HOLD || activity_before == ACTIVITY_PROFILE;
     if (ours && was_ours) /* peak speed: 2500 counts a cycle */
-        TEST_ASSERT_TRUE(fabs(position_minus(axis->set, set_before)) < 2501.0);
+        TEST_ASSERT_TRUE(fabs(cm1e_position_minus(axis->set, set_before)) < 2501.0);
     if (axis->activity == ACTIVITY_FREE) {
         TEST_ASSERT_EQUAL_INT64(axis->actual_counts, axis->set.counts);
-        TEST_ASSERT_TRUE(!axis->drive.command.enable || axis_wants_enable(axis));
+        TEST_ASSERT_TRUE(!axis->drive.command.enable || cm1e_axis_wants_enable(axis));
     }
     TEST_ASSERT_TRUE(axis->set.fraction >= 0.0 && axis->set.fraction < 1.0);
     TEST_ASSERT_EQUAL_INT32(axis->raw, (int32_t)(uint32_t)(uint64_t)axis->actual_counts);
