@@ -39,14 +39,25 @@ static uint32_t last_place(const cm1e_axis_config_t *const *places)
     return count;
 }
 
+static cm1e_error_t check_axis(const cm1e_axis_config_t *axis, cm1e_diag_t *diag)
+{
+    if (axis->address_kind == CM1E_ADDRESS_EXPLICIT_ID && axis->address > EXPLICIT_ID_MAX)
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "explicit ID %u: the rotary switches give 1 to %d",
+                             axis->address, EXPLICIT_ID_MAX);
+    if (!cm1e_device_motor(axis->motor))
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "motor '%s' is not known", axis->motor);
+    if (axis->firmware[0] && !cm1e_firmware_from_version(axis->firmware))
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "firmware '%s' is not a version", axis->firmware);
+    return CM1E_OK;
+}
+
 static cm1e_error_t add_place(cm1e_sim_segment_t *segment, const cm1e_bus_config_t *config,
                               const cm1e_axis_config_t *axis, cm1e_diag_t *diag)
 {
     const uint16_t alias = axis && axis->address_kind == CM1E_ADDRESS_ALIAS ? axis->address : 0;
     const uint16_t id = axis && axis->address_kind == CM1E_ADDRESS_EXPLICIT_ID ? axis->address : 0;
-    if (id > EXPLICIT_ID_MAX)
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "explicit ID %u: the rotary switches give 1 to %d", id,
-                             EXPLICIT_ID_MAX);
+    if (axis && check_axis(axis, diag) != CM1E_OK)
+        return CM1E_ERROR_CONFIG;
     cm1e_sim_slave_t *slave = axis ? cm1e_sim_cm1e_create(axis, config->sim_pdo_order, alias, (uint8_t)id)
                                    : cm1e_sim_io_module_create();
     const cm1e_error_t error = cm1e_sim_segment_add(segment, slave);

@@ -1,0 +1,144 @@
+/* The segment that a configuration describes: who stands where, with which alias and explicit ID. */
+#include "sim_fake_app.h"
+
+static cm1e_bus_config_t config;
+static cm1e_diag_t diag;
+static bench_t b;
+
+void setUp(void)
+{
+    memset(&diag, 0, sizeof diag);
+    memset(&b, 0, sizeof b);
+    b.now_ns = 1000000000;
+}
+void tearDown(void)
+{
+    cm1e_sim_segment_destroy(b.segment);
+    b.segment = NULL;
+}
+
+static void open_axes(uint32_t count)
+{
+    cm1e_bus_config_init(&config, "sim", count);
+    for (uint32_t i = 0; i < count; i++)
+        config.axes[i].address = 0;
+}
+
+static void create(uint32_t expected_slaves)
+{
+    b.segment = cm1e_sim_segment_create(&config, &diag);
+    TEST_ASSERT_NOT_NULL_MESSAGE(b.segment, diag.text);
+    TEST_ASSERT_EQUAL_UINT32(expected_slaves, cm1e_sim_segment_slave_count(b.segment));
+}
+
+static void refuse(const char *word)
+{
+    TEST_ASSERT_NULL(cm1e_sim_segment_create(&config, &diag));
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_CONFIG, diag.error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, word), diag.text);
+    TEST_ASSERT_NULL(cm1e_sim_segment_create(&config, NULL));
+}
+
+/* Product code as the SII interface of a slave gives it. */
+static uint32_t product(unsigned slave)
+{
+    write_u16(&b, slave, 0x0504, 0x000A);
+    write_u16(&b, slave, 0x0502, 0x0100);
+    bench_wait(&b, 1000000);
+    return read_u32(&b, slave, 0x0508);
+}
+
+static uint16_t explicit_id(unsigned slave)
+{
+    write_u16(&b, slave, 0x0120, 0x21);
+    bench_wait(&b, 1000000);
+    TEST_ASSERT_EQUAL_HEX16(0x21, read_u16(&b, slave, 0x0130));
+    return read_u16(&b, slave, 0x0134);
+}
+
+static void test_axes_without_address_stand_in_the_order_of_the_list(void)
+{
+    open_axes(16);
+    create(16);
+    for (unsigned i = 0; i < 16; i++) {
+        TEST_ASSERT_EQUAL_HEX32(CM1E_PRODUCT_CODE, product(i));
+        TEST_ASSERT_EQUAL_HEX16(0, read_u16(&b, i, 0x0012));
+        TEST_ASSERT_EQUAL_HEX16(0, explicit_id(i));
+    }
+}
+
+static void test_no_axes_is_an_empty_segment(void)
+{
+    open_axes(1);
+    config.axis_count = 0;
+    create(0);
+}
+
+static void test_positions_are_kept_and_gaps_filled_with_io_modules(void)
+{
+    open_axes(2);
+    config.axes[0].address = 4;
+    config.axes[1].address = 2;
+    create(4);
+    TEST_ASSERT_EQUAL_HEX32(0x808, product(0));
+    TEST_ASSERT_EQUAL_HEX32(CM1E_PRODUCT_CODE, product(1));
+    TEST_ASSERT_EQUAL_HEX32(0x808, product(2));
+    TEST_ASSERT_EQUAL_HEX32(CM1E_PRODUCT_CODE, product(3));
+}
+
+static void test_alias_and_id_fill_the_places_between(void)
+{
+    open_axes(4);
+    config.axes[0].address_kind = CM1E_ADDRESS_ALIAS;
+    config.axes[0].address = 0x1001;
+    config.axes[1].address = 2;
+    config.axes[2].address_kind = CM1E_ADDRESS_EXPLICIT_ID;
+    config.axes[2].address = 254;
+    config.axes[3].address = 1;
+    create(4);
+    TEST_ASSERT_EQUAL_HEX16(0, read_u16(&b, 0, 0x0012));
+    TEST_ASSERT_EQUAL_HEX16(0x1001, read_u16(&b, 2, 0x0012));
+    TEST_ASSERT_EQUAL_HEX16(0, explicit_id(2));
+    TEST_ASSERT_EQUAL_HEX16(254, explicit_id(3));
+    TEST_ASSERT_EQUAL_HEX16(0, read_u16(&b, 3, 0x0012));
+}
+
+static void test_contradictions_are_refused_in_words(void)
+{
+    open_axes(3);
+    config.axes[2].address = 1;
+    refuse("taken");
+    config.axes[2].address = CM1E_MAX_SLAVES + 1;
+    refuse("far");
+    config.axes[2].address_kind = CM1E_ADDRESS_EXPLICIT_ID;
+    config.axes[2].address = 255;
+    refuse("255");
+    config.axes[2].address = 9;
+    strcpy(config.axes[1].motor, "CM2-X");
+    refuse("CM2-X");
+    config.axes[1].motor[0] = 0;
+    strcpy(config.axes[0].firmware, "new");
+    refuse("new");
+    config.axis_count = CM1E_MAX_AXES + 1;
+    refuse("axes");
+}
+
+static void test_the_longest_bus_can_be_made(void)
+{
+    open_axes(CM1E_MAX_AXES);
+    create(CM1E_MAX_AXES);
+    uint8_t data[1] = {0};
+    TEST_ASSERT_EQUAL_INT(CM1E_MAX_AXES, send_to(&b, BRD, 0, 0x0000, data, 1));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_axes_without_address_stand_in_the_order_of_the_list);
+    RUN_TEST(test_no_axes_is_an_empty_segment);
+    RUN_TEST(test_positions_are_kept_and_gaps_filled_with_io_modules);
+    RUN_TEST(test_alias_and_id_fill_the_places_between);
+    RUN_TEST(test_contradictions_are_refused_in_words);
+    RUN_TEST(test_the_longest_bus_can_be_made);
+    return UNITY_END();
+}
