@@ -1,0 +1,387 @@
+/**
+ * @file safety_bench.h
+ * A bus of simulated axes with a witness who believes nobody: every process data frame is decoded by the device's own
+ * tables, not by what the bus resolved, and what goes to a drive is judged before the drive gets it. Include it once in
+ * a test program.
+ */
+#ifndef CM1E_TESTS_SAFETY_BENCH_H
+#define CM1E_TESTS_SAFETY_BENCH_H
+
+#include <check.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bus/bus_image.h"
+#include "cm1e/plcopen.h"
+#include "cm1e/scheduler.h"
+#include "nic/nic.h"
+#include "sim/cm1e_app.h"
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+enum { SLOWNESS = 12 }; /* sanitizers: fewer and shorter runs */
+#else
+enum { SLOWNESS = 1 };
+#endif
+
+enum { BENCH_AXES = 3, LRW = 12, LRW_DATA = 26, SLAVE_WORKING_COUNTER = 3 };
+
+typedef struct bench bench_t;
+
+/* ---- chance --------------------------------------------------------------------------------------------------------- */
+
+static uint64_t chance_state;
+
+static void chance_seed(uint64_t seed)
+{
+    chance_state = (seed + 1) * UINT64_C(0x9E3779B97F4A7C15);
+    chance_state ^= chance_state >> 29;
+}
+
+static inline uint64_t chance(void)
+{
+    chance_state ^= chance_state << 13;
+    chance_state ^= chance_state >> 7;
+    chance_state ^= chance_state << 17;
+    return chance_state;
+}
+
+static inline double uniform(double low, double high) { return low + (high - low) * (double)(chance() >> 11) * 0x1p-53; }
+static inline bool one_in(unsigned n) { return (chance() >> 11) % n == 0; }
+static inline int pick(int count) { return (int)((chance() >> 11) % (unsigned)count); }
+
+/** Runs of a random test: all seeds, or the one that the environment names. */
+static inline int seed_count(int count)
+{
+    const int all = count / SLOWNESS;
+    return getenv("CM1E_TEST_SEED") ? 1 : all > 0 ? all : 1;
+}
+
+static inline unsigned seed_of(int run)
+{
+    const char *word = getenv("CM1E_TEST_SEED");
+    return word ? (unsigned)strtoul(word, NULL, 10) : (unsigned)run + 1;
+}
+
+/* ---- the witness ---------------------------------------------------------------------------------------------------- */
+
+/** One axis, as the frames show it. Offsets into the data of the LRW datagram; -1: not mapped. */
+typedef struct witness {
+    int out_controlword, out_position, out_velocity, out_mode;
+    int in_statusword, in_position, in_mode;
+    double velocity_unit;              /**< counts/s of one unit of 0x60FF */
+    double max_step, max_gain, max_loss; /**< counts a cycle, and more or less of it a cycle */
+    int8_t mode;                       /**< of the set-points */
+    bool shown;                        /**< the drive has shown something */
+    uint16_t statusword;
+    int32_t position, position_before;
+    int8_t mode_shown;
+    bool enabling, holding;            /**< of the last frame sent: controlword bit 3; its set-points count */
+    uint16_t controlword;
+    int32_t target;
+    double step;
+    double velocity;                   /**< counts/s that 0x60FF asks for */
+    unsigned enablings, set_points;
+} witness_t;
+
+struct bench {
+    cm1e_bus_config_t config;
+    cm1e_scheduler_config_t scheduler_config;
+    cm1e_bus_t *bus;
+    cm1e_scheduler_t *scheduler;
+    cm1e_sim_segment_t *segment;
+    AXIS_REF_t axis[BENCH_AXES];
+    witness_t witness[BENCH_AXES];
+    int image_bytes, output_bytes;
+    uint8_t last_index;
+    uint8_t last_outputs[256];
+    /** What happens to a process data frame; NULL: nothing. Called before the witness looks at what is sent. */
+    cm1e_tap_verdict_t (*fault)(bench_t *bench, cm1e_tap_frame_t *frame);
+    bool frames_late;                  /**< frames are delayed: what the drive showed may be one frame older */
+    void (*program)(bench_t *bench);
+    void *context;
+    int cycle;
+    uint64_t process_frames;           /**< sent */
+    char scene[160];                   /**< which run this is, for messages */
+};
+
+__attribute__((format(printf, 2, 3), noreturn)) static void bench_fail(const bench_t *bench, const char *format, ...)
+{
+    char words[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(words, sizeof words, format, arguments);
+    va_end(arguments);
+    ck_abort_msg("%s, cycle %d: %s", bench->scene, bench->cycle, words);
+    abort();
+}
+
+/* Check's own assertions tell their parent process about every one that holds: too slow for each cycle. */
+#define MUST(bench, condition, ...)                                                                                 \
+    do {                                                                                                            \
+        if (!(condition))                                                                                           \
+            bench_fail((bench), __VA_ARGS__);                                                                       \
+    } while (0)
+
+static void locate(const cm1e_pdo_t *pdo, int base, uint16_t index, int *place)
+{
+    int bits = base * 8;
+    *place = -1;
+    for (int i = 0; i < pdo->entry_count; i++) {
+        if (pdo->entries[i].index == index)
+            *place = bits / 8;
+        bits += pdo->entries[i].bits;
+    }
+}
+
+static int pdo_bytes(const cm1e_pdo_t *pdo)
+{
+    int bits = 0;
+    for (int i = 0; i < pdo->entry_count; i++)
+        bits += pdo->entries[i].bits;
+    return (bits + 7) / 8;
+}
+
+static double or_else(double value, double otherwise) { return value > 0 ? value : otherwise; }
+
+static void witness_limits(const bench_t *bench, uint32_t n, witness_t *w)
+{
+    const cm1e_axis_config_t *axis = &bench->config.axes[n];
+    const cm1e_firmware_info_t *firmware = cm1e_firmware_from_version(axis->firmware[0] ? axis->firmware : "1.3.5");
+    const double unit = or_else(axis->counts_per_unit, CM1E_COUNTS_PER_REVOLUTION);
+    const double peak = cm1e_device_motor(axis->motor)->max_velocity_counts_per_s;
+    const double cycle_s = (double)bench->config.cycle_time_ns * 1e-9;
+    const double gain = or_else(axis->max_acceleration * unit, 5e6);
+    w->max_step = fmin(or_else(axis->max_velocity * unit, peak), peak) * cycle_s;
+    w->max_gain = gain * cycle_s * cycle_s;
+    w->max_loss = or_else(axis->max_deceleration * unit, gain) * cycle_s * cycle_s;
+    w->velocity_unit = firmware->velocity_in_counts_per_ms ? 1000.0 : 1.0;
+    w->mode = axis->mapping == CM1E_MAPPING_CSV ? CM1E_MODE_CSV : CM1E_MODE_CSP;
+}
+
+/** All outputs, then all inputs, each in the order of the slaves. */
+static void witness_layout(bench_t *bench)
+{
+    cm1e_pdo_t pdo[BENCH_AXES][2];
+    int at = 0;
+    for (uint32_t n = 0; n < bench->config.axis_count; n++) {
+        const cm1e_axis_config_t *axis = &bench->config.axes[n];
+        const cm1e_firmware_info_t *firmware = cm1e_firmware_from_version(axis->firmware[0] ? axis->firmware : "1.3.5");
+        witness_t *w = &bench->witness[n];
+        *w = (witness_t){0};
+        witness_limits(bench, n, w);
+        for (int transmit = 0; transmit < 2; transmit++)
+            cm1e_device_pdo(&pdo[n][transmit], axis->mapping, transmit, bench->config.sim_pdo_order, firmware->firmware);
+        locate(&pdo[n][0], at, OBJ_6040_CONTROLWORD, &w->out_controlword);
+        locate(&pdo[n][0], at, OBJ_607A_TARGET_POSITION, &w->out_position);
+        locate(&pdo[n][0], at, OBJ_60FF_TARGET_VELOCITY, &w->out_velocity);
+        locate(&pdo[n][0], at, OBJ_6060_MODES_OF_OPERATION, &w->out_mode);
+        at += pdo_bytes(&pdo[n][0]);
+    }
+    bench->output_bytes = at;
+    for (uint32_t n = 0; n < bench->config.axis_count; n++) {
+        witness_t *w = &bench->witness[n];
+        locate(&pdo[n][1], at, OBJ_6041_STATUSWORD, &w->in_statusword);
+        locate(&pdo[n][1], at, OBJ_6064_POSITION_ACTUAL_VALUE, &w->in_position);
+        locate(&pdo[n][1], at, OBJ_6061_MODES_OF_OPERATION_DISPLAY, &w->in_mode);
+        at += pdo_bytes(&pdo[n][1]);
+    }
+    bench->image_bytes = at;
+}
+
+static uint16_t word_at(const uint8_t *data, int place) { return (uint16_t)(data[place] | data[place + 1] << 8); }
+
+static int32_t long_at(const uint8_t *data, int place)
+{
+    return (int32_t)((uint32_t)word_at(data, place) | (uint32_t)word_at(data, place + 2) << 16);
+}
+
+static bool is_process_data(const bench_t *bench, const cm1e_tap_frame_t *frame)
+{
+    return frame->length >= (size_t)LRW_DATA + (size_t)bench->image_bytes + 2 && frame->bytes[16] == LRW &&
+           (word_at(frame->bytes, 22) & 0x7FF) == bench->image_bytes;
+}
+
+/** Inputs that the master may believe: of the frame it sent last, with every slave's part in it. */
+static void witness_received(bench_t *bench, const cm1e_tap_frame_t *frame)
+{
+    const uint8_t *data = frame->bytes + LRW_DATA;
+    const uint32_t count = bench->config.axis_count;
+    if (frame->bytes[17] != bench->last_index || frame->delay_ns > 0 ||
+        word_at(data, bench->image_bytes) != SLAVE_WORKING_COUNTER * count ||
+        memcmp(data, bench->last_outputs, (size_t)bench->output_bytes) != 0)
+        return;
+    for (uint32_t n = 0; n < count; n++) {
+        witness_t *w = &bench->witness[n];
+        w->statusword = word_at(data, w->in_statusword);
+        w->position_before = w->shown ? w->position : long_at(data, w->in_position);
+        w->position = long_at(data, w->in_position);
+        w->mode_shown = w->in_mode < 0 ? w->mode : (int8_t)data[w->in_mode];
+        w->shown = true;
+    }
+}
+
+static bool at_shown_position(const bench_t *bench, const witness_t *w)
+{
+    return w->target == w->position || (bench->frames_late && w->target == w->position_before);
+}
+
+/** Set-points may neither be faster nor change faster than the axis's limits say; a target is rounded to counts. */
+static void judge_step(const bench_t *bench, uint32_t n, witness_t *w, double step)
+{
+    const double change = fabs(step) - fabs(w->step);
+    const bool turned = (step > 0 && w->step < 0) || (step < 0 && w->step > 0);
+    const double most = fmax(w->max_gain, w->max_loss) + 2.0;
+    MUST(bench, fabs(step) <= w->max_step + 1.0, "axis %u: the target moves by %.0f counts in a cycle, limit %.1f", n,
+         step, w->max_step);
+    MUST(bench, fabs(step - w->step) <= most && (turned || change <= w->max_gain + 2.0) &&
+                    (turned || -change <= w->max_loss + 2.0),
+         "axis %u: steps of %.0f, then %.0f counts; limits: %.1f more, %.1f less", n, w->step, step, w->max_gain,
+         w->max_loss);
+    w->step = step;
+    w->set_points++;
+}
+
+static void witness_sent_axis(bench_t *bench, uint32_t n, const uint8_t *data)
+{
+    witness_t *w = &bench->witness[n];
+    const int32_t target_before = w->target;
+    const bool enabling_before = w->enabling, holding_before = w->holding;
+    w->controlword = word_at(data, w->out_controlword);
+    w->enabling = (w->controlword & 0x08) != 0;
+    w->target = w->out_position < 0 ? w->position : long_at(data, w->out_position);
+    w->velocity = w->out_velocity < 0 ? 0 : long_at(data, w->out_velocity) * w->velocity_unit;
+    w->holding = w->enabling && (w->statusword & 0x6F) == 0x27 && w->mode_shown == w->mode;
+    MUST(bench, fabs(w->velocity) <= cm1e_device_motor(bench->config.axes[n].motor)->max_velocity_counts_per_s,
+         "axis %u: target velocity %.0f", n, w->velocity);
+    if (!w->enabling)
+        return;
+    if (!enabling_before)
+        w->enablings++;
+    MUST(bench, w->shown, "axis %u: enabled although the drive has not shown its position yet", n);
+    if (!w->holding || !holding_before) { /* the drive may act on this frame, or acts on it as the first one */
+        MUST(bench, at_shown_position(bench, w),
+             "axis %u: controlword 0x%04X, statusword 0x%04X, mode %d: target %d, but the drive is at %d", n,
+             w->controlword, w->statusword, w->mode_shown, w->target, w->position);
+        MUST(bench, w->velocity == 0, "axis %u: controlword 0x%04X, statusword 0x%04X: target velocity %.0f", n,
+             w->controlword, w->statusword, w->velocity);
+        w->step = 0;
+        return;
+    }
+    if (w->out_position >= 0)
+        judge_step(bench, n, w, (double)(int32_t)((uint32_t)w->target - (uint32_t)target_before));
+}
+
+static cm1e_tap_verdict_t bench_tap(void *context, cm1e_tap_frame_t *frame)
+{
+    bench_t *bench = context;
+    if (!is_process_data(bench, frame))
+        return CM1E_TAP_PASS;
+    cm1e_tap_verdict_t verdict = bench->fault ? bench->fault(bench, frame) : CM1E_TAP_PASS;
+    if (frame->direction == CM1E_TAP_RECEIVED) {
+        if (verdict == CM1E_TAP_PASS)
+            witness_received(bench, frame);
+        return verdict;
+    }
+    bench->process_frames++;
+    bench->last_index = frame->bytes[17];
+    memcpy(bench->last_outputs, frame->bytes + LRW_DATA, (size_t)bench->output_bytes);
+    for (uint32_t n = 0; n < bench->config.axis_count; n++)
+        witness_sent_axis(bench, n, frame->bytes + LRW_DATA);
+    return verdict;
+}
+
+/* ---- the bench ------------------------------------------------------------------------------------------------------ */
+
+/** Axes of 1000 counts a unit with the library's default limits; the caller changes what it wants in bench->config. */
+static void bench_describe(bench_t *bench, uint32_t axes)
+{
+    cm1e_bus_config_init(&bench->config, "sim", axes);
+    bench->config.virtual_time = true;
+    bench->config.cycle_time_ns = 1000000;
+    for (uint32_t n = 0; n < axes; n++) {
+        cm1e_axis_config_t *axis = &bench->config.axes[n];
+        axis->counts_per_unit = 1000;
+        axis->homing = (cm1e_homing_config_t){.method = -2, .velocity = 100, .acceleration = 2000, .torque = 30};
+    }
+}
+
+static void bench_cycle(void *context)
+{
+    bench_t *bench = context;
+    bench->program(bench);
+    bench->cycle++;
+}
+
+static cm1e_sim_cm1e_t *bench_drive(const bench_t *bench, uint32_t n)
+{
+    return cm1e_sim_cm1e_of(cm1e_sim_segment_slave(bench->segment, n + 1));
+}
+
+static void bench_open(bench_t *bench)
+{
+    cm1e_diag_t diag = {0};
+    bench->cycle = 0;
+    bench->process_frames = 0;
+    witness_layout(bench);
+    if (cm1e_bus_open(&bench->bus, &bench->config, &diag) != CM1E_OK)
+        bench_fail(bench, "%s", diag.text);
+    bench->segment = cm1e_nic_segment(cm1e_bus_nic(bench->bus));
+    cm1e_nic_set_tap(cm1e_bus_nic(bench->bus), bench_tap, bench);
+}
+
+static void bench_start(bench_t *bench)
+{
+    cm1e_diag_t diag = {0};
+    if (cm1e_bus_start(bench->bus, &diag) != CM1E_OK ||
+        cm1e_scheduler_create(&bench->scheduler, bench->bus, &bench->scheduler_config, &diag) != CM1E_OK)
+        bench_fail(bench, "%s", diag.text);
+    const cm1e_task_config_t task = {.program = bench_cycle, .context = bench};
+    if (cm1e_scheduler_add_task(bench->scheduler, &task, &diag) != CM1E_OK)
+        bench_fail(bench, "%s", diag.text);
+    for (uint32_t n = 0; n < bench->config.axis_count; n++)
+        bench->axis[n] = cm1e_scheduler_axis(bench->scheduler, n);
+}
+
+static cm1e_sim_probe_t bench_probe(const bench_t *bench, uint32_t n)
+{
+    cm1e_sim_probe_t probe;
+    cm1e_sim_probe(bench->segment, n + 1, &probe);
+    return probe;
+}
+
+static cm1e_axis_info_t bench_info(const bench_t *bench, uint32_t n)
+{
+    cm1e_axis_info_t info = {0};
+    cm1e_axis_read(bench->axis[n], &info);
+    return info;
+}
+
+__attribute__((format(printf, 2, 3))) static inline void bench_console(bench_t *bench, const char *format, ...)
+{
+    char line[96], answer[256] = "";
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    if (cm1e_bus_simulate(bench->bus, line, answer, sizeof answer) != CM1E_OK)
+        bench_fail(bench, "console: %s: %s", line, answer);
+}
+
+/** Runs until the program stops it. Then no drive is under torque, and every slave that can hear is in Init. */
+static cm1e_error_t bench_run(bench_t *bench, cm1e_diag_t *diag)
+{
+    return cm1e_scheduler_run(bench->scheduler, 0, diag);
+}
+
+static void bench_close(bench_t *bench)
+{
+    cm1e_scheduler_destroy(bench->scheduler);
+    cm1e_bus_close(bench->bus);
+    bench->scheduler = NULL;
+    bench->bus = NULL;
+}
+
+#endif
