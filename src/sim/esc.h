@@ -146,7 +146,7 @@ bool cm1e_sim_esc_logical_read(cm1e_sim_slave_t *slave, uint32_t address, uint8_
 bool cm1e_sim_esc_logical_write(cm1e_sim_slave_t *slave, uint32_t address, const uint8_t *data, uint16_t length);
 
 /* esc_sync_manager.c */
-/** Decodes the registers of a sync manager after they were written; `reset` empties its buffers. */
+/** Decodes the registers of a sync manager after they were written; switching it on or off empties its buffers. */
 void cm1e_sim_esc_sm_decode(cm1e_sim_slave_t *slave, unsigned number);
 /** Locks or unlocks the sync manager of a role from the slave's side (0x0807 bit 0). */
 void cm1e_sim_esc_sm_lock(cm1e_sim_slave_t *slave, unsigned role, bool locked);

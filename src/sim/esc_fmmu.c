@@ -84,7 +84,7 @@ static bool read_bits(cm1e_sim_slave_t *slave, const esc_fmmu_t *fmmu, uint32_t 
     return any;
 }
 
-/* Writes to a single byte of which other bits stay: through the memory, which an output's buffer is. */
+/* Byte by byte, the other bits of each as they stand in the memory. */
 static bool write_bits(cm1e_sim_slave_t *slave, const esc_fmmu_t *fmmu, uint32_t from, uint32_t to, const uint8_t *data)
 {
     bool any = false;
