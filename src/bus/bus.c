@@ -130,6 +130,13 @@ const char *cm1e_bus_label(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave,
     return label;
 }
 
+const char *cm1e_bus_label_first(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, char label[CM1E_LABEL_LENGTH])
+{
+    cm1e_bus_label(bus, slave, label);
+    label[0] = 'S';
+    return label;
+}
+
 cm1e_error_t cm1e_bus_simulate(cm1e_bus_t *bus, const char *line, char *answer, size_t size)
 {
     cm1e_sim_segment_t *segment = cm1e_nic_segment(bus->nic);

@@ -121,8 +121,9 @@ static inline void cm1e_bus_set_phase(cm1e_bus_t *bus, cm1e_bus_phase_t phase)
     __atomic_store_n(&bus->phase, (int)phase, __ATOMIC_RELEASE);
 }
 
-/** "slave 2 ("axis2", CM1-E)": how a slave is named in every diagnosis. */
+/** 'slave 2 ("axis2", CM1-E)': how a slave is named in every diagnosis; at the begin of a sentence with a capital. */
 const char *cm1e_bus_label(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, char label[CM1E_LABEL_LENGTH]);
+const char *cm1e_bus_label_first(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, char label[CM1E_LABEL_LENGTH]);
 /** Makes the bus's clock the one SOEM uses in this thread, and tells the time. */
 int64_t cm1e_bus_enter(cm1e_bus_t *bus);
 

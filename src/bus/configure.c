@@ -23,12 +23,12 @@ static cm1e_error_t check_cycle_time(const cm1e_bus_t *bus, const cm1e_bus_slave
         known = known || cm1e_device_cycle_times_ns[i] == cycle_ns;
     if (!known)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_CYCLE_TIME, 0,
-                             "The cycle time of %lld us is none of 200, 250, 500 and 1000 us, which the %s accepts.",
+                             "The cycle time of %lld us is none of 200, 250, 500 and 1000 us, which %s accepts.",
                              (long long)(cycle_ns / 1000), cm1e_bus_label(bus, slave, label));
     if (slave->firmware && !slave->firmware->all_cycle_times && cycle_ns != 1000000)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_CYCLE_TIME, 0,
-                             "The %s has firmware %s, which accepts a cycle time of 1000 us only (V1.3.2 and later: also "
-                             "200, 250, 500 us); configured are %lld us.", cm1e_bus_label(bus, slave, label),
+                             "%s has firmware %s, which accepts a cycle time of 1000 us only (V1.3.2 and later: also "
+                             "200, 250, 500 us); configured are %lld us.", cm1e_bus_label_first(bus, slave, label),
                              slave->info.software_version, (long long)(cycle_ns / 1000));
     return CM1E_OK;
 }
@@ -50,12 +50,12 @@ static cm1e_error_t read_mappings(cm1e_bus_t *bus, cm1e_diag_t *diag)
             continue;
         if (!ended && !cm1e_mapping_idle(job)) {
             cm1e_acyclic_cancel(bus);
-            return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "The %s takes too long to tell its PDO mapping.",
-                                 cm1e_bus_label(bus, slave, label));
+            return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "%s takes too long to tell its PDO mapping.",
+                                 cm1e_bus_label_first(bus, slave, label));
         }
         if (job->error == CM1E_ERROR_PDO_MAPPING)
             return cm1e_diag_set(diag, job->error, 0,
-                                 "The PDO mapping 0x%04X/0x%04X of the %s cannot be used: %s (object 0x%04X:%02X).",
+                                 "The PDO mapping 0x%04X/0x%04X of %s cannot be used: %s (object 0x%04X:%02X).",
                                  job->pdo[0], job->pdo[1], cm1e_bus_label(bus, slave, label), job->reason,
                                  job->sdo.index, job->sdo.subindex);
         if (job->error != CM1E_OK)
@@ -76,7 +76,7 @@ static cm1e_error_t set_process_data(cm1e_bus_t *bus, cm1e_diag_t *diag)
         char label[CM1E_LABEL_LENGTH];
         if (!ok)
             return cm1e_diag_set(diag, CM1E_ERROR_PDO_MAPPING, 0,
-                                 "The process data of the %s does not fit its sync managers: its SII is damaged.",
+                                 "The process data of %s does not fit its sync managers: its SII is damaged.",
                                  cm1e_bus_label(bus, slave, label));
     }
     return CM1E_OK;

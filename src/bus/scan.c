@@ -71,6 +71,20 @@ static void read_software_versions(cm1e_bus_t *bus)
     }
 }
 
+static cm1e_error_t diagnose_scan(const cm1e_bus_t *bus, int result, uint16_t position, cm1e_diag_t *diag)
+{
+    const char *name = bus->config.interface_name;
+    if (result == SCAN_TOO_MANY)
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "More than %d slaves answer on %s.", CM1E_MAX_SLAVES, name);
+    if (result == SCAN_LOST)
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_LOST, 0,
+                             "Slave %u on %s stopped answering during the scan: check its power and the cables up to it.",
+                             position, name);
+    return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0,
+                         "The SII (EEPROM) of slave %u on %s %s. Write it anew, or take the slave off the bus.", position,
+                         name, result == SCAN_SII_DAMAGED ? "is damaged: its categories have no end" : "cannot be read");
+}
+
 cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     if (bus->phase >= BUS_OPERATING)
@@ -81,27 +95,22 @@ cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)
     cm1e_bus_set_phase(bus, BUS_OPEN);
     bus->slave_count = 0;
     memset(bus->axis_position, 0, sizeof bus->axis_position);
-    uint16_t damaged;
-    const int found = cm1e_soem_scan(bus->soem, &damaged);
-    if (found == SCAN_DAMAGED_SII)
-        return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0,
-                             "The SII (EEPROM) of slave %u is damaged: its categories have no end. Write it anew, or take "
-                             "the slave off the bus.", damaged);
-    if (found == SCAN_TOO_MANY)
-        return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "More than %d slaves answer on %s.", CM1E_MAX_SLAVES,
-                             bus->config.interface_name);
-    if (found == SCAN_GAVE_UP)
-        return cm1e_diag_set(diag, CM1E_ERROR_BUS_LOST, 0,
-                             "In the middle of the scan of %s frames or slaves stopped answering. Check cables and the "
-                             "power of the slaves, then scan again.", bus->config.interface_name);
+    uint16_t position;
+    const int found = cm1e_soem_scan(bus->soem, &position);
+    if (found < 0)
+        return diagnose_scan(bus, found, position, diag);
     if (found == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_NO_SLAVES, 0,
                              "No EtherCAT slave answers on %s. Check the cable to IN of the first slave, the power of "
                              "the slaves and the name of the interface.", bus->config.interface_name);
-    for (int position = 1; position <= found; position++)
-        set_up_slave(bus, (uint16_t)position);
+    for (position = 1; position <= found; position++)
+        set_up_slave(bus, position);
     bus->slave_count = (uint32_t)found;
-    const cm1e_error_t error = cm1e_bus_all_to_state(bus, CM1E_AL_PRE_OP, CM1E_STATE_TIMEOUT_NS, diag);
+    cm1e_error_t error = cm1e_bus_all_to_state(bus, CM1E_AL_INIT, CM1E_STATE_TIMEOUT_NS, diag);
+    if (error == CM1E_OK) {
+        cm1e_soem_set_up_mailboxes(bus->soem);
+        error = cm1e_bus_all_to_state(bus, CM1E_AL_PRE_OP, CM1E_STATE_TIMEOUT_NS, diag);
+    }
     if (error != CM1E_OK)
         return error;
     read_explicit_ids(bus);

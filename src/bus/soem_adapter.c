@@ -1,41 +1,13 @@
 #include "bus/soem_adapter.h"
 
-#include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "bus/soem_private.h"
 #include "core/bytes.h"
-#include "core/clock.h"
 #include "device/device.h"
-#include "ethercat.h"
 
 enum { NS_PER_US = 1000 };
-#define NS_PER_S INT64_C(1000000000)
-/** A scan is given up after 0.2 s without any frame, or when it takes longer than this. */
-enum { SCAN_SILENT_FRAMES = 100, SCAN_BASE_S = 5, SCAN_SLAVE_S = 1 };
-/** SOEM reads the SII in groups of 8 bytes and may write a group past its buffer and its map. */
-enum { SII_SLACK_BYTES = 8, SII_SLACK_WORDS = 1 };
-
-struct cm1e_soem {
-    ecx_contextt context;
-    ecx_portt port;
-    ecx_redportt redundant_port;
-    ec_slavet slaves[CM1E_MAX_SLAVES + 1]; /* [0] is the master */
-    int slave_count;
-    ec_groupt groups[EC_MAXGROUP];
-    uint8 sii_cache[(EC_MAXEEPBUF) + SII_SLACK_BYTES];
-    uint32 sii_map[EC_MAXEEPBITMAP + SII_SLACK_WORDS];
-    ec_eringt errors;
-    ec_idxstackT stack;
-    boolean error;
-    int64 dc_time;
-    ec_SMcommtypet sm_types[EC_MAX_MAPT];
-    ec_PDOassignt pdo_assign[EC_MAX_MAPT];
-    ec_PDOdesct pdo_description[EC_MAX_MAPT];
-    ec_eepromSMt sii_sm;
-    ec_eepromFMMUt sii_fmmu;
-    uint8_t *image;
-};
 
 cm1e_soem_t *cm1e_soem_create(cm1e_nic_t *nic, const cm1e_bus_config_t *config)
 {
@@ -60,7 +32,7 @@ cm1e_soem_t *cm1e_soem_create(cm1e_nic_t *nic, const cm1e_bus_config_t *config)
         .PDOdesc = soem->pdo_description,
         .eepSM = &soem->sii_sm,
         .eepFMMU = &soem->sii_fmmu,
-        .manualstatechange = 0,
+        .manualstatechange = 1, /* states are requested by us */
     };
     soem->port.nic = nic;
     char second[sizeof config->second_interface];
@@ -80,106 +52,6 @@ void cm1e_soem_destroy(cm1e_soem_t *soem)
         return;
     ecx_close(&soem->context);
     free(soem);
-}
-
-/* ---- slaves -------------------------------------------------------------------------------------------------------- */
-
-/** SOEM walks through the categories of a SII with a 16-bit address and no other end than their own end mark: a length
- *  that leads backwards would keep it for ever. So the way is walked before, by us, with bounds. */
-static bool sii_can_be_walked(cm1e_soem_t *soem, int position)
-{
-    enum { FIRST_WORD = 0x40, LAST_WORD = 0x3FFF, CATEGORIES_MAX = 64, END_MARK = 0xFFFF };
-    uint32 word = FIRST_WORD;
-    for (int n = 0; n < CATEGORIES_MAX; n++) {
-        const uint64 read = ecx_readeepromAP(&soem->context, (uint16)(1 - position), (uint16)word, EC_TIMEOUTEEP);
-        const uint32 header = etohl((uint32)read);
-        if ((header & 0xFFFF) == END_MARK || word >= (EC_MAXEEPBUF) / 2)
-            return true; /* SOEM's buffer reads as end marks behind its end */
-        word += 2 + (header >> 16);
-        if (word > LAST_WORD)
-            return false;
-    }
-    return false;
-}
-
-static int first_damaged_sii(cm1e_soem_t *soem, int count)
-{
-    uint8 take = 2, release = 0; /* EEPROM configuration: taken from the devices, then given to the master */
-    ecx_BWR(&soem->port, 0, ECT_REG_EEPCFG, 1, &take, EC_TIMEOUTRET3);
-    ecx_BWR(&soem->port, 0, ECT_REG_EEPCFG, 1, &release, EC_TIMEOUTRET3);
-    for (int position = 1; position <= count; position++) {
-        if (!sii_can_be_walked(soem, position))
-            return position;
-    }
-    return 0;
-}
-
-static int scan(cm1e_soem_t *soem, int count, uint16_t *position)
-{
-    *position = (uint16_t)first_damaged_sii(soem, count);
-    if (*position)
-        return SCAN_DAMAGED_SII;
-    soem->context.manualstatechange = 0; /* Pre-Operational is requested by the scan ... */
-    const int found = ecx_config_init(&soem->context, FALSE);
-    soem->context.manualstatechange = 1; /* ... everything above it by us */
-    if (found == EC_SLAVECOUNTEXCEEDED)
-        return SCAN_TOO_MANY;
-    return found > 0 ? soem->slave_count : 0;
-}
-
-static void leave_scan(void *context) { longjmp(*(jmp_buf *)context, 1); }
-
-/* SOEM's scan asks on, a minute and more for every slave, when nobody answers any more: it is left then. */
-int cm1e_soem_scan(cm1e_soem_t *soem, uint16_t *position)
-{
-    uint16 type;
-    const int count = ecx_BRD(&soem->port, 0, ECT_REG_TYPE, sizeof type, &type, EC_TIMEOUTSAFE);
-    *position = 0;
-    if (count <= 0)
-        return 0;
-    if (count > CM1E_MAX_SLAVES)
-        return SCAN_TOO_MANY;
-    jmp_buf gave_up;
-    const cm1e_nic_patience_t patience = {
-        .silent_frames = SCAN_SILENT_FRAMES,
-        .deadline_ns = cm1e_clock_now(cm1e_clock_current()) + (SCAN_BASE_S + count * SCAN_SLAVE_S) * NS_PER_S,
-        .give_up = leave_scan,
-        .context = &gave_up,
-    };
-    cm1e_nic_set_patience(soem->port.nic, &patience);
-    int found = SCAN_GAVE_UP;
-    if (setjmp(gave_up) == 0)
-        found = scan(soem, count, position);
-    cm1e_nic_set_patience(soem->port.nic, NULL);
-    return found;
-}
-
-static void copy_name(char *to, size_t room, const char *from, size_t from_size)
-{
-    size_t n = 0;
-    for (; n + 1 < room && n < from_size && from[n]; n++)
-        to[n] = from[n] >= ' ' && from[n] <= '~' ? from[n] : '?';
-    to[n] = 0;
-}
-
-void cm1e_soem_facts(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_facts_t *facts)
-{
-    const ec_slavet *slave = &soem->slaves[position];
-    *facts = (cm1e_slave_facts_t){
-        .station = slave->configadr,
-        .alias = slave->aliasadr,
-        .vendor_id = slave->eep_man,
-        .product_code = slave->eep_id,
-        .revision = slave->eep_rev,
-        .serial_number = slave->eep_sn,
-        .mailbox_out_start = etohs(slave->SM[0].StartAddr),
-        .mailbox_out_length = slave->mbx_l ? etohs(slave->SM[0].SMlength) : 0,
-        .mailbox_in_start = etohs(slave->SM[1].StartAddr),
-        .mailbox_in_length = slave->mbx_l ? etohs(slave->SM[1].SMlength) : 0,
-        .coe = slave->mbx_l > 0 && slave->mbx_proto & ECT_MBXPROT_COE,
-        .complete_access = slave->CoEdetails & ECT_COEDET_SDOCA,
-    };
-    copy_name(facts->name, sizeof facts->name, slave->name, sizeof slave->name);
 }
 
 /* ---- process data ---------------------------------------------------------------------------------------------------- */
@@ -216,27 +88,23 @@ bool cm1e_soem_set_process_data(cm1e_soem_t *soem, uint16_t position, uint16_t o
 bool cm1e_soem_set_process_data_by_sii(cm1e_soem_t *soem, uint16_t position)
 {
     ec_slavet *slave = &soem->slaves[position];
-    ec_eepromPDOt pdos;
-    uint32 bits[2];
-    for (uint8 direction = 0; direction < 2; direction++) { /* 0: inputs (TxPDO), 1: outputs */
-        memset(&pdos, 0, sizeof pdos);
-        bits[direction] = ecx_siiPDO(&soem->context, position, &pdos, direction);
-        uint32 carried = 0;
-        for (int sm = 0; sm < EC_MAXSM; sm++) {
-            if (!pdos.SMbitsize[sm])
+    const cm1e_sii_t *sii = &soem->siis[position];
+    uint32_t bits[2] = {0, 0};
+    for (int direction = 0; direction < 2; direction++) {
+        for (int sm = 0; sm < CM1E_SII_SYNC_MANAGERS; sm++) {
+            const uint32_t carried = sii->bits[direction][sm];
+            if (!carried)
                 continue;
-            if (slave->SM[sm].StartAddr == 0 || (slave->mbx_l && sm < 2))
+            /* SOEM's mapping does not end where a sync manager of that number is missing. */
+            if (slave->SM[sm].StartAddr == 0 || (slave->mbx_l && sm < 2) || carried > UINT16_MAX - bits[direction])
                 return false;
-            slave->SM[sm].SMlength = htoes(bytes_of(pdos.SMbitsize[sm]));
-            slave->SMtype[sm] = direction ? 3 : 4;
-            carried += pdos.SMbitsize[sm];
+            slave->SM[sm].SMlength = htoes(bytes_of(carried));
+            slave->SMtype[sm] = direction ? 4 : 3;
+            bits[direction] += carried;
         }
-        /* SOEM's mapping does not end when no sync manager carries the announced bits. */
-        if (carried != bits[direction] || bits[direction] > UINT16_MAX)
-            return false;
     }
-    slave->Ibits = (uint16)bits[0];
-    slave->Obits = (uint16)bits[1];
+    slave->Obits = (uint16)bits[0];
+    slave->Ibits = (uint16)bits[1];
     slave->configindex = 1;
     return true;
 }

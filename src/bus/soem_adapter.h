@@ -39,11 +39,14 @@ typedef struct cm1e_slave_placement {
 cm1e_soem_t *cm1e_soem_create(cm1e_nic_t *nic, const cm1e_bus_config_t *config);
 void cm1e_soem_destroy(cm1e_soem_t *soem);
 
-/** Finds the slaves, gives them station addresses, reads their SII, requests Pre-Operational. Returns how many; 0: none;
- *  SCAN_TOO_MANY: more than CM1E_MAX_SLAVES; SCAN_DAMAGED_SII: the SII of slave `*position` cannot be walked through;
- *  SCAN_GAVE_UP: frames or slaves stopped answering in the middle. */
-enum { SCAN_TOO_MANY = -1, SCAN_DAMAGED_SII = -2, SCAN_GAVE_UP = -3 };
+/** Finds the slaves, brings them to Init with default settings, gives them station addresses and reads their SII. Not
+ *  SOEM's own scan: that can be kept for ever by a bad SII or a slave that falls silent. Returns how many; 0: none;
+ *  SCAN_TOO_MANY: more than CM1E_MAX_SLAVES; with the slave in `*position`: SCAN_LOST: it stopped answering,
+ *  SCAN_SII_UNREADABLE: its EEPROM does not answer, SCAN_SII_DAMAGED: its content cannot be walked through. */
+enum { SCAN_TOO_MANY = -1, SCAN_LOST = -2, SCAN_SII_UNREADABLE = -3, SCAN_SII_DAMAGED = -4 };
 int cm1e_soem_scan(cm1e_soem_t *soem, uint16_t *position);
+/** Programs the mailboxes of the slaves and leaves the SII to them: what Init -> Pre-Operational needs. */
+void cm1e_soem_set_up_mailboxes(cm1e_soem_t *soem);
 void cm1e_soem_facts(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_facts_t *facts);
 
 /** Sets the process data of a slave; zero bits: none. False: its sync managers cannot carry it. */

@@ -5,15 +5,15 @@ cm1e_error_t cm1e_bus_diagnose_state(const cm1e_bus_t *bus, const cm1e_bus_slave
     char label[CM1E_LABEL_LENGTH];
     const cm1e_al_machine_t *al = &slave->al;
     const char *target = cm1e_al_state_text(al->target);
-    cm1e_bus_label(bus, slave, label);
+    cm1e_bus_label_first(bus, slave, label);
     if (!al->answered)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, 0,
-                             "The %s does not answer when asked to go to %s: check its power and its cable.", label,
+                             "%s does not answer when asked to go to %s: check its power and its cable.", label,
                              target);
     if (al->state & AL_ERROR_FLAG)
-        return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code, "The %s refuses %s and is in %s: AL status 0x%04X, %s.",
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code, "%s refuses %s and is in %s: AL status 0x%04X, %s.",
                              label, target, cm1e_al_state_text(al->state), al->code, cm1e_al_status_text(al->code));
-    return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code, "The %s did not reach %s in time; it stays in %s.", label,
+    return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code, "%s did not reach %s in time; it stays in %s.", label,
                          target, cm1e_al_state_text(al->state));
 }
 
@@ -44,8 +44,8 @@ cm1e_error_t cm1e_bus_diagnose_sdo(const cm1e_bus_t *bus, const cm1e_bus_slave_t
     const char *verb = sdo->write ? "write" : "read";
     if (sdo->error == CM1E_ERROR_SDO_ABORT)
         return cm1e_diag_set(diag, sdo->error, sdo->abort_code,
-                             "%s: the %s refuses to %s object 0x%04X:%02X: SDO abort 0x%08X, %s.", purpose, label, verb,
+                             "%s: %s refuses to %s object 0x%04X:%02X: SDO abort 0x%08X, %s.", purpose, label, verb,
                              sdo->index, sdo->subindex, sdo->abort_code, cm1e_sdo_abort_text(sdo->abort_code));
-    return cm1e_diag_set(diag, sdo->error, slave->coe.mailbox_error, "%s: the %s did not %s object 0x%04X:%02X: %s.",
+    return cm1e_diag_set(diag, sdo->error, slave->coe.mailbox_error, "%s: %s did not %s object 0x%04X:%02X: %s.",
                          purpose, label, verb, sdo->index, sdo->subindex, cm1e_strerror(sdo->error));
 }

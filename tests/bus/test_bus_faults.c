@@ -155,8 +155,8 @@ static const struct {
     const char *word;
 } lies[] = {
     {{0x1C12, 0, 0}, "exactly one PDO"},   {{0x1C13, 0, 2}, "exactly one PDO"},   {{0x1C12, 1, 0x1601}, "assigned PDO"},
-    {{0x1C13, 1, 0x6040}, "assigned PDO"}, {{0x1600, 0, 0}, "empty"},             {{0x1A00, 0, 255}, "slave 1"},
-    {{0x1600, 1, 0}, "no bits"},           {{0x1A00, 3, 0x606400FF}, "slave 1"},
+    {{0x1C13, 1, 0x6040}, "assigned PDO"}, {{0x1600, 0, 0}, "empty"},             {{0x1A00, 0, 255}, "lave 1"},
+    {{0x1600, 1, 0}, "no bits"},           {{0x1A00, 3, 0x606400FF}, "lave 1"},
 };
 
 START_TEST(mapping_that_cannot_be_is_refused_in_words)
@@ -210,7 +210,7 @@ START_TEST(refused_transition_is_told_with_the_al_status_code)
     snprintf(code, sizeof code, "0x%04X", refusal.code);
     ck_assert_uint_eq(diag.foreign_code, refusal.code);
     ck_assert_msg(strstr(diag.text, code) && strstr(diag.text, cm1e_al_status_text(refusal.code)) &&
-                      strstr(diag.text, refusal.state) && strstr(diag.text, "slave 1"), "%s", diag.text);
+                      strstr(diag.text, refusal.state) && strstr(diag.text, "Slave 1"), "%s", diag.text);
     if (_i > 0)
         ck_assert_msg(strstr(diag.text, "gantry") != NULL, "%s", diag.text);
     cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);

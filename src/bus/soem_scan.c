@@ -1,0 +1,295 @@
+#include <string.h>
+
+#include "bus/soem_private.h"
+#include "core/bytes.h"
+#include "core/clock.h"
+
+/* EEPROM interface of a slave controller (ETG.1000.4 section 6.4). */
+enum {
+    REG_EEPROM_CONTROL = 0x0502, REG_EEPROM_DATA = 0x0508,
+    EEPROM_NOP = 0x0000, EEPROM_READ = 0x0100,
+    EEPROM_READS_8 = 0x0040, EEPROM_ERRORS = 0x7800, EEPROM_NACK = 0x2000, EEPROM_BUSY = 0x8000,
+    EEPROM_TRIES = 3, REGISTER_TRIES = 3,
+};
+#define EEPROM_TIMEOUT_NS INT64_C(20000000)
+#define EEPROM_PAUSE_NS INT64_C(200000)
+#define NACK_PAUSE_NS INT64_C(1000000)
+
+/** The SII of one slave, read in groups of 4 or 8 bytes. */
+typedef struct eeprom {
+    cm1e_soem_t *soem;
+    uint16_t station;
+    bool lost;              /**< the slave itself does not answer */
+    uint16_t group_word;    /**< what `group` holds */
+    unsigned group_bytes;   /**< 0: nothing */
+    uint8_t group[8];
+} eeprom_t;
+
+static void pause_for(int64_t time_ns)
+{
+    cm1e_clock_t *clock = cm1e_clock_current();
+    cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + time_ns);
+}
+
+/** One slave's register, with some patience for frames that were disturbed. */
+static bool read_of(cm1e_soem_t *soem, uint16_t station, uint16_t offset, uint8_t *data, uint16_t size)
+{
+    int answered = 0;
+    for (int try = 0; try < REGISTER_TRIES && answered != 1; try++)
+        answered = ecx_FPRD(&soem->port, station, offset, size, data, EC_TIMEOUTRET3);
+    return answered == 1;
+}
+
+static bool read_register(eeprom_t *eeprom, uint16_t offset, uint8_t *data, uint16_t size)
+{
+    eeprom->lost = !read_of(eeprom->soem, eeprom->station, offset, data, size);
+    return !eeprom->lost;
+}
+
+/** Tried once: an interface at work takes no request, so one that was taken cannot simply be repeated. */
+static bool write_register(eeprom_t *eeprom, uint16_t offset, uint8_t *data, uint16_t size)
+{
+    eeprom->lost = ecx_FPWR(&eeprom->soem->port, eeprom->station, offset, size, data, EC_TIMEOUTRET3) != 1;
+    return !eeprom->lost;
+}
+
+/** Waits until the interface is idle. False: lost, or it stays busy. */
+static bool wait_idle(eeprom_t *eeprom, uint16_t *status)
+{
+    cm1e_clock_t *clock = cm1e_clock_current();
+    const int64_t deadline_ns = cm1e_clock_now(clock) + EEPROM_TIMEOUT_NS;
+    uint8_t bytes[2];
+    for (;;) {
+        if (!read_register(eeprom, REG_EEPROM_CONTROL, bytes, sizeof bytes))
+            return false;
+        *status = cm1e_get_u16(bytes);
+        if (!(*status & EEPROM_BUSY))
+            return true;
+        if (cm1e_clock_now(clock) >= deadline_ns)
+            return false;
+        pause_for(EEPROM_PAUSE_NS);
+    }
+}
+
+static bool read_group(eeprom_t *eeprom, uint16_t word)
+{
+    uint16_t status;
+    eeprom->group_bytes = 0;
+    for (int try = 0; try < EEPROM_TRIES; try++) {
+        uint8_t request[6] = {0};
+        if (!wait_idle(eeprom, &status))
+            return false;
+        if (status & EEPROM_ERRORS)
+            write_register(eeprom, REG_EEPROM_CONTROL, request, 2); /* NOP clears them */
+        cm1e_put_u16(request, EEPROM_READ);
+        cm1e_put_u16(request + 2, word);
+        if (!write_register(eeprom, REG_EEPROM_CONTROL, request, sizeof request))
+            continue;
+        if (!wait_idle(eeprom, &status))
+            return false;
+        if (status & EEPROM_NACK) {
+            pause_for(NACK_PAUSE_NS); /* the memory itself was busy */
+            continue;
+        }
+        const unsigned bytes = status & EEPROM_READS_8 ? 8 : 4;
+        if (!read_register(eeprom, REG_EEPROM_DATA, eeprom->group, (uint16_t)bytes))
+            return false;
+        eeprom->group_word = word;
+        eeprom->group_bytes = bytes;
+        return true;
+    }
+    return false;
+}
+
+static bool read_words(void *context, uint16_t word, uint8_t bytes[4])
+{
+    eeprom_t *eeprom = context;
+    const uint32_t place = 2u * (uint16_t)(word - eeprom->group_word);
+    const bool there = word >= eeprom->group_word && place + 4 <= eeprom->group_bytes;
+    if (!there && !read_group(eeprom, word))
+        return false;
+    memcpy(bytes, eeprom->group + (there ? place : 0), 4);
+    return true;
+}
+
+/* ---- slaves -------------------------------------------------------------------------------------------------------- */
+
+static void write_all(cm1e_soem_t *soem, uint16_t offset, const uint8_t *data, uint16_t size)
+{
+    uint8_t bytes[64];
+    memcpy(bytes, data, size);
+    ecx_BWR(&soem->port, 0, offset, size, bytes, EC_TIMEOUTRET3);
+}
+
+/** Every slave as after power-on, as far as the bus uses it; also those that another master left in operation. */
+static void set_defaults(cm1e_soem_t *soem)
+{
+    static const uint8_t zeros[64];
+    static const struct {
+        uint16_t offset, size;
+        uint8_t bytes[2];
+    } settings[] = {
+        {ECT_REG_DLALIAS, 1, {0, 0}},                            /* configured addresses count, not the alias */
+        {ECT_REG_ALCTL, 2, {EC_STATE_INIT | EC_STATE_ACK, 0}},
+        {ECT_REG_DLPORT, 1, {0, 0}},                             /* all ports automatic */
+        {ECT_REG_IRQMASK, 2, {0x04, 0}},
+        {ECT_REG_DCSYNCACT, 1, {0, 0}},                          /* no SYNC signals */
+        {ECT_REG_EEPCFG, 1, {2, 0}},                             /* the SII is taken from the devices ... */
+        {ECT_REG_EEPCFG, 1, {0, 0}},                             /* ... and is the master's */
+    };
+    for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++)
+        write_all(soem, settings[i].offset, settings[i].bytes, settings[i].size);
+    write_all(soem, ECT_REG_FMMU0, zeros, EC_MAXFMMU * FMMU_BYTES);
+    write_all(soem, ECT_REG_SM0, zeros, 4 * SYNC_MANAGER_BYTES);
+    write_all(soem, ECT_REG_RXERR, zeros, 8);
+}
+
+/** Gives it its address and reads its alias. */
+static bool take_address(cm1e_soem_t *soem, uint16_t position)
+{
+    ec_slavet *slave = &soem->slaves[position];
+    const uint16_t place = (uint16_t)(1 - position), station = (uint16_t)(EC_NODEOFFSET + position);
+    uint8_t bytes[4];
+    slave->configadr = station;
+    for (int try = 0; try < REGISTER_TRIES; try++) {
+        cm1e_put_u16(bytes, station);
+        ecx_APWR(&soem->port, place, ECT_REG_STADR, 2, bytes, EC_TIMEOUTRET3);
+        if (!read_of(soem, station, ECT_REG_STADR, bytes, sizeof bytes) || cm1e_get_u16(bytes) != station)
+            continue;
+        slave->aliasadr = cm1e_get_u16(bytes + 2);
+        return true;
+    }
+    return false;
+}
+
+/** The categories are the same for the same product and revision: they are read once. */
+static const cm1e_sii_t *same_kind_before(const cm1e_soem_t *soem, uint16_t position)
+{
+    const cm1e_sii_t *sii = &soem->siis[position];
+    for (uint16_t i = 1; i < position; i++) {
+        const cm1e_sii_t *other = &soem->siis[i];
+        if (other->vendor_id == sii->vendor_id && other->product_code == sii->product_code &&
+            other->revision == sii->revision)
+            return other;
+    }
+    return NULL;
+}
+
+static void copy_categories(cm1e_sii_t *to, const cm1e_sii_t *from)
+{
+    const uint32_t serial_number = to->serial_number;
+    *to = *from;
+    to->serial_number = serial_number;
+}
+
+static int read_sii(cm1e_soem_t *soem, uint16_t position)
+{
+    eeprom_t eeprom = {.soem = soem, .station = soem->slaves[position].configadr};
+    cm1e_sii_t *sii = &soem->siis[position];
+    cm1e_sii_result_t result = cm1e_sii_read_header(sii, read_words, &eeprom);
+    const cm1e_sii_t *known = result == SII_OK ? same_kind_before(soem, position) : NULL;
+    if (known)
+        copy_categories(sii, known);
+    else if (result == SII_OK)
+        result = cm1e_sii_read_categories(sii, read_words, &eeprom);
+    if (result == SII_DAMAGED)
+        return SCAN_SII_DAMAGED;
+    if (result == SII_UNREADABLE)
+        return eeprom.lost ? SCAN_LOST : SCAN_SII_UNREADABLE;
+    return 0;
+}
+
+static void set_sync_manager(ec_slavet *slave, int sm, const cm1e_sii_sync_manager_t *from)
+{
+    slave->SM[sm].StartAddr = htoes(from->start);
+    slave->SM[sm].SMlength = htoes(from->length);
+    slave->SM[sm].SMflags = htoel(from->control | (uint32)from->enable << 16);
+}
+
+/** What SOEM's mapping wants to know of a slave. */
+static void fill_slave(cm1e_soem_t *soem, uint16_t position)
+{
+    ec_slavet *slave = &soem->slaves[position];
+    const cm1e_sii_t *sii = &soem->siis[position];
+    for (int sm = 0; sm < sii->sync_manager_count; sm++)
+        set_sync_manager(slave, sm, &sii->sync_managers[sm]);
+    slave->eep_man = sii->vendor_id;
+    slave->eep_id = sii->product_code;
+    slave->eep_rev = sii->revision;
+    slave->eep_sn = sii->serial_number;
+    slave->CoEdetails = sii->coe_details;
+    slave->blockLRW = sii->no_lrw;
+    memcpy(slave->name, sii->name, EC_MAXNAME);
+    slave->mbx_l = sii->mailbox_out_length;
+    if (!slave->mbx_l)
+        return;
+    const cm1e_sii_sync_manager_t out = {sii->mailbox_out_start, sii->mailbox_out_length, 0x26, 1};
+    const cm1e_sii_sync_manager_t in = {sii->mailbox_in_start, sii->mailbox_in_length, 0x22, 1};
+    set_sync_manager(slave, 0, &out);
+    set_sync_manager(slave, 1, &in);
+    slave->mbx_wo = sii->mailbox_out_start;
+    slave->mbx_rl = sii->mailbox_in_length;
+    slave->mbx_ro = sii->mailbox_in_start;
+    slave->mbx_proto = sii->mailbox_protocols;
+    for (uint8 sm = 0; sm < 4; sm++)
+        slave->SMtype[sm] = (uint8)(sm + 1);
+}
+
+int cm1e_soem_scan(cm1e_soem_t *soem, uint16_t *position)
+{
+    uint16 type;
+    *position = 0;
+    soem->slave_count = 0;
+    memset(soem->slaves, 0, sizeof soem->slaves);
+    memset(soem->groups, 0, sizeof soem->groups);
+    memset(soem->siis, 0, sizeof soem->siis);
+    const int count = ecx_BRD(&soem->port, 0, ECT_REG_TYPE, sizeof type, &type, EC_TIMEOUTSAFE);
+    if (count <= 0)
+        return 0;
+    if (count > CM1E_MAX_SLAVES)
+        return SCAN_TOO_MANY;
+    set_defaults(soem);
+    for (*position = 1; *position <= count; (*position)++) {
+        if (!take_address(soem, *position))
+            return SCAN_LOST;
+    }
+    for (*position = 1; *position <= count; (*position)++) {
+        const int error = read_sii(soem, *position);
+        if (error)
+            return error;
+        fill_slave(soem, *position);
+    }
+    soem->slave_count = count;
+    return count;
+}
+
+void cm1e_soem_set_up_mailboxes(cm1e_soem_t *soem)
+{
+    for (uint16 position = 1; position <= soem->slave_count; position++) {
+        ec_slavet *slave = &soem->slaves[position];
+        if (slave->mbx_l)
+            ecx_FPWR(&soem->port, slave->configadr, ECT_REG_SM0, 2 * sizeof(ec_smt), &slave->SM[0], EC_TIMEOUTRET3);
+        ecx_eeprom2pdi(&soem->context, position);
+    }
+}
+
+void cm1e_soem_facts(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_facts_t *facts)
+{
+    const ec_slavet *slave = &soem->slaves[position];
+    const cm1e_sii_t *sii = &soem->siis[position];
+    *facts = (cm1e_slave_facts_t){
+        .station = slave->configadr,
+        .alias = slave->aliasadr,
+        .vendor_id = sii->vendor_id,
+        .product_code = sii->product_code,
+        .revision = sii->revision,
+        .serial_number = sii->serial_number,
+        .mailbox_out_start = sii->mailbox_out_start,
+        .mailbox_out_length = sii->mailbox_out_length,
+        .mailbox_in_start = sii->mailbox_in_start,
+        .mailbox_in_length = sii->mailbox_in_length,
+        .coe = sii->mailbox_out_length > 0 && sii->mailbox_in_length > 0 && sii->mailbox_protocols & SII_MAILBOX_COE,
+        .complete_access = sii->coe_details & SII_COE_COMPLETE_ACCESS,
+    };
+    memcpy(facts->name, sii->name, sizeof facts->name);
+}

@@ -1,0 +1,201 @@
+/* The parser of a slave's SII: what it takes from a good one, and that nothing in a bad one leads it astray. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unity.h>
+
+#include "bus/sii.h"
+#include "core/bytes.h"
+
+enum { BYTES = 0x8000 };
+static uint8_t image[BYTES];
+static size_t end;             /* bytes written */
+static unsigned reads, fail_at; /* fail_at 0: never */
+static cm1e_sii_t sii;
+
+static bool read_image(void *context, uint16_t word, uint8_t bytes[4])
+{
+    (void)context;
+    if (++reads == fail_at)
+        return false;
+    for (unsigned i = 0; i < 4; i++)
+        bytes[i] = 2u * word + i < BYTES ? image[2u * word + i] : 0xFF;
+    return true;
+}
+
+static void put_category(uint16_t type, const void *bytes, uint16_t words)
+{
+    cm1e_put_u16(image + end, type);
+    cm1e_put_u16(image + end + 2, words);
+    memcpy(image + end + 4, bytes, 2u * words);
+    end += 4u + 2u * words;
+}
+
+void setUp(void)
+{
+    memset(image, 0xFF, sizeof image);
+    memset(image, 0, 0x80);
+    end = 0x80;
+    reads = fail_at = 0;
+    cm1e_put_u32(image + 0x10, 0x00004441);
+    cm1e_put_u32(image + 0x14, 0x44412002);
+    cm1e_put_u32(image + 0x18, 0x20020103);
+    cm1e_put_u32(image + 0x1C, 12345);
+    cm1e_put_u32(image + 0x30, 0x00801000);
+    cm1e_put_u32(image + 0x34, 0x00801080);
+    cm1e_put_u32(image + 0x38, 0x0004);
+}
+void tearDown(void) {}
+
+static cm1e_sii_result_t parse(void)
+{
+    const cm1e_sii_result_t result = cm1e_sii_read_header(&sii, read_image, NULL);
+    return result == SII_OK ? cm1e_sii_read_categories(&sii, read_image, NULL) : result;
+}
+
+static void put_good_categories(void)
+{
+    static const char strings[] = "\003\005ORDER\004name\003abc";
+    static const uint8_t general[32] = {0, 0, 1, 2, 0, 0x23, 0, 0, 0, 0, 0, 0x02};
+    static const uint8_t managers[32] = {0x00, 0x10, 0x80, 0, 0x26, 0, 1, 1, 0x80, 0x10, 0x80, 0, 0x22, 0, 1, 2,
+                                         0x00, 0x11, 13, 0, 0x64, 0, 1, 3, 0x00, 0x14, 21, 0, 0x20, 0, 1, 4};
+    static const uint8_t tx[8 + 16 + 8] = {0x00, 0x1A, 2, 3, 0, 0, 0, 0, 0x41, 0x60, 0, 0, 6, 16, 0, 0,
+                                           0x64, 0x60, 0, 0, 4, 32, 0, 0, 0x01, 0x1A, 0, 0xFF, 0, 0, 0, 0};
+    static const uint8_t rx[8 + 8] = {0x00, 0x16, 1, 2, 0, 0, 0, 0, 0x40, 0x60, 0, 0, 6, 16, 0, 0};
+    put_category(10, strings, 8);
+    put_category(60, tx, 3); /* one that nobody wants */
+    put_category(30, general, 16);
+    put_category(41, managers, 16);
+    put_category(50, tx, 16);
+    put_category(51, rx, 8);
+}
+
+static void test_good_image_gives_everything(void)
+{
+    put_good_categories();
+    TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+    TEST_ASSERT_EQUAL_HEX32(0x4441, sii.vendor_id);
+    TEST_ASSERT_EQUAL_HEX32(0x44412002, sii.product_code);
+    TEST_ASSERT_EQUAL_HEX32(0x20020103, sii.revision);
+    TEST_ASSERT_EQUAL_UINT32(12345, sii.serial_number);
+    TEST_ASSERT_EQUAL_HEX16(0x1000, sii.mailbox_out_start);
+    TEST_ASSERT_EQUAL_HEX16(0x80, sii.mailbox_out_length);
+    TEST_ASSERT_EQUAL_HEX16(0x1080, sii.mailbox_in_start);
+    TEST_ASSERT_EQUAL_HEX16(SII_MAILBOX_COE, sii.mailbox_protocols);
+    TEST_ASSERT_EQUAL_STRING("name", sii.name);
+    TEST_ASSERT_EQUAL_HEX8(0x23, sii.coe_details);
+    TEST_ASSERT_TRUE(sii.no_lrw);
+    TEST_ASSERT_EQUAL_UINT8(4, sii.sync_manager_count);
+    TEST_ASSERT_EQUAL_HEX16(0x1400, sii.sync_managers[3].start);
+    TEST_ASSERT_EQUAL_UINT16(21, sii.sync_managers[3].length);
+    TEST_ASSERT_EQUAL_HEX8(0x64, sii.sync_managers[2].control);
+    TEST_ASSERT_EQUAL_UINT32(16, sii.bits[0][2]);
+    TEST_ASSERT_EQUAL_UINT32(48, sii.bits[1][3]);
+    TEST_ASSERT_EQUAL_UINT32(0, sii.bits[0][3] + sii.bits[1][2]);
+}
+
+static void test_read_that_fails_anywhere_is_reported(void)
+{
+    put_good_categories();
+    TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+    const unsigned last = reads;
+    TEST_ASSERT_TRUE(last > 20);
+    for (unsigned n = 1; n <= last; n++) {
+        reads = 0;
+        fail_at = n;
+        TEST_ASSERT_EQUAL_INT_MESSAGE(SII_UNREADABLE, parse(), "a failed read went unnoticed");
+        TEST_ASSERT_EQUAL_UINT(n, reads); /* and ended the reading */
+    }
+}
+
+static void test_no_categories_at_all_is_a_slave_without_name(void)
+{
+    TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+    TEST_ASSERT_EQUAL_STRING("", sii.name);
+    TEST_ASSERT_EQUAL_UINT8(0, sii.sync_manager_count);
+}
+
+static void test_names_are_cut_and_cleaned(void)
+{
+    uint8_t strings[260] = {1, 255};
+    memset(strings + 2, 'x', 255);
+    strings[5] = '\n';
+    strings[6] = 0x1B;
+    strings[7] = 0xC3;
+    put_category(10, strings, 130);
+    TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+    TEST_ASSERT_EQUAL_size_t(CM1E_SII_NAME - 1, strlen(sii.name));
+    TEST_ASSERT_EQUAL_STRING_LEN("xxx???xxx", sii.name, 9);
+}
+
+static void test_string_longer_than_its_category_ends_with_it(void)
+{
+    static const uint8_t strings[4] = {1, 200, 'a', 'b'};
+    put_category(10, strings, 2);
+    TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+    TEST_ASSERT_EQUAL_STRING("ab", sii.name);
+}
+
+static void test_lengths_that_lead_nowhere_are_damage(void)
+{
+    static const uint32_t headers[] = {0x00000000, 0x7FFC000A, 0xFFFE000A, 0xFFFF0001, 0x20000033, 0x80000033};
+    for (size_t i = 0; i < sizeof headers / sizeof headers[0]; i++) {
+        setUp();
+        for (size_t place = 0x80; place + 4 <= BYTES; place += 4)
+            cm1e_put_u32(image + place, headers[i]);
+        TEST_ASSERT_EQUAL_INT(SII_DAMAGED, parse());
+        TEST_ASSERT_TRUE(reads < 5000);
+    }
+}
+
+static void test_more_sync_managers_and_entries_than_fit_are_bounded(void)
+{
+    static uint8_t bytes[4096];
+    memset(bytes, 0x11, sizeof bytes);
+    put_category(41, bytes, 1000);
+    for (size_t i = 0; i < sizeof bytes; i += 8) {
+        bytes[i + 2] = 255; /* entries */
+        bytes[i + 3] = 7;
+        bytes[i + 5] = 255; /* bits */
+    }
+    put_category(50, bytes, 2000);
+    TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+    TEST_ASSERT_EQUAL_UINT8(CM1E_SII_SYNC_MANAGERS, sii.sync_manager_count);
+    TEST_ASSERT_TRUE(sii.bits[1][7] > 0);
+    TEST_ASSERT_TRUE(sii.bits[1][7] <= 255u * 4096);
+}
+
+static void test_random_images_end_within_bounds(void)
+{
+    const unsigned seed = 20250303;
+    printf("seed %u\n", seed);
+    srand(seed);
+    for (int round = 0; round < 3000; round++) {
+        setUp();
+        put_good_categories();
+        for (int n = rand() % 40; n >= 0; n--)
+            image[rand() % 4 ? 0x80 + (unsigned)rand() % 0x200 : (unsigned)rand() % BYTES] = (uint8_t)rand();
+        if (round % 3 == 0) {
+            for (size_t i = 0x80; i < BYTES; i++)
+                image[i] = (uint8_t)rand();
+        }
+        parse();
+        TEST_ASSERT_TRUE(reads < 20000);
+        TEST_ASSERT_TRUE(strlen(sii.name) < CM1E_SII_NAME);
+        TEST_ASSERT_TRUE(sii.sync_manager_count <= CM1E_SII_SYNC_MANAGERS);
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_good_image_gives_everything);
+    RUN_TEST(test_read_that_fails_anywhere_is_reported);
+    RUN_TEST(test_no_categories_at_all_is_a_slave_without_name);
+    RUN_TEST(test_names_are_cut_and_cleaned);
+    RUN_TEST(test_string_longer_than_its_category_ends_with_it);
+    RUN_TEST(test_lengths_that_lead_nowhere_are_damage);
+    RUN_TEST(test_more_sync_managers_and_entries_than_fit_are_bounded);
+    RUN_TEST(test_random_images_end_within_bounds);
+    return UNITY_END();
+}
