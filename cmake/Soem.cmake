@@ -7,6 +7,31 @@ set(CM1E_SOEM_SOURCE_DIR "" CACHE PATH "SOEM 1.4 source folder (holds soem/ and 
 set(SOEM_PYSOEM_VERSION 1.1.13)
 set(SOEM_PYSOEM_SHA256 4be98d8531e492f2ee5d21f6ef51e51493a10ee1322ed22e909c91a8bcfff950)
 
+set(SOEM_FILES soem/ethercatbase.c soem/ethercatcoe.c soem/ethercatconfig.c soem/ethercatdc.c soem/ethercateoe.c
+  soem/ethercatfoe.c soem/ethercatmain.c soem/ethercatprint.c soem/ethercatsoe.c)
+
+# Brings the archive. pip looks at its checksum before it runs the archive's setup.py for the metadata; first with the
+# setuptools of this machine, which need nothing else from the network.
+function(soem_download archive)
+  find_package(Python3 REQUIRED COMPONENTS Interpreter)
+  message(STATUS "Downloading SOEM (source distribution of pysoem ${SOEM_PYSOEM_VERSION})")
+  get_filename_component(folder ${archive} DIRECTORY)
+  set(requirements ${CMAKE_BINARY_DIR}/soem-requirements.txt)
+  file(WRITE ${requirements} "pysoem==${SOEM_PYSOEM_VERSION} --hash=sha256:${SOEM_PYSOEM_SHA256}\n")
+  foreach(isolation --no-build-isolation "")
+    execute_process(
+      COMMAND ${Python3_EXECUTABLE} -m pip download --quiet --disable-pip-version-check --no-deps --no-binary pysoem
+              ${isolation} --require-hashes --requirement ${requirements} --dest ${folder}
+      RESULT_VARIABLE failed OUTPUT_VARIABLE why ERROR_VARIABLE why)
+    if(NOT failed)
+      return()
+    endif()
+  endforeach()
+  message(FATAL_ERROR "pip could not download pysoem ${SOEM_PYSOEM_VERSION}, which carries SOEM:\n${why}\n"
+    "Without a network: bring pysoem-${SOEM_PYSOEM_VERSION}.tar.gz from another machine to ${folder}, or set "
+    "CM1E_SOEM_SOURCE_DIR to a SOEM 1.4 source folder.")
+endfunction()
+
 if(CM1E_SOEM_SOURCE_DIR)
   set(soem_dir ${CM1E_SOEM_SOURCE_DIR})
 else()
@@ -14,28 +39,24 @@ else()
   set(archive ${deps}/pysoem-${SOEM_PYSOEM_VERSION}.tar.gz)
   set(soem_dir ${deps}/pysoem-${SOEM_PYSOEM_VERSION}/soem)
   if(NOT EXISTS ${archive})
-    find_package(Python3 REQUIRED COMPONENTS Interpreter)
-    message(STATUS "Downloading SOEM (source distribution of pysoem ${SOEM_PYSOEM_VERSION})")
-    execute_process(
-      COMMAND ${Python3_EXECUTABLE} -m pip download --quiet --no-deps --no-binary pysoem
-              --dest ${deps} pysoem==${SOEM_PYSOEM_VERSION}
-      RESULT_VARIABLE failed ERROR_VARIABLE why)
-    if(failed)
-      message(FATAL_ERROR "pip could not download pysoem ${SOEM_PYSOEM_VERSION}: ${why}\n"
-        "Set CM1E_SOEM_SOURCE_DIR to a SOEM 1.4 source folder to build without a download.")
-    endif()
+    soem_download(${archive})
   endif()
   file(SHA256 ${archive} sum)
   if(NOT sum STREQUAL SOEM_PYSOEM_SHA256)
-    message(FATAL_ERROR "${archive} has SHA-256 ${sum}, expected ${SOEM_PYSOEM_SHA256}: delete it and configure again.")
+    message(FATAL_ERROR "${archive} is damaged: its SHA-256 is ${sum}, expected ${SOEM_PYSOEM_SHA256}. "
+      "Delete it and configure again: it is downloaded anew.")
   endif()
-  if(NOT EXISTS ${soem_dir}/soem/ethercatmain.c)
-    file(ARCHIVE_EXTRACT INPUT ${archive} DESTINATION ${deps})
+  if(NOT EXISTS ${deps}/pysoem-${SOEM_PYSOEM_VERSION})
+    file(REMOVE_RECURSE ${deps}/extracting)
+    file(ARCHIVE_EXTRACT INPUT ${archive} DESTINATION ${deps}/extracting)
+    file(RENAME ${deps}/extracting/pysoem-${SOEM_PYSOEM_VERSION} ${deps}/pysoem-${SOEM_PYSOEM_VERSION}) # when whole
+    file(REMOVE_RECURSE ${deps}/extracting)
   endif()
 endif()
-foreach(file soem/ethercatmain.c soem/ethercat.h osal/osal.h osal/linux/osal_defs.h)
+foreach(file ${SOEM_FILES} soem/ethercat.h osal/osal.h osal/linux/osal_defs.h)
   if(NOT EXISTS ${soem_dir}/${file})
-    message(FATAL_ERROR "SOEM source folder ${soem_dir} lacks ${file}: it must be of the 1.4 line.")
+    message(FATAL_ERROR "The SOEM source folder ${soem_dir} lacks ${file}. "
+      "It must be SOEM's top folder (the one with soem/ and osal/), of the 1.4 line.")
   endif()
 endforeach()
 set(CM1E_SOEM_DIR ${soem_dir})
@@ -48,8 +69,6 @@ target_include_directories(soem_headers SYSTEM INTERFACE
   $<BUILD_INTERFACE:${soem_dir}/osal>
   $<BUILD_INTERFACE:${soem_dir}/osal/linux>)
 
-add_library(soem STATIC
-  ${soem_dir}/soem/ethercatbase.c ${soem_dir}/soem/ethercatcoe.c ${soem_dir}/soem/ethercatconfig.c
-  ${soem_dir}/soem/ethercatdc.c ${soem_dir}/soem/ethercatfoe.c ${soem_dir}/soem/ethercatmain.c
-  ${soem_dir}/soem/ethercatprint.c ${soem_dir}/soem/ethercatsoe.c ${soem_dir}/soem/ethercateoe.c)
+list(TRANSFORM SOEM_FILES PREPEND ${soem_dir}/ OUTPUT_VARIABLE soem_sources)
+add_library(soem STATIC ${soem_sources})
 target_link_libraries(soem PUBLIC soem_headers PRIVATE cm1e_nic)

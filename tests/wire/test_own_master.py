@@ -33,7 +33,7 @@ def run(segment, cm1e, bus_file, *words):
 
 
 def home_and_move(cm1e, cycle_time_us):
-    with tempfile.TemporaryDirectory() as folder, wire.segment(cm1e) as segment:
+    with wire.segment(cm1e) as segment, tempfile.TemporaryDirectory() as folder:
         bus_file = os.path.join(folder, "bus.yaml")
         with open(bus_file, "w") as file:
             file.write(BUS.format(interface=wire.MASTER_INTERFACE, cycle_time_us=cycle_time_us,

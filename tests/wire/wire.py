@@ -1,6 +1,7 @@
 """Two network namespaces joined by a veth pair: `cm1e sim` serves a segment in one, a master runs in the other.
 
-Needs root and iproute2; without them a test ends with the exit status that ctest counts as skipped.
+Needs root, or a kernel that lets a user make namespaces, and iproute2; without them a test says so and ends with the exit
+status that ctest counts as skipped. The namespaces live as long as the processes that hold them: none is left behind.
 """
 import contextlib
 import os
@@ -12,17 +13,50 @@ import time
 
 SKIPPED = 77
 MASTER_INTERFACE, SLAVE_INTERFACE = "ecm0", "ecs0"
+# Makes its namespace's home: no stray frames of the kernel's own on the wire, and it ends with the test, whose end closes
+# its standard input. /proc/sys/net shows the namespace of the process that opens it.
+HOLDER = "echo 1 >/proc/sys/net/ipv6/conf/default/disable_ipv6; echo made; exec cat"
 
 
-def skip_unless_possible():
-    if os.geteuid() != 0 or not shutil.which("ip"):
-        print("SKIPPED: network namespaces need root and the package iproute2")
-        sys.exit(SKIPPED)
-    probe = subprocess.run(["ip", "netns", "add", f"cm1e-probe-{os.getpid()}"], capture_output=True, text=True)
-    if probe.returncode != 0:
-        print("SKIPPED: this machine lets nobody make a network namespace:", probe.stderr.strip())
-        sys.exit(SKIPPED)
-    subprocess.run(["ip", "netns", "del", f"cm1e-probe-{os.getpid()}"], check=True)
+def skip(why):
+    print("SKIPPED:", why)
+    sys.exit(SKIPPED)
+
+
+def become_root():
+    """Root already, or root of a user namespace of our own, in which the program starts again."""
+    if os.geteuid() == 0:
+        return
+    user_namespace = ["unshare", "--user", "--map-root-user"]
+    if subprocess.run([*user_namespace, "unshare", "--net", "true"], capture_output=True).returncode != 0:
+        skip("network namespaces need root on this machine")
+    os.execvp(user_namespace[0], [*user_namespace, sys.executable, *sys.argv])
+
+
+def enter(holder, command):
+    """The command in the network namespace of a holder."""
+    return ["nsenter", f"--net=/proc/{holder.pid}/ns/net", *command]
+
+
+def make_namespace():
+    holder = subprocess.Popen(["unshare", "--net", "sh", "-c", HOLDER], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True)
+    if holder.stdout.readline() != "made\n":
+        skip(f"this machine lets nobody make a network namespace: {holder.stderr.read().strip()}")
+    return holder
+
+
+def join(master, slave):
+    """The wire between two namespaces."""
+    def ip(holder, *words):
+        return subprocess.run(enter(holder, ["ip", "link", *words]), capture_output=True, text=True)
+
+    made = ip(master, "add", MASTER_INTERFACE, "type", "veth", "peer", "name", SLAVE_INTERFACE, "netns", str(slave.pid))
+    if made.returncode != 0:
+        skip(f"this machine has no virtual Ethernet (veth): {made.stderr.strip()}")
+    for holder, interface in ((master, MASTER_INTERFACE), (slave, SLAVE_INTERFACE)):
+        up = ip(holder, "set", interface, "up")
+        check(up.returncode == 0, f"{interface} does not come up: {up.stderr}")
 
 
 def real_time(command, priority):
@@ -35,8 +69,8 @@ def real_time(command, priority):
 class Segment:
     """A running `cm1e sim` and the namespace of its master."""
 
-    def __init__(self, master_namespace, simulator):
-        self.master_namespace = master_namespace
+    def __init__(self, master, simulator):
+        self.master = master
         self.simulator = simulator
 
     def console(self, line):
@@ -46,7 +80,7 @@ class Segment:
         return self.simulator.stdout.readline().rstrip("\n")
 
     def command(self, command, priority=50):
-        return ["ip", "netns", "exec", self.master_namespace] + real_time(command, priority)
+        return enter(self.master, real_time(command, priority))
 
     def run(self, command, timeout=120):
         """Runs a program in the master's namespace; returns the finished process with its output."""
@@ -56,34 +90,25 @@ class Segment:
 @contextlib.contextmanager
 def segment(cm1e, *arguments):
     """Starts `cm1e sim -i <interface> <arguments>` and yields a Segment."""
-    skip_unless_possible()
-    master, slave = f"cm1e-m-{os.getpid()}", f"cm1e-s-{os.getpid()}"
-    ip = lambda *words: subprocess.run(["ip", *words], check=True, capture_output=True)
-    simulator = None
-    try:
-        for namespace in (master, slave):
-            ip("netns", "add", namespace)
-            # No stray frames of the kernel's own on the EtherCAT wire.
-            subprocess.run(["ip", "netns", "exec", namespace, "sysctl", "-qw", "net.ipv6.conf.default.disable_ipv6=1"],
-                           capture_output=True)
-        ip("link", "add", MASTER_INTERFACE, "netns", master, "type", "veth", "peer", "name", SLAVE_INTERFACE,
-           "netns", slave)
-        ip("-n", master, "link", "set", MASTER_INTERFACE, "up")
-        ip("-n", slave, "link", "set", SLAVE_INTERFACE, "up")
-        simulator = subprocess.Popen(
-            ["ip", "netns", "exec", slave] + real_time([cm1e, "sim", "-i", SLAVE_INTERFACE, *arguments], 60),
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    if not shutil.which("ip"):
+        skip("the package iproute2 is not installed")
+    become_root()
+    with contextlib.ExitStack() as stack:
+        def ends_with_us(process):
+            stack.callback(process.wait)
+            stack.callback(process.kill)
+            return process
+
+        master, slave = ends_with_us(make_namespace()), ends_with_us(make_namespace())
+        join(master, slave)
+        simulator = ends_with_us(subprocess.Popen(
+            enter(slave, real_time([cm1e, "sim", "-i", SLAVE_INTERFACE, *arguments], 60)),
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True))
         greeting = simulator.stdout.readline()
-        assert "simulated slave" in greeting, f"cm1e sim did not start: {greeting!r}"
+        check("simulated slave" in greeting, f"cm1e sim did not start: {greeting!r}")
         yield Segment(master, simulator)
         simulator.send_signal(signal.SIGINT)
-        assert simulator.wait(10) == 0, f"cm1e sim ended with {simulator.returncode} on SIGINT"
-    finally:
-        if simulator and simulator.poll() is None:
-            simulator.kill()
-            simulator.wait()
-        for namespace in (master, slave):
-            subprocess.run(["ip", "netns", "del", namespace], capture_output=True)
+        check(simulator.wait(10) == 0, f"cm1e sim ended with {simulator.returncode} on SIGINT")
 
 
 def check(condition, message):
