@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "axes_described.h"
 #include "bus/bus_image.h"
 #include "cm1e/plcopen.h"
 #include "cm1e/scheduler.h"
@@ -25,27 +26,14 @@ typedef struct machine {
     AXIS_REF_t axis[MACHINE_AXES];
 } machine_t;
 
-/** Axes of 1000 counts a unit, hard stops 10 u to either side, homing on the negative one. */
-static void machine_describe(const machine_t *machine, cm1e_bus_config_t *config)
-{
-    cm1e_bus_config_init(config, "sim", machine->axis_count);
-    config->virtual_time = !machine->real_time;
-    config->cycle_time_ns = machine->cycle_time_ns;
-    for (uint32_t i = 0; i < machine->axis_count; i++) {
-        cm1e_axis_config_t *axis = &config->axes[i];
-        axis->counts_per_unit = 1000;
-        axis->homing = (cm1e_homing_config_t){.method = -2, .velocity = 100, .acceleration = 2000, .torque = 30};
-        axis->sim.stop_negative = -10000;
-        axis->sim.stop_positive = 10000;
-    }
-}
-
 /** An Operational bus and a scheduler; the caller has filled what is above `bus`. */
 static void machine_open(machine_t *machine)
 {
     static cm1e_bus_config_t config;
     cm1e_diag_t diag = {0};
-    machine_describe(machine, &config);
+    describe_axes(&config, machine->axis_count);
+    config.virtual_time = !machine->real_time;
+    config.cycle_time_ns = machine->cycle_time_ns;
     ck_assert_msg(cm1e_bus_open(&machine->bus, &config, &diag) == CM1E_OK, "%s", diag.text);
     ck_assert_msg(cm1e_bus_start(machine->bus, &diag) == CM1E_OK, "%s", diag.text);
     ck_assert_msg(cm1e_scheduler_create(&machine->scheduler, machine->bus, &machine->config, &diag) == CM1E_OK, "%s",
