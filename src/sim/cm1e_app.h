@@ -130,7 +130,8 @@ struct cm1e_sim_cm1e {
     double overload;         /**< i2t sum, s */
     double overspeed_s, lag_s;
     bool following;
-    double goal, goal_left_s, goal_velocity; /**< CSP: interpolation; PP: set-point; CSV, PV: velocity */
+    double goal, goal_velocity; /**< CSP: interpolation; PP: set-point; CSV, PV: velocity */
+    double slot_s;              /**< CSP: time since the line to the goal began */
     double profile_velocity, profile_acceleration, profile_deceleration;
     bool set_point_acknowledge;
     cm1e_sim_homing_t homing;

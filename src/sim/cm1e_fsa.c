@@ -282,7 +282,7 @@ static void leave_mode(cm1e_sim_cm1e_t *drive)
         switch_mode(drive);
         return;
     }
-    if (drive->firmware->firmware < CM1E_FIRMWARE_1_3_0)
+    if (drive->firmware->firmware < CM1E_FIRMWARE_1_3_0 && !drive->homing.halted)
         drive->objects.mode_display = drive->next_mode;
     else
         drive->homing.abandoned = true;

@@ -3,6 +3,8 @@
 #include "sim/cm1e_app.h"
 
 #define DEFAULT_CYCLE_S 1e-3        /* until the cycle time is detected */
+#define TIME_BASE_PULL 0.125        /* part of an output's delay by which the time base follows it */
+#define TIME_BASE_PATIENCE 1.25     /* cycles from one target on, in which the next one should come */
 #define FOLLOWING_WINDOW 5000.0     /* counts; PP, statusword bit 13 */
 #define POSITION_WINDOW 10.0        /* counts; target reached */
 #define VELOCITY_WINDOW 500.0       /* counts/s; target reached */
@@ -70,30 +72,37 @@ static bool stands(const cm1e_sim_cm1e_t *drive) { return fabs(drive->mechanics.
 static void csp_enter(cm1e_sim_cm1e_t *drive)
 {
     drive->goal = target_position(drive);
-    drive->goal_left_s = 0;
+    drive->goal_velocity = 0;
+    drive->slot_s = 0;
     drive->servo.reference = drive->goal;
     drive->servo.reference_velocity = 0;
 }
 
-/* A straight line to the new target within one cycle. */
+static double cycle_s(const cm1e_sim_cm1e_t *drive)
+{
+    return drive->period_ns ? drive->period_ns * 1e-9 : DEFAULT_CYCLE_S;
+}
+
+/* A straight line from the last target to the new one, on a time base of the drive's own that follows the outputs
+ * slowly: without SYNC0 they come a little early or late, and the motor is not to feel it. */
 static void csp_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
 {
     (void)rising_bits;
-    drive->goal = target_position(drive);
-    drive->goal_left_s = drive->period_ns ? drive->period_ns * 1e-9 : DEFAULT_CYCLE_S;
-    drive->goal_velocity = (drive->goal - drive->servo.reference) / drive->goal_left_s;
+    const double goal = target_position(drive), cycle = cycle_s(drive), late_s = drive->slot_s - cycle;
+    drive->slot_s = fabs(late_s) < cycle / 2 ? late_s * (1 - TIME_BASE_PULL) : 0;
+    drive->goal_velocity = (goal - drive->goal) / cycle;
+    drive->goal = goal;
 }
 
+/* The line goes on for a while where the next target is late; then the motor stands at the last one. */
 static void csp_step(cm1e_sim_cm1e_t *drive, double step_s)
 {
-    drive->servo.reference_velocity = drive->goal_left_s > 0 ? drive->goal_velocity : 0;
-    drive->goal_left_s -= step_s;
-    if (drive->goal_left_s > step_s / 1024)
-        drive->servo.reference += drive->goal_velocity * step_s;
-    else {
-        drive->servo.reference = drive->goal;
-        drive->goal_left_s = 0;
-    }
+    const double cycle = cycle_s(drive);
+    drive->slot_s += step_s;
+    if (drive->slot_s > TIME_BASE_PATIENCE * cycle)
+        drive->goal_velocity = 0;
+    drive->servo.reference = drive->goal - drive->goal_velocity * (cycle - drive->slot_s);
+    drive->servo.reference_velocity = drive->goal_velocity;
 }
 
 static uint16_t cyclic_status_bits(const cm1e_sim_cm1e_t *drive)

@@ -13,6 +13,7 @@
 typedef struct cm1e_servo {
     double reference;          /**< counts, on the scale of the mechanics */
     double reference_velocity; /**< counts/s */
+    double feed_forward;       /**< counts/s, the smoothed reference velocity */
     double torque_limit;       /**< Nm */
     double integral;           /**< Nm, holds the load at rest */
     double torque;             /**< Nm, of the last step */
