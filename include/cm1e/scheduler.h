@@ -89,7 +89,7 @@ int64_t cm1e_scheduler_time_ns(const cm1e_scheduler_t *scheduler);
 void cm1e_scheduler_statistics(const cm1e_scheduler_t *scheduler, cm1e_scheduler_statistics_t *statistics);
 
 /** Writes the trace (time; per axis: state, set and actual position and velocity, torque) as CSV, to <path>.part, then
- *  renamed. After the run. @rt block */
+ *  renamed. After the run. CM1E_ERROR_STATE without a trace. @rt block */
 cm1e_error_t cm1e_scheduler_write_csv(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);
 /** Writes the trace as a plot that a person can read: panels per axis. As cm1e_scheduler_write_csv(). @rt block */
 cm1e_error_t cm1e_scheduler_write_svg(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);

@@ -139,6 +139,8 @@ cm1e_error_t trace_write_file(const trace_t *trace, const char *path, void (*pri
                               cm1e_diag_t *diag)
 {
     char temporary[4096];
+    if (trace->capacity == 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Nothing was recorded: the scheduler's trace_capacity is 0.");
     const bool direct = path && is_special(path);
     if (!path || snprintf(temporary, sizeof temporary, direct ? "%s" : "%s.part", path) >= (int)sizeof temporary)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The name of the file is missing or too long.");

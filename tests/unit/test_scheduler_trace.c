@@ -1,0 +1,295 @@
+/** The trace's ring and its writers: CSV and SVG of whatever was recorded. */
+#include <locale.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "scheduler/trace.h"
+#include "unity.h"
+
+void setUp(void) {}
+void tearDown(void) {}
+
+/* ---- a trace made by hand -------------------------------------------------------------------------------------- */
+
+static trace_t make_trace(uint32_t axes, uint32_t capacity)
+{
+    static const char *const names[] = {"X", "gripper", "<&\"'>\x01", "Achse \xC3\xA4"};
+    trace_t trace = {.axes = axes, .capacity = capacity, .every = 1};
+    trace.names = calloc(axes, sizeof *trace.names);
+    trace.times_ns = calloc(capacity, sizeof *trace.times_ns);
+    trace.samples = calloc((size_t)capacity * axes, sizeof *trace.samples);
+    for (uint32_t i = 0; i < axes; i++)
+        trace.names[i] = names[i % 4];
+    return trace;
+}
+
+/** Samples that move, n = 0, 1, 2 ...; into the ring as trace_record() does. */
+static void add_sample(trace_t *trace, uint32_t n, double scale)
+{
+    const uint32_t place = (trace->first + trace->used) % trace->capacity;
+    if (trace->used < trace->capacity)
+        trace->used++;
+    else
+        trace->first = (trace->first + 1) % trace->capacity;
+    trace->times_ns[place] = n * INT64_C(1000000);
+    for (uint32_t axis = 0; axis < trace->axes; axis++)
+        trace->samples[(size_t)place * trace->axes + axis] = (trace_sample_t){
+            .set_position = scale * sin(n * 0.01 + axis),
+            .actual_position = scale * sin(n * 0.01 + axis - 0.02),
+            .set_velocity = scale * cos(n * 0.01 + axis),
+            .actual_velocity = scale * cos(n * 0.01 + axis - 0.02) + (n % 3) * 0.01 * scale,
+            .torque = 40 * sin(n * 0.7),
+            .state = (cm1e_axis_state_t)(n / 500 % CM1E_AXIS_STATE_COUNT),
+        };
+}
+
+/** The whole file; the caller frees it. */
+static char *read_file(const char *path, size_t *size)
+{
+    FILE *file = fopen(path, "r");
+    TEST_ASSERT_NOT_NULL_MESSAGE(file, path);
+    fseek(file, 0, SEEK_END);
+    *size = (size_t)ftell(file);
+    rewind(file);
+    char *text = malloc(*size + 1);
+    TEST_ASSERT_EQUAL(*size, fread(text, 1, *size, file));
+    text[*size] = '\0';
+    fclose(file);
+    return text;
+}
+
+static const char svg_path[] = CM1E_TEST_OUTPUT "/trace-unit.svg", csv_path[] = CM1E_TEST_OUTPUT "/trace-unit.csv";
+
+static char *write_svg(const trace_t *trace, size_t *size)
+{
+    cm1e_diag_t diag = {0};
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, trace_write_file(trace, svg_path, trace_print_svg, &diag), diag.text);
+    return read_file(svg_path, size);
+}
+
+/** Every element that is opened is closed, in order; no stray "<", ">" or "&"; no "nan", no "inf". */
+static void check_well_formed(const char *svg)
+{
+    char open[16][24];
+    int depth = 0;
+    TEST_ASSERT_NULL(strstr(svg, "nan"));
+    TEST_ASSERT_NULL(strstr(svg, "inf"));
+    for (const char *c = svg; *c; c++) {
+        TEST_ASSERT_TRUE((unsigned char)*c >= ' ' || *c == '\n');
+        if (*c == '&')
+            TEST_ASSERT_TRUE(!strncmp(c, "&lt;", 4) || !strncmp(c, "&gt;", 4) || !strncmp(c, "&amp;", 5)
+                             || !strncmp(c, "&quot;", 6));
+        if (*c != '<')
+            continue;
+        const char *end = strchr(c, '>');
+        TEST_ASSERT_NOT_NULL(end);
+        if (c[1] == '/') {
+            TEST_ASSERT_TRUE(depth > 0);
+            depth--;
+            TEST_ASSERT_EQUAL_STRING_LEN(open[depth], c + 2, strlen(open[depth]));
+        } else if (end[-1] != '/') {
+            TEST_ASSERT_TRUE(depth < 16);
+            snprintf(open[depth++], sizeof open[0], "%.*s", (int)strcspn(c + 1, " >"), c + 1);
+        }
+        c = end;
+    }
+    TEST_ASSERT_EQUAL(0, depth);
+}
+
+static unsigned count(const char *text, const char *word)
+{
+    unsigned n = 0;
+    for (const char *c = strstr(text, word); c; c = strstr(c + 1, word))
+        n++;
+    return n;
+}
+
+/* ---- SVG ------------------------------------------------------------------------------------------------------- */
+
+static void test_svg_of_few_and_many_axes_is_well_formed_and_below_half_a_megabyte(void)
+{
+    static const struct {
+        uint32_t axes, samples;
+    } cases[] = {{1, 1}, {1, 2}, {1, 10}, {2, 5000}, {3, 100000}, {8, 20000}, {16, 5000}, {128, 2000}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        trace_t trace = make_trace(cases[i].axes, cases[i].samples);
+        size_t size;
+        for (uint32_t n = 0; n < cases[i].samples; n++)
+            add_sample(&trace, n, 12);
+        char *svg = write_svg(&trace, &size);
+        check_well_formed(svg);
+        TEST_ASSERT_LESS_THAN(cases[i].axes <= 16 ? 500000 : 1500000, size);
+        TEST_ASSERT_EQUAL(cases[i].axes, count(svg, ">position [u]<"));
+        TEST_ASSERT_EQUAL(cases[i].axes, count(svg, ">torque [% of rated]<"));
+        TEST_ASSERT_EQUAL(2 * cases[i].axes + 1, count(svg, "class=\"set\" d=\"M"));
+        free(svg);
+        trace_free(&trace);
+    }
+}
+
+static void test_svg_survives_any_values(void)
+{
+    static const double values[] = {0, -0.0, 1e-300, 1e300, -1e300, NAN, INFINITY, -INFINITY, 1e12, 1e-12, 123456.789};
+    enum { VALUES = sizeof values / sizeof values[0] };
+    for (int constant = 0; constant <= VALUES; constant++) {
+        trace_t trace = make_trace(1, 50);
+        size_t size;
+        for (uint32_t n = 0; n < 50; n++) {
+            add_sample(&trace, n, 1);
+            const double value = constant < VALUES ? values[constant] : values[n % VALUES];
+            trace.samples[n].set_position = trace.samples[n].actual_velocity = trace.samples[n].torque = value;
+        }
+        char *svg = write_svg(&trace, &size);
+        TEST_ASSERT_LESS_THAN(100000, size);
+        check_well_formed(svg);
+        free(svg);
+        trace_free(&trace);
+    }
+}
+
+static void test_svg_shows_a_state_of_one_sample_and_a_peak_of_one_sample(void)
+{
+    trace_t trace = make_trace(1, 100000);
+    size_t size;
+    for (uint32_t n = 0; n < 100000; n++) {
+        add_sample(&trace, n, 1);
+        trace.samples[n].state = CM1E_AXIS_STANDSTILL;
+        trace.samples[n].torque = n == 43210 ? 100 : 0;
+    }
+    trace.samples[61234].state = CM1E_AXIS_ERROR_STOP;
+    char *svg = write_svg(&trace, &size);
+    TEST_ASSERT_EQUAL(1, count(svg, "<title>ErrorStop,"));
+    TEST_ASSERT_EQUAL(2, count(svg, "<title>Standstill,"));
+    const char *torque = strstr(strstr(svg, "[% of rated]"), "class=\"torque\" d=\"M");
+    char *next = svg + (torque - svg) + strlen("class=\"torque\" d=\"M");
+    double top = 1e9, bottom = 0;
+    while (*next != '"') {
+        strtod(next, &next);
+        next++;
+        const double y = strtod(next, &next);
+        top = fmin(top, y);
+        bottom = fmax(bottom, y);
+        next += *next == ' ';
+    }
+    TEST_ASSERT_TRUE(bottom - top > 80); /* of a panel 110 high */
+    free(svg);
+    trace_free(&trace);
+}
+
+static void test_svg_of_an_empty_trace_says_so(void)
+{
+    trace_t empty = make_trace(2, 10);
+    size_t size;
+    char *svg = write_svg(&empty, &size);
+    check_well_formed(svg);
+    TEST_ASSERT_NOT_NULL(strstr(svg, "The trace is empty."));
+    free(svg);
+    trace_free(&empty);
+}
+
+/* ---- CSV ------------------------------------------------------------------------------------------------------- */
+
+static void test_csv_has_a_row_a_sample_in_the_order_of_time_also_after_the_ring_went_round(void)
+{
+    trace_t trace = make_trace(3, 100);
+    size_t size;
+    cm1e_diag_t diag = {0};
+    for (uint32_t n = 0; n < 250; n++)
+        add_sample(&trace, n, 5);
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, trace_write_file(&trace, csv_path, trace_print_csv, &diag), diag.text);
+    char *csv = read_file(csv_path, &size);
+    TEST_ASSERT_EQUAL(101, count(csv, "\n"));
+    TEST_ASSERT_NOT_NULL(strstr(csv, "\"gripper set position [u]\""));
+    TEST_ASSERT_NOT_NULL(strstr(csv, "\"<&\"\"'>\x01 torque [%]\"")); /* RFC 4180: quotes doubled */
+    char *line = strchr(csv, '\n') + 1;
+    for (int n = 150; n < 250; n++) {
+        TEST_ASSERT_EQUAL_DOUBLE(n * 0.001, strtod(line, NULL));
+        unsigned commas = 0;
+        for (; *line != '\n'; line++)
+            commas += *line == ',';
+        TEST_ASSERT_EQUAL(18, commas);
+        line++;
+    }
+    free(csv);
+    trace_free(&trace);
+}
+
+/* ---- files ----------------------------------------------------------------------------------------------------- */
+
+static void test_numbers_have_a_point_in_every_locale(void)
+{
+    if (!setlocale(LC_NUMERIC, "de_DE.UTF-8"))
+        TEST_IGNORE_MESSAGE("no locale with a decimal comma here");
+    trace_t trace = make_trace(1, 10);
+    size_t size;
+    for (uint32_t n = 0; n < 10; n++)
+        add_sample(&trace, n, 0.123);
+    TEST_ASSERT_EQUAL(CM1E_OK, trace_write_file(&trace, csv_path, trace_print_csv, NULL));
+    TEST_ASSERT_EQUAL_STRING("de_DE.UTF-8", setlocale(LC_NUMERIC, NULL));
+    setlocale(LC_NUMERIC, "C");
+    char *csv = read_file(csv_path, &size);
+    TEST_ASSERT_NOT_NULL(strstr(csv, "\n0.001000,"));
+    free(csv);
+    trace_free(&trace);
+}
+
+static void test_old_file_stays_until_the_new_one_is_whole(void)
+{
+    trace_t empty = make_trace(1, 1);
+    char part[sizeof csv_path + 8];
+    size_t size;
+    cm1e_diag_t diag = {0};
+    snprintf(part, sizeof part, "%s.part", csv_path);
+    FILE *file = fopen(csv_path, "w");
+    fputs("old", file);
+    fclose(file);
+    TEST_ASSERT_EQUAL(0, mkdir(part, 0700)); /* the temporary name cannot be written */
+    TEST_ASSERT_EQUAL(CM1E_ERROR_IO, trace_write_file(&empty, csv_path, trace_print_csv, &diag));
+    TEST_ASSERT_NOT_NULL(strstr(diag.text, csv_path));
+    rmdir(part);
+    char *text = read_file(csv_path, &size);
+    TEST_ASSERT_EQUAL_STRING("old", text);
+    free(text);
+    TEST_ASSERT_EQUAL(CM1E_OK, trace_write_file(&empty, csv_path, trace_print_csv, &diag));
+    TEST_ASSERT_NOT_EQUAL(0, access(part, F_OK));
+    trace_free(&empty);
+}
+
+static void test_paths_that_cannot_be_written_are_named(void)
+{
+    trace_t empty = make_trace(1, 1);
+    char long_path[5000];
+    cm1e_diag_t diag = {0};
+    memset(long_path, 'a', sizeof long_path);
+    long_path[sizeof long_path - 1] = '\0';
+    TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, trace_write_file(&empty, NULL, trace_print_csv, &diag));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, trace_write_file(&empty, long_path, trace_print_csv, &diag));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_IO, trace_write_file(&empty, "/nowhere/at/all.csv", trace_print_csv, &diag));
+    TEST_ASSERT_NOT_NULL(strstr(diag.text, "/nowhere/at/all.csv"));
+    TEST_ASSERT_EQUAL(CM1E_OK, trace_write_file(&empty, "/dev/null", trace_print_csv, &diag));
+    struct stat status;
+    TEST_ASSERT_EQUAL(0, stat("/dev/null", &status));
+    TEST_ASSERT_TRUE(S_ISCHR(status.st_mode)); /* a device is written to, not replaced */
+    TEST_ASSERT_EQUAL(CM1E_ERROR_IO, trace_write_file(&empty, "/dev/full", trace_print_svg, &diag));
+    trace_free(&empty);
+    const trace_t none = {.axes = 3}; /* as trace_init() leaves it for capacity 0 */
+    TEST_ASSERT_EQUAL(CM1E_ERROR_STATE, trace_write_file(&none, csv_path, trace_print_csv, &diag));
+    TEST_ASSERT_NOT_NULL(strstr(diag.text, "trace_capacity"));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_svg_of_few_and_many_axes_is_well_formed_and_below_half_a_megabyte);
+    RUN_TEST(test_svg_survives_any_values);
+    RUN_TEST(test_svg_shows_a_state_of_one_sample_and_a_peak_of_one_sample);
+    RUN_TEST(test_svg_of_an_empty_trace_says_so);
+    RUN_TEST(test_csv_has_a_row_a_sample_in_the_order_of_time_also_after_the_ring_went_round);
+    RUN_TEST(test_numbers_have_a_point_in_every_locale);
+    RUN_TEST(test_old_file_stays_until_the_new_one_is_whole);
+    RUN_TEST(test_paths_that_cannot_be_written_are_named);
+    return UNITY_END();
+}
