@@ -1,9 +1,7 @@
 #include "bus/bus_internal.h"
 
-/**
- * Datagrams beside the process data. Each slave has at most one under way; which of its state machines it serves is noted
- * in `owner`. Nothing here waits unless told so, and nothing is written by more than one place.
- */
+/* Datagrams beside the process data. Each slave has at most one under way; which of its state machines it serves is
+ * noted in `owner`. Nothing here waits unless told so. */
 
 /** Lets the mapping job of a slave have the CoE client when it is free. */
 static void feed_mapping(cm1e_bus_slave_t *slave, int64_t now_ns)
@@ -109,7 +107,7 @@ void cm1e_acyclic_cancel(cm1e_bus_t *bus)
     }
 }
 
-/* ---- blocking phases ------------------------------------------------------------------------------------------------- */
+/* ---- blocking phases ------------------------------------------------------------------------------------------- */
 
 void cm1e_bus_pump(cm1e_bus_t *bus)
 {

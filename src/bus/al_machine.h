@@ -1,7 +1,7 @@
 /**
  * @file al_machine.h
- * Brings one slave to an EtherCAT state (ETG.1000.6 section 6.4): acknowledges an old error, requests, waits; and reads the
- * explicit device ID (ETG.1020). One datagram at a time, no clock inside.
+ * Brings one slave to an EtherCAT state (ETG.1000.6 section 6.4): acknowledges an old error, requests, waits; and
+ * reads the explicit device ID (ETG.1020). One datagram at a time, no clock inside.
  */
 #ifndef CM1E_BUS_AL_MACHINE_H
 #define CM1E_BUS_AL_MACHINE_H

@@ -46,7 +46,8 @@ static cm1e_error_t open_parts(cm1e_bus_t *bus, const cm1e_bus_config_t *config,
 cm1e_error_t cm1e_bus_open(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
 {
     if (!bus || !config)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_bus_open() needs a place and a configuration.");
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
+                             "cm1e_bus_open() needs a place for the bus and a configuration.");
     *bus = NULL;
     cm1e_error_t error = cm1e_bus_config_check(config, diag);
     if (error != CM1E_OK)
@@ -93,7 +94,7 @@ int64_t cm1e_bus_enter(cm1e_bus_t *bus)
     return cm1e_clock_now(bus->clock);
 }
 
-/* ---- looking ----------------------------------------------------------------------------------------------------------- */
+/* ---- looking --------------------------------------------------------------------------------------------------- */
 
 uint32_t cm1e_bus_slave_count(const cm1e_bus_t *bus) { return bus ? bus->slave_count : 0; }
 

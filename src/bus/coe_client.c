@@ -63,7 +63,7 @@ void cm1e_coe_cancel(cm1e_coe_client_t *client, cm1e_error_t error)
         give_up(client, error);
 }
 
-/* ---- requests ----------------------------------------------------------------------------------------------------- */
+/* ---- requests -------------------------------------------------------------------------------------------------- */
 
 static uint8_t *start_message(cm1e_coe_client_t *client)
 {
@@ -108,7 +108,8 @@ static void request_upload(cm1e_coe_client_t *client)
 {
     const cm1e_sdo_t *sdo = client->sdo;
     client->phase = COE_UPLOAD;
-    start_initiate(client, REQUEST_UPLOAD | (sdo->complete_access ? BIT_COMPLETE_ACCESS : 0), sdo->index, sdo->subindex);
+    const uint8_t access = sdo->complete_access ? BIT_COMPLETE_ACCESS : 0;
+    start_initiate(client, REQUEST_UPLOAD | access, sdo->index, sdo->subindex);
     send_message(client, SDO_BYTES);
 }
 
@@ -185,7 +186,7 @@ void cm1e_coe_begin(cm1e_coe_client_t *client, cm1e_sdo_t *sdo, int64_t now_ns)
         start_transfer(client);
 }
 
-/* ---- answers ------------------------------------------------------------------------------------------------------ */
+/* ---- answers --------------------------------------------------------------------------------------------------- */
 
 static void discard(cm1e_coe_client_t *client)
 {
@@ -380,7 +381,7 @@ static void on_message(cm1e_coe_client_t *client, const uint8_t *message)
     }
 }
 
-/* ---- one datagram at a time ---------------------------------------------------------------------------------------- */
+/* ---- one datagram at a time ------------------------------------------------------------------------------------ */
 
 bool cm1e_coe_next(cm1e_coe_client_t *client, cm1e_datagram_t *datagram, int64_t now_ns)
 {

@@ -1,8 +1,8 @@
 /**
  * @file coe_client.h
- * The CoE client of one slave (ETG.1000.6 section 5.6): one SDO transfer at a time, expedited, normal or segmented, with or
- * without complete access; one datagram at a time; no clock inside, no waiting. Nothing a slave sends is trusted: type,
- * service, command, index, sub-index, toggle and every length are checked before a byte is taken.
+ * The CoE client of one slave (ETG.1000.6 section 5.6): one SDO transfer at a time, expedited, normal or segmented,
+ * with or without complete access; one datagram at a time; no clock inside, no waiting. Nothing a slave sends is
+ * trusted: type, service, command, index, sub-index, toggle and every length are checked before a byte is taken.
  */
 #ifndef CM1E_BUS_COE_CLIENT_H
 #define CM1E_BUS_COE_CLIENT_H

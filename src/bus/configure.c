@@ -142,7 +142,7 @@ cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag)
     return error;
 }
 
-/* ---- the image, for the drive room ------------------------------------------------------------------------------------- */
+/* ---- the image, for the drive room ----------------------------------------------------------------------------- */
 
 static cm1e_image_slot_t find_slot(const cm1e_bus_t *bus, uint16_t position, int direction, uint16_t index,
                                    uint8_t subindex)

@@ -125,7 +125,8 @@ cm1e_error_t cm1e_bus_identify(cm1e_bus_t *bus, cm1e_diag_t *diag)
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         if (slave->info.is_cm1e && slave->axis < 0) {
             char problem[256];
-            snprintf(problem, sizeof problem, "Slave %u is a CM1-E that is extra: %u axes are configured and none is it.",
+            snprintf(problem, sizeof problem,
+                     "Slave %u is a CM1-E that is extra: %u axes are configured and none is it.",
                      slave->info.position, bus->config.axis_count);
             return identity_error(bus, diag, problem);
         }

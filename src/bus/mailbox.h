@@ -1,8 +1,8 @@
 /**
  * @file mailbox.h
- * The link layer of one slave's mailbox (ETG.1000.4 section 5.6 and 6.7): hands over one message, fetches the answers, one
- * datagram at a time. A lost frame never loses or doubles a message: a write is repeated with the same counter, a read is
- * asked for again by the repeat bit. Knows neither CoE nor a clock; who uses it bounds the time.
+ * The link layer of one slave's mailbox (ETG.1000.4 section 5.6 and 6.7): hands over one message, fetches the
+ * answers, one datagram at a time. A lost frame never loses or doubles a message: a write is repeated with the same
+ * counter, a read is asked for again by the repeat bit. Knows neither CoE nor a clock; who uses it bounds the time.
  */
 #ifndef CM1E_BUS_MAILBOX_H
 #define CM1E_BUS_MAILBOX_H

@@ -1,8 +1,8 @@
 /**
  * @file mapping.h
- * The PDO mapping of one slave: assigns the chosen PDOs, then reads back what the slave made of it. The layout is always
- * what the device says (the manual gives two orders, UG 4.4 and UG 7.2); gaps (entries of index 0) only take up bits.
- * A list of SDO transfers, one after the other; who runs it owns the CoE client.
+ * The PDO mapping of one slave: assigns the chosen PDOs, then reads back what the slave made of it. The layout is
+ * always what the device says (the manual gives two orders, UG 4.4 and UG 7.2); gaps (entries of index 0) only take
+ * up bits. A list of SDO transfers, one after the other; who runs it owns the CoE client.
  */
 #ifndef CM1E_BUS_MAPPING_H
 #define CM1E_BUS_MAPPING_H

@@ -64,7 +64,7 @@ void cm1e_recovery_cancel(cm1e_bus_slave_t *slave)
     slave->mapping.step = MAPPING_IDLE;
 }
 
-/* ---- registers ------------------------------------------------------------------------------------------------------ */
+/* ---- registers ------------------------------------------------------------------------------------------------- */
 
 static uint16_t by_place(const cm1e_bus_slave_t *slave) { return (uint16_t)(1 - slave->info.position); }
 
@@ -108,7 +108,7 @@ static bool next_look(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_n
 
 static void result_look(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
 {
-    /* In Safe-Operational or above it never lost its configuration: only the watchdog or a request took it out of OP. */
+    /* In Safe-Operational or above it kept its configuration: only the watchdog or a request took it out of OP. */
     const unsigned state = cm1e_get_u16(d->data) & AL_STATE_MASK;
     const bool configured = state == CM1E_AL_SAFE_OP || state == CM1E_AL_OP;
     enter(slave, configured ? RECOVERY_OP : RECOVERY_EEPROM, now_ns);
@@ -167,7 +167,7 @@ static bool next_watchdog(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t n
     return true;
 }
 
-/* ---- states ------------------------------------------------------------------------------------------------------------ */
+/* ---- states ---------------------------------------------------------------------------------------------------- */
 
 static bool run_al(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns, uint8_t target)
 {
@@ -221,7 +221,7 @@ static void result_al(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t
     cm1e_al_result(&slave->al, d, now_ns);
 }
 
-/* ---- mailbox ------------------------------------------------------------------------------------------------------------- */
+/* ---- mailbox --------------------------------------------------------------------------------------------------- */
 
 /** Reads one sub-index of the identity object and compares it with what the scan found in the SII. */
 static bool check_identity(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns, uint8_t subindex,
@@ -305,7 +305,7 @@ static void result_coe(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_
     cm1e_coe_result(&slave->coe, d, now_ns);
 }
 
-/* ---- the sequence ------------------------------------------------------------------------------------------------------- */
+/* ---- the sequence ---------------------------------------------------------------------------------------------- */
 
 static const cm1e_recovery_action_t actions[] = {
     [RECOVERY_FIND] = {STEP_NS, next_find, result_find},
@@ -350,7 +350,7 @@ void cm1e_recovery_result(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int
     const cm1e_recovery_step_t step = slave->recovery.step;
     if (step <= RECOVERY_PAUSE)
         return;
-    /* The sub-machines judge losses themselves; a register that was not answered is asked for again until the deadline. */
+    /* The sub-machines judge losses themselves; a register without answer is asked for again until the deadline. */
     const bool machine = actions[step].result == result_al || actions[step].result == result_coe;
     if (machine || d->working_counter == 1)
         actions[step].result(slave, d, now_ns);

@@ -1,8 +1,8 @@
 /**
  * @file recovery.h
  * Brings one slave that left the network state (watchdog, reset, power cycle, replug) back to Operational while the
- * others keep running: found again by its place, proved to be the same device, configured as before. One datagram or SDO
- * transfer at a time, no clock inside. As long as it does not succeed it starts again, after a pause.
+ * others keep running: found again by its place, proved to be the same device, configured as before. One datagram or
+ * SDO transfer at a time, no clock inside. As long as it does not succeed it starts again, after a pause.
  */
 #ifndef CM1E_BUS_RECOVERY_H
 #define CM1E_BUS_RECOVERY_H

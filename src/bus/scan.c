@@ -75,14 +75,16 @@ static cm1e_error_t diagnose_scan(const cm1e_bus_t *bus, int result, uint16_t po
 {
     const char *name = bus->config.interface_name;
     if (result == SCAN_TOO_MANY)
-        return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "More than %d slaves answer on %s.", CM1E_MAX_SLAVES, name);
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "More than %d slaves answer on %s.", CM1E_MAX_SLAVES,
+                             name);
     if (result == SCAN_LOST)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_LOST, 0,
-                             "Slave %u on %s stopped answering during the scan: check its power and the cables up to it.",
-                             position, name);
+                             "Slave %u on %s stopped answering during the scan: check its power and the cables up to "
+                             "it.", position, name);
     return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0,
-                         "The SII (EEPROM) of slave %u on %s %s. Write it anew, or take the slave off the bus.", position,
-                         name, result == SCAN_SII_DAMAGED ? "is damaged: its categories have no end" : "cannot be read");
+                         "The SII (EEPROM) of slave %u on %s %s. Write it anew, or take the slave off the bus.",
+                         position, name,
+                         result == SCAN_SII_DAMAGED ? "is damaged: its categories have no end" : "cannot be read");
 }
 
 cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)

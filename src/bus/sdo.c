@@ -89,7 +89,7 @@ void cm1e_sdo_queue_cancel(cm1e_bus_t *bus, cm1e_error_t error)
     queue->listed = 0;
 }
 
-/* ---- blocking -------------------------------------------------------------------------------------------------------------- */
+/* ---- blocking -------------------------------------------------------------------------------------------------- */
 
 static cm1e_error_t transfer(cm1e_bus_t *bus, cm1e_sdo_t *sdo, cm1e_diag_t *diag)
 {
@@ -98,14 +98,14 @@ static cm1e_error_t transfer(cm1e_bus_t *bus, cm1e_sdo_t *sdo, cm1e_diag_t *diag
     cm1e_bus_enter(bus);
     const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, sdo->position);
     if (!slave)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "There is no slave %u; %u were found.", sdo->position,
-                             bus->slave_count);
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "There is no slave %u; %u were found.",
+                             sdo->position, bus->slave_count);
     const cm1e_error_t error = cm1e_sdo_submit(bus, sdo);
     if (error == CM1E_ERROR_FULL)
         return cm1e_diag_set(diag, error, 0, "Too many SDO transfers wait.");
     if (error != CM1E_OK)
         return cm1e_bus_diagnose_sdo(bus, slave, sdo, "SDO transfer", diag);
-    /* The transfer is on this stack frame's caller: it must have ended before we return, and the client sees to that. */
+    /* The transfer lives on the caller's stack: it must have ended before we return, and the client sees to that. */
     while (cm1e_sdo_state(sdo) == CM1E_SDO_BUSY)
         cm1e_bus_pump(bus);
     if (cm1e_sdo_state(sdo) == CM1E_SDO_ERROR)

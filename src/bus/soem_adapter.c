@@ -54,7 +54,7 @@ void cm1e_soem_destroy(cm1e_soem_t *soem)
     free(soem);
 }
 
-/* ---- process data ---------------------------------------------------------------------------------------------------- */
+/* ---- process data ---------------------------------------------------------------------------------------------- */
 
 static uint16_t bytes_of(uint32_t bits) { return (uint16_t)((bits + 7) / 8); }
 
@@ -166,7 +166,7 @@ int cm1e_soem_receive_process_data(cm1e_soem_t *soem, int64_t timeout_ns)
 
 uint64_t cm1e_soem_late_frames(const cm1e_soem_t *soem) { return soem->port.counters.late; }
 
-/* ---- single datagrams ------------------------------------------------------------------------------------------------ */
+/* ---- single datagrams ------------------------------------------------------------------------------------------ */
 
 void cm1e_soem_post(cm1e_soem_t *soem, cm1e_datagram_t *d, int64_t now_ns)
 {
@@ -178,7 +178,7 @@ void cm1e_soem_post(cm1e_soem_t *soem, cm1e_datagram_t *d, int64_t now_ns)
     ecx_outframe_red(&soem->port, d->frame_index);
 }
 
-/** The frame that came back under our index is ours: same command, same length, same address where nobody changes it. */
+/** The frame that came back under our index is ours: same command and length, same address where nobody changes it. */
 static bool is_answer(const cm1e_datagram_t *d, const uint8_t *frame)
 {
     const bool fixed_address = d->command == COMMAND_FPRD || d->command == COMMAND_FPWR;

@@ -1,7 +1,7 @@
 /**
  * @file soem_adapter.h
- * All that the bus asks of SOEM, in words of ours: slaves found, process data mapped and exchanged, single datagrams sent
- * and fetched. The one header of this room behind which SOEM lives; SOEM's own mailbox client is never used.
+ * All that the bus asks of SOEM, in words of ours: slaves found, process data mapped and exchanged, single datagrams
+ * sent and fetched. The one header of this room behind which SOEM lives; SOEM's own mailbox client is never used.
  */
 #ifndef CM1E_BUS_SOEM_ADAPTER_H
 #define CM1E_BUS_SOEM_ADAPTER_H

@@ -112,7 +112,7 @@ static bool read_words(void *context, uint16_t word, uint8_t bytes[4])
     return true;
 }
 
-/* ---- slaves -------------------------------------------------------------------------------------------------------- */
+/* ---- slaves ---------------------------------------------------------------------------------------------------- */
 
 static void write_all(cm1e_soem_t *soem, uint16_t offset, const uint8_t *data, uint16_t size)
 {

@@ -114,7 +114,8 @@ static const char *find(const cm1e_text_t *texts, size_t count, uint32_t code, c
 
 const char *cm1e_sdo_abort_text(uint32_t abort_code)
 {
-    return find(abort_texts, sizeof abort_texts / sizeof abort_texts[0], abort_code, "an abort code of the device's own");
+    return find(abort_texts, sizeof abort_texts / sizeof abort_texts[0], abort_code,
+                "an abort code of the device's own");
 }
 
 const char *cm1e_al_status_text(uint16_t al_status_code)

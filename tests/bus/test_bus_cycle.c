@@ -70,7 +70,7 @@ static size_t input_bytes(cm1e_bus_t *bus)
     return bytes;
 }
 
-/* ---- one fault -------------------------------------------------------------------------------------------------------------- */
+/* ---- one fault ------------------------------------------------------------------------------------------------- */
 
 typedef struct fault_case {
     const char *name;
@@ -185,7 +185,7 @@ START_TEST(health_falls_after_the_limit_and_returns_with_the_first_good_cycle)
 }
 END_TEST
 
-/* ---- random faults ------------------------------------------------------------------------------------------------------------- */
+/* ---- random faults --------------------------------------------------------------------------------------------- */
 
 /** Marks the inputs of every process data answer with the number that its outputs carry, then may disturb it. */
 typedef struct random_faults {

@@ -1,8 +1,10 @@
-/* Start-up with a fault at every single frame: it succeeds or ends with an error in words, in bounded time, and no motor
- * moves. And what a slave can refuse is reported in its own words. */
+/* Start-up with a fault at every single frame: it succeeds or ends with an error in words, in bounded time, and no
+ * motor moves. And what a slave can refuse is reported in its own words. */
 #include "bus_support.h"
 
-typedef enum fault_kind { LOSE_THERE = 0, LOSE_BACK, COUNT_UP, COUNT_DOWN, COUNT_ZERO, CUT, TWICE, LATE, GARBAGE, KINDS } fault_kind_t;
+typedef enum fault_kind {
+    LOSE_THERE = 0, LOSE_BACK, COUNT_UP, COUNT_DOWN, COUNT_ZERO, CUT, TWICE, LATE, GARBAGE, KINDS,
+} fault_kind_t;
 static const char *const kind_names[KINDS] = {"lost on the way there", "lost on the way back", "working counter + 1",
                                               "working counter - 1", "working counter 0", "cut short", "doubled",
                                               "late", "garbage"};
@@ -130,7 +132,7 @@ START_TEST(start_that_loses_the_bus_at_any_frame_ends_with_an_error)
 }
 END_TEST
 
-/* ---- refusals -------------------------------------------------------------------------------------------------------------------- */
+/* ---- refusals -------------------------------------------------------------------------------------------------- */
 
 /** Makes every mailbox answer to a request for an object another one, as a broken device would. */
 typedef struct object_lie {
@@ -219,7 +221,7 @@ START_TEST(refused_transition_is_told_with_the_al_status_code)
 }
 END_TEST
 
-/* ---- SII -------------------------------------------------------------------------------------------------------------------------- */
+/* ---- SII ------------------------------------------------------------------------------------------------------- */
 
 /** What every read of the SII gives, whatever was asked for. */
 static cm1e_tap_verdict_t damage_sii(void *context, cm1e_tap_frame_t *frame)

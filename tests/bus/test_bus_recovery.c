@@ -56,7 +56,7 @@ START_TEST(power_cycled_slave_comes_back)
         if (_i > 1)
             ck_assert_uint_eq(state_of(bus, 1), CM1E_AL_OP);
     }
-    ck_assert(seen_lost || _i == 1); /* without the first slave all frames are lost: nothing can be said of one of them */
+    ck_assert(seen_lost || _i == 1); /* without the first slave all frames are lost, which says nothing of one slave */
     ck_assert_int_ne(cm1e_bus_health(bus), CM1E_OK);
     const unsigned n = cycles_until_recovered(bus, 3000);
     ck_assert_uint_gt(n, 0);

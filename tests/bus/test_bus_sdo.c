@@ -1,4 +1,4 @@
-/* SDO transfers with the simulated CM1-E: every object, before and within the cycle, many at once, from another thread. */
+/* SDO transfers with the simulated CM1-E: every object, before and in the cycle, many at once, from another thread. */
 #include <pthread.h>
 
 #include "bus_support.h"
@@ -170,7 +170,7 @@ START_TEST(complete_access_reads_what_the_single_reads_read)
 }
 END_TEST
 
-/* ---- in the cycle ------------------------------------------------------------------------------------------------------------ */
+/* ---- in the cycle ---------------------------------------------------------------------------------------------- */
 
 START_TEST(transfers_ride_in_the_cycle_without_disturbing_it)
 {
@@ -300,9 +300,11 @@ END_TEST
 
 START_TEST(texts_exist_for_every_code)
 {
-    static const uint32_t aborts[] = {0x05030000, 0x05040000, 0x05040001, 0x05040005, 0x06010000, 0x06010001, 0x06010002,
-                                      0x06010004, 0x06020000, 0x06040041, 0x06070010, 0x06070012, 0x06070013, 0x06090011,
-                                      0x06090030, 0x06090031, 0x06090032, 0x08000000, 0x08000021, 0x08000022};
+    static const uint32_t aborts[] = {
+        0x05030000, 0x05040000, 0x05040001, 0x05040005, 0x06010000, 0x06010001, 0x06010002, 0x06010004, 0x06020000,
+        0x06040041, 0x06070010, 0x06070012, 0x06070013, 0x06090011, 0x06090030, 0x06090031, 0x06090032, 0x08000000,
+        0x08000021, 0x08000022,
+    };
     static const uint16_t states[] = {0x11, 0x12, 0x13, 0x15, 0x16, 0x17, 0x18, 0x19, 0x1A, 0x1B, 0x1D, 0x1E, 0x1F};
     const char *unknown_abort = cm1e_sdo_abort_text(0x12345678), *unknown_state = cm1e_al_status_text(0xABCD);
     ck_assert_str_ne(unknown_abort, "");

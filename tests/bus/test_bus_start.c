@@ -88,6 +88,31 @@ START_TEST(start_resolves_every_object_in_every_order_firmware_and_mapping)
 }
 END_TEST
 
+/** More than one frame of process data: 43 drives fill the first (34 bytes each). */
+START_TEST(large_bus_runs_in_several_frames)
+{
+    static const uint32_t counts[] = {43, 44, 87, CM1E_MAX_SLAVES};
+    sim_config(counts[_i]);
+    config.frame_timeout_ns = 900000;
+    cm1e_bus_t *bus = start_bus();
+    ck_assert_uint_eq(cm1e_bus_slave_count(bus), counts[_i]);
+    for (uint32_t n = 1; n <= 300; n++) {
+        for (uint32_t position = 1; position <= counts[_i]; position++)
+            cm1e_put_u16(cm1e_bus_outputs(bus) + cm1e_bus_find_output(bus, (uint16_t)position, 0x60FE, 0).offset,
+                         (uint16_t)((n + position) % 4));
+        ck_assert_int_eq(cycle(bus), CM1E_OK);
+    }
+    for (uint32_t position = 1; position <= counts[_i]; position++) {
+        uint8_t data[2];
+        size_t size = 2;
+        ck_assert_int_eq(cm1e_sdo_read(bus, (uint16_t)position, 0x60FE, 0, data, &size, &diag), CM1E_OK);
+        ck_assert_uint_eq(cm1e_get_u16(data), (300 + position) % 4); /* each got its own outputs */
+        ck_assert_uint_eq(cm1e_bus_slave_watch(bus, (uint16_t)position).al_state, CM1E_AL_OP);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(stop_brings_all_slaves_to_init_and_start_works_again)
 {
     sim_config(2);
@@ -202,6 +227,7 @@ int main(void)
     tcase_add_loop_test(tests, scan_finds_every_slave_from_1_to_16, 1, 17);
     tcase_add_loop_test(tests, start_resolves_every_object_in_every_order_firmware_and_mapping, 0,
                         2 * FIRMWARES * MAPPINGS);
+    tcase_add_loop_test(tests, large_bus_runs_in_several_frames, 0, 4);
     tcase_add_test(tests, stop_brings_all_slaves_to_init_and_start_works_again);
     tcase_add_test(tests, steps_out_of_order_are_refused);
     tcase_add_test(tests, cycle_time_must_suit_the_firmware);

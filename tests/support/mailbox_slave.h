@@ -1,8 +1,8 @@
 /**
  * @file mailbox_slave.h
- * A slave's mailbox made by hand, for tests of the CoE client without a simulated segment: two sync managers with full
- * bits, counters and repeat request, and a small SDO server that is right unless a test tells it to lie. It checks every
- * request that it gets.
+ * A slave's mailbox made by hand, for tests of the CoE client without a simulated segment: two sync managers with
+ * full bits, counters and repeat request, and a small SDO server that is right unless a test tells it to lie. It
+ * checks every request that it gets.
  */
 #ifndef CM1E_TESTS_MAILBOX_SLAVE_H
 #define CM1E_TESTS_MAILBOX_SLAVE_H
@@ -36,7 +36,7 @@ struct slave {
     unsigned emergency_before; /* an emergency goes out before that answer */
 };
 
-/* ---- the server --------------------------------------------------------------------------------------------------------- */
+/* ---- the server ------------------------------------------------------------------------------------------------ */
 
 static void put_in(slave_t *s, const uint8_t *message)
 {
@@ -188,7 +188,7 @@ static void serve(slave_t *s)
         serve_download_segment(s, request, length);
 }
 
-/* ---- the controller ------------------------------------------------------------------------------------------------------ */
+/* ---- the controller -------------------------------------------------------------------------------------------- */
 
 static void repeat_last(slave_t *s, uint8_t activate)
 {

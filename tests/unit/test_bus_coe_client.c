@@ -16,7 +16,7 @@ static cm1e_coe_client_t client;
 static uint8_t buffer[STORE];
 static int64_t now_ns;
 
-/* ---- running --------------------------------------------------------------------------------------------------------------- */
+/* ---- running --------------------------------------------------------------------------------------------------- */
 
 /** Which datagrams get lost, and on which way. */
 static int (*loss)(unsigned n);
@@ -87,7 +87,7 @@ static cm1e_sdo_t writing(size_t size)
     return (cm1e_sdo_t){.position = 1, .index = 0x2000, .subindex = 1, .write = true, .data = buffer, .size = size};
 }
 
-/* ---- transfers --------------------------------------------------------------------------------------------------------------- */
+/* ---- transfers ------------------------------------------------------------------------------------------------- */
 
 static void test_read_of_every_size_gives_the_bytes_of_the_slave(void)
 {
@@ -162,7 +162,7 @@ static void test_emergency_in_between_is_taken_and_does_not_disturb(void)
     TEST_ASSERT_EQUAL_HEX8(0x81, client.emergency.error_register);
 }
 
-/* ---- lost frames ------------------------------------------------------------------------------------------------------------- */
+/* ---- lost frames ----------------------------------------------------------------------------------------------- */
 
 static void check_with_losses(bool write, size_t size, const char *where)
 {
@@ -244,7 +244,7 @@ static void test_three_in_ten_frames_lost_is_slow_but_right(void)
     TEST_ASSERT_TRUE(timeouts < 5);
 }
 
-/* ---- time ---------------------------------------------------------------------------------------------------------------------- */
+/* ---- time ------------------------------------------------------------------------------------------------------ */
 
 static bool say_nothing(slave_t *s, uint8_t *answer)
 {
@@ -351,7 +351,7 @@ static void test_slave_that_does_not_count_its_answers_is_understood(void)
     }
 }
 
-/* ---- lies ------------------------------------------------------------------------------------------------------------------------- */
+/* ---- lies ------------------------------------------------------------------------------------------------------ */
 
 #define LIE(name, change)                                                                                              \
     static bool name(slave_t *s, uint8_t *a)                                                                           \
