@@ -15,8 +15,19 @@
 
 enum { CYCLE_NS = 1000000, SETTLE_CYCLES = 400, MAX_CYCLES = 4000 };
 
-static cm1e_pdo_order_t pdo_order;
-static const char *firmware;
+/* Every sweep runs on each of these. */
+static const struct {
+    cm1e_pdo_order_t pdo_order;
+    const char *firmware;
+    bool watchdog; /* UG 10.1: since V1.3.0 the motor stops by itself when process data stay away */
+} devices[] = {
+    {CM1E_PDO_ORDER_UG_4_4, "1.3.5", true},
+    {CM1E_PDO_ORDER_UG_7_2, "1.3.5", true},
+    {CM1E_PDO_ORDER_UG_4_4, "1.2.0", false},
+    {CM1E_PDO_ORDER_UG_7_2, "1.2.0", false},
+};
+enum { DEVICE_COUNT = sizeof devices / sizeof devices[0] };
+static int device;
 
 /* ---- faults ------------------------------------------------------------------------------------------------------- */
 
@@ -171,9 +182,9 @@ static void describe(cm1e_bus_config_t *config)
     cm1e_bus_config_init(config, "sim", 1);
     config->virtual_time = true;
     config->cycle_time_ns = CYCLE_NS;
-    config->sim_pdo_order = pdo_order;
+    config->sim_pdo_order = devices[device].pdo_order;
     cm1e_axis_config_t *axis = &config->axes[0];
-    snprintf(axis->firmware, sizeof axis->firmware, "%s", firmware);
+    snprintf(axis->firmware, sizeof axis->firmware, "%s", devices[device].firmware);
     axis->counts_per_unit = 1000;
     axis->homing = (cm1e_homing_config_t){.method = -2, .velocity = 100, .acceleration = 2000, .torque = 30};
     axis->sim.stop_negative = -3000;
@@ -233,6 +244,9 @@ static void check_end(const run_t *run)
     ck_assert_msg(right && strstr(run->text, faults[run->kind].word) && strlen(run->text) > 20,
                   "%s at cycle %d (%s): error %d, text \"%s\"", name, run->fault_cycle, phase, run->info.error,
                   run->text);
+    /* Nothing reaches the drive any more, and it has no watchdog: it goes on with what it was told last. */
+    if ((run->kind == FAULT_FRAMES_LOST || run->kind == FAULT_SLAVE_GONE) && !devices[device].watchdog)
+        return;
     ck_assert_msg(run->at_end.travel_counts <= allowed_travel(run), "%s at cycle %d (%s): travelled %.0f of %.0f", name,
                   run->fault_cycle, phase, run->at_end.travel_counts, allowed_travel(run));
     ck_assert_msg(run->at_end.travel_counts - run->settled.travel_counts < 20,
@@ -266,13 +280,14 @@ static void sweep(fault_kind_t kind)
     int phases[PHASE_COUNT] = {0};
     const int cycles = clean_run_cycles();
     const char *stride_word = getenv("CM1E_SWEEP_STRIDE");
-    const int stride = stride_word ? atoi(stride_word) : 1;
-    for (int cycle = 0; cycle < cycles; cycle += stride > 0 ? stride : 1) {
+    const int given = stride_word ? atoi(stride_word) : 1, stride = given > 0 ? given : 1;
+    for (int cycle = 0; cycle < cycles; cycle += stride) {
         start(&run, kind, cycle);
         finish(&run);
         phases[run.fault_phase]++;
     }
-    printf("%-28s %4d runs: %d in enable, %d in homing, %d in the move\n", faults[kind].name, cycles / stride,
+    printf("%s, order %d, %-28s %4d runs: %d in enable, %d in homing, %d in the move\n",
+           devices[device].firmware, devices[device].pdo_order, faults[kind].name, cycles / stride,
            phases[PHASE_ENABLE], phases[PHASE_HOME], phases[PHASE_MOVE]);
     ck_assert_int_gt(phases[PHASE_ENABLE], 0);
     ck_assert_int_gt(phases[PHASE_HOME], 0);
@@ -281,9 +296,8 @@ static void sweep(fault_kind_t kind)
 
 START_TEST(test_fault_at_every_cycle_ends_defined)
 {
-    pdo_order = CM1E_PDO_ORDER_UG_4_4;
-    firmware = "1.3.5";
-    sweep((fault_kind_t)_i);
+    device = _i / FAULT_COUNT;
+    sweep((fault_kind_t)(_i % FAULT_COUNT));
 }
 END_TEST
 
@@ -326,8 +340,6 @@ static uint64_t start_with_fault(fault_kind_t kind, uint64_t frame)
     static cm1e_bus_config_t config;
     start_fault_t fault = {.kind = kind, .frame = frame};
     cm1e_diag_t diag = {0};
-    pdo_order = CM1E_PDO_ORDER_UG_4_4;
-    firmware = "1.3.5";
     describe(&config);
     ck_assert(cm1e_bus_open(&fault.bus, &config, &diag) == CM1E_OK);
     cm1e_nic_set_tap(cm1e_bus_nic(fault.bus), start_tap, &fault);
@@ -355,12 +367,14 @@ static uint64_t start_with_fault(fault_kind_t kind, uint64_t frame)
 
 START_TEST(test_fault_at_every_frame_of_start_up_ends_defined)
 {
+    const fault_kind_t kind = (fault_kind_t)(_i % FAULT_COUNT);
+    device = _i / FAULT_COUNT;
     const uint64_t frames = start_with_fault(FAULT_NONE, 0);
-    printf("start-up: %llu frames, %s at each\n", (unsigned long long)frames, faults[_i].name);
+    printf("start-up: %llu frames, %s at each\n", (unsigned long long)frames, faults[kind].name);
     ck_assert_uint_gt(frames, 50);
     /* A fault at the very last frames is left to the cycle to notice. */
     for (uint64_t frame = 0; frame + 6 < frames; frame++)
-        start_with_fault((fault_kind_t)_i, frame);
+        start_with_fault(kind, frame);
 }
 END_TEST
 
@@ -370,8 +384,9 @@ int main(void)
     TCase *cyclic = tcase_create("cyclic"), *start_up = tcase_create("start-up");
     tcase_set_timeout(cyclic, 280);
     tcase_set_timeout(start_up, 280);
-    tcase_add_loop_test(cyclic, test_fault_at_every_cycle_ends_defined, FAULT_NONE + 1, FAULT_COUNT);
-    tcase_add_loop_test(start_up, test_fault_at_every_frame_of_start_up_ends_defined, FAULT_NONE, FAULT_COUNT);
+    tcase_add_loop_test(cyclic, test_fault_at_every_cycle_ends_defined, FAULT_NONE, DEVICE_COUNT * FAULT_COUNT);
+    tcase_add_loop_test(start_up, test_fault_at_every_frame_of_start_up_ends_defined, FAULT_NONE,
+                        DEVICE_COUNT * FAULT_COUNT);
     suite_add_tcase(suite, start_up);
     suite_add_tcase(suite, cyclic);
     SRunner *runner = srunner_create(suite);
