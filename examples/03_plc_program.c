@@ -247,7 +247,8 @@ static void watch_unit(unit_t *u)
     if (cm1e_axis_read(u->axis, &info) != CM1E_OK)
         return;
     u->max_velocity = fmax(u->max_velocity, fabs(info.actual_velocity));
-    u->max_lag = fmax(u->max_lag, fabs(info.position_lag));
+    if (info.state != CM1E_AXIS_HOMING) /* there the drive leads, and gives positions a new zero */
+        u->max_lag = fmax(u->max_lag, fabs(info.position_lag));
     if (info.state == CM1E_AXIS_ERROR_STOP && !u->in_error) {
         u->errors++;
         u->last_error = info.error;
