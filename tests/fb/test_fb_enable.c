@@ -50,6 +50,8 @@ START_TEST(test_power_follows_enable_and_shows_the_stage)
     call_power(&x, FALSE);
     EXPECT_POWER(TRUE, FALSE, CM1E_OK); /* the stage is still on */
     ck_assert(!axis_x->enable);
+    call_power(&x, FALSE);
+    EXPECT_POWER(TRUE, FALSE, CM1E_OK);
     axis_x->powered = false;
     call_power(&x, FALSE);
     EXPECT_POWER(FALSE, FALSE, CM1E_OK);
@@ -134,6 +136,7 @@ START_TEST(test_second_power_is_an_error_and_leaves_the_first_alone)
     MC_Power(&first);
     call_power(&x, TRUE);
     EXPECT_POWER(FALSE, FALSE, CM1E_ERROR_FB_SECOND_POWER); /* never enabled by surprise: a new edge is needed */
+    ck_assert(!axis_x->enable);
     call_power(&x, FALSE);
     call_power(&x, TRUE);
     EXPECT_POWER(FALSE, TRUE, CM1E_OK);

@@ -508,27 +508,28 @@ static unsigned random_below(unsigned n)
     return (random_state >> 10) % n;
 }
 
+/** An assertion of Check that holds costs a system call: too much for so many. */
+#define RULE(condition, rule)                                                                                        \
+    do                                                                                                               \
+        if (!(condition))                                                                                            \
+            ck_abort_msg("%s, step %u: %s: %s, ErrorID %#x", block->name, step, rule, letters(now), now.error_id);   \
+    while (0)
+
 static void check_rules(const block_t *block, outputs_t now, outputs_t before, BOOL execute, BOOL execute_before,
                         unsigned step)
 {
     const int results = now.done + now.aborted + now.error;
-    const bool velocity = block->done_is_in_velocity;
+    const bool velocity = block->done_is_in_velocity, edge = execute && !execute_before;
     const int shown = (velocity ? 0 : now.done) + now.busy + now.aborted + now.error;
-    ck_assert_msg(shown <= 1, "%s, step %u: E6 broken: %s", block->name, step, letters(now));
-    ck_assert_msg(!execute || shown == 1, "%s, step %u: Execute and no output", block->name, step);
-    ck_assert_msg(!velocity || !now.done || now.busy, "%s, step %u: InVelocity without Busy", block->name, step);
-    ck_assert_msg(now.error == (now.error_id != 0), "%s, step %u: ErrorID %#x", block->name, step, now.error_id);
-    if (block->has_active && block->kind != CM1E_COMMAND_STOP)
-        ck_assert_msg(now.active == now.busy, "%s, step %u: Active without Busy: %s", block->name, step, letters(now));
-    const bool edge = execute && !execute_before;
-    if (results > 0 && !velocity && !before.busy && !edge && !execute)
-        ck_abort_msg("%s, step %u: a result outlived Execute: %s", block->name, step, letters(now));
-    if (before.busy && !edge && !now.busy)
-        ck_assert_msg(results >= 1, "%s, step %u: Busy fell and nothing rose", block->name, step);
-    if (!before.busy && now.busy)
-        ck_assert_msg(edge, "%s, step %u: Busy rose without an edge", block->name, step);
-    if (edge && !velocity)
-        ck_assert_msg(!now.done && !now.aborted, "%s, step %u: a result of the past at the edge", block->name, step);
+    RULE(shown <= 1, "outputs exclude each other");
+    RULE(!execute || shown == 1, "Execute and no output");
+    RULE(!velocity || !now.done || now.busy, "InVelocity without Busy");
+    RULE(now.error == (now.error_id != 0), "Error and ErrorID");
+    RULE(!block->has_active || block->kind == CM1E_COMMAND_STOP || now.active == now.busy, "Active goes with Busy");
+    RULE(velocity || results == 0 || before.busy || edge || execute, "a result outlived Execute");
+    RULE(!before.busy || edge || now.busy || results >= 1, "Busy fell and nothing rose");
+    RULE(before.busy || !now.busy || edge, "Busy rose without an edge");
+    RULE(!edge || velocity || (!now.done && !now.aborted), "a result of the past at the edge");
 }
 
 START_TEST(test_random_calls_keep_the_rules)
