@@ -42,6 +42,15 @@ cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus)
     return error;
 }
 
+static void mute_recovering(cm1e_bus_t *bus)
+{
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        const cm1e_bus_slave_t *slave = &bus->slaves[i];
+        if (cm1e_recovery_mutes(&slave->recovery))
+            memset(bus->image + slave->placement.output_offset, 0, slave->placement.output_bytes);
+    }
+}
+
 void cm1e_bus_send(cm1e_bus_t *bus)
 {
     if (!bus->exchanging)
@@ -50,7 +59,8 @@ void cm1e_bus_send(cm1e_bus_t *bus)
     if (bus->in_flight) /* never two: the old one is given up */
         cm1e_soem_receive_process_data(bus->soem, 0);
     memcpy(bus->image, bus->outputs, bus->output_bytes);
-    memcpy(bus->sent_outputs, bus->outputs, bus->output_bytes);
+    mute_recovering(bus);
+    memcpy(bus->sent_outputs, bus->image, bus->output_bytes);
     cm1e_soem_send_process_data(bus->soem);
     bus->in_flight = true;
     cm1e_acyclic_send(bus, now_ns, CM1E_DATAGRAMS_PER_CYCLE);

@@ -29,6 +29,14 @@ static void enter(cm1e_bus_slave_t *slave, cm1e_recovery_step_t step, int64_t no
     slave->recovery.deadline_ns = now_ns + (step == RECOVERY_PAUSE ? PAUSE_NS : actions[step].time_ns);
 }
 
+/** Noted at once: who asked for the recovery must not ask again because supervision comes by later. */
+static void succeed(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t al_status_code)
+{
+    cm1e_supervision_note(slave, al_state, al_status_code);
+    slave->recovery.step = RECOVERY_IDLE;
+    slave->recovery.successes++;
+}
+
 static void advance(cm1e_bus_slave_t *slave, int64_t now_ns)
 {
     cm1e_recovery_t *recovery = &slave->recovery;
@@ -36,8 +44,7 @@ static void advance(cm1e_bus_slave_t *slave, int64_t now_ns)
         enter(slave, (cm1e_recovery_step_t)(recovery->step + 1), now_ns);
         return;
     }
-    recovery->step = RECOVERY_IDLE;
-    recovery->successes++;
+    succeed(slave, slave->al.state, slave->al.code);
 }
 
 static void fail(cm1e_bus_slave_t *slave, int64_t now_ns)
@@ -109,9 +116,12 @@ static bool next_look(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_n
 static void result_look(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
 {
     /* In Safe-Operational or above it kept its configuration: only the watchdog or a request took it out of OP. */
-    const unsigned state = cm1e_get_u16(d->data) & AL_STATE_MASK;
+    const uint16_t status = cm1e_get_u16(d->data), state = status & AL_STATE_MASK;
     const bool configured = state == CM1E_AL_SAFE_OP || state == CM1E_AL_OP;
-    enter(slave, configured ? RECOVERY_OP : RECOVERY_EEPROM, now_ns);
+    if (status == CM1E_AL_OP)
+        succeed(slave, status, 0); /* it was never away */
+    else
+        enter(slave, configured ? RECOVERY_OP : RECOVERY_EEPROM, now_ns);
 }
 
 static bool next_eeprom(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)

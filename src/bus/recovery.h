@@ -45,6 +45,9 @@ typedef struct cm1e_recovery {
     uint8_t data[4];
 } cm1e_recovery_t;
 
+/** TRUE from the moment that the slave is known to be out of Operational until it is seen there again: it gets outputs
+ *  of zeros meanwhile, so that no stale command acts in the cycle in which it arrives. */
+static inline bool cm1e_recovery_mutes(const cm1e_recovery_t *recovery) { return recovery->step >= RECOVERY_EEPROM; }
 static inline bool cm1e_recovery_idle(const cm1e_recovery_t *recovery) { return recovery->step == RECOVERY_IDLE; }
 void cm1e_recovery_begin(struct cm1e_bus_slave *slave);
 void cm1e_recovery_cancel(struct cm1e_bus_slave *slave);

@@ -97,6 +97,12 @@ START_TEST(unplugged_slaves_trip_their_watchdog_and_come_back_with_the_cable)
     for (int n = 0; n < 20; n++)
         cycle(bus);
     const cm1e_slave_watch_t watch = cm1e_bus_slave_watch(bus, 3);
+    if (!cm1e_firmware_from_version(tested_firmware())->watchdog) { /* before V1.3.0: it noticed nothing */
+        ck_assert_uint_eq(watch.al_state, CM1E_AL_OP);
+        check_all_run(bus);
+        cm1e_bus_close(bus);
+        return;
+    }
     ck_assert_uint_eq(watch.al_state, CM1E_AL_SAFE_OP | CM1E_AL_ERROR);
     ck_assert_uint_eq(watch.al_status_code, 0x001B);
     const unsigned n = cycles_until_recovered(bus, 1000);
@@ -158,6 +164,69 @@ START_TEST(power_cycle_at_every_moment_of_a_recovery_ends_in_operational)
 }
 END_TEST
 
+/** Keeps an eye on what slave 2 is sent, and in which state it was then. */
+typedef struct watch_outputs {
+    cm1e_bus_t *bus;
+    uint32_t offset;
+    unsigned muted, let_through_too_early;
+} watch_outputs_t;
+
+static cm1e_tap_verdict_t watch_outputs(void *context, cm1e_tap_frame_t *frame)
+{
+    watch_outputs_t *watch = context;
+    if (frame->direction != CM1E_TAP_SENT || frame->bytes[16] != 12)
+        return CM1E_TAP_PASS;
+    const uint16_t controlword = cm1e_get_u16(frame->bytes + 26 + watch->offset);
+    const bool known_in_op = cm1e_bus_slave_watch(watch->bus, 2).al_state == CM1E_AL_OP;
+    if (state_of(watch->bus, 2) == CM1E_AL_OP)
+        watch->muted += controlword == 0;
+    watch->let_through_too_early += controlword != 0 && !known_in_op && state_of(watch->bus, 2) >= CM1E_AL_SAFE_OP;
+    return CM1E_TAP_PASS;
+}
+
+START_TEST(slave_gets_zeros_until_it_is_known_to_be_operational_again)
+{
+    sim_config(2);
+    cm1e_bus_t *bus = start_bus();
+    watch_outputs_t watch = {.bus = bus, .offset = cm1e_bus_find_output(bus, 2, 0x6040, 0).offset};
+    cm1e_put_u16(cm1e_bus_outputs(bus) + watch.offset, 0x0006); /* a program that does not notice anything */
+    cycles(bus, 10);
+    strike(bus, "power-cycle 2 20");
+    for (int n = 0; n < 100; n++)
+        cycle(bus);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), watch_outputs, &watch);
+    ck_assert_uint_gt(cycles_until_recovered(bus, 1500), 0);
+    ck_assert_uint_ge(watch.muted, 1);
+    ck_assert_uint_eq(watch.let_through_too_early, 0);
+    cycles(bus, 10);
+    cm1e_sim_probe_t probe;
+    cm1e_sim_probe(segment_of(bus), 2, &probe);
+    ck_assert_uint_eq(probe.controlword, 6);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(request_for_a_slave_that_runs_disturbs_nothing)
+{
+    sim_config(2);
+    cm1e_bus_t *bus = start_bus();
+    const uint32_t offset = cm1e_bus_find_output(bus, 1, 0x6040, 0).offset;
+    cm1e_put_u16(cm1e_bus_outputs(bus) + offset, 0x0006);
+    cycles(bus, 10);
+    for (int n = 0; n < 300; n++) {
+        cm1e_bus_request_recovery(bus, 1);
+        ck_assert_int_eq(cycle(bus), CM1E_OK);
+        cm1e_sim_probe_t probe;
+        cm1e_sim_probe(segment_of(bus), 1, &probe);
+        ck_assert_uint_eq(probe.controlword, 6);
+    }
+    cm1e_bus_request_recovery(bus, 0);
+    cm1e_bus_request_recovery(bus, 3);
+    cycles(bus, 10);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(slave_with_other_switches_is_not_taken_for_the_old_one)
 {
     sim_config(2);
@@ -205,6 +274,8 @@ int main(void)
     tcase_add_test(tests, unplugged_slaves_trip_their_watchdog_and_come_back_with_the_cable);
     tcase_add_loop_test(tests, recovery_survives_lost_frames, 3, 13);
     tcase_add_loop_test(tests, power_cycle_at_every_moment_of_a_recovery_ends_in_operational, 0, 60);
+    tcase_add_test(tests, slave_gets_zeros_until_it_is_known_to_be_operational_again);
+    tcase_add_test(tests, request_for_a_slave_that_runs_disturbs_nothing);
     tcase_add_test(tests, slave_with_other_switches_is_not_taken_for_the_old_one);
     tcase_add_test(tests, sdo_to_a_lost_slave_ends_and_works_again_after_recovery);
     suite_add_tcase(suite, tests);
