@@ -116,7 +116,7 @@ typedef struct cm1e_sdo {
 cm1e_sdo_state_t cm1e_sdo_state(const cm1e_sdo_t *sdo);
 
 /** Hands a transfer to the bus; it is worked on within the cycle, one datagram at a time, never blocking it.
- *  CM1E_ERROR_FULL when 64 transfers wait. One thread at a time may submit. @rt cycle */
+ *  CM1E_ERROR_FULL when 64 transfers wait. Any thread may submit, several at a time. @rt cycle */
 cm1e_error_t cm1e_sdo_submit(cm1e_bus_t *bus, cm1e_sdo_t *sdo);
 /** Reads and waits, before the cycle runs (the caller owns the bus). `*size`: room, then bytes read. @rt block */
 cm1e_error_t cm1e_sdo_read(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex, void *data,
@@ -131,7 +131,7 @@ const char *cm1e_al_status_text(uint16_t al_status_code);
 
 /* ---- the simulated segment behind interface "sim" ---------------------------------------------------------------- */
 
-/** Acts on the simulated segment with one console line, e.g. "power off 2" ("help" lists them), and writes the answer
+/** Acts on the simulated segment with one console line, e.g. "power 2 off" ("help" lists them), and writes the answer
  *  to `answer`. CM1E_ERROR_UNSUPPORTED on a network interface. @rt cycle */
 cm1e_error_t cm1e_bus_simulate(cm1e_bus_t *bus, const char *line, char *answer, size_t size);
 

@@ -60,10 +60,11 @@ typedef struct cm1e_bus_slave {
     unsigned unanswered;                     /**< supervision datagrams in a row that nobody answered */
 } cm1e_bus_slave_t;
 
-/** Transfers handed in: the producer writes `ring` and `head`, the bus the rest. */
+/** Transfers handed in by any thread, the cycle's own included: each takes a place with `head` and fills it; the bus
+ *  empties it and writes the rest. */
 typedef struct cm1e_sdo_queue {
     cm1e_sdo_t *ring[CM1E_SDO_WAITING_MAX];
-    uint32_t head, tail;                     /**< atomic; head - tail: not yet taken over */
+    uint32_t head, tail;                     /**< head: atomic; head - tail: not yet taken over */
     uint32_t waiting;                        /**< atomic: submitted and not begun */
     cm1e_sdo_t *list[CM1E_SDO_WAITING_MAX];  /**< taken over, in order */
     unsigned listed;

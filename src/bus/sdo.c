@@ -27,24 +27,29 @@ cm1e_error_t cm1e_sdo_submit(cm1e_bus_t *bus, cm1e_sdo_t *sdo)
         return error;
     }
     cm1e_sdo_queue_t *queue = &bus->queue;
-    if (__atomic_load_n(&queue->waiting, __ATOMIC_ACQUIRE) >= CM1E_SDO_WAITING_MAX)
+    if (__atomic_fetch_add(&queue->waiting, 1, __ATOMIC_ACQ_REL) >= CM1E_SDO_WAITING_MAX) {
+        __atomic_fetch_sub(&queue->waiting, 1, __ATOMIC_ACQ_REL);
         return CM1E_ERROR_FULL;
-    __atomic_fetch_add(&queue->waiting, 1, __ATOMIC_ACQ_REL);
+    }
     sdo->error = CM1E_OK;
     sdo->abort_code = 0;
     __atomic_store_n(&sdo->state, CM1E_SDO_BUSY, __ATOMIC_RELAXED);
-    const uint32_t head = queue->head; /* written by this side only */
-    queue->ring[head % CM1E_SDO_WAITING_MAX] = sdo;
-    __atomic_store_n(&queue->head, head + 1, __ATOMIC_RELEASE);
+    const uint32_t place = __atomic_fetch_add(&queue->head, 1, __ATOMIC_RELAXED) % CM1E_SDO_WAITING_MAX;
+    __atomic_store_n(&queue->ring[place], sdo, __ATOMIC_RELEASE); /* free: `waiting` is at most as many as there are */
     return CM1E_OK;
 }
 
 /** Takes over what was handed in. Never overflows: `waiting` counts ring and list together. */
 static void take_over(cm1e_sdo_queue_t *queue)
 {
-    const uint32_t head = __atomic_load_n(&queue->head, __ATOMIC_ACQUIRE);
-    while (queue->tail != head && queue->listed < CM1E_SDO_WAITING_MAX)
-        queue->list[queue->listed++] = queue->ring[queue->tail++ % CM1E_SDO_WAITING_MAX];
+    for (cm1e_sdo_t *sdo; queue->listed < CM1E_SDO_WAITING_MAX; queue->tail++) {
+        cm1e_sdo_t **place = &queue->ring[queue->tail % CM1E_SDO_WAITING_MAX];
+        sdo = __atomic_load_n(place, __ATOMIC_ACQUIRE);
+        if (!sdo) /* empty, or its thread is about to fill it */
+            return;
+        __atomic_store_n(place, NULL, __ATOMIC_RELAXED);
+        queue->list[queue->listed++] = sdo;
+    }
 }
 
 /** Begins a transfer, or ends it at once where the slave cannot answer. False: its slave is at work for another. */

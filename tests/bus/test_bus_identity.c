@@ -83,10 +83,10 @@ static cm1e_bus_t *bus_of_case(const identity_case_t *c)
     for (const device_t *device = c->devices; device->kind != END; device++) {
         static cm1e_axis_config_t motor;
         memset(&motor, 0, sizeof motor);
-        strcpy(motor.firmware, device->firmware ? device->firmware : "1.3.5");
+        strcpy(motor.firmware, device->firmware ? device->firmware : tested_firmware());
         cm1e_sim_slave_t *slave =
             device->kind == IO ? cm1e_sim_io_module_create()
-                               : cm1e_sim_cm1e_create(&motor, CM1E_PDO_ORDER_UG_4_4, device->alias, device->switches);
+                               : cm1e_sim_cm1e_create(&motor, tested_order(), device->alias, device->switches);
         ck_assert_int_eq(cm1e_sim_segment_add(segment, slave), CM1E_OK);
     }
     config = kept;

@@ -25,11 +25,25 @@ static unsigned for_each_entry(cm1e_bus_t *bus, entry_fn function)
     return entries;
 }
 
+/** What the tested firmware does not have yet (UG 10.1): entries of later objects, the mode in the profile mapping. */
+static bool is_absent(const cm1e_entry_t *entry)
+{
+    const cm1e_firmware_info_t *firmware = cm1e_firmware_from_version(tested_firmware());
+    const bool mode_of_profile = (entry->index == 0x1603 && entry->subindex == 7)
+                                 || (entry->index == 0x1A03 && entry->subindex == 9);
+    return entry->since > firmware->firmware || (mode_of_profile && !firmware->mode_in_profile_pdo);
+}
+
 static void check_read(cm1e_bus_t *bus, const cm1e_entry_t *entry)
 {
     uint8_t data[128];
     size_t size = sizeof data;
     const cm1e_error_t error = cm1e_sdo_read(bus, 1, entry->index, entry->subindex, data, &size, &diag);
+    if (is_absent(entry)) {
+        ck_assert_int_eq(error, CM1E_ERROR_SDO_ABORT);
+        ck_assert(diag.foreign_code == SDO_ABORT_NO_OBJECT || diag.foreign_code == SDO_ABORT_NO_SUBINDEX);
+        return;
+    }
     if (!(entry->access & CM1E_ACCESS_READ)) {
         ck_assert_int_eq(error, CM1E_ERROR_SDO_ABORT);
         ck_assert_uint_eq(diag.foreign_code, SDO_ABORT_WRITE_ONLY);
@@ -55,7 +69,7 @@ static void check_write(cm1e_bus_t *bus, const cm1e_entry_t *entry)
 {
     uint8_t data[128], again[128];
     size_t size = sizeof data, size_again = sizeof again;
-    if (!(entry->access & CM1E_ACCESS_READ))
+    if (!(entry->access & CM1E_ACCESS_READ) || is_absent(entry))
         return;
     ck_assert_int_eq(cm1e_sdo_read(bus, 1, entry->index, entry->subindex, data, &size, &diag), CM1E_OK);
     const cm1e_error_t error = cm1e_sdo_write(bus, 1, entry->index, entry->subindex, data, size, &diag);

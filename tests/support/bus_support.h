@@ -20,10 +20,26 @@
 static cm1e_bus_config_t config;
 static cm1e_diag_t diag;
 
+/** The devices that this run of a test is about: ctest runs each on both PDO orders, with old and new firmware. */
+static inline const char *tested_firmware(void)
+{
+    const char *firmware = getenv("CM1E_TEST_FIRMWARE");
+    return firmware ? firmware : "1.3.5";
+}
+
+static inline cm1e_pdo_order_t tested_order(void)
+{
+    const char *order = getenv("CM1E_TEST_PDO_ORDER");
+    return order && strcmp(order, "ug-7.2") == 0 ? CM1E_PDO_ORDER_UG_7_2 : CM1E_PDO_ORDER_UG_4_4;
+}
+
 static inline cm1e_bus_config_t *sim_config(uint32_t axes)
 {
     cm1e_bus_config_init(&config, "sim", axes);
     config.virtual_time = true;
+    config.sim_pdo_order = tested_order();
+    for (uint32_t i = 0; i < axes; i++)
+        snprintf(config.axes[i].firmware, sizeof config.axes[i].firmware, "%s", tested_firmware());
     return &config;
 }
 
