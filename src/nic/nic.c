@@ -70,9 +70,3 @@ void cm1e_nic_replace_segment(cm1e_nic_t *nic, cm1e_sim_segment_t *segment)
     cm1e_sim_segment_destroy(nic->segment);
     nic->segment = segment;
 }
-
-void cm1e_nic_set_patience(cm1e_nic_t *nic, const cm1e_nic_patience_t *patience)
-{
-    nic->patience = patience ? *patience : (cm1e_nic_patience_t){0};
-    nic->silent_frames = 0;
-}

@@ -43,19 +43,6 @@ cm1e_sim_segment_t *cm1e_nic_segment(cm1e_nic_t *nic);
 /** Takes the place of the segment that cm1e_nic_open() made for "sim" (tests with slaves of their own); owns it. */
 void cm1e_nic_replace_segment(cm1e_nic_t *nic, cm1e_sim_segment_t *segment);
 
-/** How long SOEM's blocking services (a scan asks thousands of times) go on asking: until `silent_frames` frames in a row
- *  came back to nobody, or the clock of the nic passes `deadline_ns`. Then `give_up` is called from inside SOEM's core,
- *  which holds no resources, so it may leave by longjmp(). */
-typedef struct cm1e_nic_patience {
-    unsigned silent_frames;
-    int64_t deadline_ns;
-    void (*give_up)(void *context);
-    void *context;
-} cm1e_nic_patience_t;
-
-/** NULL: endless patience, the default. `patience` is copied. */
-void cm1e_nic_set_patience(cm1e_nic_t *nic, const cm1e_nic_patience_t *patience);
-
 /* ---- tap --------------------------------------------------------------------------------------------------------- */
 
 typedef enum cm1e_tap_direction { CM1E_TAP_SENT = 0, CM1E_TAP_RECEIVED } cm1e_tap_direction_t;

@@ -18,9 +18,6 @@ struct cm1e_nic {
     int ports;                       /**< 1, or 2 for a ring */
     char interface_name[64];
 
-    cm1e_nic_patience_t patience;    /**< give_up NULL: endless */
-    unsigned silent_frames;          /**< in a row, until now */
-
     cm1e_tap_fn tap;
     void *tap_context;
     pcap_file_t *pcap;

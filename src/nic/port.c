@@ -347,14 +347,6 @@ int ecx_waitinframe(ecx_portt *port, uint8 idx, int timeout)
     return wait_until(port, idx, deadline_after(port, timeout));
 }
 
-static void lose_patience(cm1e_nic_t *nic, int wkc, int64_t now)
-{
-    nic->silent_frames = wkc <= EC_NOFRAME ? nic->silent_frames + 1 : 0;
-    const cm1e_nic_patience_t *patience = &nic->patience;
-    if (patience->give_up && (nic->silent_frames >= patience->silent_frames || now >= patience->deadline_ns))
-        patience->give_up(patience->context);
-}
-
 int ecx_srconfirm(ecx_portt *port, uint8 idx, int timeout)
 {
     if (!port->nic)
@@ -370,7 +362,6 @@ int ecx_srconfirm(ecx_portt *port, uint8 idx, int timeout)
         const int64_t part = now + (int64_t)EC_TIMEOUTRET * NS_PER_US;
         wkc = wait_until(port, idx, part < end ? part : end);
         now = cm1e_clock_now(port->nic->clock);
-        lose_patience(port->nic, wkc, now);
     } while (wkc <= EC_NOFRAME && now < end);
     return wkc;
 }
