@@ -1,5 +1,5 @@
 # SOEM's core, unmodified, from the first of:
-#   1. CM1E_SOEM_SOURCE_DIR: a folder that holds soem/, osal/ and oshw/ (SOEM 1.4 line);
+#   1. CM1E_SOEM_SOURCE_DIR: a folder that holds soem/ and osal/ (SOEM 1.4 line, newer than release 1.4.0);
 #   2. the pinned source distribution of the PyPI package pysoem, which carries such a folder.
 # Its port (nicdrv.h, oshw.h and the osal time functions) is ours: src/nic/port.
 
@@ -29,7 +29,7 @@ function(soem_download archive)
   endforeach()
   message(FATAL_ERROR "pip could not download pysoem ${SOEM_PYSOEM_VERSION}, which carries SOEM:\n${why}\n"
     "Without a network: bring pysoem-${SOEM_PYSOEM_VERSION}.tar.gz from another machine to ${folder}, or set "
-    "CM1E_SOEM_SOURCE_DIR to a SOEM 1.4 source folder.")
+    "CM1E_SOEM_SOURCE_DIR to a SOEM source folder.")
 endfunction()
 
 if(CM1E_SOEM_SOURCE_DIR)
@@ -53,12 +53,17 @@ else()
     file(REMOVE_RECURSE ${deps}/extracting)
   endif()
 endif()
+string(CONCAT soem_needed "Needed is the folder with soem/ and osal/ of SOEM's 1.4 line, newer than release 1.4.0 (for "
+  "instance commit 76863fe of https://github.com/OpenEtherCATsociety/SOEM), not 2.0.")
 foreach(file ${SOEM_FILES} soem/ethercat.h osal/osal.h osal/linux/osal_defs.h)
   if(NOT EXISTS ${soem_dir}/${file})
-    message(FATAL_ERROR "The SOEM source folder ${soem_dir} lacks ${file}. "
-      "It must be SOEM's top folder (the one with soem/ and osal/), of the 1.4 line.")
+    message(FATAL_ERROR "The SOEM source folder \"${soem_dir}\" lacks ${file}. ${soem_needed}")
   endif()
 endforeach()
+file(STRINGS ${soem_dir}/soem/ethercatmain.h newer_than_1_4_0 REGEX eep_sn)
+if(NOT newer_than_1_4_0)
+  message(FATAL_ERROR "The SOEM in \"${soem_dir}\" has no ec_slavet.eep_sn: too old or too new. ${soem_needed}")
+endif()
 set(CM1E_SOEM_DIR ${soem_dir})
 
 add_library(soem_headers INTERFACE)
