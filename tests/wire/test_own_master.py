@@ -6,24 +6,9 @@ test_own_master.py CM1E
 import json
 import os
 import sys
-import tempfile
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import wire  # noqa: E402
-
-# A machine without a real-time kernel pauses for milliseconds now and then: 50 ms without a frame are let pass here, still
-# below the 100 ms of the drive's own watchdog.
-BUS = """\
-bus:
-  interface: {interface}
-  cycle_time_us: {cycle_time_us}
-  lost_cycles_limit: {lost_cycles_limit}
-axes:
-  - name: X
-    position: 1
-    motor: CM1-E-17S30D
-    homing: {{method: -2}}
-"""
 
 
 def run(segment, cm1e, bus_file, *words):
@@ -33,11 +18,8 @@ def run(segment, cm1e, bus_file, *words):
 
 
 def home_and_move(cm1e, cycle_time_us):
-    with wire.segment(cm1e) as segment, tempfile.TemporaryDirectory() as folder:
-        bus_file = os.path.join(folder, "bus.yaml")
-        with open(bus_file, "w") as file:
-            file.write(BUS.format(interface=wire.MASTER_INTERFACE, cycle_time_us=cycle_time_us,
-                                  lost_cycles_limit=50_000 // cycle_time_us))
+    with wire.segment(cm1e) as segment:
+        bus_file = segment.bus_file(cycle_time_us)
         home = run(segment, cm1e, bus_file, "home", "X")
         wire.check(home["done"] and abs(home["to"]) < 0.01, f"homing: {home}")
         move = run(segment, cm1e, bus_file, "move", "X", "--by", "2", "--velocity", "5")

@@ -95,12 +95,12 @@ def run_master():
     wire.check((len(slave.output), len(slave.input)) == (13, 21), f"{len(slave.output)} + {len(slave.input)} bytes")
     slave.output = bytes(12) + b"\x08"  # CSP, controlword 0
     master.send_processdata()
-    master.receive_processdata(10_000)
+    master.receive_processdata(wire.PAUSE_US)
     master.state = pysoem.OP_STATE
     master.write_state()
     for _ in range(500):
         master.send_processdata()
-        master.receive_processdata(10_000)
+        master.receive_processdata(wire.PAUSE_US)
         if master.state_check(pysoem.OP_STATE, 1_000) == pysoem.OP_STATE:
             break
     master.read_state()
@@ -109,7 +109,7 @@ def run_master():
     errors, next_cycle = 0, time.monotonic()
     for _ in range(1000):
         master.send_processdata()
-        errors += master.receive_processdata(10_000) != master.expected_wkc
+        errors += master.receive_processdata(wire.PAUSE_US) != master.expected_wkc
         next_cycle += 0.001
         time.sleep(max(0.0, next_cycle - time.monotonic()))
     wire.check(errors == 0, f"{errors} of 1,000 cycles had a wrong working counter")

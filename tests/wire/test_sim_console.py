@@ -14,8 +14,7 @@ import wire  # noqa: E402
 
 def turn_and(segment, cm1e, *lines):
     """Starts to turn the motor, gives the console lines, returns the master's standard error."""
-    command = segment.command([cm1e, "move", "-i", wire.MASTER_INTERFACE, "--reset", "--speed", "0.3",
-                               "--for", "6"])
+    command = segment.command([cm1e, "move", "-b", segment.bus_file(), "--reset", "--speed", "0.3", "--for", "6"])
     master = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     wire.wait_for(lambda: "Operation enabled" in segment.console("status 1"), 5, "the motor was not enabled")
     time.sleep(0.3)
@@ -33,14 +32,14 @@ def main(cm1e):
         complaint = turn_and(segment, cm1e, "power 1 off")
         wire.check("motor power" in complaint, f"power off: {complaint}")
         segment.console("power 1 on")
-        result = segment.run([cm1e, "move", "-i", wire.MASTER_INTERFACE, "--by", "0.1"])
+        result = segment.run([cm1e, "move", "-b", segment.bus_file(), "--by", "0.1"])
         wire.check(result.returncode == 1 and "--reset" in result.stderr, f"a faulty drive moved: {result}")
         complaint = turn_and(segment, cm1e, "error 1 7310")
         wire.check("7310" in complaint and "peed" in complaint, f"over speed: {complaint}")
         complaint = turn_and(segment, cm1e, "unplug 1")
         wire.check("lost" in complaint or "answer" in complaint, f"unplugged: {complaint}")
         segment.console("replug 1")
-        result = segment.run([cm1e, "move", "-i", wire.MASTER_INTERFACE, "--reset", "--by", "0.1"])
+        result = segment.run([cm1e, "move", "-b", segment.bus_file(), "--reset", "--by", "0.1"])
         wire.check(result.returncode == 0, f"after all that: {result.stdout}{result.stderr}")
     print("console: power off, an error code, unplugged and replugged while the motor turned")
 

@@ -9,6 +9,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 
 SKIPPED = 77
@@ -16,6 +17,21 @@ MASTER_INTERFACE, SLAVE_INTERFACE = "ecm0", "ecs0"
 # Makes its namespace's home: no stray frames of the kernel's own on the wire, and it ends with the test, whose end closes
 # its standard input. /proc/sys/net shows the namespace of the process that opens it.
 HOLDER = "echo 1 >/proc/sys/net/ipv6/conf/default/disable_ipv6; echo made; exec cat"
+
+# A machine without a real-time kernel pauses for milliseconds now and then: 50 ms without a frame are let pass, still
+# below the 100 ms of the drive's own watchdog.
+PAUSE_US = 50_000
+BUS = """\
+bus:
+  interface: {interface}
+  cycle_time_us: {cycle_time_us}
+  lost_cycles_limit: {lost_cycles_limit}
+axes:
+  - name: X
+    position: 1
+    motor: CM1-E-17S30D
+    homing: {{method: -2}}
+"""
 
 
 def skip(why):
@@ -67,11 +83,20 @@ def real_time(command, priority):
 
 
 class Segment:
-    """A running `cm1e sim` and the namespace of its master."""
+    """A running `cm1e sim`, the namespace of its master, and a folder for files."""
 
-    def __init__(self, master, simulator):
+    def __init__(self, master, simulator, folder):
         self.master = master
         self.simulator = simulator
+        self.folder = folder
+
+    def bus_file(self, cycle_time_us=1000):
+        """Writes the bus file of one axis X on the master's interface."""
+        path = os.path.join(self.folder, f"{cycle_time_us}.yaml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(BUS.format(interface=MASTER_INTERFACE, cycle_time_us=cycle_time_us,
+                                  lost_cycles_limit=PAUSE_US // cycle_time_us))
+        return path
 
     def console(self, line):
         """Sends a console line and returns its answer (one line)."""
@@ -106,7 +131,7 @@ def segment(cm1e, *arguments):
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True))
         greeting = simulator.stdout.readline()
         check("simulated slave" in greeting, f"cm1e sim did not start: {greeting!r}")
-        yield Segment(master, simulator)
+        yield Segment(master, simulator, stack.enter_context(tempfile.TemporaryDirectory()))
         simulator.send_signal(signal.SIGINT)
         check(simulator.wait(10) == 0, f"cm1e sim ended with {simulator.returncode} on SIGINT")
 
