@@ -221,6 +221,34 @@ START_TEST(io_module_between_the_axes_is_mapped_by_its_sii)
 }
 END_TEST
 
+/** Gives the station address of a slave, found by its place, to another one: as if slaves had been moved since. */
+static void change_station(cm1e_bus_t *bus, uint16_t place, uint16_t station)
+{
+    uint8_t frame[60] = {[12] = 0x88, [13] = 0xA4, [14] = 14, [15] = 0x10, [16] = 2 /* APWR */, [20] = 0x10, [22] = 2};
+    cm1e_put_u16(frame + 18, (uint16_t)(1 - place));
+    cm1e_put_u16(frame + 26, station);
+    cm1e_sim_segment_process(segment_of(bus), 0, frame, sizeof frame, now_of(bus));
+    ck_assert_uint_eq(cm1e_get_u16(frame + 28), 1);
+}
+
+/** A slave was put in front, one was taken out, two changed places: addresses of an earlier scan are still there. */
+START_TEST(scan_takes_no_notice_of_addresses_of_an_earlier_one)
+{
+    static const uint16_t left_behind[][3] = {
+        {0, 0x1001, 0x1002}, {0x1002, 0x1003, 0}, {0x1002, 0x1001, 0x1003}, {0x1001, 0x1001, 0x1001}, {0, 0, 0},
+        {0x1003, 0x1003, 0x1002},
+    };
+    sim_config(3);
+    cm1e_bus_t *bus = open_bus();
+    for (uint16_t place = 1; place <= 3; place++)
+        change_station(bus, place, left_behind[_i][place - 1]);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_uint_eq(cm1e_bus_slave_count(bus), 3);
+    cycles(bus, 20);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_start");
@@ -234,6 +262,7 @@ int main(void)
     tcase_add_test(tests, cycle_time_must_suit_the_firmware);
     tcase_add_test(tests, no_slaves_is_an_error_that_names_the_interface);
     tcase_add_test(tests, io_module_between_the_axes_is_mapped_by_its_sii);
+    tcase_add_loop_test(tests, scan_takes_no_notice_of_addresses_of_an_earlier_one, 0, 6);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }
