@@ -1,6 +1,7 @@
 /* The axis from its making to its cycle: inputs, then (after the programs) outputs. */
 #include "axis/axis.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "axis/axis_handle.h"
@@ -51,15 +52,30 @@ static bool powered_state(cm1e_axis_state_t state)
     return state != CM1E_AXIS_DISABLED && state != CM1E_AXIS_ERROR_STOP;
 }
 
+/* More lag than the cycles without inputs explain: the drive did not hear the set-points of that time. */
+static bool was_deaf(const cm1e_axis_t *axis, double lag, double lag_before)
+{
+    const double few_counts = 50.0 / fabs(axis->scale);
+    return lag > lag_before + 2.0 * fabs(axis->set_velocity) * axis->cycle_s + few_counts;
+}
+
+/* A set-point that the motor has lost is a jump to come: braking begins anew where the motor is. */
 static void watch_lag(cm1e_axis_t *axis)
 {
-    const cm1e_drive_feedback_t *f = &axis->drive.feedback;
     const bool own = axis->activity == ACTIVITY_HOLD || axis->activity == ACTIVITY_PROFILE;
-    if (!powered_state(axis->state) || !own || !f->online)
+    const bool blind_before = axis->blind;
+    axis->blind = own && !axis->drive.feedback.online;
+    if (axis->blind)
         return;
-    const double lag = cm1e_position_minus(axis->set, axis_actual(axis)) / axis->scale;
-    if (lag > axis->max_lag || lag < -axis->max_lag)
+    const double lag = own ? cm1e_position_minus(axis->set, axis_actual(axis)) / axis->scale : 0.0;
+    const double lag_before = axis->lag_seen;
+    axis->lag_seen = fabs(lag);
+    if (powered_state(axis->state) && fabs(lag) > axis->max_lag) {
         cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, lag, axis->max_lag);
+        cm1e_axis_brake_from_actual(axis);
+    } else if (axis->state == CM1E_AXIS_ERROR_STOP && blind_before && was_deaf(axis, fabs(lag), lag_before)) {
+        cm1e_axis_brake_from_actual(axis);
+    }
 }
 
 /* An axis that is neither under torque nor to be so has nothing to lose while the bus is away. */

@@ -54,6 +54,18 @@ static bool choose(double asked, double maximum, bool stopping, double *value)
     return stopping;
 }
 
+/* An acceleration under way takes time to end, at a jerk that is smaller than it began with perhaps more than there is
+ * left up to the maximum velocity. A larger one, at most that of the motion so far, keeps below it. */
+static void keep_below_maximum_velocity(const cm1e_axis_t *axis, cm1e_motion_limits_t *limits)
+{
+    const double a = axis->set_acceleration;
+    if (a == 0.0)
+        return;
+    const double room = axis->maximum.velocity - (a > 0.0 ? axis->set_velocity : -axis->set_velocity);
+    const double needed = room > 0.0 ? a * a / (2.0 * room) : axis->maximum.jerk;
+    limits->jerk = fmin(fmax(limits->jerk, needed), axis->maximum.jerk);
+}
+
 cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, bool stopping,
                                  cm1e_motion_limits_t *limits)
 {
@@ -63,6 +75,7 @@ cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const cm1e_axis_comman
         !choose(command->deceleration, most->deceleration, stopping, &limits->deceleration) ||
         !choose(command->jerk, most->jerk, stopping, &limits->jerk))
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
+    keep_below_maximum_velocity(axis, limits);
     limits->velocity = most->velocity;
     if (stopping)
         return CM1E_OK;

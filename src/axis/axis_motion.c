@@ -143,12 +143,22 @@ static int32_t clamp_i32(double value)
     return value >= INT32_MAX ? INT32_MAX : value <= INT32_MIN ? INT32_MIN : (int32_t)value;
 }
 
+/* A position loop is no better than what it sees: while inputs are missing the last correction stays, and a ramp of
+ * ErrorStop that nobody sees has none. Else the motor would be driven faster the longer the actual position stands. */
+static double loop_velocity(cm1e_axis_t *axis)
+{
+    if (axis->drive.feedback.online)
+        axis->loop_velocity = csv_position_gain * cm1e_position_minus(axis->set, axis_actual(axis));
+    else if (axis->state == CM1E_AXIS_ERROR_STOP)
+        axis->loop_velocity = 0.0;
+    return axis->loop_velocity;
+}
+
 void cm1e_axis_write_set_point(cm1e_axis_t *axis)
 {
     cm1e_drive_command_t *command = &axis->drive.command;
     /* The drive's counts and ours differ by whole turns of 2^32 only. */
     const int64_t counts = axis->set.counts + (axis->set.fraction >= 0.5);
     command->target_position = (int32_t)(uint32_t)(uint64_t)counts;
-    const double lag_counts = cm1e_position_minus(axis->set, axis_actual(axis));
-    command->target_velocity = clamp_i32(round(axis->set_velocity * axis->scale + csv_position_gain * lag_counts));
+    command->target_velocity = clamp_i32(round(axis->set_velocity * axis->scale + loop_velocity(axis)));
 }

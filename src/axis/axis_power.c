@@ -10,6 +10,7 @@
 
 /* How long a drive that cannot be heard any more counts as "still there" at the end. */
 static const int64_t gone_after_ns = 100 * MS_IN_NS;
+static const int64_t brake_ns = 20 * MS_IN_NS;
 
 bool cm1e_axis_wants_enable(const cm1e_axis_t *axis)
 {
@@ -49,6 +50,18 @@ void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double 
     axis->error_bound = bound;
     axis->state = CM1E_AXIS_ERROR_STOP;
     wind_down(axis, &axis->emergency);
+}
+
+/* For a moment at least: what the feedback shows is some cycles old, and the motor may just be on its way. */
+void cm1e_axis_brake_from_actual(cm1e_axis_t *axis)
+{
+    if (axis->activity == ACTIVITY_FREE)
+        return;
+    const double velocity = axis->drive.feedback.velocity / axis->scale, most = axis->maximum.velocity;
+    cm1e_axis_set_to_actual(axis);
+    axis->set_velocity = velocity > most ? most : velocity < -most ? -most : velocity;
+    cm1e_axis_ramp_down(axis, &axis->emergency);
+    axis->brake_until_ns = axis->now_ns + brake_ns;
 }
 
 static void power_off(cm1e_axis_t *axis)
@@ -111,7 +124,7 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
     const bool still = axis->activity == ACTIVITY_FREE || axis->activity == ACTIVITY_HOLD;
     if (axis->state == CM1E_AXIS_DISABLED && wanted && acting && still)
         take_over(axis);
-    else if (axis->activity == ACTIVITY_HOLD && !wanted)
+    else if (axis->activity == ACTIVITY_HOLD && !wanted && axis->now_ns >= axis->brake_until_ns)
         cm1e_axis_become_free(axis); /* a ramp has ended, and its last set-point is out */
     else if (axis->activity != ACTIVITY_FREE && axis->activity != ACTIVITY_HOMING && !acting)
         cm1e_axis_become_free(axis); /* the torque went in the middle of a ramp */

@@ -74,6 +74,8 @@ struct cm1e_axis {
     bool software_limits;
     double lower, upper;            /**< u */
     double max_lag;                 /**< u */
+    double lag_seen;                /**< u; amount, when the inputs were fresh last */
+    bool blind;                     /**< they are not, and the set-point goes on */
 
     cm1e_axis_state_t state;
     cm1e_error_t error;
@@ -90,6 +92,7 @@ struct cm1e_axis {
     activity_t activity;
     position_t set, base, target;   /**< base: where the profile began; target: where it ends, exactly */
     double set_velocity, set_acceleration; /**< u/s, u/s2 */
+    double loop_velocity;           /**< counts/s that the position loop adds in CSV */
     cm1e_profile_t profile;         /**< relative to base, in u */
     int64_t profile_cycles;
 
@@ -106,6 +109,7 @@ struct cm1e_axis {
     bool energized;                 /**< the axis has taken over the enabled drive */
     bool shutting_down;
     int64_t free_ns;                /**< since when no torque is asked for */
+    int64_t brake_until_ns;         /**< so long at least the torque stays to brake */
 
     cm1e_command_state_t reset_state;
     cm1e_error_t reset_error;
@@ -165,6 +169,8 @@ void cm1e_axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_e
 bool cm1e_axis_wants_enable(const cm1e_axis_t *axis);
 void cm1e_axis_become_free(cm1e_axis_t *axis);
 void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound);
+/** A ramp of ErrorStop begins anew, from the motor's own position and speed. */
+void cm1e_axis_brake_from_actual(cm1e_axis_t *axis);
 void cm1e_axis_power_step(cm1e_axis_t *axis);
 void cm1e_axis_enable_step(cm1e_axis_t *axis);
 void cm1e_axis_reset_step(cm1e_axis_t *axis);
