@@ -32,7 +32,8 @@ typedef struct cm1e_slave_watch {
 cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position);
 /** Asks the supervision to bring a slave that came back (reset, power cycle, replug) to Operational again, with its
  *  configuration, while the cycle runs. Progress is seen through cm1e_bus_slave_watch(). Until it is seen in
- *  Operational it gets outputs of zeros, whatever is in the image. @rt cycle */
+ *  Operational it gets outputs of zeros, whatever is in the image. Devices that are no CM1-E come back without being
+ *  asked. @rt cycle */
 void cm1e_bus_request_recovery(cm1e_bus_t *bus, uint16_t position);
 
 cm1e_clock_t *cm1e_bus_clock(cm1e_bus_t *bus);

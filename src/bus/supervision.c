@@ -24,6 +24,14 @@ void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns)
     bus->watch_sent = true;
 }
 
+/** No axis asks for a device between the axes, and as long as it is missing, the working counter of all is wrong. It
+ *  gets zeros as outputs, always; a motor is never brought back unasked. */
+static void recover_unasked(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
+{
+    if (slave->axis < 0 && !slave->info.is_cm1e && slave->watch.al_state != CM1E_AL_OP)
+        cm1e_bus_request_recovery(bus, slave->info.position);
+}
+
 void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
 {
     cm1e_datagram_t *d = &bus->watch_datagram;
@@ -42,6 +50,7 @@ void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
         slave->watch = (cm1e_slave_watch_t){.lost = true};
         slave->info.al_state = slave->info.al_status_code = 0;
     }
+    recover_unasked(bus, slave);
 }
 
 cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position)

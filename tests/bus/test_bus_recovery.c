@@ -265,6 +265,42 @@ START_TEST(sdo_to_a_lost_slave_ends_and_works_again_after_recovery)
 }
 END_TEST
 
+/** Two axes with an I/O module between them, which no axis asks back. */
+static cm1e_bus_t *start_bus_with_io_module(void)
+{
+    sim_config(2);
+    config.axes[1].address = 3;
+    cm1e_bus_t *bus = open_bus();
+    cm1e_sim_segment_t *segment = cm1e_sim_segment_create_empty();
+    cm1e_sim_segment_add(segment, cm1e_sim_cm1e_create(&config.axes[0], tested_order(), 0, 0));
+    cm1e_sim_segment_add(segment, cm1e_sim_io_module_create());
+    cm1e_sim_segment_add(segment, cm1e_sim_cm1e_create(&config.axes[1], tested_order(), 0, 0));
+    cm1e_nic_replace_segment(cm1e_bus_nic(bus), segment);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    return bus;
+}
+
+START_TEST(io_module_comes_back_without_being_asked)
+{
+    static const char *const strikes[] = {"power-cycle 2 50", "unplug 2", "lose 300"};
+    cm1e_bus_t *bus = start_bus_with_io_module();
+    cycles(bus, 20);
+    strike(bus, strikes[_i]);
+    for (int n = 0; n < 300; n++)
+        cycle(bus);
+    simulate(bus, "replug 2");
+    const unsigned motor = state_of(bus, 3);
+    for (int n = 0; n < 1000; n++)
+        cycle(bus);
+    ck_assert_uint_eq(cm1e_bus_slave_watch(bus, 2).al_state, CM1E_AL_OP);
+    ck_assert_uint_eq(state_of(bus, 2), CM1E_AL_OP);
+    ck_assert_uint_eq(state_of(bus, 3), motor); /* a motor stays as it is until it is asked */
+    ck_assert_uint_gt(cycles_until_recovered(bus, 3000), 0);
+    check_all_run(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_recovery");
@@ -278,6 +314,7 @@ int main(void)
     tcase_add_test(tests, request_for_a_slave_that_runs_disturbs_nothing);
     tcase_add_test(tests, slave_with_other_switches_is_not_taken_for_the_old_one);
     tcase_add_test(tests, sdo_to_a_lost_slave_ends_and_works_again_after_recovery);
+    tcase_add_loop_test(tests, io_module_comes_back_without_being_asked, 0, 3);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }
