@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""The documentation names nothing that is not there: every error of error.h stands in docs/FUNCTION-BLOCKS.md with its
+ErrorID and its text, every proof in a table of features or of safety is a test, a case in one, or a file, every relative
+link leads to a file and to a heading in it, every path of the repository that is mentioned exists.
+
+test_docs.py SOURCE-DIRECTORY
+"""
+import fnmatch
+import glob
+import os
+import re
+import sys
+
+SOURCE = sys.argv[1]
+PATH = re.compile(r"(?<![\w/.:-])((?:scripts|examples|bench|docs|src|fb|include|tests|tools|cmake)/[\w./*-]*)(<?)")
+TABLES_WITH_PROOF = ("docs/FEATURES.md", "docs/SAFETY.md")
+faults = []
+
+
+def read(path):
+    with open(os.path.join(SOURCE, path), encoding="utf-8") as file:
+        return file.read()
+
+
+def expand(pattern):
+    return sorted(os.path.relpath(path, SOURCE) for path in glob.glob(os.path.join(SOURCE, pattern)))
+
+
+def without_programs(text):
+    """The same lines, but blocks of code empty."""
+    return re.sub(r"^```.*?^```", lambda block: "\n" * block.group().count("\n"), text, flags=re.DOTALL | re.MULTILINE)
+
+
+def rows(text):
+    """(line, cells) of every row of a table."""
+    for number, line in enumerate(without_programs(text).splitlines(), 1):
+        if line.startswith("|") and not re.fullmatch(r"[|\s:-]+", line):
+            yield number, [cell.strip() for cell in line.strip().strip("|").split("|")]
+
+
+# ---- errors ---------------------------------------------------------------------------------------------------------
+
+def check_errors():
+    known = {f"0x{0x1E00 - int(value):04X}" if name != "OK" else "0": (name, text) for name, value, text in
+             re.findall(r'X\((\w+), (-?\d+), "([^"]*)"\)', read("include/cm1e/error.h"))}
+    if len(known) < 2:
+        faults.append("include/cm1e/error.h: its list of errors cannot be read")
+    told = {}
+    for number, cells in rows(read("docs/FUNCTION-BLOCKS.md")):
+        if re.fullmatch(r"`(0|0x1E[0-9A-F]{2})`", cells[0]):
+            error_id = cells[0].strip("`")
+            if error_id in told:
+                faults.append(f"docs/FUNCTION-BLOCKS.md:{number}: {error_id} stands there twice")
+            told[error_id] = (number, cells)
+    for error_id, (name, text) in known.items():
+        if error_id not in told:
+            faults.append(f"docs/FUNCTION-BLOCKS.md lacks {error_id}, CM1E_{name}")
+            continue
+        number, cells = told[error_id]
+        if cells[1:3] != [f"`{name}`", text]:
+            faults.append(f"docs/FUNCTION-BLOCKS.md:{number}: {error_id} is `{name}`, \"{text}\"")
+    for error_id in set(told) - set(known):
+        faults.append(f"docs/FUNCTION-BLOCKS.md:{told[error_id][0]}: there is no error with ErrorID {error_id}")
+
+
+# ---- tests ----------------------------------------------------------------------------------------------------------
+
+def test_names():
+    """As tests/CMakeLists.txt makes them: a test per source, and those it names."""
+    names = {os.path.splitext(os.path.basename(path))[0]
+             for area in ("unit", "bus", "fb", "rt") for path in expand(f"tests/{area}/test_*.c")}
+    return names | set(re.findall(r"(?:cm1e_script_test\(|add_test\(NAME )(\w+)\s", read("tests/CMakeLists.txt")))
+
+
+def case_names():
+    text = "".join(read(path) for path in expand("tests/*/test_*.c"))
+    return set(re.findall(r"^START_TEST\((\w+)\)|^static void (test_\w+)\(void\)", text, re.MULTILINE))
+
+
+def check_proofs():
+    tests = test_names()
+    cases = {name for pair in case_names() for name in pair if name}
+    if not tests or not cases:
+        faults.append("tests: neither tests nor cases in them are found")
+    for path in TABLES_WITH_PROOF:
+        for number, cells in rows(read(path)):
+            for name in re.findall(r"`([^`]+)`", cells[-1]):
+                if not fnmatch.filter(tests | cases, name) and not exists(name):
+                    faults.append(f"{path}:{number}: `{name}` is no test, no case of a test and no file")
+
+
+# ---- links and paths ------------------------------------------------------------------------------------------------
+
+def exists(path):
+    """A path, a pattern, or a program named without its .c."""
+    return bool(expand(path) or expand(path + ".c"))
+
+
+def anchors(path):
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-")
+            for heading in re.findall(r"^#+ (.*)$", without_programs(read(path)), re.MULTILINE)}
+
+
+def check_links(path, text):
+    for target in re.findall(r"\]\(([^)\s]+)\)", text):
+        if re.match(r"\w+:", target):
+            continue
+        file, _, anchor = target.partition("#")
+        file = os.path.normpath(os.path.join(os.path.dirname(path), file)) if file else path
+        if not os.path.exists(os.path.join(SOURCE, file)):
+            faults.append(f"{path}: the link {target} leads nowhere")
+        elif anchor and anchor not in anchors(file):
+            faults.append(f"{path}: the link {target} leads to no heading")
+
+
+def check_paths(path, text):
+    for number, line in enumerate(text.splitlines(), 1):
+        for mentioned, placeholder in PATH.findall(line):
+            mentioned = mentioned.rstrip(".") if not placeholder else os.path.dirname(mentioned)
+            if not exists(mentioned):
+                faults.append(f"{path}:{number}: there is no {mentioned}")
+
+
+def main():
+    documents = expand("*.md") + expand("docs/*.md") + expand("bench/*.md") + expand("examples/*.md")
+    check_errors()
+    check_proofs()
+    for path in documents:
+        text = read(path)
+        check_links(path, text)
+        check_paths(path, text)
+    print("\n".join(faults) or f"{len(documents)} documents: every error, test, link and path in them is there")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
