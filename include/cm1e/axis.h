@@ -57,8 +57,8 @@ typedef struct cm1e_axis_info {
 cm1e_error_t cm1e_axis_read(AXIS_REF_t axis, cm1e_axis_info_t *info);
 /** The configured name; "" for a handle that names no axis. @rt any */
 const char *cm1e_axis_name(AXIS_REF_t axis);
-/** The axis's error as sentences: what happened, with which numbers, what to do. Without an error: why the last homing
- *  could not start, or "". @rt block */
+/** The axis's error as sentences: what happened, with which numbers, what to do. Without an error: why the last command
+ *  was refused or the last homing could not start, and what would be right; "" where nothing was. @rt block */
 void cm1e_axis_error_text(AXIS_REF_t axis, char *text, size_t size);
 
 #ifdef __cplusplus

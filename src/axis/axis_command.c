@@ -144,7 +144,7 @@ static void take_stop(cm1e_axis_t *axis, cm1e_command_id_t id)
     axis->stop_held = true;
 }
 
-cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     *id = 0;
     if ((unsigned)command->kind >= CM1E_COMMAND_KIND_COUNT)
@@ -183,6 +183,14 @@ cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *comma
     }
     axis->state = rule->next;
     return CM1E_OK;
+}
+
+cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+{
+    axis->refusal = start(axis, command, id);
+    if (axis->refusal)
+        axis->refused = *command;
+    return axis->refusal;
 }
 
 cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_command_id_t id)

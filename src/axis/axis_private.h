@@ -101,6 +101,8 @@ struct cm1e_axis {
     cm1e_command_id_t active;       /**< 0: none */
     cm1e_command_kind_t kind;       /**< of the active one */
     bool in_velocity, positive_before;
+    cm1e_error_t refusal;           /**< why the last command was refused, for the text; CM1E_OK: it was not */
+    cm1e_axis_command_t refused;    /**< what it asked for */
     cm1e_command_id_t stop;         /**< whose MC_Stop holds the axis in Stopping */
     bool stop_held;
 

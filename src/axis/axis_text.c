@@ -54,6 +54,55 @@ static void refused_homing_text(const cm1e_axis_t *axis, char *text, size_t size
                  axis->config->name, sdo->index, sdo->subindex, cm1e_strerror(axis->home.refused));
 }
 
+static void refused_velocity_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    snprintf(text, size, "Axis \"%s\": velocity %.6g was asked for; above 0, up to %.6g u/s is right.",
+             axis->config->name, axis->refused.velocity, axis->maximum.velocity);
+}
+
+static void refused_dynamics_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    snprintf(text, size,
+             "Axis \"%s\": acceleration %.6g, deceleration %.6g, jerk %.6g were asked for; right is 0 (the maximum), or "
+             "up to %.6g u/s2, %.6g u/s2 and %.6g u/s3.",
+             axis->config->name, axis->refused.acceleration, axis->refused.deceleration, axis->refused.jerk,
+             axis->maximum.acceleration, axis->maximum.deceleration, axis->maximum.jerk);
+}
+
+static void refused_position_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const double position = cm1e_axis_units(axis, axis->set);
+    if (axis->software_limits)
+        snprintf(text, size,
+                 "Axis \"%s\": a motion from %.6g with target, distance or stopping way %.6g would leave the software "
+                 "limits %.6g ... %.6g u.",
+                 axis->config->name, position, axis->refused.position, axis->lower, axis->upper);
+    else
+        snprintf(text, size, "Axis \"%s\": target or distance %.6g is not a finite number within +-%.6g u.",
+                 axis->config->name, axis->refused.position, cm1e_axis_farthest(axis));
+}
+
+/* A command was refused; the axis itself has no error. */
+static const struct {
+    cm1e_error_t error;
+    void (*text)(const cm1e_axis_t *axis, char *text, size_t size);
+} refusal_texts[] = {
+    {CM1E_ERROR_AXIS_VELOCITY_RANGE, refused_velocity_text},
+    {CM1E_ERROR_AXIS_DYNAMICS_RANGE, refused_dynamics_text},
+    {CM1E_ERROR_AXIS_POSITION_RANGE, refused_position_text},
+};
+
+static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    for (size_t i = 0; i < sizeof refusal_texts / sizeof refusal_texts[0]; i++)
+        if (refusal_texts[i].error == axis->refusal) {
+            refusal_texts[i].text(axis, text, size);
+            return;
+        }
+    snprintf(text, size, "Axis \"%s\", %s: %s.", axis->config->name, cm1e_axis_state_name(axis->state),
+             cm1e_strerror(axis->refusal));
+}
+
 static const struct {
     cm1e_error_t error;
     void (*text)(const cm1e_axis_t *axis, char *text, size_t size);
@@ -73,7 +122,9 @@ void cm1e_axis_error_text(AXIS_REF_t reference, char *text, size_t size)
     if (!axis)
         return;
     if (axis->error == CM1E_OK) {
-        if (axis->home.refused)
+        if (axis->refusal)
+            refused_text(axis, text, size);
+        else if (axis->home.refused)
             refused_homing_text(axis, text, size);
         return;
     }
