@@ -117,9 +117,10 @@ static inline const cm1e_axis_config_t *cm1e_bus_axis_of(const cm1e_bus_t *bus, 
     return slave->axis >= 0 ? &bus->config.axes[slave->axis] : NULL;
 }
 
+/** Ordered with the ring of transfers: see cm1e_sdo_submit(). */
 static inline void cm1e_bus_set_phase(cm1e_bus_t *bus, cm1e_bus_phase_t phase)
 {
-    __atomic_store_n(&bus->phase, (int)phase, __ATOMIC_RELEASE);
+    __atomic_store_n(&bus->phase, (int)phase, __ATOMIC_SEQ_CST);
 }
 
 /** 'slave 2 ("axis2", CM1-E)': how a slave is named in every diagnosis; at the begin of a sentence with a capital. */

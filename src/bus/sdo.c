@@ -1,7 +1,5 @@
 #include "bus/bus_internal.h"
 
-/** The whole transfer of a blocking call; the client's own time is shorter. */
-#define BLOCKING_TIMEOUT_NS INT64_C(5000000000)
 enum { SDO_MAX_BYTES = 1 << 24 };
 
 /** What can be said of a transfer without asking the slave. */
@@ -13,6 +11,18 @@ static cm1e_error_t check(const cm1e_bus_t *bus, const cm1e_sdo_t *sdo)
     if (!slave || (!sdo->data && sdo->size > 0) || sdo->size > SDO_MAX_BYTES)
         return CM1E_ERROR_INVALID_ARGUMENT;
     return slave->facts.coe ? CM1E_OK : CM1E_ERROR_UNSUPPORTED;
+}
+
+/** Stands in a place of the ring whose transfer was ended before the bus took it over. */
+static cm1e_sdo_t ended;
+
+/** Ends a transfer that waits in a place of the ring; false: somebody else has had it. The place stays taken. */
+static bool end_in_ring(cm1e_sdo_t **place, cm1e_sdo_t *sdo, cm1e_error_t error)
+{
+    if (!__atomic_compare_exchange_n(place, &sdo, &ended, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
+        return false;
+    cm1e_sdo_finish(sdo, error, 0);
+    return true;
 }
 
 cm1e_error_t cm1e_sdo_submit(cm1e_bus_t *bus, cm1e_sdo_t *sdo)
@@ -34,21 +44,26 @@ cm1e_error_t cm1e_sdo_submit(cm1e_bus_t *bus, cm1e_sdo_t *sdo)
     sdo->error = CM1E_OK;
     sdo->abort_code = 0;
     __atomic_store_n(&sdo->state, CM1E_SDO_BUSY, __ATOMIC_RELAXED);
-    const uint32_t place = __atomic_fetch_add(&queue->head, 1, __ATOMIC_RELAXED) % CM1E_SDO_WAITING_MAX;
-    __atomic_store_n(&queue->ring[place], sdo, __ATOMIC_RELEASE); /* free: `waiting` is at most as many as there are */
-    return CM1E_OK;
+    cm1e_sdo_t **place =
+        &queue->ring[__atomic_fetch_add(&queue->head, 1, __ATOMIC_RELAXED) % CM1E_SDO_WAITING_MAX];
+    __atomic_store_n(place, sdo, __ATOMIC_SEQ_CST); /* free: `waiting` is at most as many as there are */
+    /* A bus that stopped since the check has emptied its queue perhaps without this one, and comes back no more. Either
+     * it sees the transfer, or we see its phase. */
+    const bool stopped = __atomic_load_n(&bus->phase, __ATOMIC_SEQ_CST) < BUS_SCANNED;
+    return stopped && end_in_ring(place, sdo, CM1E_ERROR_STATE) ? CM1E_ERROR_STATE : CM1E_OK;
 }
 
 /** Takes over what was handed in. Never overflows: `waiting` counts ring and list together. */
 static void take_over(cm1e_sdo_queue_t *queue)
 {
     for (cm1e_sdo_t *sdo; queue->listed < CM1E_SDO_WAITING_MAX; queue->tail++) {
-        cm1e_sdo_t **place = &queue->ring[queue->tail % CM1E_SDO_WAITING_MAX];
-        sdo = __atomic_load_n(place, __ATOMIC_ACQUIRE);
+        sdo = __atomic_exchange_n(&queue->ring[queue->tail % CM1E_SDO_WAITING_MAX], NULL, __ATOMIC_SEQ_CST);
         if (!sdo) /* empty, or its thread is about to fill it */
             return;
-        __atomic_store_n(place, NULL, __ATOMIC_RELAXED);
-        queue->list[queue->listed++] = sdo;
+        if (sdo == &ended)
+            __atomic_fetch_sub(&queue->waiting, 1, __ATOMIC_ACQ_REL);
+        else
+            queue->list[queue->listed++] = sdo;
     }
 }
 
@@ -92,6 +107,12 @@ void cm1e_sdo_queue_cancel(cm1e_bus_t *bus, cm1e_error_t error)
         __atomic_fetch_sub(&queue->waiting, 1, __ATOMIC_ACQ_REL);
     }
     queue->listed = 0;
+    /* Behind a place that its thread is only about to fill there may be filled ones. */
+    for (unsigned i = 0; i < CM1E_SDO_WAITING_MAX; i++) {
+        cm1e_sdo_t *sdo = __atomic_load_n(&queue->ring[i], __ATOMIC_SEQ_CST);
+        if (sdo && sdo != &ended)
+            end_in_ring(&queue->ring[i], sdo, error);
+    }
 }
 
 /* ---- blocking -------------------------------------------------------------------------------------------------- */

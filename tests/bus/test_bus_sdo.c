@@ -1,6 +1,7 @@
 /* SDO transfers with the simulated CM1-E: every object, before and in the cycle, many at once, from another thread. */
 #include <pthread.h>
 
+#include "bus/bus_internal.h"
 #include "bus_support.h"
 
 static cm1e_bus_t *scanned_bus(uint32_t axes)
@@ -312,6 +313,105 @@ START_TEST(another_thread_submits_while_the_cycle_runs)
 }
 END_TEST
 
+enum { SUBMITTERS = 3, STOPS = 10000 };
+
+/** A thread that submits and waits for the end, until it is told to end. */
+typedef struct submitter {
+    cm1e_bus_t *bus;
+    pthread_t thread;
+    int end;
+    unsigned refused; /**< because the bus was stopped; only grows */
+} submitter_t;
+
+static void *submit_until_told(void *context)
+{
+    submitter_t *s = context;
+    uint8_t data[4];
+    cm1e_sdo_t sdo = {.position = 1, .index = 0x1018, .subindex = 2, .data = data, .size = sizeof data};
+    while (!__atomic_load_n(&s->end, __ATOMIC_ACQUIRE)) {
+        if (cm1e_sdo_submit(s->bus, &sdo) == CM1E_ERROR_STATE) {
+            __atomic_fetch_add(&s->refused, 1, __ATOMIC_RELEASE);
+            sched_yield();
+        }
+        while (cm1e_sdo_state(&sdo) == CM1E_SDO_BUSY && !__atomic_load_n(&s->end, __ATOMIC_ACQUIRE))
+            sched_yield();
+    }
+    return NULL;
+}
+
+/** FALSE: a submitter still waits for a transfer that nobody will end. */
+static bool all_are_refused(const submitter_t *submitters)
+{
+    unsigned before[SUBMITTERS];
+    for (int i = 0; i < SUBMITTERS; i++)
+        before[i] = __atomic_load_n(&submitters[i].refused, __ATOMIC_ACQUIRE);
+    const int64_t deadline_ns = cm1e_clock_now(cm1e_clock_monotonic()) + 5000000000;
+    for (int i = 0; i < SUBMITTERS; i++)
+        while (__atomic_load_n(&submitters[i].refused, __ATOMIC_ACQUIRE) == before[i]) {
+            if (cm1e_clock_now(cm1e_clock_monotonic()) > deadline_ns)
+                return false;
+            sched_yield();
+        }
+    return true;
+}
+
+/** What cm1e_bus_stop() does to the queue, many times, without the time that a start takes. */
+START_TEST(transfer_submitted_while_the_bus_stops_ends)
+{
+    sim_config(1);
+    cm1e_bus_t *bus = start_bus();
+    submitter_t submitters[SUBMITTERS];
+    for (int i = 0; i < SUBMITTERS; i++) {
+        submitters[i] = (submitter_t){.bus = bus};
+        ck_assert_int_eq(pthread_create(&submitters[i].thread, NULL, submit_until_told, &submitters[i]), 0);
+    }
+    bool ended = true;
+    for (int n = 0; n < STOPS && ended; n++) {
+        cm1e_bus_set_phase(bus, BUS_SCANNED);
+        while (__atomic_load_n(&bus->queue.waiting, __ATOMIC_ACQUIRE) < 1u + (unsigned)n % SUBMITTERS)
+            ; /* without a yield: they shall be at it when the bus stops */
+        cm1e_bus_set_phase(bus, BUS_OPEN);
+        cm1e_sdo_queue_cancel(bus, CM1E_ERROR_CANCELLED);
+        ended = all_are_refused(submitters);
+    }
+    for (int i = 0; i < SUBMITTERS; i++)
+        __atomic_store_n(&submitters[i].end, 1, __ATOMIC_RELEASE);
+    for (int i = 0; i < SUBMITTERS; i++)
+        pthread_join(submitters[i].thread, NULL);
+    ck_assert_msg(ended, "a transfer is busy for ever");
+    cm1e_sdo_queue_cancel(bus, CM1E_ERROR_CANCELLED);
+    ck_assert_uint_eq(bus->queue.waiting, 0); /* no place is lost */
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** A thread that has taken a place and not filled it yet must not hide what others put behind it. */
+START_TEST(transfer_behind_an_unfilled_place_ends_when_the_bus_stops)
+{
+    sim_config(1);
+    cm1e_bus_t *bus = start_bus();
+    uint8_t data[4];
+    cm1e_sdo_t sdo = {.position = 1, .index = 0x1018, .subindex = 2, .data = data, .size = sizeof data}, slow = sdo;
+    const uint32_t place = bus->queue.head++;
+    bus->queue.waiting++;
+    ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
+    cm1e_bus_stop(bus);
+    ck_assert_int_eq(cm1e_sdo_state(&sdo), CM1E_SDO_ERROR);
+    ck_assert_int_eq(sdo.error, CM1E_ERROR_CANCELLED);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    slow.state = CM1E_SDO_BUSY;
+    bus->queue.ring[place % CM1E_SDO_WAITING_MAX] = &slow;
+    finish_sdo(bus, &slow);
+    ck_assert_int_eq(cm1e_sdo_state(&slow), CM1E_SDO_DONE);
+    sdo = (cm1e_sdo_t){.position = 1, .index = 0x1018, .subindex = 2, .data = data, .size = sizeof data};
+    ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
+    finish_sdo(bus, &sdo);
+    ck_assert_int_eq(cm1e_sdo_state(&sdo), CM1E_SDO_DONE);
+    ck_assert_uint_eq(bus->queue.waiting, 0);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(texts_exist_for_every_code)
 {
     static const uint32_t aborts[] = {
@@ -344,6 +444,8 @@ int main(void)
     tcase_add_test(tests, blocking_transfer_in_operation_keeps_the_cycle_going);
     tcase_add_test(tests, another_thread_submits_while_the_cycle_runs);
     tcase_add_test(tests, texts_exist_for_every_code);
+    tcase_add_test(tests, transfer_submitted_while_the_bus_stops_ends);
+    tcase_add_test(tests, transfer_behind_an_unfilled_place_ends_when_the_bus_stops);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }
