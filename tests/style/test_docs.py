@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """The documentation names nothing that is not there: every error of error.h stands in docs/FUNCTION-BLOCKS.md with its
 ErrorID and its text, every proof in a table of features or of safety is a test, a case in one, or a file, every relative
-link leads to a file and to a heading in it, every path of the repository that is mentioned exists.
+link leads to a file and to a heading in it, every path of the repository that is mentioned exists, the rooms use each
+other as docs/DESIGN.md says.
 
 test_docs.py SOURCE-DIRECTORY
 """
@@ -89,6 +90,25 @@ def check_proofs():
                     faults.append(f"{path}:{number}: `{name}` is no test, no case of a test and no file")
 
 
+# ---- rooms ----------------------------------------------------------------------------------------------------------
+
+def check_rooms():
+    """The table of rooms in docs/DESIGN.md against the includes of their sources."""
+    folders = {path.rstrip("/"): os.path.basename(path.rstrip("/")) for path in ("fb", "tools", *expand("src/*"))}
+    rooms = set(folders.values())
+    told = {}
+    for _, cells in rows(read("docs/DESIGN.md")):
+        folder = cells[0].strip("`").rstrip("/")
+        if folder in folders:
+            told[folder] = set(re.findall(r"\w+", cells[2])) & rooms
+    for folder, room in folders.items():
+        used = {name for path in expand(f"{folder}/*.[ch]")
+                for name in re.findall(r'^#include "(\w+)/', read(path), re.MULTILINE)} & rooms - {room}
+        if told.get(folder) != used:
+            faults.append(f"docs/DESIGN.md: {folder}/ uses {', '.join(sorted(used))}; told is "
+                          f"{', '.join(sorted(told.get(folder, ())))}")
+
+
 # ---- links and paths ------------------------------------------------------------------------------------------------
 
 def exists(path):
@@ -125,6 +145,7 @@ def main():
     documents = expand("*.md") + expand("docs/*.md") + expand("bench/*.md") + expand("examples/*.md")
     check_errors()
     check_proofs()
+    check_rooms()
     for path in documents:
         text = read(path)
         check_links(path, text)
