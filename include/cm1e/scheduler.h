@@ -58,8 +58,8 @@ typedef struct cm1e_scheduler_statistics {
     char advice[256];            /**< what to do where a privilege is missing; "" if none is */
 } cm1e_scheduler_statistics_t;
 
-/** For a bus in Operational; makes one axis per configured axis. `config` NULL: defaults. The bus must outlive it. The
- *  slaves' watchdog is running: add the tasks and run soon. @rt init */
+/** For a bus in Operational (else CM1E_ERROR_STATE); makes one axis per configured axis. `config` NULL: defaults. The
+ *  bus must outlive it. The slaves' watchdog is running: add the tasks and run soon. @rt init */
 cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus, const cm1e_scheduler_config_t *config,
                                    cm1e_diag_t *diag);
 /** NULL is allowed. Not while it runs. @rt init */

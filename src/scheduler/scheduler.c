@@ -114,9 +114,9 @@ static bool stop_asked(const cm1e_scheduler_t *s) { return atomic_load_explicit(
 
 static cm1e_error_t shut_down(cm1e_scheduler_t *s, cm1e_diag_t *diag)
 {
-    const int64_t deadline_ns = cm1e_scheduler_time_ns(s) + s->config.stop_timeout_ns;
+    const int64_t begin_ns = cm1e_scheduler_time_ns(s);
     s->shutting_down = true;
-    while (!s->shut_down && cm1e_scheduler_time_ns(s) <= deadline_ns)
+    while (!s->shut_down && cm1e_scheduler_time_ns(s) - begin_ns <= s->config.stop_timeout_ns)
         cycle(s);
     if (s->shut_down)
         return CM1E_OK;
@@ -151,6 +151,14 @@ static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *d
     return error;
 }
 
+/** Without this the cycles of a stopped bus would pass without a frame and without an error. */
+static cm1e_error_t check_operating(const cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    if (cm1e_bus_is_operating(bus))
+        return CM1E_OK;
+    return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The bus is not in operation: cm1e_bus_start() comes before.");
+}
+
 cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns, cm1e_diag_t *diag)
 {
     if (duration_ns < 0)
@@ -158,6 +166,9 @@ cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns
     if (scheduler->run)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
                              "A scheduler runs once; start the bus again and make a new one.");
+    const cm1e_error_t not_operating = check_operating(scheduler->bus, diag);
+    if (not_operating != CM1E_OK)
+        return not_operating;
     scheduler->run = true;
     cm1e_clock_t *clock_before = cm1e_clock_current();
     cm1e_clock_make_current(scheduler->clock); /* this thread may not be the one that opened the bus */
@@ -230,13 +241,16 @@ cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus
     *scheduler = NULL;
     if (!bus)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A scheduler needs a bus.");
+    cm1e_error_t error = check_operating(bus, diag);
+    if (error != CM1E_OK)
+        return error;
     cm1e_scheduler_t *s = calloc(1, sizeof *s);
     if (!s)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the scheduler.");
     s->bus = bus;
     s->clock = cm1e_bus_clock(bus);
     s->cycle_time_ns = cm1e_bus_configuration(bus)->cycle_time_ns;
-    cm1e_error_t error = take_config(s, config, diag);
+    error = take_config(s, config, diag);
     if (error == CM1E_OK)
         error = make_axes(s, diag);
     if (error == CM1E_OK)

@@ -366,6 +366,38 @@ START_TEST(test_lost_bus_keeps_the_programs_running)
 }
 END_TEST
 
+/** Its cycles would pass without a frame and without an error. */
+START_TEST(test_scheduler_of_a_bus_that_does_not_operate_is_refused)
+{
+    machine_t machine = {.axis_count = (uint32_t)_i};
+    machine_open(&machine);
+    cm1e_diag_t diag = {0};
+    cm1e_scheduler_t *second = NULL;
+    cm1e_bus_stop(machine.bus);
+    ck_assert_int_eq(cm1e_scheduler_run(machine.scheduler, 10 * MS, &diag), CM1E_ERROR_STATE);
+    ck_assert_ptr_nonnull(strstr(diag.text, "cm1e_bus_start"));
+    ck_assert_int_eq(cm1e_scheduler_create(&second, machine.bus, NULL, &diag), CM1E_ERROR_STATE);
+    ck_assert_ptr_null(second);
+    ck_assert_int_eq(cm1e_bus_scan(machine.bus, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_bus_identify(machine.bus, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_bus_configure(machine.bus, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_scheduler_create(&second, machine.bus, NULL, &diag), CM1E_ERROR_STATE);
+    machine_close(&machine);
+}
+END_TEST
+
+START_TEST(test_longest_stop_timeout_is_no_short_one)
+{
+    machine_t machine = {.axis_count = 1, .config = {.stop_timeout_ns = INT64_MAX}};
+    machine_open(&machine);
+    mover_t mover = make_mover(&machine, 0);
+    machine_add(&machine, "", 0, 0, moving_program, &mover);
+    machine_run(&machine, 250 * MS);
+    expect_all_at_rest(&machine);
+    machine_close(&machine);
+}
+END_TEST
+
 START_TEST(test_fifty_starts_and_stops)
 {
     for (int i = 0; i < 50; i++) {
@@ -439,6 +471,8 @@ int main(void)
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tcase_add_test(all, tests[i]);
     tcase_add_loop_test(all, test_stop_with_a_broken_segment_ends, 0, 7);
+    tcase_add_loop_test(all, test_scheduler_of_a_bus_that_does_not_operate_is_refused, 0, 2);
+    tcase_add_test(all, test_longest_stop_timeout_is_no_short_one);
     suite_add_tcase(suite, all);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);
