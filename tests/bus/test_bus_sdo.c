@@ -313,7 +313,7 @@ START_TEST(another_thread_submits_while_the_cycle_runs)
 }
 END_TEST
 
-enum { SUBMITTERS = 3, STOPS = 10000 };
+enum { SUBMITTERS = 3, STOPS = 2000 };
 
 /** A thread that submits and waits for the end, until it is told to end. */
 typedef struct submitter {
