@@ -34,6 +34,7 @@ static void succeed(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t al_stat
 {
     cm1e_supervision_note(slave, al_state, al_status_code);
     slave->recovery.step = RECOVERY_IDLE;
+    slave->recovery.failed_at = RECOVERY_IDLE;
     slave->recovery.successes++;
 }
 
@@ -115,9 +116,11 @@ static bool next_look(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_n
 
 static void result_look(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
 {
-    /* In Safe-Operational or above it kept its configuration: only the watchdog or a request took it out of OP. */
+    /* In Safe-Operational or above it kept its configuration: only the watchdog or a request took it out of OP. If that
+     * was not enough the last time, it wants to be led up from Init (AL status codes 0x0021, 0x0022 ...). */
     const uint16_t status = cm1e_get_u16(d->data), state = status & AL_STATE_MASK;
-    const bool configured = state == CM1E_AL_SAFE_OP || state == CM1E_AL_OP;
+    const bool above = state == CM1E_AL_SAFE_OP || state == CM1E_AL_OP;
+    const bool configured = above && slave->recovery.failed_at != RECOVERY_OP;
     if (status == CM1E_AL_OP)
         succeed(slave, status, 0); /* it was never away */
     else

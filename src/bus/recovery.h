@@ -40,7 +40,7 @@ typedef struct cm1e_recovery {
     bool entered;            /**< the sub-machine of this step has been started */
     int64_t deadline_ns;     /**< of the step; in RECOVERY_PAUSE: its end */
     uint32_t attempts, successes; /**< only grow */
-    cm1e_recovery_step_t failed_at;
+    cm1e_recovery_step_t failed_at; /**< of the last attempt; RECOVERY_IDLE: it did not fail */
     cm1e_sdo_t sdo;
     uint8_t data[4];
 } cm1e_recovery_t;

@@ -265,6 +265,44 @@ START_TEST(sdo_to_a_lost_slave_ends_and_works_again_after_recovery)
 }
 END_TEST
 
+/** A slave that after an error goes to no higher state before it has been in Init, as its AL status code tells. */
+typedef struct stubborn {
+    uint16_t station;
+    bool was_in_init;
+} stubborn_t;
+
+static cm1e_tap_verdict_t refuse_before_init(void *context, cm1e_tap_frame_t *frame)
+{
+    stubborn_t *slave = context;
+    const uint16_t offset = cm1e_get_u16(frame->bytes + 20);
+    if (frame->bytes[16] < 4 || frame->bytes[16] > 5 || cm1e_get_u16(frame->bytes + 18) != slave->station)
+        return CM1E_TAP_PASS;
+    if (frame->direction == CM1E_TAP_SENT && frame->bytes[16] == 5 && offset == 0x0120) {
+        slave->was_in_init = slave->was_in_init || (frame->bytes[26] & 0x0F) == CM1E_AL_INIT;
+        if (!slave->was_in_init && frame->bytes[26] == CM1E_AL_OP)
+            frame->bytes[26] = 0x1F; /* a state that the slave refuses */
+    }
+    return CM1E_TAP_PASS;
+}
+
+START_TEST(slave_that_wants_to_be_led_up_from_init_comes_back)
+{
+    stubborn_t stubborn = {.station = 0x1002};
+    sim_config(2);
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, 20);
+    cm1e_sim_slave_fall_back(cm1e_sim_segment_slave(segment_of(bus), 2), CM1E_AL_SAFE_OP, 0x0021);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), refuse_before_init, &stubborn);
+    for (int n = 0; n < 10; n++)
+        cycle(bus);
+    ck_assert_uint_gt(cycles_until_recovered(bus, 3000), 0);
+    ck_assert(stubborn.was_in_init);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+    check_all_run(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /** Two axes with an I/O module between them, which no axis asks back. */
 static cm1e_bus_t *start_bus_with_io_module(void)
 {
@@ -314,6 +352,7 @@ int main(void)
     tcase_add_test(tests, request_for_a_slave_that_runs_disturbs_nothing);
     tcase_add_test(tests, slave_with_other_switches_is_not_taken_for_the_old_one);
     tcase_add_test(tests, sdo_to_a_lost_slave_ends_and_works_again_after_recovery);
+    tcase_add_test(tests, slave_that_wants_to_be_led_up_from_init_comes_back);
     tcase_add_loop_test(tests, io_module_comes_back_without_being_asked, 0, 3);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
