@@ -69,6 +69,7 @@ cm1e_error_t cm1e_bus_identify(cm1e_bus_t *bus, cm1e_diag_t *diag);
 uint16_t cm1e_bus_axis_position(const cm1e_bus_t *bus, uint32_t axis);
 
 /** Writes the chosen mapping, reads it back, resolves every object, maps the process image, goes to Safe-Operational.
+ *  CM1E_ERROR_CONFIG: the frames of so many slaves take too long for the cycle time. After an error scan again.
  *  @rt init */
 cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** To Operational, exchanging the process image at the cycle time meanwhile. @rt init */

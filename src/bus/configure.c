@@ -7,6 +7,10 @@
 /** Some 40 transfers of at most CM1E_START_SDO_TIMEOUT_NS each, all slaves at once; in practice some milliseconds. */
 #define MAPPING_TIMEOUT_NS INT64_C(60000000000)
 
+/** The wire at 100 Mbit/s; a frame's preamble, headers, FCS and gap; the way through a slave, there and back; and what
+ *  CM1E_DATAGRAMS_PER_CYCLE mailboxes of a CM1-E and the supervision take beside the process data. */
+enum { NS_PER_BYTE = 80, FRAME_OVERHEAD_BYTES = 52, NS_PER_SLAVE = 1000, BESIDE_PROCESS_DATA_NS = 65000 };
+
 static cm1e_mapping_t mapping_of(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
 {
     const cm1e_axis_config_t *axis = cm1e_bus_axis_of(bus, slave);
@@ -106,6 +110,21 @@ static cm1e_error_t map_image(cm1e_bus_t *bus, cm1e_diag_t *diag)
     return CM1E_OK;
 }
 
+/** A bus whose frames come back after the next cycle has begun would start, and then lose most of them. */
+static cm1e_error_t check_wire_time(const cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    const size_t frames = cm1e_soem_process_frames(bus->soem);
+    const size_t bytes = bus->output_bytes + bus->input_bytes + frames * FRAME_OVERHEAD_BYTES;
+    const int64_t wire_ns = (int64_t)bytes * NS_PER_BYTE + (int64_t)bus->slave_count * NS_PER_SLAVE;
+    if (wire_ns + BESIDE_PROCESS_DATA_NS <= bus->config.cycle_time_ns)
+        return CM1E_OK;
+    return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
+                         "The process data of %u slaves (%zu frames) takes about %lld us on the wire, mailboxes up to %d "
+                         "us more: too long for a cycle time of %lld us.", bus->slave_count, frames,
+                         (long long)(wire_ns / 1000), BESIDE_PROCESS_DATA_NS / 1000,
+                         (long long)(bus->config.cycle_time_ns / 1000));
+}
+
 static void set_watchdogs(cm1e_bus_t *bus)
 {
     uint8_t divider[2], time[2];
@@ -133,6 +152,8 @@ cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag)
         error = set_process_data(bus, diag);
     if (error == CM1E_OK)
         error = map_image(bus, diag);
+    if (error == CM1E_OK)
+        error = check_wire_time(bus, diag);
     if (error != CM1E_OK)
         return error;
     set_watchdogs(bus);

@@ -149,6 +149,8 @@ void cm1e_soem_placement(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_
         memcpy(placement->fmmus[i], &slave->FMMU[i], FMMU_BYTES);
 }
 
+unsigned cm1e_soem_process_frames(const cm1e_soem_t *soem) { return soem->groups[0].nsegments; }
+
 int cm1e_soem_expected_working_counter(const cm1e_soem_t *soem)
 {
     /* LRW counts 2 for a slave that takes outputs and 1 for one that gives inputs; SOEM emulates that for LRD/LWR. */

@@ -58,6 +58,8 @@ size_t cm1e_soem_image_bytes(const cm1e_soem_t *soem);
 /** Maps into `image`, programs sync managers and FMMUs. False: it does not fit into CM1E_PROCESS_FRAMES_MAX frames. */
 bool cm1e_soem_map(cm1e_soem_t *soem, uint8_t *image, size_t room, size_t *output_bytes, size_t *input_bytes);
 void cm1e_soem_placement(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_placement_t *placement);
+/** Frames that one exchange takes. */
+unsigned cm1e_soem_process_frames(const cm1e_soem_t *soem);
 /** Working counter of a good exchange. */
 int cm1e_soem_expected_working_counter(const cm1e_soem_t *soem);
 

@@ -188,6 +188,43 @@ START_TEST(cycle_time_must_suit_the_firmware)
 }
 END_TEST
 
+/** A cycle time too short for the wire is refused with the reason; one that is accepted holds, mailboxes included. */
+START_TEST(cycle_time_must_leave_the_frames_their_time)
+{
+    static const struct {
+        int64_t cycle_us;
+        uint32_t fits, too_many;
+    } limits[] = {{200, 32, 48}, {250, 40, 64}, {500, 100, 128}, {1000, CM1E_MAX_AXES, 0}};
+    const uint32_t axes = _i % 2 ? limits[_i / 2].too_many : limits[_i / 2].fits;
+    if (axes == 0)
+        return;
+    sim_config(axes);
+    for (uint32_t i = 0; i < axes; i++)
+        strcpy(config.axes[i].firmware, "1.3.5");
+    config.cycle_time_ns = limits[_i / 2].cycle_us * 1000;
+    cm1e_bus_t *bus = open_bus();
+    const cm1e_error_t error = cm1e_bus_start(bus, &diag);
+    if (_i % 2) {
+        ck_assert_int_eq(error, CM1E_ERROR_CONFIG);
+        ck_assert_msg(strstr(diag.text, "wire") && strstr(diag.text, "cycle time"), "%s", diag.text);
+    } else {
+        ck_assert_msg(error == CM1E_OK, "%s", diag.text);
+        static cm1e_sdo_t sdos[CM1E_MAX_AXES];
+        static uint8_t data[CM1E_MAX_AXES][64];
+        for (int n = 0; n < 1000; n++) {
+            for (uint32_t i = 0; i < axes; i++) { /* all mailboxes at work all the time */
+                if (cm1e_sdo_state(&sdos[i]) == CM1E_SDO_BUSY)
+                    continue;
+                sdos[i] = (cm1e_sdo_t){.position = (uint16_t)(i + 1), .index = 0x1008, .data = data[i], .size = 64};
+                cm1e_sdo_submit(bus, &sdos[i]);
+            }
+            ck_assert_int_eq(cycle(bus), CM1E_OK);
+        }
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(no_slaves_is_an_error_that_names_the_interface)
 {
     sim_config(1);
@@ -260,6 +297,7 @@ int main(void)
     tcase_add_test(tests, stop_brings_all_slaves_to_init_and_start_works_again);
     tcase_add_test(tests, steps_out_of_order_are_refused);
     tcase_add_test(tests, cycle_time_must_suit_the_firmware);
+    tcase_add_loop_test(tests, cycle_time_must_leave_the_frames_their_time, 0, 8);
     tcase_add_test(tests, no_slaves_is_an_error_that_names_the_interface);
     tcase_add_test(tests, io_module_between_the_axes_is_mapped_by_its_sii);
     tcase_add_loop_test(tests, scan_takes_no_notice_of_addresses_of_an_earlier_one, 0, 6);
