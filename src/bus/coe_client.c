@@ -170,8 +170,9 @@ static void start_transfer(cm1e_coe_client_t *client)
 
 void cm1e_coe_begin(cm1e_coe_client_t *client, cm1e_sdo_t *sdo, int64_t now_ns)
 {
+    const int64_t timeout_ns = sdo->timeout_ns > 0 ? sdo->timeout_ns : DEFAULT_TIMEOUT_NS;
     client->sdo = sdo;
-    client->deadline_ns = now_ns + (sdo->timeout_ns > 0 ? sdo->timeout_ns : DEFAULT_TIMEOUT_NS);
+    client->deadline_ns = timeout_ns < INT64_MAX - now_ns ? now_ns + timeout_ns : INT64_MAX;
     client->done = client->total = 0;
     client->toggle = false;
     client->discarded = 0;
@@ -211,7 +212,8 @@ static void take_expedited(cm1e_coe_client_t *client, const uint8_t *body)
         finish(client, CM1E_ERROR_INVALID_ARGUMENT, 0);
         return;
     }
-    memcpy(sdo->data, body + 6, bytes);
+    if (bytes)
+        memcpy(sdo->data, body + 6, bytes);
     sdo->size = bytes;
     finish(client, CM1E_OK, 0);
 }

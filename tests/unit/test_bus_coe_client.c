@@ -278,6 +278,40 @@ static void test_silent_slave_ends_at_the_timeout(void)
     TEST_ASSERT_EQUAL_INT64(1000000000, now_ns - again_ns); /* the default */
 }
 
+static void test_longest_timeout_is_no_short_one(void)
+{
+    now_ns += 1000000000;
+    cm1e_sdo_t sdo = reading(4);
+    sdo.timeout_ns = INT64_MAX;
+    run(&sdo);
+    TEST_ASSERT_EQUAL_INT(CM1E_SDO_DONE, cm1e_sdo_state(&sdo));
+}
+
+static bool keep_the_size_secret(slave_t *s, uint8_t *answer)
+{
+    (void)s;
+    answer[8] &= 0xFE;
+    return true;
+}
+
+/** The caller's room decides then; without any there is no buffer either. */
+static void test_value_of_unknown_size_fills_the_room_there_is(void)
+{
+    slave.lie = keep_the_size_secret;
+    slave.lie_from = 1;
+    for (size_t room = 0; room <= 5; room++) {
+        cm1e_sdo_t sdo = reading(room);
+        if (room == 0)
+            sdo.data = NULL;
+        memset(buffer, 0xCC, sizeof buffer);
+        run(&sdo);
+        TEST_ASSERT_EQUAL_INT(CM1E_SDO_DONE, cm1e_sdo_state(&sdo));
+        TEST_ASSERT_EQUAL_INT(room < 4 ? room : 4, sdo.size);
+        TEST_ASSERT_EQUAL_INT(0, memcmp(slave.store, buffer, sdo.size));
+        TEST_ASSERT_EQUAL_HEX8(0xCC, buffer[sdo.size]);
+    }
+}
+
 static void test_answer_after_the_timeout_is_not_taken_for_the_next_one(void)
 {
     slave.lie = keep_back;
@@ -526,6 +560,8 @@ int main(void)
     RUN_TEST(test_any_two_lost_frames_neither_lose_nor_double_a_transfer);
     RUN_TEST(test_three_in_ten_frames_lost_is_slow_but_right);
     RUN_TEST(test_silent_slave_ends_at_the_timeout);
+    RUN_TEST(test_longest_timeout_is_no_short_one);
+    RUN_TEST(test_value_of_unknown_size_fills_the_room_there_is);
     RUN_TEST(test_answer_after_the_timeout_is_not_taken_for_the_next_one);
     RUN_TEST(test_reset_ends_the_transfer_and_starts_the_counters_anew);
     RUN_TEST(test_slave_that_does_not_count_its_answers_is_understood);
