@@ -126,6 +126,12 @@ static void latch_faults(cm1e_drive_t *drive)
         cm1e_drive_fail(drive, error);
 }
 
+/* No mode: under way over SDO, and nobody knows whether the old one still acts. */
+static bool may_hold_position(int8_t mode)
+{
+    return mode == CM1E_MODE_CSP || mode == CM1E_MODE_PP || mode == CM1E_MODE_NONE;
+}
+
 void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
 {
     cm1e_drive_feedback_t *f = &drive->feedback;
@@ -135,7 +141,7 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
     if (bus_ok)
         cm1e_drive_decode(drive);
     f->online = bus_ok && drive_operational(drive);
-    if (f->state != OPERATION_ENABLED || (f->mode != CM1E_MODE_CSP && f->mode != CM1E_MODE_PP))
+    if (f->state != OPERATION_ENABLED || !may_hold_position(f->mode))
         drive->target_holds = false;
     if (drive->reset_phase != RESET_IDLE) {
         cm1e_drive_reset_step(drive);

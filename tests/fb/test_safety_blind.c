@@ -1,8 +1,8 @@
 /**
- * A drive that does not hear its master for a while, or a master that does not hear its drives, in the middle of a move:
- * frames lost on the way there or back, or both, a cable that comes off one slave or all, for 1 ... 160 cycles, with every
- * mapping that moves. The motor may stop hard, run out, or be stopped by its watchdog; it never gets faster than it was,
- * never jumps when the frames come back, and nothing moves any more after ErrorStop is over.
+ * A drive that does not hear its master for a while, or a master that does not hear its drives, in the middle of a
+ * move: frames lost on the way there or back, or both, a cable that comes off one slave or all, for 1 ... 160 cycles.
+ * The motor may stop hard, run out, or be stopped by its watchdog; it never gets faster than it was, never jumps when
+ * the frames come back, and nothing moves any more after ErrorStop is over.
  */
 #include "safety_bench.h"
 
@@ -93,8 +93,8 @@ static void judge(uint32_t n)
     /* The ramp, twice its bare length for the jerk, or the way to the watchdog. */
     const double ramp = speed_at_break[n] * speed_at_break[n] / (2 * 5e6) * 2 + speed_at_break[n] * 0.12;
     MUST(&bench, !probe.torque_on, "axis %u: torque is still on", n);
-    MUST(&bench, fabs(probe.position_counts - position_at_break[n]) < ramp + 60000, "axis %u: ran on for %.0f counts", n,
-         probe.position_counts - position_at_break[n]);
+    MUST(&bench, fabs(probe.position_counts - position_at_break[n]) < ramp + 60000, "axis %u: ran on for %.0f counts",
+         n, probe.position_counts - position_at_break[n]);
     MUST(&bench, fabs(probe.position_counts - rest_from[n]) < 1, "axis %u: moves by %.1f counts after ErrorStop", n,
          probe.position_counts - rest_from[n]);
     cm1e_axis_error_text(bench.axis[n], text, sizeof text);

@@ -1,8 +1,9 @@
 /**
- * Enabling never moves a motor: every mapping, order of objects and firmware; first enabling, re-enabling, after a fault
- * and its reset, after motor power was away; with a shaft that somebody turns, at the ends of the 32-bit position, with
- * frames lost or late at every cycle of the way to Operation enabled, and with Enable toggled at random. What goes over
- * the wire is judged by the witness of safety_bench.h, what the shaft does by the simulator's probe.
+ * Enabling never moves a motor: every mapping, order of objects and firmware; first enabling, re-enabling, after a
+ * fault and its reset, after motor power was away; with a shaft that somebody turns, at the ends of the 32-bit position,
+ * with frames lost or late at every cycle of the way to Operation enabled, and with Enable toggled at random; nor does a
+ * change of mode let go of a load. What goes over the wire is judged by the witness of safety_bench.h, what the shaft
+ * does by the simulator's probe.
  */
 #include "safety_bench.h"
 
@@ -213,8 +214,8 @@ static void turn(double torque_nm, int cycle, int blind_cycles)
     bench_start(&bench);
     run_to_the_end();
     const double most = (fastest_caught + blind_cycles * free_gain) * 0.001 * blind_cycles + 20;
-    MUST(&bench, pulled_back <= most, "load %g Nm: pulled back by %.0f counts, allowed are %.0f", torque_nm, pulled_back,
-         most);
+    MUST(&bench, pulled_back <= most, "load %g Nm: pulled back by %.0f counts, allowed are %.0f", torque_nm,
+         pulled_back, most);
     MUST(&bench, driven <= blind_cycles * free_gain + 200, "load %g Nm: driven, %.0f counts/s faster than it turned",
          torque_nm, driven);
 }
@@ -268,10 +269,11 @@ static void sweep_trouble(int variant, double torque_nm, int cycles)
         trouble_cycles = cycles;
         bench_open(&bench);
         const size_t used = strlen(bench.scene);
-        snprintf(bench.scene + used, sizeof bench.scene - used, ", trouble %d for %d cycles at %d", (int)trouble, cycles,
-                 cycle);
+        snprintf(bench.scene + used, sizeof bench.scene - used, ", trouble %d for %d cycles at %d", (int)trouble,
+                 cycles, cycle);
         turn(torque_nm, ENABLE_AT, 6 + cycles);
-        MUST(&bench, torque_cycles > 100 || strlen(text_at_end) > 20, "load %g: neither enabled nor an error", torque_nm);
+        MUST(&bench, torque_cycles > 100 || strlen(text_at_end) > 20, "load %g: neither enabled nor an error",
+             torque_nm);
         MUST(&bench, cycles > 2 || torque_cycles > 100, "load %g: not enabled: %s", torque_nm, text_at_end);
     }
 }
@@ -284,6 +286,49 @@ START_TEST(test_trouble_with_frames_while_enabling_moves_nothing)
     for (size_t v = 0; v < sizeof variants / sizeof variants[0]; v += SLOWNESS > 1 ? 3 : 1)
         for (int cycles = 1; cycles <= 4; cycles += cycles == 2 ? 2 : 1) /* 1, 2, 4: above the limit of 3 */
             sweep_trouble(variants[v], torque_nm, cycles);
+}
+END_TEST
+
+/* ---- a load that hangs on the shaft while the mode changes ----------------------------------------------------------- */
+
+static MC_Home_t home;
+static double held_at, sunk;
+
+/** From holding in the axis's own mode to homing mode, over the process data or over SDO, which takes its time. */
+static void hanging_program(bench_t *b)
+{
+    power.Enable = TRUE;
+    MC_Power(&power);
+    if (b->cycle == 200)
+        bench_console(b, "load 1 %g", load_nm);
+    home.Execute = b->cycle >= 500;
+    MC_Home(&home);
+    const cm1e_sim_probe_t probe = bench_probe(b, 0);
+    if (b->cycle == 499)
+        held_at = probe.position_counts;
+    MUST(b, b->cycle < 500 || probe.torque_on || home.Error, "no torque: %s", axis_text());
+    if (b->cycle >= 500)
+        sunk = fmax(sunk, fabs(probe.position_counts - held_at));
+    if (probe.mode == CM1E_MODE_HM || b->cycle == 2000)
+        cm1e_scheduler_stop(b->scheduler);
+}
+
+START_TEST(test_a_load_is_held_while_the_mode_changes)
+{
+    static const double torques_nm[] = {0.02, -0.06, 0.1};
+    for (size_t t = 0; t < sizeof torques_nm / sizeof torques_nm[0]; t++) {
+        prepare_variant(_i);
+        bench.config.axes[0].homing = (cm1e_homing_config_t){.method = -2, .velocity = 1, .acceleration = 1000};
+        home = (MC_Home_t){.Axis = &bench.axis[0]};
+        load_nm = torques_nm[t];
+        sunk = 0;
+        bench.program = hanging_program;
+        bench_open(&bench);
+        bench_start(&bench);
+        run_to_the_end();
+        MUST(&bench, bench.cycle > 500 && bench.cycle < 1500, "homing mode was not reached: %s", text_at_end);
+        MUST(&bench, sunk < (bench.witness[0].out_position < 0 ? 200 : 20), "load %g Nm: the axis sank by %.0f counts", load_nm, sunk);
+    }
 }
 END_TEST
 
@@ -348,6 +393,7 @@ int main(void)
     tcase_add_loop_test(cases, test_the_end_of_32_bits_is_a_position_like_any_other, 0, 5 * 2 * MAPPINGS);
     tcase_add_loop_test(cases, test_a_turning_shaft_is_caught_where_it_is, 0, VARIANTS);
     tcase_add_loop_test(cases, test_trouble_with_frames_while_enabling_moves_nothing, 0, TROUBLES * TROUBLE_LOADS);
+    tcase_add_loop_test(cases, test_a_load_is_held_while_the_mode_changes, 0, VARIANTS);
     tcase_add_loop_test(cases, test_enable_at_random_moves_nothing, 0, seed_count(24));
     suite_add_tcase(suite, cases);
     SRunner *runner = srunner_create(suite);

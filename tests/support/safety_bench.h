@@ -31,7 +31,7 @@ enum { BENCH_AXES = 3, LRW = 12, LRW_DATA = 26, SLAVE_WORKING_COUNTER = 3 };
 
 typedef struct bench bench_t;
 
-/* ---- chance --------------------------------------------------------------------------------------------------------- */
+/* ---- chance ------------------------------------------------------------------------------------------------------ */
 
 static uint64_t chance_state;
 
@@ -49,7 +49,11 @@ static inline uint64_t chance(void)
     return chance_state;
 }
 
-static inline double uniform(double low, double high) { return low + (high - low) * (double)(chance() >> 11) * 0x1p-53; }
+static inline double uniform(double low, double high)
+{
+    return low + (high - low) * (double)(chance() >> 11) * 0x1p-53;
+}
+
 static inline bool one_in(unsigned n) { return (chance() >> 11) % n == 0; }
 static inline int pick(int count) { return (int)((chance() >> 11) % (unsigned)count); }
 
@@ -66,7 +70,7 @@ static inline unsigned seed_of(int run)
     return word ? (unsigned)strtoul(word, NULL, 10) : (unsigned)run + 1;
 }
 
-/* ---- the witness ---------------------------------------------------------------------------------------------------- */
+/* ---- the witness ------------------------------------------------------------------------------------------------- */
 
 /** One axis, as the frames show it. Offsets into the data of the LRW datagram; -1: not mapped. */
 typedef struct witness {
@@ -84,6 +88,9 @@ typedef struct witness {
     int32_t target;
     double step;
     double velocity;                   /**< counts/s that 0x60FF asks for */
+    double direction;                  /**< the last step that was one */
+    bool turning;                      /**< it has changed not long ago */
+    int eased_cycles;
     unsigned enablings, set_points, new_beginnings;
 } witness_t;
 
@@ -174,7 +181,8 @@ static void witness_layout(bench_t *bench)
         *w = (witness_t){0};
         witness_limits(bench, n, w);
         for (int transmit = 0; transmit < 2; transmit++)
-            cm1e_device_pdo(&pdo[n][transmit], axis->mapping, transmit, bench->config.sim_pdo_order, firmware->firmware);
+            cm1e_device_pdo(&pdo[n][transmit], axis->mapping, transmit, bench->config.sim_pdo_order,
+                            firmware->firmware);
         locate(&pdo[n][0], at, OBJ_6040_CONTROLWORD, &w->out_controlword);
         locate(&pdo[n][0], at, OBJ_607A_TARGET_POSITION, &w->out_position);
         locate(&pdo[n][0], at, OBJ_60FF_TARGET_VELOCITY, &w->out_velocity);
@@ -247,11 +255,14 @@ static bool began_anew(const bench_t *bench, uint32_t n, const witness_t *w)
 static void judge_step(const bench_t *bench, uint32_t n, witness_t *w, double step)
 {
     const double change = fabs(step) - fabs(w->step);
-    const bool turned = (step > 0 && w->step < 0) || (step < 0 && w->step > 0);
     const double most = fmax(w->max_gain, w->max_loss) + 2.0;
     const bool slow = fabs(step) <= w->max_step + 1.0;
-    const bool smooth = fabs(step - w->step) <= most && (turned || change <= w->max_gain + 2.0) &&
-                        (turned || -change <= w->max_loss + 2.0);
+    const bool within = change <= w->max_gain + 2.0 && -change <= w->max_loss + 2.0;
+    /* Braking that turns the motion round may be harder than speeding up may be, and takes its time to ease. */
+    w->eased_cycles = step * w->direction < 0 ? 0 : within && change <= w->max_gain + 1.0 ? w->eased_cycles + 1 : 0;
+    w->turning = step * w->direction < 0 || (w->turning && w->eased_cycles < 20);
+    w->direction = step != 0 ? step : w->direction;
+    const bool smooth = fabs(step - w->step) <= most && (w->turning || within);
     w->set_points++;
     if (!(slow && smooth) && began_anew(bench, n, w)) {
         w->step = (double)(int32_t)((uint32_t)w->target - (uint32_t)w->position);
@@ -281,6 +292,8 @@ static void witness_sent_axis(bench_t *bench, uint32_t n, const uint8_t *data)
     if (!enabling_before)
         w->enablings++;
     MUST(bench, w->shown, "axis %u: enabled although the drive has not shown its position yet", n);
+    if (w->in_mode < 0 && w->mode_shown == CM1E_MODE_HM && w->target == target_before && w->velocity == 0)
+        return; /* the master may not know yet, over SDO, that the drive takes no targets now */
     if (!w->holding || !holding_before) { /* the drive may act on this frame, or acts on it as the first one */
         MUST(bench, at_shown_position(bench, w),
              "axis %u: controlword 0x%04X, statusword 0x%04X, mode %d: target %d, but the drive is at %d", n,
@@ -313,7 +326,7 @@ static cm1e_tap_verdict_t bench_tap(void *context, cm1e_tap_frame_t *frame)
     return verdict;
 }
 
-/* ---- the bench ------------------------------------------------------------------------------------------------------ */
+/* ---- the bench --------------------------------------------------------------------------------------------------- */
 
 /** Axes of 1000 counts a unit with the library's default limits; the caller changes what it wants in bench->config. */
 static void bench_describe(bench_t *bench, uint32_t axes)
