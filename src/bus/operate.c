@@ -1,27 +1,29 @@
 #include "bus/bus_internal.h"
 #include "core/bytes.h"
 
-/** Good exchanges in a row before Operational is requested: the slaves must have valid outputs by then. */
-enum { GOOD_CYCLES_FIRST = 3 };
-#define FIRST_EXCHANGE_NS INT64_C(2000000000)
+/** Exchanges in a row before Operational is requested, when the slaves must have valid outputs; and good ones after. */
+enum { EXCHANGES = 3 };
+#define EXCHANGE_NS INT64_C(2000000000)
 /** For each of the two steps down of cm1e_bus_stop(). */
 #define STOP_STEP_NS INT64_C(500000000)
 
-/** Exchanges until the process data is good; a bus that cannot even do that does not go to Operational. */
-static cm1e_error_t exchange_until_good(cm1e_bus_t *bus, cm1e_diag_t *diag)
+/** Exchanges until the process data comes back. Whether all slaves count is asked in Operational only: a slave may keep
+ *  its outputs closed until then (ETG.1000.4: sync manager deactivated by the device), and they do not count. */
+static cm1e_error_t exchange(cm1e_bus_t *bus, bool operational, cm1e_diag_t *diag)
 {
-    const int64_t deadline_ns = cm1e_clock_now(bus->clock) + FIRST_EXCHANGE_NS;
+    const int64_t deadline_ns = cm1e_clock_now(bus->clock) + EXCHANGE_NS;
     unsigned good = 0;
-    while (good < GOOD_CYCLES_FIRST) {
+    while (good < EXCHANGES) {
         const uint64_t before = bus->counters.cycles;
         cm1e_bus_pump(bus);
+        const cm1e_error_t error = bus->last_error;
         if (bus->counters.cycles != before)
-            good = bus->last_error == CM1E_OK ? good + 1 : 0;
+            good = error == CM1E_OK || (!operational && error == CM1E_ERROR_BUS_WORKING_COUNTER) ? good + 1 : 0;
         if (cm1e_clock_now(bus->clock) < deadline_ns)
             continue;
-        return cm1e_diag_set(diag, bus->last_error == CM1E_OK ? CM1E_ERROR_TIMEOUT : bus->last_error, 0,
+        return cm1e_diag_set(diag, error == CM1E_OK ? CM1E_ERROR_TIMEOUT : error, 0,
                              "The process data does not come back as it must after configuration (working counter %d "
-                             "expected): %s.", bus->expected_working_counter, cm1e_strerror(bus->last_error));
+                             "expected): %s.", bus->expected_working_counter, cm1e_strerror(error));
     }
     return CM1E_OK;
 }
@@ -33,9 +35,11 @@ cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag)
     bus->next_cycle_ns = cm1e_bus_enter(bus);
     bus->exchanging = true;
     bus->bad_cycles = 0;
-    cm1e_error_t error = exchange_until_good(bus, diag);
+    cm1e_error_t error = exchange(bus, false, diag);
     if (error == CM1E_OK)
         error = cm1e_bus_all_to_state(bus, CM1E_AL_OP, CM1E_STATE_TIMEOUT_NS, diag);
+    if (error == CM1E_OK)
+        error = exchange(bus, true, diag);
     if (error == CM1E_OK)
         cm1e_bus_set_phase(bus, BUS_OPERATING);
     else

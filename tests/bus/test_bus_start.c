@@ -225,6 +225,40 @@ START_TEST(cycle_time_must_leave_the_frames_their_time)
 }
 END_TEST
 
+/** Slaves whose outputs are closed outside of Operational, or for ever. */
+typedef struct closed_outputs {
+    cm1e_bus_t *bus;
+    bool for_ever;
+} closed_outputs_t;
+
+static cm1e_tap_verdict_t do_not_count_outputs(void *context, cm1e_tap_frame_t *frame)
+{
+    const closed_outputs_t *closed = context;
+    int missing = 0;
+    for (uint32_t n = 1; n <= 2; n++) {
+        const bool in_op = cm1e_sim_slave_al_state(cm1e_sim_segment_slave(segment_of(closed->bus), n)) == CM1E_AL_OP;
+        missing += !in_op || closed->for_ever ? 2 : 0;
+    }
+    if (frame->direction == CM1E_TAP_RECEIVED && frame->bytes[16] == 12 /* LRW */)
+        cm1e_frame_change_working_counter(frame->bytes, frame->length, 0, -missing);
+    return CM1E_TAP_PASS;
+}
+
+START_TEST(outputs_that_open_in_operational_only_are_no_obstacle)
+{
+    sim_config(2);
+    closed_outputs_t closed = {.bus = open_bus(), .for_ever = _i};
+    cm1e_nic_set_tap(cm1e_bus_nic(closed.bus), do_not_count_outputs, &closed);
+    const cm1e_error_t error = cm1e_bus_start(closed.bus, &diag);
+    ck_assert_msg(error == (_i ? CM1E_ERROR_BUS_WORKING_COUNTER : CM1E_OK), "%s", diag.text);
+    if (error == CM1E_OK)
+        cycles(closed.bus, 20);
+    else
+        ck_assert_uint_eq(cm1e_bus_slave(closed.bus, 1)->al_state, CM1E_AL_INIT);
+    cm1e_bus_close(closed.bus);
+}
+END_TEST
+
 START_TEST(no_slaves_is_an_error_that_names_the_interface)
 {
     sim_config(1);
@@ -298,6 +332,7 @@ int main(void)
     tcase_add_test(tests, steps_out_of_order_are_refused);
     tcase_add_test(tests, cycle_time_must_suit_the_firmware);
     tcase_add_loop_test(tests, cycle_time_must_leave_the_frames_their_time, 0, 8);
+    tcase_add_loop_test(tests, outputs_that_open_in_operational_only_are_no_obstacle, 0, 2);
     tcase_add_test(tests, no_slaves_is_an_error_that_names_the_interface);
     tcase_add_test(tests, io_module_between_the_axes_is_mapped_by_its_sii);
     tcase_add_loop_test(tests, scan_takes_no_notice_of_addresses_of_an_earlier_one, 0, 6);
