@@ -77,6 +77,7 @@ typedef enum cm1e_bus_phase {
 struct cm1e_bus {
     cm1e_bus_config_t config;                /**< zeros of the bus itself replaced by their defaults */
     int phase;                               /**< cm1e_bus_phase_t; atomic: cm1e_sdo_submit() looks at it */
+    uint32_t operations;                     /**< times that Operational was reached */
     cm1e_nic_t *nic;
     cm1e_soem_t *soem;
     cm1e_clock_t *clock;

@@ -40,11 +40,13 @@ cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag)
         error = cm1e_bus_all_to_state(bus, CM1E_AL_OP, CM1E_STATE_TIMEOUT_NS, diag);
     if (error == CM1E_OK)
         error = exchange(bus, true, diag);
-    if (error == CM1E_OK)
-        cm1e_bus_set_phase(bus, BUS_OPERATING);
-    else
+    if (error != CM1E_OK) {
         cm1e_bus_stop(bus);
-    return error;
+        return error;
+    }
+    bus->operations++;
+    cm1e_bus_set_phase(bus, BUS_OPERATING);
+    return CM1E_OK;
 }
 
 cm1e_error_t cm1e_bus_start(cm1e_bus_t *bus, cm1e_diag_t *diag)

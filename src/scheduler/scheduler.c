@@ -16,6 +16,7 @@
 
 struct cm1e_scheduler {
     cm1e_bus_t *bus;
+    uint32_t operation;    /**< of the bus, in which the axes were made */
     cm1e_clock_t *clock;
     cm1e_scheduler_config_t config;
     int64_t cycle_time_ns;
@@ -151,12 +152,17 @@ static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *d
     return error;
 }
 
-/** Without this the cycles of a stopped bus would pass without a frame and without an error. */
-static cm1e_error_t check_operating(const cm1e_bus_t *bus, cm1e_diag_t *diag)
+/** Without this the cycles of a stopped bus would pass without a frame and without an error, and those of one that was
+ *  started again would write where the process data of their axes lay before. */
+static cm1e_error_t check_operation(const cm1e_scheduler_t *s, cm1e_diag_t *diag)
 {
-    if (cm1e_bus_is_operating(bus))
-        return CM1E_OK;
-    return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The bus is not in operation: cm1e_bus_start() comes before.");
+    const uint32_t present = cm1e_bus_operation(s->bus);
+    if (present == 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The bus is not in operation: cm1e_bus_start() comes before.");
+    if (present != s->operation)
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
+                             "The bus was started again since this scheduler was made: make a new one.");
+    return CM1E_OK;
 }
 
 cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns, cm1e_diag_t *diag)
@@ -166,9 +172,9 @@ cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns
     if (scheduler->run)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
                              "A scheduler runs once; start the bus again and make a new one.");
-    const cm1e_error_t not_operating = check_operating(scheduler->bus, diag);
-    if (not_operating != CM1E_OK)
-        return not_operating;
+    const cm1e_error_t other_operation = check_operation(scheduler, diag);
+    if (other_operation != CM1E_OK)
+        return other_operation;
     scheduler->run = true;
     cm1e_clock_t *clock_before = cm1e_clock_current();
     cm1e_clock_make_current(scheduler->clock); /* this thread may not be the one that opened the bus */
@@ -241,16 +247,16 @@ cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus
     *scheduler = NULL;
     if (!bus)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A scheduler needs a bus.");
-    cm1e_error_t error = check_operating(bus, diag);
-    if (error != CM1E_OK)
-        return error;
     cm1e_scheduler_t *s = calloc(1, sizeof *s);
     if (!s)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the scheduler.");
     s->bus = bus;
     s->clock = cm1e_bus_clock(bus);
     s->cycle_time_ns = cm1e_bus_configuration(bus)->cycle_time_ns;
-    error = take_config(s, config, diag);
+    s->operation = cm1e_bus_operation(bus);
+    cm1e_error_t error = check_operation(s, diag);
+    if (error == CM1E_OK)
+        error = take_config(s, config, diag);
     if (error == CM1E_OK)
         error = make_axes(s, diag);
     if (error == CM1E_OK)

@@ -386,6 +386,23 @@ START_TEST(test_scheduler_of_a_bus_that_does_not_operate_is_refused)
 }
 END_TEST
 
+/** The slaves may stand elsewhere since, and with them the process data of the axes. */
+START_TEST(test_scheduler_of_an_earlier_operation_is_refused)
+{
+    machine_t machine = {.axis_count = 1};
+    machine_open(&machine);
+    cm1e_diag_t diag = {0};
+    cm1e_bus_stop(machine.bus);
+    ck_assert_int_eq(cm1e_bus_start(machine.bus, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_scheduler_run(machine.scheduler, 10 * MS, &diag), CM1E_ERROR_STATE);
+    ck_assert_ptr_nonnull(strstr(diag.text, "new"));
+    cm1e_scheduler_destroy(machine.scheduler);
+    ck_assert_int_eq(cm1e_scheduler_create(&machine.scheduler, machine.bus, NULL, &diag), CM1E_OK);
+    machine_run(&machine, 10 * MS);
+    machine_close(&machine);
+}
+END_TEST
+
 START_TEST(test_longest_stop_timeout_is_no_short_one)
 {
     machine_t machine = {.axis_count = 1, .config = {.stop_timeout_ns = INT64_MAX}};
@@ -472,6 +489,7 @@ int main(void)
         tcase_add_test(all, tests[i]);
     tcase_add_loop_test(all, test_stop_with_a_broken_segment_ends, 0, 7);
     tcase_add_loop_test(all, test_scheduler_of_a_bus_that_does_not_operate_is_refused, 0, 2);
+    tcase_add_test(all, test_scheduler_of_an_earlier_operation_is_refused);
     tcase_add_test(all, test_longest_stop_timeout_is_no_short_one);
     suite_add_tcase(suite, all);
     SRunner *runner = srunner_create(suite);
