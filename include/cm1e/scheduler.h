@@ -74,9 +74,9 @@ AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *scheduler, const 
 /** Runs the cycle in the calling thread for `duration_ns` (0: until cm1e_scheduler_stop()), then stops in order: axes
  *  ramp down, drives are disabled, slaves go to Safe-Operational and Init. Once per scheduler. A missed cycle is left
  *  out, never caught up. A lost bus does not end the run: the axes are in ErrorStop, programs see it, and what comes
- *  back can be reset. CM1E_ERROR_STATE: it ran before, or the bus was stopped or started again
- *  since it was made; CM1E_ERROR_PERMISSION: real time is required and refused, no cycle was run;
- *  CM1E_ERROR_TIMEOUT: an axis was not disabled within the stop timeout. The bus is stopped in any case.
+ *  back can be reset. CM1E_ERROR_STATE: it ran before, or the bus was stopped or started again since it was made;
+ *  CM1E_ERROR_PERMISSION: real time is required and refused, no cycle was run; CM1E_ERROR_TIMEOUT: an axis was not
+ *  disabled within the stop timeout. But for wrong arguments and CM1E_ERROR_STATE the bus is stopped afterwards.
  *  @rt init */
 cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns, cm1e_diag_t *diag);
 /** Asks the run to end in order. Any thread, any program, any signal handler. @rt any */

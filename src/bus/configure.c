@@ -119,8 +119,8 @@ static cm1e_error_t check_wire_time(const cm1e_bus_t *bus, cm1e_diag_t *diag)
     if (wire_ns + BESIDE_PROCESS_DATA_NS <= bus->config.cycle_time_ns)
         return CM1E_OK;
     return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                         "The process data of %u slaves (%zu frames) takes about %lld us on the wire, mailboxes up to %d "
-                         "us more: too long for a cycle time of %lld us.", bus->slave_count, frames,
+                         "The process data of %u slaves (%zu frames) takes about %lld us on the wire, mailboxes up to "
+                         "%d us more: too long for a cycle time of %lld us.", bus->slave_count, frames,
                          (long long)(wire_ns / 1000), BESIDE_PROCESS_DATA_NS / 1000,
                          (long long)(bus->config.cycle_time_ns / 1000));
 }
