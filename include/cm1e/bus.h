@@ -57,8 +57,8 @@ cm1e_error_t cm1e_bus_open(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm
 cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Slaves that the last scan found; 0 before. @rt any */
 uint32_t cm1e_bus_slave_count(const cm1e_bus_t *bus);
-/** NULL where there is no such slave (1 = first). Valid until the next scan. While the cycle runs it keeps `al_state` and
- *  `al_status_code` up to date: they are for its thread then. @rt any */
+/** NULL where there is no such slave (1 = first). Valid until the next scan. While the cycle runs, it keeps `al_state`
+ *  and `al_status_code` up to date: they are for its thread then. @rt any */
 const cm1e_slave_info_t *cm1e_bus_slave(const cm1e_bus_t *bus, uint32_t position);
 
 /** Matches the scan with the configured axes: a wrong, missing, doubled or extra slave is an error that names what was

@@ -36,8 +36,8 @@ cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position
  *  asked. @rt cycle */
 void cm1e_bus_request_recovery(cm1e_bus_t *bus, uint16_t position);
 
-/** Number of the present operation, from 1: cm1e_bus_operate() has succeeded so often, and the bus was not stopped since.
- *  0: it is not in Operational. What was resolved in one operation does not hold in the next. @rt init */
+/** Number of the present operation, from 1: so often has cm1e_bus_operate() succeeded, and the bus was not stopped
+ *  since. 0: it is not in Operational. What was resolved in one operation does not hold in the next. @rt init */
 uint32_t cm1e_bus_operation(const cm1e_bus_t *bus);
 cm1e_clock_t *cm1e_bus_clock(cm1e_bus_t *bus);
 /** The firmware of a slave as object 0x100A tells; NULL: unreadable. @rt init */
