@@ -55,7 +55,7 @@ typedef struct cm1e_scheduler_statistics {
     uint64_t cycles, overruns;   /**< overrun: the work of a cycle ended after the next one's start */
     cm1e_bus_counters_t bus;
     bool realtime;               /**< SCHED_FIFO and locked memory are in force */
-    char advice[256];            /**< what to do where a privilege is missing; "" if none is */
+    char advice[512];            /**< what to do where a privilege is missing; "" if none is */
 } cm1e_scheduler_statistics_t;
 
 /** For a bus in Operational (else CM1E_ERROR_STATE); makes one axis per configured axis. `config` NULL: defaults. The
