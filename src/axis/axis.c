@@ -70,11 +70,14 @@ static void watch_lag(cm1e_axis_t *axis)
     const double lag = own ? cm1e_position_minus(axis->set, axis_actual(axis)) / axis->scale : 0.0;
     const double lag_before = axis->lag_seen;
     axis->lag_seen = fabs(lag);
-    if (powered_state(axis->state) && fabs(lag) > axis->max_lag) {
+    const bool lost = fabs(lag) > axis->max_lag;
+    if (axis->state == CM1E_AXIS_ERROR_STOP && blind_before && was_deaf(axis, fabs(lag), lag_before)) {
+        cm1e_axis_brake_from_actual(axis);
+    } else if (lost && powered_state(axis->state)) {
         cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, lag, axis->max_lag);
         cm1e_axis_brake_from_actual(axis);
-    } else if (axis->state == CM1E_AXIS_ERROR_STOP && blind_before && was_deaf(axis, fabs(lag), lag_before)) {
-        cm1e_axis_brake_from_actual(axis);
+    } else if (lost) {
+        cm1e_axis_become_free(axis); /* a last ramp that the motor does not follow either */
     }
 }
 

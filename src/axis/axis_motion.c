@@ -138,11 +138,6 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
         axis->state = CM1E_AXIS_STANDSTILL;
 }
 
-static int32_t clamp_i32(double value)
-{
-    return value >= INT32_MAX ? INT32_MAX : value <= INT32_MIN ? INT32_MIN : (int32_t)value;
-}
-
 /* A position loop is no better than what it sees: while inputs are missing the last correction stays, and a ramp of
  * ErrorStop that nobody sees has none. Else the motor would be driven faster the longer the actual position stands. */
 static double loop_velocity(cm1e_axis_t *axis)
@@ -160,5 +155,8 @@ void cm1e_axis_write_set_point(cm1e_axis_t *axis)
     /* The drive's counts and ours differ by whole turns of 2^32 only. */
     const int64_t counts = axis->set.counts + (axis->set.fraction >= 0.5);
     command->target_position = (int32_t)(uint32_t)(uint64_t)counts;
-    command->target_velocity = clamp_i32(round(axis->set_velocity * axis->scale + loop_velocity(axis)));
+    /* The loop catches up, but not beyond what the axis may do. Motors stay far below 2^31 counts/s. */
+    const double most = axis->maximum.velocity * fabs(axis->scale);
+    const double velocity = axis->set_velocity * axis->scale + loop_velocity(axis);
+    command->target_velocity = (int32_t)round(fmax(-most, fmin(velocity, most)));
 }

@@ -6,6 +6,8 @@
  * ErrorStop ramps down without a limit of jerk, and ends without torque as well, so that MC_Reset leads to Disabled
  * (note 3), and from there, if MC_Power.Enable is TRUE, on to Standstill.
  */
+#include <math.h>
+
 #include "axis/axis_private.h"
 
 /* How long a drive that cannot be heard any more counts as "still there" at the end. */
@@ -52,14 +54,15 @@ void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double 
     wind_down(axis, &axis->emergency);
 }
 
-/* For a moment at least: what the feedback shows is some cycles old, and the motor may just be on its way. */
+/* No faster and no farther than the set-point would have gone. For a moment at least: what the feedback shows is some
+ * cycles old, and the motor may just be on its way. */
 void cm1e_axis_brake_from_actual(cm1e_axis_t *axis)
 {
     if (axis->activity == ACTIVITY_FREE)
         return;
-    const double velocity = axis->drive.feedback.velocity / axis->scale, most = axis->maximum.velocity;
+    const double velocity = axis->drive.feedback.velocity / axis->scale, before = axis->set_velocity;
     cm1e_axis_set_to_actual(axis);
-    axis->set_velocity = velocity > most ? most : velocity < -most ? -most : velocity;
+    axis->set_velocity = before > 0.0 ? fmax(0.0, fmin(velocity, before)) : fmin(0.0, fmax(velocity, before));
     cm1e_axis_ramp_down(axis, &axis->emergency);
     axis->brake_until_ns = axis->now_ns + brake_ns;
 }

@@ -223,6 +223,9 @@ static int32_t safe_position(const cm1e_drive_t *drive)
     return drive->target_holds ? drive->target_position : drive->feedback.position;
 }
 
+/* It does not answer, so nothing arrives. Targets that ran on meanwhile would make it jump when it is back. */
+static bool deaf(const cm1e_drive_t *drive) { return drive->fault.slave_lost; }
+
 void cm1e_drive_write(cm1e_drive_t *drive)
 {
     const cm1e_drive_command_t *command = &drive->command;
@@ -248,8 +251,9 @@ void cm1e_drive_write(cm1e_drive_t *drive)
         drive->set_point = drive->feedback.position;
     }
     const bool holding_mode = drive->feedback.mode == CM1E_MODE_CSP || drive->feedback.mode == CM1E_MODE_PP;
-    drive->target_holds |= pass && holding_mode;
-    const int32_t position = pass && holding_mode ? command->target_position : safe_position(drive);
+    const bool follow = pass && !deaf(drive);
+    drive->target_holds |= follow && holding_mode;
+    const int32_t position = follow && holding_mode ? command->target_position : safe_position(drive);
     const uint16_t word = controlword(drive, pass);
-    cm1e_drive_encode(drive, word, position, pass ? command->target_velocity : 0);
+    cm1e_drive_encode(drive, word, position, follow ? command->target_velocity : 0);
 }

@@ -8,7 +8,7 @@
  *
  * A latched fault takes the torque away until a reset succeeded, with one exception: after CM1E_ERROR_BUS_LOST and
  * CM1E_ERROR_BUS_WORKING_COUNTER the targets still pass while `enable` stays TRUE, so that the caller can ramp down a
- * drive that may still listen. A reset that succeeds while `enable` is TRUE enables again: who does not want that takes
+ * drive that may still listen; when it does not answer at its address, the last target holds. A reset that succeeds while `enable` is TRUE enables again: who does not want that takes
  * `enable` away first.
  */
 #ifndef CM1E_DRIVE_DRIVE_H

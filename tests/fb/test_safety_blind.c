@@ -149,12 +149,69 @@ START_TEST(test_bus_away_for_a_while_makes_nothing_jump)
 }
 END_TEST
 
+/* ---- a set-point that a blocked motor has lost ---------------------------------------------------------------------- */
+
+enum { FREED_LATEST = 400 };
+static int freed_after;        /**< cycles, since the lag was called an error */
+static int error_at;
+
+static void blocked_program(bench_t *b)
+{
+    power[0].Enable = TRUE;
+    MC_Power(&power[0]);
+    move[0].Execute = power[0].Status || move[0].Execute;
+    MC_MoveVelocity(&move[0]);
+    const cm1e_sim_probe_t probe = bench_probe(b, 0);
+    const cm1e_axis_info_t info = bench_info(b, 0);
+    if (info.state == CM1E_AXIS_ERROR_STOP && error_at == 0) {
+        error_at = b->cycle;
+        MUST(b, info.error == CM1E_ERROR_AXIS_LAG, "another error: %d", info.error);
+    }
+    if (error_at && b->cycle == error_at + freed_after) {
+        bench_drive(b, 0)->mechanics.stop_positive = INFINITY;
+        cm1e_sim_probe_reset(b->segment, 1);
+    }
+    if (error_at == 0 || b->cycle < error_at + freed_after + 300)
+        return;
+    MUST(b, probe.travel_counts < 4000, "freed, the motor jumped by %.0f counts, at %.0f counts/s", probe.travel_counts,
+         probe.peak_velocity_counts_per_s);
+    MUST(b, !probe.torque_on, "torque in ErrorStop");
+    cm1e_scheduler_stop(b->scheduler);
+}
+
+START_TEST(test_blocked_motor_does_not_jump_when_it_is_freed)
+{
+    static const cm1e_mapping_t mappings[] = {CM1E_MAPPING_DYNAMIC, CM1E_MAPPING_CSP, CM1E_MAPPING_CSV};
+    for (freed_after = 1; freed_after < FREED_LATEST; freed_after += 1 + freed_after / 8 * SLOWNESS) {
+        cm1e_diag_t diag = {0};
+        memset(&bench, 0, sizeof bench);
+        bench_describe(&bench, 1);
+        bench.config.axes[0].mapping = mappings[_i];
+        bench.config.axes[0].max_position_lag = 10;
+        bench.config.axes[0].max_deceleration = 1000;
+        bench.config.axes[0].sim.stop_positive = 20000;
+        power[0] = (MC_Power_t){.Axis = &bench.axis[0], .EnablePositive = TRUE, .EnableNegative = TRUE};
+        move[0] = (MC_MoveVelocity_t){.Axis = &bench.axis[0], .Velocity = speed_u};
+        error_at = 0;
+        bench.program = blocked_program;
+        snprintf(bench.scene, sizeof bench.scene, "mapping %d, freed %d cycles after the error", (int)mappings[_i],
+                 freed_after);
+        bench_open(&bench);
+        bench_start(&bench);
+        const cm1e_error_t error = bench_run(&bench, &diag);
+        MUST(&bench, error == CM1E_OK, "%s", diag.text);
+        bench_close(&bench);
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("a bus that is away for a while");
     TCase *cases = tcase_create("blind");
     tcase_set_timeout(cases, 250);
     tcase_add_loop_test(cases, test_bus_away_for_a_while_makes_nothing_jump, 0, 5 * BREAKS);
+    tcase_add_loop_test(cases, test_blocked_motor_does_not_jump_when_it_is_freed, 0, 3);
     suite_add_tcase(suite, cases);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);

@@ -322,7 +322,7 @@ static void judge_motion(uint32_t n)
         p->rest_cycles = 0;
         return;
     }
-    if (p->state == CM1E_AXIS_STANDSTILL && p->rest_cycles++ > 0)
+    if (p->state == CM1E_AXIS_STANDSTILL && p->rest_cycles++ > 1)
         MUST(&bench, w->step == 0, "axis %u: Standstill, but the target moved by %.0f counts", n, w->step);
     if (p->state != CM1E_AXIS_STANDSTILL)
         p->rest_cycles = 0;

@@ -116,6 +116,7 @@ static void judge_stop(cm1e_error_t error, const cm1e_diag_t *diag)
     const double speed = fabs(at_stop.velocity_counts_per_s);
     MUST(&bench, error == CM1E_OK, "%s", diag->text);
     MUST(&bench, took_s < 2.5, "the stop took %.3f s", took_s);
+    MUST(&bench, !bench.witness[AXIS].enabling, "the bus was stopped before the drive");
     /* An acceleration ends at the axis's jerk, and set-points are ahead of the motor by some cycles. */
     const double more = (acceleration_u * acceleration_u / (2 * jerk_u) + 0.006 * acceleration_u) * unit;
     MUST(&bench, probe.peak_velocity_counts_per_s <= speed * 1.1 + more, "%.0f counts/s after the stop, %.0f before",

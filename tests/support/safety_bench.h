@@ -78,6 +78,7 @@ typedef struct witness {
     int in_statusword, in_position, in_mode;
     double velocity_unit;              /**< counts/s of one unit of 0x60FF */
     double max_step, max_gain, max_loss; /**< counts a cycle, and more or less of it a cycle */
+    double max_lag;                    /**< counts */
     int8_t mode;                       /**< of the set-points */
     bool shown;                        /**< the drive has shown something */
     uint16_t statusword;
@@ -165,6 +166,7 @@ static void witness_limits(const bench_t *bench, uint32_t n, witness_t *w)
     w->max_step = fmin(or_else(axis->max_velocity * unit, peak), peak) * cycle_s;
     w->max_gain = gain * cycle_s * cycle_s;
     w->max_loss = or_else(axis->max_deceleration * unit, gain) * cycle_s * cycle_s;
+    w->max_lag = or_else(axis->max_position_lag * unit, 25000);
     w->velocity_unit = firmware->velocity_in_counts_per_ms ? 1000.0 : 1.0;
     w->mode = axis->mapping == CM1E_MAPPING_CSV ? CM1E_MODE_CSV : CM1E_MODE_CSP;
 }
@@ -242,13 +244,16 @@ static bool at_shown_position(const bench_t *bench, const witness_t *w)
     return w->target == w->position || (bench->frames_late && w->target == w->position_before);
 }
 
-/** In ErrorStop braking may begin anew where the motor is: such a target pulls at nothing. */
-static bool began_anew(const bench_t *bench, uint32_t n, const witness_t *w)
+/** Where a motor did not follow, braking or holding may begin anew where it is: such a target pulls at nothing. Nor does
+ *  one that stands. */
+static bool began_anew(const bench_t *bench, uint32_t n, const witness_t *w, double step)
 {
     cm1e_axis_info_t info = {0};
     cm1e_axis_read(bench->axis[n], &info);
     const int32_t off = (int32_t)((uint32_t)w->target - (uint32_t)w->position);
-    return info.state == CM1E_AXIS_ERROR_STOP && fabs((double)off) <= w->max_step + 1.0;
+    const bool anew = info.state == CM1E_AXIS_ERROR_STOP || info.state == CM1E_AXIS_DISABLED ||
+                      info.state == CM1E_AXIS_STANDSTILL;
+    return anew && (step == 0 || fabs((double)off) <= w->max_step + 1.0);
 }
 
 /** Set-points may neither be faster nor change faster than the axis's limits say; a target is rounded to counts. */
@@ -264,8 +269,8 @@ static void judge_step(const bench_t *bench, uint32_t n, witness_t *w, double st
     w->direction = step != 0 ? step : w->direction;
     const bool smooth = fabs(step - w->step) <= most && (w->turning || within);
     w->set_points++;
-    if (!(slow && smooth) && began_anew(bench, n, w)) {
-        w->step = (double)(int32_t)((uint32_t)w->target - (uint32_t)w->position);
+    if (!(slow && smooth) && began_anew(bench, n, w, step)) {
+        w->step = step == 0 ? 0 : (double)(int32_t)((uint32_t)w->target - (uint32_t)w->position);
         w->new_beginnings++;
         return;
     }
@@ -275,9 +280,23 @@ static void judge_step(const bench_t *bench, uint32_t n, witness_t *w, double st
     w->step = step;
 }
 
+/** Without an error a motor is brought to rest first: nobody takes its torque away at speed, unless it does not follow. */
+static void judge_end_of_torque(const bench_t *bench, uint32_t n, const witness_t *w)
+{
+    cm1e_axis_info_t info = {0};
+    cm1e_axis_read(bench->axis[n], &info);
+    if (info.state == CM1E_AXIS_ERROR_STOP)
+        return;
+    const double lag = (double)(int32_t)((uint32_t)w->target - (uint32_t)w->position);
+    MUST(bench, fabs(w->step) <= 2 * w->max_loss + 3 || fabs(lag) > 0.9 * w->max_lag,
+         "axis %u, %s: torque is taken away at %.0f counts a cycle", n, cm1e_axis_state_name(info.state), w->step);
+}
+
 static void witness_sent_axis(bench_t *bench, uint32_t n, const uint8_t *data)
 {
     witness_t *w = &bench->witness[n];
+    if (w->holding && (word_at(data, w->out_controlword) & 0x08) == 0)
+        judge_end_of_torque(bench, n, w);
     const int32_t target_before = w->target;
     const bool enabling_before = w->enabling, holding_before = w->holding;
     w->controlword = word_at(data, w->out_controlword);
@@ -285,8 +304,9 @@ static void witness_sent_axis(bench_t *bench, uint32_t n, const uint8_t *data)
     w->target = w->out_position < 0 ? w->position : long_at(data, w->out_position);
     w->velocity = w->out_velocity < 0 ? 0 : long_at(data, w->out_velocity) * w->velocity_unit;
     w->holding = w->enabling && (w->statusword & 0x6F) == 0x27 && w->mode_shown == w->mode;
-    MUST(bench, fabs(w->velocity) <= cm1e_device_motor(bench->config.axes[n].motor)->max_velocity_counts_per_s,
-         "axis %u: target velocity %.0f", n, w->velocity);
+    const double most = w->max_step * 1e9 / (double)bench->config.cycle_time_ns;
+    MUST(bench, fabs(w->velocity) <= most + w->velocity_unit, "axis %u: target velocity %.0f, limit %.0f", n, w->velocity,
+         most);
     if (!w->enabling)
         return;
     if (!enabling_before)
