@@ -28,6 +28,7 @@ const uint8_t *cm1e_bus_inputs(const cm1e_bus_t *bus);
 typedef struct cm1e_slave_watch {
     uint16_t al_state, al_status_code;
     bool lost;
+    bool silent; /**< it gave no inputs for as many cycles as are ridden out, while others did */
 } cm1e_slave_watch_t;
 cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position);
 /** Asks the supervision to bring a slave that came back (reset, power cycle, replug) to Operational again, with its

@@ -58,6 +58,7 @@ typedef struct cm1e_bus_slave {
     cm1e_slave_placement_t placement;
     cm1e_slave_watch_t watch;
     unsigned unanswered;                     /**< supervision datagrams in a row that nobody answered */
+    uint32_t silent_cycles;                  /**< in a row, in which it did not take part */
 } cm1e_bus_slave_t;
 
 /** Transfers handed in by any thread, the cycle's own included: each takes a place with `head` and fills it; the bus
@@ -96,6 +97,7 @@ struct cm1e_bus {
     bool in_flight;                          /**< a process data frame is on its way */
     int64_t next_cycle_ns;                   /**< blocking phases only */
     uint32_t bad_cycles;                     /**< in a row */
+    bool any_silent;                         /**< some slave did not take part in the last cycle that came back */
     cm1e_error_t last_error;
     cm1e_bus_counters_t counters;
 

@@ -2,6 +2,27 @@
 
 #include "bus/bus_internal.h"
 
+/** What the inputs hold when they leave: a slave that takes part in the cycle leaves none of it. */
+enum { INPUT_PATTERN = 0xA5 };
+
+/** Who did not take part in a cycle whose working counter is wrong: his inputs came back as they left. */
+static void note_silent_slaves(cm1e_bus_t *bus, cm1e_error_t error)
+{
+    if (error == CM1E_ERROR_BUS_LOST || (error == CM1E_OK && !bus->any_silent))
+        return;
+    bus->any_silent = false;
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        const uint8_t *inputs = bus->image + bus->output_bytes + slave->placement.input_offset;
+        unsigned same = 0;
+        while (same < slave->placement.input_bytes && inputs[same] == INPUT_PATTERN)
+            same++;
+        const bool silent = error != CM1E_OK && same > 0 && same == slave->placement.input_bytes;
+        slave->silent_cycles = silent ? slave->silent_cycles + (slave->silent_cycles < UINT32_MAX) : 0;
+        bus->any_silent |= silent;
+    }
+}
+
 /** What a received process image is worth. */
 static cm1e_error_t judge(cm1e_bus_t *bus, int working_counter)
 {
@@ -29,6 +50,7 @@ cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus)
     bus->in_flight = false;
     const cm1e_error_t error = judge(bus, cm1e_soem_receive_process_data(bus->soem, bus->config.frame_timeout_ns));
     bus->counters.cycles++;
+    note_silent_slaves(bus, error);
     if (error == CM1E_OK) {
         memcpy(bus->inputs, bus->image + bus->output_bytes, bus->input_bytes);
         bus->bad_cycles = 0;
@@ -61,6 +83,7 @@ void cm1e_bus_send(cm1e_bus_t *bus)
     memcpy(bus->image, bus->outputs, bus->output_bytes);
     mute_recovering(bus);
     memcpy(bus->sent_outputs, bus->image, bus->output_bytes);
+    memset(bus->image + bus->output_bytes, INPUT_PATTERN, bus->input_bytes);
     cm1e_soem_send_process_data(bus->soem);
     bus->in_flight = true;
     cm1e_acyclic_send(bus, now_ns, CM1E_DATAGRAMS_PER_CYCLE);

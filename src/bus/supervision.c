@@ -56,7 +56,11 @@ void cm1e_supervision_receive(cm1e_bus_t *bus, int64_t now_ns)
 cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position)
 {
     const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
-    return slave ? slave->watch : (cm1e_slave_watch_t){.lost = true};
+    if (!slave)
+        return (cm1e_slave_watch_t){.lost = true};
+    cm1e_slave_watch_t watch = slave->watch;
+    watch.silent = slave->silent_cycles >= bus->config.lost_cycles_limit;
+    return watch;
 }
 
 void cm1e_bus_request_recovery(cm1e_bus_t *bus, uint16_t position)

@@ -83,6 +83,7 @@ void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
     if (fault->device_code == 0 && drive->feedback.online && drive->feedback.fault)
         fault->device_code = drive->feedback.error_code;
     fault->slave_lost |= drive->watch.lost;
+    fault->slave_deaf |= drive->watch.lost || drive->watch.silent;
     if (!drive_operational(drive)) {
         fault->al_state = drive->watch.al_state;
         fault->al_status_code = drive->watch.al_status_code;
@@ -223,9 +224,6 @@ static int32_t safe_position(const cm1e_drive_t *drive)
     return drive->target_holds ? drive->target_position : drive->feedback.position;
 }
 
-/* It does not answer, so nothing arrives. Targets that ran on meanwhile would make it jump when it is back. */
-static bool deaf(const cm1e_drive_t *drive) { return drive->fault.slave_lost; }
-
 void cm1e_drive_write(cm1e_drive_t *drive)
 {
     const cm1e_drive_command_t *command = &drive->command;
@@ -251,7 +249,8 @@ void cm1e_drive_write(cm1e_drive_t *drive)
         drive->set_point = drive->feedback.position;
     }
     const bool holding_mode = drive->feedback.mode == CM1E_MODE_CSP || drive->feedback.mode == CM1E_MODE_PP;
-    const bool follow = pass && !deaf(drive);
+    /* Targets that ran on while nothing arrived would make the drive jump when it hears again. */
+    const bool follow = pass && !drive->fault.slave_deaf;
     drive->target_holds |= follow && holding_mode;
     const int32_t position = follow && holding_mode ? command->target_position : safe_position(drive);
     const uint16_t word = controlword(drive, pass);

@@ -8,7 +8,7 @@
  *
  * A latched fault takes the torque away until a reset succeeded, with one exception: after CM1E_ERROR_BUS_LOST and
  * CM1E_ERROR_BUS_WORKING_COUNTER the targets still pass while `enable` stays TRUE, so that the caller can ramp down a
- * drive that may still listen; when it does not answer at its address, the last target holds. A reset that succeeds while `enable` is TRUE enables again: who does not want that takes
+ * drive that may still listen; when it is seen to take no part in the cycle, the last target holds. A reset that succeeds while `enable` is TRUE enables again: who does not want that takes
  * `enable` away first.
  */
 #ifndef CM1E_DRIVE_DRIVE_H
@@ -60,6 +60,7 @@ typedef struct cm1e_drive_fault {
     int8_t mode_commanded, mode_shown;
     uint16_t al_state, al_status_code;
     bool slave_lost;                /**< it did not answer at its address, then or later */
+    bool slave_deaf;                /**< it took no part in the cycle, then or later */
 } cm1e_drive_fault_t;
 
 typedef struct cm1e_drive {
