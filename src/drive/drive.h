@@ -8,8 +8,8 @@
  *
  * A latched fault takes the torque away until a reset succeeded, with one exception: after CM1E_ERROR_BUS_LOST and
  * CM1E_ERROR_BUS_WORKING_COUNTER the targets still pass while `enable` stays TRUE, so that the caller can ramp down a
- * drive that may still listen; when it is seen to take no part in the cycle, the last target holds. A reset that succeeds while `enable` is TRUE enables again: who does not want that takes
- * `enable` away first.
+ * drive that may still listen; when it is seen to take no part in the cycle, the last target holds. A reset that
+ * succeeds while `enable` is TRUE enables again: who does not want that takes `enable` away first.
  */
 #ifndef CM1E_DRIVE_DRIVE_H
 #define CM1E_DRIVE_DRIVE_H

@@ -36,8 +36,8 @@ static bool open_nic(ecx_portt *port, const char *first, const char *second)
     cm1e_bus_config_t *config = calloc(1, sizeof *config);
     if (!config)
         return false;
-    strncpy(config->interface_name, first, sizeof config->interface_name - 1);
-    strncpy(config->second_interface, second, sizeof config->second_interface - 1);
+    memcpy(config->interface_name, first, strnlen(first, sizeof config->interface_name - 1));
+    memcpy(config->second_interface, second, strnlen(second, sizeof config->second_interface - 1));
     cm1e_nic_open(&port->nic, config, NULL);
     free(config);
     port->nic_is_ours = port->nic != NULL;

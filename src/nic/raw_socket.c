@@ -82,16 +82,17 @@ static void tune(int fd, int interface_index)
     setsockopt(fd, SOL_PACKET, PACKET_ADD_MEMBERSHIP, &promiscuous, sizeof promiscuous);
 }
 
-static cm1e_error_t set_up(int fd, const char *name, cm1e_diag_t *diag)
+static cm1e_error_t no_interface(const char *name, cm1e_diag_t *diag)
 {
-    const unsigned index = strlen(name) < IFNAMSIZ ? if_nametoindex(name) : 0;
-    if (index == 0) {
-        char list[256];
-        list_interfaces(list, sizeof list);
-        return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0,
-                             "There is no network interface \"%s\". There are: %s. \"sim\" is the simulated segment.",
-                             name, list);
-    }
+    char list[256];
+    list_interfaces(list, sizeof list);
+    return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0,
+                         "There is no network interface \"%s\". There are: %s. \"sim\" is the simulated segment.", name,
+                         list);
+}
+
+static cm1e_error_t set_up(int fd, const char *name, unsigned index, cm1e_diag_t *diag)
+{
     const cm1e_error_t error = check_interface(fd, name, diag);
     if (error)
         return error;
@@ -107,11 +108,15 @@ static cm1e_error_t set_up(int fd, const char *name, cm1e_diag_t *diag)
 cm1e_error_t raw_socket_open(int *fd, const char *interface_name, cm1e_diag_t *diag)
 {
     *fd = -1;
+    /* The name first: it needs no privilege to say that it is wrong. */
+    const unsigned index = strlen(interface_name) < IFNAMSIZ ? if_nametoindex(interface_name) : 0;
+    if (index == 0)
+        return no_interface(interface_name, diag);
     /* Protocol 0: nothing is received before bind() names the interface. */
     const int s = socket(AF_PACKET, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     if (s < 0)
         return no_socket(errno, diag);
-    const cm1e_error_t error = set_up(s, interface_name, diag);
+    const cm1e_error_t error = set_up(s, interface_name, index, diag);
     if (error) {
         close(s);
         return error;

@@ -80,7 +80,7 @@ static void program_path(char *path, size_t size)
 
 static void advise(char *advice, size_t size, bool fifo, bool locked, int priority)
 {
-    char path[96];
+    char path[256];
     program_path(path, sizeof path);
     snprintf(advice, size,
              "Not real time: %s%s%s refused. As root: setcap cap_sys_nice,cap_ipc_lock,cap_net_raw+ep %s; or limits of "

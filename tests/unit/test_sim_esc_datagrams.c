@@ -113,14 +113,12 @@ static void test_working_counter_adds_to_what_it_was_and_wraps(void)
 static void test_several_datagrams_in_a_frame_are_each_counted(void)
 {
     uint8_t frame[FRAME_MAX], data[4] = {1, 2, 3, 4}, long_data[1000] = {0};
-    size_t at = frame_begin(frame);
-    const size_t ends[] = {
-        at = frame_add(frame, at, BWR, RAM << 16, data, 4),
-        at = frame_add(frame, at, APRD, (uint16_t)-1 | RAM << 16, data, 4),
-        at = frame_add(frame, at, COMMAND_NOP, 0, long_data, 0),
-        at = frame_add(frame, at, FPRD, 0x999 | RAM << 16, long_data, sizeof long_data),
-        at = frame_add(frame, at, BRD, 0x130 << 16, data, 2),
-    };
+    size_t at = frame_begin(frame), ends[5];
+    at = ends[0] = frame_add(frame, at, BWR, RAM << 16, data, 4);
+    at = ends[1] = frame_add(frame, at, APRD, (uint16_t)-1 | RAM << 16, data, 4);
+    at = ends[2] = frame_add(frame, at, COMMAND_NOP, 0, long_data, 0);
+    at = ends[3] = frame_add(frame, at, FPRD, 0x999 | RAM << 16, long_data, sizeof long_data);
+    at = ends[4] = frame_add(frame, at, BRD, 0x130 << 16, data, 2);
     const uint16_t counters[] = {3, 1, 0, 0, 3};
     TEST_ASSERT_EQUAL_INT(CM1E_SIM_PORT_PRIMARY, cm1e_sim_segment_process(b.segment, 0, frame, at, b.now_ns));
     for (unsigned i = 0; i < 5; i++)

@@ -104,7 +104,7 @@ static void random_mailbox(void)
                                        0x30, 0x31, 0x40, 0x50, 0x60, 0x70, 0x80};
     static const uint16_t indices[] = {0x1000, 0x1008, 0x1009, 0x2000, 0x2001, 0x2003, 0x2010, 0x2011, 0x2012, 0x5555,
                                        0x100A, 0x1018, 0x1600, 0x1A03, 0x1C12, 0x1C13, 0x6040, 0x6060, 0x60F6, 0xFE00};
-    uint8_t box[128], answer[128];
+    uint8_t box[128], answer[128] = {0};
     for (unsigned i = 0; i < sizeof box; i++)
         box[i] = (uint8_t)(below(4) ? 0 : next());
     cm1e_put_u16(box, (uint16_t)(below(3) ? 10 : below(3) ? below(123) : next()));
