@@ -312,7 +312,7 @@ static void witness_sent_axis(bench_t *bench, uint32_t n, const uint8_t *data)
     if (!enabling_before)
         w->enablings++;
     MUST(bench, w->shown, "axis %u: enabled although the drive has not shown its position yet", n);
-    if (w->in_mode < 0 && w->mode_shown == CM1E_MODE_HM && w->target == target_before && w->velocity == 0)
+    if (w->in_mode < 0 && w->mode_shown == CM1E_MODE_HM && w->velocity == 0)
         return; /* the master may not know yet, over SDO, that the drive takes no targets now */
     if (!w->holding || !holding_before) { /* the drive may act on this frame, or acts on it as the first one */
         MUST(bench, at_shown_position(bench, w),
