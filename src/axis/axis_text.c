@@ -63,8 +63,8 @@ static void refused_velocity_text(const cm1e_axis_t *axis, char *text, size_t si
 static void refused_dynamics_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     snprintf(text, size,
-             "Axis \"%s\": acceleration %.6g, deceleration %.6g, jerk %.6g were asked for; right is 0 (the maximum), or "
-             "up to %.6g u/s2, %.6g u/s2 and %.6g u/s3.",
+             "Axis \"%s\": acceleration %.6g, deceleration %.6g, jerk %.6g were asked for; right is 0 (the maximum), "
+             "or up to %.6g u/s2, %.6g u/s2 and %.6g u/s3.",
              axis->config->name, axis->refused.acceleration, axis->refused.deceleration, axis->refused.jerk,
              axis->maximum.acceleration, axis->maximum.deceleration, axis->maximum.jerk);
 }

@@ -33,7 +33,8 @@ enum { CM1E_SIM_PORT_PRIMARY = 0, CM1E_SIM_PORT_SECONDARY = 1, CM1E_SIM_PORT_LOS
 /** Sends an Ethernet frame (from destination MAC on, without FCS) through the segment, in place; returns the port at
  *  which it comes out, or CM1E_SIM_PORT_LOST. A line gives it back at the entry port; a closed ring
  *  (cm1e_sim_segment_close_ring()) at the other one. Frames that are not EtherCAT are lost. */
-int cm1e_sim_segment_process(cm1e_sim_segment_t *segment, int entry_port, uint8_t *frame, size_t length, int64_t now_ns);
+int cm1e_sim_segment_process(cm1e_sim_segment_t *segment, int entry_port, uint8_t *frame, size_t length,
+                             int64_t now_ns);
 /** Lets simulated time pass without a frame (watchdogs, mechanics). */
 void cm1e_sim_segment_advance(cm1e_sim_segment_t *segment, int64_t now_ns);
 
@@ -43,7 +44,9 @@ void cm1e_sim_segment_close_ring(cm1e_sim_segment_t *segment);
 void cm1e_sim_segment_cut(cm1e_sim_segment_t *segment, uint32_t position, bool cut);
 
 /** Faults on the next frames as the console sets them; the backend asks before it delivers a frame. Consumes one. */
-typedef enum cm1e_frame_fault { CM1E_FRAME_OK = 0, CM1E_FRAME_LOSE, CM1E_FRAME_CORRUPT, CM1E_FRAME_DELAY } cm1e_frame_fault_t;
+typedef enum cm1e_frame_fault {
+    CM1E_FRAME_OK = 0, CM1E_FRAME_LOSE, CM1E_FRAME_CORRUPT, CM1E_FRAME_DELAY,
+} cm1e_frame_fault_t;
 cm1e_frame_fault_t cm1e_sim_segment_next_frame_fault(cm1e_sim_segment_t *segment, int64_t *delay_ns);
 /** Sets that fault on the next `count` frames (`delay_ns`: CM1E_FRAME_DELAY only); replaces what was set before. */
 void cm1e_sim_segment_set_frame_fault(cm1e_sim_segment_t *segment, cm1e_frame_fault_t kind, uint32_t count,
@@ -53,7 +56,7 @@ void cm1e_sim_segment_set_frame_fault(cm1e_sim_segment_t *segment, cm1e_frame_fa
  *  from `cm1e sim`, tests and cm1e_bus_simulate(). Returns CM1E_OK, or an error whose reason is the answer. */
 cm1e_error_t cm1e_sim_console(cm1e_sim_segment_t *segment, const char *line, char *answer, size_t size);
 
-/* ---- what tests measure behind a drive (NULL-safe; position 1 = first; not a CM1-E: zeros) ------------------------- */
+/* ---- what tests measure behind a drive (NULL-safe; position 1 = first; not a CM1-E: zeros) ---------------------- */
 typedef struct cm1e_sim_probe {
     double position_counts;   /**< of the shaft, exact, since power-on (homing does not change it) */
     double velocity_counts_per_s;

@@ -51,7 +51,8 @@ typedef struct cm1e_sim_app_ops {
     /** Object dictionary. Return 0 or an SDO abort code. `size`: in: bytes given or room; out (read): bytes of the
      *  value. `al_state` is the present AL state. */
     uint32_t (*sdo_read)(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, uint8_t *data, size_t *size);
-    uint32_t (*sdo_write)(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, const uint8_t *data, size_t size);
+    uint32_t (*sdo_write)(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, const uint8_t *data,
+                          size_t size);
     /** Dictionary for SDO information: object number n in order of index, NULL after the last. */
     const cm1e_object_t *(*object)(void *app, size_t n);
     /** Present entry (sub-indices may depend on firmware), NULL: none. */
@@ -74,7 +75,8 @@ void *cm1e_sim_slave_app(cm1e_sim_slave_t *slave);
 const cm1e_sim_app_ops_t *cm1e_sim_slave_ops(const cm1e_sim_slave_t *slave);
 
 /** For the application: queue a CoE emergency (ETG.1000.6 5.6.4); false: the queue is full and it is dropped. */
-bool cm1e_sim_slave_emergency(cm1e_sim_slave_t *slave, uint16_t error_code, uint8_t error_register, const uint8_t data[5]);
+bool cm1e_sim_slave_emergency(cm1e_sim_slave_t *slave, uint16_t error_code, uint8_t error_register,
+                              const uint8_t data[5]);
 /** For the application: fall back to a lower state by itself with an AL status code (error flag set). */
 void cm1e_sim_slave_fall_back(cm1e_sim_slave_t *slave, uint8_t al_state, uint16_t al_status_code);
 /** For the application: the device resets and is absent from the bus until `until_ns`. */

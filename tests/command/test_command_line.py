@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The command `cm1e` and the examples as a user calls them, on the simulated segment: what is right works and can be read
-by a program, what is wrong is refused with the exit status and the word that helps.
+"""The command `cm1e` and the examples as a user calls them, on the simulated segment: what is right works and can be
+read by a program, what is wrong is refused with the exit status and the word that helps.
 
 test_command_line.py BIN-DIRECTORY SOURCE-DIRECTORY
 """
@@ -28,7 +28,8 @@ def expect(condition, what, result):
 def check_good(folder):
     scan = run("cm1e", "scan", "-i", "sim", "--json")
     slaves = json.loads(scan.stdout)
-    expect(len(slaves) == 1 and slaves[0]["vendor_id"] == 0x4441 and slaves[0]["software_version"] == "1.3.5", "scan", scan)
+    expect(len(slaves) == 1 and slaves[0]["vendor_id"] == 0x4441 and slaves[0]["software_version"] == "1.3.5", "scan",
+           scan)
     bus = run("cm1e", "scan", "-i", "sim", "-b", f"{SOURCE}/examples/three_axes.yaml")
     expect(bus.returncode == 0 and bus.stdout.count("CM1-E") == 3, "scan of a bus file", bus)
     status = run("cm1e", "status", "-i", "sim", "--json")
@@ -47,7 +48,8 @@ def check_good(folder):
     with open(csv, encoding="utf-8") as file:
         expect(len(file.readlines()) > 100, "trace as CSV", move)
     expect(os.path.getsize(pcap) > 10000, "pcap", move)
-    home = run("cm1e", "home", "-i", "sim", "--method", "-3", "--velocity", "5", "--acceleration", "90", "--position", "7.5", "--json")
+    home = run("cm1e", "home", "-i", "sim", "--method", "-3", "--velocity", "5", "--acceleration", "90", "--position",
+               "7.5", "--json")
     expect(home.returncode == 0 and abs(json.loads(home.stdout)["to"] - 7.5) < 0.01, "home", home)
     sii = os.path.join(folder, "cm1e.sii")
     generate = run("cm1e", "generate", "sii", "-o", sii)
@@ -87,7 +89,8 @@ WRONG = [
     (["move", "-i", "sim", "2", "--by", "1"], WRONG_USE, "no axis"),
     (["move", "-i", "sim", "--by", "1", "--velocity", "1000"], FAILED, "up to 50 u/s"),
     (["move", "-i", "sim", "--by", "1", "--acceleration", "-1"], FAILED, "up to 100 u/s2"),
-    (["move", "-i", "sim", "-b", f"{SOURCE}/examples/three_axes.yaml", "Y", "--to", "1000"], FAILED, "limits -20 ... 70"),
+    (["move", "-i", "sim", "-b", f"{SOURCE}/examples/three_axes.yaml", "Y", "--to", "1000"], FAILED,
+     "limits -20 ... 70"),
     (["home", "-i", "sim", "--method", "-7"], WRONG_USE, "method"),
     (["home", "-i", "sim", "--method", "0"], FAILED, "method"),
     (["home", "-i", "sim", "--method", "-2", "--velocity", "100"], FAILED, "homing parameter"),
