@@ -93,12 +93,11 @@ bool realtime_begin(realtime_t *realtime, const cm1e_scheduler_config_t *config,
     *realtime = (realtime_t){.timer_slack_ns = (int)prctl(PR_GET_TIMERSLACK)};
     advice[0] = '\0';
     prctl(PR_SET_TIMERSLACK, 1); /* a thread that is not real time would wake up to 50 us late by design */
-    if (config->cpu > 0 && !bind_to_cpu(realtime, config->cpu)) {
+    const bool bound = config->cpu <= 0 || bind_to_cpu(realtime, config->cpu);
+    if (!bound)
         snprintf(advice, size,
                  "This thread cannot be bound to CPU %d (1 = first): the machine or the container does not have it.",
                  config->cpu);
-        return false;
-    }
     if (config->realtime_priority < 0)
         return false;
     touch_stack();
@@ -106,7 +105,7 @@ bool realtime_begin(realtime_t *realtime, const cm1e_scheduler_config_t *config,
     const bool fifo = take_fifo(realtime, config->realtime_priority);
     if (!fifo || !locked)
         advise(advice, size, fifo, locked, config->realtime_priority);
-    return fifo && locked;
+    return bound && fifo && locked;
 }
 
 void realtime_end(const realtime_t *realtime)
