@@ -83,7 +83,8 @@ void cm1e_bus_stop(cm1e_bus_t *bus);
 void cm1e_bus_close(cm1e_bus_t *bus);
 
 /** Takes in the frame(s) sent in the last cycle. CM1E_OK: all inputs are fresh; CM1E_ERROR_BUS_LOST or
- *  CM1E_ERROR_BUS_WORKING_COUNTER: the inputs are the previous ones. @rt cycle */
+ *  CM1E_ERROR_BUS_WORKING_COUNTER: the inputs are the previous ones (those of the slaves that did not take part).
+ *  @rt cycle */
 cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus);
 /** Sends the outputs, and at most one datagram of mailbox work or supervision per slave in need. @rt cycle */
 void cm1e_bus_send(cm1e_bus_t *bus);

@@ -64,7 +64,7 @@ static void watch_lag(cm1e_axis_t *axis)
 {
     const bool own = axis->activity == ACTIVITY_HOLD || axis->activity == ACTIVITY_PROFILE;
     const bool blind_before = axis->blind;
-    axis->blind = own && !axis->drive.feedback.online;
+    axis->blind = own && !axis->drive.feedback.fresh;
     if (axis->blind)
         return;
     const double lag = own ? cm1e_position_minus(axis->set, axis_actual(axis)) / axis->scale : 0.0;
@@ -92,7 +92,7 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
     cm1e_drive_t *drive = &axis->drive;
     axis->now_ns = now_ns;
     cm1e_drive_read(drive, received == CM1E_OK, now_ns);
-    if (received == CM1E_OK)
+    if (drive->feedback.fresh)
         cm1e_axis_track(axis);
     if (drive->watch.lost || (drive->watch.al_state & 0x0F) == CM1E_AL_INIT)
         axis->homed = false; /* it may have been without power, and count from somewhere else now */

@@ -142,7 +142,7 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
  * ErrorStop that nobody sees has none. Else the motor would be driven faster the longer the actual position stands. */
 static double loop_velocity(cm1e_axis_t *axis)
 {
-    if (axis->drive.feedback.online)
+    if (axis->drive.feedback.fresh)
         axis->loop_velocity = csv_position_gain * cm1e_position_minus(axis->set, axis_actual(axis));
     else if (axis->state == CM1E_AXIS_ERROR_STOP)
         axis->loop_velocity = 0.0;

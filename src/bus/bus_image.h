@@ -29,6 +29,7 @@ typedef struct cm1e_slave_watch {
     uint16_t al_state, al_status_code;
     bool lost;
     bool silent; /**< it gave no inputs for as many cycles as are ridden out, while others did */
+    bool fresh;  /**< its own inputs are those of this cycle, also where the working counter is wrong */
 } cm1e_slave_watch_t;
 cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position);
 /** Asks the supervision to bring a slave that came back (reset, power cycle, replug) to Operational again, with its

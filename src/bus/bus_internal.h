@@ -98,6 +98,7 @@ struct cm1e_bus {
     int64_t next_cycle_ns;                   /**< blocking phases only */
     uint32_t bad_cycles;                     /**< in a row */
     bool any_silent;                         /**< some slave did not take part in the last cycle that came back */
+    bool partly_fresh;                       /**< inputs were taken of those who did, despite the working counter */
     cm1e_error_t last_error;
     cm1e_bus_counters_t counters;
 

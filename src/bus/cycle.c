@@ -5,22 +5,50 @@
 /** What the inputs hold when they leave: a slave that takes part in the cycle leaves none of it. */
 enum { INPUT_PATTERN = 0xA5 };
 
-/** Who did not take part in a cycle whose working counter is wrong: his inputs came back as they left. */
-static void note_silent_slaves(cm1e_bus_t *bus, cm1e_error_t error)
+static bool is_silent(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
 {
-    if (error == CM1E_ERROR_BUS_LOST || (error == CM1E_OK && !bus->any_silent))
-        return;
+    const uint8_t *inputs = bus->image + bus->output_bytes + slave->placement.input_offset;
+    for (unsigned i = 0; i < slave->placement.input_bytes; i++)
+        if (inputs[i] != INPUT_PATTERN)
+            return false;
+    return slave->placement.input_bytes > 0;
+}
+
+/** Finds out who took no part. True: with slaves that did not (3 less for each, or what they have) and slaves that took
+ *  no outputs (2 less for each) the working counter is what it must be. */
+static bool find_silent_slaves(cm1e_bus_t *bus, int working_counter)
+{
+    int missing = bus->expected_working_counter - working_counter, takers = 0;
     bus->any_silent = false;
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
-        const uint8_t *inputs = bus->image + bus->output_bytes + slave->placement.input_offset;
-        unsigned same = 0;
-        while (same < slave->placement.input_bytes && inputs[same] == INPUT_PATTERN)
-            same++;
-        const bool silent = error != CM1E_OK && same > 0 && same == slave->placement.input_bytes;
+        const bool silent = is_silent(bus, slave), takes = slave->placement.output_bytes > 0;
         slave->silent_cycles = silent ? slave->silent_cycles + (slave->silent_cycles < UINT32_MAX) : 0;
         bus->any_silent |= silent;
+        missing -= silent ? 1 + 2 * takes : 0;
+        takers += takes && !silent;
     }
+    return missing >= 0 && missing % 2 == 0 && missing <= 2 * takers;
+}
+
+/** A cycle whose working counter is wrong: the inputs of the slaves that took part are none the worse for it, if it can
+ *  be told who did not. */
+static void take_slave_by_slave(cm1e_bus_t *bus, int working_counter)
+{
+    bus->partly_fresh = find_silent_slaves(bus, working_counter);
+    for (uint32_t i = 0; i < bus->slave_count && bus->partly_fresh; i++) {
+        const cm1e_slave_placement_t *placement = &bus->slaves[i].placement;
+        if (bus->slaves[i].silent_cycles == 0)
+            memcpy(bus->inputs + placement->input_offset, bus->image + bus->output_bytes + placement->input_offset,
+                   placement->input_bytes);
+    }
+}
+
+static void forget_silence(cm1e_bus_t *bus)
+{
+    for (uint32_t i = 0; i < bus->slave_count && bus->any_silent; i++)
+        bus->slaves[i].silent_cycles = 0;
+    bus->any_silent = false;
 }
 
 /** What a received process image is worth. */
@@ -30,14 +58,14 @@ static cm1e_error_t judge(cm1e_bus_t *bus, int working_counter)
         bus->counters.lost_frames++;
         return CM1E_ERROR_BUS_LOST;
     }
-    if (working_counter != bus->expected_working_counter) {
-        bus->counters.working_counter_errors++;
-        return CM1E_ERROR_BUS_WORKING_COUNTER;
-    }
     /* No slave changes outputs on their way. If they are not those that left, neither the inputs can be believed. */
     if (memcmp(bus->image, bus->sent_outputs, bus->output_bytes) != 0) {
         bus->counters.lost_frames++;
         return CM1E_ERROR_BUS_LOST;
+    }
+    if (working_counter != bus->expected_working_counter) {
+        bus->counters.working_counter_errors++;
+        return CM1E_ERROR_BUS_WORKING_COUNTER;
     }
     return CM1E_OK;
 }
@@ -48,10 +76,14 @@ cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus)
         return CM1E_ERROR_STATE;
     cm1e_bus_enter(bus);
     bus->in_flight = false;
-    const cm1e_error_t error = judge(bus, cm1e_soem_receive_process_data(bus->soem, bus->config.frame_timeout_ns));
+    const int working_counter = cm1e_soem_receive_process_data(bus->soem, bus->config.frame_timeout_ns);
+    const cm1e_error_t error = judge(bus, working_counter);
     bus->counters.cycles++;
-    note_silent_slaves(bus, error);
+    bus->partly_fresh = false;
+    if (error == CM1E_ERROR_BUS_WORKING_COUNTER)
+        take_slave_by_slave(bus, working_counter);
     if (error == CM1E_OK) {
+        forget_silence(bus);
         memcpy(bus->inputs, bus->image + bus->output_bytes, bus->input_bytes);
         bus->bad_cycles = 0;
     } else {

@@ -60,6 +60,7 @@ cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position
         return (cm1e_slave_watch_t){.lost = true};
     cm1e_slave_watch_t watch = slave->watch;
     watch.silent = slave->silent_cycles >= bus->config.lost_cycles_limit;
+    watch.fresh = bus->last_error == CM1E_OK || (bus->partly_fresh && slave->silent_cycles == 0);
     return watch;
 }
 

@@ -84,6 +84,8 @@ void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
         fault->device_code = drive->feedback.error_code;
     fault->slave_lost |= drive->watch.lost;
     fault->slave_deaf |= drive->watch.lost || drive->watch.silent;
+    /* And nobody would see it hear again while the working counter stays wrong. */
+    fault->slave_deaf |= fault->error == CM1E_ERROR_BUS_WORKING_COUNTER && error == CM1E_ERROR_BUS_LOST;
     if (!drive_operational(drive)) {
         fault->al_state = drive->watch.al_state;
         fault->al_status_code = drive->watch.al_status_code;
@@ -127,7 +129,7 @@ static void latch_faults(cm1e_drive_t *drive)
         cm1e_drive_fail(drive, error);
 }
 
-/* No mode: under way over SDO, and nobody knows whether the old one still acts. */
+/* No mode: under way over SDO, and nobody knows whether the old or the new one acts; a target that stands is right. */
 static bool may_hold_position(int8_t mode)
 {
     return mode == CM1E_MODE_CSP || mode == CM1E_MODE_PP || mode == CM1E_MODE_NONE;
@@ -139,11 +141,14 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
     drive->now_ns = now_ns;
     drive->watch = cm1e_bus_slave_watch(drive->bus, drive->position);
     cm1e_drive_mode_step(drive);
-    if (bus_ok)
+    f->fresh = bus_ok || drive->watch.fresh;
+    if (f->fresh)
         cm1e_drive_decode(drive);
     f->online = bus_ok && drive_operational(drive);
     if (f->state != OPERATION_ENABLED || !may_hold_position(f->mode))
         drive->target_holds = false;
+    else if (f->mode == CM1E_MODE_NONE)
+        drive->target_holds = true;
     if (drive->reset_phase != RESET_IDLE) {
         cm1e_drive_reset_step(drive);
         f->enabled = false;

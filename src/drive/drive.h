@@ -35,7 +35,8 @@ typedef struct cm1e_drive_command {
 
 /** What the drive shows, fresh after cm1e_drive_read(). */
 typedef struct cm1e_drive_feedback {
-    bool online;                    /**< the inputs of this cycle are valid */
+    bool online;                    /**< the inputs of this cycle are valid, and the bus is well */
+    bool fresh;                     /**< the inputs are of this cycle, though something on the bus may be wrong */
     uint16_t statusword, error_code;
     cm1e_fsa_state_t state;
     int8_t mode;                    /**< 0x6061 */

@@ -252,8 +252,10 @@ START_TEST(random_frame_faults_never_bring_inputs_of_another_cycle)
         const cm1e_error_t error = cm1e_bus_receive(bus);
         ck_assert_int_le(now_of(bus) - begin_ns, 250000);
         const uint32_t mark = cm1e_get_u32(cm1e_bus_inputs(bus) + in);
+        /* A wrong working counter may still tell that only others were missing. */
+        const bool fresh = error == CM1E_OK || (error == CM1E_ERROR_BUS_WORKING_COUNTER && mark == n - 1);
         if (n > 1)
-            ck_assert_uint_eq(mark, error == CM1E_OK ? n - 1 : last);
+            ck_assert_uint_eq(mark, fresh ? n - 1 : last);
         last = mark;
         good += error == CM1E_OK;
         cm1e_put_u32(cm1e_bus_outputs(bus) + out, n);

@@ -45,7 +45,8 @@ typedef struct player {
     bool edge;                      /**< of any block in this cycle */
     int error_cycles, off_cycles, rest_cycles;
     unsigned enablings;
-    double step_before;
+    double step_before, set_before;
+    bool found_again;               /**< the set-point, in ErrorStop, where the motor was */
     double lowest, highest;         /**< u; where the set-point may be */
     unsigned new_beginnings;
     int undisturbed_cycles;
@@ -345,10 +346,14 @@ static void judge_limits(uint32_t n, const cm1e_axis_info_t *info)
     const double lower = axis->software_limit_negative, upper = axis->software_limit_positive, set = info->set_position;
     if (lower == 0 && upper == 0)
         return;
-    const double tolerance = 0.02 / axis->counts_per_unit;
+    const double tolerance = (info->set_velocity == 0 ? 50 : 0.02) / axis->counts_per_unit;
     const bool braking_anew = info->state == CM1E_AXIS_ERROR_STOP && info->error != CM1E_ERROR_AXIS_POSITION_RANGE;
     const bool not_yet = info->state == CM1E_AXIS_DISABLED && info->set_velocity == 0; /* shows the actual position */
-    const bool ours = w->holding && info->state != CM1E_AXIS_HOMING && !braking_anew && !not_yet;
+    const double step = axis->max_velocity * 1e-9 * (double)bench.config.cycle_time_ns;
+    p->found_again = info->state == CM1E_AXIS_ERROR_STOP && (p->found_again || fabs(set - p->set_before) > 1.5 * step);
+    const bool homing = info->state == CM1E_AXIS_HOMING || info->mode != w->mode;
+    const bool ours = w->holding && !homing && !braking_anew && !not_yet && !p->found_again;
+    p->set_before = set;
     const bool at_rest = info->state == CM1E_AXIS_STANDSTILL && info->set_velocity == 0;
     if (!ours || at_rest) {
         MUST(&bench, !ours || !w->step || (set >= p->lowest && set <= p->highest), "axis %u: ended at %.6f u", n, set);
@@ -362,7 +367,7 @@ static void judge_limits(uint32_t n, const cm1e_axis_info_t *info)
 static void judge_error(uint32_t n, const cm1e_axis_info_t *info)
 {
     player_t *p = &players[n];
-    char text[512];
+    char text[1024];
     MUST(&bench, (info->error != CM1E_OK) == (info->state == CM1E_AXIS_ERROR_STOP), "axis %u: %s with error %d", n,
          cm1e_axis_state_name(info->state), info->error);
     if (info->state != CM1E_AXIS_ERROR_STOP || ++p->error_cycles != 10)
