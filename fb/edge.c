@@ -80,6 +80,7 @@ void fb_started(cm1e_fb_private_t *fb, cm1e_error_t error)
 void fb_polled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error)
 {
     switch (state) {
+    case CM1E_COMMAND_BUFFERED:
     case CM1E_COMMAND_ACTIVE: break;
     case CM1E_COMMAND_DONE: set_state(fb, FB_DONE, CM1E_OK); break;
     case CM1E_COMMAND_ERROR: set_state(fb, FB_ERROR, error); break;

@@ -15,7 +15,7 @@ void MC_MoveVelocity(MC_MoveVelocity_t *fb)
                                                    fb_refuse_continuous_update(fb->ContinuousUpdate));
     const fb_outputs_t out = fb_outputs(&fb->Private);
     /* 2.4.1: InVelocity speaks of the set-point, may fall and rise again, and ends neither Busy nor Active. */
-    fb->InVelocity = out.busy && status.in_velocity;
+    fb->InVelocity = out.busy && status.reached;
     fb->Busy = fb->Active = out.busy;
     fb->CommandAborted = out.aborted;
     fb->Error = out.error;

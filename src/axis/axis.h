@@ -16,28 +16,46 @@ typedef struct cm1e_axis cm1e_axis_t;
 typedef enum cm1e_command_kind {
     CM1E_COMMAND_MOVE_ABSOLUTE = 0,
     CM1E_COMMAND_MOVE_RELATIVE,
+    CM1E_COMMAND_MOVE_ADDITIVE,
     CM1E_COMMAND_MOVE_VELOCITY,
+    CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE,
+    CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE,
+    CM1E_COMMAND_PROFILE,           /**< a table of the application: position, velocity or acceleration over time */
     CM1E_COMMAND_HALT,
     CM1E_COMMAND_STOP,
-    CM1E_COMMAND_HOME,
+    CM1E_COMMAND_HOME,              /**< the drive's own routine */
+    CM1E_COMMAND_HOMING_STEP,       /**< Part 5, done by the axis: see `step` */
+    CM1E_COMMAND_MOVE_SUPERIMPOSED, /**< a second motion on top: never the active command, it has a record of its own */
+    CM1E_COMMAND_HALT_SUPERIMPOSED,
     CM1E_COMMAND_KIND_COUNT,
 } cm1e_command_kind_t;
+
+typedef struct cm1e_homing_step cm1e_homing_step_t;
+typedef struct cm1e_axis_table cm1e_axis_table_t;
 
 /** A motion command as a function block posts it. Zero acceleration, deceleration or jerk: the axis's maximum. */
 typedef struct cm1e_axis_command {
     cm1e_command_kind_t kind;
-    double position;       /**< u: target, or distance */
-    double velocity, acceleration, deceleration, jerk;
+    double position;       /**< u: target, distance, or position to set */
+    double velocity;       /**< u/s; MOVE_SUPERIMPOSED: VelocityDiff */
+    double end_velocity;   /**< u/s, signed; MOVE_CONTINUOUS_*: EndVelocity */
+    double acceleration, deceleration, jerk;
     MC_DIRECTION direction;
     MC_BUFFER_MODE buffer_mode;
     const cm1e_homing_config_t *homing; /**< HOME: parameters, copied; NULL: the axis's configured ones */
+    const cm1e_homing_step_t *step;     /**< HOMING_STEP: copied */
+    const cm1e_axis_table_t *table;     /**< PROFILE: copied as segments when the command is taken */
 } cm1e_axis_command_t;
+
+/** Commands that wait behind the active one; one more is CM1E_ERROR_FULL. */
+enum { CM1E_AXIS_BUFFER_DEPTH = 8 };
 
 /** 0 is no command. */
 typedef uint32_t cm1e_command_id_t;
 
 typedef enum cm1e_command_state {
     CM1E_COMMAND_UNKNOWN = 0, /**< forgotten: too many commands since */
+    CM1E_COMMAND_BUFFERED,    /**< waits behind others: Busy, not Active */
     CM1E_COMMAND_ACTIVE,
     CM1E_COMMAND_DONE,
     CM1E_COMMAND_ABORTED,
@@ -47,7 +65,8 @@ typedef enum cm1e_command_state {
 typedef struct cm1e_command_status {
     cm1e_command_state_t state;
     cm1e_error_t error;   /**< with CM1E_COMMAND_ERROR */
-    bool in_velocity;     /**< MOVE_VELOCITY: set velocity = commanded velocity */
+    bool reached;         /**< InVelocity, InEndVelocity, ProfileCompleted: set value = commanded value */
+    double covered;       /**< MOVE_SUPERIMPOSED: CoveredDistance, u */
 } cm1e_command_status_t;
 
 /** Makes the axis of drive `index` and registers its handle. @rt init */
@@ -62,8 +81,16 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
 /** Next set-point, state diagram, drive outputs. @rt cycle */
 void cm1e_axis_outputs(cm1e_axis_t *axis);
 
-/** Starts a command or refuses it (then *id is 0). @rt cycle */
+/** Starts a command or refuses it (then *id is 0 and nothing has changed). Kinds that the axis does not know how to
+ *  do yet are CM1E_ERROR_UNSUPPORTED. @rt cycle */
 cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+/** ContinuousUpdate (2.4.6): the present inputs of a command that is still buffered or active; relative values count
+ *  from where the command began. A refused update changes nothing: the motion goes on by the last good inputs, and the
+ *  error is for the block to show. @rt cycle */
+cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command);
+/** MC_SetOverride: factors on the velocity (0 ... 1; 0: the axis stands, but not in Standstill), on acceleration and
+ *  deceleration, and on jerk (above 0 ... 1) of the commands. Kept until changed. @rt cycle */
+cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double acceleration, double jerk);
 cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_command_id_t id);
 /** MC_Stop.Execute is (still) TRUE: while it is, the axis stays Stopping. @rt cycle */
 void cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold);

@@ -18,7 +18,7 @@ void cm1e_axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_e
         record->error = error;
     }
     axis->active = 0;
-    axis->in_velocity = false;
+    axis->reached = false;
 }
 
 static cm1e_command_id_t begin(cm1e_axis_t *axis, cm1e_command_kind_t kind)
@@ -52,8 +52,10 @@ static cm1e_error_t plan_position(const cm1e_axis_t *axis, const cm1e_axis_comma
 
 static cm1e_error_t plan_absolute(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, plan_t *plan)
 {
-    if (!cm1e_axis_position_from_units(axis, command->position, &plan->target))
-        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    const cm1e_error_t error = cm1e_axis_resolve_target(axis, command->position, command->direction, axis->set,
+                                                        axis->set_velocity, &plan->target);
+    if (error)
+        return error;
     return plan_position(axis, command, plan);
 }
 
@@ -152,6 +154,8 @@ static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command,
     const state_rule_t *rule = cm1e_axis_state_rule(axis->state, command->kind);
     if (rule->refusal)
         return rule->refusal;
+    if (command->kind != CM1E_COMMAND_HOME && !planners[command->kind])
+        return CM1E_ERROR_UNSUPPORTED;
     if (axis->state == CM1E_AXIS_STOPPING && axis->stop_held)
         return CM1E_ERROR_AXIS_STOPPING;
     if (!buffer_mode_supported(command))
@@ -193,6 +197,18 @@ cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *comma
     return axis->refusal;
 }
 
+cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
+{
+    (void)command;
+    return record_of(axis, id)->id == id ? CM1E_ERROR_UNSUPPORTED : CM1E_ERROR_INVALID_ARGUMENT;
+}
+
+cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double acceleration, double jerk)
+{
+    (void)axis;
+    return velocity == 1.0 && acceleration == 1.0 && jerk == 1.0 ? CM1E_OK : CM1E_ERROR_UNSUPPORTED;
+}
+
 cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_command_id_t id)
 {
     const command_record_t *record = &axis->records[id % COMMANDS_REMEMBERED];
@@ -201,7 +217,7 @@ cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_com
     return (cm1e_command_status_t){
         .state = record->state,
         .error = record->error,
-        .in_velocity = id == axis->active && axis->kind == CM1E_COMMAND_MOVE_VELOCITY && axis->in_velocity,
+        .reached = id == axis->active && axis->kind == CM1E_COMMAND_MOVE_VELOCITY && axis->reached,
     };
 }
 

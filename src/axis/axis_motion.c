@@ -12,7 +12,7 @@ void cm1e_axis_run_profile(cm1e_axis_t *axis, const cm1e_profile_t *profile, pos
     axis->base = axis->set;
     axis->target = target;
     axis->profile_cycles = 0;
-    axis->in_velocity = false;
+    axis->reached = false;
     axis->activity = ACTIVITY_PROFILE;
 }
 
@@ -110,7 +110,7 @@ static void profile_step(cm1e_axis_t *axis)
     axis->set = cm1e_position_plus(axis->base, next.position * axis->scale);
     axis->set_velocity = next.velocity;
     axis->set_acceleration = ended ? 0.0 : next.acceleration;
-    axis->in_velocity = ended;
+    axis->reached = ended;
     if (next.velocity != 0.0)
         axis->positive_before = next.velocity > 0.0;
     if (!cm1e_axis_position_in_range(axis->set))

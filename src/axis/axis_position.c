@@ -45,6 +45,15 @@ bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, positi
     return cm1e_axis_position_in_range(*position);
 }
 
+cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, MC_DIRECTION direction,
+                                      position_t from, double velocity, position_t *target)
+{
+    (void)direction;
+    (void)from;
+    (void)velocity;
+    return cm1e_axis_position_from_units(axis, position, target) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+}
+
 /* Differences of wrapping counts are exact as long as the motor moves less than half the range between two looks. */
 void cm1e_axis_track(cm1e_axis_t *axis)
 {

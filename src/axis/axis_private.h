@@ -100,7 +100,7 @@ struct cm1e_axis {
     cm1e_command_id_t last_id;
     cm1e_command_id_t active;       /**< 0: none */
     cm1e_command_kind_t kind;       /**< of the active one */
-    bool in_velocity, positive_before;
+    bool reached, positive_before;
     cm1e_error_t refusal;           /**< why the last command was refused, for the text; CM1E_OK: it was not */
     cm1e_axis_command_t refused;    /**< what it asked for */
     cm1e_command_id_t stop;         /**< whose MC_Stop holds the axis in Stopping */
@@ -126,6 +126,10 @@ double cm1e_position_minus(position_t a, position_t b);
 double cm1e_axis_units(const cm1e_axis_t *axis, position_t position);
 /** FALSE: not finite, or farther away than the axis counts. */
 bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position);
+/** Where a command to `position` (u) ends that begins at `from` with `velocity` (u/s): on a linear axis there,
+ *  whatever the direction. */
+cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, MC_DIRECTION direction,
+                                      position_t from, double velocity, position_t *target);
 bool cm1e_axis_position_in_range(position_t position);
 /** u; about where that range ends. */
 double cm1e_axis_farthest(const cm1e_axis_t *axis);

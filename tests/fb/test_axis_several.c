@@ -59,7 +59,7 @@ START_TEST(test_fault_of_one_axis_leaves_the_others_alone)
     ck_assert_msg(strstr(text_of(1), config.axes[1].name[0] ? config.axes[1].name : "axis2"), "%s", text_of(1));
     for (int i = 0; i < AXES; i += 2) {
         ck_assert_int_eq(info_of(i).state, CM1E_AXIS_CONTINUOUS_MOTION);
-        ck_assert(cm1e_axis_command_status(axes[i], ids[i]).in_velocity);
+        ck_assert(cm1e_axis_command_status(axes[i], ids[i]).reached);
         ck_assert_double_eq_tol(probe_of(i).velocity_counts_per_s, (1.0 + i) * 50000.0, 2500.0);
     }
     cm1e_axis_reset(axes[1]);

@@ -355,11 +355,11 @@ START_TEST(test_in_velocity_follows_the_set_point_and_leaves_busy_and_active)
     EXPECT(block->call(&x, TRUE), BUSY);
     for (int execute = TRUE; execute >= FALSE; execute--)
         for (size_t i = 0; i < sizeof in_velocity; i++) {
-            axis_x->status[axis_x->id % FAKE_COMMANDS].in_velocity = in_velocity[i];
+            axis_x->status[axis_x->id % FAKE_COMMANDS].reached = in_velocity[i];
             EXPECT(block->call(&x, (BOOL)execute), in_velocity[i] ? "DBA.." : BUSY);
         }
     axis_x->status[axis_x->id % FAKE_COMMANDS] =
-        (cm1e_command_status_t){.state = CM1E_COMMAND_ABORTED, .in_velocity = true};
+        (cm1e_command_status_t){.state = CM1E_COMMAND_ABORTED, .reached = true};
     EXPECT(block->call(&x, FALSE), ABORTED);
     EXPECT(block->call(&x, FALSE), NONE);
 }
@@ -550,7 +550,7 @@ START_TEST(test_random_calls_keep_the_rules)
             if (block->done_is_in_velocity && state == CM1E_COMMAND_DONE)
                 state = CM1E_COMMAND_ACTIVE; /* a velocity command has no end of its own */
             fake_finish(&fake_axes[i], state, state == CM1E_COMMAND_ERROR ? CM1E_ERROR_AXIS_LAG : CM1E_OK);
-            fake_axes[i].status[fake_axes[i].id % FAKE_COMMANDS].in_velocity = random_below(2);
+            fake_axes[i].status[fake_axes[i].id % FAKE_COMMANDS].reached = random_below(2);
             fake_axes[i].start_error = random_below(5) ? CM1E_OK : CM1E_ERROR_AXIS_STATE;
             fake_axes[i].info.state = random_below(2) ? CM1E_AXIS_STOPPING : CM1E_AXIS_STANDSTILL;
         }

@@ -168,7 +168,7 @@ static void test_turning_for_ever_passes_the_range_of_the_device_many_times(void
     bench_forget_steps();
     bench_cycles(5000);
     TEST_ASSERT_EQUAL_INT64(2500, worst_step); /* exactly 2,500,000 counts/s, no jitter after 30 days */
-    TEST_ASSERT_TRUE(cm1e_axis_command_status(axis, id).in_velocity);
+    TEST_ASSERT_TRUE(cm1e_axis_command_status(axis, id).reached);
     TEST_ASSERT_EQUAL_INT(CM1E_OK, bench_info().error);
     const double there = bench_info().set_position;
     bench_wait(move_by(-1.0, 50.0), 10000);
@@ -285,10 +285,10 @@ static void test_velocity_signs_and_directions(void)
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const cm1e_command_id_t id = bench_start_command(&(cm1e_axis_command_t){
             .kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = rows[i].velocity, .direction = rows[i].direction});
-        TEST_ASSERT_FALSE(cm1e_axis_command_status(axis, id).in_velocity);
+        TEST_ASSERT_FALSE(cm1e_axis_command_status(axis, id).reached);
         bench_cycles(500);
         const cm1e_command_status_t status = cm1e_axis_command_status(axis, id);
-        TEST_ASSERT_TRUE(status.in_velocity);
+        TEST_ASSERT_TRUE(status.reached);
         TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, status.state);
         TEST_ASSERT_EQUAL_DOUBLE(rows[i].expected, bench_info().set_velocity);
         TEST_ASSERT_EQUAL_DOUBLE(0.0, bench_info().set_acceleration);

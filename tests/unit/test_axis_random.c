@@ -86,7 +86,7 @@ static void post(void)
 
 static void programs(void)
 {
-    if (draw(40) == 0)
+    if (draw(25) == 0)
         post();
     if (draw(30) == 0)
         cm1e_axis_hold_stop(axis, ids[draw(IDS)], draw(4) == 0);
