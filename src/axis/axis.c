@@ -110,12 +110,17 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
     watch_lag(axis);
 }
 
-void cm1e_axis_outputs(cm1e_axis_t *axis)
+void cm1e_axis_advance(cm1e_axis_t *axis)
 {
     cm1e_axis_reset_step(axis);
     cm1e_axis_power_step(axis);
     cm1e_axis_motion_step(axis);
     cm1e_axis_enable_step(axis);
+}
+
+void cm1e_axis_outputs(cm1e_axis_t *axis)
+{
+    cm1e_axis_advance(axis);
     cm1e_axis_write_set_point(axis);
     cm1e_drive_write(&axis->drive);
 }

@@ -120,6 +120,10 @@ struct cm1e_axis {
     homing_t home;
 };
 
+/* axis.c */
+/** The axis's own half of cm1e_axis_outputs(): state diagram and set-point, before they become the drive's. */
+void cm1e_axis_advance(cm1e_axis_t *axis);
+
 /* axis_position.c */
 position_t cm1e_position_plus(position_t position, double counts);
 double cm1e_position_minus(position_t a, position_t b);
