@@ -52,6 +52,16 @@ typedef struct cm1e_homing_config {
     double timeout_s;    /**< s; 0: 60 */
 } cm1e_homing_config_t;
 
+/** Which of the inputs IN1 ... IN4 of the motor is which switch; 0: none. The switches are shown by MC_ReadAxisInfo and
+ *  used by the homing steps of the host; by themselves they stop nothing. */
+typedef struct cm1e_input_config {
+    uint8_t limit_positive;         /**< 1 ... 4; hit in the axis's positive direction */
+    uint8_t limit_negative;         /**< 1 ... 4, another one than limit_positive */
+    uint8_t home;                   /**< 1 ... 4; may be the input of a limit switch */
+    bool limits_normally_closed;    /**< TRUE: a limit switch is active while its input is off (a broken wire too) */
+    bool home_normally_closed;      /**< the same for the home switch */
+} cm1e_input_config_t;
+
 /** The mechanics that the simulator puts behind one axis; ignored on a wire. Positions in counts of the motor shaft,
  *  measured from the power-on position. All zero: a linear axis with a hard stop 250,000 counts to either side, input 2
  *  active beyond +150,000 counts and input 3 active beyond -150,000 counts, a light load. */
@@ -87,6 +97,8 @@ typedef struct cm1e_axis_config {
     bool velocity_in_counts_per_ms;  /**< states the unit of 0x60FF/0x606C where object 0x100A cannot be read */
     bool velocity_unit_stated;       /**< TRUE: the field above is used instead of the firmware version */
     bool acceleration_in_kpulses;    /**< TRUE: 0x6083/0x6084 take kpulses/s2 on the wire (UG 7.3.17/6.2.3) */
+    double jog_slow, jog_fast;       /**< u/s, MC_Jog's own velocities; 0: 5 % and 25 % of the maximum velocity */
+    cm1e_input_config_t inputs;
     cm1e_homing_config_t homing;
     cm1e_sim_axis_config_t sim;
 } cm1e_axis_config_t;

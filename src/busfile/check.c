@@ -302,6 +302,33 @@ static bool check_homing(const check_t *check)
     return true;
 }
 
+static bool check_inputs(const check_t *check)
+{
+    const cm1e_input_config_t *inputs = &check->axis->inputs;
+    const struct {
+        const char *key;
+        unsigned number;
+    } switches[] = {{"inputs.limit_positive", inputs->limit_positive},
+                    {"inputs.limit_negative", inputs->limit_negative}, {"inputs.home", inputs->home}};
+    for (int i = 0; i < 3; i++)
+        if (switches[i].number > 4)
+            return axis_wrong(check, switches[i].key, "is %u; expected 1 ... 4", switches[i].number);
+    if (inputs->limit_negative && inputs->limit_negative == inputs->limit_positive)
+        return axis_wrong(check, "inputs.limit_negative", "is %u, the input of the other limit switch too; expected "
+                          "an input of its own, or nobody knows which way leads off it", inputs->limit_negative);
+    return true;
+}
+
+static bool check_jog(const check_t *check)
+{
+    const cm1e_axis_config_t *axis = check->axis;
+    const double most = axis->max_velocity > 0 ? axis->max_velocity * check->counts_per_unit
+                                               : check->motor->max_velocity_counts_per_s;
+    if (axis->jog_slow != 0 && !check_range(check, "jog.slow", axis->jog_slow, IN_COUNTS, 1, most, "counts/s"))
+        return false;
+    return axis->jog_fast == 0 || check_range(check, "jog.fast", axis->jog_fast, IN_COUNTS, 1, most, "counts/s");
+}
+
 static bool check_sim(const check_t *check)
 {
     const cm1e_sim_axis_config_t *sim = &check->axis->sim;
@@ -323,7 +350,8 @@ static bool check_axis(check_t *check)
     if (velocity != 0 && !check_range(check, "limits.velocity", velocity, IN_COUNTS, 1,
                                       check->motor->max_velocity_counts_per_s, "counts/s"))
         return false;
-    return check_numbers(check) && check_software_limits(check) && check_homing(check) && check_sim(check);
+    return check_numbers(check) && check_software_limits(check) && check_homing(check) &&
+           check_inputs(check) && check_jog(check) && check_sim(check);
 }
 
 bool cm1e_busfile_check(const cm1e_bus_config_t *config, cm1e_busfile_problem_t *problem)

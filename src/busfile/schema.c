@@ -81,6 +81,20 @@ static const cyaml_schema_field_t homing_fields[] = {
     AXIS_FLOAT("timeout_s", homing.timeout_s),
     CYAML_FIELD_END,
 };
+#define AXIS_INPUT(key, member) CYAML_FIELD_UINT(key, OPTIONAL, cm1e_busfile_axis_t, axis.inputs.member)
+static const cyaml_schema_field_t input_fields[] = {
+    AXIS_INPUT("limit_positive", limit_positive),
+    AXIS_INPUT("limit_negative", limit_negative),
+    AXIS_INPUT("home", home),
+    AXIS_BOOL("limits_normally_closed", inputs.limits_normally_closed),
+    AXIS_BOOL("home_normally_closed", inputs.home_normally_closed),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_field_t jog_fields[] = {
+    AXIS_FLOAT("slow", jog_slow),
+    AXIS_FLOAT("fast", jog_fast),
+    CYAML_FIELD_END,
+};
 static const cyaml_schema_field_t sim_fields[] = {
     AXIS_FLOAT("load_inertia_kgm2", sim.load_inertia),
     AXIS_FLOAT("friction_nm", sim.friction),
@@ -105,6 +119,8 @@ static const cyaml_schema_field_t axis_fields[] = {
     AXIS_GROUP("unit", unit_fields),
     AXIS_GROUP("limits", limit_fields),
     AXIS_GROUP("software_limits", software_limit_fields),
+    AXIS_GROUP("jog", jog_fields),
+    AXIS_GROUP("inputs", input_fields),
     AXIS_GROUP("homing", homing_fields),
     AXIS_GROUP("wire", wire_fields),
     AXIS_GROUP("sim", sim_fields),
@@ -132,6 +148,7 @@ const cm1e_busfile_integer_range_t cm1e_busfile_integer_ranges[] = {
     {"alias", 1, 65535},
     {"explicit_id", 1, 254}, /* UG 4.2.3 */
     {"method", -6, 0},       /* UG 6.2.4 */
+    {"limit_positive", 1, 4}, {"limit_negative", 1, 4}, {"home", 1, 4},
     {NULL, INT32_MIN, INT32_MAX},
 };
 

@@ -182,6 +182,8 @@ static const struct {
     NUMBER(sim.stop_negative, "sim.stop_negative"),
     NUMBER(sim.sensor_input2, "sim.sensor_input2"),
     NUMBER(sim.sensor_input3, "sim.sensor_input3"),
+    NUMBER(jog_slow, "jog.slow"),
+    NUMBER(jog_fast, "jog.fast"),
 };
 enum { NUMBERS = sizeof numbers / sizeof numbers[0] };
 
@@ -220,7 +222,7 @@ static void test_bounds_are_the_devices_in_counts(void)
         {1, 500, 500.0002},        {1, 0.0002, 0.00001},     {8, 655.34, 655.3402},  {8, -655.34, -655.3402},
         {9, 0.2, 0.1998},          {9, 100, 100.0002},       {10, 0.2, 0.1998},      {10, 1000, 1000.0002},
         {11, 10, 9.999},           {11, 100, 100.001},       {2, 0.2, 0.1998},       {3, 0.2, 0.1998},
-        {12, 0.1, 0.0999},         {12, 3600, 3600.1},
+        {12, 0.1, 0.0999},         {12, 3600, 3600.1},       {20, 500, 500.0002},    {21, 0.0002, 0.00001},
     };
     for (size_t i = 0; i < sizeof bounds / sizeof bounds[0]; i++) {
         setUp();
@@ -244,6 +246,30 @@ static void test_peak_speed_is_the_motors(void)
     expect_good();
     config.axes[0].max_velocity = 33.34;
     expect_wrong("limits.velocity");
+}
+
+static void test_jog_velocities_are_within_the_axis_s_own_maximum(void)
+{
+    config.axes[0].max_velocity = 40;
+    config.axes[0].jog_slow = config.axes[0].jog_fast = 40;
+    expect_good();
+    config.axes[0].jog_fast = 40.0002;
+    expect_wrong("jog.fast is 40.0002, 200001 counts/s; expected 0.0002 ... 40");
+}
+
+static void test_switches_are_on_inputs_of_the_motor_and_the_limit_switches_on_two(void)
+{
+    cm1e_input_config_t *inputs = &config.axes[0].inputs;
+    *inputs = (cm1e_input_config_t){.limit_positive = 4, .limit_negative = 1, .home = 4};
+    expect_good(); /* a limit switch may be the home switch */
+    inputs->limit_negative = 4;
+    expect_wrong("inputs.limit_negative is 4, the input of the other");
+    *inputs = (cm1e_input_config_t){.limit_positive = 5};
+    expect_wrong("inputs.limit_positive is 5");
+    *inputs = (cm1e_input_config_t){.limit_negative = 255};
+    expect_wrong("inputs.limit_negative is 255");
+    *inputs = (cm1e_input_config_t){.home = 5};
+    expect_wrong("inputs.home is 5; expected 1 ... 4");
 }
 
 static void test_software_limits_both_zero_are_none(void)
@@ -338,6 +364,8 @@ int main(void)
     RUN_TEST(test_only_positions_may_be_negative);
     RUN_TEST(test_bounds_are_the_devices_in_counts);
     RUN_TEST(test_peak_speed_is_the_motors);
+    RUN_TEST(test_jog_velocities_are_within_the_axis_s_own_maximum);
+    RUN_TEST(test_switches_are_on_inputs_of_the_motor_and_the_limit_switches_on_two);
     RUN_TEST(test_software_limits_both_zero_are_none);
     RUN_TEST(test_offset_into_the_hard_stop_is_refused);
     RUN_TEST(test_old_firmware_runs_at_1_ms_only);

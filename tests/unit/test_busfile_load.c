@@ -98,6 +98,13 @@ static void test_documented_example_fills_every_field_of_an_axis(void)
     ASSERT_DOUBLE(400, axis->homing.acceleration);
     ASSERT_DOUBLE(35, axis->homing.torque);
     ASSERT_DOUBLE(30, axis->homing.timeout_s);
+    ASSERT_DOUBLE(5.5, axis->jog_slow);
+    ASSERT_DOUBLE(60, axis->jog_fast);
+    TEST_ASSERT_EQUAL(2, axis->inputs.limit_positive);
+    TEST_ASSERT_EQUAL(3, axis->inputs.limit_negative);
+    TEST_ASSERT_EQUAL(4, axis->inputs.home);
+    TEST_ASSERT_TRUE(axis->inputs.limits_normally_closed);
+    TEST_ASSERT_FALSE(axis->inputs.home_normally_closed);
     TEST_ASSERT_TRUE(axis->velocity_unit_stated);
     TEST_ASSERT_FALSE(axis->velocity_in_counts_per_ms);
     TEST_ASSERT_TRUE(axis->acceleration_in_kpulses);
