@@ -230,7 +230,7 @@ static void prepare(motion_program_t *p, const motion_options_t *options)
 static int report(const motion_program_t *p, const char *what)
 {
     const double seconds = (double)(p->ended_ns - p->started_ns) * 1e-9;
-    char text[512] = "";
+    char text[CM1E_AXIS_ERROR_TEXT_BYTES] = "";
     cm1e_axis_error_text(p->axis, text, sizeof text);
     if (p->options->common.json)
         print_json(json_pack("{s:s, s:s, s:b, s:f, s:f, s:f, s:s, s:s}", "axis", cm1e_axis_name(p->axis), "command",

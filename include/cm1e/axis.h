@@ -57,8 +57,11 @@ typedef struct cm1e_axis_info {
 cm1e_error_t cm1e_axis_read(AXIS_REF_t axis, cm1e_axis_info_t *info);
 /** The configured name; "" for a handle that names no axis. @rt any */
 const char *cm1e_axis_name(AXIS_REF_t axis);
+/** Large enough for every text of cm1e_axis_error_text(). */
+enum { CM1E_AXIS_ERROR_TEXT_BYTES = 1024 };
 /** The axis's error as sentences: what happened, with which numbers, what to do. Without an error: why the last command
- *  was refused or the last homing could not start, and what would be right; "" where nothing was. @rt block */
+ *  was refused or the last homing could not start, and what would be right; "" where nothing was. A buffer that is
+ *  too small gets the beginning. @rt block */
 void cm1e_axis_error_text(AXIS_REF_t axis, char *text, size_t size);
 
 #ifdef __cplusplus

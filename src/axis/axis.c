@@ -96,6 +96,7 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
         cm1e_axis_track(axis);
     if (drive->watch.lost || (drive->watch.al_state & 0x0F) == CM1E_AL_INIT)
         axis->homed = false; /* it may have been without power, and count from somewhere else now */
+    cm1e_axis_reset_step(axis); /* here, so that no program sees an axis in error whose drive has forgotten why */
     if (cm1e_drive_resetting(drive))
         return;
     if (health && depends_on_bus(axis))
@@ -112,7 +113,6 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
 
 void cm1e_axis_advance(cm1e_axis_t *axis)
 {
-    cm1e_axis_reset_step(axis);
     cm1e_axis_power_step(axis);
     cm1e_axis_motion_step(axis);
     cm1e_axis_enable_step(axis);

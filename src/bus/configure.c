@@ -125,13 +125,31 @@ static cm1e_error_t check_wire_time(const cm1e_bus_t *bus, cm1e_diag_t *diag)
                          (long long)(bus->config.cycle_time_ns / 1000));
 }
 
-static void set_watchdogs(cm1e_bus_t *bus)
+/** One that did not take it might go on for ever when the frames stay away. A single disturbed frame is ridden out. */
+static bool write_word(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, uint16_t offset, uint16_t value)
 {
-    uint8_t divider[2], time[2];
-    cm1e_put_u16(divider, CM1E_WATCHDOG_DIVIDER);
-    cm1e_put_u16(time, CM1E_WATCHDOG_TIME);
-    cm1e_soem_transfer(bus->soem, COMMAND_BWR, 0, REG_WATCHDOG_DIVIDER, divider, sizeof divider);
-    cm1e_soem_transfer(bus->soem, COMMAND_BWR, 0, REG_WATCHDOG_PROCESS_DATA, time, sizeof time);
+    uint8_t data[2];
+    cm1e_put_u16(data, value);
+    for (int tries = 0; tries < 3; tries++) {
+        if (cm1e_soem_transfer(bus->soem, COMMAND_FPWR, slave->facts.station, offset, data, sizeof data) == 1)
+            return true;
+    }
+    return false;
+}
+
+static cm1e_error_t set_watchdogs(cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    char label[CM1E_LABEL_LENGTH];
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        const cm1e_bus_slave_t *slave = &bus->slaves[i];
+        const bool set = write_word(bus, slave, REG_WATCHDOG_DIVIDER, CM1E_WATCHDOG_DIVIDER) &&
+                         write_word(bus, slave, REG_WATCHDOG_PROCESS_DATA, CM1E_WATCHDOG_TIME);
+        if (!set && slave->info.is_cm1e) /* another device may have none */
+            return cm1e_diag_set(diag, CM1E_ERROR_BUS_WORKING_COUNTER, 0,
+                                 "%s does not take the time of its watchdog. Check its cables and its power.",
+                                 cm1e_bus_label_first(bus, slave, label));
+    }
+    return CM1E_OK;
 }
 
 cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag)
@@ -154,10 +172,10 @@ cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag)
         error = map_image(bus, diag);
     if (error == CM1E_OK)
         error = check_wire_time(bus, diag);
-    if (error != CM1E_OK)
-        return error;
-    set_watchdogs(bus);
-    error = cm1e_bus_all_to_state(bus, CM1E_AL_SAFE_OP, CM1E_STATE_TIMEOUT_NS, diag);
+    if (error == CM1E_OK)
+        error = set_watchdogs(bus, diag);
+    if (error == CM1E_OK)
+        error = cm1e_bus_all_to_state(bus, CM1E_AL_SAFE_OP, CM1E_STATE_TIMEOUT_NS, diag);
     if (error == CM1E_OK)
         cm1e_bus_set_phase(bus, BUS_CONFIGURED);
     return error;

@@ -11,6 +11,8 @@
 #define STEP_NS INT64_C(100000000)
 #define SDO_STEP_NS INT64_C(1000000000)
 #define MAPPING_STEP_NS INT64_C(10000000000)
+/** Short: a device that is away has no address to give back. */
+#define RELEASE_NS INT64_C(10000000)
 
 typedef struct cm1e_recovery_action {
     int64_t time_ns;
@@ -48,13 +50,21 @@ static void advance(cm1e_bus_slave_t *slave, int64_t now_ns)
     succeed(slave, slave->al.state, slave->al.code);
 }
 
+/** A device that was given the address and did not prove to be ours may not keep it: ours, plugged in elsewhere, would
+ *  answer at the same one. */
+static bool must_release(const cm1e_recovery_t *recovery)
+{
+    return recovery->address_given && recovery->step >= RECOVERY_ADDRESS && recovery->step <= RECOVERY_SERIAL;
+}
+
 static void fail(cm1e_bus_slave_t *slave, int64_t now_ns)
 {
-    slave->recovery.failed_at = slave->recovery.step;
+    if (slave->recovery.step != RECOVERY_RELEASE)
+        slave->recovery.failed_at = slave->recovery.step;
     cm1e_al_cancel(&slave->al);
     slave->mapping.step = MAPPING_IDLE;
     cm1e_coe_cancel(&slave->coe, CM1E_ERROR_BUS_LOST);
-    enter(slave, RECOVERY_PAUSE, now_ns);
+    enter(slave, must_release(&slave->recovery) ? RECOVERY_RELEASE : RECOVERY_PAUSE, now_ns);
 }
 
 void cm1e_recovery_begin(cm1e_bus_slave_t *slave)
@@ -96,9 +106,25 @@ static void result_find(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64
 static bool next_address(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     (void)now_ns;
+    slave->recovery.address_given = true;
     cm1e_datagram_set(d, COMMAND_APWR, by_place(slave), REG_STATION_ADDRESS, 2);
     cm1e_put_u16(d->data, slave->facts.station);
     return true;
+}
+
+/** By its place: at the address another one may answer too. */
+static bool next_release(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    (void)now_ns;
+    cm1e_datagram_set(d, COMMAND_APWR, by_place(slave), REG_STATION_ADDRESS, 2);
+    cm1e_put_u16(d->data, 0);
+    return true;
+}
+
+static void result_release(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
+{
+    (void)d;
+    enter(slave, RECOVERY_PAUSE, now_ns);
 }
 
 static void result_next_step(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
@@ -339,6 +365,7 @@ static const cm1e_recovery_action_t actions[] = {
     [RECOVERY_WATCHDOG] = {STEP_NS, next_watchdog, result_next_step},
     [RECOVERY_SAFE_OP] = {CM1E_STATE_TIMEOUT_NS, next_safe_op, result_al},
     [RECOVERY_OP] = {CM1E_STATE_TIMEOUT_NS, next_op, result_al},
+    [RECOVERY_RELEASE] = {RELEASE_NS, next_release, result_release},
 };
 
 bool cm1e_recovery_next(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
@@ -350,6 +377,7 @@ bool cm1e_recovery_next(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now
         if (now_ns < recovery->deadline_ns)
             return false;
         recovery->attempts++;
+        recovery->address_given = false;
         enter(slave, RECOVERY_FIND, now_ns);
     } else if (now_ns >= recovery->deadline_ns) {
         fail(slave, now_ns);

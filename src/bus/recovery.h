@@ -33,11 +33,13 @@ typedef enum cm1e_recovery_step {
     RECOVERY_WATCHDOG,
     RECOVERY_SAFE_OP,
     RECOVERY_OP,
+    RECOVERY_RELEASE,        /**< take the station address back from a device that did not prove to be ours */
 } cm1e_recovery_step_t;
 
 typedef struct cm1e_recovery {
     cm1e_recovery_step_t step;
     bool entered;            /**< the sub-machine of this step has been started */
+    bool address_given;      /**< in this attempt */
     int64_t deadline_ns;     /**< of the step; in RECOVERY_PAUSE: its end */
     uint32_t attempts, successes; /**< only grow */
     cm1e_recovery_step_t failed_at; /**< of the last attempt; RECOVERY_IDLE: it did not fail */

@@ -58,14 +58,15 @@ void cm1e_soem_destroy(cm1e_soem_t *soem)
 
 static uint16_t bytes_of(uint32_t bits) { return (uint16_t)((bits + 7) / 8); }
 
-/** SOEM maps what it finds in `Obits`, `SMtype` and `SM`, and asks the slave nothing, when configindex is set. */
+/** SOEM maps what it finds in `Obits`, `SMtype` and `SM`, and asks the slave nothing, when configindex is set. The SII
+ *  says where in the controller's memory, not how: a damaged one could leave out the watchdog trigger of the outputs
+ *  (bit 6), and a motor would go on for ever when the frames stay away. */
 static void set_direction(ec_slavet *slave, int sm, uint8 type, uint16_t bits)
 {
     const cm1e_sync_manager_t *standard = &cm1e_device_sync_managers[sm];
-    if (slave->SM[sm].StartAddr == 0) {
+    if (slave->SM[sm].StartAddr == 0)
         slave->SM[sm].StartAddr = htoes(standard->start);
-        slave->SM[sm].SMflags = htoel(standard->control | (uint32)standard->enable << 16);
-    }
+    slave->SM[sm].SMflags = htoel(standard->control | (uint32)standard->enable << 16);
     slave->SM[sm].SMlength = htoes(bytes_of(bits));
     slave->SMtype[sm] = type;
 }

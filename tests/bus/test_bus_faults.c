@@ -1,6 +1,7 @@
 /* Start-up with a fault at every single frame: it succeeds or ends with an error in words, in bounded time, and no
  * motor moves. And what a slave can refuse is reported in its own words. */
 #include "bus_support.h"
+#include "sim/esc.h"
 
 typedef enum fault_kind {
     LOSE_THERE = 0, LOSE_BACK, COUNT_UP, COUNT_DOWN, COUNT_ZERO, CUT, TWICE, LATE, GARBAGE, KINDS,
@@ -288,6 +289,59 @@ START_TEST(scrambled_sii_never_hangs_nor_overruns)
 }
 END_TEST
 
+/** Where the control byte of a sync manager lies in a SII. */
+static uint8_t *control_in_sii(cm1e_bus_t *bus, unsigned manager)
+{
+    cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(segment_of(bus), 1);
+    uint8_t *place = slave->sii + 0x80;
+    while (cm1e_get_u16(place) != 41)
+        place += 4 + 2 * cm1e_get_u16(place + 2);
+    return place + 4 + 8 * manager + 4;
+}
+
+START_TEST(outputs_trigger_the_watchdog_whatever_the_sii_says)
+{
+    sim_config(1);
+    cm1e_bus_t *bus = open_bus();
+    *control_in_sii(bus, 2) &= (uint8_t)~0x40;
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    const cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(segment_of(bus), 1);
+    ck_assert_uint_eq(slave->memory[ESC_SM + 2 * 8 + 4], 0x64);
+    ck_assert_uint_eq(cm1e_get_u16(slave->memory + ESC_WATCHDOG_DATA), 1000);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+typedef struct deaf_register {
+    uint16_t offset;
+    int times;
+} deaf_register_t;
+
+/** Writes to a register do not arrive, though the frame comes back. */
+static cm1e_tap_verdict_t not_written(void *context, cm1e_tap_frame_t *frame)
+{
+    deaf_register_t *reg = context;
+    const bool is_write = frame->bytes[16] == 5 || frame->bytes[16] == 8;
+    if (frame->direction == CM1E_TAP_SENT && is_write && cm1e_get_u16(frame->bytes + 20) == reg->offset &&
+        reg->times-- > 0)
+        frame->bytes[16] = 0; /* NOP */
+    return CM1E_TAP_PASS;
+}
+
+START_TEST(watchdog_that_is_not_set_is_an_error)
+{
+    deaf_register_t reg = {.offset = _i & 1 ? 0x0400 : 0x0420, .times = _i & 2 ? 2 : 1000};
+    const bool disturbed = (_i & 2) != 0;
+    sim_config(2);
+    cm1e_bus_t *bus = open_bus();
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), not_written, &reg);
+    const cm1e_error_t error = cm1e_bus_start(bus, &diag);
+    ck_assert_int_eq(error, disturbed ? CM1E_OK : CM1E_ERROR_BUS_WORKING_COUNTER);
+    ck_assert_msg(disturbed || strstr(diag.text, "watchdog"), "%s", diag.text);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_faults");
@@ -299,6 +353,8 @@ int main(void)
                         sizeof refusals / sizeof refusals[0]);
     tcase_add_loop_test(tests, damaged_sii_is_refused_and_never_hangs, 0, sizeof damages / sizeof damages[0]);
     tcase_add_loop_test(tests, scrambled_sii_never_hangs_nor_overruns, 0, 40);
+    tcase_add_test(tests, outputs_trigger_the_watchdog_whatever_the_sii_says);
+    tcase_add_loop_test(tests, watchdog_that_is_not_set_is_an_error, 0, 4);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }

@@ -1,5 +1,6 @@
 /* A slave that left the network comes back: reset, power cycle, replug, watchdog; while the others keep running. */
 #include "bus_support.h"
+#include "sim/esc.h"
 
 /** Cycles as a program would run them: whoever is not in OP is asked back. Returns how many it took until all are. */
 static unsigned cycles_until_recovered(cm1e_bus_t *bus, unsigned limit)
@@ -237,6 +238,13 @@ START_TEST(slave_with_other_switches_is_not_taken_for_the_old_one)
     strike(bus, "power-cycle 2 20");
     ck_assert_uint_eq(cycles_until_recovered(bus, 1500), 0);
     ck_assert_uint_le(state_of(bus, 2), CM1E_AL_PRE_OP);
+    unsigned without_address = 0;
+    const cm1e_sim_slave_t *foreign = cm1e_sim_segment_slave(segment_of(bus), 2);
+    for (int n = 0; n < 400; n++) { /* it has ours only while it is asked who it is */
+        cycle(bus);
+        without_address += cm1e_get_u16(foreign->memory + ESC_STATION_ADDRESS) == 0;
+    }
+    ck_assert_uint_gt(without_address, 100);
     simulate(bus, "switches 2 05");
     ck_assert_uint_gt(cycles_until_recovered(bus, 1500), 0);
     check_all_run(bus);

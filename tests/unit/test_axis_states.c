@@ -251,6 +251,25 @@ static void test_reset_leads_to_disabled_and_on_to_standstill_only_with_enable(v
     }
 }
 
+static void test_text_names_the_cause_until_the_reset_is_done(void)
+{
+    char text[CM1E_AXIS_ERROR_TEXT_BYTES];
+    int cycles_in_error = 0;
+    into(CM1E_AXIS_ERROR_STOP);
+    bench_cycles(100);
+    cm1e_axis_reset(axis);
+    for (int n = 0; n < 100; n++) {
+        bench_inputs();
+        cm1e_axis_error_text(cm1e_axis_reference(axis), text, sizeof text);
+        const bool in_error = bench_info().state == CM1E_AXIS_ERROR_STOP;
+        cycles_in_error += in_error;
+        TEST_ASSERT_EQUAL_MESSAGE(in_error, strstr(text, "torque overload") != NULL, text);
+        bench_outputs();
+    }
+    TEST_ASSERT_GREATER_THAN_INT(1, cycles_in_error);
+    TEST_ASSERT_LESS_THAN_INT(100, cycles_in_error);
+}
+
 static void test_reset_outside_error_stop_is_done_and_harmless(void)
 {
     for (int state = 0; state < CM1E_AXIS_ERROR_STOP; state++) {
@@ -481,6 +500,7 @@ int main(void)
     RUN_TEST(test_power_on_again_during_the_ramp_goes_on_to_standstill);
     RUN_TEST(test_error_in_every_state_leads_to_error_stop_and_shows_as_error);
     RUN_TEST(test_reset_leads_to_disabled_and_on_to_standstill_only_with_enable);
+    RUN_TEST(test_text_names_the_cause_until_the_reset_is_done);
     RUN_TEST(test_reset_outside_error_stop_is_done_and_harmless);
     RUN_TEST(test_reset_that_fails_says_so_and_may_be_repeated);
     RUN_TEST(test_reset_during_the_error_ramp_waits_for_its_end);

@@ -326,7 +326,8 @@ static void test_file_that_is_none_is_told(void)
         memset(&config, 0x5A, sizeof config);
         TEST_ASSERT_EQUAL_MESSAGE(paths[i].error, cm1e_bus_config_load(&config, paths[i].path, &diag), paths[i].path);
         TEST_ASSERT_EQUAL_MEMORY(&untouched, &config, sizeof config);
-        TEST_ASSERT_EQUAL_STRING_LEN(paths[i].path, diag.text, strlen(paths[i].path));
+        const size_t length = strlen(paths[i].path), cut = length > 160 ? length - 160 : 0;
+        TEST_ASSERT_TRUE_MESSAGE(strstr(diag.text, paths[i].path + cut) == diag.text + (cut ? 3 : 0), diag.text);
     }
 }
 

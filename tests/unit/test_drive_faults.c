@@ -1,6 +1,7 @@
 /* Latching of faults, what the drive writes then, fault reset, and the words for it. */
 #include <stdlib.h>
 
+#include "cm1e/axis.h"
 #include "drive/drive.h"
 #include "unity.h"
 
@@ -431,6 +432,27 @@ static void test_text_fits_any_buffer_and_is_empty_without_fault(void)
     }
 }
 
+/** The fake's text of an AL status code is shorter than the longest real one (83 characters). */
+static void test_longest_text_fits_the_size_that_is_promised(void)
+{
+    enum { LONGER_AL_TEXT = 90 };
+    char text[2 * CM1E_AXIS_ERROR_TEXT_BYTES];
+    size_t longest = 0;
+    memset(bus.config.axes[0].name, 'n', CM1E_NAME_LENGTH - 1);
+    for (int error = -1; cm1e_error_from_id(cm1e_error_id((cm1e_error_t)error)) == error; error--)
+        for (size_t i = 0; i < cm1e_device_error_count; i++) {
+            drive.fault = (cm1e_drive_fault_t){.error = (cm1e_error_t)error,
+                                               .device_code = cm1e_device_errors[i].code, .statusword = 0xFFFF,
+                                               .mode_commanded = 8, .mode_shown = -100, .al_state = 0x14,
+                                               .al_status_code = 0x001B};
+            cm1e_drive_fault_text(&drive, text, sizeof text);
+            longest = strlen(text) > longest ? strlen(text) : longest;
+            TEST_ASSERT_EQUAL_STRING("reset the axis with MC_Reset.", strstr(text, "reset the axis"));
+        }
+    TEST_ASSERT_GREATER_THAN_size_t(512, longest);
+    TEST_ASSERT_LESS_THAN_size_t(CM1E_AXIS_ERROR_TEXT_BYTES - LONGER_AL_TEXT, longest);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -454,6 +476,7 @@ int main(void)
     RUN_TEST(test_reset_while_the_bus_is_away_keeps_the_cause);
     RUN_TEST(test_reset_with_enable_held_enables_again_without_a_jump);
     RUN_TEST(test_every_status_word_leaves_a_defined_output);
+    RUN_TEST(test_longest_text_fits_the_size_that_is_promised);
     RUN_TEST(test_text_fits_any_buffer_and_is_empty_without_fault);
     return UNITY_END();
 }
