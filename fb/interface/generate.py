@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""Writes everything that follows from the ST declarations in fb/interface/*.st: the public headers, the table of blocks
+for tests, the reference pages. The same input gives the same bytes.
+
+    fb/interface/generate.py                writes into the source tree
+    fb/interface/generate.py FOLDER         writes below FOLDER instead
+    fb/interface/generate.py --check        writes nothing; says what is not as it should be, and fails then
+"""
+import os
+import sys
+
+import c_header
+import st
+
+SOURCE = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../.."))
+FILES = ("types.st", "motion.st", "administrative.st", "homing.st", "standard.st")
+COMMAND = "fb/interface/generate.py"
+
+
+def outputs():
+    """{path below the source tree: text}"""
+    files = [st.read(os.path.join(SOURCE, "fb/interface", name), f"fb/interface/{name}") for name in FILES]
+    return {f"include/cm1e/{file.header}": c_header.header(file) for file in files}
+
+
+def write(folder, texts):
+    for path, text in texts.items():
+        full = os.path.join(folder, path)
+        os.makedirs(os.path.dirname(full), exist_ok=True)
+        with open(full + ".new", "w", encoding="utf-8") as file:
+            file.write(text)
+        os.replace(full + ".new", full)
+
+
+def check(texts):
+    faults = []
+    for path, text in texts.items():
+        full = os.path.join(SOURCE, path)
+        if not os.path.exists(full):
+            faults.append(f"{path} is missing")
+            continue
+        with open(full, encoding="utf-8") as file:
+            if file.read() != text:
+                faults.append(f"{path} is not what {COMMAND} writes")
+    return faults
+
+
+def main(arguments):
+    try:
+        texts = outputs()
+    except st.Fault as fault:
+        print(fault, file=sys.stderr)
+        return 1
+    if arguments != ["--check"]:
+        write(arguments[0] if arguments else SOURCE, texts)
+        return 0
+    faults = check(texts)
+    print("\n".join(faults + [f"run {COMMAND} and commit what it writes"]) if faults
+          else f"{len(texts)} generated files are as the declarations say")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,308 @@
+/**
+ * @file mc_administrative.h
+ * The blocks that move nothing: parameters, signals, what the axis shows (PLCopen Part 1 v2.0, chapter 3).
+ * Generated from fb/interface/administrative.st by fb/interface/generate.py; change it there.
+ */
+#ifndef CM1E_MC_ADMINISTRATIVE_H
+#define CM1E_MC_ADMINISTRATIVE_H
+
+#include "cm1e/mc_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** 3.17. Shifts the axis's coordinates: set and actual position change alike, nothing moves, also during a motion.
+ *  @rt cycle */
+typedef struct MC_SetPosition {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    LREAL Position; /**< u; new actual position, or the distance to shift by */
+    BOOL Relative;  /**< TRUE: Position is added */
+    MC_EXECUTION_MODE ExecutionMode;
+    /* outputs */
+    BOOL Done;      /**< the position is set */
+    BOOL Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_SetPosition_t;
+void MC_SetPosition(MC_SetPosition_t *fb);
+
+/** 3.18. Sets factors for velocity, acceleration and jerk of all motions of the axis. They stay when Enable falls.
+ *  @rt cycle */
+typedef struct MC_SetOverride {
+    AXIS_REF_t *Axis;
+    BOOL Enable;
+    LREAL VelFactor;  /**< 0 ... 1; 0: the axis stands, but not in Standstill */
+    LREAL AccFactor;  /**< > 0 ... 1; acceleration and deceleration */
+    LREAL JerkFactor; /**< > 0 ... 1 */
+    /* outputs */
+    BOOL Enabled;     /**< the factors are in force */
+    BOOL Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_SetOverride_t;
+/** Its initial values: `MC_SetOverride_t fb = {.Axis = &axis, MC_SETOVERRIDE_DEFAULTS};` */
+#define MC_SETOVERRIDE_DEFAULTS .VelFactor = 1.0, .AccFactor = 1.0, .JerkFactor = 1.0
+void MC_SetOverride(MC_SetOverride_t *fb);
+
+/** 3.19. Reads a parameter of the axis. @rt cycle */
+typedef struct MC_ReadParameter {
+    AXIS_REF_t *Axis;
+    BOOL Enable;
+    INT ParameterNumber; /**< 1 ... 17, vendor numbers from 1000; table 5 */
+    /* outputs */
+    BOOL Valid, Busy, Error;
+    WORD ErrorID;
+    LREAL Value;         /**< in the parameter's unit */
+    cm1e_fb_private_t Private;
+} MC_ReadParameter_t;
+void MC_ReadParameter(MC_ReadParameter_t *fb);
+
+/** 3.19. Reads a parameter of the axis of type BOOL. @rt cycle */
+typedef struct MC_ReadBoolParameter {
+    AXIS_REF_t *Axis;
+    BOOL Enable;
+    INT ParameterNumber; /**< 1 ... 17, vendor numbers from 1000; table 5 */
+    /* outputs */
+    BOOL Valid, Busy, Error;
+    WORD ErrorID;
+    BOOL Value;
+    cm1e_fb_private_t Private;
+} MC_ReadBoolParameter_t;
+void MC_ReadBoolParameter(MC_ReadBoolParameter_t *fb);
+
+/** 3.20. Writes a parameter of the axis. @rt cycle */
+typedef struct MC_WriteParameter {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    INT ParameterNumber; /**< those of table 5 that may be written, vendor numbers from 1000 */
+    LREAL Value;         /**< in the parameter's unit */
+    MC_EXECUTION_MODE ExecutionMode;
+    /* outputs */
+    BOOL Done;           /**< the parameter is written */
+    BOOL Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_WriteParameter_t;
+void MC_WriteParameter(MC_WriteParameter_t *fb);
+
+/** 3.20. Writes a parameter of the axis of type BOOL. @rt cycle */
+typedef struct MC_WriteBoolParameter {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    INT ParameterNumber; /**< those of table 5 that may be written, vendor numbers from 1000 */
+    BOOL Value;
+    MC_EXECUTION_MODE ExecutionMode;
+    /* outputs */
+    BOOL Done;           /**< the parameter is written */
+    BOOL Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_WriteBoolParameter_t;
+void MC_WriteBoolParameter(MC_WriteBoolParameter_t *fb);
+
+/** 3.21. Reads a digital input of a motor. @rt cycle */
+typedef struct MC_ReadDigitalInput {
+    const MC_INPUT_REF *Input;
+    BOOL Enable;
+    INT InputNumber; /**< 1 ... 4; IN1 ... IN4; 0: Input.Number */
+    /* outputs */
+    BOOL Valid, Busy, Error;
+    WORD ErrorID;
+    BOOL Value;      /**< the input is on */
+    cm1e_fb_private_t Private;
+} MC_ReadDigitalInput_t;
+void MC_ReadDigitalInput(MC_ReadDigitalInput_t *fb);
+
+/** 3.22. Reads back a digital output of a motor. @rt cycle */
+typedef struct MC_ReadDigitalOutput {
+    const MC_OUTPUT_REF *Output;
+    BOOL Enable;
+    INT OutputNumber; /**< 1; 0: Output.Number */
+    /* outputs */
+    BOOL Valid, Busy, Error;
+    WORD ErrorID;
+    BOOL Value;       /**< the output is on */
+    cm1e_fb_private_t Private;
+} MC_ReadDigitalOutput_t;
+void MC_ReadDigitalOutput(MC_ReadDigitalOutput_t *fb);
+
+/** 3.23. Writes a digital output of a motor, once. @rt cycle */
+typedef struct MC_WriteDigitalOutput {
+    const MC_OUTPUT_REF *Output;
+    BOOL Execute;
+    INT OutputNumber; /**< 1; 0: Output.Number */
+    BOOL Value;
+    MC_EXECUTION_MODE ExecutionMode;
+    /* outputs */
+    BOOL Done;        /**< the output is written */
+    BOOL Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_WriteDigitalOutput_t;
+void MC_WriteDigitalOutput(MC_WriteDigitalOutput_t *fb);
+
+/** 3.24. Reads the actual position. @rt cycle */
+typedef struct MC_ReadActualPosition {
+    AXIS_REF_t *Axis;
+    BOOL Enable;
+    /* outputs */
+    BOOL Valid, Busy, Error;
+    WORD ErrorID;
+    LREAL Position; /**< u */
+    cm1e_fb_private_t Private;
+} MC_ReadActualPosition_t;
+void MC_ReadActualPosition(MC_ReadActualPosition_t *fb);
+
+/** 3.25. Reads the actual velocity. @rt cycle */
+typedef struct MC_ReadActualVelocity {
+    AXIS_REF_t *Axis;
+    BOOL Enable;
+    /* outputs */
+    BOOL Valid, Busy, Error;
+    WORD ErrorID;
+    LREAL Velocity; /**< u/s; signed */
+    cm1e_fb_private_t Private;
+} MC_ReadActualVelocity_t;
+void MC_ReadActualVelocity(MC_ReadActualVelocity_t *fb);
+
+/** 3.26. Reads the actual torque. @rt cycle */
+typedef struct MC_ReadActualTorque {
+    AXIS_REF_t *Axis;
+    BOOL Enable;
+    /* outputs */
+    BOOL Valid, Busy, Error;
+    WORD ErrorID;
+    LREAL Torque; /**< % of rated torque; signed */
+    cm1e_fb_private_t Private;
+} MC_ReadActualTorque_t;
+void MC_ReadActualTorque(MC_ReadActualTorque_t *fb);
+
+/** 3.27. Reads the state of the axis: one of the eight outputs is TRUE while Valid is. @rt cycle */
+typedef struct MC_ReadStatus {
+    AXIS_REF_t *Axis;
+    BOOL Enable;
+    /* outputs */
+    BOOL Valid, Busy, Error;
+    WORD ErrorID;
+    BOOL ErrorStop, Disabled, Stopping, Homing, Standstill, DiscreteMotion, ContinuousMotion, SynchronizedMotion;
+    cm1e_fb_private_t Private;
+} MC_ReadStatus_t;
+void MC_ReadStatus(MC_ReadStatus_t *fb);
+
+/** 3.28. Reads what the axis is doing: one of the first three of the values is TRUE while Valid is. @rt cycle */
+typedef struct MC_ReadMotionState {
+    AXIS_REF_t *Axis;
+    BOOL Enable;
+    MC_SOURCE Source;       /**< which velocity is looked at */
+    /* outputs */
+    BOOL Valid, Busy, Error;
+    WORD ErrorID;
+    BOOL ConstantVelocity;  /**< also while it is 0 */
+    BOOL Accelerating;      /**< its amount grows */
+    BOOL Decelerating;      /**< its amount falls */
+    BOOL DirectionPositive; /**< the position grows */
+    BOOL DirectionNegative; /**< the position falls */
+    cm1e_fb_private_t Private;
+} MC_ReadMotionState_t;
+void MC_ReadMotionState(MC_ReadMotionState_t *fb);
+
+/** 3.29. Reads inputs and conditions of the axis. @rt cycle */
+typedef struct MC_ReadAxisInfo {
+    AXIS_REF_t *Axis;
+    BOOL Enable;
+    /* outputs */
+    BOOL Valid, Busy, Error;
+    WORD ErrorID;
+    BOOL HomeAbsSwitch;      /**< the home switch is on */
+    BOOL LimitSwitchPos;     /**< the positive limit switch is on */
+    BOOL LimitSwitchNeg;     /**< the negative limit switch is on */
+    BOOL Simulation;         /**< the motor is a simulated one */
+    BOOL CommunicationReady; /**< the motor takes part in the bus cycle */
+    BOOL ReadyForPowerOn;    /**< the drive can be enabled */
+    BOOL PowerOn;            /**< the power stage is on */
+    BOOL IsHomed;            /**< the absolute position is known */
+    BOOL AxisWarning;        /**< the drive warns */
+    cm1e_fb_private_t Private;
+} MC_ReadAxisInfo_t;
+void MC_ReadAxisInfo(MC_ReadAxisInfo_t *fb);
+
+/** 3.30. Reads the error of the axis, that is why it is in ErrorStop. @rt cycle */
+typedef struct MC_ReadAxisError {
+    AXIS_REF_t *Axis;
+    BOOL Enable;
+    /* outputs */
+    BOOL Valid, Busy, Error;
+    WORD ErrorID;
+    WORD AxisErrorID;     /**< an ErrorID of ours; 0: none */
+    WORD DeviceErrorCode; /**< 0x603F of the drive beside it (not in the standard) */
+    cm1e_fb_private_t Private;
+} MC_ReadAxisError_t;
+void MC_ReadAxisError(MC_ReadAxisError_t *fb);
+
+/** 3.31. Takes the axis out of ErrorStop. @rt cycle */
+typedef struct MC_Reset {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    /* outputs */
+    BOOL Done; /**< the axis is in Disabled or Standstill */
+    BOOL Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_Reset_t;
+void MC_Reset(MC_Reset_t *fb);
+
+/** 3.32. Switches outputs by the axis's position, as cams on its shaft would. @rt cycle */
+typedef struct MC_DigitalCamSwitch {
+    AXIS_REF_t *Axis;
+    const MC_CAMSWITCH_REF *Switches;
+    MC_OUTPUT_REF *Outputs;
+    const MC_TRACK_REF *TrackOptions; /**< NULL: no compensation, no hysteresis */
+    BOOL Enable;
+    DWORD EnableMask;                 /**< bit 0 = track 1; a track whose bit is 0 is off */
+    MC_SOURCE ValueSource;            /**< mcSetValue or mcActualValue */
+    /* outputs */
+    BOOL InOperation;                 /**< the tracks are switched */
+    BOOL Busy, Error;
+    WORD ErrorID;
+    cm1e_cam_private_t Private;
+} MC_DigitalCamSwitch_t;
+void MC_DigitalCamSwitch(MC_DigitalCamSwitch_t *fb);
+
+/** 3.33. Records the position at the first trigger event after the edge. @rt cycle */
+typedef struct MC_TouchProbe {
+    AXIS_REF_t *Axis;
+    const MC_TRIGGER_REF *TriggerInput; /**< NULL: input 1 of the axis goes on */
+    BOOL Execute;
+    BOOL WindowOnly;                    /**< TRUE: only events between the two positions, both included */
+    LREAL FirstPosition;                /**< u; begin of the window */
+    LREAL LastPosition;                 /**< u; end of the window */
+    /* outputs */
+    BOOL Done;                          /**< an event is recorded */
+    BOOL Busy;
+    BOOL CommandAborted;                /**< by MC_AbortTrigger */
+    BOOL Error;
+    WORD ErrorID;
+    LREAL RecordedPosition;             /**< u; actual position at the event */
+    cm1e_fb_private_t Private;
+} MC_TouchProbe_t;
+void MC_TouchProbe(MC_TouchProbe_t *fb);
+
+/** 3.34. Ends the waiting of MC_TouchProbe for a trigger. @rt cycle */
+typedef struct MC_AbortTrigger {
+    AXIS_REF_t *Axis;
+    const MC_TRIGGER_REF *TriggerInput; /**< as for MC_TouchProbe */
+    BOOL Execute;
+    /* outputs */
+    BOOL Done;                          /**< nobody waits for this trigger any more */
+    BOOL Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_AbortTrigger_t;
+void MC_AbortTrigger(MC_AbortTrigger_t *fb);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

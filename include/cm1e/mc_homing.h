@@ -1,0 +1,211 @@
+/**
+ * @file mc_homing.h
+ * Homing in steps (PLCopen Motion Control Part 5 v2.0, Homing Procedures).
+ * Generated from fb/interface/homing.st by fb/interface/generate.py; change it there.
+ */
+#ifndef CM1E_MC_HOMING_H
+#define CM1E_MC_HOMING_H
+
+#include "cm1e/mc_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Part 5, 5.4. Searches an absolute switch, turns round at a limit switch, and takes its place as reference.
+ *  @rt cycle */
+typedef struct MC_StepAbsoluteSwitch {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    MC_HOME_DIRECTION Direction;
+    MC_SWITCH_MODE SwitchMode;
+    MC_REF_SIGNAL_REF ReferenceSignal;
+    LREAL Velocity;      /**< u/s, > 0 ... maximum; of the search */
+    LREAL SetPosition;   /**< u; position of the axis at the reference */
+    LREAL TorqueLimit;   /**< % of rated torque, >= 0; 0: none */
+    TIME TimeLimit;      /**< ns, >= 0; 0: none */
+    LREAL DistanceLimit; /**< u, >= 0; 0: none */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done;           /**< the reference is found and set */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_StepAbsoluteSwitch_t;
+void MC_StepAbsoluteSwitch(MC_StepAbsoluteSwitch_t *fb);
+
+/** Part 5, 5.5. Searches a limit switch and takes its place as reference. @rt cycle */
+typedef struct MC_StepLimitSwitch {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    MC_HOME_DIRECTION Direction;    /**< positive or negative */
+    MC_SWITCH_MODE LimitSwitchMode; /**< the four that name no direction */
+    LREAL Velocity;                 /**< u/s, > 0 ... maximum; of the search */
+    LREAL SetPosition;              /**< u; position of the axis at the reference */
+    LREAL TorqueLimit;              /**< % of rated torque, >= 0; 0: none */
+    TIME TimeLimit;                 /**< ns, >= 0; 0: none */
+    LREAL DistanceLimit;            /**< u, >= 0; 0: none */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done;                      /**< the reference is found and set */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_StepLimitSwitch_t;
+void MC_StepLimitSwitch(MC_StepLimitSwitch_t *fb);
+
+/** Part 5, 5.6. Runs against a hard stop and takes its place as reference. @rt cycle */
+typedef struct MC_StepBlock {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    MC_HOME_DIRECTION Direction;  /**< positive or negative */
+    LREAL Velocity;               /**< u/s, > 0 ... maximum; of the search */
+    LREAL SetPosition;            /**< u; position of the axis at the reference */
+    LREAL DetectionVelocityLimit; /**< u/s, >= 0; slower than this at the torque limit is blocked */
+    TIME DetectionVelocityTime;   /**< ns, >= 0; for so long */
+    LREAL TorqueLimit;            /**< % of rated torque, > 0; that shows the stop */
+    TIME TimeLimit;               /**< ns, >= 0; 0: none */
+    LREAL DistanceLimit;          /**< u, >= 0; 0: none */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done;                    /**< the stop is found and set */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_StepBlock_t;
+void MC_StepBlock(MC_StepBlock_t *fb);
+
+/** Part 5, 5.7. Searches the reference pulse of an encoder. @rt cycle */
+typedef struct MC_StepReferencePulse {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    MC_HOME_DIRECTION Direction; /**< positive or negative */
+    MC_REF_SIGNAL_REF ReferenceSignal;
+    LREAL Velocity;              /**< u/s, > 0 ... maximum; of the search */
+    LREAL SetPosition;           /**< u; position of the axis at the reference */
+    LREAL TorqueLimit;           /**< % of rated torque, >= 0; 0: none */
+    TIME TimeLimit;              /**< ns, >= 0; 0: none */
+    LREAL DistanceLimit;         /**< u, >= 0; 0: none */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done;                   /**< the reference is found and set */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_StepReferencePulse_t;
+void MC_StepReferencePulse(MC_StepReferencePulse_t *fb);
+
+/** Part 5, 5.8. Searches two marks of a distance coded encoder. @rt cycle */
+typedef struct MC_StepDistanceCoded {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    MC_HOME_DIRECTION Direction; /**< positive or negative */
+    LREAL Velocity;              /**< u/s, > 0 ... maximum; of the search */
+    LREAL TorqueLimit;           /**< % of rated torque, >= 0; 0: none */
+    TIME TimeLimit;              /**< ns, >= 0; 0: none */
+    LREAL DistanceLimit;         /**< u, >= 0; 0: none */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done;                   /**< the position is known and set */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_StepDistanceCoded_t;
+void MC_StepDistanceCoded(MC_StepDistanceCoded_t *fb);
+
+/** Part 5, 5.9. Gives the axis a position where it stands, and ends the homing. @rt cycle */
+typedef struct MC_HomeDirect {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    LREAL SetPosition; /**< u; new actual position */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done;         /**< the position is set */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_HomeDirect_t;
+void MC_HomeDirect(MC_HomeDirect_t *fb);
+
+/** Part 5, 5.10. Takes the position of an absolute encoder, and ends the homing. @rt cycle */
+typedef struct MC_HomeAbsolute {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done; /**< the position is set */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_HomeAbsolute_t;
+void MC_HomeAbsolute(MC_HomeAbsolute_t *fb);
+
+/** Part 5, 5.11. Ends a homing of several steps, after a move away from the reference. @rt cycle */
+typedef struct MC_FinishHoming {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    LREAL Distance;     /**< u; 0: no move */
+    LREAL Velocity;     /**< u/s, > 0 ... maximum */
+    LREAL Acceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
+    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
+    LREAL Jerk;         /**< u/s3, 0 ... maximum; 0: the axis's maximum */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done;          /**< the axis is homed and in Standstill */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_FinishHoming_t;
+void MC_FinishHoming(MC_FinishHoming_t *fb);
+
+/** Part 5, 5.12. Takes the place of a switch as reference while another block moves the axis. @rt cycle */
+typedef struct MC_StepReferenceFlyingSwitch {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    MC_SWITCH_MODE SwitchMode;
+    MC_REF_SIGNAL_REF ReferenceSignal;
+    LREAL SetPosition;   /**< u; position of the axis at the reference */
+    TIME TimeLimit;      /**< ns, >= 0; 0: none */
+    LREAL DistanceLimit; /**< u, >= 0; 0: none */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done;           /**< the reference is found and set */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_StepReferenceFlyingSwitch_t;
+void MC_StepReferenceFlyingSwitch(MC_StepReferenceFlyingSwitch_t *fb);
+
+/** Part 5, 5.13. Takes the reference pulse of an encoder while another block moves the axis. @rt cycle */
+typedef struct MC_StepReferenceFlyingRefPulse {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    MC_REF_SIGNAL_REF ReferenceSignal;
+    LREAL SetPosition;   /**< u; position of the axis at the reference */
+    TIME TimeLimit;      /**< ns, >= 0; 0: none */
+    LREAL DistanceLimit; /**< u, >= 0; 0: none */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done;           /**< the reference is found and set */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_StepReferenceFlyingRefPulse_t;
+void MC_StepReferenceFlyingRefPulse(MC_StepReferenceFlyingRefPulse_t *fb);
+
+/** Part 5, 5.14. Ends the waiting of the two flying steps; the motion goes on. @rt cycle */
+typedef struct MC_AbortPassiveHoming {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    /* outputs */
+    BOOL Done; /**< nobody waits any more */
+    BOOL Busy, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_AbortPassiveHoming_t;
+void MC_AbortPassiveHoming(MC_AbortPassiveHoming_t *fb);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,320 @@
+/**
+ * @file mc_motion.h
+ * The blocks that move an axis (PLCopen Part 1 v2.0, chapter 3), and TwinCAT's MC_Jog.
+ * Generated from fb/interface/motion.st by fb/interface/generate.py; change it there.
+ */
+#ifndef CM1E_MC_MOTION_H
+#define CM1E_MC_MOTION_H
+
+#include "cm1e/config.h"
+#include "cm1e/mc_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** 3.1. Controls the power stage. One per axis. Status: the stage is on and set-points act. Error also while the
+ *  axis is in ErrorStop and the stage therefore stays off. Answers for the axis latched at Enable's edge until it
+ *  is off. @rt cycle */
+typedef struct MC_Power {
+    AXIS_REF_t *Axis;
+    BOOL Enable;         /**< TRUE: power on, FALSE: off; a level */
+    BOOL EnablePositive; /**< permits motion in positive direction; a level */
+    BOOL EnableNegative; /**< permits motion in negative direction; a level */
+    /* outputs */
+    BOOL Status;         /**< the power stage is on and set-points act */
+    BOOL Valid;          /**< Enable is TRUE and there is no error */
+    BOOL Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_Power_t;
+void MC_Power(MC_Power_t *fb);
+
+/** 3.2. Homes by the motor's own routine (UG 6.2.4). Position: the axis has this position at the reference when
+ *  Done. @rt cycle */
+typedef struct MC_Home {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    LREAL Position;                         /**< u; position of the axis at the reference */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done;                              /**< the reference is known and set */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    const cm1e_homing_config_t *Parameters; /**< NULL: the axis's configured homing (not in the standard) */
+    cm1e_fb_private_t Private;
+} MC_Home_t;
+void MC_Home(MC_Home_t *fb);
+
+/** 3.3. Stops and holds: the axis stays in Stopping while Execute is TRUE (Done and Active together then).
+ *  @rt cycle */
+typedef struct MC_Stop {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    LREAL Deceleration; /**< u/s2, >= 0; 0: the axis's maximum, as is more */
+    LREAL Jerk;         /**< u/s3, >= 0; 0: the axis's maximum, as is more */
+    /* outputs */
+    BOOL Done;          /**< the set velocity is 0 */
+    BOOL Busy;
+    BOOL Active;        /**< (not in the standard) */
+    BOOL CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_Stop_t;
+void MC_Stop(MC_Stop_t *fb);
+
+/** 3.4. Stops the axis; any motion may abort it. @rt cycle */
+typedef struct MC_Halt {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    LREAL Deceleration; /**< u/s2, >= 0; 0: the axis's maximum, as is more */
+    LREAL Jerk;         /**< u/s3, >= 0; 0: the axis's maximum, as is more */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done;          /**< the set velocity is 0 */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_Halt_t;
+void MC_Halt(MC_Halt_t *fb);
+
+/** 3.5. Moves to a position and stops there. @rt cycle */
+typedef struct MC_MoveAbsolute {
+    AXIS_REF_t *Axis;
+    BOOL Execute, ContinuousUpdate;
+    LREAL Position;         /**< u; target */
+    LREAL Velocity;         /**< u/s, > 0 ... maximum; largest on the way, not necessarily reached */
+    LREAL Acceleration;     /**< u/s2, 0 ... maximum; 0: the axis's maximum */
+    LREAL Deceleration;     /**< u/s2, 0 ... maximum; 0: the axis's maximum */
+    LREAL Jerk;             /**< u/s3, 0 ... maximum; 0: the axis's maximum */
+    MC_DIRECTION Direction; /**< modulo axes only; 0: mcShortestWay */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done;              /**< the set position is the target */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_MoveAbsolute_t;
+void MC_MoveAbsolute(MC_MoveAbsolute_t *fb);
+
+/** 3.6. Moves by a distance from the set position at the start. @rt cycle */
+typedef struct MC_MoveRelative {
+    AXIS_REF_t *Axis;
+    BOOL Execute, ContinuousUpdate;
+    LREAL Distance;     /**< u */
+    LREAL Velocity;     /**< u/s, > 0 ... maximum; largest on the way, not necessarily reached */
+    LREAL Acceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
+    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
+    LREAL Jerk;         /**< u/s3, 0 ... maximum; 0: the axis's maximum */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done;          /**< the set position has gone the distance */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_MoveRelative_t;
+void MC_MoveRelative(MC_MoveRelative_t *fb);
+
+/** 3.7. Moves by a distance from the most recent commanded position, also that of an aborted move; in
+ *  ContinuousMotion from the set position. @rt cycle */
+typedef struct MC_MoveAdditive {
+    AXIS_REF_t *Axis;
+    BOOL Execute, ContinuousUpdate;
+    LREAL Distance;     /**< u */
+    LREAL Velocity;     /**< u/s, > 0 ... maximum; largest on the way, not necessarily reached */
+    LREAL Acceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
+    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
+    LREAL Jerk;         /**< u/s3, 0 ... maximum; 0: the axis's maximum */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done;          /**< the set position is the new target */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_MoveAdditive_t;
+void MC_MoveAdditive(MC_MoveAdditive_t *fb);
+
+/** 3.8. Adds a motion over a distance to the one that is under way, which is not interrupted. @rt cycle */
+typedef struct MC_MoveSuperimposed {
+    AXIS_REF_t *Axis;
+    BOOL Execute, ContinuousUpdate;
+    LREAL Distance;        /**< u; to be added */
+    LREAL VelocityDiff;    /**< u/s, > 0 ... maximum; largest difference to the motion under way */
+    LREAL Acceleration;    /**< u/s2, 0 ... maximum; in addition to that of the motion under way; 0: what it leaves */
+    LREAL Deceleration;    /**< u/s2, 0 ... maximum; in the same way */
+    LREAL Jerk;            /**< u/s3, 0 ... maximum; in the same way */
+    /* outputs */
+    BOOL Done;             /**< the distance has been added */
+    BOOL Busy, CommandAborted, Error;
+    WORD ErrorID;
+    LREAL CoveredDistance; /**< u; added by this block since its start */
+    cm1e_fb_private_t Private;
+} MC_MoveSuperimposed_t;
+void MC_MoveSuperimposed(MC_MoveSuperimposed_t *fb);
+
+/** 3.9. Ends a superimposed motion; the motion below goes on. @rt cycle */
+typedef struct MC_HaltSuperimposed {
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0: what the motion below leaves */
+    LREAL Jerk;         /**< u/s3, 0 ... maximum; in the same way */
+    /* outputs */
+    BOOL Done;          /**< nothing is superimposed any more */
+    BOOL Busy;
+    BOOL Active;        /**< (in the standard's drawing, not in its table) */
+    BOOL CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_HaltSuperimposed_t;
+void MC_HaltSuperimposed(MC_HaltSuperimposed_t *fb);
+
+/** 3.10. Turns at a velocity until something else comes. A negative Velocity turns the direction round. @rt cycle */
+typedef struct MC_MoveVelocity {
+    AXIS_REF_t *Axis;
+    BOOL Execute, ContinuousUpdate;
+    LREAL Velocity;         /**< u/s, +-maximum, not 0; a negative one turns Direction round */
+    LREAL Acceleration;     /**< u/s2, 0 ... maximum; 0: the axis's maximum */
+    LREAL Deceleration;     /**< u/s2, 0 ... maximum; 0: the axis's maximum */
+    LREAL Jerk;             /**< u/s3, 0 ... maximum; 0: the axis's maximum */
+    MC_DIRECTION Direction; /**< 0: mcPositiveDirection; not mcShortestWay */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL InVelocity;        /**< the set velocity is the commanded one */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_MoveVelocity_t;
+void MC_MoveVelocity(MC_MoveVelocity_t *fb);
+
+/** 3.11. Moves to a position, arrives there with EndVelocity and goes on with it. @rt cycle */
+typedef struct MC_MoveContinuousAbsolute {
+    AXIS_REF_t *Axis;
+    BOOL Execute, ContinuousUpdate;
+    LREAL Position;         /**< u; target */
+    LREAL EndVelocity;      /**< u/s, +-maximum; signed */
+    LREAL Velocity;         /**< u/s, > 0 ... maximum; largest on the way */
+    LREAL Acceleration;     /**< u/s2, 0 ... maximum; 0: the axis's maximum */
+    LREAL Deceleration;     /**< u/s2, 0 ... maximum; 0: the axis's maximum */
+    LREAL Jerk;             /**< u/s3, 0 ... maximum; 0: the axis's maximum */
+    MC_DIRECTION Direction; /**< modulo axes only; 0: mcShortestWay */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL InEndVelocity;     /**< the target was passed and the set velocity is EndVelocity */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_MoveContinuousAbsolute_t;
+void MC_MoveContinuousAbsolute(MC_MoveContinuousAbsolute_t *fb);
+
+/** 3.12. Moves by a distance, ends it with EndVelocity and goes on with it. @rt cycle */
+typedef struct MC_MoveContinuousRelative {
+    AXIS_REF_t *Axis;
+    BOOL Execute, ContinuousUpdate;
+    LREAL Distance;     /**< u; from the set position at the start */
+    LREAL EndVelocity;  /**< u/s, +-maximum; signed */
+    LREAL Velocity;     /**< u/s, > 0 ... maximum; largest on the way */
+    LREAL Acceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
+    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
+    LREAL Jerk;         /**< u/s3, 0 ... maximum; 0: the axis's maximum */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL InEndVelocity; /**< the distance was gone and the set velocity is EndVelocity */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_MoveContinuousRelative_t;
+void MC_MoveContinuousRelative(MC_MoveContinuousRelative_t *fb);
+
+/** 3.13. Exerts a torque. The CM1-E has no mode for it: always Error, CM1E_ERROR_UNSUPPORTED. @rt cycle */
+typedef struct MC_TorqueControl {
+    AXIS_REF_t *Axis;
+    BOOL Execute, ContinuousUpdate;
+    LREAL Torque;       /**< % of rated torque; signed */
+    LREAL TorqueRamp;   /**< %/s */
+    LREAL Velocity;     /**< u/s */
+    LREAL Acceleration; /**< u/s2 */
+    LREAL Deceleration; /**< u/s2 */
+    LREAL Jerk;         /**< u/s3 */
+    MC_DIRECTION Direction;
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL InTorque, Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_TorqueControl_t;
+void MC_TorqueControl(MC_TorqueControl_t *fb);
+
+/** 3.14. Runs through a table of positions over time. @rt cycle */
+typedef struct MC_PositionProfile {
+    AXIS_REF_t *Axis;
+    const MC_TP_REF *TimePosition; /**< copied at the edge */
+    BOOL Execute, ContinuousUpdate;
+    LREAL TimeScale;               /**< > 0; factor for all times; 0 acts as 1 */
+    LREAL PositionScale;           /**< factor for all positions; 0 acts as 1 */
+    LREAL Offset;                  /**< u; added to all positions */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done;                     /**< the profile's end is reached */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_PositionProfile_t;
+void MC_PositionProfile(MC_PositionProfile_t *fb);
+
+/** 3.15. Runs through a table of velocities over time and keeps the last one. @rt cycle */
+typedef struct MC_VelocityProfile {
+    AXIS_REF_t *Axis;
+    const MC_TV_REF *TimeVelocity; /**< copied at the edge */
+    BOOL Execute, ContinuousUpdate;
+    LREAL TimeScale;               /**< > 0; factor for all times; 0 acts as 1 */
+    LREAL VelocityScale;           /**< factor for all velocities; 0 acts as 1 */
+    LREAL Offset;                  /**< u/s; added to all velocities */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL ProfileCompleted;         /**< the profile's end is reached; its last velocity is kept */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_VelocityProfile_t;
+void MC_VelocityProfile(MC_VelocityProfile_t *fb);
+
+/** 3.16. Runs through a table of accelerations over time and keeps the velocity at its end. @rt cycle */
+typedef struct MC_AccelerationProfile {
+    AXIS_REF_t *Axis;
+    const MC_TA_REF *TimeAcceleration; /**< copied at the edge */
+    BOOL Execute, ContinuousUpdate;
+    LREAL TimeScale;                   /**< > 0; factor for all times; 0 acts as 1 */
+    LREAL AccelerationScale;           /**< factor for all accelerations; 0 acts as 1 */
+    LREAL Offset;                      /**< u/s2; added to all accelerations */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL ProfileCompleted;             /**< the profile's end is reached; the velocity there is kept */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_AccelerationProfile_t;
+void MC_AccelerationProfile(MC_AccelerationProfile_t *fb);
+
+/** Tc2_MC2. Moves the axis by push-buttons, as TwinCAT's block of this name. @rt cycle */
+typedef struct MC_Jog {
+    AXIS_REF_t *Axis;
+    BOOL JogForward;    /**< moves in positive direction; goes before JogBackwards */
+    BOOL JogBackwards;  /**< moves in negative direction */
+    E_JogMode Mode;
+    LREAL Position;     /**< u, > 0; step of the inching modes */
+    LREAL Velocity;     /**< u/s, > 0 ... maximum; not in the two standard modes */
+    LREAL Acceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
+    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
+    LREAL Jerk;         /**< u/s3, 0 ... maximum; 0: the axis's maximum */
+    /* outputs */
+    BOOL Done;          /**< the jog has ended and the axis stands */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_Jog_t;
+void MC_Jog(MC_Jog_t *fb);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,195 @@
+/**
+ * @file mc_types.h
+ * The data types of the motion function blocks. PLCopen leaves the content of the ..._REF types to the vendor; what is
+ * here is ours. Enumerators are the standard's, with numbers of our own where it gives none, so that 0, which a zeroed
+ * struct holds, is the usual choice.
+ * Generated from fb/interface/types.st by fb/interface/generate.py; change it there.
+ */
+#ifndef CM1E_MC_TYPES_H
+#define CM1E_MC_TYPES_H
+
+#include "cm1e/axis.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** What starts a command, and how it meets the one before it (Part 1, 2.4.2). */
+typedef enum MC_BUFFER_MODE {
+    mcAborting = 0,         /**< at once; everything under way or waiting is aborted */
+    mcBuffered = 1,         /**< when the command before has ended; a move has come to rest then */
+    mcBlendingLow = 2,      /**< without stopping between: at its end position the one before has the lower velocity */
+    mcBlendingPrevious = 3, /**< ... the velocity of the command before */
+    mcBlendingNext = 4,     /**< ... the velocity of this command */
+    mcBlendingHigh = 5,     /**< ... the higher velocity of the two */
+} MC_BUFFER_MODE;
+
+/** Way of a move. The last two are for MC_HOME_DIRECTION only. */
+typedef enum MC_DIRECTION {
+    mcPositiveDirection = 1,
+    mcShortestWay = 2,
+    mcNegativeDirection = 3,
+    mcCurrentDirection = 4,
+    mcSwitchPositive = 5, /**< Part 5: positive while the switch is off, negative while it is on */
+    mcSwitchNegative = 7, /**< Part 5: negative while the switch is off, positive while it is on */
+} MC_DIRECTION;
+
+/** Way of a homing step (Part 5): mcPositiveDirection, mcNegativeDirection, mcSwitchPositive, mcSwitchNegative; 0
+ *  acts as mcPositiveDirection. */
+typedef MC_DIRECTION MC_HOME_DIRECTION;
+
+/** What ends the search of a homing step (Part 5). */
+typedef enum MC_SWITCH_MODE {
+    mcOn = 0,                 /**< the switch is on */
+    mcOff = 1,                /**< the switch is off */
+    mcRisingEdge = 2,         /**< the switch goes on */
+    mcFallingEdge = 3,        /**< the switch goes off */
+    mcEdgeSwitchPositive = 4, /**< goes on in positive motion, goes off in negative motion */
+    mcEdgeSwitchNegative = 5, /**< goes off in positive motion, goes on in negative motion */
+} MC_SWITCH_MODE;
+
+/** When an administrative block acts. */
+typedef enum MC_EXECUTION_MODE {
+    mcImmediately = 0, /**< at once, also in motion; the state does not change */
+    mcQueued = 1,      /**< as a buffered command: after those before it */
+} MC_EXECUTION_MODE;
+
+/** Which value of the axis is meant. */
+typedef enum MC_SOURCE {
+    mcSetValue = 0,       /**< the set-point of this cycle */
+    mcActualValue = 1,    /**< measured by the motor */
+    mcCommandedValue = 2, /**< what the active command asks for */
+} MC_SOURCE;
+
+/** TwinCAT's modes of MC_Jog, in its spelling. */
+typedef enum E_JogMode {
+    MC_JOGMODE_STANDARD_SLOW = 0,  /**< a tenth of the axis's maximum velocity */
+    MC_JOGMODE_STANDARD_FAST = 1,  /**< the axis's maximum velocity */
+    MC_JOGMODE_CONTINOUS = 2,      /**< Velocity, Acceleration, Deceleration, Jerk of the block */
+    MC_JOGMODE_INCHING = 3,        /**< a step of Position at every edge */
+    MC_JOGMODE_INCHING_MODULO = 4, /**< as INCHING, to the next multiple of Position */
+} E_JogMode;
+
+/** Digital input of a motor, for MC_ReadDigitalInput. */
+typedef struct MC_INPUT_REF {
+    AXIS_REF_t Axis; /**< whose motor */
+    INT Number;      /**< 1 ... 4; IN1 ... IN4, used where InputNumber of the block is 0 */
+} MC_INPUT_REF;
+
+/** Digital output of a motor, for MC_ReadDigitalOutput and MC_WriteDigitalOutput; the outputs of
+ *  MC_DigitalCamSwitch. */
+typedef struct MC_OUTPUT_REF {
+    AXIS_REF_t Axis; /**< whose motor; Handle 0 (MC_DigitalCamSwitch only): no output is written, see Values */
+    INT Number;      /**< 1; used where OutputNumber of the block is 0; MC_DigitalCamSwitch: the output of track 1 */
+    DWORD Values;    /**< MC_DigitalCamSwitch shows all its tracks here, bit 0 = track 1 */
+} MC_OUTPUT_REF;
+
+/** What MC_TouchProbe waits for. */
+typedef struct MC_TRIGGER_REF {
+    AXIS_REF_t Axis;  /**< whose motor has the input; Handle 0: the block's Axis */
+    INT InputNumber;  /**< 1 ... 4; IN1 ... IN4; 0 acts as 1 */
+    BOOL FallingEdge; /**< TRUE: the input goes off; FALSE: it goes on */
+} MC_TRIGGER_REF;
+
+/** The signal of a homing step (Part 5). */
+typedef struct MC_REF_SIGNAL_REF {
+    AXIS_REF_t Axis; /**< whose motor has the input; Handle 0: the block's Axis */
+    INT InputNumber; /**< 1 ... 4; IN1 ... IN4; 0: the axis's configured home switch */
+} MC_REF_SIGNAL_REF;
+
+/** Most pairs of a profile, most switches and tracks of MC_DigitalCamSwitch. */
+#define CM1E_PROFILE_PAIRS 64
+#define CM1E_CAM_SWITCHES 32
+#define CM1E_CAM_TRACKS 32
+
+/** A point of MC_PositionProfile (3.14). */
+typedef struct MC_TP {
+    TIME DeltaTime; /**< ns, > 0; the first may be 0; since the point before */
+    LREAL Position; /**< u */
+} MC_TP;
+
+/** A position profile. */
+typedef struct MC_TP_REF {
+    WORD NumberOfPairs; /**< 1 ... CM1E_PROFILE_PAIRS */
+    BOOL IsAbsolute;    /**< FALSE: positions count from the set position at the start */
+    MC_TP MC_TP_Array[CM1E_PROFILE_PAIRS];
+} MC_TP_REF;
+
+/** A point of MC_VelocityProfile (3.15). */
+typedef struct MC_TV {
+    TIME DeltaTime; /**< ns, > 0; the first may be 0; since the point before */
+    LREAL Velocity; /**< u/s */
+} MC_TV;
+
+/** A velocity profile. */
+typedef struct MC_TV_REF {
+    WORD NumberOfPairs; /**< 1 ... CM1E_PROFILE_PAIRS */
+    BOOL IsAbsolute;    /**< FALSE: velocities count from the set velocity at the start */
+    MC_TV MC_TV_Array[CM1E_PROFILE_PAIRS];
+} MC_TV_REF;
+
+/** A point of MC_AccelerationProfile (3.16). */
+typedef struct MC_TA {
+    TIME DeltaTime;     /**< ns, > 0; the first may be 0; since the point before */
+    LREAL Acceleration; /**< u/s2 */
+} MC_TA;
+
+/** An acceleration profile. */
+typedef struct MC_TA_REF {
+    WORD NumberOfPairs; /**< 1 ... CM1E_PROFILE_PAIRS */
+    BOOL IsAbsolute;    /**< FALSE: accelerations count from the set acceleration at the start */
+    MC_TA MC_TA_Array[CM1E_PROFILE_PAIRS];
+} MC_TA_REF;
+
+/** One switch of MC_DigitalCamSwitch (3.32). */
+typedef struct MC_CAMSWITCH {
+    INT TrackNumber;       /**< 1 ... CM1E_CAM_TRACKS */
+    LREAL FirstOnPosition; /**< u; the switch is on from here, in positive direction */
+    LREAL LastOnPosition;  /**< u; ... to here; below FirstOnPosition on a modulo axis: over its end */
+    INT AxisDirection;     /**< 0 both, 1 positive, 2 negative; direction of motion in which it switches */
+    INT CamSwitchMode;     /**< 0 by position, 1 by time */
+    TIME Duration;         /**< ns; by time: on for so long from FirstOnPosition */
+} MC_CAMSWITCH;
+
+/** The switches of MC_DigitalCamSwitch. */
+typedef struct MC_CAMSWITCH_REF {
+    UINT NumberOfSwitches; /**< 1 ... CM1E_CAM_SWITCHES */
+    MC_CAMSWITCH Switches[CM1E_CAM_SWITCHES];
+} MC_CAMSWITCH_REF;
+
+/** One track of MC_DigitalCamSwitch (3.32). */
+typedef struct MC_TRACK {
+    TIME OnCompensation;  /**< ns; the switching on is moved by this; negative: before the position */
+    TIME OffCompensation; /**< ns; the switching off is moved by this */
+    LREAL Hysteresis;     /**< u, >= 0; to be left before the switching point switches again */
+} MC_TRACK;
+
+/** The tracks of MC_DigitalCamSwitch; element 1 is track 1. */
+typedef struct MC_TRACK_REF {
+    MC_TRACK Tracks[CM1E_CAM_TRACKS];
+} MC_TRACK_REF;
+
+/** State of a block that is not to be touched. */
+typedef struct cm1e_fb_private {
+    DWORD command;          /**< what the axis was asked for; 0: nothing */
+    UINT axis_handle;       /**< latched at the rising edge */
+    WORD error_id;
+    BOOL trigger_before;    /**< Execute or Enable at the last call */
+    BOOL state;
+    BOOL continuous_update; /**< was TRUE at the edge and ever since */
+    BOOL active;            /**< what Active showed */
+} cm1e_fb_private_t;
+
+/** State of MC_DigitalCamSwitch that is not to be touched. */
+typedef struct cm1e_cam_private {
+    cm1e_fb_private_t common;
+    DWORD on;                    /**< switches that are on */
+    DWORD pending;               /**< switches that wait for their compensation */
+    TIME due[CM1E_CAM_SWITCHES]; /**< when they switch */
+    LREAL position_before;
+} cm1e_cam_private_t;
+
+#ifdef __cplusplus
+}
+#endif
+#endif
