@@ -248,14 +248,15 @@ static bool at_shown_position(const bench_t *bench, const witness_t *w, bool ena
 }
 
 /** Where a motor did not follow, braking or holding may begin anew where it is: such a target pulls at nothing. Nor does
- *  one that stands. */
+ *  one that stands. A load may turn the shaft faster than the axis may go, and what is shown is a cycle old. */
 static bool began_anew(const bench_t *bench, uint32_t n, const witness_t *w, double step)
 {
     cm1e_axis_info_t info = {0};
     cm1e_axis_read(bench->axis[n], &info);
     const int32_t off = (int32_t)((uint32_t)w->target - (uint32_t)w->position);
     const bool moving = info.state == CM1E_AXIS_DISCRETE_MOTION || info.state == CM1E_AXIS_CONTINUOUS_MOTION;
-    return !moving && (step == 0 || fabs((double)off) <= w->max_step + 1.0);
+    const double shaft = fabs((double)(int32_t)((uint32_t)w->position - (uint32_t)w->position_before));
+    return !moving && (step == 0 || fabs((double)off) <= fmax(w->max_step, 3 * shaft) + 1.0);
 }
 
 /** Set-points may neither be faster nor change faster than the axis's limits say; a target is rounded to counts. */
@@ -349,6 +350,29 @@ static cm1e_tap_verdict_t bench_tap(void *context, cm1e_tap_frame_t *frame)
 }
 
 /* ---- the bench --------------------------------------------------------------------------------------------------- */
+
+/** An axis of any firmware since `oldest`, with any mapping, scale and limits. */
+static inline void bench_random_axis(cm1e_axis_config_t *axis, cm1e_firmware_t oldest)
+{
+    const double unit = one_in(3) ? 50000 : uniform(50, 5000);
+    snprintf(axis->firmware, sizeof axis->firmware, "%s",
+             cm1e_firmware_info((cm1e_firmware_t)(oldest + pick(CM1E_FIRMWARE_COUNT - oldest)))->version);
+    snprintf(axis->motor, sizeof axis->motor, "%s", cm1e_device_motors[pick(4)].name);
+    axis->mapping = one_in(2) ? CM1E_MAPPING_DYNAMIC : (cm1e_mapping_t)pick(4);
+    axis->counts_per_unit = unit;
+    axis->invert = one_in(2);
+    axis->max_velocity = uniform(50000, 1200000) / unit;
+    axis->max_acceleration = uniform(300000, 6000000) / unit;
+    axis->max_deceleration = uniform(300000, 6000000) / unit;
+    axis->max_jerk = uniform(1e7, 3e8) / unit;
+    axis->homing = (cm1e_homing_config_t){.method = (int8_t)(-1 - pick(6)), .velocity = 100000 / unit,
+                                          .acceleration = 2000000 / unit, .timeout_s = 5};
+    if (one_in(2)) {
+        axis->software_limit_negative = uniform(-180000, -20000) / unit;
+        axis->software_limit_positive = uniform(20000, 180000) / unit;
+    }
+    axis->sim.no_stops = one_in(4);
+}
 
 /** Axes of 1000 counts a unit with the library's default limits; the caller changes what it wants in bench->config. */
 static void bench_describe(bench_t *bench, uint32_t axes)
