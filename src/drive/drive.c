@@ -10,11 +10,19 @@ static const int64_t enable_timeout_ns = 2000 * MS_IN_NS;
  * again; else the answer to the old command would look like a loss of the new one. */
 static const int64_t torque_pause_ns = 20 * MS_IN_NS;
 
+/* Who does not know the firmware takes one with that unit for an old one in the other respects too. */
+static void set_velocity_unit(cm1e_drive_t *drive, bool in_counts_per_ms)
+{
+    drive->velocity_unit = in_counts_per_ms ? 1000 : 1;
+    drive->velocity_most = (int32_t)(drive->motor->max_velocity_counts_per_s / drive->velocity_unit);
+    drive->velocity_quarter = drive->firmware ? drive->firmware->velocity_quarter_in_hm_pp : in_counts_per_ms;
+}
+
 static cm1e_error_t velocity_unit(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
     const cm1e_axis_config_t *config = drive->config;
     if (config->velocity_unit_stated) {
-        drive->velocity_scale = config->velocity_in_counts_per_ms ? 1000.0 : 1.0;
+        set_velocity_unit(drive, config->velocity_in_counts_per_ms);
         return CM1E_OK;
     }
     if (!drive->firmware)
@@ -22,7 +30,7 @@ static cm1e_error_t velocity_unit(cm1e_drive_t *drive, cm1e_diag_t *diag)
                              "Axis \"%s\" (slave %u): the firmware version (object 0x100A) cannot be read, and the "
                              "unit of velocities depends on it (counts/ms before V1.3.3). State the unit in the "
                              "configuration of the axis.", config->name, drive->position);
-    drive->velocity_scale = drive->firmware->velocity_in_counts_per_ms ? 1000.0 : 1.0;
+    set_velocity_unit(drive, drive->firmware->velocity_in_counts_per_ms);
     return CM1E_OK;
 }
 

@@ -79,7 +79,9 @@ typedef struct cm1e_drive {
         out_profile_acceleration;
     cm1e_image_slot_t in_statusword, in_error, in_position, in_velocity, in_torque, in_digital, in_temperature, in_dc,
         in_mode;
-    double velocity_scale;          /**< counts/s per unit of 0x60FF and 0x606C */
+    int32_t velocity_unit;          /**< counts/s per unit of 0x60FF and 0x606C */
+    int32_t velocity_most;          /**< of 0x60FF, in that unit */
+    bool velocity_quarter;          /**< 0x606C is wrong in HM and PP */
     uint32_t profile_velocity, profile_acceleration; /**< what 0x6081 and 0x6083 carry where they are mapped */
     cm1e_slave_watch_t watch;
     int64_t now_ns, read_ns, enable_deadline_ns, mode_deadline_ns, torque_from_ns;

@@ -1,6 +1,4 @@
 /* The process data of one drive: where the objects lie, and their coding on the wire. */
-#include <math.h>
-
 #include "core/bytes.h"
 #include "drive/drive_private.h"
 
@@ -116,93 +114,111 @@ cm1e_error_t cm1e_drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag)
     return CM1E_OK;
 }
 
-static int32_t clamp_i32(double value)
+static int32_t clamp_i32(int64_t value)
 {
-    if (value >= INT32_MAX)
-        return INT32_MAX;
-    return value <= INT32_MIN ? INT32_MIN : (int32_t)value;
+    return (int32_t)(value > INT32_MAX ? INT32_MAX : value < INT32_MIN ? INT32_MIN : value);
 }
 
-static int64_t get_signed(const uint8_t *image, cm1e_image_slot_t slot)
+/* The coding runs for every axis in every cycle. Objects of one possible size are read as such; only those whose size
+ * the manual leaves open are read by their size. */
+static uint16_t get_u16(const uint8_t *image, cm1e_image_slot_t slot)
 {
-    if (slot.bytes == 0)
-        return 0;
-    const uint64_t raw = cm1e_get_uint(image + slot.offset, slot.bytes);
-    const uint64_t sign = UINT64_C(1) << (8u * slot.bytes - 1);
-    return (int64_t)(raw ^ sign) - (int64_t)sign;
+    return slot.bytes ? cm1e_get_u16(image + slot.offset) : 0;
 }
 
-static uint32_t get_unsigned(const uint8_t *image, cm1e_image_slot_t slot)
+static int32_t get_i32(const uint8_t *image, cm1e_image_slot_t slot)
 {
-    return slot.bytes ? (uint32_t)cm1e_get_uint(image + slot.offset, slot.bytes) : 0;
+    return slot.bytes ? (int32_t)cm1e_get_u32(image + slot.offset) : 0;
+}
+
+static int32_t get_signed(const uint8_t *image, cm1e_image_slot_t slot)
+{
+    if (slot.bytes == 2)
+        return (int16_t)cm1e_get_u16(image + slot.offset);
+    if (slot.bytes == 4 || slot.bytes == 0)
+        return get_i32(image, slot);
+    const uint32_t raw = (uint32_t)cm1e_get_uint(image + slot.offset, slot.bytes);
+    const uint32_t sign = UINT32_C(1) << (8u * slot.bytes - 1);
+    return (int32_t)(raw ^ sign) - (int32_t)sign;
 }
 
 static int16_t get_i16(const uint8_t *image, cm1e_image_slot_t slot)
 {
-    const int64_t value = get_signed(image, slot);
+    const int32_t value = get_signed(image, slot);
     return (int16_t)(value > INT16_MAX ? INT16_MAX : value < INT16_MIN ? INT16_MIN : value);
+}
+
+static void put_u32(uint8_t *image, cm1e_image_slot_t slot, uint32_t value)
+{
+    if (slot.bytes)
+        cm1e_put_u32(image + slot.offset, value);
 }
 
 /* 0x606C, unless the mapping lacks it or the firmware shows a quarter of it (below V1.3.0 in HM and PP, UG 10.1). */
 static int32_t velocity_of(const cm1e_drive_t *drive, const uint8_t *in, int32_t position, int8_t mode)
 {
-    const bool quarter = drive->firmware ? drive->firmware->velocity_quarter_in_hm_pp : drive->velocity_scale > 1.0;
-    if (drive->in_velocity.bytes && !(quarter && (mode == CM1E_MODE_HM || mode == CM1E_MODE_PP)))
-        return clamp_i32((double)get_signed(in, drive->in_velocity) * drive->velocity_scale);
+    const bool quarter = drive->velocity_quarter && (mode == CM1E_MODE_HM || mode == CM1E_MODE_PP);
+    if (drive->in_velocity.bytes && !quarter)
+        return clamp_i32((int64_t)get_i32(in, drive->in_velocity) * drive->velocity_unit);
     const int64_t elapsed_ns = drive->now_ns - drive->read_ns;
     if (!drive->seen || elapsed_ns <= 0)
         return 0;
     const int32_t step = (int32_t)((uint32_t)position - (uint32_t)drive->feedback.position);
-    return clamp_i32((double)step * 1e9 / (double)elapsed_ns);
+    return clamp_i32((int64_t)step * INT64_C(1000000000) / elapsed_ns);
+}
+
+static void take_statusword(cm1e_drive_feedback_t *f, uint16_t statusword)
+{
+    f->statusword = statusword;
+    f->state = cm1e_fsa_decode(statusword);
+    f->voltage = statusword & STATUSWORD_VOLTAGE_ENABLED;
+    f->fault = statusword & STATUSWORD_FAULT;
+    f->target_reached = statusword & STATUSWORD_TARGET_REACHED;
+    f->bit12 = statusword & STATUSWORD_BIT12;
+    f->bit13 = statusword & STATUSWORD_BIT13;
 }
 
 void cm1e_drive_decode(cm1e_drive_t *drive)
 {
     const uint8_t *in = cm1e_bus_inputs(drive->bus);
     cm1e_drive_feedback_t *f = &drive->feedback;
-    f->statusword = (uint16_t)get_unsigned(in, drive->in_statusword);
-    f->state = cm1e_fsa_decode(f->statusword);
-    f->error_code = (uint16_t)get_unsigned(in, drive->in_error);
-    f->mode = drive->in_mode.bytes ? (int8_t)get_signed(in, drive->in_mode) : drive->mode_shown;
-    const int32_t position = (int32_t)get_signed(in, drive->in_position);
+    const uint16_t statusword = get_u16(in, drive->in_statusword);
+    if (statusword != f->statusword || !drive->seen)
+        take_statusword(f, statusword);
+    f->error_code = get_u16(in, drive->in_error);
+    f->mode = drive->in_mode.bytes ? (int8_t)in[drive->in_mode.offset] : drive->mode_shown;
+    const int32_t position = get_i32(in, drive->in_position);
     f->velocity = velocity_of(drive, in, position, f->mode);
     f->position = position;
     f->torque = get_i16(in, drive->in_torque);
-    f->digital_inputs = (uint16_t)get_unsigned(in, drive->in_digital);
+    f->digital_inputs = (uint16_t)get_signed(in, drive->in_digital);
     f->temperature = get_i16(in, drive->in_temperature);
-    f->dc_link_decivolt = (int32_t)get_signed(in, drive->in_dc);
-    f->voltage = f->statusword & STATUSWORD_VOLTAGE_ENABLED;
-    f->fault = f->statusword & STATUSWORD_FAULT;
-    f->target_reached = f->statusword & STATUSWORD_TARGET_REACHED;
-    f->bit12 = f->statusword & STATUSWORD_BIT12;
-    f->bit13 = f->statusword & STATUSWORD_BIT13;
+    f->dc_link_decivolt = get_signed(in, drive->in_dc);
     drive->read_ns = drive->now_ns;
     drive->seen = true;
-}
-
-static void put(uint8_t *image, cm1e_image_slot_t slot, uint32_t value)
-{
-    if (slot.bytes)
-        cm1e_put_uint(image + slot.offset, slot.bytes, value);
 }
 
 /* UG 6.3: a target above the motor's peak speed is cut; in counts/ms the bound is the whole number below. */
 static int32_t velocity_on_wire(const cm1e_drive_t *drive, int32_t counts_per_s)
 {
-    const double most = floor(drive->motor->max_velocity_counts_per_s / drive->velocity_scale);
-    const double value = round(counts_per_s / drive->velocity_scale);
+    const int32_t half = counts_per_s < 0 ? -drive->velocity_unit / 2 : drive->velocity_unit / 2;
+    const int64_t value = drive->velocity_unit == 1 ? counts_per_s
+                                                    : ((int64_t)counts_per_s + half) / drive->velocity_unit;
+    const int32_t most = drive->velocity_most;
     return (int32_t)(value > most ? most : value < -most ? -most : value);
 }
 
 void cm1e_drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t position, int32_t velocity)
 {
     uint8_t *out = cm1e_bus_outputs(drive->bus);
-    put(out, drive->out_controlword, controlword);
-    put(out, drive->out_position, (uint32_t)position);
-    put(out, drive->out_velocity, (uint32_t)velocity_on_wire(drive, velocity));
-    put(out, drive->out_mode, (uint8_t)drive->mode);
-    put(out, drive->out_digital, drive->command.digital_outputs);
-    put(out, drive->out_profile_velocity, drive->profile_velocity);
-    put(out, drive->out_profile_acceleration, drive->profile_acceleration);
+    cm1e_put_u16(out + drive->out_controlword.offset, controlword);
+    put_u32(out, drive->out_position, (uint32_t)position);
+    put_u32(out, drive->out_velocity, (uint32_t)velocity_on_wire(drive, velocity));
+    if (drive->out_mode.bytes)
+        out[drive->out_mode.offset] = (uint8_t)drive->mode;
+    if (drive->out_digital.bytes)
+        cm1e_put_uint(out + drive->out_digital.offset, drive->out_digital.bytes, drive->command.digital_outputs);
+    put_u32(out, drive->out_profile_velocity, drive->profile_velocity);
+    put_u32(out, drive->out_profile_acceleration, drive->profile_acceleration);
     drive->target_position = position;
 }
