@@ -94,6 +94,7 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
     cm1e_drive_read(drive, received == CM1E_OK, now_ns);
     if (drive->feedback.fresh)
         cm1e_axis_track(axis);
+    cm1e_axis_probe_step(axis);
     if (drive->watch.lost || (drive->watch.al_state & 0x0F) == CM1E_AL_INIT)
         axis->homed = false; /* it may have been without power, and count from somewhere else now */
     cm1e_axis_reset_step(axis); /* here, so that no program sees an axis in error whose drive has forgotten why */
@@ -113,6 +114,7 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
 
 void cm1e_axis_advance(cm1e_axis_t *axis)
 {
+    cm1e_axis_signals_step(axis);
     cm1e_axis_power_step(axis);
     cm1e_axis_motion_step(axis);
     cm1e_axis_enable_step(axis);

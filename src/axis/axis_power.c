@@ -192,6 +192,7 @@ bool cm1e_axis_shut_down(cm1e_axis_t *axis)
     power_off(axis);
     if (axis->activity != ACTIVITY_FREE || axis->drive.torque)
         return false;
+    cm1e_axis_outputs_off(axis); /* not before: a brake on it must not fall on a moving load */
     const bool gone = axis->now_ns - axis->free_ns >= gone_after_ns;
     return axis->drive.feedback.state != OPERATION_ENABLED || (gone && !axis->drive.feedback.online);
 }

@@ -61,6 +61,23 @@ typedef struct homing {
     cm1e_error_t refused;  /**< why the last homing could not start, for the text; with the numbers in `sdo` */
 } homing_t;
 
+enum { PROBES = 2 * 4 }; /* every input, both edges */
+
+/** A touch probe: what it waits for stands in its place in the list. */
+typedef struct probe {
+    uint32_t id;
+    cm1e_command_state_t state;
+    cm1e_error_t error;
+    bool window;
+    double first, last;             /**< u */
+    double position, uncertainty;   /**< u */
+} probe_t;
+
+typedef struct probe_sample {
+    int64_t time_ns, counts;
+    uint16_t inputs;
+} probe_sample_t;
+
 struct cm1e_axis {
     cm1e_drive_t drive;
     const cm1e_axis_config_t *config;
@@ -118,6 +135,14 @@ struct cm1e_axis {
     bool reset_sent;
 
     homing_t home;
+
+    probe_t probes[PROBES];
+    probe_sample_t probe_sample;    /**< the last one, while probes are armed */
+    uint32_t probes_armed, probe_count;
+    int64_t output_until_ns;        /**< the digital output goes off then unless it is written again */
+    cm1e_command_id_t kept;         /**< a command that halts unless it is renewed; 0: none */
+    int64_t kept_until_ns;
+    cm1e_axis_command_t kept_halt;
 };
 
 /* axis.c */
@@ -190,5 +215,13 @@ cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t
 void cm1e_axis_home_begin(cm1e_axis_t *axis);
 void cm1e_axis_home_abort(cm1e_axis_t *axis, home_goal_t goal);
 void cm1e_axis_home_step(cm1e_axis_t *axis);
+
+/* axis_probe.c */
+void cm1e_axis_probe_step(cm1e_axis_t *axis);
+
+/* axis_digital.c */
+/** What was not renewed goes off or halts, before the set-point of the cycle. */
+void cm1e_axis_signals_step(cm1e_axis_t *axis);
+void cm1e_axis_outputs_off(cm1e_axis_t *axis);
 
 #endif

@@ -94,7 +94,7 @@ void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
     fault->slave_deaf |= drive->watch.lost || drive->watch.silent;
     /* And nobody would see it hear again while the working counter stays wrong. */
     fault->slave_deaf |= fault->error == CM1E_ERROR_BUS_WORKING_COUNTER && error == CM1E_ERROR_BUS_LOST;
-    if (!drive_operational(drive)) {
+    if (!cm1e_drive_operational(drive)) {
         fault->al_state = drive->watch.al_state;
         fault->al_status_code = drive->watch.al_status_code;
     }
@@ -129,7 +129,7 @@ static void latch_faults(cm1e_drive_t *drive)
     cm1e_error_t error = drive->fault.error; /* a latched one only collects its details */
     if (!error && drive->torque && drive->watch.lost)
         error = CM1E_ERROR_AXIS_OFFLINE;
-    if (!error && drive->torque && !drive_operational(drive))
+    if (!error && drive->torque && !cm1e_drive_operational(drive))
         error = CM1E_ERROR_BUS_STATE;
     if (!error && drive->feedback.online)
         error = cause_in_inputs(drive);
@@ -152,7 +152,7 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
     f->fresh = bus_ok || drive->watch.fresh;
     if (f->fresh)
         cm1e_drive_decode(drive);
-    f->online = bus_ok && drive_operational(drive);
+    f->online = bus_ok && cm1e_drive_operational(drive);
     if (f->state != OPERATION_ENABLED || !may_hold_position(f->mode))
         drive->target_holds = false;
     else if (f->mode == CM1E_MODE_NONE)

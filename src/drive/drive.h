@@ -113,6 +113,11 @@ void cm1e_drive_write(cm1e_drive_t *drive);
 void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error);
 /** TRUE while a commanded reset is under way. @rt cycle */
 bool cm1e_drive_resetting(const cm1e_drive_t *drive);
+/** The slave answers and is in Operational, as far as the supervision has seen. @rt cycle */
+static inline bool cm1e_drive_operational(const cm1e_drive_t *drive)
+{
+    return !drive->watch.lost && (drive->watch.al_state == CM1E_AL_NONE || drive->watch.al_state == CM1E_AL_OP);
+}
 /** Whether the mapping allows a mode: its target is mapped. The mode itself goes over SDO where 0x6060 is not mapped.
  *  @rt cycle */
 bool cm1e_drive_supports(const cm1e_drive_t *drive, cm1e_mode_t mode);

@@ -12,12 +12,6 @@
 /** Phases of a fault reset (drive_reset.c). */
 enum { RESET_IDLE = 0, RESET_WAIT_ONLINE, RESET_EDGE, RESET_RELEASED };
 
-/** The slave answers and is in Operational, as far as the supervision has seen. */
-static inline bool drive_operational(const cm1e_drive_t *drive)
-{
-    return !drive->watch.lost && (drive->watch.al_state == CM1E_AL_NONE || drive->watch.al_state == CM1E_AL_OP);
-}
-
 /** A cause after which a drive may still be under torque and listen, so that a ramp makes sense. */
 static inline bool drive_fault_allows_ramp(cm1e_error_t error)
 {

@@ -21,7 +21,7 @@ void cm1e_drive_reset_start(cm1e_drive_t *drive)
 
 static void request_recovery(cm1e_drive_t *drive)
 {
-    if (drive_operational(drive) || drive->now_ns < drive->recovery_ns)
+    if (cm1e_drive_operational(drive) || drive->now_ns < drive->recovery_ns)
         return;
     cm1e_bus_request_recovery(drive->bus, drive->position);
     drive->recovery_ns = drive->now_ns + recovery_interval_ns;
@@ -46,7 +46,7 @@ static void give_up(cm1e_drive_t *drive)
 {
     if (drive->feedback.online)
         finish(drive, CM1E_ERROR_DRIVE_RESET_TIMEOUT);
-    else if (!drive_operational(drive))
+    else if (!cm1e_drive_operational(drive))
         finish(drive, drive->watch.lost ? CM1E_ERROR_AXIS_OFFLINE : CM1E_ERROR_BUS_STATE);
     else
         finish(drive, drive_fault_allows_ramp(drive->fault.error) ? drive->fault.error : CM1E_ERROR_BUS_LOST);
@@ -73,7 +73,7 @@ static bool device_resets(const cm1e_drive_t *drive)
 static void edge(cm1e_drive_t *drive)
 {
     const bool cleared = drive->feedback.online && !drive->feedback.fault;
-    if (drive->now_ns < drive->reset_until_ns && drive_operational(drive) && !cleared)
+    if (drive->now_ns < drive->reset_until_ns && cm1e_drive_operational(drive) && !cleared)
         return;
     drive->reset_phase = RESET_RELEASED;
     drive->reset_deadline_ns = drive->now_ns + (device_resets(drive) ? online_timeout_ns : clear_timeout_ns);

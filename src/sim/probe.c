@@ -25,6 +25,8 @@ void cm1e_sim_probe(cm1e_sim_segment_t *segment, uint32_t position, cm1e_sim_pro
         .controlword = (uint16_t)drive->objects.controlword,
         .error_code = (uint16_t)drive->objects.error_code,
         .mode = (int8_t)drive->objects.mode_display,
+        .digital_inputs = cm1e_sim_digital_inputs(drive),
+        .digital_outputs = (uint16_t)drive->objects.digital_outputs,
         .peak_velocity_counts_per_s = drive->mechanics.peak_velocity,
         .travel_counts = drive->mechanics.travel,
     };

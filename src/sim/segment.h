@@ -64,6 +64,7 @@ typedef struct cm1e_sim_probe {
     bool torque_on;           /**< the output stage is on (Section C, UG 6.1.1) */
     uint16_t statusword, controlword, error_code;
     int8_t mode;
+    uint16_t digital_inputs, digital_outputs;
     double peak_velocity_counts_per_s; /**< largest absolute value since the last cm1e_sim_probe_reset() */
     double travel_counts;     /**< sum of absolute movement since the last reset */
 } cm1e_sim_probe_t;

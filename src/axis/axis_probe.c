@@ -1,0 +1,143 @@
+/*
+ * Touch probes (3.33, 3.34). The CM1-E has no latch of its own (no 0x60B8): a trigger is seen as an input that differs
+ * between two samples, and the position is the middle of the two positions. So it is known to half the way between two
+ * samples, and to the device's own delay of an input, which the manual does not tell.
+ */
+#include <math.h>
+
+#include "axis/axis_private.h"
+#include "axis/axis_signals.h"
+
+static uint16_t bit_of(cm1e_axis_trigger_t trigger) { return (uint16_t)(1u << (trigger.input - 1)); }
+
+static cm1e_error_t probe_of(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, probe_t **probe)
+{
+    *probe = NULL;
+    if (trigger.input < 1 || trigger.input > CM1E_AXIS_INPUTS)
+        return CM1E_ERROR_AXIS_SIGNAL;
+    if (axis->drive.in_digital.bytes == 0)
+        return CM1E_ERROR_PDO_MAPPING;
+    *probe = &axis->probes[2 * (trigger.input - 1) + trigger.falling];
+    return CM1E_OK;
+}
+
+static probe_sample_t sample(const cm1e_axis_t *axis)
+{
+    return (probe_sample_t){
+        .time_ns = axis->drive.read_ns,
+        .counts = axis->actual_counts,
+        .inputs = axis->drive.feedback.digital_inputs,
+    };
+}
+
+static void end(cm1e_axis_t *axis, probe_t *probe, cm1e_command_state_t state, cm1e_error_t error)
+{
+    probe->state = state;
+    probe->error = error;
+    axis->probes_armed--;
+}
+
+/* ---- windows ----------------------------------------------------------------------------------------------------- */
+
+static bool wraps(const cm1e_axis_t *axis) { (void)axis; return false; }
+
+static cm1e_error_t check_window(const cm1e_axis_t *axis, double first, double last)
+{
+    position_t unused;
+    if (!cm1e_axis_position_from_units(axis, first, &unused) || !cm1e_axis_position_from_units(axis, last, &unused))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    return first <= last || wraps(axis) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+}
+
+/* Both ends included, and what the counts of the motor cannot tell from them. */
+static bool in_window(const cm1e_axis_t *axis, const probe_t *probe, double position)
+{
+    const double few = 0.01 / fabs(axis->scale);
+    const bool above = position >= probe->first - few, below = position <= probe->last + few;
+    return probe->first <= probe->last ? above && below : above || below;
+}
+
+/* ---- triggers ---------------------------------------------------------------------------------------------------- */
+
+cm1e_error_t cm1e_axis_probe(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, bool window, double first, double last,
+                             uint32_t *id)
+{
+    *id = 0;
+    probe_t *probe;
+    cm1e_error_t error = probe_of(axis, trigger, &probe);
+    if (!error && window)
+        error = check_window(axis, first, last);
+    if (error)
+        return error;
+    if (!axis->drive.seen || !axis->position_known)
+        return CM1E_ERROR_AXIS_OFFLINE;
+    if (axis->probes_armed == 0)
+        axis->probe_sample = sample(axis);
+    if (probe->state != CM1E_COMMAND_ACTIVE)
+        axis->probes_armed++;
+    /* The number tells the probe, so that it is found again; the eighth part of a number never comes back. */
+    axis->probe_count = (axis->probe_count + 1) & (UINT32_MAX / PROBES);
+    if (axis->probe_count == 0)
+        axis->probe_count = 1;
+    *id = axis->probe_count * PROBES + (uint32_t)(probe - axis->probes);
+    *probe = (probe_t){.id = *id, .state = CM1E_COMMAND_ACTIVE, .window = window, .first = first, .last = last};
+    return CM1E_OK;
+}
+
+cm1e_probe_status_t cm1e_axis_probe_status(const cm1e_axis_t *axis, uint32_t id)
+{
+    const probe_t *probe = &axis->probes[id % PROBES];
+    if (id == 0 || probe->id != id)
+        return (cm1e_probe_status_t){.state = CM1E_COMMAND_UNKNOWN};
+    return (cm1e_probe_status_t){.state = probe->state, .error = probe->error, .position = probe->position,
+                                 .uncertainty = probe->uncertainty};
+}
+
+cm1e_error_t cm1e_axis_probe_abort(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger)
+{
+    probe_t *probe;
+    const cm1e_error_t error = probe_of(axis, trigger, &probe);
+    if (!error && probe->state == CM1E_COMMAND_ACTIVE)
+        end(axis, probe, CM1E_COMMAND_ABORTED, CM1E_OK);
+    return error;
+}
+
+/* Longer without inputs than the axis rides out, or while the motor gives its counts new meaning: nobody knows where the
+ * axis was when the input changed. */
+static bool position_unknown(const cm1e_axis_t *axis, const probe_sample_t *before, const probe_sample_t *now)
+{
+    const double cycles = (double)(now->time_ns - before->time_ns) / (axis->cycle_s * 1e9);
+    const uint32_t limit = cm1e_bus_configuration(axis->drive.bus)->lost_cycles_limit;
+    return cycles > (limit ? limit : 3) + 0.5 || axis->activity == ACTIVITY_HOMING;
+}
+
+static void triggered(cm1e_axis_t *axis, probe_t *probe, const probe_sample_t *before, const probe_sample_t *now)
+{
+    if (position_unknown(axis, before, now)) {
+        end(axis, probe, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_PROBE);
+        return;
+    }
+    const double way = (double)(now->counts - before->counts);
+    const position_t middle = cm1e_position_plus((position_t){before->counts, 0.0}, way / 2.0);
+    const double position = cm1e_axis_units(axis, middle);
+    if (probe->window && !in_window(axis, probe, position))
+        return;
+    probe->position = position;
+    probe->uncertainty = fabs(way / 2.0 / axis->scale);
+    end(axis, probe, CM1E_COMMAND_DONE, CM1E_OK);
+}
+
+void cm1e_axis_probe_step(cm1e_axis_t *axis)
+{
+    if (axis->probes_armed == 0 || !axis->drive.feedback.fresh)
+        return;
+    const probe_sample_t before = axis->probe_sample, now = sample(axis);
+    axis->probe_sample = now;
+    const unsigned changed = (unsigned)(before.inputs ^ now.inputs);
+    for (int i = 0; i < PROBES && changed; i++) {
+        const cm1e_axis_trigger_t trigger = {.input = i / 2 + 1, .falling = i % 2};
+        const unsigned bit = bit_of(trigger);
+        if (axis->probes[i].state == CM1E_COMMAND_ACTIVE && changed & bit && !(now.inputs & bit) == trigger.falling)
+            triggered(axis, &axis->probes[i], &before, &now);
+    }
+}

@@ -1,0 +1,77 @@
+/**
+ * @file axis/axis_signals.h
+ * What an axis has besides its motion: the digital inputs and the output of its motor, the switches that the
+ * configuration assigns to inputs, touch probes, and what goes off when nobody asks for it any more. None of it changes
+ * the state of the axis, but cm1e_axis_keep(). In the cycle thread, between cm1e_axis_inputs() and cm1e_axis_outputs().
+ */
+#ifndef CM1E_AXIS_AXIS_SIGNALS_H
+#define CM1E_AXIS_AXIS_SIGNALS_H
+
+#include "axis/axis.h"
+
+/** UG 7.3.24, 7.3.25: what the bus reaches. Output 2 is the motor's own (K34). */
+enum { CM1E_AXIS_INPUTS = 4, CM1E_AXIS_OUTPUTS = 1 };
+
+/** Planned time of this cycle, ns; the clock of what follows. @rt cycle */
+int64_t cm1e_axis_time(const cm1e_axis_t *axis);
+
+/** IN1 ... IN4 as last seen. CM1E_ERROR_AXIS_SIGNAL: no such number; CM1E_ERROR_PDO_MAPPING: inputs are not mapped;
+ *  CM1E_ERROR_AXIS_OFFLINE: the value is old (and returned). @rt cycle */
+cm1e_error_t cm1e_axis_read_input(const cm1e_axis_t *axis, int number, bool *value);
+/** Output 1, 0x60FE bit 0. It keeps its value over modes, MC_Power and ErrorStop, and is switched off when the slave
+ *  leaves Operational (it must not come on again by itself) and by cm1e_axis_shut_down(). Errors as above, then nothing
+ *  has changed. @rt cycle */
+cm1e_error_t cm1e_axis_write_output(cm1e_axis_t *axis, int number, bool value);
+/** The same for a value that goes off by itself unless it is written again within `keep_ns`. @rt cycle */
+cm1e_error_t cm1e_axis_hold_output(cm1e_axis_t *axis, int number, bool value, int64_t keep_ns);
+/** What is commanded. @rt cycle */
+cm1e_error_t cm1e_axis_read_output(const cm1e_axis_t *axis, int number, bool *value);
+
+typedef enum cm1e_axis_switch {
+    CM1E_SWITCH_LIMIT_POSITIVE = 0, CM1E_SWITCH_LIMIT_NEGATIVE, CM1E_SWITCH_HOME, CM1E_SWITCH_COUNT,
+} cm1e_axis_switch_t;
+/** Whether the configuration names an input for it, and the mapping has the inputs. @rt cycle */
+bool cm1e_axis_has_switch(const cm1e_axis_t *axis, cm1e_axis_switch_t which);
+/** As last seen, FALSE without one. @rt cycle */
+bool cm1e_axis_switch_active(const cm1e_axis_t *axis, cm1e_axis_switch_t which);
+
+/** The rest of what MC_ReadAxisInfo shows (3.29). */
+typedef struct cm1e_axis_condition {
+    bool simulation;         /**< on the simulated segment */
+    bool communication;      /**< it takes part in the cycle */
+    bool ready_for_power_on; /**< Disabled, and nothing stands against enabling: motor power, no fault */
+    bool warning;            /**< the drive tells of something that is no fault */
+} cm1e_axis_condition_t;
+cm1e_axis_condition_t cm1e_axis_condition(const cm1e_axis_t *axis);
+
+/* ---- touch probes (3.33, 3.34) ---------------------------------------------------------------------------------- */
+
+/** A trigger is an input and an edge of it; each has at most one probe. */
+typedef struct cm1e_axis_trigger {
+    int input;     /**< 1 ... 4 */
+    bool falling;  /**< the edge from on to off instead of from off to on */
+} cm1e_axis_trigger_t;
+
+typedef struct cm1e_probe_status {
+    cm1e_command_state_t state; /**< UNKNOWN: another probe was armed on the same trigger since */
+    cm1e_error_t error;
+    double position;            /**< u, where the trigger came: in the middle of the two positions around it */
+    double uncertainty;         /**< u, half their distance */
+} cm1e_probe_status_t;
+
+/** Arms a probe for the next edge after the present inputs; an armed one on the same trigger is aborted. It goes on
+ *  without being asked. `window`: only within first ... last (u, both included; on a modulo axis first > last is the
+ *  window over the end of the range). CM1E_ERROR_AXIS_POSITION_RANGE: no such window. @rt cycle */
+cm1e_error_t cm1e_axis_probe(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, bool window, double first, double last,
+                             uint32_t *id);
+cm1e_probe_status_t cm1e_axis_probe_status(const cm1e_axis_t *axis, uint32_t id);
+/** Aborts what is armed on the trigger; nothing is fine too. @rt cycle */
+cm1e_error_t cm1e_axis_probe_abort(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger);
+
+/* ---- a motion that somebody has to want ------------------------------------------------------------------------- */
+
+/** MC_Jog: unless called again within `keep_ns`, the axis is halted with `deceleration` and `jerk` (0: the axis's) as
+ *  by MC_Halt, if command `id` moves it then. id 0: nothing is kept any more. @rt cycle */
+void cm1e_axis_keep(cm1e_axis_t *axis, cm1e_command_id_t id, int64_t keep_ns, double deceleration, double jerk);
+
+#endif
