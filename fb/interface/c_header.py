@@ -25,9 +25,13 @@ def note(variable):
     return "; ".join(part for part in (limits, variable.text) if part)
 
 
+def is_pointer(variable):
+    return variable.section == "in_out" or variable.reference
+
+
 def declarator(variable):
     kind = c_type(variable.type)
-    if variable.section == "in_out" or variable.reference:
+    if is_pointer(variable):
         const = "const " if variable.const or variable.reference else ""
         return f"{const}{kind} *", variable.name
     return f"{kind} ", variable.name + (f"[{variable.length}]" if variable.length else "")

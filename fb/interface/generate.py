@@ -10,17 +10,29 @@ import os
 import sys
 
 import c_header
+import c_table
+import pages
 import st
+from tables import Tables
 
 SOURCE = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../.."))
 FILES = ("types.st", "motion.st", "administrative.st", "homing.st", "standard.st")
 COMMAND = "fb/interface/generate.py"
 
 
+def read(path):
+    with open(os.path.join(SOURCE, path), encoding="utf-8") as file:
+        return file.read()
+
+
 def outputs():
     """{path below the source tree: text}"""
-    files = [st.read(os.path.join(SOURCE, "fb/interface", name), f"fb/interface/{name}") for name in FILES]
-    return {f"include/cm1e/{file.header}": c_header.header(file) for file in files}
+    files = [st.Reader(f"fb/interface/{name}", read(f"fb/interface/{name}")).read() for name in FILES]
+    tables = Tables(read("fb/interface/classes.md"), read("include/cm1e/error.h"))
+    result = {f"include/cm1e/{file.header}": c_header.header(file) for file in files}
+    result["tests/support/block_table.c"] = c_table.source(files, tables)
+    result.update(pages.all_pages(files, tables, lambda name: os.path.exists(os.path.join(SOURCE, "docs/blocks", name))))
+    return result
 
 
 def write(folder, texts):
@@ -39,9 +51,8 @@ def check(texts):
         if not os.path.exists(full):
             faults.append(f"{path} is missing")
             continue
-        with open(full, encoding="utf-8") as file:
-            if file.read() != text:
-                faults.append(f"{path} is not what {COMMAND} writes")
+        if read(path) != text:
+            faults.append(f"{path} is not what {COMMAND} writes")
     return faults
 
 

@@ -176,7 +176,3 @@ class Reader:
             doc, tags = "", {}
         return file
 
-
-def read(path, name):
-    with open(path, encoding="utf-8") as file:
-        return Reader(name, file.read()).read()

@@ -63,8 +63,8 @@ typedef enum MC_SOURCE {
 
 /** TwinCAT's modes of MC_Jog, in its spelling. */
 typedef enum E_JogMode {
-    MC_JOGMODE_STANDARD_SLOW = 0,  /**< a tenth of the axis's maximum velocity */
-    MC_JOGMODE_STANDARD_FAST = 1,  /**< the axis's maximum velocity */
+    MC_JOGMODE_STANDARD_SLOW = 0,  /**< the slow jog velocity of the bus file */
+    MC_JOGMODE_STANDARD_FAST = 1,  /**< the fast jog velocity of the bus file */
     MC_JOGMODE_CONTINOUS = 2,      /**< Velocity, Acceleration, Deceleration, Jerk of the block */
     MC_JOGMODE_INCHING = 3,        /**< a step of Position at every edge */
     MC_JOGMODE_INCHING_MODULO = 4, /**< as INCHING, to the next multiple of Position */

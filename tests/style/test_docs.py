@@ -142,7 +142,8 @@ def check_paths(path, text):
 
 
 def main():
-    documents = expand("*.md") + expand("docs/*.md") + expand("bench/*.md") + expand("examples/*.md")
+    documents = expand("*.md") + expand("docs/*.md") + expand("docs/blocks/*.md") + expand("bench/*.md") \
+        + expand("fb/interface/*.md") + expand("examples/*.md")
     check_errors()
     check_proofs()
     check_rooms()

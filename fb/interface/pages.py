@@ -1,0 +1,178 @@
+"""Writes docs/blocks/: a page for each block, and the index with the table of states."""
+import textwrap
+
+from tables import STATES
+
+SECTIONS = (("in_out", "VAR_IN_OUT"), ("input", "VAR_INPUT"), ("output", "VAR_OUTPUT"))
+CHAPTERS = {
+    "mc_motion.h": "Motion",
+    "mc_administrative.h": "Parameters, signals, what the axis shows",
+    "mc_homing.h": "Homing in steps",
+    "iec.h": "Standard blocks of IEC 61131-3",
+}
+
+
+def wrap(text, first="", rest=""):
+    """Wrapped to 119 columns; a link, a name or a number is not broken."""
+    return textwrap.fill(" ".join(text.split()), 119, initial_indent=first, subsequent_indent=rest,
+                         break_long_words=False, break_on_hyphens=False)
+
+
+def in_sections(variables):
+    """[("VAR_INPUT", [variables])] in the order of declaration; the private part left out."""
+    result = []
+    for variable in variables:
+        keyword = dict(SECTIONS).get(variable.section)
+        if not keyword:
+            continue
+        if not result or result[-1][0] != keyword:
+            result.append((keyword, []))
+        result[-1][1].append(variable)
+    return result
+
+
+def st_type(variable):
+    kind = f"ARRAY [1..{variable.length}] OF {variable.type}" if variable.length else variable.type
+    kind = f"REF_TO {kind}" if variable.reference else kind
+    return f"{kind} := {variable.default}" if variable.default else kind
+
+
+def st_text(block):
+    lines = [f"FUNCTION_BLOCK {block.name}"]
+    for keyword, variables in in_sections(block.variables):
+        width = max(len(variable.name) for variable in variables)
+        lines += [keyword, *(f"    {variable.name.ljust(width)} : {st_type(variable)};" for variable in variables),
+                  "END_VAR"]
+    return "\n".join(lines + ["END_FUNCTION_BLOCK"])
+
+
+def variable_row(variable, tables):
+    text = "; ".join(part for part in (tables.meanings.get(variable.name, ""), variable.text) if part)
+    if variable.name in tables.meanings and variable.text and variable.text[0] != "(":
+        text = variable.text  # what is said of this block goes before what is said of all
+    unit = ", ".join(part for part in (variable.unit, variable.range) if part)
+    default = variable.default or ("" if variable.section != "input" else zero(variable))
+    return f"| `{variable.name}` | {variable.type} | {unit} | {default} | {text} |\n"
+
+
+def zero(variable):
+    if variable.reference:
+        return "NULL"
+    return {"BOOL": "FALSE", "TIME": "0"}.get(variable.type, "0")
+
+
+def variables_text(block, tables):
+    result = ""
+    for title, sections in (("Inputs", ("in_out", "input")), ("Outputs", ("output",))):
+        variables = [variable for variable in block.variables if variable.section in sections]
+        if sections == ("output",):
+            head, line = "| name | type | unit, range | meaning |\n|---|---|---|---|\n", lambda row: drop_default(row)
+        else:
+            head, line = "| name | type | unit, range | default | meaning |\n|---|---|---|---|---|\n", lambda row: row
+        result += f"## {title}\n\n{head}" + "".join(line(variable_row(item, tables)) for item in variables) + "\n"
+    return result
+
+
+def drop_default(row):
+    cells = row.split(" | ")
+    return " | ".join(cells[:3] + cells[4:])
+
+
+def error_id(error, tables):
+    number, text = tables.errors[error]
+    return f"`0x{number:04X}`", text
+
+
+def state_cell(cell, tables):
+    if cell == "-":
+        return "no change"
+    return cell if cell in STATES else error_id(cell, tables)[0]
+
+
+def states_text(block, tables):
+    cells = tables.states_of(block)
+    if block.tags.get("when"):
+        return "## In which state\n\n" + wrap(" ".join(block.tags["when"])) + "\n\n"
+    if not cells:
+        return ""
+    if set(cells) == {"-"}:
+        return "## In which state\n\nIn every state; it never changes it.\n\n"
+    rows = ""
+    for state, cell in zip(STATES, cells):
+        told = ": ".join(error_id(cell, tables)) if cell in tables.errors else state_cell(cell, tables)
+        rows += f"| {state} | {told} |\n"
+    return ("## In which state\n\n| state of the axis | it is then in, or the refusal, which changes nothing |\n|---|---|\n"
+            + rows + "\n")
+
+
+def errors_text(block, tables):
+    errors = tables.errors_of(block)
+    if not errors:
+        return ""
+    rows = "".join("| {} | {} | {} |\n".format(*error_id(error, tables), when) for error, when in errors)
+    return f"## Errors\n\n| ErrorID | error | when |\n|---|---|---|\n{rows}\n"
+
+
+def notes_text(block):
+    notes = block.tags.get("note", [])
+    return "## Notes\n\n" + "".join(wrap(note, "- ", "  ") + "\n" for note in notes) + "\n" if notes else ""
+
+
+def clause_text(block):
+    clause = " ".join(block.tags.get("clause", []))
+    return f"PLCopen Part 1 v2.0, {clause}" if clause[:1].isdigit() else clause
+
+
+def first_sentence(text):
+    return " ".join(text.split()).partition(". ")[0].rstrip(".") + "."
+
+
+def page(block, file, tables, has_diagram):
+    name = block.name
+    include = "iec.h" if file.header == "iec.h" else "plcopen.h"
+    diagram = f"## Timing\n\n![timing of {name}]({name}.svg)\n\n" if has_diagram else ""
+    if diagram and block.tags.get("timing"):
+        diagram += wrap(" ".join(block.tags["timing"])) + "\n\n"
+    defaults = ""
+    if any(variable.default for variable in block.variables):
+        defaults = (f"A zeroed struct has 0 where a default is given below; `{name.upper()}_DEFAULTS` in its "
+                    "initialiser gives them.\n\n")
+    return (f"# {name}\n\n" + wrap(f"{block.doc} ({clause_text(block)})") + "\n\n"
+            + f"`#include <cm1e/{include}>`, `{name}_t`, `{name}(&fb)`.\n"
+            + "What holds for all blocks: [the function blocks](../FUNCTION-BLOCKS.md).\n\n"
+            + f"```iecst\n{st_text(block)}\n```\n\n{defaults}{variables_text(block, tables)}"
+            + states_text(block, tables) + errors_text(block, tables) + notes_text(block) + diagram).rstrip() + "\n"
+
+
+def index(files, tables):
+    text = "# The blocks\n\n"
+    text += wrap("One page a block: what it is for, its declaration, inputs and outputs with units, the states in which it "
+                 "may be called, its errors, a timing diagram that a real run on the simulated motor has drawn. What holds "
+                 "for all of them is in [the function blocks](../FUNCTION-BLOCKS.md). The pages are generated from "
+                 "`fb/interface/`.") + "\n\n"
+    for file in files:
+        if not file.blocks():
+            continue
+        text += f"## {CHAPTERS[file.header]}\n\n| block | |\n|---|---|\n"
+        text += "".join(f"| [{block.name}]({block.name}.md) | {first_sentence(block.doc)} |\n" for block in file.blocks())
+        text += "\n"
+    text += "## Which command in which state\n\n"
+    text += wrap("An entry is the state that follows, or the ErrorID of the refusal, which changes nothing. The blocks that "
+                 "are not here may be called in every state and never change it.") + "\n\n"
+    text += "| block | " + " | ".join(STATES) + " |\n|" + "---|" * (len(STATES) + 1) + "\n"
+    by_class = {}
+    for block in (block for file in files for block in file.blocks()):
+        by_class.setdefault(" ".join(block.tags.get("states", [])), []).append(block.name)
+    for name, cells in tables.states.items():
+        if name in by_class and set(cells) != {"-"}:
+            text += (f"| {', '.join(by_class[name])} | "
+                     + " | ".join("no change" if cell == "-" else state_cell(cell, tables) for cell in cells) + " |\n")
+    return text
+
+
+def all_pages(files, tables, exists):
+    result = {"docs/blocks/README.md": index(files, tables)}
+    for file in files:
+        for block in file.blocks():
+            result[f"docs/blocks/{block.name}.md"] = page(block, file, tables, exists(f"{block.name}.svg"))
+    return result

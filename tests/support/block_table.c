@@ -1,0 +1,1680 @@
+/* Generated from fb/interface/ by fb/interface/generate.py; change it there. */
+#include "block_table.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* The layout that an ST compiler gives the declarations: order of declaration, natural alignment. */
+#define AT(TYPE, NAME, OFFSET) _Static_assert(offsetof(TYPE##_t, NAME) == OFFSET, #TYPE "." #NAME)
+#if UINTPTR_MAX == UINT64_MAX
+_Static_assert(sizeof(MC_INPUT_REF) == 4, "MC_INPUT_REF");
+_Static_assert(sizeof(MC_OUTPUT_REF) == 8, "MC_OUTPUT_REF");
+_Static_assert(sizeof(MC_TRIGGER_REF) == 6, "MC_TRIGGER_REF");
+_Static_assert(sizeof(MC_REF_SIGNAL_REF) == 4, "MC_REF_SIGNAL_REF");
+_Static_assert(sizeof(MC_TP) == 16, "MC_TP");
+_Static_assert(sizeof(MC_TP_REF) == 1032, "MC_TP_REF");
+_Static_assert(sizeof(MC_TV) == 16, "MC_TV");
+_Static_assert(sizeof(MC_TV_REF) == 1032, "MC_TV_REF");
+_Static_assert(sizeof(MC_TA) == 16, "MC_TA");
+_Static_assert(sizeof(MC_TA_REF) == 1032, "MC_TA_REF");
+_Static_assert(sizeof(MC_CAMSWITCH) == 40, "MC_CAMSWITCH");
+_Static_assert(sizeof(MC_CAMSWITCH_REF) == 1288, "MC_CAMSWITCH_REF");
+_Static_assert(sizeof(MC_TRACK) == 24, "MC_TRACK");
+_Static_assert(sizeof(MC_TRACK_REF) == 768, "MC_TRACK_REF");
+_Static_assert(sizeof(cm1e_fb_private_t) == 12, "cm1e_fb_private_t");
+_Static_assert(sizeof(cm1e_cam_private_t) == 288, "cm1e_cam_private_t");
+_Static_assert(sizeof(cm1e_iec_timer_t) == 16, "cm1e_iec_timer_t");
+_Static_assert(sizeof(cm1e_iec_edges_t) == 3, "cm1e_iec_edges_t");
+_Static_assert(sizeof(MC_Power_t) == 32, "MC_Power");
+AT(MC_Power, Axis, 0);
+AT(MC_Power, Enable, 8);
+AT(MC_Power, EnablePositive, 9);
+AT(MC_Power, EnableNegative, 10);
+AT(MC_Power, Status, 11);
+AT(MC_Power, Valid, 12);
+AT(MC_Power, Error, 13);
+AT(MC_Power, ErrorID, 14);
+AT(MC_Power, Private, 16);
+_Static_assert(sizeof(MC_Home_t) == 64, "MC_Home");
+AT(MC_Home, Axis, 0);
+AT(MC_Home, Execute, 8);
+AT(MC_Home, Position, 16);
+AT(MC_Home, BufferMode, 24);
+AT(MC_Home, Done, 28);
+AT(MC_Home, Busy, 29);
+AT(MC_Home, Active, 30);
+AT(MC_Home, CommandAborted, 31);
+AT(MC_Home, Error, 32);
+AT(MC_Home, ErrorID, 34);
+AT(MC_Home, Parameters, 40);
+AT(MC_Home, Private, 48);
+_Static_assert(sizeof(MC_Stop_t) == 56, "MC_Stop");
+AT(MC_Stop, Axis, 0);
+AT(MC_Stop, Execute, 8);
+AT(MC_Stop, Deceleration, 16);
+AT(MC_Stop, Jerk, 24);
+AT(MC_Stop, Done, 32);
+AT(MC_Stop, Busy, 33);
+AT(MC_Stop, Active, 34);
+AT(MC_Stop, CommandAborted, 35);
+AT(MC_Stop, Error, 36);
+AT(MC_Stop, ErrorID, 38);
+AT(MC_Stop, Private, 40);
+_Static_assert(sizeof(MC_Halt_t) == 56, "MC_Halt");
+AT(MC_Halt, Axis, 0);
+AT(MC_Halt, Execute, 8);
+AT(MC_Halt, Deceleration, 16);
+AT(MC_Halt, Jerk, 24);
+AT(MC_Halt, BufferMode, 32);
+AT(MC_Halt, Done, 36);
+AT(MC_Halt, Busy, 37);
+AT(MC_Halt, Active, 38);
+AT(MC_Halt, CommandAborted, 39);
+AT(MC_Halt, Error, 40);
+AT(MC_Halt, ErrorID, 42);
+AT(MC_Halt, Private, 44);
+_Static_assert(sizeof(MC_MoveAbsolute_t) == 88, "MC_MoveAbsolute");
+AT(MC_MoveAbsolute, Axis, 0);
+AT(MC_MoveAbsolute, Execute, 8);
+AT(MC_MoveAbsolute, ContinuousUpdate, 9);
+AT(MC_MoveAbsolute, Position, 16);
+AT(MC_MoveAbsolute, Velocity, 24);
+AT(MC_MoveAbsolute, Acceleration, 32);
+AT(MC_MoveAbsolute, Deceleration, 40);
+AT(MC_MoveAbsolute, Jerk, 48);
+AT(MC_MoveAbsolute, Direction, 56);
+AT(MC_MoveAbsolute, BufferMode, 60);
+AT(MC_MoveAbsolute, Done, 64);
+AT(MC_MoveAbsolute, Busy, 65);
+AT(MC_MoveAbsolute, Active, 66);
+AT(MC_MoveAbsolute, CommandAborted, 67);
+AT(MC_MoveAbsolute, Error, 68);
+AT(MC_MoveAbsolute, ErrorID, 70);
+AT(MC_MoveAbsolute, Private, 72);
+_Static_assert(sizeof(MC_MoveRelative_t) == 80, "MC_MoveRelative");
+AT(MC_MoveRelative, Axis, 0);
+AT(MC_MoveRelative, Execute, 8);
+AT(MC_MoveRelative, ContinuousUpdate, 9);
+AT(MC_MoveRelative, Distance, 16);
+AT(MC_MoveRelative, Velocity, 24);
+AT(MC_MoveRelative, Acceleration, 32);
+AT(MC_MoveRelative, Deceleration, 40);
+AT(MC_MoveRelative, Jerk, 48);
+AT(MC_MoveRelative, BufferMode, 56);
+AT(MC_MoveRelative, Done, 60);
+AT(MC_MoveRelative, Busy, 61);
+AT(MC_MoveRelative, Active, 62);
+AT(MC_MoveRelative, CommandAborted, 63);
+AT(MC_MoveRelative, Error, 64);
+AT(MC_MoveRelative, ErrorID, 66);
+AT(MC_MoveRelative, Private, 68);
+_Static_assert(sizeof(MC_MoveAdditive_t) == 80, "MC_MoveAdditive");
+AT(MC_MoveAdditive, Axis, 0);
+AT(MC_MoveAdditive, Execute, 8);
+AT(MC_MoveAdditive, ContinuousUpdate, 9);
+AT(MC_MoveAdditive, Distance, 16);
+AT(MC_MoveAdditive, Velocity, 24);
+AT(MC_MoveAdditive, Acceleration, 32);
+AT(MC_MoveAdditive, Deceleration, 40);
+AT(MC_MoveAdditive, Jerk, 48);
+AT(MC_MoveAdditive, BufferMode, 56);
+AT(MC_MoveAdditive, Done, 60);
+AT(MC_MoveAdditive, Busy, 61);
+AT(MC_MoveAdditive, Active, 62);
+AT(MC_MoveAdditive, CommandAborted, 63);
+AT(MC_MoveAdditive, Error, 64);
+AT(MC_MoveAdditive, ErrorID, 66);
+AT(MC_MoveAdditive, Private, 68);
+_Static_assert(sizeof(MC_MoveSuperimposed_t) == 88, "MC_MoveSuperimposed");
+AT(MC_MoveSuperimposed, Axis, 0);
+AT(MC_MoveSuperimposed, Execute, 8);
+AT(MC_MoveSuperimposed, ContinuousUpdate, 9);
+AT(MC_MoveSuperimposed, Distance, 16);
+AT(MC_MoveSuperimposed, VelocityDiff, 24);
+AT(MC_MoveSuperimposed, Acceleration, 32);
+AT(MC_MoveSuperimposed, Deceleration, 40);
+AT(MC_MoveSuperimposed, Jerk, 48);
+AT(MC_MoveSuperimposed, Done, 56);
+AT(MC_MoveSuperimposed, Busy, 57);
+AT(MC_MoveSuperimposed, CommandAborted, 58);
+AT(MC_MoveSuperimposed, Error, 59);
+AT(MC_MoveSuperimposed, ErrorID, 60);
+AT(MC_MoveSuperimposed, CoveredDistance, 64);
+AT(MC_MoveSuperimposed, Private, 72);
+_Static_assert(sizeof(MC_HaltSuperimposed_t) == 56, "MC_HaltSuperimposed");
+AT(MC_HaltSuperimposed, Axis, 0);
+AT(MC_HaltSuperimposed, Execute, 8);
+AT(MC_HaltSuperimposed, Deceleration, 16);
+AT(MC_HaltSuperimposed, Jerk, 24);
+AT(MC_HaltSuperimposed, Done, 32);
+AT(MC_HaltSuperimposed, Busy, 33);
+AT(MC_HaltSuperimposed, Active, 34);
+AT(MC_HaltSuperimposed, CommandAborted, 35);
+AT(MC_HaltSuperimposed, Error, 36);
+AT(MC_HaltSuperimposed, ErrorID, 38);
+AT(MC_HaltSuperimposed, Private, 40);
+_Static_assert(sizeof(MC_MoveVelocity_t) == 80, "MC_MoveVelocity");
+AT(MC_MoveVelocity, Axis, 0);
+AT(MC_MoveVelocity, Execute, 8);
+AT(MC_MoveVelocity, ContinuousUpdate, 9);
+AT(MC_MoveVelocity, Velocity, 16);
+AT(MC_MoveVelocity, Acceleration, 24);
+AT(MC_MoveVelocity, Deceleration, 32);
+AT(MC_MoveVelocity, Jerk, 40);
+AT(MC_MoveVelocity, Direction, 48);
+AT(MC_MoveVelocity, BufferMode, 52);
+AT(MC_MoveVelocity, InVelocity, 56);
+AT(MC_MoveVelocity, Busy, 57);
+AT(MC_MoveVelocity, Active, 58);
+AT(MC_MoveVelocity, CommandAborted, 59);
+AT(MC_MoveVelocity, Error, 60);
+AT(MC_MoveVelocity, ErrorID, 62);
+AT(MC_MoveVelocity, Private, 64);
+_Static_assert(sizeof(MC_MoveContinuousAbsolute_t) == 96, "MC_MoveContinuousAbsolute");
+AT(MC_MoveContinuousAbsolute, Axis, 0);
+AT(MC_MoveContinuousAbsolute, Execute, 8);
+AT(MC_MoveContinuousAbsolute, ContinuousUpdate, 9);
+AT(MC_MoveContinuousAbsolute, Position, 16);
+AT(MC_MoveContinuousAbsolute, EndVelocity, 24);
+AT(MC_MoveContinuousAbsolute, Velocity, 32);
+AT(MC_MoveContinuousAbsolute, Acceleration, 40);
+AT(MC_MoveContinuousAbsolute, Deceleration, 48);
+AT(MC_MoveContinuousAbsolute, Jerk, 56);
+AT(MC_MoveContinuousAbsolute, Direction, 64);
+AT(MC_MoveContinuousAbsolute, BufferMode, 68);
+AT(MC_MoveContinuousAbsolute, InEndVelocity, 72);
+AT(MC_MoveContinuousAbsolute, Busy, 73);
+AT(MC_MoveContinuousAbsolute, Active, 74);
+AT(MC_MoveContinuousAbsolute, CommandAborted, 75);
+AT(MC_MoveContinuousAbsolute, Error, 76);
+AT(MC_MoveContinuousAbsolute, ErrorID, 78);
+AT(MC_MoveContinuousAbsolute, Private, 80);
+_Static_assert(sizeof(MC_MoveContinuousRelative_t) == 88, "MC_MoveContinuousRelative");
+AT(MC_MoveContinuousRelative, Axis, 0);
+AT(MC_MoveContinuousRelative, Execute, 8);
+AT(MC_MoveContinuousRelative, ContinuousUpdate, 9);
+AT(MC_MoveContinuousRelative, Distance, 16);
+AT(MC_MoveContinuousRelative, EndVelocity, 24);
+AT(MC_MoveContinuousRelative, Velocity, 32);
+AT(MC_MoveContinuousRelative, Acceleration, 40);
+AT(MC_MoveContinuousRelative, Deceleration, 48);
+AT(MC_MoveContinuousRelative, Jerk, 56);
+AT(MC_MoveContinuousRelative, BufferMode, 64);
+AT(MC_MoveContinuousRelative, InEndVelocity, 68);
+AT(MC_MoveContinuousRelative, Busy, 69);
+AT(MC_MoveContinuousRelative, Active, 70);
+AT(MC_MoveContinuousRelative, CommandAborted, 71);
+AT(MC_MoveContinuousRelative, Error, 72);
+AT(MC_MoveContinuousRelative, ErrorID, 74);
+AT(MC_MoveContinuousRelative, Private, 76);
+_Static_assert(sizeof(MC_TorqueControl_t) == 96, "MC_TorqueControl");
+AT(MC_TorqueControl, Axis, 0);
+AT(MC_TorqueControl, Execute, 8);
+AT(MC_TorqueControl, ContinuousUpdate, 9);
+AT(MC_TorqueControl, Torque, 16);
+AT(MC_TorqueControl, TorqueRamp, 24);
+AT(MC_TorqueControl, Velocity, 32);
+AT(MC_TorqueControl, Acceleration, 40);
+AT(MC_TorqueControl, Deceleration, 48);
+AT(MC_TorqueControl, Jerk, 56);
+AT(MC_TorqueControl, Direction, 64);
+AT(MC_TorqueControl, BufferMode, 68);
+AT(MC_TorqueControl, InTorque, 72);
+AT(MC_TorqueControl, Busy, 73);
+AT(MC_TorqueControl, Active, 74);
+AT(MC_TorqueControl, CommandAborted, 75);
+AT(MC_TorqueControl, Error, 76);
+AT(MC_TorqueControl, ErrorID, 78);
+AT(MC_TorqueControl, Private, 80);
+_Static_assert(sizeof(MC_PositionProfile_t) == 72, "MC_PositionProfile");
+AT(MC_PositionProfile, Axis, 0);
+AT(MC_PositionProfile, TimePosition, 8);
+AT(MC_PositionProfile, Execute, 16);
+AT(MC_PositionProfile, ContinuousUpdate, 17);
+AT(MC_PositionProfile, TimeScale, 24);
+AT(MC_PositionProfile, PositionScale, 32);
+AT(MC_PositionProfile, Offset, 40);
+AT(MC_PositionProfile, BufferMode, 48);
+AT(MC_PositionProfile, Done, 52);
+AT(MC_PositionProfile, Busy, 53);
+AT(MC_PositionProfile, Active, 54);
+AT(MC_PositionProfile, CommandAborted, 55);
+AT(MC_PositionProfile, Error, 56);
+AT(MC_PositionProfile, ErrorID, 58);
+AT(MC_PositionProfile, Private, 60);
+_Static_assert(sizeof(MC_VelocityProfile_t) == 72, "MC_VelocityProfile");
+AT(MC_VelocityProfile, Axis, 0);
+AT(MC_VelocityProfile, TimeVelocity, 8);
+AT(MC_VelocityProfile, Execute, 16);
+AT(MC_VelocityProfile, ContinuousUpdate, 17);
+AT(MC_VelocityProfile, TimeScale, 24);
+AT(MC_VelocityProfile, VelocityScale, 32);
+AT(MC_VelocityProfile, Offset, 40);
+AT(MC_VelocityProfile, BufferMode, 48);
+AT(MC_VelocityProfile, ProfileCompleted, 52);
+AT(MC_VelocityProfile, Busy, 53);
+AT(MC_VelocityProfile, Active, 54);
+AT(MC_VelocityProfile, CommandAborted, 55);
+AT(MC_VelocityProfile, Error, 56);
+AT(MC_VelocityProfile, ErrorID, 58);
+AT(MC_VelocityProfile, Private, 60);
+_Static_assert(sizeof(MC_AccelerationProfile_t) == 72, "MC_AccelerationProfile");
+AT(MC_AccelerationProfile, Axis, 0);
+AT(MC_AccelerationProfile, TimeAcceleration, 8);
+AT(MC_AccelerationProfile, Execute, 16);
+AT(MC_AccelerationProfile, ContinuousUpdate, 17);
+AT(MC_AccelerationProfile, TimeScale, 24);
+AT(MC_AccelerationProfile, AccelerationScale, 32);
+AT(MC_AccelerationProfile, Offset, 40);
+AT(MC_AccelerationProfile, BufferMode, 48);
+AT(MC_AccelerationProfile, ProfileCompleted, 52);
+AT(MC_AccelerationProfile, Busy, 53);
+AT(MC_AccelerationProfile, Active, 54);
+AT(MC_AccelerationProfile, CommandAborted, 55);
+AT(MC_AccelerationProfile, Error, 56);
+AT(MC_AccelerationProfile, ErrorID, 58);
+AT(MC_AccelerationProfile, Private, 60);
+_Static_assert(sizeof(MC_Jog_t) == 80, "MC_Jog");
+AT(MC_Jog, Axis, 0);
+AT(MC_Jog, JogForward, 8);
+AT(MC_Jog, JogBackwards, 9);
+AT(MC_Jog, Mode, 12);
+AT(MC_Jog, Position, 16);
+AT(MC_Jog, Velocity, 24);
+AT(MC_Jog, Acceleration, 32);
+AT(MC_Jog, Deceleration, 40);
+AT(MC_Jog, Jerk, 48);
+AT(MC_Jog, Done, 56);
+AT(MC_Jog, Busy, 57);
+AT(MC_Jog, Active, 58);
+AT(MC_Jog, CommandAborted, 59);
+AT(MC_Jog, Error, 60);
+AT(MC_Jog, ErrorID, 62);
+AT(MC_Jog, Private, 64);
+_Static_assert(sizeof(MC_SetPosition_t) == 56, "MC_SetPosition");
+AT(MC_SetPosition, Axis, 0);
+AT(MC_SetPosition, Execute, 8);
+AT(MC_SetPosition, Position, 16);
+AT(MC_SetPosition, Relative, 24);
+AT(MC_SetPosition, ExecutionMode, 28);
+AT(MC_SetPosition, Done, 32);
+AT(MC_SetPosition, Busy, 33);
+AT(MC_SetPosition, Error, 34);
+AT(MC_SetPosition, ErrorID, 36);
+AT(MC_SetPosition, Private, 40);
+_Static_assert(sizeof(MC_SetOverride_t) == 64, "MC_SetOverride");
+AT(MC_SetOverride, Axis, 0);
+AT(MC_SetOverride, Enable, 8);
+AT(MC_SetOverride, VelFactor, 16);
+AT(MC_SetOverride, AccFactor, 24);
+AT(MC_SetOverride, JerkFactor, 32);
+AT(MC_SetOverride, Enabled, 40);
+AT(MC_SetOverride, Busy, 41);
+AT(MC_SetOverride, Error, 42);
+AT(MC_SetOverride, ErrorID, 44);
+AT(MC_SetOverride, Private, 48);
+_Static_assert(sizeof(MC_ReadParameter_t) == 48, "MC_ReadParameter");
+AT(MC_ReadParameter, Axis, 0);
+AT(MC_ReadParameter, Enable, 8);
+AT(MC_ReadParameter, ParameterNumber, 10);
+AT(MC_ReadParameter, Valid, 12);
+AT(MC_ReadParameter, Busy, 13);
+AT(MC_ReadParameter, Error, 14);
+AT(MC_ReadParameter, ErrorID, 16);
+AT(MC_ReadParameter, Value, 24);
+AT(MC_ReadParameter, Private, 32);
+_Static_assert(sizeof(MC_ReadBoolParameter_t) == 32, "MC_ReadBoolParameter");
+AT(MC_ReadBoolParameter, Axis, 0);
+AT(MC_ReadBoolParameter, Enable, 8);
+AT(MC_ReadBoolParameter, ParameterNumber, 10);
+AT(MC_ReadBoolParameter, Valid, 12);
+AT(MC_ReadBoolParameter, Busy, 13);
+AT(MC_ReadBoolParameter, Error, 14);
+AT(MC_ReadBoolParameter, ErrorID, 16);
+AT(MC_ReadBoolParameter, Value, 18);
+AT(MC_ReadBoolParameter, Private, 20);
+_Static_assert(sizeof(MC_WriteParameter_t) == 48, "MC_WriteParameter");
+AT(MC_WriteParameter, Axis, 0);
+AT(MC_WriteParameter, Execute, 8);
+AT(MC_WriteParameter, ParameterNumber, 10);
+AT(MC_WriteParameter, Value, 16);
+AT(MC_WriteParameter, ExecutionMode, 24);
+AT(MC_WriteParameter, Done, 28);
+AT(MC_WriteParameter, Busy, 29);
+AT(MC_WriteParameter, Error, 30);
+AT(MC_WriteParameter, ErrorID, 32);
+AT(MC_WriteParameter, Private, 36);
+_Static_assert(sizeof(MC_WriteBoolParameter_t) == 40, "MC_WriteBoolParameter");
+AT(MC_WriteBoolParameter, Axis, 0);
+AT(MC_WriteBoolParameter, Execute, 8);
+AT(MC_WriteBoolParameter, ParameterNumber, 10);
+AT(MC_WriteBoolParameter, Value, 12);
+AT(MC_WriteBoolParameter, ExecutionMode, 16);
+AT(MC_WriteBoolParameter, Done, 20);
+AT(MC_WriteBoolParameter, Busy, 21);
+AT(MC_WriteBoolParameter, Error, 22);
+AT(MC_WriteBoolParameter, ErrorID, 24);
+AT(MC_WriteBoolParameter, Private, 28);
+_Static_assert(sizeof(MC_ReadDigitalInput_t) == 32, "MC_ReadDigitalInput");
+AT(MC_ReadDigitalInput, Input, 0);
+AT(MC_ReadDigitalInput, Enable, 8);
+AT(MC_ReadDigitalInput, InputNumber, 10);
+AT(MC_ReadDigitalInput, Valid, 12);
+AT(MC_ReadDigitalInput, Busy, 13);
+AT(MC_ReadDigitalInput, Error, 14);
+AT(MC_ReadDigitalInput, ErrorID, 16);
+AT(MC_ReadDigitalInput, Value, 18);
+AT(MC_ReadDigitalInput, Private, 20);
+_Static_assert(sizeof(MC_ReadDigitalOutput_t) == 32, "MC_ReadDigitalOutput");
+AT(MC_ReadDigitalOutput, Output, 0);
+AT(MC_ReadDigitalOutput, Enable, 8);
+AT(MC_ReadDigitalOutput, OutputNumber, 10);
+AT(MC_ReadDigitalOutput, Valid, 12);
+AT(MC_ReadDigitalOutput, Busy, 13);
+AT(MC_ReadDigitalOutput, Error, 14);
+AT(MC_ReadDigitalOutput, ErrorID, 16);
+AT(MC_ReadDigitalOutput, Value, 18);
+AT(MC_ReadDigitalOutput, Private, 20);
+_Static_assert(sizeof(MC_WriteDigitalOutput_t) == 40, "MC_WriteDigitalOutput");
+AT(MC_WriteDigitalOutput, Output, 0);
+AT(MC_WriteDigitalOutput, Execute, 8);
+AT(MC_WriteDigitalOutput, OutputNumber, 10);
+AT(MC_WriteDigitalOutput, Value, 12);
+AT(MC_WriteDigitalOutput, ExecutionMode, 16);
+AT(MC_WriteDigitalOutput, Done, 20);
+AT(MC_WriteDigitalOutput, Busy, 21);
+AT(MC_WriteDigitalOutput, Error, 22);
+AT(MC_WriteDigitalOutput, ErrorID, 24);
+AT(MC_WriteDigitalOutput, Private, 28);
+_Static_assert(sizeof(MC_ReadActualPosition_t) == 40, "MC_ReadActualPosition");
+AT(MC_ReadActualPosition, Axis, 0);
+AT(MC_ReadActualPosition, Enable, 8);
+AT(MC_ReadActualPosition, Valid, 9);
+AT(MC_ReadActualPosition, Busy, 10);
+AT(MC_ReadActualPosition, Error, 11);
+AT(MC_ReadActualPosition, ErrorID, 12);
+AT(MC_ReadActualPosition, Position, 16);
+AT(MC_ReadActualPosition, Private, 24);
+_Static_assert(sizeof(MC_ReadActualVelocity_t) == 40, "MC_ReadActualVelocity");
+AT(MC_ReadActualVelocity, Axis, 0);
+AT(MC_ReadActualVelocity, Enable, 8);
+AT(MC_ReadActualVelocity, Valid, 9);
+AT(MC_ReadActualVelocity, Busy, 10);
+AT(MC_ReadActualVelocity, Error, 11);
+AT(MC_ReadActualVelocity, ErrorID, 12);
+AT(MC_ReadActualVelocity, Velocity, 16);
+AT(MC_ReadActualVelocity, Private, 24);
+_Static_assert(sizeof(MC_ReadActualTorque_t) == 40, "MC_ReadActualTorque");
+AT(MC_ReadActualTorque, Axis, 0);
+AT(MC_ReadActualTorque, Enable, 8);
+AT(MC_ReadActualTorque, Valid, 9);
+AT(MC_ReadActualTorque, Busy, 10);
+AT(MC_ReadActualTorque, Error, 11);
+AT(MC_ReadActualTorque, ErrorID, 12);
+AT(MC_ReadActualTorque, Torque, 16);
+AT(MC_ReadActualTorque, Private, 24);
+_Static_assert(sizeof(MC_ReadStatus_t) == 40, "MC_ReadStatus");
+AT(MC_ReadStatus, Axis, 0);
+AT(MC_ReadStatus, Enable, 8);
+AT(MC_ReadStatus, Valid, 9);
+AT(MC_ReadStatus, Busy, 10);
+AT(MC_ReadStatus, Error, 11);
+AT(MC_ReadStatus, ErrorID, 12);
+AT(MC_ReadStatus, ErrorStop, 14);
+AT(MC_ReadStatus, Disabled, 15);
+AT(MC_ReadStatus, Stopping, 16);
+AT(MC_ReadStatus, Homing, 17);
+AT(MC_ReadStatus, Standstill, 18);
+AT(MC_ReadStatus, DiscreteMotion, 19);
+AT(MC_ReadStatus, ContinuousMotion, 20);
+AT(MC_ReadStatus, SynchronizedMotion, 21);
+AT(MC_ReadStatus, Private, 24);
+_Static_assert(sizeof(MC_ReadMotionState_t) == 40, "MC_ReadMotionState");
+AT(MC_ReadMotionState, Axis, 0);
+AT(MC_ReadMotionState, Enable, 8);
+AT(MC_ReadMotionState, Source, 12);
+AT(MC_ReadMotionState, Valid, 16);
+AT(MC_ReadMotionState, Busy, 17);
+AT(MC_ReadMotionState, Error, 18);
+AT(MC_ReadMotionState, ErrorID, 20);
+AT(MC_ReadMotionState, ConstantVelocity, 22);
+AT(MC_ReadMotionState, Accelerating, 23);
+AT(MC_ReadMotionState, Decelerating, 24);
+AT(MC_ReadMotionState, DirectionPositive, 25);
+AT(MC_ReadMotionState, DirectionNegative, 26);
+AT(MC_ReadMotionState, Private, 28);
+_Static_assert(sizeof(MC_ReadAxisInfo_t) == 40, "MC_ReadAxisInfo");
+AT(MC_ReadAxisInfo, Axis, 0);
+AT(MC_ReadAxisInfo, Enable, 8);
+AT(MC_ReadAxisInfo, Valid, 9);
+AT(MC_ReadAxisInfo, Busy, 10);
+AT(MC_ReadAxisInfo, Error, 11);
+AT(MC_ReadAxisInfo, ErrorID, 12);
+AT(MC_ReadAxisInfo, HomeAbsSwitch, 14);
+AT(MC_ReadAxisInfo, LimitSwitchPos, 15);
+AT(MC_ReadAxisInfo, LimitSwitchNeg, 16);
+AT(MC_ReadAxisInfo, Simulation, 17);
+AT(MC_ReadAxisInfo, CommunicationReady, 18);
+AT(MC_ReadAxisInfo, ReadyForPowerOn, 19);
+AT(MC_ReadAxisInfo, PowerOn, 20);
+AT(MC_ReadAxisInfo, IsHomed, 21);
+AT(MC_ReadAxisInfo, AxisWarning, 22);
+AT(MC_ReadAxisInfo, Private, 24);
+_Static_assert(sizeof(MC_ReadAxisError_t) == 32, "MC_ReadAxisError");
+AT(MC_ReadAxisError, Axis, 0);
+AT(MC_ReadAxisError, Enable, 8);
+AT(MC_ReadAxisError, Valid, 9);
+AT(MC_ReadAxisError, Busy, 10);
+AT(MC_ReadAxisError, Error, 11);
+AT(MC_ReadAxisError, ErrorID, 12);
+AT(MC_ReadAxisError, AxisErrorID, 14);
+AT(MC_ReadAxisError, DeviceErrorCode, 16);
+AT(MC_ReadAxisError, Private, 20);
+_Static_assert(sizeof(MC_Reset_t) == 32, "MC_Reset");
+AT(MC_Reset, Axis, 0);
+AT(MC_Reset, Execute, 8);
+AT(MC_Reset, Done, 9);
+AT(MC_Reset, Busy, 10);
+AT(MC_Reset, Error, 11);
+AT(MC_Reset, ErrorID, 12);
+AT(MC_Reset, Private, 16);
+_Static_assert(sizeof(MC_DigitalCamSwitch_t) == 344, "MC_DigitalCamSwitch");
+AT(MC_DigitalCamSwitch, Axis, 0);
+AT(MC_DigitalCamSwitch, Switches, 8);
+AT(MC_DigitalCamSwitch, Outputs, 16);
+AT(MC_DigitalCamSwitch, TrackOptions, 24);
+AT(MC_DigitalCamSwitch, Enable, 32);
+AT(MC_DigitalCamSwitch, EnableMask, 36);
+AT(MC_DigitalCamSwitch, ValueSource, 40);
+AT(MC_DigitalCamSwitch, InOperation, 44);
+AT(MC_DigitalCamSwitch, Busy, 45);
+AT(MC_DigitalCamSwitch, Error, 46);
+AT(MC_DigitalCamSwitch, ErrorID, 48);
+AT(MC_DigitalCamSwitch, Private, 56);
+_Static_assert(sizeof(MC_TouchProbe_t) == 72, "MC_TouchProbe");
+AT(MC_TouchProbe, Axis, 0);
+AT(MC_TouchProbe, TriggerInput, 8);
+AT(MC_TouchProbe, Execute, 16);
+AT(MC_TouchProbe, WindowOnly, 17);
+AT(MC_TouchProbe, FirstPosition, 24);
+AT(MC_TouchProbe, LastPosition, 32);
+AT(MC_TouchProbe, Done, 40);
+AT(MC_TouchProbe, Busy, 41);
+AT(MC_TouchProbe, CommandAborted, 42);
+AT(MC_TouchProbe, Error, 43);
+AT(MC_TouchProbe, ErrorID, 44);
+AT(MC_TouchProbe, RecordedPosition, 48);
+AT(MC_TouchProbe, Private, 56);
+_Static_assert(sizeof(MC_AbortTrigger_t) == 40, "MC_AbortTrigger");
+AT(MC_AbortTrigger, Axis, 0);
+AT(MC_AbortTrigger, TriggerInput, 8);
+AT(MC_AbortTrigger, Execute, 16);
+AT(MC_AbortTrigger, Done, 17);
+AT(MC_AbortTrigger, Busy, 18);
+AT(MC_AbortTrigger, Error, 19);
+AT(MC_AbortTrigger, ErrorID, 20);
+AT(MC_AbortTrigger, Private, 24);
+_Static_assert(sizeof(MC_StepAbsoluteSwitch_t) == 88, "MC_StepAbsoluteSwitch");
+AT(MC_StepAbsoluteSwitch, Axis, 0);
+AT(MC_StepAbsoluteSwitch, Execute, 8);
+AT(MC_StepAbsoluteSwitch, Direction, 12);
+AT(MC_StepAbsoluteSwitch, SwitchMode, 16);
+AT(MC_StepAbsoluteSwitch, ReferenceSignal, 20);
+AT(MC_StepAbsoluteSwitch, Velocity, 24);
+AT(MC_StepAbsoluteSwitch, SetPosition, 32);
+AT(MC_StepAbsoluteSwitch, TorqueLimit, 40);
+AT(MC_StepAbsoluteSwitch, TimeLimit, 48);
+AT(MC_StepAbsoluteSwitch, DistanceLimit, 56);
+AT(MC_StepAbsoluteSwitch, BufferMode, 64);
+AT(MC_StepAbsoluteSwitch, Done, 68);
+AT(MC_StepAbsoluteSwitch, Busy, 69);
+AT(MC_StepAbsoluteSwitch, Active, 70);
+AT(MC_StepAbsoluteSwitch, CommandAborted, 71);
+AT(MC_StepAbsoluteSwitch, Error, 72);
+AT(MC_StepAbsoluteSwitch, ErrorID, 74);
+AT(MC_StepAbsoluteSwitch, Private, 76);
+_Static_assert(sizeof(MC_StepLimitSwitch_t) == 88, "MC_StepLimitSwitch");
+AT(MC_StepLimitSwitch, Axis, 0);
+AT(MC_StepLimitSwitch, Execute, 8);
+AT(MC_StepLimitSwitch, Direction, 12);
+AT(MC_StepLimitSwitch, LimitSwitchMode, 16);
+AT(MC_StepLimitSwitch, Velocity, 24);
+AT(MC_StepLimitSwitch, SetPosition, 32);
+AT(MC_StepLimitSwitch, TorqueLimit, 40);
+AT(MC_StepLimitSwitch, TimeLimit, 48);
+AT(MC_StepLimitSwitch, DistanceLimit, 56);
+AT(MC_StepLimitSwitch, BufferMode, 64);
+AT(MC_StepLimitSwitch, Done, 68);
+AT(MC_StepLimitSwitch, Busy, 69);
+AT(MC_StepLimitSwitch, Active, 70);
+AT(MC_StepLimitSwitch, CommandAborted, 71);
+AT(MC_StepLimitSwitch, Error, 72);
+AT(MC_StepLimitSwitch, ErrorID, 74);
+AT(MC_StepLimitSwitch, Private, 76);
+_Static_assert(sizeof(MC_StepBlock_t) == 96, "MC_StepBlock");
+AT(MC_StepBlock, Axis, 0);
+AT(MC_StepBlock, Execute, 8);
+AT(MC_StepBlock, Direction, 12);
+AT(MC_StepBlock, Velocity, 16);
+AT(MC_StepBlock, SetPosition, 24);
+AT(MC_StepBlock, DetectionVelocityLimit, 32);
+AT(MC_StepBlock, DetectionVelocityTime, 40);
+AT(MC_StepBlock, TorqueLimit, 48);
+AT(MC_StepBlock, TimeLimit, 56);
+AT(MC_StepBlock, DistanceLimit, 64);
+AT(MC_StepBlock, BufferMode, 72);
+AT(MC_StepBlock, Done, 76);
+AT(MC_StepBlock, Busy, 77);
+AT(MC_StepBlock, Active, 78);
+AT(MC_StepBlock, CommandAborted, 79);
+AT(MC_StepBlock, Error, 80);
+AT(MC_StepBlock, ErrorID, 82);
+AT(MC_StepBlock, Private, 84);
+_Static_assert(sizeof(MC_StepReferencePulse_t) == 88, "MC_StepReferencePulse");
+AT(MC_StepReferencePulse, Axis, 0);
+AT(MC_StepReferencePulse, Execute, 8);
+AT(MC_StepReferencePulse, Direction, 12);
+AT(MC_StepReferencePulse, ReferenceSignal, 16);
+AT(MC_StepReferencePulse, Velocity, 24);
+AT(MC_StepReferencePulse, SetPosition, 32);
+AT(MC_StepReferencePulse, TorqueLimit, 40);
+AT(MC_StepReferencePulse, TimeLimit, 48);
+AT(MC_StepReferencePulse, DistanceLimit, 56);
+AT(MC_StepReferencePulse, BufferMode, 64);
+AT(MC_StepReferencePulse, Done, 68);
+AT(MC_StepReferencePulse, Busy, 69);
+AT(MC_StepReferencePulse, Active, 70);
+AT(MC_StepReferencePulse, CommandAborted, 71);
+AT(MC_StepReferencePulse, Error, 72);
+AT(MC_StepReferencePulse, ErrorID, 74);
+AT(MC_StepReferencePulse, Private, 76);
+_Static_assert(sizeof(MC_StepDistanceCoded_t) == 72, "MC_StepDistanceCoded");
+AT(MC_StepDistanceCoded, Axis, 0);
+AT(MC_StepDistanceCoded, Execute, 8);
+AT(MC_StepDistanceCoded, Direction, 12);
+AT(MC_StepDistanceCoded, Velocity, 16);
+AT(MC_StepDistanceCoded, TorqueLimit, 24);
+AT(MC_StepDistanceCoded, TimeLimit, 32);
+AT(MC_StepDistanceCoded, DistanceLimit, 40);
+AT(MC_StepDistanceCoded, BufferMode, 48);
+AT(MC_StepDistanceCoded, Done, 52);
+AT(MC_StepDistanceCoded, Busy, 53);
+AT(MC_StepDistanceCoded, Active, 54);
+AT(MC_StepDistanceCoded, CommandAborted, 55);
+AT(MC_StepDistanceCoded, Error, 56);
+AT(MC_StepDistanceCoded, ErrorID, 58);
+AT(MC_StepDistanceCoded, Private, 60);
+_Static_assert(sizeof(MC_HomeDirect_t) == 48, "MC_HomeDirect");
+AT(MC_HomeDirect, Axis, 0);
+AT(MC_HomeDirect, Execute, 8);
+AT(MC_HomeDirect, SetPosition, 16);
+AT(MC_HomeDirect, BufferMode, 24);
+AT(MC_HomeDirect, Done, 28);
+AT(MC_HomeDirect, Busy, 29);
+AT(MC_HomeDirect, Active, 30);
+AT(MC_HomeDirect, CommandAborted, 31);
+AT(MC_HomeDirect, Error, 32);
+AT(MC_HomeDirect, ErrorID, 34);
+AT(MC_HomeDirect, Private, 36);
+_Static_assert(sizeof(MC_HomeAbsolute_t) == 40, "MC_HomeAbsolute");
+AT(MC_HomeAbsolute, Axis, 0);
+AT(MC_HomeAbsolute, Execute, 8);
+AT(MC_HomeAbsolute, BufferMode, 12);
+AT(MC_HomeAbsolute, Done, 16);
+AT(MC_HomeAbsolute, Busy, 17);
+AT(MC_HomeAbsolute, Active, 18);
+AT(MC_HomeAbsolute, CommandAborted, 19);
+AT(MC_HomeAbsolute, Error, 20);
+AT(MC_HomeAbsolute, ErrorID, 22);
+AT(MC_HomeAbsolute, Private, 24);
+_Static_assert(sizeof(MC_FinishHoming_t) == 80, "MC_FinishHoming");
+AT(MC_FinishHoming, Axis, 0);
+AT(MC_FinishHoming, Execute, 8);
+AT(MC_FinishHoming, Distance, 16);
+AT(MC_FinishHoming, Velocity, 24);
+AT(MC_FinishHoming, Acceleration, 32);
+AT(MC_FinishHoming, Deceleration, 40);
+AT(MC_FinishHoming, Jerk, 48);
+AT(MC_FinishHoming, BufferMode, 56);
+AT(MC_FinishHoming, Done, 60);
+AT(MC_FinishHoming, Busy, 61);
+AT(MC_FinishHoming, Active, 62);
+AT(MC_FinishHoming, CommandAborted, 63);
+AT(MC_FinishHoming, Error, 64);
+AT(MC_FinishHoming, ErrorID, 66);
+AT(MC_FinishHoming, Private, 68);
+_Static_assert(sizeof(MC_StepReferenceFlyingSwitch_t) == 72, "MC_StepReferenceFlyingSwitch");
+AT(MC_StepReferenceFlyingSwitch, Axis, 0);
+AT(MC_StepReferenceFlyingSwitch, Execute, 8);
+AT(MC_StepReferenceFlyingSwitch, SwitchMode, 12);
+AT(MC_StepReferenceFlyingSwitch, ReferenceSignal, 16);
+AT(MC_StepReferenceFlyingSwitch, SetPosition, 24);
+AT(MC_StepReferenceFlyingSwitch, TimeLimit, 32);
+AT(MC_StepReferenceFlyingSwitch, DistanceLimit, 40);
+AT(MC_StepReferenceFlyingSwitch, BufferMode, 48);
+AT(MC_StepReferenceFlyingSwitch, Done, 52);
+AT(MC_StepReferenceFlyingSwitch, Busy, 53);
+AT(MC_StepReferenceFlyingSwitch, Active, 54);
+AT(MC_StepReferenceFlyingSwitch, CommandAborted, 55);
+AT(MC_StepReferenceFlyingSwitch, Error, 56);
+AT(MC_StepReferenceFlyingSwitch, ErrorID, 58);
+AT(MC_StepReferenceFlyingSwitch, Private, 60);
+_Static_assert(sizeof(MC_StepReferenceFlyingRefPulse_t) == 64, "MC_StepReferenceFlyingRefPulse");
+AT(MC_StepReferenceFlyingRefPulse, Axis, 0);
+AT(MC_StepReferenceFlyingRefPulse, Execute, 8);
+AT(MC_StepReferenceFlyingRefPulse, ReferenceSignal, 10);
+AT(MC_StepReferenceFlyingRefPulse, SetPosition, 16);
+AT(MC_StepReferenceFlyingRefPulse, TimeLimit, 24);
+AT(MC_StepReferenceFlyingRefPulse, DistanceLimit, 32);
+AT(MC_StepReferenceFlyingRefPulse, BufferMode, 40);
+AT(MC_StepReferenceFlyingRefPulse, Done, 44);
+AT(MC_StepReferenceFlyingRefPulse, Busy, 45);
+AT(MC_StepReferenceFlyingRefPulse, Active, 46);
+AT(MC_StepReferenceFlyingRefPulse, CommandAborted, 47);
+AT(MC_StepReferenceFlyingRefPulse, Error, 48);
+AT(MC_StepReferenceFlyingRefPulse, ErrorID, 50);
+AT(MC_StepReferenceFlyingRefPulse, Private, 52);
+_Static_assert(sizeof(MC_AbortPassiveHoming_t) == 32, "MC_AbortPassiveHoming");
+AT(MC_AbortPassiveHoming, Axis, 0);
+AT(MC_AbortPassiveHoming, Execute, 8);
+AT(MC_AbortPassiveHoming, Done, 9);
+AT(MC_AbortPassiveHoming, Busy, 10);
+AT(MC_AbortPassiveHoming, CommandAborted, 11);
+AT(MC_AbortPassiveHoming, Error, 12);
+AT(MC_AbortPassiveHoming, ErrorID, 14);
+AT(MC_AbortPassiveHoming, Private, 16);
+_Static_assert(sizeof(TON_t) == 48, "TON");
+AT(TON, IN, 0);
+AT(TON, PT, 8);
+AT(TON, Q, 16);
+AT(TON, ET, 24);
+AT(TON, Private, 32);
+_Static_assert(sizeof(TOF_t) == 48, "TOF");
+AT(TOF, IN, 0);
+AT(TOF, PT, 8);
+AT(TOF, Q, 16);
+AT(TOF, ET, 24);
+AT(TOF, Private, 32);
+_Static_assert(sizeof(TP_t) == 48, "TP");
+AT(TP, IN, 0);
+AT(TP, PT, 8);
+AT(TP, Q, 16);
+AT(TP, ET, 24);
+AT(TP, Private, 32);
+_Static_assert(sizeof(R_TRIG_t) == 5, "R_TRIG");
+AT(R_TRIG, CLK, 0);
+AT(R_TRIG, Q, 1);
+AT(R_TRIG, Private, 2);
+_Static_assert(sizeof(F_TRIG_t) == 5, "F_TRIG");
+AT(F_TRIG, CLK, 0);
+AT(F_TRIG, Q, 1);
+AT(F_TRIG, Private, 2);
+_Static_assert(sizeof(SR_t) == 3, "SR");
+AT(SR, S1, 0);
+AT(SR, R, 1);
+AT(SR, Q1, 2);
+_Static_assert(sizeof(RS_t) == 3, "RS");
+AT(RS, S, 0);
+AT(RS, R1, 1);
+AT(RS, Q1, 2);
+_Static_assert(sizeof(CTU_t) == 12, "CTU");
+AT(CTU, CU, 0);
+AT(CTU, R, 1);
+AT(CTU, PV, 2);
+AT(CTU, Q, 4);
+AT(CTU, CV, 6);
+AT(CTU, Private, 8);
+_Static_assert(sizeof(CTD_t) == 12, "CTD");
+AT(CTD, CD, 0);
+AT(CTD, LD, 1);
+AT(CTD, PV, 2);
+AT(CTD, Q, 4);
+AT(CTD, CV, 6);
+AT(CTD, Private, 8);
+_Static_assert(sizeof(CTUD_t) == 14, "CTUD");
+AT(CTUD, CU, 0);
+AT(CTUD, CD, 1);
+AT(CTUD, R, 2);
+AT(CTUD, LD, 3);
+AT(CTUD, PV, 4);
+AT(CTUD, QU, 6);
+AT(CTUD, QD, 7);
+AT(CTUD, CV, 8);
+AT(CTUD, Private, 10);
+#endif
+
+#define MEMBER(TYPE, NAME, SECTION, KIND)                                                                            \
+    {#NAME, BLOCK_##SECTION, BLOCK_##KIND, offsetof(TYPE##_t, NAME), sizeof(((TYPE##_t *)0)->NAME)}
+#define BLOCK(TYPE, RULES)                                                                                           \
+    {#TYPE, sizeof(TYPE##_t), call_##TYPE, members_of_##TYPE, sizeof members_of_##TYPE / sizeof *members_of_##TYPE,  \
+     RULES}
+
+static const block_rule_t rules_discrete[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
+    [CM1E_AXIS_STANDSTILL] = {.next = CM1E_AXIS_DISCRETE_MOTION},
+    [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_HOMING},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.next = CM1E_AXIS_DISCRETE_MOTION},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.next = CM1E_AXIS_DISCRETE_MOTION},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.next = CM1E_AXIS_DISCRETE_MOTION},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
+};
+static const block_rule_t rules_continuous[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
+    [CM1E_AXIS_STANDSTILL] = {.next = CM1E_AXIS_CONTINUOUS_MOTION},
+    [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_HOMING},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.next = CM1E_AXIS_CONTINUOUS_MOTION},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.next = CM1E_AXIS_CONTINUOUS_MOTION},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.next = CM1E_AXIS_CONTINUOUS_MOTION},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
+};
+static const block_rule_t rules_stop[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
+    [CM1E_AXIS_STANDSTILL] = {.next = CM1E_AXIS_STOPPING},
+    [CM1E_AXIS_HOMING] = {.next = CM1E_AXIS_STOPPING},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.next = CM1E_AXIS_STOPPING},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.next = CM1E_AXIS_STOPPING},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.next = CM1E_AXIS_STOPPING},
+    [CM1E_AXIS_STOPPING] = {.next = CM1E_AXIS_STOPPING},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
+};
+static const block_rule_t rules_home[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
+    [CM1E_AXIS_STANDSTILL] = {.next = CM1E_AXIS_HOMING},
+    [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_HOMING},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.refusal = CM1E_ERROR_AXIS_STATE},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.refusal = CM1E_ERROR_AXIS_STATE},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.refusal = CM1E_ERROR_AXIS_STATE},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
+};
+static const block_rule_t rules_step[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
+    [CM1E_AXIS_STANDSTILL] = {.next = CM1E_AXIS_HOMING},
+    [CM1E_AXIS_HOMING] = {.next = CM1E_AXIS_HOMING},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.refusal = CM1E_ERROR_AXIS_STATE},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.refusal = CM1E_ERROR_AXIS_STATE},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.refusal = CM1E_ERROR_AXIS_STATE},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
+};
+static const block_rule_t rules_superimposed[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
+    [CM1E_AXIS_STANDSTILL] = {.next = CM1E_AXIS_DISCRETE_MOTION},
+    [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_HOMING},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.next = CM1E_AXIS_DISCRETE_MOTION},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.next = CM1E_AXIS_CONTINUOUS_MOTION},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.next = CM1E_AXIS_SYNCHRONIZED_MOTION},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
+};
+static const block_rule_t rules_halt_superimposed[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
+    [CM1E_AXIS_STANDSTILL] = {.next = CM1E_AXIS_STANDSTILL},
+    [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_HOMING},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.next = CM1E_AXIS_DISCRETE_MOTION},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.next = CM1E_AXIS_CONTINUOUS_MOTION},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.next = CM1E_AXIS_SYNCHRONIZED_MOTION},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
+};
+static const block_rule_t rules_unsupported[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_UNSUPPORTED},
+    [CM1E_AXIS_STANDSTILL] = {.refusal = CM1E_ERROR_UNSUPPORTED},
+    [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_UNSUPPORTED},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.refusal = CM1E_ERROR_UNSUPPORTED},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.refusal = CM1E_ERROR_UNSUPPORTED},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.refusal = CM1E_ERROR_UNSUPPORTED},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_UNSUPPORTED},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_UNSUPPORTED},
+};
+static const block_rule_t rules_any[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.unchanged = true},
+    [CM1E_AXIS_STANDSTILL] = {.unchanged = true},
+    [CM1E_AXIS_HOMING] = {.unchanged = true},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.unchanged = true},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.unchanged = true},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.unchanged = true},
+    [CM1E_AXIS_STOPPING] = {.unchanged = true},
+    [CM1E_AXIS_ERROR_STOP] = {.unchanged = true},
+};
+
+static const block_member_t members_of_MC_Power[] = {
+    MEMBER(MC_Power, Axis, IN_OUT, POINTER),
+    MEMBER(MC_Power, Enable, INPUT, BOOL),
+    MEMBER(MC_Power, EnablePositive, INPUT, BOOL),
+    MEMBER(MC_Power, EnableNegative, INPUT, BOOL),
+    MEMBER(MC_Power, Status, OUTPUT, BOOL),
+    MEMBER(MC_Power, Valid, OUTPUT, BOOL),
+    MEMBER(MC_Power, Error, OUTPUT, BOOL),
+    MEMBER(MC_Power, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_Power(void *fb) { MC_Power(fb); }
+static const block_member_t members_of_MC_Home[] = {
+    MEMBER(MC_Home, Axis, IN_OUT, POINTER),
+    MEMBER(MC_Home, Execute, INPUT, BOOL),
+    MEMBER(MC_Home, Position, INPUT, LREAL),
+    MEMBER(MC_Home, BufferMode, INPUT, ENUM),
+    MEMBER(MC_Home, Done, OUTPUT, BOOL),
+    MEMBER(MC_Home, Busy, OUTPUT, BOOL),
+    MEMBER(MC_Home, Active, OUTPUT, BOOL),
+    MEMBER(MC_Home, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_Home, Error, OUTPUT, BOOL),
+    MEMBER(MC_Home, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_Home, Parameters, INPUT, POINTER),
+};
+static void call_MC_Home(void *fb) { MC_Home(fb); }
+static const block_member_t members_of_MC_Stop[] = {
+    MEMBER(MC_Stop, Axis, IN_OUT, POINTER),
+    MEMBER(MC_Stop, Execute, INPUT, BOOL),
+    MEMBER(MC_Stop, Deceleration, INPUT, LREAL),
+    MEMBER(MC_Stop, Jerk, INPUT, LREAL),
+    MEMBER(MC_Stop, Done, OUTPUT, BOOL),
+    MEMBER(MC_Stop, Busy, OUTPUT, BOOL),
+    MEMBER(MC_Stop, Active, OUTPUT, BOOL),
+    MEMBER(MC_Stop, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_Stop, Error, OUTPUT, BOOL),
+    MEMBER(MC_Stop, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_Stop(void *fb) { MC_Stop(fb); }
+static const block_member_t members_of_MC_Halt[] = {
+    MEMBER(MC_Halt, Axis, IN_OUT, POINTER),
+    MEMBER(MC_Halt, Execute, INPUT, BOOL),
+    MEMBER(MC_Halt, Deceleration, INPUT, LREAL),
+    MEMBER(MC_Halt, Jerk, INPUT, LREAL),
+    MEMBER(MC_Halt, BufferMode, INPUT, ENUM),
+    MEMBER(MC_Halt, Done, OUTPUT, BOOL),
+    MEMBER(MC_Halt, Busy, OUTPUT, BOOL),
+    MEMBER(MC_Halt, Active, OUTPUT, BOOL),
+    MEMBER(MC_Halt, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_Halt, Error, OUTPUT, BOOL),
+    MEMBER(MC_Halt, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_Halt(void *fb) { MC_Halt(fb); }
+static const block_member_t members_of_MC_MoveAbsolute[] = {
+    MEMBER(MC_MoveAbsolute, Axis, IN_OUT, POINTER),
+    MEMBER(MC_MoveAbsolute, Execute, INPUT, BOOL),
+    MEMBER(MC_MoveAbsolute, ContinuousUpdate, INPUT, BOOL),
+    MEMBER(MC_MoveAbsolute, Position, INPUT, LREAL),
+    MEMBER(MC_MoveAbsolute, Velocity, INPUT, LREAL),
+    MEMBER(MC_MoveAbsolute, Acceleration, INPUT, LREAL),
+    MEMBER(MC_MoveAbsolute, Deceleration, INPUT, LREAL),
+    MEMBER(MC_MoveAbsolute, Jerk, INPUT, LREAL),
+    MEMBER(MC_MoveAbsolute, Direction, INPUT, ENUM),
+    MEMBER(MC_MoveAbsolute, BufferMode, INPUT, ENUM),
+    MEMBER(MC_MoveAbsolute, Done, OUTPUT, BOOL),
+    MEMBER(MC_MoveAbsolute, Busy, OUTPUT, BOOL),
+    MEMBER(MC_MoveAbsolute, Active, OUTPUT, BOOL),
+    MEMBER(MC_MoveAbsolute, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_MoveAbsolute, Error, OUTPUT, BOOL),
+    MEMBER(MC_MoveAbsolute, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_MoveAbsolute(void *fb) { MC_MoveAbsolute(fb); }
+static const block_member_t members_of_MC_MoveRelative[] = {
+    MEMBER(MC_MoveRelative, Axis, IN_OUT, POINTER),
+    MEMBER(MC_MoveRelative, Execute, INPUT, BOOL),
+    MEMBER(MC_MoveRelative, ContinuousUpdate, INPUT, BOOL),
+    MEMBER(MC_MoveRelative, Distance, INPUT, LREAL),
+    MEMBER(MC_MoveRelative, Velocity, INPUT, LREAL),
+    MEMBER(MC_MoveRelative, Acceleration, INPUT, LREAL),
+    MEMBER(MC_MoveRelative, Deceleration, INPUT, LREAL),
+    MEMBER(MC_MoveRelative, Jerk, INPUT, LREAL),
+    MEMBER(MC_MoveRelative, BufferMode, INPUT, ENUM),
+    MEMBER(MC_MoveRelative, Done, OUTPUT, BOOL),
+    MEMBER(MC_MoveRelative, Busy, OUTPUT, BOOL),
+    MEMBER(MC_MoveRelative, Active, OUTPUT, BOOL),
+    MEMBER(MC_MoveRelative, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_MoveRelative, Error, OUTPUT, BOOL),
+    MEMBER(MC_MoveRelative, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_MoveRelative(void *fb) { MC_MoveRelative(fb); }
+static const block_member_t members_of_MC_MoveAdditive[] = {
+    MEMBER(MC_MoveAdditive, Axis, IN_OUT, POINTER),
+    MEMBER(MC_MoveAdditive, Execute, INPUT, BOOL),
+    MEMBER(MC_MoveAdditive, ContinuousUpdate, INPUT, BOOL),
+    MEMBER(MC_MoveAdditive, Distance, INPUT, LREAL),
+    MEMBER(MC_MoveAdditive, Velocity, INPUT, LREAL),
+    MEMBER(MC_MoveAdditive, Acceleration, INPUT, LREAL),
+    MEMBER(MC_MoveAdditive, Deceleration, INPUT, LREAL),
+    MEMBER(MC_MoveAdditive, Jerk, INPUT, LREAL),
+    MEMBER(MC_MoveAdditive, BufferMode, INPUT, ENUM),
+    MEMBER(MC_MoveAdditive, Done, OUTPUT, BOOL),
+    MEMBER(MC_MoveAdditive, Busy, OUTPUT, BOOL),
+    MEMBER(MC_MoveAdditive, Active, OUTPUT, BOOL),
+    MEMBER(MC_MoveAdditive, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_MoveAdditive, Error, OUTPUT, BOOL),
+    MEMBER(MC_MoveAdditive, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_MoveAdditive(void *fb) { MC_MoveAdditive(fb); }
+static const block_member_t members_of_MC_MoveSuperimposed[] = {
+    MEMBER(MC_MoveSuperimposed, Axis, IN_OUT, POINTER),
+    MEMBER(MC_MoveSuperimposed, Execute, INPUT, BOOL),
+    MEMBER(MC_MoveSuperimposed, ContinuousUpdate, INPUT, BOOL),
+    MEMBER(MC_MoveSuperimposed, Distance, INPUT, LREAL),
+    MEMBER(MC_MoveSuperimposed, VelocityDiff, INPUT, LREAL),
+    MEMBER(MC_MoveSuperimposed, Acceleration, INPUT, LREAL),
+    MEMBER(MC_MoveSuperimposed, Deceleration, INPUT, LREAL),
+    MEMBER(MC_MoveSuperimposed, Jerk, INPUT, LREAL),
+    MEMBER(MC_MoveSuperimposed, Done, OUTPUT, BOOL),
+    MEMBER(MC_MoveSuperimposed, Busy, OUTPUT, BOOL),
+    MEMBER(MC_MoveSuperimposed, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_MoveSuperimposed, Error, OUTPUT, BOOL),
+    MEMBER(MC_MoveSuperimposed, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_MoveSuperimposed, CoveredDistance, OUTPUT, LREAL),
+};
+static void call_MC_MoveSuperimposed(void *fb) { MC_MoveSuperimposed(fb); }
+static const block_member_t members_of_MC_HaltSuperimposed[] = {
+    MEMBER(MC_HaltSuperimposed, Axis, IN_OUT, POINTER),
+    MEMBER(MC_HaltSuperimposed, Execute, INPUT, BOOL),
+    MEMBER(MC_HaltSuperimposed, Deceleration, INPUT, LREAL),
+    MEMBER(MC_HaltSuperimposed, Jerk, INPUT, LREAL),
+    MEMBER(MC_HaltSuperimposed, Done, OUTPUT, BOOL),
+    MEMBER(MC_HaltSuperimposed, Busy, OUTPUT, BOOL),
+    MEMBER(MC_HaltSuperimposed, Active, OUTPUT, BOOL),
+    MEMBER(MC_HaltSuperimposed, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_HaltSuperimposed, Error, OUTPUT, BOOL),
+    MEMBER(MC_HaltSuperimposed, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_HaltSuperimposed(void *fb) { MC_HaltSuperimposed(fb); }
+static const block_member_t members_of_MC_MoveVelocity[] = {
+    MEMBER(MC_MoveVelocity, Axis, IN_OUT, POINTER),
+    MEMBER(MC_MoveVelocity, Execute, INPUT, BOOL),
+    MEMBER(MC_MoveVelocity, ContinuousUpdate, INPUT, BOOL),
+    MEMBER(MC_MoveVelocity, Velocity, INPUT, LREAL),
+    MEMBER(MC_MoveVelocity, Acceleration, INPUT, LREAL),
+    MEMBER(MC_MoveVelocity, Deceleration, INPUT, LREAL),
+    MEMBER(MC_MoveVelocity, Jerk, INPUT, LREAL),
+    MEMBER(MC_MoveVelocity, Direction, INPUT, ENUM),
+    MEMBER(MC_MoveVelocity, BufferMode, INPUT, ENUM),
+    MEMBER(MC_MoveVelocity, InVelocity, OUTPUT, BOOL),
+    MEMBER(MC_MoveVelocity, Busy, OUTPUT, BOOL),
+    MEMBER(MC_MoveVelocity, Active, OUTPUT, BOOL),
+    MEMBER(MC_MoveVelocity, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_MoveVelocity, Error, OUTPUT, BOOL),
+    MEMBER(MC_MoveVelocity, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_MoveVelocity(void *fb) { MC_MoveVelocity(fb); }
+static const block_member_t members_of_MC_MoveContinuousAbsolute[] = {
+    MEMBER(MC_MoveContinuousAbsolute, Axis, IN_OUT, POINTER),
+    MEMBER(MC_MoveContinuousAbsolute, Execute, INPUT, BOOL),
+    MEMBER(MC_MoveContinuousAbsolute, ContinuousUpdate, INPUT, BOOL),
+    MEMBER(MC_MoveContinuousAbsolute, Position, INPUT, LREAL),
+    MEMBER(MC_MoveContinuousAbsolute, EndVelocity, INPUT, LREAL),
+    MEMBER(MC_MoveContinuousAbsolute, Velocity, INPUT, LREAL),
+    MEMBER(MC_MoveContinuousAbsolute, Acceleration, INPUT, LREAL),
+    MEMBER(MC_MoveContinuousAbsolute, Deceleration, INPUT, LREAL),
+    MEMBER(MC_MoveContinuousAbsolute, Jerk, INPUT, LREAL),
+    MEMBER(MC_MoveContinuousAbsolute, Direction, INPUT, ENUM),
+    MEMBER(MC_MoveContinuousAbsolute, BufferMode, INPUT, ENUM),
+    MEMBER(MC_MoveContinuousAbsolute, InEndVelocity, OUTPUT, BOOL),
+    MEMBER(MC_MoveContinuousAbsolute, Busy, OUTPUT, BOOL),
+    MEMBER(MC_MoveContinuousAbsolute, Active, OUTPUT, BOOL),
+    MEMBER(MC_MoveContinuousAbsolute, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_MoveContinuousAbsolute, Error, OUTPUT, BOOL),
+    MEMBER(MC_MoveContinuousAbsolute, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_MoveContinuousAbsolute(void *fb) { MC_MoveContinuousAbsolute(fb); }
+static const block_member_t members_of_MC_MoveContinuousRelative[] = {
+    MEMBER(MC_MoveContinuousRelative, Axis, IN_OUT, POINTER),
+    MEMBER(MC_MoveContinuousRelative, Execute, INPUT, BOOL),
+    MEMBER(MC_MoveContinuousRelative, ContinuousUpdate, INPUT, BOOL),
+    MEMBER(MC_MoveContinuousRelative, Distance, INPUT, LREAL),
+    MEMBER(MC_MoveContinuousRelative, EndVelocity, INPUT, LREAL),
+    MEMBER(MC_MoveContinuousRelative, Velocity, INPUT, LREAL),
+    MEMBER(MC_MoveContinuousRelative, Acceleration, INPUT, LREAL),
+    MEMBER(MC_MoveContinuousRelative, Deceleration, INPUT, LREAL),
+    MEMBER(MC_MoveContinuousRelative, Jerk, INPUT, LREAL),
+    MEMBER(MC_MoveContinuousRelative, BufferMode, INPUT, ENUM),
+    MEMBER(MC_MoveContinuousRelative, InEndVelocity, OUTPUT, BOOL),
+    MEMBER(MC_MoveContinuousRelative, Busy, OUTPUT, BOOL),
+    MEMBER(MC_MoveContinuousRelative, Active, OUTPUT, BOOL),
+    MEMBER(MC_MoveContinuousRelative, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_MoveContinuousRelative, Error, OUTPUT, BOOL),
+    MEMBER(MC_MoveContinuousRelative, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_MoveContinuousRelative(void *fb) { MC_MoveContinuousRelative(fb); }
+static const block_member_t members_of_MC_TorqueControl[] = {
+    MEMBER(MC_TorqueControl, Axis, IN_OUT, POINTER),
+    MEMBER(MC_TorqueControl, Execute, INPUT, BOOL),
+    MEMBER(MC_TorqueControl, ContinuousUpdate, INPUT, BOOL),
+    MEMBER(MC_TorqueControl, Torque, INPUT, LREAL),
+    MEMBER(MC_TorqueControl, TorqueRamp, INPUT, LREAL),
+    MEMBER(MC_TorqueControl, Velocity, INPUT, LREAL),
+    MEMBER(MC_TorqueControl, Acceleration, INPUT, LREAL),
+    MEMBER(MC_TorqueControl, Deceleration, INPUT, LREAL),
+    MEMBER(MC_TorqueControl, Jerk, INPUT, LREAL),
+    MEMBER(MC_TorqueControl, Direction, INPUT, ENUM),
+    MEMBER(MC_TorqueControl, BufferMode, INPUT, ENUM),
+    MEMBER(MC_TorqueControl, InTorque, OUTPUT, BOOL),
+    MEMBER(MC_TorqueControl, Busy, OUTPUT, BOOL),
+    MEMBER(MC_TorqueControl, Active, OUTPUT, BOOL),
+    MEMBER(MC_TorqueControl, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_TorqueControl, Error, OUTPUT, BOOL),
+    MEMBER(MC_TorqueControl, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_TorqueControl(void *fb) { MC_TorqueControl(fb); }
+static const block_member_t members_of_MC_PositionProfile[] = {
+    MEMBER(MC_PositionProfile, Axis, IN_OUT, POINTER),
+    MEMBER(MC_PositionProfile, TimePosition, IN_OUT, POINTER),
+    MEMBER(MC_PositionProfile, Execute, INPUT, BOOL),
+    MEMBER(MC_PositionProfile, ContinuousUpdate, INPUT, BOOL),
+    MEMBER(MC_PositionProfile, TimeScale, INPUT, LREAL),
+    MEMBER(MC_PositionProfile, PositionScale, INPUT, LREAL),
+    MEMBER(MC_PositionProfile, Offset, INPUT, LREAL),
+    MEMBER(MC_PositionProfile, BufferMode, INPUT, ENUM),
+    MEMBER(MC_PositionProfile, Done, OUTPUT, BOOL),
+    MEMBER(MC_PositionProfile, Busy, OUTPUT, BOOL),
+    MEMBER(MC_PositionProfile, Active, OUTPUT, BOOL),
+    MEMBER(MC_PositionProfile, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_PositionProfile, Error, OUTPUT, BOOL),
+    MEMBER(MC_PositionProfile, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_PositionProfile(void *fb) { MC_PositionProfile(fb); }
+static const block_member_t members_of_MC_VelocityProfile[] = {
+    MEMBER(MC_VelocityProfile, Axis, IN_OUT, POINTER),
+    MEMBER(MC_VelocityProfile, TimeVelocity, IN_OUT, POINTER),
+    MEMBER(MC_VelocityProfile, Execute, INPUT, BOOL),
+    MEMBER(MC_VelocityProfile, ContinuousUpdate, INPUT, BOOL),
+    MEMBER(MC_VelocityProfile, TimeScale, INPUT, LREAL),
+    MEMBER(MC_VelocityProfile, VelocityScale, INPUT, LREAL),
+    MEMBER(MC_VelocityProfile, Offset, INPUT, LREAL),
+    MEMBER(MC_VelocityProfile, BufferMode, INPUT, ENUM),
+    MEMBER(MC_VelocityProfile, ProfileCompleted, OUTPUT, BOOL),
+    MEMBER(MC_VelocityProfile, Busy, OUTPUT, BOOL),
+    MEMBER(MC_VelocityProfile, Active, OUTPUT, BOOL),
+    MEMBER(MC_VelocityProfile, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_VelocityProfile, Error, OUTPUT, BOOL),
+    MEMBER(MC_VelocityProfile, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_VelocityProfile(void *fb) { MC_VelocityProfile(fb); }
+static const block_member_t members_of_MC_AccelerationProfile[] = {
+    MEMBER(MC_AccelerationProfile, Axis, IN_OUT, POINTER),
+    MEMBER(MC_AccelerationProfile, TimeAcceleration, IN_OUT, POINTER),
+    MEMBER(MC_AccelerationProfile, Execute, INPUT, BOOL),
+    MEMBER(MC_AccelerationProfile, ContinuousUpdate, INPUT, BOOL),
+    MEMBER(MC_AccelerationProfile, TimeScale, INPUT, LREAL),
+    MEMBER(MC_AccelerationProfile, AccelerationScale, INPUT, LREAL),
+    MEMBER(MC_AccelerationProfile, Offset, INPUT, LREAL),
+    MEMBER(MC_AccelerationProfile, BufferMode, INPUT, ENUM),
+    MEMBER(MC_AccelerationProfile, ProfileCompleted, OUTPUT, BOOL),
+    MEMBER(MC_AccelerationProfile, Busy, OUTPUT, BOOL),
+    MEMBER(MC_AccelerationProfile, Active, OUTPUT, BOOL),
+    MEMBER(MC_AccelerationProfile, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_AccelerationProfile, Error, OUTPUT, BOOL),
+    MEMBER(MC_AccelerationProfile, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_AccelerationProfile(void *fb) { MC_AccelerationProfile(fb); }
+static const block_member_t members_of_MC_Jog[] = {
+    MEMBER(MC_Jog, Axis, IN_OUT, POINTER),
+    MEMBER(MC_Jog, JogForward, INPUT, BOOL),
+    MEMBER(MC_Jog, JogBackwards, INPUT, BOOL),
+    MEMBER(MC_Jog, Mode, INPUT, ENUM),
+    MEMBER(MC_Jog, Position, INPUT, LREAL),
+    MEMBER(MC_Jog, Velocity, INPUT, LREAL),
+    MEMBER(MC_Jog, Acceleration, INPUT, LREAL),
+    MEMBER(MC_Jog, Deceleration, INPUT, LREAL),
+    MEMBER(MC_Jog, Jerk, INPUT, LREAL),
+    MEMBER(MC_Jog, Done, OUTPUT, BOOL),
+    MEMBER(MC_Jog, Busy, OUTPUT, BOOL),
+    MEMBER(MC_Jog, Active, OUTPUT, BOOL),
+    MEMBER(MC_Jog, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_Jog, Error, OUTPUT, BOOL),
+    MEMBER(MC_Jog, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_Jog(void *fb) { MC_Jog(fb); }
+static const block_member_t members_of_MC_SetPosition[] = {
+    MEMBER(MC_SetPosition, Axis, IN_OUT, POINTER),
+    MEMBER(MC_SetPosition, Execute, INPUT, BOOL),
+    MEMBER(MC_SetPosition, Position, INPUT, LREAL),
+    MEMBER(MC_SetPosition, Relative, INPUT, BOOL),
+    MEMBER(MC_SetPosition, ExecutionMode, INPUT, ENUM),
+    MEMBER(MC_SetPosition, Done, OUTPUT, BOOL),
+    MEMBER(MC_SetPosition, Busy, OUTPUT, BOOL),
+    MEMBER(MC_SetPosition, Error, OUTPUT, BOOL),
+    MEMBER(MC_SetPosition, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_SetPosition(void *fb) { MC_SetPosition(fb); }
+static const block_member_t members_of_MC_SetOverride[] = {
+    MEMBER(MC_SetOverride, Axis, IN_OUT, POINTER),
+    MEMBER(MC_SetOverride, Enable, INPUT, BOOL),
+    MEMBER(MC_SetOverride, VelFactor, INPUT, LREAL),
+    MEMBER(MC_SetOverride, AccFactor, INPUT, LREAL),
+    MEMBER(MC_SetOverride, JerkFactor, INPUT, LREAL),
+    MEMBER(MC_SetOverride, Enabled, OUTPUT, BOOL),
+    MEMBER(MC_SetOverride, Busy, OUTPUT, BOOL),
+    MEMBER(MC_SetOverride, Error, OUTPUT, BOOL),
+    MEMBER(MC_SetOverride, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_SetOverride(void *fb) { MC_SetOverride(fb); }
+static const block_member_t members_of_MC_ReadParameter[] = {
+    MEMBER(MC_ReadParameter, Axis, IN_OUT, POINTER),
+    MEMBER(MC_ReadParameter, Enable, INPUT, BOOL),
+    MEMBER(MC_ReadParameter, ParameterNumber, INPUT, INT),
+    MEMBER(MC_ReadParameter, Valid, OUTPUT, BOOL),
+    MEMBER(MC_ReadParameter, Busy, OUTPUT, BOOL),
+    MEMBER(MC_ReadParameter, Error, OUTPUT, BOOL),
+    MEMBER(MC_ReadParameter, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_ReadParameter, Value, OUTPUT, LREAL),
+};
+static void call_MC_ReadParameter(void *fb) { MC_ReadParameter(fb); }
+static const block_member_t members_of_MC_ReadBoolParameter[] = {
+    MEMBER(MC_ReadBoolParameter, Axis, IN_OUT, POINTER),
+    MEMBER(MC_ReadBoolParameter, Enable, INPUT, BOOL),
+    MEMBER(MC_ReadBoolParameter, ParameterNumber, INPUT, INT),
+    MEMBER(MC_ReadBoolParameter, Valid, OUTPUT, BOOL),
+    MEMBER(MC_ReadBoolParameter, Busy, OUTPUT, BOOL),
+    MEMBER(MC_ReadBoolParameter, Error, OUTPUT, BOOL),
+    MEMBER(MC_ReadBoolParameter, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_ReadBoolParameter, Value, OUTPUT, BOOL),
+};
+static void call_MC_ReadBoolParameter(void *fb) { MC_ReadBoolParameter(fb); }
+static const block_member_t members_of_MC_WriteParameter[] = {
+    MEMBER(MC_WriteParameter, Axis, IN_OUT, POINTER),
+    MEMBER(MC_WriteParameter, Execute, INPUT, BOOL),
+    MEMBER(MC_WriteParameter, ParameterNumber, INPUT, INT),
+    MEMBER(MC_WriteParameter, Value, INPUT, LREAL),
+    MEMBER(MC_WriteParameter, ExecutionMode, INPUT, ENUM),
+    MEMBER(MC_WriteParameter, Done, OUTPUT, BOOL),
+    MEMBER(MC_WriteParameter, Busy, OUTPUT, BOOL),
+    MEMBER(MC_WriteParameter, Error, OUTPUT, BOOL),
+    MEMBER(MC_WriteParameter, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_WriteParameter(void *fb) { MC_WriteParameter(fb); }
+static const block_member_t members_of_MC_WriteBoolParameter[] = {
+    MEMBER(MC_WriteBoolParameter, Axis, IN_OUT, POINTER),
+    MEMBER(MC_WriteBoolParameter, Execute, INPUT, BOOL),
+    MEMBER(MC_WriteBoolParameter, ParameterNumber, INPUT, INT),
+    MEMBER(MC_WriteBoolParameter, Value, INPUT, BOOL),
+    MEMBER(MC_WriteBoolParameter, ExecutionMode, INPUT, ENUM),
+    MEMBER(MC_WriteBoolParameter, Done, OUTPUT, BOOL),
+    MEMBER(MC_WriteBoolParameter, Busy, OUTPUT, BOOL),
+    MEMBER(MC_WriteBoolParameter, Error, OUTPUT, BOOL),
+    MEMBER(MC_WriteBoolParameter, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_WriteBoolParameter(void *fb) { MC_WriteBoolParameter(fb); }
+static const block_member_t members_of_MC_ReadDigitalInput[] = {
+    MEMBER(MC_ReadDigitalInput, Input, IN_OUT, POINTER),
+    MEMBER(MC_ReadDigitalInput, Enable, INPUT, BOOL),
+    MEMBER(MC_ReadDigitalInput, InputNumber, INPUT, INT),
+    MEMBER(MC_ReadDigitalInput, Valid, OUTPUT, BOOL),
+    MEMBER(MC_ReadDigitalInput, Busy, OUTPUT, BOOL),
+    MEMBER(MC_ReadDigitalInput, Error, OUTPUT, BOOL),
+    MEMBER(MC_ReadDigitalInput, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_ReadDigitalInput, Value, OUTPUT, BOOL),
+};
+static void call_MC_ReadDigitalInput(void *fb) { MC_ReadDigitalInput(fb); }
+static const block_member_t members_of_MC_ReadDigitalOutput[] = {
+    MEMBER(MC_ReadDigitalOutput, Output, IN_OUT, POINTER),
+    MEMBER(MC_ReadDigitalOutput, Enable, INPUT, BOOL),
+    MEMBER(MC_ReadDigitalOutput, OutputNumber, INPUT, INT),
+    MEMBER(MC_ReadDigitalOutput, Valid, OUTPUT, BOOL),
+    MEMBER(MC_ReadDigitalOutput, Busy, OUTPUT, BOOL),
+    MEMBER(MC_ReadDigitalOutput, Error, OUTPUT, BOOL),
+    MEMBER(MC_ReadDigitalOutput, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_ReadDigitalOutput, Value, OUTPUT, BOOL),
+};
+static void call_MC_ReadDigitalOutput(void *fb) { MC_ReadDigitalOutput(fb); }
+static const block_member_t members_of_MC_WriteDigitalOutput[] = {
+    MEMBER(MC_WriteDigitalOutput, Output, IN_OUT, POINTER),
+    MEMBER(MC_WriteDigitalOutput, Execute, INPUT, BOOL),
+    MEMBER(MC_WriteDigitalOutput, OutputNumber, INPUT, INT),
+    MEMBER(MC_WriteDigitalOutput, Value, INPUT, BOOL),
+    MEMBER(MC_WriteDigitalOutput, ExecutionMode, INPUT, ENUM),
+    MEMBER(MC_WriteDigitalOutput, Done, OUTPUT, BOOL),
+    MEMBER(MC_WriteDigitalOutput, Busy, OUTPUT, BOOL),
+    MEMBER(MC_WriteDigitalOutput, Error, OUTPUT, BOOL),
+    MEMBER(MC_WriteDigitalOutput, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_WriteDigitalOutput(void *fb) { MC_WriteDigitalOutput(fb); }
+static const block_member_t members_of_MC_ReadActualPosition[] = {
+    MEMBER(MC_ReadActualPosition, Axis, IN_OUT, POINTER),
+    MEMBER(MC_ReadActualPosition, Enable, INPUT, BOOL),
+    MEMBER(MC_ReadActualPosition, Valid, OUTPUT, BOOL),
+    MEMBER(MC_ReadActualPosition, Busy, OUTPUT, BOOL),
+    MEMBER(MC_ReadActualPosition, Error, OUTPUT, BOOL),
+    MEMBER(MC_ReadActualPosition, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_ReadActualPosition, Position, OUTPUT, LREAL),
+};
+static void call_MC_ReadActualPosition(void *fb) { MC_ReadActualPosition(fb); }
+static const block_member_t members_of_MC_ReadActualVelocity[] = {
+    MEMBER(MC_ReadActualVelocity, Axis, IN_OUT, POINTER),
+    MEMBER(MC_ReadActualVelocity, Enable, INPUT, BOOL),
+    MEMBER(MC_ReadActualVelocity, Valid, OUTPUT, BOOL),
+    MEMBER(MC_ReadActualVelocity, Busy, OUTPUT, BOOL),
+    MEMBER(MC_ReadActualVelocity, Error, OUTPUT, BOOL),
+    MEMBER(MC_ReadActualVelocity, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_ReadActualVelocity, Velocity, OUTPUT, LREAL),
+};
+static void call_MC_ReadActualVelocity(void *fb) { MC_ReadActualVelocity(fb); }
+static const block_member_t members_of_MC_ReadActualTorque[] = {
+    MEMBER(MC_ReadActualTorque, Axis, IN_OUT, POINTER),
+    MEMBER(MC_ReadActualTorque, Enable, INPUT, BOOL),
+    MEMBER(MC_ReadActualTorque, Valid, OUTPUT, BOOL),
+    MEMBER(MC_ReadActualTorque, Busy, OUTPUT, BOOL),
+    MEMBER(MC_ReadActualTorque, Error, OUTPUT, BOOL),
+    MEMBER(MC_ReadActualTorque, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_ReadActualTorque, Torque, OUTPUT, LREAL),
+};
+static void call_MC_ReadActualTorque(void *fb) { MC_ReadActualTorque(fb); }
+static const block_member_t members_of_MC_ReadStatus[] = {
+    MEMBER(MC_ReadStatus, Axis, IN_OUT, POINTER),
+    MEMBER(MC_ReadStatus, Enable, INPUT, BOOL),
+    MEMBER(MC_ReadStatus, Valid, OUTPUT, BOOL),
+    MEMBER(MC_ReadStatus, Busy, OUTPUT, BOOL),
+    MEMBER(MC_ReadStatus, Error, OUTPUT, BOOL),
+    MEMBER(MC_ReadStatus, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_ReadStatus, ErrorStop, OUTPUT, BOOL),
+    MEMBER(MC_ReadStatus, Disabled, OUTPUT, BOOL),
+    MEMBER(MC_ReadStatus, Stopping, OUTPUT, BOOL),
+    MEMBER(MC_ReadStatus, Homing, OUTPUT, BOOL),
+    MEMBER(MC_ReadStatus, Standstill, OUTPUT, BOOL),
+    MEMBER(MC_ReadStatus, DiscreteMotion, OUTPUT, BOOL),
+    MEMBER(MC_ReadStatus, ContinuousMotion, OUTPUT, BOOL),
+    MEMBER(MC_ReadStatus, SynchronizedMotion, OUTPUT, BOOL),
+};
+static void call_MC_ReadStatus(void *fb) { MC_ReadStatus(fb); }
+static const block_member_t members_of_MC_ReadMotionState[] = {
+    MEMBER(MC_ReadMotionState, Axis, IN_OUT, POINTER),
+    MEMBER(MC_ReadMotionState, Enable, INPUT, BOOL),
+    MEMBER(MC_ReadMotionState, Source, INPUT, ENUM),
+    MEMBER(MC_ReadMotionState, Valid, OUTPUT, BOOL),
+    MEMBER(MC_ReadMotionState, Busy, OUTPUT, BOOL),
+    MEMBER(MC_ReadMotionState, Error, OUTPUT, BOOL),
+    MEMBER(MC_ReadMotionState, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_ReadMotionState, ConstantVelocity, OUTPUT, BOOL),
+    MEMBER(MC_ReadMotionState, Accelerating, OUTPUT, BOOL),
+    MEMBER(MC_ReadMotionState, Decelerating, OUTPUT, BOOL),
+    MEMBER(MC_ReadMotionState, DirectionPositive, OUTPUT, BOOL),
+    MEMBER(MC_ReadMotionState, DirectionNegative, OUTPUT, BOOL),
+};
+static void call_MC_ReadMotionState(void *fb) { MC_ReadMotionState(fb); }
+static const block_member_t members_of_MC_ReadAxisInfo[] = {
+    MEMBER(MC_ReadAxisInfo, Axis, IN_OUT, POINTER),
+    MEMBER(MC_ReadAxisInfo, Enable, INPUT, BOOL),
+    MEMBER(MC_ReadAxisInfo, Valid, OUTPUT, BOOL),
+    MEMBER(MC_ReadAxisInfo, Busy, OUTPUT, BOOL),
+    MEMBER(MC_ReadAxisInfo, Error, OUTPUT, BOOL),
+    MEMBER(MC_ReadAxisInfo, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_ReadAxisInfo, HomeAbsSwitch, OUTPUT, BOOL),
+    MEMBER(MC_ReadAxisInfo, LimitSwitchPos, OUTPUT, BOOL),
+    MEMBER(MC_ReadAxisInfo, LimitSwitchNeg, OUTPUT, BOOL),
+    MEMBER(MC_ReadAxisInfo, Simulation, OUTPUT, BOOL),
+    MEMBER(MC_ReadAxisInfo, CommunicationReady, OUTPUT, BOOL),
+    MEMBER(MC_ReadAxisInfo, ReadyForPowerOn, OUTPUT, BOOL),
+    MEMBER(MC_ReadAxisInfo, PowerOn, OUTPUT, BOOL),
+    MEMBER(MC_ReadAxisInfo, IsHomed, OUTPUT, BOOL),
+    MEMBER(MC_ReadAxisInfo, AxisWarning, OUTPUT, BOOL),
+};
+static void call_MC_ReadAxisInfo(void *fb) { MC_ReadAxisInfo(fb); }
+static const block_member_t members_of_MC_ReadAxisError[] = {
+    MEMBER(MC_ReadAxisError, Axis, IN_OUT, POINTER),
+    MEMBER(MC_ReadAxisError, Enable, INPUT, BOOL),
+    MEMBER(MC_ReadAxisError, Valid, OUTPUT, BOOL),
+    MEMBER(MC_ReadAxisError, Busy, OUTPUT, BOOL),
+    MEMBER(MC_ReadAxisError, Error, OUTPUT, BOOL),
+    MEMBER(MC_ReadAxisError, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_ReadAxisError, AxisErrorID, OUTPUT, WORD),
+    MEMBER(MC_ReadAxisError, DeviceErrorCode, OUTPUT, WORD),
+};
+static void call_MC_ReadAxisError(void *fb) { MC_ReadAxisError(fb); }
+static const block_member_t members_of_MC_Reset[] = {
+    MEMBER(MC_Reset, Axis, IN_OUT, POINTER),
+    MEMBER(MC_Reset, Execute, INPUT, BOOL),
+    MEMBER(MC_Reset, Done, OUTPUT, BOOL),
+    MEMBER(MC_Reset, Busy, OUTPUT, BOOL),
+    MEMBER(MC_Reset, Error, OUTPUT, BOOL),
+    MEMBER(MC_Reset, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_Reset(void *fb) { MC_Reset(fb); }
+static const block_member_t members_of_MC_DigitalCamSwitch[] = {
+    MEMBER(MC_DigitalCamSwitch, Axis, IN_OUT, POINTER),
+    MEMBER(MC_DigitalCamSwitch, Switches, IN_OUT, POINTER),
+    MEMBER(MC_DigitalCamSwitch, Outputs, IN_OUT, POINTER),
+    MEMBER(MC_DigitalCamSwitch, TrackOptions, IN_OUT, POINTER),
+    MEMBER(MC_DigitalCamSwitch, Enable, INPUT, BOOL),
+    MEMBER(MC_DigitalCamSwitch, EnableMask, INPUT, DWORD),
+    MEMBER(MC_DigitalCamSwitch, ValueSource, INPUT, ENUM),
+    MEMBER(MC_DigitalCamSwitch, InOperation, OUTPUT, BOOL),
+    MEMBER(MC_DigitalCamSwitch, Busy, OUTPUT, BOOL),
+    MEMBER(MC_DigitalCamSwitch, Error, OUTPUT, BOOL),
+    MEMBER(MC_DigitalCamSwitch, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_DigitalCamSwitch(void *fb) { MC_DigitalCamSwitch(fb); }
+static const block_member_t members_of_MC_TouchProbe[] = {
+    MEMBER(MC_TouchProbe, Axis, IN_OUT, POINTER),
+    MEMBER(MC_TouchProbe, TriggerInput, IN_OUT, POINTER),
+    MEMBER(MC_TouchProbe, Execute, INPUT, BOOL),
+    MEMBER(MC_TouchProbe, WindowOnly, INPUT, BOOL),
+    MEMBER(MC_TouchProbe, FirstPosition, INPUT, LREAL),
+    MEMBER(MC_TouchProbe, LastPosition, INPUT, LREAL),
+    MEMBER(MC_TouchProbe, Done, OUTPUT, BOOL),
+    MEMBER(MC_TouchProbe, Busy, OUTPUT, BOOL),
+    MEMBER(MC_TouchProbe, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_TouchProbe, Error, OUTPUT, BOOL),
+    MEMBER(MC_TouchProbe, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_TouchProbe, RecordedPosition, OUTPUT, LREAL),
+};
+static void call_MC_TouchProbe(void *fb) { MC_TouchProbe(fb); }
+static const block_member_t members_of_MC_AbortTrigger[] = {
+    MEMBER(MC_AbortTrigger, Axis, IN_OUT, POINTER),
+    MEMBER(MC_AbortTrigger, TriggerInput, IN_OUT, POINTER),
+    MEMBER(MC_AbortTrigger, Execute, INPUT, BOOL),
+    MEMBER(MC_AbortTrigger, Done, OUTPUT, BOOL),
+    MEMBER(MC_AbortTrigger, Busy, OUTPUT, BOOL),
+    MEMBER(MC_AbortTrigger, Error, OUTPUT, BOOL),
+    MEMBER(MC_AbortTrigger, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_AbortTrigger(void *fb) { MC_AbortTrigger(fb); }
+static const block_member_t members_of_MC_StepAbsoluteSwitch[] = {
+    MEMBER(MC_StepAbsoluteSwitch, Axis, IN_OUT, POINTER),
+    MEMBER(MC_StepAbsoluteSwitch, Execute, INPUT, BOOL),
+    MEMBER(MC_StepAbsoluteSwitch, Direction, INPUT, ENUM),
+    MEMBER(MC_StepAbsoluteSwitch, SwitchMode, INPUT, ENUM),
+    MEMBER(MC_StepAbsoluteSwitch, ReferenceSignal, INPUT, STRUCT),
+    MEMBER(MC_StepAbsoluteSwitch, Velocity, INPUT, LREAL),
+    MEMBER(MC_StepAbsoluteSwitch, SetPosition, INPUT, LREAL),
+    MEMBER(MC_StepAbsoluteSwitch, TorqueLimit, INPUT, LREAL),
+    MEMBER(MC_StepAbsoluteSwitch, TimeLimit, INPUT, TIME),
+    MEMBER(MC_StepAbsoluteSwitch, DistanceLimit, INPUT, LREAL),
+    MEMBER(MC_StepAbsoluteSwitch, BufferMode, INPUT, ENUM),
+    MEMBER(MC_StepAbsoluteSwitch, Done, OUTPUT, BOOL),
+    MEMBER(MC_StepAbsoluteSwitch, Busy, OUTPUT, BOOL),
+    MEMBER(MC_StepAbsoluteSwitch, Active, OUTPUT, BOOL),
+    MEMBER(MC_StepAbsoluteSwitch, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_StepAbsoluteSwitch, Error, OUTPUT, BOOL),
+    MEMBER(MC_StepAbsoluteSwitch, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_StepAbsoluteSwitch(void *fb) { MC_StepAbsoluteSwitch(fb); }
+static const block_member_t members_of_MC_StepLimitSwitch[] = {
+    MEMBER(MC_StepLimitSwitch, Axis, IN_OUT, POINTER),
+    MEMBER(MC_StepLimitSwitch, Execute, INPUT, BOOL),
+    MEMBER(MC_StepLimitSwitch, Direction, INPUT, ENUM),
+    MEMBER(MC_StepLimitSwitch, LimitSwitchMode, INPUT, ENUM),
+    MEMBER(MC_StepLimitSwitch, Velocity, INPUT, LREAL),
+    MEMBER(MC_StepLimitSwitch, SetPosition, INPUT, LREAL),
+    MEMBER(MC_StepLimitSwitch, TorqueLimit, INPUT, LREAL),
+    MEMBER(MC_StepLimitSwitch, TimeLimit, INPUT, TIME),
+    MEMBER(MC_StepLimitSwitch, DistanceLimit, INPUT, LREAL),
+    MEMBER(MC_StepLimitSwitch, BufferMode, INPUT, ENUM),
+    MEMBER(MC_StepLimitSwitch, Done, OUTPUT, BOOL),
+    MEMBER(MC_StepLimitSwitch, Busy, OUTPUT, BOOL),
+    MEMBER(MC_StepLimitSwitch, Active, OUTPUT, BOOL),
+    MEMBER(MC_StepLimitSwitch, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_StepLimitSwitch, Error, OUTPUT, BOOL),
+    MEMBER(MC_StepLimitSwitch, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_StepLimitSwitch(void *fb) { MC_StepLimitSwitch(fb); }
+static const block_member_t members_of_MC_StepBlock[] = {
+    MEMBER(MC_StepBlock, Axis, IN_OUT, POINTER),
+    MEMBER(MC_StepBlock, Execute, INPUT, BOOL),
+    MEMBER(MC_StepBlock, Direction, INPUT, ENUM),
+    MEMBER(MC_StepBlock, Velocity, INPUT, LREAL),
+    MEMBER(MC_StepBlock, SetPosition, INPUT, LREAL),
+    MEMBER(MC_StepBlock, DetectionVelocityLimit, INPUT, LREAL),
+    MEMBER(MC_StepBlock, DetectionVelocityTime, INPUT, TIME),
+    MEMBER(MC_StepBlock, TorqueLimit, INPUT, LREAL),
+    MEMBER(MC_StepBlock, TimeLimit, INPUT, TIME),
+    MEMBER(MC_StepBlock, DistanceLimit, INPUT, LREAL),
+    MEMBER(MC_StepBlock, BufferMode, INPUT, ENUM),
+    MEMBER(MC_StepBlock, Done, OUTPUT, BOOL),
+    MEMBER(MC_StepBlock, Busy, OUTPUT, BOOL),
+    MEMBER(MC_StepBlock, Active, OUTPUT, BOOL),
+    MEMBER(MC_StepBlock, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_StepBlock, Error, OUTPUT, BOOL),
+    MEMBER(MC_StepBlock, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_StepBlock(void *fb) { MC_StepBlock(fb); }
+static const block_member_t members_of_MC_StepReferencePulse[] = {
+    MEMBER(MC_StepReferencePulse, Axis, IN_OUT, POINTER),
+    MEMBER(MC_StepReferencePulse, Execute, INPUT, BOOL),
+    MEMBER(MC_StepReferencePulse, Direction, INPUT, ENUM),
+    MEMBER(MC_StepReferencePulse, ReferenceSignal, INPUT, STRUCT),
+    MEMBER(MC_StepReferencePulse, Velocity, INPUT, LREAL),
+    MEMBER(MC_StepReferencePulse, SetPosition, INPUT, LREAL),
+    MEMBER(MC_StepReferencePulse, TorqueLimit, INPUT, LREAL),
+    MEMBER(MC_StepReferencePulse, TimeLimit, INPUT, TIME),
+    MEMBER(MC_StepReferencePulse, DistanceLimit, INPUT, LREAL),
+    MEMBER(MC_StepReferencePulse, BufferMode, INPUT, ENUM),
+    MEMBER(MC_StepReferencePulse, Done, OUTPUT, BOOL),
+    MEMBER(MC_StepReferencePulse, Busy, OUTPUT, BOOL),
+    MEMBER(MC_StepReferencePulse, Active, OUTPUT, BOOL),
+    MEMBER(MC_StepReferencePulse, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_StepReferencePulse, Error, OUTPUT, BOOL),
+    MEMBER(MC_StepReferencePulse, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_StepReferencePulse(void *fb) { MC_StepReferencePulse(fb); }
+static const block_member_t members_of_MC_StepDistanceCoded[] = {
+    MEMBER(MC_StepDistanceCoded, Axis, IN_OUT, POINTER),
+    MEMBER(MC_StepDistanceCoded, Execute, INPUT, BOOL),
+    MEMBER(MC_StepDistanceCoded, Direction, INPUT, ENUM),
+    MEMBER(MC_StepDistanceCoded, Velocity, INPUT, LREAL),
+    MEMBER(MC_StepDistanceCoded, TorqueLimit, INPUT, LREAL),
+    MEMBER(MC_StepDistanceCoded, TimeLimit, INPUT, TIME),
+    MEMBER(MC_StepDistanceCoded, DistanceLimit, INPUT, LREAL),
+    MEMBER(MC_StepDistanceCoded, BufferMode, INPUT, ENUM),
+    MEMBER(MC_StepDistanceCoded, Done, OUTPUT, BOOL),
+    MEMBER(MC_StepDistanceCoded, Busy, OUTPUT, BOOL),
+    MEMBER(MC_StepDistanceCoded, Active, OUTPUT, BOOL),
+    MEMBER(MC_StepDistanceCoded, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_StepDistanceCoded, Error, OUTPUT, BOOL),
+    MEMBER(MC_StepDistanceCoded, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_StepDistanceCoded(void *fb) { MC_StepDistanceCoded(fb); }
+static const block_member_t members_of_MC_HomeDirect[] = {
+    MEMBER(MC_HomeDirect, Axis, IN_OUT, POINTER),
+    MEMBER(MC_HomeDirect, Execute, INPUT, BOOL),
+    MEMBER(MC_HomeDirect, SetPosition, INPUT, LREAL),
+    MEMBER(MC_HomeDirect, BufferMode, INPUT, ENUM),
+    MEMBER(MC_HomeDirect, Done, OUTPUT, BOOL),
+    MEMBER(MC_HomeDirect, Busy, OUTPUT, BOOL),
+    MEMBER(MC_HomeDirect, Active, OUTPUT, BOOL),
+    MEMBER(MC_HomeDirect, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_HomeDirect, Error, OUTPUT, BOOL),
+    MEMBER(MC_HomeDirect, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_HomeDirect(void *fb) { MC_HomeDirect(fb); }
+static const block_member_t members_of_MC_HomeAbsolute[] = {
+    MEMBER(MC_HomeAbsolute, Axis, IN_OUT, POINTER),
+    MEMBER(MC_HomeAbsolute, Execute, INPUT, BOOL),
+    MEMBER(MC_HomeAbsolute, BufferMode, INPUT, ENUM),
+    MEMBER(MC_HomeAbsolute, Done, OUTPUT, BOOL),
+    MEMBER(MC_HomeAbsolute, Busy, OUTPUT, BOOL),
+    MEMBER(MC_HomeAbsolute, Active, OUTPUT, BOOL),
+    MEMBER(MC_HomeAbsolute, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_HomeAbsolute, Error, OUTPUT, BOOL),
+    MEMBER(MC_HomeAbsolute, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_HomeAbsolute(void *fb) { MC_HomeAbsolute(fb); }
+static const block_member_t members_of_MC_FinishHoming[] = {
+    MEMBER(MC_FinishHoming, Axis, IN_OUT, POINTER),
+    MEMBER(MC_FinishHoming, Execute, INPUT, BOOL),
+    MEMBER(MC_FinishHoming, Distance, INPUT, LREAL),
+    MEMBER(MC_FinishHoming, Velocity, INPUT, LREAL),
+    MEMBER(MC_FinishHoming, Acceleration, INPUT, LREAL),
+    MEMBER(MC_FinishHoming, Deceleration, INPUT, LREAL),
+    MEMBER(MC_FinishHoming, Jerk, INPUT, LREAL),
+    MEMBER(MC_FinishHoming, BufferMode, INPUT, ENUM),
+    MEMBER(MC_FinishHoming, Done, OUTPUT, BOOL),
+    MEMBER(MC_FinishHoming, Busy, OUTPUT, BOOL),
+    MEMBER(MC_FinishHoming, Active, OUTPUT, BOOL),
+    MEMBER(MC_FinishHoming, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_FinishHoming, Error, OUTPUT, BOOL),
+    MEMBER(MC_FinishHoming, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_FinishHoming(void *fb) { MC_FinishHoming(fb); }
+static const block_member_t members_of_MC_StepReferenceFlyingSwitch[] = {
+    MEMBER(MC_StepReferenceFlyingSwitch, Axis, IN_OUT, POINTER),
+    MEMBER(MC_StepReferenceFlyingSwitch, Execute, INPUT, BOOL),
+    MEMBER(MC_StepReferenceFlyingSwitch, SwitchMode, INPUT, ENUM),
+    MEMBER(MC_StepReferenceFlyingSwitch, ReferenceSignal, INPUT, STRUCT),
+    MEMBER(MC_StepReferenceFlyingSwitch, SetPosition, INPUT, LREAL),
+    MEMBER(MC_StepReferenceFlyingSwitch, TimeLimit, INPUT, TIME),
+    MEMBER(MC_StepReferenceFlyingSwitch, DistanceLimit, INPUT, LREAL),
+    MEMBER(MC_StepReferenceFlyingSwitch, BufferMode, INPUT, ENUM),
+    MEMBER(MC_StepReferenceFlyingSwitch, Done, OUTPUT, BOOL),
+    MEMBER(MC_StepReferenceFlyingSwitch, Busy, OUTPUT, BOOL),
+    MEMBER(MC_StepReferenceFlyingSwitch, Active, OUTPUT, BOOL),
+    MEMBER(MC_StepReferenceFlyingSwitch, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_StepReferenceFlyingSwitch, Error, OUTPUT, BOOL),
+    MEMBER(MC_StepReferenceFlyingSwitch, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_StepReferenceFlyingSwitch(void *fb) { MC_StepReferenceFlyingSwitch(fb); }
+static const block_member_t members_of_MC_StepReferenceFlyingRefPulse[] = {
+    MEMBER(MC_StepReferenceFlyingRefPulse, Axis, IN_OUT, POINTER),
+    MEMBER(MC_StepReferenceFlyingRefPulse, Execute, INPUT, BOOL),
+    MEMBER(MC_StepReferenceFlyingRefPulse, ReferenceSignal, INPUT, STRUCT),
+    MEMBER(MC_StepReferenceFlyingRefPulse, SetPosition, INPUT, LREAL),
+    MEMBER(MC_StepReferenceFlyingRefPulse, TimeLimit, INPUT, TIME),
+    MEMBER(MC_StepReferenceFlyingRefPulse, DistanceLimit, INPUT, LREAL),
+    MEMBER(MC_StepReferenceFlyingRefPulse, BufferMode, INPUT, ENUM),
+    MEMBER(MC_StepReferenceFlyingRefPulse, Done, OUTPUT, BOOL),
+    MEMBER(MC_StepReferenceFlyingRefPulse, Busy, OUTPUT, BOOL),
+    MEMBER(MC_StepReferenceFlyingRefPulse, Active, OUTPUT, BOOL),
+    MEMBER(MC_StepReferenceFlyingRefPulse, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_StepReferenceFlyingRefPulse, Error, OUTPUT, BOOL),
+    MEMBER(MC_StepReferenceFlyingRefPulse, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_StepReferenceFlyingRefPulse(void *fb) { MC_StepReferenceFlyingRefPulse(fb); }
+static const block_member_t members_of_MC_AbortPassiveHoming[] = {
+    MEMBER(MC_AbortPassiveHoming, Axis, IN_OUT, POINTER),
+    MEMBER(MC_AbortPassiveHoming, Execute, INPUT, BOOL),
+    MEMBER(MC_AbortPassiveHoming, Done, OUTPUT, BOOL),
+    MEMBER(MC_AbortPassiveHoming, Busy, OUTPUT, BOOL),
+    MEMBER(MC_AbortPassiveHoming, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_AbortPassiveHoming, Error, OUTPUT, BOOL),
+    MEMBER(MC_AbortPassiveHoming, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_AbortPassiveHoming(void *fb) { MC_AbortPassiveHoming(fb); }
+static const block_member_t members_of_TON[] = {
+    MEMBER(TON, IN, INPUT, BOOL),
+    MEMBER(TON, PT, INPUT, TIME),
+    MEMBER(TON, Q, OUTPUT, BOOL),
+    MEMBER(TON, ET, OUTPUT, TIME),
+};
+static void call_TON(void *fb) { TON(fb); }
+static const block_member_t members_of_TOF[] = {
+    MEMBER(TOF, IN, INPUT, BOOL),
+    MEMBER(TOF, PT, INPUT, TIME),
+    MEMBER(TOF, Q, OUTPUT, BOOL),
+    MEMBER(TOF, ET, OUTPUT, TIME),
+};
+static void call_TOF(void *fb) { TOF(fb); }
+static const block_member_t members_of_TP[] = {
+    MEMBER(TP, IN, INPUT, BOOL),
+    MEMBER(TP, PT, INPUT, TIME),
+    MEMBER(TP, Q, OUTPUT, BOOL),
+    MEMBER(TP, ET, OUTPUT, TIME),
+};
+static void call_TP(void *fb) { TP(fb); }
+static const block_member_t members_of_R_TRIG[] = {
+    MEMBER(R_TRIG, CLK, INPUT, BOOL),
+    MEMBER(R_TRIG, Q, OUTPUT, BOOL),
+};
+static void call_R_TRIG(void *fb) { R_TRIG(fb); }
+static const block_member_t members_of_F_TRIG[] = {
+    MEMBER(F_TRIG, CLK, INPUT, BOOL),
+    MEMBER(F_TRIG, Q, OUTPUT, BOOL),
+};
+static void call_F_TRIG(void *fb) { F_TRIG(fb); }
+static const block_member_t members_of_SR[] = {
+    MEMBER(SR, S1, INPUT, BOOL),
+    MEMBER(SR, R, INPUT, BOOL),
+    MEMBER(SR, Q1, OUTPUT, BOOL),
+};
+static void call_SR(void *fb) { SR(fb); }
+static const block_member_t members_of_RS[] = {
+    MEMBER(RS, S, INPUT, BOOL),
+    MEMBER(RS, R1, INPUT, BOOL),
+    MEMBER(RS, Q1, OUTPUT, BOOL),
+};
+static void call_RS(void *fb) { RS(fb); }
+static const block_member_t members_of_CTU[] = {
+    MEMBER(CTU, CU, INPUT, BOOL),
+    MEMBER(CTU, R, INPUT, BOOL),
+    MEMBER(CTU, PV, INPUT, INT),
+    MEMBER(CTU, Q, OUTPUT, BOOL),
+    MEMBER(CTU, CV, OUTPUT, INT),
+};
+static void call_CTU(void *fb) { CTU(fb); }
+static const block_member_t members_of_CTD[] = {
+    MEMBER(CTD, CD, INPUT, BOOL),
+    MEMBER(CTD, LD, INPUT, BOOL),
+    MEMBER(CTD, PV, INPUT, INT),
+    MEMBER(CTD, Q, OUTPUT, BOOL),
+    MEMBER(CTD, CV, OUTPUT, INT),
+};
+static void call_CTD(void *fb) { CTD(fb); }
+static const block_member_t members_of_CTUD[] = {
+    MEMBER(CTUD, CU, INPUT, BOOL),
+    MEMBER(CTUD, CD, INPUT, BOOL),
+    MEMBER(CTUD, R, INPUT, BOOL),
+    MEMBER(CTUD, LD, INPUT, BOOL),
+    MEMBER(CTUD, PV, INPUT, INT),
+    MEMBER(CTUD, QU, OUTPUT, BOOL),
+    MEMBER(CTUD, QD, OUTPUT, BOOL),
+    MEMBER(CTUD, CV, OUTPUT, INT),
+};
+static void call_CTUD(void *fb) { CTUD(fb); }
+
+const block_t block_table[] = {
+    BLOCK(MC_Power, NULL),
+    BLOCK(MC_Home, rules_home),
+    BLOCK(MC_Stop, rules_stop),
+    BLOCK(MC_Halt, rules_discrete),
+    BLOCK(MC_MoveAbsolute, rules_discrete),
+    BLOCK(MC_MoveRelative, rules_discrete),
+    BLOCK(MC_MoveAdditive, rules_discrete),
+    BLOCK(MC_MoveSuperimposed, rules_superimposed),
+    BLOCK(MC_HaltSuperimposed, rules_halt_superimposed),
+    BLOCK(MC_MoveVelocity, rules_continuous),
+    BLOCK(MC_MoveContinuousAbsolute, rules_continuous),
+    BLOCK(MC_MoveContinuousRelative, rules_continuous),
+    BLOCK(MC_TorqueControl, rules_unsupported),
+    BLOCK(MC_PositionProfile, rules_discrete),
+    BLOCK(MC_VelocityProfile, rules_continuous),
+    BLOCK(MC_AccelerationProfile, rules_continuous),
+    BLOCK(MC_Jog, NULL),
+    BLOCK(MC_SetPosition, rules_any),
+    BLOCK(MC_SetOverride, rules_any),
+    BLOCK(MC_ReadParameter, rules_any),
+    BLOCK(MC_ReadBoolParameter, rules_any),
+    BLOCK(MC_WriteParameter, rules_any),
+    BLOCK(MC_WriteBoolParameter, rules_any),
+    BLOCK(MC_ReadDigitalInput, rules_any),
+    BLOCK(MC_ReadDigitalOutput, rules_any),
+    BLOCK(MC_WriteDigitalOutput, rules_any),
+    BLOCK(MC_ReadActualPosition, rules_any),
+    BLOCK(MC_ReadActualVelocity, rules_any),
+    BLOCK(MC_ReadActualTorque, rules_any),
+    BLOCK(MC_ReadStatus, rules_any),
+    BLOCK(MC_ReadMotionState, rules_any),
+    BLOCK(MC_ReadAxisInfo, rules_any),
+    BLOCK(MC_ReadAxisError, rules_any),
+    BLOCK(MC_Reset, NULL),
+    BLOCK(MC_DigitalCamSwitch, rules_any),
+    BLOCK(MC_TouchProbe, rules_any),
+    BLOCK(MC_AbortTrigger, rules_any),
+    BLOCK(MC_StepAbsoluteSwitch, rules_step),
+    BLOCK(MC_StepLimitSwitch, rules_step),
+    BLOCK(MC_StepBlock, rules_step),
+    BLOCK(MC_StepReferencePulse, rules_step),
+    BLOCK(MC_StepDistanceCoded, rules_step),
+    BLOCK(MC_HomeDirect, NULL),
+    BLOCK(MC_HomeAbsolute, NULL),
+    BLOCK(MC_FinishHoming, NULL),
+    BLOCK(MC_StepReferenceFlyingSwitch, rules_any),
+    BLOCK(MC_StepReferenceFlyingRefPulse, rules_any),
+    BLOCK(MC_AbortPassiveHoming, rules_any),
+    BLOCK(TON, NULL),
+    BLOCK(TOF, NULL),
+    BLOCK(TP, NULL),
+    BLOCK(R_TRIG, NULL),
+    BLOCK(F_TRIG, NULL),
+    BLOCK(SR, NULL),
+    BLOCK(RS, NULL),
+    BLOCK(CTU, NULL),
+    BLOCK(CTD, NULL),
+    BLOCK(CTUD, NULL),
+};
+const size_t block_count = sizeof block_table / sizeof *block_table;
