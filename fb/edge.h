@@ -38,6 +38,13 @@ fb_outputs_t fb_outputs(const cm1e_fb_private_t *fb);
  *  polls it after. Returns the command's last status for what is special in a block. */
 cm1e_command_status_t fb_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute,
                                 const cm1e_axis_command_t *command, cm1e_error_t refusal);
+/** TRUE: no edge, the same axis, and its command still is the active one, so that the outputs (`active`: one of them)
+ *  stand as they are. Most calls of a block are such; they cost little that way. */
+static inline bool fb_stands(const cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, BOOL active)
+{
+    return active && fb->state == FB_BUSY && !execute == !fb->trigger_before && reference &&
+           reference->Handle == fb->axis_handle && cm1e_axis_runs(*reference, fb->command);
+}
 /** The axis that the block works on, latched at its last rising edge; NULL: none. */
 cm1e_axis_t *fb_axis(const cm1e_fb_private_t *fb);
 /** An error of the block itself, shown until Execute or Enable falls. */

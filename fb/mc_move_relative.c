@@ -2,6 +2,8 @@
 
 void MC_MoveRelative(MC_MoveRelative_t *fb)
 {
+    if (fb_stands(&fb->Private, fb->Axis, fb->Execute, fb->Active && !fb->ContinuousUpdate))
+        return;
     const cm1e_axis_command_t command = {
         .kind = CM1E_COMMAND_MOVE_RELATIVE,
         .position = fb->Distance,

@@ -46,10 +46,20 @@ static cm1e_error_t follow_inputs(MC_Power_t *fb, cm1e_axis_t *axis)
     return error || fb->Status ? error : reason_for_no_power(axis);
 }
 
+/** Nothing has changed since the last call, as in most: the outputs stand as they are. */
+static bool stands(const MC_Power_t *fb)
+{
+    return fb->Enable && fb->Status && fb->Valid && fb->Private.trigger_before && fb->Axis &&
+           fb->Axis->Handle == fb->Private.axis_handle &&
+           cm1e_axis_power_stands(*fb->Axis, fb, fb->EnablePositive, fb->EnableNegative);
+}
+
 void MC_Power(MC_Power_t *fb)
 {
     cm1e_fb_private_t *private = &fb->Private;
     cm1e_error_t passing = CM1E_OK;
+    if (stands(fb))
+        return;
     if (fb->Enable && !private->trigger_before)
         take(private, fb->Axis);
     private->trigger_before = fb->Enable ? TRUE : FALSE;

@@ -92,6 +92,9 @@ cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1
  *  deceleration, and on jerk (above 0 ... 1) of the commands. Kept until changed. @rt cycle */
 cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double acceleration, double jerk);
 cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_command_id_t id);
+/** TRUE while this is the active command of an axis that exists: the short question of a block to which nothing has
+ *  happened. @rt cycle */
+bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id);
 /** MC_Stop.Execute is (still) TRUE: while it is, the axis stays Stopping. @rt cycle */
 void cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold);
 
@@ -99,6 +102,9 @@ void cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold);
  *  CM1E_ERROR_FB_SECOND_POWER: another one owns it. @rt cycle */
 cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, bool enable_positive,
                              bool enable_negative);
+/** TRUE while another cm1e_axis_power() with these values, enabled, would change nothing and the power stage is on.
+ *  @rt cycle */
+bool cm1e_axis_power_stands(AXIS_REF_t reference, const void *owner, bool enable_positive, bool enable_negative);
 /** Power stage on: MC_Power.Status. @rt cycle */
 bool cm1e_axis_powered(const cm1e_axis_t *axis);
 /** MC_Reset: starts; poll with cm1e_axis_reset_state(). @rt cycle */

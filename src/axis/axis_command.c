@@ -221,6 +221,12 @@ cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_com
     };
 }
 
+bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id)
+{
+    const cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
+    return axis && id != 0 && axis->active == id;
+}
+
 void cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold)
 {
     if (id != 0 && id == axis->stop)

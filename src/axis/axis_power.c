@@ -104,6 +104,14 @@ cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, 
     return CM1E_OK;
 }
 
+bool cm1e_axis_power_stands(AXIS_REF_t reference, const void *owner, bool enable_positive, bool enable_negative)
+{
+    const cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
+    return axis && axis->power_owner == owner && axis->power_enable && !axis->shutting_down &&
+           axis->enable_positive == enable_positive && axis->enable_negative == enable_negative &&
+           cm1e_axis_powered(axis);
+}
+
 bool cm1e_axis_powered(const cm1e_axis_t *axis)
 {
     return axis->energized && axis->drive.feedback.state == OPERATION_ENABLED;

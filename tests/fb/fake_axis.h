@@ -84,6 +84,19 @@ cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, 
 
 bool cm1e_axis_powered(const cm1e_axis_t *axis) { return axis->powered; }
 
+bool cm1e_axis_power_stands(AXIS_REF_t reference, const void *owner, bool enable_positive, bool enable_negative)
+{
+    const cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
+    return axis && !axis->power_error && axis->owner == owner && axis->enable && axis->positive == enable_positive &&
+           axis->negative == enable_negative && axis->powered;
+}
+
+bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id)
+{
+    const cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
+    return axis && axis->status[id % FAKE_COMMANDS].state == CM1E_COMMAND_ACTIVE;
+}
+
 cm1e_error_t cm1e_axis_reset(cm1e_axis_t *axis)
 {
     axis->resets++;
