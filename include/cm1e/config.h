@@ -85,14 +85,20 @@ typedef struct cm1e_axis_config {
     char motor[20];                  /**< "CM1-E-17S30D", -17L30D, -23S30D or -23L20D; "": CM1-E-17S30D */
     char firmware[12];               /**< expected, or played by the simulator: "1.2.0" ... "1.3.5"; "": any, 1.3.5 */
     cm1e_mapping_t mapping;
-    double counts_per_unit;          /**< encoder counts (50,000 a revolution) per unit u; 0: 50,000 (u = revolution) */
+    double counts_per_unit;          /**< encoder counts (50,000 a revolution) per unit u; 0: by the three below */
+    uint32_t gear_numerator;         /**< revolutions of the motor ... 1 ... 1,000,000; 0: 1 */
+    uint32_t gear_denominator;       /**< ... in so many revolutions of the load; 1 ... 1,000,000; 0: 1 */
+    double units_per_revolution;     /**< u in one revolution of the load: 360, or the lead of a spindle; 0: 1 */
+    double modulo_range;             /**< u; positions run from 0 to below it, the axis turns for ever; 0: linear */
     bool invert;                     /**< TRUE: positive u is CCW */
+    double backlash;                 /**< u between the two flanks, taken up at every reversal; 0: none */
+    double backlash_velocity;        /**< u/s of it, kept free below the peak speed; 0: 50,000 counts/s */
     double max_velocity;             /**< u/s; 0: the motor's peak speed (UG 6.3), which is also the upper bound */
     double max_acceleration;         /**< u/s2; 0: 5,000,000 counts/s2 */
     double max_deceleration;         /**< u/s2; 0: as max_acceleration. Also the ramp of an error stop */
     double max_jerk;                 /**< u/s3; 0: 100,000,000 counts/s3 */
-    double software_limit_positive;  /**< u; both limits 0: none */
-    double software_limit_negative;  /**< u */
+    double software_limit_positive;  /**< u; both limits 0: none; +INFINITY: none on this side */
+    double software_limit_negative;  /**< u; -INFINITY: none on this side */
     double max_position_lag;         /**< u; 0: 25,000 counts (half a revolution) */
     bool velocity_in_counts_per_ms;  /**< states the unit of 0x60FF/0x606C where object 0x100A cannot be read */
     bool velocity_unit_stated;       /**< TRUE: the field above is used instead of the firmware version */

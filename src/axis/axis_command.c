@@ -50,13 +50,27 @@ static cm1e_error_t plan_position(const cm1e_axis_t *axis, const cm1e_axis_comma
     return error ? CM1E_ERROR_AXIS_POSITION_RANGE : cm1e_axis_limits_check(axis, &plan->profile);
 }
 
+/* How far the command would need to stop: on a modulo axis it says which repetition of the position is the first. */
+static cm1e_error_t stopping_way(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, double *way)
+{
+    cm1e_motion_limits_t limits;
+    cm1e_profile_t stop;
+    const cm1e_motion_state_t start = {0.0, axis->set_velocity, axis->set_acceleration};
+    cm1e_error_t error = cm1e_axis_limits_of(axis, command, false, &limits);
+    if (!error)
+        error = cm1e_profile_to_velocity(&stop, &start, 0.0, &limits);
+    *way = error ? 0.0 : stop.end.position;
+    return error;
+}
+
 static cm1e_error_t plan_absolute(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, plan_t *plan)
 {
-    const cm1e_error_t error = cm1e_axis_resolve_target(axis, command->position, command->direction, axis->set,
-                                                        axis->set_velocity, &plan->target);
-    if (error)
-        return error;
-    return plan_position(axis, command, plan);
+    double way = 0.0;
+    cm1e_error_t error = axis->modulo_range > 0.0 ? stopping_way(axis, command, &way) : CM1E_OK;
+    if (!error)
+        error = cm1e_axis_resolve_target(axis, command->position, command->direction, axis->set, axis->set_velocity,
+                                         way, &plan->target);
+    return error ? error : plan_position(axis, command, plan);
 }
 
 static cm1e_error_t plan_relative(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, plan_t *plan)

@@ -18,20 +18,27 @@ static bool usable(double value) { return isfinite(value) && value >= 0.0; }
 cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {
     const cm1e_axis_config_t *c = axis->config;
-    const double counts = or_default(c->counts_per_unit, CM1E_COUNTS_PER_REVOLUTION);
-    if (!usable(c->counts_per_unit) || !usable(c->max_velocity) || !usable(c->max_acceleration) ||
+    const double counts = cm1e_unit_scale(c);
+    if (!usable(c->counts_per_unit) || !usable(c->units_per_revolution) || !usable(c->max_velocity) || !usable(c->max_acceleration) ||
         !usable(c->max_deceleration) || !usable(c->max_jerk) || !usable(c->max_position_lag) ||
-        !isfinite(c->software_limit_negative) || !isfinite(c->software_limit_positive))
+        !usable(c->modulo_range) || isnan(c->software_limit_negative) || isnan(c->software_limit_positive))
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": a limit or the scale of the axis is negative "
                              "or not a finite number.", c->name);
+    axis->modulo_range = c->modulo_range;
+    if (c->modulo_range > 0.0 && !cm1e_unit_modulo(c, &axis->turn))
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": a turn of %.17g u is no fraction of counts that "
+                             "can be computed with.", c->name, c->modulo_range);
     axis->software_limits = c->software_limit_negative != 0.0 || c->software_limit_positive != 0.0;
     if (axis->software_limits && !(c->software_limit_negative < c->software_limit_positive))
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": the negative software limit %g is not below "
                              "the positive one %g.", c->name, c->software_limit_negative, c->software_limit_positive);
+    axis->unit = cm1e_unit_of(c);
     axis->scale = c->invert ? -counts : counts;
     axis->lower = c->software_limit_negative;
     axis->upper = c->software_limit_positive;
-    const double peak = axis->drive.motor->max_velocity_counts_per_s / counts;
+    const double backlash_velocity = c->backlash == 0.0 ? 0.0
+                                     : or_default(c->backlash_velocity, CM1E_BACKLASH_VELOCITY_COUNTS / counts);
+    const double peak = axis->drive.motor->max_velocity_counts_per_s / counts - backlash_velocity;
     axis->maximum.velocity = fmin(or_default(c->max_velocity, peak), peak);
     axis->maximum.acceleration = or_default(c->max_acceleration, default_acceleration_counts / counts);
     axis->maximum.deceleration = or_default(c->max_deceleration, axis->maximum.acceleration);

@@ -1,26 +1,47 @@
-/* Positions: from the drive's 32-bit counts, which wrap, to 64 bits and to units. */
+/*
+ * Positions: from the drive's 32-bit counts, which wrap, to 64 bits and to units; the turns of a modulo axis; the shift
+ * of the coordinates by MC_SetPosition and homing. A turn of a modulo axis is a fraction of counts, and turn k begins at
+ * k times that fraction exactly, computed anew each time: nothing adds up, however long the axis turns.
+ */
 #include <math.h>
 
 #include "axis/axis_private.h"
 
+__extension__ typedef __int128 wide_t;
+
 /* Beyond 2^52 a double no longer resolves half a count; at full speed that is 57 years away. */
 static const int64_t farthest_counts = INT64_C(1) << 52;
+/* Positions that a drive of whole counts cannot tell apart are the same: nobody means a whole turn by that. */
+static const double same_counts = 0.5 + 1e-6;
+
+static position_t normal(int64_t counts, double fraction)
+{
+    const double whole = floor(fraction);
+    fraction -= whole;
+    counts += (int64_t)whole;
+    /* -1e-20 + 1 is 1 */
+    return fraction < 1.0 ? (position_t){counts, fraction} : (position_t){counts + 1, 0.0};
+}
 
 position_t cm1e_position_plus(position_t position, double counts)
 {
     const double whole = floor(counts);
-    position.counts += (int64_t)whole;
-    position.fraction += counts - whole;
-    if (position.fraction >= 1.0) {
-        position.fraction -= 1.0;
-        position.counts++;
-    }
-    return position;
+    return normal(position.counts + (int64_t)whole, position.fraction + (counts - whole));
 }
 
 double cm1e_position_minus(position_t a, position_t b)
 {
     return (double)(a.counts - b.counts) + (a.fraction - b.fraction);
+}
+
+static position_t sum(position_t a, position_t b) { return normal(a.counts + b.counts, a.fraction + b.fraction); }
+
+/* Seen from the origin, counted in the direction in which u grows. */
+static position_t from_origin(const cm1e_axis_t *axis, position_t position)
+{
+    const position_t o = axis->origin;
+    return axis->scale > 0.0 ? normal(position.counts - o.counts, position.fraction - o.fraction)
+                             : normal(o.counts - position.counts, o.fraction - position.fraction);
 }
 
 bool cm1e_axis_position_in_range(position_t position)
@@ -30,29 +51,154 @@ bool cm1e_axis_position_in_range(position_t position)
 
 double cm1e_axis_farthest(const cm1e_axis_t *axis) { return (double)farthest_counts / fabs(axis->scale); }
 
+static double to_units(const cm1e_axis_t *axis, double counts) { return counts * axis->unit.units / axis->unit.counts; }
+static double to_counts(const cm1e_axis_t *axis, double units) { return units * axis->unit.counts / axis->unit.units; }
+
+/* ---- modulo ------------------------------------------------------------------------------------------------------ */
+
+static double turn_counts(const cm1e_axis_t *axis)
+{
+    return (double)axis->turn.numerator / (double)axis->turn.denominator;
+}
+
+/* n / d with n >= 0, as a double, without losing the fraction of a large quotient. */
+static double quotient(wide_t n, int64_t d) { return (double)(int64_t)(n / d) + (double)(int64_t)(n % d) / (double)d; }
+
+/* In which turn a position from the origin is, and how many counts from its beginning; 0 <= phase < a turn. */
+static int64_t turn_of(const cm1e_axis_t *axis, position_t position, double *phase)
+{
+    const int64_t numerator = axis->turn.numerator, denominator = axis->turn.denominator;
+    int64_t turn, short_product;
+    wide_t rest;
+    if (!__builtin_mul_overflow(position.counts, denominator, &short_product)) { /* nearly always, and much faster */
+        turn = short_product / numerator;
+        rest = short_product % numerator;
+    } else {
+        const wide_t product = (wide_t)position.counts * denominator;
+        turn = (int64_t)(product / numerator);
+        rest = product % numerator;
+    }
+    if (rest < 0) {
+        rest += numerator;
+        turn--;
+    }
+    *phase = quotient(rest, denominator) + position.fraction;
+    if (*phase >= turn_counts(axis)) { /* by the fraction of a count */
+        *phase -= turn_counts(axis);
+        turn++;
+    }
+    return turn;
+}
+
+/* Position `phase` counts into a turn. */
+static position_t in_turn(const cm1e_axis_t *axis, int64_t turn, double phase)
+{
+    const wide_t product = (wide_t)turn * axis->turn.numerator;
+    const int64_t whole = (int64_t)(product / axis->turn.denominator);
+    const double part = (double)(int64_t)(product % axis->turn.denominator) / (double)axis->turn.denominator;
+    const position_t begin = normal(whole, part);
+    const position_t way = cm1e_position_plus(begin, phase);
+    return sum(axis->origin, axis->scale > 0.0 ? way : normal(-way.counts, -way.fraction));
+}
+
+static bool in_modulo_range(const cm1e_axis_t *axis, double units) { return units >= 0.0 && units < axis->modulo_range; }
+
+/* ---- units ------------------------------------------------------------------------------------------------------- */
+
 double cm1e_axis_units(const cm1e_axis_t *axis, position_t position)
 {
-    const position_t origin = {axis->origin_counts, 0.0};
-    return axis->origin_units + cm1e_position_minus(position, origin) / axis->scale;
+    if (axis->modulo_range > 0.0) {
+        double phase;
+        turn_of(axis, from_origin(axis, position), &phase);
+        const double units = to_units(axis, phase);
+        return units < axis->modulo_range ? units : 0.0; /* the last 1e-16 of a turn */
+    }
+    const position_t way = from_origin(axis, position);
+    return axis->origin_units + to_units(axis, (double)way.counts + way.fraction);
 }
 
 bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position)
 {
-    const double counts = (units - axis->origin_units) * axis->scale;
+    if (axis->modulo_range > 0.0) {
+        double phase;
+        if (!in_modulo_range(axis, units))
+            return false;
+        *position = in_turn(axis, turn_of(axis, from_origin(axis, axis->set), &phase), to_counts(axis, units));
+        return cm1e_axis_position_in_range(*position);
+    }
+    const double counts = to_counts(axis, units - axis->origin_units);
     if (!isfinite(units) || !(fabs(counts) < (double)farthest_counts))
         return false;
-    *position = cm1e_position_plus((position_t){axis->origin_counts, 0.0}, counts);
+    *position = cm1e_position_plus(axis->origin, axis->scale > 0.0 ? counts : -counts);
     return cm1e_axis_position_in_range(*position);
 }
 
-cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, MC_DIRECTION direction,
-                                      position_t from, double velocity, position_t *target)
+/* Which repetition of a position, `way` counts away, the axis goes to: the first one in the direction asked for that
+ * lies beyond the point where it can stop (2.4.2, 3.5). */
+static double repetitions(double way, double turn, double stop, bool positive)
 {
-    (void)direction;
-    (void)from;
-    (void)velocity;
-    return cm1e_axis_position_from_units(axis, position, target) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+    return positive ? ceil((stop - same_counts - way) / turn) : floor((stop + same_counts - way) / turn);
 }
+
+/* Both ways equal: positive. None at all: as the axis moves. */
+static bool shortest_is_positive(double way, double turn, double velocity)
+{
+    way -= turn * round(way / turn);
+    if (fabs(way) <= same_counts)
+        return velocity >= 0.0;
+    return way > 0.0 || way <= -turn / 2.0;
+}
+
+cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, MC_DIRECTION direction,
+                                      position_t from, double velocity, double stop, position_t *target)
+{
+    if (!(axis->modulo_range > 0.0))
+        return cm1e_axis_position_from_units(axis, position, target) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+    if (!in_modulo_range(axis, position))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    const double turn = turn_counts(axis), phase = to_counts(axis, position);
+    double now;
+    const int64_t number = turn_of(axis, from_origin(axis, from), &now);
+    const double way = phase - now;
+    bool positive;
+    switch ((int)direction) {
+    case 0: /* as IEC initialises it: the first of the enumeration */
+    case mcPositiveDirection:
+        positive = true;
+        break;
+    case mcNegativeDirection:
+        positive = false;
+        break;
+    case mcCurrentDirection:
+        positive = velocity != 0.0 ? velocity > 0.0 : axis->positive_before;
+        break;
+    case mcShortestWay:
+        positive = shortest_is_positive(way, turn, velocity);
+        break;
+    default:
+        return CM1E_ERROR_AXIS_DIRECTION;
+    }
+    const double more = repetitions(way, turn, stop * fabs(axis->scale), positive);
+    if (!(fabs(more) * turn < (double)farthest_counts))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    *target = in_turn(axis, number + (int64_t)more, phase);
+    return cm1e_axis_position_in_range(*target) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+}
+
+/* ---- the origin -------------------------------------------------------------------------------------------------- */
+
+void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units)
+{
+    if (axis->modulo_range > 0.0) {
+        axis->origin = at;
+        axis->origin = in_turn(axis, 0, -to_counts(axis, units));
+    } else {
+        axis->origin = at;
+        axis->origin_units = units;
+    }
+}
+
+/* ---- the drive's counts ------------------------------------------------------------------------------------------ */
 
 /* Differences of wrapping counts are exact as long as the motor moves less than half the range between two looks. */
 void cm1e_axis_track(cm1e_axis_t *axis)

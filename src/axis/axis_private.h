@@ -6,6 +6,7 @@
 #define CM1E_AXIS_AXIS_PRIVATE_H
 
 #include "axis/axis.h"
+#include "device/unit.h"
 #include "motion/profile.h"
 
 #define MS_IN_NS INT64_C(1000000)
@@ -86,6 +87,9 @@ struct cm1e_axis {
     cm1e_mode_t mode;               /**< of the set-points: CSP, or CSV where the mapping has no target position */
 
     double scale;                   /**< counts per u; negative: inverted */
+    cm1e_unit_t unit;               /**< its amount, exactly */
+    double modulo_range;            /**< u; 0: a linear axis */
+    cm1e_fraction_t turn;           /**< counts of it */
     cm1e_motion_limits_t maximum;   /**< u */
     cm1e_motion_limits_t emergency; /**< u; the ramp of an error: the maximum without a limit of jerk */
     bool software_limits;
@@ -103,7 +107,7 @@ struct cm1e_axis {
     bool position_known, homed;
     int32_t raw;                    /**< counts of the drive, last seen */
     int64_t actual_counts;          /**< the same without wrap-around */
-    int64_t origin_counts;          /**< position origin_units is there */
+    position_t origin;              /**< position origin_units is there; modulo: 0 */
     double origin_units;
 
     activity_t activity;
@@ -155,10 +159,13 @@ double cm1e_position_minus(position_t a, position_t b);
 double cm1e_axis_units(const cm1e_axis_t *axis, position_t position);
 /** FALSE: not finite, or farther away than the axis counts. */
 bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position);
-/** Where a command to `position` (u) ends that begins at `from` with `velocity` (u/s): on a linear axis there,
- *  whatever the direction. */
+/** Where a command to `position` (u) ends that begins at `from` with `velocity` (u/s): on a linear axis there, whatever
+ *  the direction; on a modulo axis the first repetition in that direction, seen from the point where the axis can stop,
+ *  `stop` (u, signed) after `from`. The shortest way is judged at `from`. */
 cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, MC_DIRECTION direction,
-                                      position_t from, double velocity, position_t *target);
+                                      position_t from, double velocity, double stop, position_t *target);
+/** From now on the axis is at `units` when it is at `at`; on a modulo axis `units` is less than a turn. */
+void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units);
 bool cm1e_axis_position_in_range(position_t position);
 /** u; about where that range ends. */
 double cm1e_axis_farthest(const cm1e_axis_t *axis);

@@ -43,6 +43,7 @@ enum { CM1E_BUSFILE_VELOCITY_COUNTS_PER_S = 1, CM1E_BUSFILE_VELOCITY_COUNTS_PER_
 typedef struct cm1e_busfile_axis {
     cm1e_axis_config_t axis;
     uint16_t position, alias, explicit_id;
+    double *software_limit_negative, *software_limit_positive; /**< NULL: none on this side */
     int velocity_unit;     /**< 0: not stated */
     int acceleration_unit; /**< 1: kcounts/s2 */
 } cm1e_busfile_axis_t;

@@ -5,6 +5,7 @@
 
 #include "busfile/busfile.h"
 #include "device/device.h"
+#include "device/unit.h"
 
 /* Every check returns FALSE with the problem filled. Paths and key names are those of a bus file; a configuration made
  * by hand has the same names in other places. */
@@ -15,6 +16,7 @@ typedef struct check {
     uint32_t index;
     const cm1e_motor_t *motor;
     double counts_per_unit;
+    double most_velocity; /* counts/s of the axis */
     char name[CM1E_NAME_LENGTH + 8];
 } check_t;
 
@@ -120,10 +122,14 @@ typedef struct number {
 /* Bounds without an object keep the profile computable: below them a stop would take minutes, above them an axis would
  * reach its peak speed within one cycle. */
 static const number_t numbers[] = {
-    {"limits.acceleration", FIELD(max_acceleration), IN_COUNTS, "counts/s2", 1e3, 1e11, 0, 0},
-    {"limits.deceleration", FIELD(max_deceleration), IN_COUNTS, "counts/s2", 1e3, 1e11, 0, 0},
-    {"limits.jerk", FIELD(max_jerk), IN_COUNTS, "counts/s3", 1e3, 1e15, 0, 0},
-    {"limits.position_lag", FIELD(max_position_lag), IN_COUNTS, "counts", 1, INT32_MAX, 0, 0},
+    {"limits.acceleration", FIELD(max_acceleration), IN_COUNTS, "counts/s2", CM1E_LEAST_ACCELERATION_COUNTS, 1e11, 0,
+     0},
+    {"limits.deceleration", FIELD(max_deceleration), IN_COUNTS, "counts/s2", CM1E_LEAST_ACCELERATION_COUNTS, 1e11, 0,
+     0},
+    {"limits.jerk", FIELD(max_jerk), IN_COUNTS, "counts/s3", CM1E_LEAST_JERK_COUNTS, 1e15, 0, 0},
+    {"limits.position_lag", FIELD(max_position_lag), IN_COUNTS, "counts", CM1E_LEAST_LAG_COUNTS,
+     CM1E_LARGEST_LAG_COUNTS, 0, 0},
+    {"backlash.gap", FIELD(backlash), IN_COUNTS, "counts", 1, 500000, 0, 0},
     {"homing.offset", FIELD(homing.offset), IN_COUNTS, "counts", 0, 0, OBJ_607C_HOME_OFFSET, 0},
     {"homing.velocity", FIELD(homing.velocity), IN_COUNTS, "counts/s", 0, 0, OBJ_6099_HOMING_SPEEDS, 1},
     {"homing.acceleration", FIELD(homing.acceleration), IN_COUNTS, "counts/s2", 0, 0, OBJ_609A_HOMING_ACCELERATION, 0},
@@ -180,11 +186,84 @@ static bool check_numbers(const check_t *check)
 
 /* ---- what an axis is --------------------------------------------------------------------------------------------- */
 
+static bool check_gear(const check_t *check)
+{
+    const cm1e_axis_config_t *axis = check->axis;
+    const struct {
+        const char *key;
+        bool given;
+    } by_revolutions[] = {{"unit.gear_numerator", axis->gear_numerator != 0},
+                          {"unit.gear_denominator", axis->gear_denominator != 0},
+                          {"unit.units_per_revolution", axis->units_per_revolution != 0}};
+    for (int i = 0; i < 3; i++)
+        if (by_revolutions[i].given && axis->counts_per_unit != 0)
+            return axis_wrong(check, by_revolutions[i].key, "is given, and counts_per_unit too, which already says what "
+                              "it would; expected counts_per_unit alone, or gear and units_per_revolution");
+    if (axis->gear_numerator > 1000000)
+        return axis_wrong(check, "unit.gear_numerator", "is %u; expected 1 ... 1000000", axis->gear_numerator);
+    if (axis->gear_denominator > 1000000)
+        return axis_wrong(check, "unit.gear_denominator", "is %u; expected 1 ... 1000000", axis->gear_denominator);
+    return axis->units_per_revolution == 0 || check_range(check, "unit.units_per_revolution",
+                                                          axis->units_per_revolution, AS_IS, 1e-6, 1e9, "units");
+}
+
 static bool check_unit(check_t *check)
 {
-    const double counts_per_unit = check->axis->counts_per_unit;
-    check->counts_per_unit = counts_per_unit == 0 ? CM1E_COUNTS_PER_REVOLUTION : counts_per_unit;
-    return check_range(check, "unit.counts_per_unit", check->counts_per_unit, AS_IS, 1e-3, 1e12, "counts per unit");
+    const cm1e_axis_config_t *axis = check->axis;
+    if (!check_gear(check))
+        return false;
+    check->counts_per_unit = axis->counts_per_unit != 0 ? axis->counts_per_unit : cm1e_unit_scale(axis);
+    const char *key = axis->units_per_revolution != 0 ? "unit.units_per_revolution"
+                      : axis->gear_numerator != 0     ? "unit.gear_numerator"
+                                                      : "unit.counts_per_unit";
+    if (check->counts_per_unit >= 1e-3 && check->counts_per_unit <= 1e12)
+        return true;
+    if (axis->counts_per_unit == 0)
+        return axis_wrong(check, key, "makes a unit of %.10g counts; expected 0.001 ... 1e+12", check->counts_per_unit);
+    return check_range(check, key, check->counts_per_unit, AS_IS, 1e-3, 1e12, "counts per unit");
+}
+
+static bool check_modulo(const check_t *check)
+{
+    const cm1e_axis_config_t *axis = check->axis;
+    cm1e_fraction_t turn;
+    if (axis->modulo_range == 0)
+        return true;
+    if (!check_range(check, "unit.modulo_range", axis->modulo_range, IN_COUNTS, CM1E_LEAST_MODULO_COUNTS,
+                     CM1E_LARGEST_MODULO_COUNTS, "counts"))
+        return false;
+    if (!cm1e_unit_modulo(axis, &turn))
+        return axis_wrong(check, "unit.modulo_range", "is %.17g, and with the unit of the axis no fraction of counts "
+                          "that can be computed with; expected fewer digits, or gear and units_per_revolution instead "
+                          "of counts_per_unit", axis->modulo_range);
+    if (axis->software_limit_negative != 0 || axis->software_limit_positive != 0)
+        return axis_wrong(check, "software_limits", "are given, and unit.modulo_range too: the positions of a modulo "
+                          "axis repeat and have no ends; expected one of them");
+    return true;
+}
+
+/* The compensation of backlash comes on top of every motion, so its velocity is kept free. */
+static bool check_velocity(check_t *check)
+{
+    const cm1e_axis_config_t *axis = check->axis;
+    const double peak = check->motor->max_velocity_counts_per_s;
+    double kept = 0;
+    if (axis->backlash == 0 && axis->backlash_velocity != 0)
+        return axis_wrong(check, "backlash.velocity", "is given without a gap; expected backlash.gap too");
+    if (axis->backlash != 0)
+        kept = CM1E_BACKLASH_VELOCITY_COUNTS;
+    if (axis->backlash_velocity != 0) {
+        if (!check_range(check, "backlash.velocity", axis->backlash_velocity, IN_COUNTS, CM1E_LEAST_VELOCITY_COUNTS,
+                         peak / 2, "counts/s"))
+            return false;
+        kept = axis->backlash_velocity * check->counts_per_unit;
+    }
+    check->most_velocity = floor(peak - kept);
+    if (axis->max_velocity == 0)
+        return true;
+    check->most_velocity = axis->max_velocity * check->counts_per_unit;
+    return check_range(check, "limits.velocity", axis->max_velocity, IN_COUNTS, CM1E_LEAST_VELOCITY_COUNTS,
+                       floor(peak - kept), kept != 0 ? "counts/s beside the compensation of backlash" : "counts/s");
 }
 
 static bool check_motor(check_t *check)
@@ -277,9 +356,11 @@ static bool check_name(check_t *check)
 static bool check_software_limits(const check_t *check)
 {
     const double negative = check->axis->software_limit_negative, positive = check->axis->software_limit_positive;
-    /* The axis keeps positions as doubles: whole counts are exact up to 2^53. */
-    if (!check_range(check, "software_limits.negative", negative, IN_COUNTS, -9e15, 9e15, "counts") ||
-        !check_range(check, "software_limits.positive", positive, IN_COUNTS, -9e15, 9e15, "counts"))
+    /* The axis keeps positions as doubles: whole counts are exact up to 2^53. Infinite: none on this side. */
+    if ((negative != -INFINITY &&
+         !check_range(check, "software_limits.negative", negative, IN_COUNTS, -9e15, 9e15, "counts")) ||
+        (positive != INFINITY &&
+         !check_range(check, "software_limits.positive", positive, IN_COUNTS, -9e15, 9e15, "counts")))
         return false;
     if (negative < positive || (negative == 0 && positive == 0))
         return true;
@@ -322,8 +403,7 @@ static bool check_inputs(const check_t *check)
 static bool check_jog(const check_t *check)
 {
     const cm1e_axis_config_t *axis = check->axis;
-    const double most = axis->max_velocity > 0 ? axis->max_velocity * check->counts_per_unit
-                                               : check->motor->max_velocity_counts_per_s;
+    const double most = check->most_velocity;
     if (axis->jog_slow != 0 && !check_range(check, "jog.slow", axis->jog_slow, IN_COUNTS, 1, most, "counts/s"))
         return false;
     return axis->jog_fast == 0 || check_range(check, "jog.fast", axis->jog_fast, IN_COUNTS, 1, most, "counts/s");
@@ -346,12 +426,8 @@ static bool check_axis(check_t *check)
         return false;
     if ((unsigned)check->axis->mapping > CM1E_MAPPING_PROFILE)
         return axis_wrong(check, "mapping", "is %d; expected one of the enumeration", (int)check->axis->mapping);
-    const double velocity = check->axis->max_velocity;
-    if (velocity != 0 && !check_range(check, "limits.velocity", velocity, IN_COUNTS, 1,
-                                      check->motor->max_velocity_counts_per_s, "counts/s"))
-        return false;
-    return check_numbers(check) && check_software_limits(check) && check_homing(check) &&
-           check_inputs(check) && check_jog(check) && check_sim(check);
+    return check_velocity(check) && check_numbers(check) && check_software_limits(check) && check_modulo(check) &&
+           check_homing(check) && check_inputs(check) && check_jog(check) && check_sim(check);
 }
 
 bool cm1e_busfile_check(const cm1e_bus_config_t *config, cm1e_busfile_problem_t *problem)

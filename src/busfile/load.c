@@ -1,4 +1,5 @@
 #include <locale.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -55,6 +56,15 @@ static bool convert_address(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t 
     return true;
 }
 
+static void convert_software_limits(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *from)
+{
+    const double *negative = from->software_limit_negative, *positive = from->software_limit_positive;
+    if (!negative && !positive)
+        return;
+    axis->software_limit_negative = negative ? *negative : -INFINITY;
+    axis->software_limit_positive = positive ? *positive : INFINITY;
+}
+
 static bool convert_axis(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *from, uint32_t index,
                          cm1e_busfile_problem_t *problem)
 {
@@ -64,6 +74,7 @@ static bool convert_axis(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *fr
     axis->velocity_unit_stated = from->velocity_unit != 0;
     axis->velocity_in_counts_per_ms = from->velocity_unit == CM1E_BUSFILE_VELOCITY_COUNTS_PER_MS;
     axis->acceleration_in_kpulses = from->acceleration_unit != 0;
+    convert_software_limits(axis, from);
     return convert_address(axis, from, index, problem);
 }
 

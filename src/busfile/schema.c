@@ -10,6 +10,7 @@
 #define BUS_BOOL(key, member) CYAML_FIELD_BOOL(key, OPTIONAL, cm1e_busfile_t, member)
 #define AXIS_STRING(key, member) CYAML_FIELD_STRING(key, OPTIONAL, cm1e_busfile_axis_t, axis.member, 1)
 #define AXIS_FLOAT(key, member) CYAML_FIELD_FLOAT(key, OPTIONAL, cm1e_busfile_axis_t, axis.member)
+#define AXIS_UINT(key, member) CYAML_FIELD_UINT(key, OPTIONAL, cm1e_busfile_axis_t, axis.member)
 #define AXIS_BOOL(key, member) CYAML_FIELD_BOOL(key, OPTIONAL, cm1e_busfile_axis_t, axis.member)
 #define ENUM_OF(key, structure, member, strings)                                                                    \
     CYAML_FIELD_ENUM(key, OPTIONAL, structure, member, strings, COUNT_OF(strings))
@@ -50,6 +51,10 @@ static const cyaml_schema_field_t bus_fields[] = {
 
 static const cyaml_schema_field_t unit_fields[] = {
     AXIS_FLOAT("counts_per_unit", counts_per_unit),
+    AXIS_UINT("gear_numerator", gear_numerator),
+    AXIS_UINT("gear_denominator", gear_denominator),
+    AXIS_FLOAT("units_per_revolution", units_per_revolution),
+    AXIS_FLOAT("modulo_range", modulo_range),
     AXIS_BOOL("invert", invert),
     CYAML_FIELD_END,
 };
@@ -61,10 +66,16 @@ static const cyaml_schema_field_t limit_fields[] = {
     AXIS_FLOAT("position_lag", max_position_lag),
     CYAML_FIELD_END,
 };
-/* Both or none: one alone would leave the other at 0. */
+/* Pointers, because 0 is a limit too and tells nothing of a key that is not there. */
+#define LIMIT(key, member) CYAML_FIELD_FLOAT_PTR(key, OPTIONAL | CYAML_FLAG_POINTER, cm1e_busfile_axis_t, member)
 static const cyaml_schema_field_t software_limit_fields[] = {
-    CYAML_FIELD_FLOAT("negative", CYAML_FLAG_STRICT, cm1e_busfile_axis_t, axis.software_limit_negative),
-    CYAML_FIELD_FLOAT("positive", CYAML_FLAG_STRICT, cm1e_busfile_axis_t, axis.software_limit_positive),
+    LIMIT("negative", software_limit_negative),
+    LIMIT("positive", software_limit_positive),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_field_t backlash_fields[] = {
+    AXIS_FLOAT("gap", backlash),
+    AXIS_FLOAT("velocity", backlash_velocity),
     CYAML_FIELD_END,
 };
 static const cyaml_schema_field_t wire_fields[] = {
@@ -81,11 +92,10 @@ static const cyaml_schema_field_t homing_fields[] = {
     AXIS_FLOAT("timeout_s", homing.timeout_s),
     CYAML_FIELD_END,
 };
-#define AXIS_INPUT(key, member) CYAML_FIELD_UINT(key, OPTIONAL, cm1e_busfile_axis_t, axis.inputs.member)
 static const cyaml_schema_field_t input_fields[] = {
-    AXIS_INPUT("limit_positive", limit_positive),
-    AXIS_INPUT("limit_negative", limit_negative),
-    AXIS_INPUT("home", home),
+    AXIS_UINT("limit_positive", inputs.limit_positive),
+    AXIS_UINT("limit_negative", inputs.limit_negative),
+    AXIS_UINT("home", inputs.home),
     AXIS_BOOL("limits_normally_closed", inputs.limits_normally_closed),
     AXIS_BOOL("home_normally_closed", inputs.home_normally_closed),
     CYAML_FIELD_END,
@@ -119,6 +129,7 @@ static const cyaml_schema_field_t axis_fields[] = {
     AXIS_GROUP("unit", unit_fields),
     AXIS_GROUP("limits", limit_fields),
     AXIS_GROUP("software_limits", software_limit_fields),
+    AXIS_GROUP("backlash", backlash_fields),
     AXIS_GROUP("jog", jog_fields),
     AXIS_GROUP("inputs", input_fields),
     AXIS_GROUP("homing", homing_fields),
@@ -148,6 +159,7 @@ const cm1e_busfile_integer_range_t cm1e_busfile_integer_ranges[] = {
     {"alias", 1, 65535},
     {"explicit_id", 1, 254}, /* UG 4.2.3 */
     {"method", -6, 0},       /* UG 6.2.4 */
+    {"gear_numerator", 1, 1000000}, {"gear_denominator", 1, 1000000},
     {"limit_positive", 1, 4}, {"limit_negative", 1, 4}, {"home", 1, 4},
     {NULL, INT32_MIN, INT32_MAX},
 };

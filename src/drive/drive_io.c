@@ -77,7 +77,7 @@ static cm1e_error_t resolve_object(cm1e_drive_t *drive, const drive_object_t *ob
 static void profile_objects(cm1e_drive_t *drive)
 {
     const cm1e_axis_config_t *config = drive->config;
-    const double counts_per_unit = config->counts_per_unit > 0 ? config->counts_per_unit : CM1E_COUNTS_PER_REVOLUTION;
+    const double counts_per_unit = cm1e_unit_scale(config);
     double velocity = config->max_velocity * counts_per_unit;
     if (!(velocity > 0) || velocity > drive->motor->max_velocity_counts_per_s)
         velocity = drive->motor->max_velocity_counts_per_s;

@@ -5,6 +5,7 @@
 #ifndef CM1E_DRIVE_DRIVE_PRIVATE_H
 #define CM1E_DRIVE_DRIVE_PRIVATE_H
 
+#include "device/unit.h"
 #include "drive/drive.h"
 
 #define MS_IN_NS INT64_C(1000000)

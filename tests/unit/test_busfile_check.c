@@ -184,6 +184,9 @@ static const struct {
     NUMBER(sim.sensor_input3, "sim.sensor_input3"),
     NUMBER(jog_slow, "jog.slow"),
     NUMBER(jog_fast, "jog.fast"),
+    NUMBER(modulo_range, "unit.modulo_range"),
+    NUMBER(backlash, "backlash.gap"),
+    NUMBER(backlash_velocity, "backlash.velocity"),
 };
 enum { NUMBERS = sizeof numbers / sizeof numbers[0] };
 
@@ -192,6 +195,9 @@ static void test_numbers_that_are_none_or_absurd_are_refused(void)
     static const double absurd[] = {NAN, -NAN, INFINITY, -INFINITY, 1e300, -1e300};
     for (int i = 0; i < NUMBERS; i++)
         for (size_t k = 0; k < sizeof absurd / sizeof absurd[0]; k++) {
+            if ((absurd[k] == INFINITY && strstr(numbers[i].part, "_limits.positive")) ||
+                (absurd[k] == -INFINITY && strstr(numbers[i].part, "_limits.negative")))
+                continue; /* none on this side */
             setUp();
             *numbers[i].value = absurd[k];
             expect_wrong(numbers[i].part);
@@ -270,6 +276,43 @@ static void test_switches_are_on_inputs_of_the_motor_and_the_limit_switches_on_t
     expect_wrong("inputs.limit_negative is 255");
     *inputs = (cm1e_input_config_t){.home = 5};
     expect_wrong("inputs.home is 5; expected 1 ... 4");
+}
+
+static void test_unit_by_revolutions_is_within_bounds(void)
+{
+    cm1e_axis_config_t *axis = &config.axes[0];
+    axis->counts_per_unit = 0;
+    *axis = (cm1e_axis_config_t){.gear_numerator = 7, .gear_denominator = 3, .units_per_revolution = 360};
+    expect_good();
+    axis->modulo_range = 360;
+    expect_good();
+    axis->modulo_range = INFINITY;
+    expect_wrong("unit.modulo_range");
+    axis->modulo_range = 0;
+    axis->gear_numerator = 1000001;
+    expect_wrong("unit.gear_numerator");
+    axis->gear_numerator = 1;
+    axis->gear_denominator = UINT32_MAX;
+    expect_wrong("unit.gear_denominator");
+    axis->gear_denominator = 1;
+    axis->units_per_revolution = NAN;
+    expect_wrong("unit.units_per_revolution");
+    axis->units_per_revolution = -INFINITY;
+    expect_wrong("unit.units_per_revolution");
+}
+
+static void test_one_software_limit_alone_is_good(void)
+{
+    config.axes[0].software_limit_negative = -INFINITY;
+    expect_good();
+    config.axes[0].software_limit_positive = INFINITY;
+    expect_good();
+    config.axes[0].software_limit_negative = 7;
+    expect_good();
+    config.axes[0].software_limit_positive = -INFINITY;
+    expect_wrong("software_limits.positive");
+    config.axes[0].software_limit_negative = INFINITY;
+    expect_wrong("software_limits.negative");
 }
 
 static void test_software_limits_both_zero_are_none(void)
@@ -366,6 +409,8 @@ int main(void)
     RUN_TEST(test_peak_speed_is_the_motors);
     RUN_TEST(test_jog_velocities_are_within_the_axis_s_own_maximum);
     RUN_TEST(test_switches_are_on_inputs_of_the_motor_and_the_limit_switches_on_two);
+    RUN_TEST(test_unit_by_revolutions_is_within_bounds);
+    RUN_TEST(test_one_software_limit_alone_is_good);
     RUN_TEST(test_software_limits_both_zero_are_none);
     RUN_TEST(test_offset_into_the_hard_stop_is_refused);
     RUN_TEST(test_old_firmware_runs_at_1_ms_only);

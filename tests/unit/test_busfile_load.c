@@ -1,4 +1,5 @@
 #include <locale.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -132,6 +133,12 @@ static void test_documented_example_fills_the_other_addresses_and_units(void)
     TEST_ASSERT_FALSE(config.axes[1].acceleration_in_kpulses);
     TEST_ASSERT_TRUE(config.axes[1].sim.no_stops);
     TEST_ASSERT_TRUE(config.axes[1].sim.no_sensors);
+    TEST_ASSERT_EQUAL(7, config.axes[1].gear_numerator);
+    TEST_ASSERT_EQUAL(3, config.axes[1].gear_denominator);
+    ASSERT_DOUBLE(360, config.axes[1].units_per_revolution);
+    ASSERT_DOUBLE(360, config.axes[1].modulo_range);
+    ASSERT_DOUBLE(0.25, config.axes[1].backlash);
+    ASSERT_DOUBLE(90, config.axes[1].backlash_velocity);
     TEST_ASSERT_EQUAL_STRING("axis3", config.axes[2].name);
     TEST_ASSERT_EQUAL(CM1E_ADDRESS_EXPLICIT_ID, config.axes[2].address_kind);
     TEST_ASSERT_EQUAL(181, config.axes[2].address);
@@ -153,6 +160,17 @@ static void test_three_axes_example_loads(void)
         TEST_ASSERT_EQUAL(methods[i], config.axes[i].homing.method);
         ASSERT_DOUBLE(5000, config.axes[i].counts_per_unit);
     }
+}
+
+static void test_one_software_limit_leaves_the_other_side_open(void)
+{
+    load("axes: [{software_limits: {positive: 0}}, {software_limits: {negative: -3.5}}, {software_limits: {}}]");
+    ASSERT_DOUBLE(0, config.axes[0].software_limit_positive);
+    ASSERT_DOUBLE(-INFINITY, config.axes[0].software_limit_negative);
+    ASSERT_DOUBLE(INFINITY, config.axes[1].software_limit_positive);
+    ASSERT_DOUBLE(-3.5, config.axes[1].software_limit_negative);
+    ASSERT_DOUBLE(0, config.axes[2].software_limit_positive);
+    ASSERT_DOUBLE(0, config.axes[2].software_limit_negative);
 }
 
 static void test_smallest_file_gives_defaults(void)
@@ -269,6 +287,7 @@ int main(void)
     RUN_TEST(test_documented_example_fills_every_field_of_an_axis);
     RUN_TEST(test_documented_example_fills_the_other_addresses_and_units);
     RUN_TEST(test_three_axes_example_loads);
+    RUN_TEST(test_one_software_limit_leaves_the_other_side_open);
     RUN_TEST(test_smallest_file_gives_defaults);
     RUN_TEST(test_unset_fields_are_zero_after_an_earlier_load);
     RUN_TEST(test_values_at_the_bounds_are_accepted);

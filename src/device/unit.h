@@ -1,0 +1,47 @@
+/**
+ * @file unit.h
+ * Encoder counts of the motor and the unit u of an axis, as its configuration defines it: counts_per_unit, or the
+ * revolutions of a load behind a gear. Pure functions of the configuration; nothing here is checked that
+ * cm1e_bus_config_check() checks.
+ */
+#ifndef CM1E_DEVICE_UNIT_H
+#define CM1E_DEVICE_UNIT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "cm1e/config.h"
+
+/** `counts` counts are `units` u. Two numbers instead of their quotient, which doubles cannot hold for a third: three
+ *  revolutions of a load behind 7:3 are 350,000 counts and 1080 degrees exactly. */
+typedef struct cm1e_unit {
+    double counts, units;
+} cm1e_unit_t;
+
+typedef struct cm1e_fraction {
+    int64_t numerator, denominator; /**< denominator > 0, no common divisor */
+} cm1e_fraction_t;
+
+/* Bounds that hold in the bus file and for parameters written later: below them a stop would take minutes. */
+#define CM1E_LEAST_VELOCITY_COUNTS 1.0     /**< counts/s */
+#define CM1E_LEAST_ACCELERATION_COUNTS 1e3 /**< counts/s2 */
+#define CM1E_LEAST_JERK_COUNTS 1e3         /**< counts/s3 */
+#define CM1E_LEAST_LAG_COUNTS 1.0          /**< counts */
+#define CM1E_LARGEST_LAG_COUNTS 2147483647.0
+
+/** Shortest and longest turn of a modulo axis, in counts. */
+#define CM1E_LEAST_MODULO_COUNTS 1000.0
+#define CM1E_LARGEST_MODULO_COUNTS 1e12
+
+/** Default velocity of the backlash compensation, counts/s. */
+#define CM1E_BACKLASH_VELOCITY_COUNTS 50000.0
+
+cm1e_unit_t cm1e_unit_of(const cm1e_axis_config_t *config);
+/** Counts per u. */
+double cm1e_unit_scale(const cm1e_axis_config_t *config);
+
+/** modulo_range in counts, exactly: decimal fractions and quotients of the configuration count as what is written there
+ *  (25.4 is 127/5), not as the double next to it. FALSE: no two 62-bit numbers make this fraction. */
+bool cm1e_unit_modulo(const cm1e_axis_config_t *config, cm1e_fraction_t *turn);
+
+#endif
