@@ -14,19 +14,26 @@ static const int64_t farthest_counts = INT64_C(1) << 52;
 /* Positions that a drive of whole counts cannot tell apart are the same: nobody means a whole turn by that. */
 static const double same_counts = 0.5 + 1e-6;
 
+/* floor() without its call; of what fits. */
+static int64_t floor_of(double value)
+{
+    const int64_t whole = (int64_t)value;
+    return whole - ((double)whole > value);
+}
+
 static position_t normal(int64_t counts, double fraction)
 {
-    const double whole = floor(fraction);
-    fraction -= whole;
-    counts += (int64_t)whole;
+    const int64_t whole = floor_of(fraction);
+    fraction -= (double)whole;
+    counts += whole;
     /* -1e-20 + 1 is 1 */
     return fraction < 1.0 ? (position_t){counts, fraction} : (position_t){counts + 1, 0.0};
 }
 
 position_t cm1e_position_plus(position_t position, double counts)
 {
-    const double whole = floor(counts);
-    return normal(position.counts + (int64_t)whole, position.fraction + (counts - whole));
+    const int64_t whole = floor_of(counts);
+    return normal(position.counts + whole, position.fraction + (counts - (double)whole));
 }
 
 double cm1e_position_minus(position_t a, position_t b)

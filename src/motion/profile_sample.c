@@ -16,8 +16,8 @@ static void evaluate(const cm1e_profile_t *profile, int index, double time_s, cm
         t = time_s - profile->duration_s;
     }
     const double a = from.acceleration, j = segment->jerk;
-    state->position = from.position + t * (from.velocity + t * (a / 2 + t * (j / 6)));
-    state->velocity = from.velocity + t * (a + t * (j / 2));
+    state->position = from.position + t * (from.velocity + t * (a * 0.5 + t * (j * (1.0 / 6.0))));
+    state->velocity = from.velocity + t * (a + t * (j * 0.5));
     state->acceleration = a + t * j;
 }
 
