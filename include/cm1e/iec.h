@@ -23,7 +23,7 @@ typedef struct cm1e_iec_timer {
 
 /** Input at the last call, not to be touched. */
 typedef struct cm1e_iec_edges {
-    BOOL first, second, called;
+    BOOL first, second;
 } cm1e_iec_edges_t;
 
 /** IEC 61131-3, 2.5.2.3.4. On-delay: Q follows IN, but goes on only when IN has been on for PT. @rt cycle */

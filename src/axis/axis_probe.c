@@ -39,14 +39,12 @@ static void end(cm1e_axis_t *axis, probe_t *probe, cm1e_command_state_t state, c
 
 /* ---- windows ----------------------------------------------------------------------------------------------------- */
 
-static bool wraps(const cm1e_axis_t *axis) { (void)axis; return false; }
-
 static cm1e_error_t check_window(const cm1e_axis_t *axis, double first, double last)
 {
     position_t unused;
     if (!cm1e_axis_position_from_units(axis, first, &unused) || !cm1e_axis_position_from_units(axis, last, &unused))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    return first <= last || wraps(axis) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+    return first <= last || axis->modulo_range > 0.0 ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
 }
 
 /* Both ends included, and what the counts of the motor cannot tell from them. */
@@ -102,8 +100,8 @@ cm1e_error_t cm1e_axis_probe_abort(cm1e_axis_t *axis, cm1e_axis_trigger_t trigge
     return error;
 }
 
-/* Longer without inputs than the axis rides out, or while the motor gives its counts new meaning: nobody knows where the
- * axis was when the input changed. */
+/* Longer without inputs than the axis rides out, or while the motor gives its counts new meaning: nobody knows where
+ * the axis was when the input changed. */
 static bool position_unknown(const cm1e_axis_t *axis, const probe_sample_t *before, const probe_sample_t *now)
 {
     const double cycles = (double)(now->time_ns - before->time_ns) / (axis->cycle_s * 1e9);

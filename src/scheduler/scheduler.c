@@ -6,6 +6,7 @@
 
 #include "axis/axis.h"
 #include "bus/bus_image.h"
+#include "cm1e/scan_time.h"
 #include "scheduler/realtime.h"
 #include "scheduler/signals.h"
 #include "scheduler/statistics.h"
@@ -63,6 +64,7 @@ static void set_outputs(cm1e_scheduler_t *s)
 static void scan(cm1e_scheduler_t *s)
 {
     take_inputs(s, cm1e_bus_receive(s->bus));
+    cm1e_scan_time_set(planned_ns(s, s->number));
     if (s->shutting_down)
         shut_down_axes(s);
     else

@@ -3,7 +3,10 @@
  */
 #include <pthread.h>
 #include <stdlib.h>
+#include <unistd.h>
 
+#include "cm1e/iec.h"
+#include "cm1e/scan_time.h"
 #include "machine.h"
 
 #define MS INT64_C(1000000)
@@ -51,6 +54,49 @@ START_TEST(test_tasks_run_by_priority_and_interval_from_the_first_cycle_on)
             ck_assert_int_eq(task_log[n].letter, expected[n]);
             ck_assert_int_eq(task_log[n].time_ns, cycle * MS);
         }
+    machine_close(&machine);
+}
+END_TEST
+
+/* What timers in a task see: the planned time of its cycle, the same for all of them. */
+static struct {
+    TON_t ton;
+    int64_t calls, times_ns[64], on_at_ns;
+} timed[2];
+
+static void timer_program(void *context)
+{
+    const int task = *(const int *)context;
+    timed[task].ton.IN = TRUE;
+    timed[task].ton.PT = 5 * MS / 2;
+    for (int i = 0; i < 3; i++) { /* time does not pass within a scan */
+        TON(&timed[task].ton);
+        usleep(task ? 10 : 0);
+    }
+    timed[task].times_ns[timed[task].calls++] = cm1e_scan_time();
+    if (timed[task].ton.Q && timed[task].on_at_ns == 0)
+        timed[task].on_at_ns = cm1e_scan_time();
+}
+
+START_TEST(test_timers_see_the_planned_time_of_their_task_s_cycle)
+{
+    static int tasks[] = {0, 1};
+    machine_t machine = {.axis_count = 1};
+    memset(timed, 0, sizeof timed);
+    machine_open(&machine);
+    machine_add(&machine, "fast", 0, 1, timer_program, &tasks[0]);
+    machine_add(&machine, "slow", 2 * MS, 2, timer_program, &tasks[1]);
+    machine_run(&machine, 20 * MS);
+    const int64_t begin_ns = timed[0].times_ns[0];
+    ck_assert_int_eq(timed[0].calls, 20);
+    ck_assert_int_eq(timed[1].calls, 10);
+    for (int i = 0; i < 20; i++)
+        ck_assert_int_eq(timed[0].times_ns[i], begin_ns + i * MS);
+    for (int i = 0; i < 10; i++)
+        ck_assert_int_eq(timed[1].times_ns[i], begin_ns + 2 * i * MS);
+    /* 2.5 ms after the first scan: in the first scan of each task that comes then or later */
+    ck_assert_int_eq(timed[0].on_at_ns - begin_ns, 3 * MS);
+    ck_assert_int_eq(timed[1].on_at_ns - begin_ns, 4 * MS);
     machine_close(&machine);
 }
 END_TEST
@@ -470,6 +516,7 @@ int main(void)
     TCase *all = tcase_create("virtual time");
     const TTest *const tests[] = {
         test_tasks_run_by_priority_and_interval_from_the_first_cycle_on,
+        test_timers_see_the_planned_time_of_their_task_s_cycle,
         test_interval_that_is_no_multiple_of_the_cycle_names_both,
         test_wrong_tasks_and_times_of_adding_are_refused,
         test_wrong_configurations_are_refused,

@@ -201,6 +201,33 @@ static void test_inverted_axis_has_windows_in_its_own_units(void)
     TEST_ASSERT_TRUE(cm1e_axis_probe_status(axis, id).position > 1.0);
 }
 
+/* A modulo axis of 360 u, 50,000 counts: figure 41. */
+static void test_windows_of_a_modulo_axis_may_go_over_its_end(void)
+{
+    static const struct {
+        double first, last;
+        bool in[4]; /* at 45, 135, 225, 315 u */
+    } windows[] = {{90.0, 270.0, {false, true, true, false}}, {270.0, 90.0, {true, false, false, true}},
+                   {0.0, 45.0, {true, false, false, false}},  {315.0, 0.0, {false, false, false, true}}};
+    bus.config.axes[0].units_per_revolution = 360.0;
+    bus.config.axes[0].modulo_range = 360.0;
+    bench_create();
+    for (int turn = -3; turn <= 3; turn++)
+        for (int w = 0; w < 4; w++)
+            for (int i = 0; i < 4; i++) {
+                const int32_t at = turn * 50000 + 6250 + i * 12500;
+                show(at - 10, 0);
+                const uint32_t id = arm_window(windows[w].first, windows[w].last);
+                show(at + 10, 1);
+                expect(id, windows[w].in[i] ? CM1E_COMMAND_DONE : CM1E_COMMAND_ACTIVE);
+                if (windows[w].in[i])
+                    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 45.0 + 90.0 * i, cm1e_axis_probe_status(axis, id).position);
+            }
+    uint32_t id; /* ends are positions of the axis, 0 ... below 360 */
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_probe(axis, on(1), true, 0.0, 360.0, &id));
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_probe(axis, on(1), true, -1.0, 90.0, &id));
+}
+
 /* ---- missing inputs ---------------------------------------------------------------------------------------------- */
 
 static void test_a_few_missing_inputs_only_widen_the_uncertainty(void)
@@ -381,6 +408,7 @@ int main(void)
     RUN_TEST(test_window_ends_are_included_and_other_events_are_not_counted);
     RUN_TEST(test_windows_that_are_none_are_refused_and_leave_the_armed_probe);
     RUN_TEST(test_inverted_axis_has_windows_in_its_own_units);
+    RUN_TEST(test_windows_of_a_modulo_axis_may_go_over_its_end);
     RUN_TEST(test_a_few_missing_inputs_only_widen_the_uncertainty);
     RUN_TEST(test_a_trigger_in_a_long_gap_is_an_error_and_no_position);
     RUN_TEST(test_a_probe_armed_in_a_gap_counts_from_the_last_inputs);
