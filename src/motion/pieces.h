@@ -6,6 +6,9 @@
 #ifndef CM1E_MOTION_PIECES_H
 #define CM1E_MOTION_PIECES_H
 
+#include <float.h>
+#include <stdbool.h>
+
 #include "motion/profile.h"
 
 /** The acceleration is stored rather than carried along: a piece at a limit is at that limit to the last bit, and with
@@ -28,6 +31,9 @@ void cm1e_pieces_append(cm1e_pieces_t *pieces, double jerk, double acceleration,
 void cm1e_pieces_append_velocity_change(cm1e_pieces_t *pieces, double velocity, double acceleration, double target,
                                         const cm1e_motion_limits_t *limits);
 
+/** The way that the pieces go when they are entered with this velocity. */
+double cm1e_pieces_displacement(const cm1e_pieces_t *pieces, double velocity);
+
 /** The state after `time_s` of a piece that is entered with this position and velocity. */
 static inline cm1e_motion_state_t cm1e_piece_state(const cm1e_piece_t *piece, double position, double velocity,
                                                    double time_s)
@@ -39,5 +45,16 @@ static inline cm1e_motion_state_t cm1e_piece_state(const cm1e_piece_t *piece, do
         .acceleration = a + t * j,
     };
 }
+
+/** Whether the numbers are such that doubles can hold the motion. */
+bool cm1e_motion_is_number(double value);
+bool cm1e_motion_is_valid(const cm1e_motion_state_t *start, const cm1e_motion_limits_t *limits);
+
+/** What rounding of the positions alone can make of a motion that ends at the target. */
+double cm1e_motion_noise(double start, double target, double displacement);
+
+/** A way too short to get to a velocity by no more than this part of it is as good as long enough: what is missing is
+ *  what rounding makes of a plan that is made anew on the way, and a run-up would be a motion that nobody meant. */
+#define CM1E_MOTION_TOO_SHORT 1e-9
 
 #endif

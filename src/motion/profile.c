@@ -1,10 +1,14 @@
 /*
- * To a position in the shortest time. From any state there is one motion that stops soonest. If it ends short of the
- * target, the axis pushes: it goes for the velocity limit in the direction of the target, as fast as it may, and
- * changes at the switching time to the motion that stops soonest. The later it switches, the farther it gets, so the
- * switching time is the root of a function that never falls, piece by piece of the push. That covers starts with any
- * acceleration, short ways that never bring the acceleration to zero before the stop, targets that can only be reached
- * by way of an overshoot, and starts outside the limits, since both motions come inside on the shortest way.
+ * To a position and a velocity there, in the shortest time. From any state there is one motion that gets to the target
+ * velocity soonest. If it ends short of the target, the axis pushes: it goes for the velocity limit in the direction of
+ * the target, as fast as it may, and changes at the switching time to the motion that gets to the target velocity
+ * soonest. So the switching time is the first root of the reach, which is where the axis then gets to the target
+ * velocity. With a target velocity towards the target, or none, the reach never falls. With one that points away from
+ * it, the reach falls as long as the axis does not get to more than a standstill in between, and grows from then on, up
+ * to a cruise of any length; and if the axis starts in the middle of a fall of the velocity, the reach first grows
+ * to a hill. That covers starts with any acceleration, short ways that never bring the acceleration to zero in
+ * between, targets that can only be reached by way of an overshoot or a run-up, and starts outside the limits, since
+ * both motions come inside on the shortest way.
  */
 #include "motion/profile.h"
 
@@ -14,26 +18,35 @@
 
 #include "motion/pieces.h"
 
-enum { SOLVER_STEPS_MAX = 120 };
+enum { SOLVER_STEPS_MAX = 120, HILL_STEPS = 30 };
 
-/** The piece of the push within which the stop begins, and the state in which it is entered. */
+/** What the axis pushes for, the piece of the push within which the change to the target velocity begins, and the state
+ *  in which that piece is entered. */
 typedef struct {
+    const cm1e_motion_limits_t *limits;
+    double target, target_velocity;
+    bool simple; /**< the change of velocity needs no look at standstill, nor more than limits->velocity */
     cm1e_piece_t piece;
     double position, velocity;
+    double start_velocity;
 } push_t;
+
+/** A step of the position by this part of the way is none. */
+static const double OVERLOOKED = 1e-11;
 
 /** Beyond these the powers and products of the numbers would leave the range of doubles. */
 static const double LARGEST = 1e30, SMALLEST_LIMIT = 1e-30;
 
-static bool is_number(double value) { return fabs(value) <= LARGEST; }
+bool cm1e_motion_is_number(double value) { return fabs(value) <= LARGEST; }
 
 static bool is_limit(double value) { return value >= SMALLEST_LIMIT && value <= LARGEST; }
 
-static bool is_valid(const cm1e_motion_state_t *start, double target, const cm1e_motion_limits_t *limits)
+bool cm1e_motion_is_valid(const cm1e_motion_state_t *start, const cm1e_motion_limits_t *limits)
 {
-    return is_number(start->position) && is_number(start->velocity) && is_number(start->acceleration) &&
-           is_number(target) && is_limit(limits->velocity) && is_limit(limits->acceleration) &&
-           is_limit(limits->deceleration) && (is_limit(limits->jerk) || limits->jerk == INFINITY);
+    return cm1e_motion_is_number(start->position) && cm1e_motion_is_number(start->velocity) &&
+           cm1e_motion_is_number(start->acceleration) && is_limit(limits->velocity) &&
+           is_limit(limits->acceleration) && is_limit(limits->deceleration) &&
+           (is_limit(limits->jerk) || limits->jerk == INFINITY);
 }
 
 /** Makes the profile out of pieces that were planned mirrored by `sign` and relative to the start. The start and the
@@ -42,21 +55,21 @@ static bool is_valid(const cm1e_motion_state_t *start, double target, const cm1e
 static cm1e_error_t build(cm1e_profile_t *profile, const cm1e_motion_state_t *start, const cm1e_pieces_t *pieces,
                           double sign, const cm1e_motion_state_t *end, const cm1e_motion_limits_t *limits)
 {
-    double time = 0, position = 0, farthest = 0, velocity = sign * start->velocity;
+    double time = 0, position = 0, travelled = 0, velocity = sign * start->velocity;
     profile->segment_count = pieces->count;
     for (int i = 0; i < pieces->count; i++) {
         const cm1e_piece_t *piece = &pieces->piece[i];
         if (piece->jerk == 0 && piece->acceleration == 0) /* the cruise may be long: no rounded velocity there */
-            velocity = limits->velocity;
+            velocity = i + 1 < pieces->count ? limits->velocity : sign * end->velocity;
         profile->segments[i] = (cm1e_profile_segment_t){
             .start_s = time,
             .jerk = sign * piece->jerk,
             .start = {start->position + sign * position, sign * velocity, sign * piece->acceleration},
         };
         const cm1e_motion_state_t next = cm1e_piece_state(piece, position, velocity, piece->duration_s);
+        travelled += fmax(fabs(velocity), fabs(next.velocity)) * piece->duration_s;
         position = next.position;
         velocity = next.velocity;
-        farthest = fmax(farthest, fabs(position));
         time += piece->duration_s;
     }
     profile->duration_s = time;
@@ -64,67 +77,125 @@ static cm1e_error_t build(cm1e_profile_t *profile, const cm1e_motion_state_t *st
     if (isnan(end->position))
         profile->end.position = start->position + sign * position;
     const double missing = profile->end.position - start->position - sign * position;
-    const double noise = 1e-9 * farthest + 16 * DBL_EPSILON * (fabs(start->position) + fabs(profile->end.position));
+    const double noise = 1e-9 * travelled + 16 * DBL_EPSILON * (fabs(start->position) + fabs(profile->end.position));
     return isfinite(time) && isfinite(noise) && fabs(missing) <= noise ? CM1E_OK : CM1E_ERROR_INVALID_ARGUMENT;
 }
 
-static double displacement(const cm1e_pieces_t *pieces, double velocity)
+/** Where the axis gets to the target velocity when it begins to change to it after `time` of the piece, and the
+ *  derivative. Valid where the change begins by lowering the acceleration; where it does not, push and change are still
+ *  the same. */
+static double simple_reach(const push_t *push, double time, double *slope)
 {
-    cm1e_motion_state_t state = {0, velocity, 0};
-    for (int i = 0; i < pieces->count; i++)
-        state = cm1e_piece_state(&pieces->piece[i], state.position, state.velocity, pieces->piece[i].duration_s);
-    return state.position;
-}
-
-/** Where the axis comes to rest when it switches to the stop after `time` of the piece, and the derivative. Valid
- *  where the stop begins by lowering the acceleration; where it does not, push and stop are still the same. */
-static double reach(const push_t *push, const cm1e_motion_limits_t *limits, double time, double *slope)
-{
+    const cm1e_motion_limits_t *limits = push->limits;
     const cm1e_motion_state_t state = cm1e_piece_state(&push->piece, push->position, push->velocity, time);
-    const double v = state.velocity, a = state.acceleration, d = limits->deceleration;
+    const double v = state.velocity, a = state.acceleration, w = push->target_velocity, d = limits->deceleration;
     if (isinf(limits->jerk)) {
         *slope = v * (1 + a / d);
-        return state.position + v * (v / d) / 2;
+        return state.position + fmax(0, v - w) / d * ((v + w) / 2);
     }
-    /* The stop from (v, a) is the stop from (peak, 0) plus the way from (v, a) to there, backwards if a < 0. */
-    const double ramp = a / limits->jerk, peak = fmax(0, v + a * ramp / 2), edge = d / limits->jerk;
-    double stop, stop_slope;
-    if (peak > d * edge) {
-        stop = peak * (peak / d + edge) / 2;
-        stop_slope = peak / d + edge / 2;
+    /* The change from (v, a) is the change from (peak, 0) plus the way from (v, a) to there, backwards if a < 0. */
+    const double ramp = a / limits->jerk, peak = fmax(w, v + a * ramp / 2), edge = d / limits->jerk;
+    const double mean = (peak + w) / 2;
+    double duration, duration_slope;
+    if (peak - w > d * edge) {
+        duration = (peak - w) / d + edge;
+        duration_slope = 1 / d;
     } else {
-        const double side = sqrt(peak / limits->jerk);
-        stop = peak * side;
-        stop_slope = 1.5 * side;
+        const double side = sqrt((peak - w) / limits->jerk);
+        duration = 2 * side;
+        duration_slope = 1 / (side * limits->jerk);
     }
-    *slope = (push->piece.jerk / limits->jerk + 1) * (peak + a * (ramp / 2 + stop_slope));
-    return state.position + ramp * (v + a * ramp / 3) + stop;
+    *slope = (push->piece.jerk / limits->jerk + 1) * (peak + a * (ramp / 2 + duration / 2 + mean * duration_slope));
+    return state.position + ramp * (v + a * ramp / 3) + mean * duration;
 }
 
-/** From which time of the piece on the reach grows; its duration if not at all. */
-static double growth_start(const push_t *push, const cm1e_motion_limits_t *limits)
+static double any_reach(const push_t *push, double time)
+{
+    const cm1e_motion_state_t state = cm1e_piece_state(&push->piece, push->position, push->velocity, time);
+    cm1e_pieces_t change = {.count = 0};
+    cm1e_pieces_append_velocity_change(&change, state.velocity, state.acceleration, push->target_velocity,
+                                       push->limits);
+    return state.position + cm1e_pieces_displacement(&change, state.velocity);
+}
+
+static double reach(const push_t *push, double time, double *slope)
+{
+    if (push->simple)
+        return simple_reach(push, time, slope);
+    const double step = 1e-7 * push->piece.duration_s, here = any_reach(push, time);
+    const double aside = time + step <= push->piece.duration_s ? time + step : time - step;
+    *slope = (any_reach(push, aside) - here) / (aside - time);
+    return here;
+}
+
+/** From which time of the piece on the reach is what reach() says; its duration if nowhere. */
+static double growth_start(const push_t *push)
 {
     const cm1e_piece_t *piece = &push->piece;
-    const double v = push->velocity, a = piece->acceleration, jerk = limits->jerk;
+    const double v = push->velocity, a = piece->acceleration, w = push->target_velocity, jerk = push->limits->jerk;
+    if (!push->simple)
+        return 0;
     if (piece->jerk < 0 || (piece->jerk == 0 && a <= 0))
         return piece->duration_s;
     if (piece->jerk == 0)
-        return fmax(0, -(v + a * (a / jerk) / 2) / a);
+        return fmax(0, (w - v - a * (a / jerk) / 2) / a);
     const double at_rest = v - a * (a / jerk) / 2; /* the velocity at which the acceleration is zero */
-    const double from = at_rest > 0 ? -limits->deceleration : sqrt(-at_rest * jerk);
+    const double from = at_rest > w ? -push->limits->deceleration : sqrt((w - at_rest) * jerk);
     return fmax(0, (from - a) / jerk);
 }
 
-/** The switching time between low and high. The reach grows from `low` on like a power of the time, with an exponent
- *  between 1 and 4 that changes on the way: Newton's method on its logarithm comes close from anywhere, Newton's method
- *  proper does the rest, and bisection takes over where that leaves the bracket or its steps do not get shorter. */
-static double solve(const push_t *push, const cm1e_motion_limits_t *limits, double target, double low, double high)
+/** The steepest acceleration of the beginning of the change from (velocity, 0). */
+static double steepest(const push_t *push, double velocity)
+{
+    const double jerk = push->limits->jerk;
+    if (push->simple)
+        return fmin(push->limits->deceleration, sqrt((velocity - push->target_velocity) * jerk));
+    cm1e_pieces_t change = {.count = 0};
+    cm1e_pieces_append_velocity_change(&change, velocity, 0, push->target_velocity, push->limits);
+    return jerk * change.piece[0].duration_s;
+}
+
+/** What has the sign of the derivative of the reach where the push has the acceleration -x. It begins to change from a
+ *  state that lies on the change from (peak, 0); seen over x this is a parabola, or nearly. */
+static double hill_slope(const push_t *push, double at_rest, double x)
+{
+    const double peak = at_rest + x * (x / push->limits->jerk);
+    return peak - x * (steepest(push, peak) / push->limits->jerk) / 2;
+}
+
+/** The time of the hill in the first piece of the push; 0 if there is none. */
+static double hill(const push_t *push)
+{
+    const cm1e_piece_t *piece = &push->piece;
+    const double jerk = push->limits->jerk, most = fmin(-piece->acceleration, push->limits->deceleration);
+    const double at_rest = push->velocity - piece->acceleration * (piece->acceleration / jerk) / 2;
+    if (!(push->target_velocity < 0 && piece->jerk > 0 && most > 0 && at_rest > push->target_velocity) ||
+        at_rest + most * (most / jerk) / 2 <= 0 || hill_slope(push, at_rest, most) <= 0)
+        return 0;
+    double falls = at_rest < 0 ? 0 : steepest(push, at_rest) / 4, grows = most;
+    if (falls >= most || hill_slope(push, at_rest, falls) >= 0)
+        return 0;
+    for (int i = 0; i < HILL_STEPS; i++) {
+        const double x = (falls + grows) / 2;
+        if (hill_slope(push, at_rest, x) > 0)
+            grows = x;
+        else
+            falls = x;
+    }
+    return (-piece->acceleration - grows) / jerk;
+}
+
+/** The switching time between low and high, where the reach is below and not below the target. The reach mostly grows
+ *  from `low` on like a power of the time, with an exponent between 1/2 and 4 that changes on the way: Newton's method
+ *  on its logarithm comes close from anywhere, Newton's method proper does the rest, and bisection takes over where
+ *  that leaves the bracket or its steps do not get shorter. */
+static double solve(const push_t *push, double low, double high)
 {
     const double origin = low;
     double slope, time = high, last_step = 2 * (high - low);
-    const double origin_reach = reach(push, limits, low, &slope), missing = target - origin_reach;
+    const double origin_reach = reach(push, low, &slope), missing = push->target - origin_reach;
     for (int i = 0; i < SOLVER_STEPS_MAX; i++) {
-        const double grown = reach(push, limits, time, &slope) - origin_reach, excess = grown - missing;
+        const double grown = reach(push, time, &slope) - origin_reach, excess = grown - missing;
         double next = time - excess / slope;
         if (fabs(excess) <= 1e-8 * missing || fabs(next - time) <= DBL_EPSILON * time) /* quadratic: that was it */
             return fmin(fmax(next, low), high);
@@ -142,62 +213,113 @@ static double solve(const push_t *push, const cm1e_motion_limits_t *limits, doub
     return time;
 }
 
-/** All mirrored so that the target lies beyond the position of the soonest stop. */
-static void append_push_and_stop(cm1e_pieces_t *pieces, double velocity, double acceleration, double target,
-                                 const cm1e_motion_limits_t *limits)
+/** When to switch within the piece; a negative number: not in this one. */
+static double switching_time(const push_t *push, bool first)
 {
+    const double end = push->piece.duration_s, grows = growth_start(push), top = first ? hill(push) : 0;
+    double slope;
+    if (top > 0 && reach(push, top, &slope) >= push->target)
+        return solve(push, fmin(grows, top), top);
+    if (!(grows < end && reach(push, end, &slope) >= push->target))
+        return -1;
+    return solve(push, fmax(grows, top), end);
+}
+
+/** The piece up to the switching time, and the change. With a target velocity towards the target, the reach begins to
+ *  grow infinitely fast, from one double to the next by more than can be overlooked: then the one before the target is
+ *  taken, and what is missing is gone at target velocity. */
+static void append_change(cm1e_pieces_t *pieces, const push_t *push, double time)
+{
+    const cm1e_pieces_t before = *pieces;
+    const cm1e_piece_t *piece = &push->piece;
+    const double w = push->target_velocity, overlooked = OVERLOOKED * fabs(push->target);
+    for (double step = DBL_EPSILON;; step *= 4) {
+        const cm1e_motion_state_t state = cm1e_piece_state(piece, push->position, push->velocity, time);
+        cm1e_pieces_append(pieces, piece->jerk, piece->acceleration, time);
+        cm1e_pieces_append_velocity_change(pieces, state.velocity, state.acceleration, w, push->limits);
+        if (!(w > 0))
+            return;
+        const double left = push->target - cm1e_pieces_displacement(pieces, push->start_velocity);
+        if (left > overlooked)
+            cm1e_pieces_append(pieces, 0, 0, left / w);
+        if (left >= -overlooked || !(time > 0))
+            return;
+        time = fmax(0, time - step * time);
+        *pieces = before;
+    }
+}
+
+/** All mirrored so that the target lies beyond the end of the soonest change of velocity. */
+static void append_push_and_change(cm1e_pieces_t *pieces, double velocity, double acceleration, double target,
+                                   double target_velocity, const cm1e_motion_limits_t *limits)
+{
+    const double w = target_velocity;
     cm1e_pieces_t whole = {.count = 0};
     cm1e_pieces_append_velocity_change(&whole, velocity, acceleration, limits->velocity, limits);
-    push_t push = {.position = 0, .velocity = velocity};
+    push_t push = {
+        .limits = limits, .target = target, .target_velocity = w, .velocity = velocity, .start_velocity = velocity,
+        .simple = fabs(w) <= limits->velocity && (w >= 0 || limits->acceleration == limits->deceleration),
+    };
     for (int i = 0; i < whole.count; i++) {
         const cm1e_piece_t *piece = &push.piece;
         push.piece = whole.piece[i];
-        const double grows = growth_start(&push, limits);
-        double slope;
-        if (grows < piece->duration_s && reach(&push, limits, piece->duration_s, &slope) >= target) {
-            const double time = solve(&push, limits, target, grows, piece->duration_s);
-            const cm1e_motion_state_t state = cm1e_piece_state(piece, push.position, push.velocity, time);
-            cm1e_pieces_append(pieces, piece->jerk, piece->acceleration, time);
-            cm1e_pieces_append_velocity_change(pieces, state.velocity, state.acceleration, 0, limits);
+        const double time = switching_time(&push, i == 0);
+        if (time >= 0) {
+            append_change(pieces, &push, time);
             return;
         }
-        cm1e_pieces_append(pieces, piece->jerk, piece->acceleration, piece->duration_s);
         const cm1e_motion_state_t state = cm1e_piece_state(piece, push.position, push.velocity, piece->duration_s);
+        cm1e_pieces_append(pieces, piece->jerk, piece->acceleration, piece->duration_s);
         push.position = state.position;
         push.velocity = state.velocity;
     }
-    cm1e_pieces_t stop = {.count = 0};
-    cm1e_pieces_append_velocity_change(&stop, limits->velocity, 0, 0, limits);
-    const double cruise = target - push.position - displacement(&stop, limits->velocity);
+    cm1e_pieces_t change = {.count = 0};
+    cm1e_pieces_append_velocity_change(&change, limits->velocity, 0, w, limits);
+    const double cruise = target - push.position - cm1e_pieces_displacement(&change, limits->velocity);
     cm1e_pieces_append(pieces, 0, 0, cruise / limits->velocity);
-    for (int i = 0; i < stop.count; i++)
-        cm1e_pieces_append(pieces, stop.piece[i].jerk, stop.piece[i].acceleration, stop.piece[i].duration_s);
+    for (int i = 0; i < change.count; i++)
+        cm1e_pieces_append(pieces, change.piece[i].jerk, change.piece[i].acceleration, change.piece[i].duration_s);
+}
+
+double cm1e_motion_noise(double start, double target, double displacement)
+{
+    return 4 * DBL_EPSILON * (fabs(start) + fabs(target) + fabs(displacement));
+}
+
+cm1e_error_t cm1e_profile_to_state(cm1e_profile_t *profile, const cm1e_motion_state_t *start, double target_position,
+                                   double target_velocity, const cm1e_motion_limits_t *limits)
+{
+    if (!cm1e_motion_is_valid(start, limits) || !cm1e_motion_is_number(target_position) ||
+        !cm1e_motion_is_number(target_velocity))
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    const cm1e_motion_state_t end = {target_position, target_velocity, 0};
+    cm1e_pieces_t pieces = {.count = 0};
+    cm1e_pieces_append_velocity_change(&pieces, start->velocity, start->acceleration, target_velocity, limits);
+    const double distance = target_position - start->position;
+    const double change = cm1e_pieces_displacement(&pieces, start->velocity);
+    double noise = cm1e_motion_noise(start->position, target_position, change);
+    if ((distance - change) * target_velocity < 0) /* too short by that much: nothing to run up anew for */
+        noise += CM1E_MOTION_TOO_SHORT * fabs(change);
+    if (fabs(distance - change) <= noise)
+        return build(profile, start, &pieces, 1, &end, limits);
+
+    const double sign = distance > change ? 1 : -1;
+    pieces.count = 0;
+    append_push_and_change(&pieces, sign * start->velocity, sign * start->acceleration, sign * distance,
+                           sign * target_velocity, limits);
+    return build(profile, start, &pieces, sign, &end, limits);
 }
 
 cm1e_error_t cm1e_profile_to_position(cm1e_profile_t *profile, const cm1e_motion_state_t *start, double target,
                                       const cm1e_motion_limits_t *limits)
 {
-    if (!is_valid(start, target, limits))
-        return CM1E_ERROR_INVALID_ARGUMENT;
-    const cm1e_motion_state_t end = {target, 0, 0};
-    cm1e_pieces_t pieces = {.count = 0};
-    cm1e_pieces_append_velocity_change(&pieces, start->velocity, start->acceleration, 0, limits);
-    const double distance = target - start->position, stop = displacement(&pieces, start->velocity);
-    /* What rounding of the positions alone can make of a target that is where the axis stops anyway. */
-    const double noise = 4 * DBL_EPSILON * (fabs(start->position) + fabs(target) + fabs(stop));
-    if (fabs(distance - stop) <= noise)
-        return build(profile, start, &pieces, 1, &end, limits);
-
-    const double sign = distance > stop ? 1 : -1;
-    pieces.count = 0;
-    append_push_and_stop(&pieces, sign * start->velocity, sign * start->acceleration, sign * distance, limits);
-    return build(profile, start, &pieces, sign, &end, limits);
+    return cm1e_profile_to_state(profile, start, target, 0, limits);
 }
 
 cm1e_error_t cm1e_profile_to_velocity(cm1e_profile_t *profile, const cm1e_motion_state_t *start, double velocity,
                                       const cm1e_motion_limits_t *limits)
 {
-    if (!is_valid(start, velocity, limits))
+    if (!cm1e_motion_is_valid(start, limits) || !cm1e_motion_is_number(velocity))
         return CM1E_ERROR_INVALID_ARGUMENT;
     velocity = fmax(-limits->velocity, fmin(limits->velocity, velocity));
     cm1e_pieces_t pieces = {.count = 0};

@@ -1,8 +1,8 @@
 /**
  * @file profile.h
- * Online trajectories of one axis: from any state (position, velocity, acceleration) to a target position at rest, or
- * to a target velocity, with limits on velocity, acceleration, deceleration and jerk. Pure functions, no clock, no
- * heap. Units: u, u/s, u/s2, u/s3, s. @rt cycle throughout.
+ * Online trajectories of one axis: from any state (position, velocity, acceleration) to a target position with a target
+ * velocity there, or to a target velocity anywhere, in the shortest time, with limits on velocity, acceleration,
+ * deceleration and jerk. Pure functions, no clock, no heap. Units: u, u/s, u/s2, u/s3, s. @rt cycle throughout.
  */
 #ifndef CM1E_MOTION_PROFILE_H
 #define CM1E_MOTION_PROFILE_H
@@ -34,15 +34,40 @@ typedef struct cm1e_profile {
     cm1e_profile_segment_t segments[CM1E_PROFILE_MAX_SEGMENTS];
 } cm1e_profile_t;
 
-/** To `target` at rest, in the shortest time. A start that violates the limits is brought inside first. Fails only
- *  (with CM1E_ERROR_INVALID_ARGUMENT, and then the profile is of no use) for input that is not finite, for limits that
- *  are not positive, and for numbers so large, so small or so far apart that doubles cannot hold the motion; never
- *  while all are zero or within 15 decades of 1. */
+/** To `target_position` with `target_velocity` (signed) and acceleration 0 there, in the shortest time. A start that
+ *  violates the limits is brought inside first. Where the way is too short to get to that velocity, the axis goes
+ *  back for a run-up, or overshoots, stops and comes again: ask cm1e_profile_passing_velocity() for one that needs
+ *  neither. A target velocity beyond limits->velocity is allowed: limits->velocity then is kept until the axis gets
+ *  up to its target velocity at the end. (Only where the way is longer than without any pause at limits->velocity,
+ *  but too short for an eased one, is the pause not the very shortest.) Fails only (with CM1E_ERROR_INVALID_ARGUMENT,
+ *  and then the profile is of no use) for input that is not finite, for limits that are not positive, and for numbers
+ *  so large, so small or so far apart that doubles cannot hold the motion; never while all are zero or within 15
+ *  decades of 1. */
+cm1e_error_t cm1e_profile_to_state(cm1e_profile_t *profile, const cm1e_motion_state_t *start, double target_position,
+                                   double target_velocity, const cm1e_motion_limits_t *limits);
+/** The same with target velocity 0. */
 cm1e_error_t cm1e_profile_to_position(cm1e_profile_t *profile, const cm1e_motion_state_t *start, double target,
                                       const cm1e_motion_limits_t *limits);
 /** To `velocity` (signed; beyond limits->velocity it is clamped) with acceleration 0, at no particular position. */
 cm1e_error_t cm1e_profile_to_velocity(cm1e_profile_t *profile, const cm1e_motion_state_t *start, double velocity,
                                       const cm1e_motion_limits_t *limits);
+
+/** The highest velocity with the sign of `velocity`, and not faster, with which the axis can pass `target` in that
+ *  direction, acceleration 0 there, without a run-up and without an overshoot: cm1e_profile_to_state() with the
+ *  result goes to the target once, and not back after the start has turned to it. 0 where there is none: where the
+ *  target lies behind, and where the way is too short to come down to |velocity|, also to a standstill:
+ *  cm1e_profile_to_state() then overshoots; and for input that has no sense. At most 1e-12 below what is possible; a
+ *  way too short by rounding counts as long enough, so that the answer stays the same when it is asked again on the
+ *  way. |velocity| may be above limits->velocity. A lower velocity need not be one: to slow down may be what the way
+ *  is too short for. */
+double cm1e_profile_passing_velocity(const cm1e_motion_state_t *start, double target, double velocity,
+                                     const cm1e_motion_limits_t *limits);
+/** Its mirror, for looking ahead: the highest speed not above |velocity| from which, at acceleration 0, the axis
+ *  comes down to |exit_velocity| within `distance` (u, >= 0). A speed below the exit velocity is always one: whether
+ *  the axis can get up to the exit velocity is for cm1e_profile_passing_velocity() to say, once it is known how it
+ *  enters. */
+double cm1e_profile_entry_velocity(double distance, double velocity, double exit_velocity,
+                                   const cm1e_motion_limits_t *limits);
 /** State at time_s (0 = start; before: start, after the end: constant end velocity). */
 void cm1e_profile_sample(const cm1e_profile_t *profile, double time_s, cm1e_motion_state_t *state);
 /** Lowest and highest position on the way (end included): for software limits. */

@@ -6,7 +6,6 @@
  * Where the ceiling falls at standstill, the acceleration has to come down before: it must obey the lower limit when v
  * gets there.
  */
-#include <float.h>
 #include <math.h>
 
 #include "motion/pieces.h"
@@ -19,6 +18,14 @@ void cm1e_pieces_append(cm1e_pieces_t *pieces, double jerk, double acceleration,
         pieces->piece[pieces->count - 1].duration_s += duration_s;
     else if (pieces->count < CM1E_PIECES_MAX)
         pieces->piece[pieces->count++] = (cm1e_piece_t){jerk, acceleration, duration_s};
+}
+
+double cm1e_pieces_displacement(const cm1e_pieces_t *pieces, double velocity)
+{
+    cm1e_motion_state_t state = {0, velocity, 0};
+    for (int i = 0; i < pieces->count; i++)
+        state = cm1e_piece_state(&pieces->piece[i], state.position, state.velocity, pieces->piece[i].duration_s);
+    return state.position;
 }
 
 /** From acceleration a >= 0 to `a_end` >= 0 while the velocity grows by dv, at most `ceiling`. The caller knows that it
@@ -100,9 +107,10 @@ void cm1e_pieces_append_velocity_change(cm1e_pieces_t *pieces, double velocity, 
         sign = w >= v ? 1 : -1;
         append_up_trapezoid(&up, sign * v, sign * w, limits);
     } else {
-        /* Where the velocity gets to if the acceleration is only brought to zero; rounding makes no motion. */
+        /* Where the velocity gets to if the acceleration is only brought to zero. Rounding makes no motion: even the
+         * last bits of a velocity, which take the root of their size in time, would move a fast axis by something. */
         const double ease = fabs(a) * (a / jerk) / 2, missing = w - v - ease;
-        if (fabs(missing) <= 2 * DBL_EPSILON * (fabs(v) + fabs(w) + fabs(ease))) {
+        if (fabs(missing) <= 1e-13 * (fabs(v) + fabs(w) + fabs(ease))) {
             cm1e_pieces_append(pieces, a > 0 ? -jerk : jerk, a, fabs(a) / jerk);
             return;
         }
