@@ -117,6 +117,7 @@ void cm1e_axis_advance(cm1e_axis_t *axis)
     cm1e_axis_signals_step(axis);
     cm1e_axis_power_step(axis);
     cm1e_axis_motion_step(axis);
+    cm1e_axis_backlash_step(axis);
     cm1e_axis_enable_step(axis);
 }
 
@@ -136,7 +137,7 @@ void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info)
         .set_velocity = axis->set_velocity,
         .set_acceleration = axis->set_acceleration,
         .actual_position = cm1e_axis_units(axis, axis_actual(axis)),
-        .actual_velocity = f->velocity / axis->scale,
+        .actual_velocity = (f->velocity - cm1e_axis_backlash_velocity(axis)) / axis->scale,
         .actual_torque = f->torque * (axis->scale < 0.0 ? -0.1 : 0.1),
         .position_lag = cm1e_position_minus(axis->set, axis_actual(axis)) / axis->scale,
         .powered = cm1e_axis_powered(axis),

@@ -204,7 +204,7 @@ static void step_switch(cm1e_axis_t *axis)
 static void complete(cm1e_axis_t *axis)
 {
     /* The drive's 0 is the reference, wherever in its last counts the motor stands just now. */
-    cm1e_axis_set_origin(axis, (position_t){axis->actual_counts - axis->raw, 0.0}, axis->home.position);
+    cm1e_axis_set_origin(axis, cm1e_axis_load(axis, axis->actual_counts - axis->raw), axis->home.position);
     axis->homed = true;
     axis->drive.command.homing_start = false;
     axis->drive.command.mode = axis->mode;

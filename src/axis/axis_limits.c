@@ -21,7 +21,7 @@ cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
     const double counts = cm1e_unit_scale(c);
     if (!usable(c->counts_per_unit) || !usable(c->units_per_revolution) || !usable(c->max_velocity) || !usable(c->max_acceleration) ||
         !usable(c->max_deceleration) || !usable(c->max_jerk) || !usable(c->max_position_lag) ||
-        !usable(c->modulo_range) || isnan(c->software_limit_negative) || isnan(c->software_limit_positive))
+        !usable(c->modulo_range) || !usable(c->backlash) || !usable(c->backlash_velocity) || isnan(c->software_limit_negative) || isnan(c->software_limit_positive))
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": a limit or the scale of the axis is negative "
                              "or not a finite number.", c->name);
     axis->modulo_range = c->modulo_range;
@@ -45,6 +45,7 @@ cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
     axis->maximum.jerk = or_default(c->max_jerk, default_jerk_counts / counts);
     axis->emergency = axis->maximum;
     axis->emergency.jerk = INFINITY;
+    cm1e_axis_backlash_init(axis);
     axis->max_lag = or_default(c->max_position_lag, default_lag_counts / counts);
     return CM1E_OK;
 }

@@ -212,7 +212,9 @@ void cm1e_axis_track(cm1e_axis_t *axis)
 {
     const int32_t raw = axis->drive.feedback.position;
     if (axis->position_known) {
-        axis->actual_counts += (int32_t)((uint32_t)raw - (uint32_t)axis->raw);
+        const int32_t moved = (int32_t)((uint32_t)raw - (uint32_t)axis->raw);
+        axis->actual_counts += moved;
+        cm1e_axis_backlash_track(axis, moved);
     } else {
         axis->actual_counts = raw;
         axis->position_known = true;

@@ -60,7 +60,8 @@ void cm1e_axis_brake_from_actual(cm1e_axis_t *axis)
 {
     if (axis->activity == ACTIVITY_FREE)
         return;
-    const double velocity = axis->drive.feedback.velocity / axis->scale, before = axis->set_velocity;
+    const double motor = axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis);
+    const double velocity = motor / axis->scale, before = axis->set_velocity;
     cm1e_axis_set_to_actual(axis);
     axis->set_velocity = before > 0.0 ? fmax(0.0, fmin(velocity, before)) : fmin(0.0, fmax(velocity, before));
     cm1e_axis_ramp_down(axis, &axis->emergency);
@@ -135,7 +136,8 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
     const bool still = axis->activity == ACTIVITY_FREE || axis->activity == ACTIVITY_HOLD;
     if (axis->state == CM1E_AXIS_DISABLED && wanted && acting && still)
         take_over(axis);
-    else if (axis->activity == ACTIVITY_HOLD && !wanted && axis->now_ns >= axis->brake_until_ns)
+    else if (axis->activity == ACTIVITY_HOLD && !wanted && axis->now_ns >= axis->brake_until_ns &&
+             cm1e_axis_backlash_at_rest(axis))
         cm1e_axis_become_free(axis); /* a ramp has ended, and its last set-point is out */
     else if (axis->activity != ACTIVITY_FREE && axis->activity != ACTIVITY_HOMING && !acting)
         cm1e_axis_become_free(axis); /* the torque went in the middle of a ramp */

@@ -79,6 +79,14 @@ typedef struct probe_sample {
     uint16_t inputs;
 } probe_sample_t;
 
+/** The gap between motor and load (axis_backlash.c); counts in the direction in which u grows. */
+typedef struct backlash {
+    double gap;                    /**< 0: none */
+    double velocity, acceleration; /**< of its compensation; counts/s, counts/s2 */
+    double offset;                 /**< -gap ... 0: of the motor as seen from the load */
+    double offset_velocity, target;
+} backlash_t;
+
 struct cm1e_axis {
     cm1e_drive_t drive;
     const cm1e_axis_config_t *config;
@@ -107,6 +115,7 @@ struct cm1e_axis {
     bool position_known, homed;
     int32_t raw;                    /**< counts of the drive, last seen */
     int64_t actual_counts;          /**< the same without wrap-around */
+    backlash_t backlash;
     position_t origin;              /**< position origin_units is there; modulo: 0 */
     double origin_units;
 
@@ -169,9 +178,22 @@ void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units);
 bool cm1e_axis_position_in_range(position_t position);
 /** u; about where that range ends. */
 double cm1e_axis_farthest(const cm1e_axis_t *axis);
-static inline position_t axis_actual(const cm1e_axis_t *axis) { return (position_t){axis->actual_counts, 0.0}; }
 void cm1e_axis_track(cm1e_axis_t *axis);
 void cm1e_axis_set_to_actual(cm1e_axis_t *axis);
+
+/* axis_backlash.c */
+void cm1e_axis_backlash_init(cm1e_axis_t *axis); /* @rt init; after the limits */
+/** Where the load is while the motor is there. */
+position_t cm1e_axis_load(const cm1e_axis_t *axis, int64_t motor_counts);
+/** Actual position, of the load. */
+static inline position_t axis_actual(const cm1e_axis_t *axis) { return cm1e_axis_load(axis, axis->actual_counts); }
+/** Where the motor has to be for the set-point; whole counts. */
+int64_t cm1e_axis_motor_target(const cm1e_axis_t *axis);
+/** Counts/s of the motor that its load does not do. */
+double cm1e_axis_backlash_velocity(const cm1e_axis_t *axis);
+bool cm1e_axis_backlash_at_rest(const cm1e_axis_t *axis);
+void cm1e_axis_backlash_track(cm1e_axis_t *axis, int32_t moved_counts);
+void cm1e_axis_backlash_step(cm1e_axis_t *axis);
 
 /* axis_limits.c */
 cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */
