@@ -197,6 +197,12 @@ int64_t cm1e_scheduler_time_ns(const cm1e_scheduler_t *scheduler)
     return scheduler->number * scheduler->cycle_time_ns;
 }
 
+void cm1e_scheduler_mark(cm1e_scheduler_t *scheduler, const char *text)
+{
+    if (text)
+        trace_mark(&scheduler->trace, text, cm1e_scheduler_time_ns(scheduler));
+}
+
 void cm1e_scheduler_statistics(const cm1e_scheduler_t *scheduler, cm1e_scheduler_statistics_t *statistics)
 {
     statistics_read(&scheduler->statistics, statistics);

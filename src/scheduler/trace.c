@@ -62,6 +62,16 @@ void trace_record(trace_t *trace, cm1e_axis_t *const axes[], int64_t time_ns)
     }
 }
 
+void trace_mark(trace_t *trace, const char *text, int64_t time_ns)
+{
+    const uint32_t place = (trace->first_mark + trace->mark_count) % TRACE_MARKS;
+    if (trace->mark_count < TRACE_MARKS)
+        trace->mark_count++;
+    else
+        trace->first_mark = (trace->first_mark + 1) % TRACE_MARKS;
+    trace->marks[place] = (trace_mark_t){time_ns, text};
+}
+
 /* ---- reading --------------------------------------------------------------------------------------------------- */
 
 static uint32_t place_of(const trace_t *trace, uint32_t n)
@@ -74,6 +84,11 @@ int64_t trace_time_ns(const trace_t *trace, uint32_t n) { return trace->times_ns
 const trace_sample_t *trace_sample(const trace_t *trace, uint32_t n, uint32_t axis)
 {
     return &trace->samples[(size_t)place_of(trace, n) * trace->axes + axis];
+}
+
+const trace_mark_t *trace_mark_at(const trace_t *trace, uint32_t n)
+{
+    return &trace->marks[(trace->first_mark + n) % TRACE_MARKS];
 }
 
 /* ---- writing --------------------------------------------------------------------------------------------------- */

@@ -15,6 +15,14 @@ typedef struct trace_sample {
     cm1e_axis_state_t state;
 } trace_sample_t;
 
+/** A moment that the program gave a name. */
+typedef struct trace_mark {
+    int64_t time_ns;
+    const char *text;
+} trace_mark_t;
+
+enum { TRACE_MARKS = 64 };
+
 typedef struct trace {
     uint32_t axes, capacity, every;
     uint32_t first, used;     /**< samples: the oldest one, and how many there are */
@@ -22,6 +30,8 @@ typedef struct trace {
     const char **names;       /**< of the axes */
     int64_t *times_ns;        /**< [capacity] */
     trace_sample_t *samples;  /**< [capacity][axes] */
+    trace_mark_t marks[TRACE_MARKS]; /**< a ring as well */
+    uint32_t first_mark, mark_count;
 } trace_t;
 
 /** `capacity` 0: a trace that records nothing. @rt init */
@@ -31,9 +41,14 @@ void trace_free(trace_t *trace);
 /** @rt cycle */
 void trace_record(trace_t *trace, cm1e_axis_t *const axes[], int64_t time_ns);
 
+/** Keeps the last TRACE_MARKS marks; `text` must outlive the trace. @rt cycle */
+void trace_mark(trace_t *trace, const char *text, int64_t time_ns);
+
 /** Sample n, 0 = oldest. */
 int64_t trace_time_ns(const trace_t *trace, uint32_t n);
 const trace_sample_t *trace_sample(const trace_t *trace, uint32_t n, uint32_t axis);
+/** Mark n, 0 = oldest. */
+const trace_mark_t *trace_mark_at(const trace_t *trace, uint32_t n);
 
 /** Writers of a file's content. */
 void trace_print_csv(const trace_t *trace, FILE *file);

@@ -1,6 +1,6 @@
 /*
  * The trace as a picture: a column of panels per axis (position, velocity, torque over time), above them a band that
- * shows the axis's state in colour. Every curve is thinned to the smallest and largest value of each of a few hundred
+ * shows the axis's state in colour, and the program's marks as dashed lines with their text. Every curve is thinned to the smallest and largest value of each of a few hundred
  * slices of time, so that nothing that happened is lost and the file stays below half a megabyte.
  */
 #include <math.h>
@@ -13,9 +13,8 @@
 
 enum {
     COLUMNS_PER_ROW = 3,
-    COLUMN_LEFT = 72, COLUMN_RIGHT = 18, PLOT_WIDTH = 400,
-    COLUMN_WIDTH = COLUMN_LEFT + PLOT_WIDTH + COLUMN_RIGHT,
-    HEAD = 84, NAME = 24, BAND = 12, PANEL_GAP = 16, TIME_AXIS = 44,
+    COLUMN_LEFT = 72, COLUMN_RIGHT = 18, PLOT_WIDTH = 400, ONLY_PLOT_WIDTH = 810, /* as wide as the head */
+    HEAD = 84, NAME = 24, MARKS = 14, BAND = 12, PANEL_GAP = 16, TIME_AXIS = 44,
     BYTES_FOR_CURVES = 380000, BYTES_PER_POINT = 13,
 };
 
@@ -57,6 +56,7 @@ typedef struct plot {
     const trace_t *trace;
     double begin_s, end_s;
     uint32_t slices;
+    double width; /**< of a panel */
 } plot_t;
 
 static double time_s(const plot_t *plot, uint32_t n) { return (double)trace_time_ns(plot->trace, n) * 1e-9; }
@@ -307,21 +307,44 @@ static void print_panel(const plot_t *plot, const box_t *box, uint32_t axis, uns
             box->y, box->width, box->height);
 }
 
-static double column_height(void)
+static double column_width(const plot_t *plot) { return COLUMN_LEFT + plot->width + COLUMN_RIGHT; }
+
+static double marks_height(const trace_t *trace) { return trace->mark_count > 0 ? MARKS : 0; }
+
+static double column_height(const trace_t *trace)
 {
-    double height = NAME + BAND + TIME_AXIS + 20;
+    double height = NAME + marks_height(trace) + BAND + TIME_AXIS + 20;
     for (unsigned i = 0; i < PANELS; i++)
         height += PANEL_GAP + panels[i].height;
     return height;
 }
 
+/** Those of the time shown, from the row of their texts above `band` down to `bottom`. */
+static void print_marks(const plot_t *plot, const box_t *band, double bottom)
+{
+    const trace_t *trace = plot->trace;
+    for (uint32_t n = 0; n < trace->mark_count; n++) {
+        const trace_mark_t *mark = trace_mark_at(trace, n);
+        const double x = x_of(plot, band, (double)mark->time_ns * 1e-9);
+        if (x < band->x || x > band->x + band->width)
+            continue;
+        fprintf(plot->file, "<path class=\"mark\" d=\"M%.1f,%.0fv%.0f\"/>", x, band->y - MARKS,
+                bottom - band->y + MARKS);
+        fprintf(plot->file, "<text class=\"tick\" x=\"%.1f\" y=\"%.0f\">", x + 3, band->y - 4);
+        print_escaped(plot->file, mark->text);
+        fputs("</text>\n", plot->file);
+    }
+}
+
 static void print_column(const plot_t *plot, double x, double y, uint32_t axis)
 {
-    box_t box = {x + COLUMN_LEFT, y + NAME, PLOT_WIDTH, BAND};
+    box_t box = {x + COLUMN_LEFT, y + NAME + marks_height(plot->trace), plot->width, BAND};
+    const double bottom = y + column_height(plot->trace) - TIME_AXIS - 20;
     fprintf(plot->file, "<text class=\"name\" x=\"%.0f\" y=\"%.0f\">", box.x, y + 16);
     print_escaped(plot->file, plot->trace->names[axis]);
     fputs("</text>\n", plot->file);
-    print_states(plot, &box, y + column_height() - TIME_AXIS - 20, axis);
+    print_states(plot, &box, bottom, axis);
+    print_marks(plot, &box, bottom);
     for (unsigned i = 0; i < PANELS; i++) {
         box.y += box.height + PANEL_GAP;
         box.height = panels[i].height;
@@ -340,7 +363,7 @@ static const char style[] =
     ".grid{stroke:#000;stroke-opacity:.09}.zero{stroke:#000;stroke-opacity:.35}\n"
     ".frame{fill:none;stroke:#6b7480}\n"
     ".actual{stroke:#f08a24;stroke-width:3}.set{stroke:#12395f;stroke-width:1.3}\n"
-    ".torque{stroke:#2b7a4b;stroke-width:1.1}\n"
+    ".torque{stroke:#2b7a4b;stroke-width:1.1}.mark{stroke:#5b2a86;stroke-dasharray:4 3}\n"
     "</style>\n";
 
 static void print_key_line(FILE *file, double x, const char *css, const char *text)
@@ -368,17 +391,18 @@ static void print_head(const plot_t *plot)
 }
 
 /** Slices of time per curve: one a pixel, fewer where many axes share the bytes. */
-static uint32_t slices_for(uint32_t axes)
+static uint32_t slices_for(uint32_t axes, uint32_t pixels)
 {
     const uint32_t curves = axes * 5, affordable = BYTES_FOR_CURVES / (curves * 2 * BYTES_PER_POINT);
-    return affordable > PLOT_WIDTH ? PLOT_WIDTH : affordable < 20 ? 20 : affordable;
+    return affordable > pixels ? pixels : affordable < 20 ? 20 : affordable;
 }
 
 void trace_print_svg(const trace_t *trace, FILE *file)
 {
     const uint32_t columns = trace->axes < COLUMNS_PER_ROW ? (trace->axes ? trace->axes : 1) : COLUMNS_PER_ROW;
     const uint32_t rows = (trace->axes + COLUMNS_PER_ROW - 1) / COLUMNS_PER_ROW;
-    const double width = fmax(columns * COLUMN_WIDTH, 720), height = HEAD + rows * column_height();
+    plot_t plot = {.file = file, .trace = trace, .width = columns == 1 ? ONLY_PLOT_WIDTH : PLOT_WIDTH};
+    const double width = columns * column_width(&plot), height = HEAD + rows * column_height(trace);
     fprintf(file,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" viewBox=\"0 0 %.0f %.0f\">\n"
             "%s<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n", width, height, width, height, style);
@@ -386,12 +410,12 @@ void trace_print_svg(const trace_t *trace, FILE *file)
         fputs("<text class=\"title\" x=\"16\" y=\"26\">The trace is empty.</text>\n</svg>\n", file);
         return;
     }
-    plot_t plot = {.file = file, .trace = trace, .slices = slices_for(trace->axes)};
+    plot.slices = slices_for(trace->axes, (uint32_t)plot.width);
     plot.begin_s = time_s(&plot, 0);
     plot.end_s = fmax(time_s(&plot, trace->used - 1), plot.begin_s + 1e-6);
     print_head(&plot);
     for (uint32_t axis = 0; axis < trace->axes; axis++)
-        print_column(&plot, (axis % COLUMNS_PER_ROW) * (double)COLUMN_WIDTH,
-                     HEAD + (axis / COLUMNS_PER_ROW) * column_height(), axis);
+        print_column(&plot, (axis % COLUMNS_PER_ROW) * column_width(&plot),
+                     HEAD + (axis / COLUMNS_PER_ROW) * column_height(trace), axis);
     fputs("</svg>\n", file);
 }

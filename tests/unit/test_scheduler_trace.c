@@ -130,6 +130,31 @@ static void test_svg_of_few_and_many_axes_is_well_formed_and_below_half_a_megaby
     }
 }
 
+static void test_svg_shows_the_marks_of_its_time(void)
+{
+    static const char *const names[] = {"<first> & oldest", "in time", "also in time"};
+    trace_t trace = make_trace(2, 100);
+    size_t size;
+    for (uint32_t n = 0; n < 300; n++) /* 200 ms ... 299 ms are kept */
+        add_sample(&trace, n, 1);
+    trace_mark(&trace, "too old", 199 * INT64_C(1000000));
+    for (int i = 0; i < 3; i++)
+        trace_mark(&trace, names[i], (200 + 49 * i) * INT64_C(1000000));
+    trace_mark(&trace, "too new", 300 * INT64_C(1000000));
+    char *svg = write_svg(&trace, &size);
+    check_well_formed(svg);
+    TEST_ASSERT_EQUAL(2 * 3, count(svg, "class=\"mark\""));
+    TEST_ASSERT_EQUAL(2, count(svg, ">&lt;first&gt; &amp; oldest<"));
+    TEST_ASSERT_EQUAL(0, count(svg, ">too "));
+    free(svg);
+    for (int i = 0; i < TRACE_MARKS; i++) /* the ring goes round */
+        trace_mark(&trace, i == 0 ? "oldest" : "later", 250 * INT64_C(1000000));
+    TEST_ASSERT_EQUAL(TRACE_MARKS, trace.mark_count);
+    TEST_ASSERT_EQUAL_STRING("oldest", trace_mark_at(&trace, 0)->text);
+    TEST_ASSERT_EQUAL_STRING("later", trace_mark_at(&trace, TRACE_MARKS - 1)->text);
+    trace_free(&trace);
+}
+
 static void test_svg_survives_any_values(void)
 {
     static const double values[] = {0, -0.0, 1e-300, 1e300, -1e300, NAN, INFINITY, -INFINITY, 1e12, 1e-12, 123456.789};
@@ -284,6 +309,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_svg_of_few_and_many_axes_is_well_formed_and_below_half_a_megabyte);
+    RUN_TEST(test_svg_shows_the_marks_of_its_time);
     RUN_TEST(test_svg_survives_any_values);
     RUN_TEST(test_svg_shows_a_state_of_one_sample_and_a_peak_of_one_sample);
     RUN_TEST(test_svg_of_an_empty_trace_says_so);
