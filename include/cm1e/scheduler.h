@@ -85,8 +85,8 @@ void cm1e_scheduler_stop(cm1e_scheduler_t *scheduler);
 void cm1e_scheduler_stop_on_signals(cm1e_scheduler_t *scheduler);
 /** Planned time of this cycle since the first one, the same for a whole scan. @rt cycle */
 int64_t cm1e_scheduler_time_ns(const cm1e_scheduler_t *scheduler);
-/** Gives this cycle a name that the plot of the trace shows (the last 64 are kept). `text` must live until the scheduler
- *  is destroyed. Call it in a program. @rt cycle */
+/** Gives this cycle a name that the plot of the trace shows (the last 64 are kept). `text` must live until the
+ *  scheduler is destroyed. Call it in a program. @rt cycle */
 void cm1e_scheduler_mark(cm1e_scheduler_t *scheduler, const char *text);
 /** Before, during and after the run, from any thread. Each number is right; while it runs, two of them may be of
  *  neighbouring cycles. @rt any */

@@ -1,7 +1,8 @@
 /*
  * The trace as a picture: a column of panels per axis (position, velocity, torque over time), above them a band that
- * shows the axis's state in colour, and the program's marks as dashed lines with their text. Every curve is thinned to the smallest and largest value of each of a few hundred
- * slices of time, so that nothing that happened is lost and the file stays below half a megabyte.
+ * shows the axis's state in colour, and the program's marks as dashed lines with their text. Every curve is thinned to
+ * the smallest and largest value of each of a few hundred slices of time, so that nothing that happened is lost and the
+ * file stays below half a megabyte.
  */
 #include <math.h>
 #include <stddef.h>
