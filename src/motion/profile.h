@@ -68,6 +68,25 @@ double cm1e_profile_passing_velocity(const cm1e_motion_state_t *start, double ta
  *  enters. */
 double cm1e_profile_entry_velocity(double distance, double velocity, double exit_velocity,
                                    const cm1e_motion_limits_t *limits);
+/** A part of a profile in closed form: the state at from_s <= t < until_s is that of `origin`, at origin_s, under a
+ *  constant jerk. Who samples a profile cycle by cycle keeps the one that he is in. */
+typedef struct cm1e_profile_stretch {
+    double from_s, until_s, origin_s;
+    cm1e_motion_state_t origin;
+    double jerk;
+} cm1e_profile_stretch_t;
+/** The stretch at time_s >= 0; the last one has no end. */
+void cm1e_profile_stretch_at(const cm1e_profile_t *profile, double time_s, cm1e_profile_stretch_t *stretch);
+static inline cm1e_motion_state_t cm1e_profile_stretch_state(const cm1e_profile_stretch_t *stretch, double time_s)
+{
+    const double t = time_s - stretch->origin_s, a = stretch->origin.acceleration, j = stretch->jerk;
+    return (cm1e_motion_state_t){
+        .position = stretch->origin.position +
+                    t * (stretch->origin.velocity + t * (a * 0.5 + t * (j * (1.0 / 6.0)))),
+        .velocity = stretch->origin.velocity + t * (a + t * (j * 0.5)),
+        .acceleration = a + t * j,
+    };
+}
 /** State at time_s (0 = start; before: start, after the end: constant end velocity). */
 void cm1e_profile_sample(const cm1e_profile_t *profile, double time_s, cm1e_motion_state_t *state);
 /** Lowest and highest position on the way (end included): for software limits. */
