@@ -9,10 +9,10 @@ from tables import STATES
 POINTER = 8
 ASSERT = """#define AT(TYPE, NAME, OFFSET) _Static_assert(offsetof(TYPE##_t, NAME) == OFFSET, #TYPE "." #NAME)
 """
-MACROS = """#define MEMBER(TYPE, NAME, SECTION, KIND)                                                                            \\
+MACROS = """#define MEMBER(TYPE, NAME, SECTION, KIND) \\
     {#NAME, BLOCK_##SECTION, BLOCK_##KIND, offsetof(TYPE##_t, NAME), sizeof(((TYPE##_t *)0)->NAME)}
-#define BLOCK(TYPE, RULES)                                                                                           \\
-    {#TYPE, sizeof(TYPE##_t), call_##TYPE, members_of_##TYPE, sizeof members_of_##TYPE / sizeof *members_of_##TYPE,  \\
+#define BLOCK(TYPE, RULES) \\
+    {#TYPE, sizeof(TYPE##_t), call_##TYPE, members_of_##TYPE, sizeof members_of_##TYPE / sizeof *members_of_##TYPE, \\
      RULES}
 """
 
@@ -79,7 +79,8 @@ def block_text(block, sizes, files, tables):
     for variable, offset, _ in rows:
         asserts += f"AT({name}, {variable.name}, {offset});\n"
         if variable.section != "private":
-            members += f"    MEMBER({name}, {variable.name}, {variable.section.upper()}, {member_type(variable, files)}),\n"
+            kind = member_type(variable, files)
+            members += f"    MEMBER({name}, {variable.name}, {variable.section.upper()}, {kind}),\n"
     table = (f"static const block_member_t members_of_{name}[] = {{\n{members}}};\n"
              f"static void call_{name}(void *fb) {{ {name}(fb); }}\n")
     cells = tables.states_of(block)

@@ -31,7 +31,8 @@ def outputs():
     tables = Tables(read("fb/interface/classes.md"), read("include/cm1e/error.h"))
     result = {f"include/cm1e/{file.header}": c_header.header(file) for file in files}
     result["tests/support/block_table.c"] = c_table.source(files, tables)
-    result.update(pages.all_pages(files, tables, lambda name: os.path.exists(os.path.join(SOURCE, "docs/blocks", name))))
+    has_diagram = lambda name: os.path.exists(os.path.join(SOURCE, "docs/blocks", f"{name}.svg"))
+    result.update(pages.all_pages(files, tables, has_diagram))
     return result
 
 

@@ -97,12 +97,15 @@ def states_text(block, tables):
         return ""
     if set(cells) == {"-"}:
         return "## In which state\n\nIn every state; it never changes it.\n\n"
+    if len(set(cells)) == 1 and cells[0] in tables.errors:
+        error = ": ".join(error_id(cells[0], tables))
+        return "## In which state\n\n" + wrap(f"Refused in every state: {error}.") + "\n\n"
     rows = ""
     for state, cell in zip(STATES, cells):
         told = ": ".join(error_id(cell, tables)) if cell in tables.errors else state_cell(cell, tables)
         rows += f"| {state} | {told} |\n"
-    return ("## In which state\n\n| state of the axis | it is then in, or the refusal, which changes nothing |\n|---|---|\n"
-            + rows + "\n")
+    return ("## In which state\n\n| state of the axis | it is then in, or the refusal, which changes nothing |\n"
+            f"|---|---|\n{rows}\n")
 
 
 def errors_text(block, tables):
@@ -146,19 +149,20 @@ def page(block, file, tables, has_diagram):
 
 def index(files, tables):
     text = "# The blocks\n\n"
-    text += wrap("One page a block: what it is for, its declaration, inputs and outputs with units, the states in which it "
-                 "may be called, its errors, a timing diagram that a real run on the simulated motor has drawn. What holds "
-                 "for all of them is in [the function blocks](../FUNCTION-BLOCKS.md). The pages are generated from "
+    text += wrap("One page a block: what it is for, its declaration, inputs and outputs with units, the states in which "
+                 "it may be called, its errors, a timing diagram that a real run on the simulated motor has drawn. What "
+                 "holds for all of them is in [the function blocks](../FUNCTION-BLOCKS.md). The pages are generated from "
                  "`fb/interface/`.") + "\n\n"
     for file in files:
         if not file.blocks():
             continue
         text += f"## {CHAPTERS[file.header]}\n\n| block | |\n|---|---|\n"
-        text += "".join(f"| [{block.name}]({block.name}.md) | {first_sentence(block.doc)} |\n" for block in file.blocks())
+        for block in file.blocks():
+            text += f"| [{block.name}]({block.name}.md) | {first_sentence(block.doc)} |\n"
         text += "\n"
     text += "## Which command in which state\n\n"
-    text += wrap("An entry is the state that follows, or the ErrorID of the refusal, which changes nothing. The blocks that "
-                 "are not here may be called in every state and never change it.") + "\n\n"
+    text += wrap("An entry is the state that follows, or the ErrorID of the refusal, which changes nothing. The blocks "
+                 "that are not here may be called in every state and never change it.") + "\n\n"
     text += "| block | " + " | ".join(STATES) + " |\n|" + "---|" * (len(STATES) + 1) + "\n"
     by_class = {}
     for block in (block for file in files for block in file.blocks()):
@@ -170,9 +174,9 @@ def index(files, tables):
     return text
 
 
-def all_pages(files, tables, exists):
+def all_pages(files, tables, has_diagram):
     result = {"docs/blocks/README.md": index(files, tables)}
     for file in files:
         for block in file.blocks():
-            result[f"docs/blocks/{block.name}.md"] = page(block, file, tables, exists(f"{block.name}.svg"))
+            result[f"docs/blocks/{block.name}.md"] = page(block, file, tables, has_diagram(block.name))
     return result

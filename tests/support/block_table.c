@@ -743,10 +743,10 @@ AT(CTUD, CV, 8);
 AT(CTUD, Private, 10);
 #endif
 
-#define MEMBER(TYPE, NAME, SECTION, KIND)                                                                            \
+#define MEMBER(TYPE, NAME, SECTION, KIND) \
     {#NAME, BLOCK_##SECTION, BLOCK_##KIND, offsetof(TYPE##_t, NAME), sizeof(((TYPE##_t *)0)->NAME)}
-#define BLOCK(TYPE, RULES)                                                                                           \
-    {#TYPE, sizeof(TYPE##_t), call_##TYPE, members_of_##TYPE, sizeof members_of_##TYPE / sizeof *members_of_##TYPE,  \
+#define BLOCK(TYPE, RULES) \
+    {#TYPE, sizeof(TYPE##_t), call_##TYPE, members_of_##TYPE, sizeof members_of_##TYPE / sizeof *members_of_##TYPE, \
      RULES}
 
 static const block_rule_t rules_discrete[CM1E_AXIS_STATE_COUNT] = {
