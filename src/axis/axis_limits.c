@@ -64,32 +64,34 @@ static bool choose(double asked, double maximum, bool stopping, double *value)
 
 /* An acceleration under way takes time to end, at a jerk that is smaller than it began with perhaps more than there is
  * left up to the maximum velocity. A larger one, at most that of the motion so far, keeps below it. */
-static void keep_below_maximum_velocity(const cm1e_axis_t *axis, cm1e_motion_limits_t *limits)
+static void keep_below_maximum_velocity(const cm1e_axis_t *axis, const from_t *from, cm1e_motion_limits_t *limits)
 {
-    const double a = axis->set_acceleration;
+    const double a = from->acceleration;
     if (a == 0.0)
         return;
-    const double room = axis->maximum.velocity - (a > 0.0 ? axis->set_velocity : -axis->set_velocity);
+    const double room = axis->maximum.velocity - (a > 0.0 ? from->velocity : -from->velocity);
     const double needed = room > 0.0 ? a * a / (2.0 * room) : axis->maximum.jerk;
     limits->jerk = fmin(fmax(limits->jerk, needed), axis->maximum.jerk);
 }
 
-cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, bool stopping,
+cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                                  cm1e_motion_limits_t *limits)
 {
     const cm1e_motion_limits_t *most = &axis->maximum;
-    const double acceleration = stopping ? 0.0 : command->acceleration;
+    const bool stopping = move->kind == CM1E_COMMAND_HALT || move->kind == CM1E_COMMAND_STOP;
+    const double acceleration = stopping ? 0.0 : move->acceleration;
     if (!choose(acceleration, most->acceleration, stopping, &limits->acceleration) ||
-        !choose(command->deceleration, most->deceleration, stopping, &limits->deceleration) ||
-        !choose(command->jerk, most->jerk, stopping, &limits->jerk))
+        !choose(move->deceleration, most->deceleration, stopping, &limits->deceleration) ||
+        !choose(move->jerk, most->jerk, stopping, &limits->jerk))
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
-    keep_below_maximum_velocity(axis, limits);
+    keep_below_maximum_velocity(axis, from, limits);
     limits->velocity = most->velocity;
     if (stopping)
         return CM1E_OK;
     /* The sign of a velocity is a direction, and only MC_MoveVelocity's has one (3.10). */
-    const double speed = command->kind == CM1E_COMMAND_MOVE_VELOCITY ? fabs(command->velocity) : command->velocity;
-    if (!(speed > 0.0) || !(speed <= most->velocity * (1.0 + relative_tolerance)))
+    const double speed = move->kind == CM1E_COMMAND_MOVE_VELOCITY ? fabs(move->velocity) : move->velocity;
+    const double largest = most->velocity * (1.0 + relative_tolerance);
+    if (!(speed > 0.0) || !(speed <= largest) || !(fabs(move->end_velocity) <= largest))
         return CM1E_ERROR_AXIS_VELOCITY_RANGE;
     limits->velocity = fmin(speed, most->velocity);
     return CM1E_OK;
@@ -100,40 +102,51 @@ bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity)
     return velocity > 0.0 ? axis->enable_positive : velocity < 0.0 ? axis->enable_negative : true;
 }
 
-bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const cm1e_profile_t *profile)
+/* An axis that stands outside, pushed there without torque, may come back but go no farther. */
+static bool contains(const cm1e_axis_t *axis, position_t from, double lowest, double highest)
 {
     if (!axis->software_limits)
         return true;
-    const double tolerance = tolerance_counts / fabs(axis->scale);
-    double lowest, highest;
-    cm1e_profile_extent(profile, &lowest, &highest);
-    /* An axis that stands outside, pushed there without torque, may come back but go no farther. */
-    const double now = cm1e_axis_units(axis, axis->set);
+    const double tolerance = tolerance_counts / fabs(axis->scale), now = cm1e_axis_units(axis, from);
     return now + highest <= fmax(axis->upper, now) + tolerance && now + lowest >= fmin(axis->lower, now) - tolerance;
 }
 
+bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, position_t from, position_t target)
+{
+    const double way = cm1e_position_minus(target, from) / axis->scale;
+    return contains(axis, from, fmin(way, 0.0), fmax(way, 0.0));
+}
+
+bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
+{
+    if (!axis->software_limits)
+        return true;
+    double lowest, highest;
+    cm1e_profile_extent(profile, &lowest, &highest);
+    return contains(axis, from->position, lowest, highest);
+}
+
 /* A disabled direction allows what the braking needs that is going on anyway, nothing more. */
-static bool directions_allow(const cm1e_axis_t *axis, double lowest, double highest, double tolerance)
+static bool directions_allow(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
     if (axis->enable_positive && axis->enable_negative)
         return true;
+    const double tolerance = tolerance_counts / fabs(axis->scale);
+    double lowest, highest, brake_lowest, brake_highest;
+    cm1e_profile_extent(profile, &lowest, &highest);
     cm1e_profile_t brake;
-    double brake_lowest, brake_highest;
-    if (cm1e_axis_plan_stop(axis, &axis->maximum, &brake))
+    if (cm1e_axis_plan_stop(axis, from, &axis->maximum, &brake))
         return false;
     cm1e_profile_extent(&brake, &brake_lowest, &brake_highest);
     return (axis->enable_positive || highest <= fmax(brake_highest, 0.0) + tolerance) &&
            (axis->enable_negative || lowest >= fmin(brake_lowest, 0.0) - tolerance);
 }
 
-cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const cm1e_profile_t *profile)
+cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
-    if (!cm1e_axis_limits_contain(axis, profile))
+    if (!cm1e_axis_limits_contain(axis, from, profile))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    double lowest, highest;
-    cm1e_profile_extent(profile, &lowest, &highest);
-    const double tolerance = tolerance_counts / fabs(axis->scale);
-    return directions_allow(axis, lowest, highest, tolerance) ? CM1E_OK : CM1E_ERROR_AXIS_DIRECTION_DISABLED;
+    return directions_allow(axis, from, profile) ? CM1E_OK : CM1E_ERROR_AXIS_DIRECTION_DISABLED;
 }
 
 /* Without a limit of jerk the way of a stop is known in closed form, whatever the acceleration is. */

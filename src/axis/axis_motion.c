@@ -6,46 +6,36 @@
 /* CSV only (a mapping without target position): the position loop is ours then. 1/s. */
 static const double csv_position_gain = 20.0;
 
-void cm1e_axis_run_profile(cm1e_axis_t *axis, const cm1e_profile_t *profile, position_t target)
+/* A profile that ends so shortly after a set-point has ended with it; in cycles. */
+static const double same_moment = 1e-6;
+
+void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile, position_t target,
+                   double offset_s)
 {
     axis->profile = *profile;
-    axis->base = axis->set;
+    axis->base = from->position;
     axis->target = target;
     axis->profile_cycles = 0;
+    axis->profile_offset_s = offset_s;
     axis->reached = false;
     axis->activity = ACTIVITY_PROFILE;
 }
 
-cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const cm1e_motion_limits_t *limits, cm1e_profile_t *profile)
+static void ramp_down_from(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *limits, double offset_s)
 {
-    const cm1e_motion_state_t start = {0.0, axis->set_velocity, axis->set_acceleration};
-    const cm1e_error_t error = cm1e_profile_to_velocity(profile, &start, 0.0, limits);
-    if (error || cm1e_axis_limits_contain(axis, profile))
-        return error;
-    return cm1e_profile_to_velocity(profile, &start, 0.0, &axis->emergency);
+    cm1e_profile_t profile;
+    if (cm1e_axis_plan_stop(axis, from, limits, &profile) == CM1E_OK)
+        cm1e_axis_run(axis, from, &profile, cm1e_position_plus(from->position, profile.end.position * axis->scale),
+                      offset_s);
+    else
+        axis->activity = ACTIVITY_HOLD;
 }
 
 /* Down to standstill without a command. */
 void cm1e_axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits)
 {
-    cm1e_profile_t profile;
-    if (cm1e_axis_plan_stop(axis, limits, &profile) == CM1E_OK)
-        cm1e_axis_run_profile(axis, &profile, cm1e_position_plus(axis->set, profile.end.position * axis->scale));
-    else
-        axis->activity = ACTIVITY_HOLD;
-}
-
-/* Where a profile has ended, the state goes on (figure 2; ramps without a command: axis_power.c). */
-static void profile_ended(cm1e_axis_t *axis)
-{
-    axis->set = axis->target;
-    axis->set_velocity = 0.0;
-    axis->set_acceleration = 0.0;
-    axis->activity = ACTIVITY_HOLD;
-    if (axis->active)
-        cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
-    if (axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION)
-        axis->state = CM1E_AXIS_STANDSTILL;
+    const from_t from = from_set(axis);
+    ramp_down_from(axis, &from, limits, 0.0);
 }
 
 static bool commanded_motion(const cm1e_axis_t *axis)
@@ -59,7 +49,7 @@ static bool commanded_motion(const cm1e_axis_t *axis)
 static bool goes(const cm1e_axis_t *axis, double sign)
 {
     const cm1e_profile_t *profile = &axis->profile;
-    const double now_s = (double)axis->profile_cycles * axis->cycle_s;
+    const double now_s = (double)axis->profile_cycles * axis->cycle_s + axis->profile_offset_s;
     if (axis->set_velocity * sign > 0.0 || profile->end.velocity * sign > 0.0)
         return true;
     for (int i = 0; i < profile->segment_count; i++)
@@ -72,45 +62,86 @@ void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign)
 {
     if (!commanded_motion(axis) || !goes(axis, sign))
         return;
+    const from_t from = from_set(axis);
     cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
     axis->state = CM1E_AXIS_DISCRETE_MOTION;
-    cm1e_axis_ramp_down(axis, &axis->maximum);
+    if (!cm1e_axis_begin_waiting(axis, &from, 0.0)) /* 2.2.2, case 2 */
+        cm1e_axis_ramp_down(axis, &axis->maximum);
 }
 
-/* Moves to a position were checked as a whole when they were planned; a velocity goes on until it meets a limit.
- * FALSE: it does, and a ramp has replaced the profile. */
+/* ---- the cycle --------------------------------------------------------------------------------------------------- */
+
+static void stand(cm1e_axis_t *axis)
+{
+    axis->set = axis->target;
+    axis->set_velocity = 0.0;
+    axis->set_acceleration = 0.0;
+    axis->activity = ACTIVITY_HOLD;
+    if (axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION)
+        axis->state = CM1E_AXIS_STANDSTILL;
+}
+
+/* The profile ended `late_s` ago, inside the present cycle. Where its command ends with it, the next one has begun at
+ * that very moment. TRUE: there is a profile to go on with. */
+static bool profile_ended(cm1e_axis_t *axis, double late_s)
+{
+    const from_t end = {axis->target, axis->profile.end.velocity, 0.0};
+    const bool goes_on = end.velocity != 0.0;
+    if (axis->active && is_endless(axis->kind)) {
+        if (cm1e_axis_begin_waiting(axis, &end, late_s))
+            return true;
+        axis->reached = true;
+        return true;
+    }
+    if (axis->active)
+        cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
+    if (!goes_on)
+        stand(axis);
+    if (axis->state == CM1E_AXIS_STANDSTILL || axis->state == CM1E_AXIS_DISCRETE_MOTION) {
+        if (cm1e_axis_begin_waiting(axis, &end, late_s))
+            return axis->activity == ACTIVITY_PROFILE;
+        if (goes_on) /* for a command that could not begin after all */
+            ramp_down_from(axis, &end, &axis->maximum, late_s);
+    }
+    return axis->activity == ACTIVITY_PROFILE;
+}
+
+/* The motion of a command goes on only while it could still be stopped before a software limit. FALSE: a ramp has
+ * replaced the profile. Moves to a position were checked as a whole when they were planned; velocities, and whatever
+ * changes on the way, meet a limit here. */
 static bool may_go_on(cm1e_axis_t *axis, const cm1e_motion_state_t *next)
 {
-    if (!commanded_motion(axis) || axis->kind != CM1E_COMMAND_MOVE_VELOCITY ||
-        cm1e_axis_limits_can_stop(axis, axis->base, next))
+    if (!axis->software_limits || !commanded_motion(axis) || cm1e_axis_limits_can_stop(axis, axis->base, next))
         return true;
     cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->set),
                    next->velocity > 0.0 ? axis->upper : axis->lower);
     return false;
 }
 
+static double next_time(cm1e_axis_t *axis)
+{
+    return axis->profile_offset_s + (double)++axis->profile_cycles * axis->cycle_s;
+}
+
 static void profile_step(cm1e_axis_t *axis)
 {
     cm1e_motion_state_t next;
-    double time_s = (double)(axis->profile_cycles + 1) * axis->cycle_s;
+    double time_s = next_time(axis);
+    while (!axis->reached && time_s >= axis->profile.duration_s - same_moment * axis->cycle_s) {
+        if (!profile_ended(axis, fmax(time_s - axis->profile.duration_s, 0.0)))
+            return;
+        if (!axis->reached)
+            time_s = axis->profile_offset_s;
+    }
     cm1e_profile_sample(&axis->profile, time_s, &next);
     if (!may_go_on(axis, &next)) {
         if (axis->activity != ACTIVITY_PROFILE)
             return;
-        time_s = axis->cycle_s;
-        cm1e_profile_sample(&axis->profile, time_s, &next);
-    }
-    axis->profile_cycles++;
-    const bool ended = time_s >= axis->profile.duration_s - 1e-6 * axis->cycle_s;
-    const bool endless = axis->active && axis->kind == CM1E_COMMAND_MOVE_VELOCITY;
-    if (ended && !endless) {
-        profile_ended(axis);
-        return;
+        cm1e_profile_sample(&axis->profile, next_time(axis), &next);
     }
     axis->set = cm1e_position_plus(axis->base, next.position * axis->scale);
     axis->set_velocity = next.velocity;
-    axis->set_acceleration = ended ? 0.0 : next.acceleration;
-    axis->reached = ended;
+    axis->set_acceleration = next.acceleration;
     if (next.velocity != 0.0)
         axis->positive_before = next.velocity > 0.0;
     if (!cm1e_axis_position_in_range(axis->set))
@@ -136,6 +167,10 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
     /* Note 6: MC_Stop done and its Execute FALSE. */
     if (axis->state == CM1E_AXIS_STOPPING && axis->activity == ACTIVITY_HOLD && !axis->stop_held)
         axis->state = CM1E_AXIS_STANDSTILL;
+    if (axis->waiting.count > 0 && !axis->active && axis->activity == ACTIVITY_HOLD) { /* behind a homing */
+        const from_t from = from_set(axis);
+        (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
+    }
 }
 
 /* A position loop is no better than what it sees: while inputs are missing the last correction stays, and a ramp of

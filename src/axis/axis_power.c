@@ -45,7 +45,7 @@ void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double 
     const bool homing_broke = axis->activity == ACTIVITY_HOMING &&
                               (error == CM1E_ERROR_AXIS_HOMING_FAILED || error == CM1E_ERROR_AXIS_HOMING_TIMEOUT);
     /* 2.2.2: the blocks that lose the axis show an error, not CommandAborted. */
-    cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, homing_broke ? error : CM1E_ERROR_AXIS_ERROR_STOP);
+    cm1e_axis_commands_end(axis, CM1E_COMMAND_ERROR, homing_broke ? error : CM1E_ERROR_AXIS_ERROR_STOP);
     axis->error = error;
     axis->device_error = axis->drive.fault.device_code;
     axis->error_value = value;
@@ -72,7 +72,7 @@ static void power_off(cm1e_axis_t *axis)
 {
     if (axis->state == CM1E_AXIS_DISABLED || axis->state == CM1E_AXIS_ERROR_STOP)
         return;
-    cm1e_axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+    cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     axis->state = CM1E_AXIS_DISABLED;
     wind_down(axis, &axis->maximum);
 }

@@ -28,11 +28,41 @@ typedef enum activity {
 
 enum { COMMANDS_REMEMBERED = 64, HOMING_PARAMETERS = 5 };
 
+/** How a command ended. */
 typedef struct command_record {
     cm1e_command_id_t id;
-    cm1e_command_state_t state;
-    cm1e_error_t error;
+    int16_t error;      /**< cm1e_error_t */
+    uint8_t state;      /**< cm1e_command_state_t */
 } command_record_t;
+
+/** A command as it is kept: what it asks for, and what is known of its way. */
+typedef struct move {
+    cm1e_command_id_t id;
+    uint8_t kind, buffer_mode, direction; /**< cm1e_command_kind_t, MC_BUFFER_MODE, MC_DIRECTION */
+    bool passing;           /**< MOVE_CONTINUOUS_*: only its end velocity is left to be reached, not its position */
+    double position, velocity, end_velocity, acceleration, deceleration, jerk;
+    position_t origin;      /**< what a relative position counts from */
+    position_t target;      /**< where it ends */
+    double exit_velocity;   /**< u/s, signed: with which it passes its target, because another one goes on from there */
+} move_t;
+
+/** Commands that wait behind the active one, in their order: a ring. */
+typedef struct buffer {
+    move_t moves[CM1E_AXIS_BUFFER_DEPTH];
+    uint8_t first, count;
+} buffer_t;
+
+/** What a waiting MC_Home needs beside its command. */
+typedef struct waiting_homing {
+    cm1e_homing_config_t config;
+    bool configured;    /**< that of the axis instead */
+} waiting_homing_t;
+
+/** Where a motion begins. */
+typedef struct from {
+    position_t position;
+    double velocity, acceleration; /**< u/s, u/s2 */
+} from_t;
 
 typedef enum home_step {
     HOME_WRITE = 0, /**< parameters over SDO; the axis still holds its position */
@@ -124,12 +154,16 @@ struct cm1e_axis {
     double set_velocity, set_acceleration; /**< u/s, u/s2 */
     double loop_velocity;           /**< counts/s that the position loop adds in CSV */
     cm1e_profile_t profile;         /**< relative to base, in u */
-    int64_t profile_cycles;
+    int64_t profile_cycles;         /**< since it began ... */
+    double profile_offset_s;        /**< ... so long before the first of them */
 
     command_record_t records[COMMANDS_REMEMBERED];
     cm1e_command_id_t last_id;
     cm1e_command_id_t active;       /**< 0: none */
     cm1e_command_kind_t kind;       /**< of the active one */
+    move_t move;                    /**< the active one, unless it is a homing */
+    buffer_t waiting;
+    waiting_homing_t waiting_homing;
     bool reached, positive_before;
     cm1e_error_t refusal;           /**< why the last command was refused, for the text; CM1E_OK: it was not */
     cm1e_axis_command_t refused;    /**< what it asked for */
@@ -197,13 +231,16 @@ void cm1e_axis_backlash_step(cm1e_axis_t *axis);
 
 /* axis_limits.c */
 cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */
-/** The dynamics of a command; `stopping`: too large ones are cut to the axis's instead of refused. */
-cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, bool stopping,
+/** The dynamics of a command that begins there; MC_Halt and MC_Stop have too large ones cut to the axis's instead of
+ *  refused. */
+cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                                  cm1e_motion_limits_t *limits);
-/** Whether a profile that starts at the present set-point stays inside the software limits. */
-bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const cm1e_profile_t *profile);
+/** A target inside the software limits, or not farther outside than where the way there begins. */
+bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, position_t from, position_t target);
+/** Whether a profile that begins there stays inside the software limits. */
+bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
 /** The same, and no disabled direction in it. */
-cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const cm1e_profile_t *profile);
+cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
 /** Whether the emergency ramp from `next` (its position counted from `base`) would end inside the software limits. */
 bool cm1e_axis_limits_can_stop(const cm1e_axis_t *axis, position_t base, const cm1e_motion_state_t *next);
 bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity);
@@ -215,19 +252,80 @@ typedef struct state_rule {
 } state_rule_t;
 const state_rule_t *cm1e_axis_state_rule(cm1e_axis_state_t state, cm1e_command_kind_t kind);
 
+/* axis_plan.c */
+static inline from_t from_set(const cm1e_axis_t *axis)
+{
+    return (from_t){axis->set, axis->set_velocity, axis->set_acceleration};
+}
+/** MOVE_VELOCITY, MOVE_CONTINUOUS_*: goes on when it has reached what it was to reach. */
+static inline bool is_endless(cm1e_command_kind_t kind)
+{
+    return kind == CM1E_COMMAND_MOVE_VELOCITY || kind == CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE ||
+           kind == CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE;
+}
+static inline bool is_continuous_move(cm1e_command_kind_t kind)
+{
+    return is_endless(kind) && kind != CM1E_COMMAND_MOVE_VELOCITY;
+}
+/** The other moves to a position. */
+static inline bool is_discrete_move(cm1e_command_kind_t kind)
+{
+    return kind == CM1E_COMMAND_MOVE_ABSOLUTE || kind == CM1E_COMMAND_MOVE_RELATIVE ||
+           kind == CM1E_COMMAND_MOVE_ADDITIVE;
+}
+bool cm1e_axis_can_plan(cm1e_command_kind_t kind);
+/** Fills `target` and `origin` of a command that begins there. */
+cm1e_error_t cm1e_axis_resolve(const cm1e_axis_t *axis, const from_t *from, move_t *move);
+/** u/s; MC_MoveVelocity: with its direction. */
+cm1e_error_t cm1e_axis_signed_velocity(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
+                                       double *velocity);
+/** The profile of a command whose target is resolved, relative to where it begins. Refuses what leaves the limits. */
+cm1e_error_t cm1e_axis_plan(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile);
+/** Where that profile ends: at the target, exactly, if the command has one. */
+position_t cm1e_axis_profile_end(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
+                                 const cm1e_profile_t *profile);
+/** A stop; one that would run over a software limit brakes as an error does instead. */
+cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *limits,
+                                 cm1e_profile_t *profile);
+
 /* axis_motion.c */
-void cm1e_axis_run_profile(cm1e_axis_t *axis, const cm1e_profile_t *profile, position_t target);
+/** A profile takes over that began at `from`, `offset_s` before the present set-point. */
+void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile, position_t target,
+                   double offset_s);
 void cm1e_axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits);
-/** Motion in the direction of `sign` is no longer enabled (MC_Power, 3.1): a command that goes there fails, the axis
- *  stops. */
+/** Motion in the direction of `sign` is no longer enabled (MC_Power, 3.1): a command that goes there fails, the next
+ *  one begins, or the axis stops. */
 void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign);
-/** A stop from the present set-point; one that would run over a software limit brakes as an error does instead. */
-cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const cm1e_motion_limits_t *limits, cm1e_profile_t *profile);
 void cm1e_axis_motion_step(cm1e_axis_t *axis);
 void cm1e_axis_write_set_point(cm1e_axis_t *axis);
 
 /* axis_command.c */
+/** The active command ends; those that wait are for cm1e_axis_begin_waiting(). */
 void cm1e_axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
+/** All end, the waiting ones with CM1E_ERROR_AXIS_ERROR_STOP where `state` is an error. */
+void cm1e_axis_commands_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
+void cm1e_axis_record(cm1e_axis_t *axis, cm1e_command_id_t id, cm1e_command_state_t state, cm1e_error_t error);
+cm1e_command_id_t cm1e_axis_next_id(cm1e_axis_t *axis);
+/** A command that has been planned becomes the active one; the one before, if any, is aborted. */
+void cm1e_axis_take(cm1e_axis_t *axis, const move_t *move, const from_t *from, const cm1e_profile_t *profile,
+                    double offset_s);
+cm1e_error_t cm1e_axis_begin_homing(cm1e_axis_t *axis, const move_t *move);
+
+/* axis_buffer.c */
+static inline move_t *waiting_move(cm1e_axis_t *axis, int index)
+{
+    return &axis->waiting.moves[(axis->waiting.first + index) % CM1E_AXIS_BUFFER_DEPTH];
+}
+/** The waiting command of that number; NULL: none. */
+move_t *cm1e_axis_find_waiting(cm1e_axis_t *axis, cm1e_command_id_t id);
+cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move);
+/** The velocity with which a move that begins there shall pass its target, for the sake of those that wait. */
+double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t *move);
+/** The first waiting command that can begin there does; those before it fail. FALSE: none could. */
+bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offset_s);
+/** Something that the active command's profile depends on has changed: it is planned anew from the present set-point.
+ *  Where that is refused, it goes on as it was. */
+cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis);
 
 /* axis_power.c */
 bool cm1e_axis_wants_enable(const cm1e_axis_t *axis);

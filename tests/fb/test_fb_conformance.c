@@ -326,22 +326,23 @@ START_TEST(test_wrong_inputs_are_errors_and_move_nothing)
 }
 END_TEST
 
-START_TEST(test_buffer_modes_other_than_aborting_are_refused)
+START_TEST(test_a_buffer_mode_that_is_none_is_refused)
 {
     bench_open_powered();
     MC_BUFFER_MODE *const modes[RESET] = {
         [ABSOLUTE] = &bench.sets[0].absolute.BufferMode, [RELATIVE] = &bench.sets[0].relative.BufferMode,
         [VELOCITY] = &bench.sets[0].velocity.BufferMode, [HALT] = &bench.sets[0].halt.BufferMode,
         [HOME] = &bench.sets[0].home.BufferMode};
-    for (int kind = 0; kind < RESET; kind++)
-        for (int mode = mcBuffered; mode <= mcBlendingHigh + 1 && modes[kind]; mode++) {
-            *modes[kind] = (MC_BUFFER_MODE)mode;
-            bench.execute[0][kind] = TRUE;
-            scan();
-            EXPECT_ERROR(0, kind, CM1E_ERROR_AXIS_BUFFER_MODE);
-            bench.execute[0][kind] = FALSE;
-            scan();
-        }
+    for (int kind = 0; kind < RESET; kind++) {
+        if (!modes[kind])
+            continue;
+        *modes[kind] = (MC_BUFFER_MODE)(mcBlendingHigh + 1);
+        bench.execute[0][kind] = TRUE;
+        scan();
+        EXPECT_ERROR(0, kind, CM1E_ERROR_AXIS_BUFFER_MODE);
+        bench.execute[0][kind] = FALSE;
+        scan();
+    }
     bench_close();
 }
 END_TEST
@@ -556,7 +557,7 @@ int main(void)
         {test_refused_in_disabled, RESET},
         {test_refused_in_error_stop_until_reset, RESET},
         {test_wrong_inputs_are_errors_and_move_nothing, 0},
-        {test_buffer_modes_other_than_aborting_are_refused, 0},
+        {test_a_buffer_mode_that_is_none_is_refused, 0},
         {test_axis_error_is_an_error_of_the_running_block, RESET},
         {test_reset_with_power_disabled_leads_to_disabled, 0},
         {test_reset_without_error_does_nothing, 0},

@@ -71,16 +71,16 @@ static void post(void)
                                          .torque = positive(90.0), .timeout_s = 0.3};
     const cm1e_axis_command_t command = {
         .kind = (cm1e_command_kind_t)draw(CM1E_COMMAND_KIND_COUNT), .position = wild(5.0),
-        .velocity = draw(4) ? positive(40.0) : wild(60.0), .acceleration = positive(90.0),
+        .end_velocity = wild(20.0), .velocity = draw(4) ? positive(40.0) : wild(60.0), .acceleration = positive(90.0),
         .deceleration = positive(90.0), .jerk = positive(1900.0), .direction = (MC_DIRECTION)draw(6),
-        .buffer_mode = draw(20) ? mcAborting : mcBuffered, .homing = draw(2) ? &homing : NULL,
+        .buffer_mode = draw(3) ? mcAborting : (MC_BUFFER_MODE)draw(7), .homing = draw(2) ? &homing : NULL,
     };
     cm1e_command_id_t id;
     const cm1e_error_t error = cm1e_axis_start(axis, &command, &id);
     TEST_ASSERT_EQUAL_INT(error == CM1E_OK, id != 0);
     if (id) {
         ids[id % IDS] = id;
-        states[id % IDS] = CM1E_COMMAND_ACTIVE;
+        states[id % IDS] = CM1E_COMMAND_BUFFERED;
     }
 }
 
@@ -111,8 +111,10 @@ static void check_commands(void)
             continue;
         const cm1e_command_state_t state = cm1e_axis_command_status(axis, ids[i]).state;
         active += state == CM1E_COMMAND_ACTIVE;
-        if (states[i] != CM1E_COMMAND_ACTIVE) /* what has ended stays as it ended */
+        if (states[i] > CM1E_COMMAND_ACTIVE) /* what has ended stays as it ended */
             TEST_ASSERT_EQUAL_INT(states[i], state);
+        TEST_ASSERT_TRUE(state >= states[i]); /* and what waits was not active */
+        TEST_ASSERT_NOT_EQUAL_INT(CM1E_COMMAND_UNKNOWN, state);
         states[i] = state;
     }
     TEST_ASSERT_LESS_OR_EQUAL_INT(1, active);

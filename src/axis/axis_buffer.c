@@ -1,0 +1,244 @@
+/*
+ * The commands that wait (2.4.2, table 4): taking them in, how fast each one's end position is passed on the way to the
+ * next, and the change from one to the next at the very moment, inside a cycle, at which the first one ends.
+ *
+ * Velocity at a junction: what the buffer mode says, at most as much as the following commands can brake from (looking
+ * ahead from the last one backwards), and as much as the present one can reach without backing up. It is zero where the
+ * direction turns, where the mode is mcBuffered, and before a command that begins at rest.
+ */
+#include <float.h>
+#include <math.h>
+
+#include "axis/axis_private.h"
+
+static bool is_homing(cm1e_command_kind_t kind)
+{
+    return kind == CM1E_COMMAND_HOME || kind == CM1E_COMMAND_HOMING_STEP;
+}
+
+move_t *cm1e_axis_find_waiting(cm1e_axis_t *axis, cm1e_command_id_t id)
+{
+    for (int i = 0; i < axis->waiting.count; i++)
+        if (waiting_move(axis, i)->id == id)
+            return waiting_move(axis, i);
+    return NULL;
+}
+
+/* ---- looking ahead ----------------------------------------------------------------------------------------------- */
+
+/* A waiting command that is passed into without a stop. */
+typedef struct leg {
+    cm1e_motion_limits_t limits;
+    double distance;       /* u; where it has no end: only the sign counts */
+    double exit_velocity;  /* u/s, in its own direction */
+    bool open;             /* it has no end at which it would have to stop */
+    MC_BUFFER_MODE mode;
+} leg_t;
+
+static double junction_velocity(MC_BUFFER_MODE mode, double first, double second)
+{
+    switch (mode) {
+    case mcBlendingLow: return fmin(first, second);
+    case mcBlendingPrevious: return first;
+    case mcBlendingNext: return second;
+    case mcBlendingHigh: return fmax(first, second);
+    default: return 0.0;
+    }
+}
+
+/* FALSE: the command before it has to stop. `end` is where that one ends, `sign` the way it goes; both are moved on. */
+static bool make_leg(const cm1e_axis_t *axis, move_t *move, position_t *end, double sign, leg_t *leg)
+{
+    const from_t from = {*end, sign * DBL_MIN, 0.0}; /* only the direction is known yet */
+    move->origin = *end;
+    if (move->buffer_mode <= mcBuffered || !cm1e_axis_can_plan((cm1e_command_kind_t)move->kind) ||
+        cm1e_axis_limits_of(axis, &from, move, &leg->limits) || cm1e_axis_resolve(axis, &from, move))
+        return false;
+    leg->mode = (MC_BUFFER_MODE)move->buffer_mode;
+    leg->open = false;
+    leg->exit_velocity = 0.0;
+    leg->distance = cm1e_position_minus(move->target, *end) / axis->scale;
+    if (move->kind == CM1E_COMMAND_MOVE_VELOCITY) {
+        leg->open = true;
+        (void)cm1e_axis_signed_velocity(axis, &from, move, &leg->distance);
+    } else if (move->kind == CM1E_COMMAND_HALT) {
+        leg->open = true;
+        leg->distance = sign;
+        leg->limits.velocity = 0.0;
+    } else if (is_continuous_move((cm1e_command_kind_t)move->kind)) {
+        leg->exit_velocity = fmax(0.0, leg->distance > 0.0 ? move->end_velocity : -move->end_velocity);
+    }
+    *end = move->target;
+    return leg->distance != 0.0;
+}
+
+/* How fast a leg may be entered when the command before it has this velocity and direction. With a limit of jerk the way
+ * down to a stop can be shorter than the way down to a low velocity, so a leg that could be left fast can still be
+ * entered as if it were to be left at rest: a command more in the buffer never makes one before it slower. */
+static double entry_velocity(const leg_t *leg, double velocity_before, double sign)
+{
+    const double velocity = junction_velocity(leg->mode, velocity_before, leg->limits.velocity);
+    if (leg->distance * sign <= 0.0)
+        return 0.0;
+    if (leg->open)
+        return velocity;
+    const double distance = fabs(leg->distance);
+    return fmax(cm1e_profile_entry_velocity(distance, velocity, leg->exit_velocity, &leg->limits),
+                cm1e_profile_entry_velocity(distance, velocity, 0.0, &leg->limits));
+}
+
+double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t *move)
+{
+    if (is_continuous_move((cm1e_command_kind_t)move->kind))
+        return move->end_velocity;
+    cm1e_motion_limits_t limits;
+    if (axis->waiting.count == 0 || !is_discrete_move((cm1e_command_kind_t)move->kind) ||
+        cm1e_axis_limits_of(axis, from, move, &limits))
+        return 0.0;
+    leg_t legs[CM1E_AXIS_BUFFER_DEPTH];
+    const double distance = cm1e_position_minus(move->target, from->position) / axis->scale;
+    position_t end = move->target;
+    double sign = copysign(1.0, distance);
+    int count = 0;
+    while (count < axis->waiting.count && make_leg(axis, waiting_move(axis, count), &end, sign, &legs[count])) {
+        sign = copysign(1.0, legs[count].distance);
+        if (legs[count].open || is_endless((cm1e_command_kind_t)waiting_move(axis, count)->kind)) {
+            count++;
+            break;
+        }
+        count++;
+    }
+    for (int i = count - 1; i > 0; i--)
+        legs[i - 1].exit_velocity = entry_velocity(&legs[i], legs[i - 1].limits.velocity,
+                                                   copysign(1.0, legs[i - 1].distance));
+    if (count == 0)
+        return 0.0;
+    /* From which side the first one gets to its target is for the profile to know. */
+    sign = copysign(1.0, legs[0].distance);
+    const double wanted = sign * entry_velocity(&legs[0], limits.velocity, sign);
+    const cm1e_motion_state_t start = {0.0, from->velocity, from->acceleration};
+    return cm1e_profile_passing_velocity(&start, distance, wanted, &limits);
+}
+
+/* ---- taking in --------------------------------------------------------------------------------------------------- */
+
+/* What can be known beforehand. `end`: of the command before, NULL where nobody knows that. */
+static cm1e_error_t check(const cm1e_axis_t *axis, move_t *move, const position_t *end)
+{
+    const from_t from = {end ? *end : axis->set, 0.0, 0.0};
+    const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
+    cm1e_motion_limits_t limits;
+    if (is_homing(kind))
+        return CM1E_OK;
+    cm1e_error_t error = cm1e_axis_limits_of(axis, &from, move, &limits);
+    move->origin = from.position;
+    if (!error)
+        error = cm1e_axis_resolve(axis, &from, move);
+    double way = cm1e_position_minus(move->target, from.position) / axis->scale;
+    if (!error && kind == CM1E_COMMAND_MOVE_VELOCITY)
+        error = cm1e_axis_signed_velocity(axis, &from, move, &way);
+    if (error || kind == CM1E_COMMAND_HALT)
+        return error;
+    const bool from_known = end || kind == CM1E_COMMAND_MOVE_ABSOLUTE ||
+                            kind == CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE;
+    if (from_known && !cm1e_axis_limits_contain_target(axis, from.position, move->target))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    const bool direction_known = end || kind == CM1E_COMMAND_MOVE_VELOCITY ||
+                                 kind == CM1E_COMMAND_MOVE_RELATIVE || kind == CM1E_COMMAND_MOVE_ADDITIVE ||
+                                 kind == CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE;
+    if (direction_known && !cm1e_axis_direction_enabled(axis, way))
+        return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
+    return CM1E_OK;
+}
+
+/* Where the last of all commands so far ends; NULL: nobody knows. */
+static const move_t *last_move(cm1e_axis_t *axis)
+{
+    return axis->waiting.count > 0 ? waiting_move(axis, axis->waiting.count - 1) : &axis->move;
+}
+
+static const position_t *end_of(const move_t *move)
+{
+    const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
+    return is_discrete_move(kind) || is_continuous_move(kind) ? &move->target : NULL;
+}
+
+cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move)
+{
+    const move_t *last = last_move(axis);
+    const cm1e_command_kind_t last_kind = axis->waiting.count > 0 ? (cm1e_command_kind_t)last->kind : axis->kind;
+    if (axis->waiting.count == CM1E_AXIS_BUFFER_DEPTH)
+        return CM1E_ERROR_FULL;
+    if (is_homing((cm1e_command_kind_t)move->kind) && is_endless(last_kind))
+        return CM1E_ERROR_AXIS_STATE; /* homing begins at rest */
+    const cm1e_error_t error = check(axis, move, is_homing(last_kind) ? NULL : end_of(last));
+    if (error)
+        return error;
+    move->id = cm1e_axis_next_id(axis);
+    *waiting_move(axis, axis->waiting.count++) = *move;
+    if (axis->reached) { /* the signal that it waits for is there already (table 4) */
+        const from_t from = from_set(axis);
+        (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
+    } else if (move->buffer_mode != mcBuffered) {
+        (void)cm1e_axis_replan(axis);
+    }
+    return CM1E_OK;
+}
+
+/* ---- from one to the next ---------------------------------------------------------------------------------------- */
+
+static move_t take_first(cm1e_axis_t *axis)
+{
+    const move_t move = *waiting_move(axis, 0);
+    axis->waiting.first = (uint8_t)((axis->waiting.first + 1) % CM1E_AXIS_BUFFER_DEPTH);
+    axis->waiting.count--;
+    return move;
+}
+
+static cm1e_error_t begin_move(cm1e_axis_t *axis, move_t *move, const from_t *from, double offset_s)
+{
+    cm1e_profile_t profile;
+    move->origin = from->position;
+    cm1e_error_t error = cm1e_axis_resolve(axis, from, move);
+    if (error)
+        return error;
+    move->exit_velocity = cm1e_axis_exit_velocity(axis, from, move);
+    error = cm1e_axis_plan(axis, from, move, &profile);
+    if (!error)
+        cm1e_axis_take(axis, move, from, &profile, offset_s);
+    return error;
+}
+
+bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offset_s)
+{
+    while (axis->waiting.count > 0) {
+        move_t move = take_first(axis);
+        const state_rule_t *rule = cm1e_axis_state_rule(axis->state, (cm1e_command_kind_t)move.kind);
+        cm1e_error_t error = rule->refusal;
+        if (!error)
+            error = is_homing((cm1e_command_kind_t)move.kind) ? cm1e_axis_begin_homing(axis, &move)
+                                                              : begin_move(axis, &move, from, offset_s);
+        if (!error) {
+            axis->state = rule->next;
+            return true;
+        }
+        cm1e_axis_record(axis, move.id, CM1E_COMMAND_ERROR, error);
+    }
+    return false;
+}
+
+cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis)
+{
+    if (!axis->active || axis->activity != ACTIVITY_PROFILE || axis->kind == CM1E_COMMAND_STOP)
+        return CM1E_OK;
+    move_t move = axis->move;
+    cm1e_profile_t profile;
+    const from_t from = from_set(axis);
+    move.exit_velocity = cm1e_axis_exit_velocity(axis, &from, &move);
+    const cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, &profile);
+    if (error)
+        return error;
+    axis->move = move;
+    cm1e_axis_run(axis, &from, &profile, cm1e_axis_profile_end(axis, &from, &move, &profile), 0.0);
+    return CM1E_OK;
+}

@@ -1,0 +1,197 @@
+/* The profile of each kind of command, from any state of motion. Nothing here changes the axis. */
+#include <math.h>
+
+#include "axis/axis_private.h"
+
+static cm1e_motion_state_t start_of(const from_t *from)
+{
+    return (cm1e_motion_state_t){0.0, from->velocity, from->acceleration};
+}
+
+/* ---- targets ----------------------------------------------------------------------------------------------------- */
+
+/* How far the command would need to stop: on a modulo axis it says which repetition of the position is the first. */
+static cm1e_error_t stopping_way(const cm1e_axis_t *axis, const from_t *from, const move_t *move, double *way)
+{
+    cm1e_motion_limits_t limits;
+    cm1e_profile_t stop;
+    const cm1e_motion_state_t start = start_of(from);
+    cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
+    if (!error)
+        error = cm1e_profile_to_velocity(&stop, &start, 0.0, &limits);
+    *way = error ? 0.0 : stop.end.position;
+    return error;
+}
+
+static cm1e_error_t resolve_absolute(const cm1e_axis_t *axis, const from_t *from, move_t *move)
+{
+    double way = 0.0;
+    const cm1e_error_t error = axis->modulo_range > 0.0 ? stopping_way(axis, from, move, &way) : CM1E_OK;
+    return error ? error : cm1e_axis_resolve_target(axis, move->position, (MC_DIRECTION)move->direction,
+                                                    from->position, from->velocity, way, &move->target);
+}
+
+static cm1e_error_t resolve_relative(const cm1e_axis_t *axis, const from_t *from, move_t *move)
+{
+    (void)from;
+    const double counts = move->position * axis->scale;
+    if (!isfinite(counts) || fabs(counts) > 4.5e15)
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    move->target = cm1e_position_plus(move->origin, counts);
+    return cm1e_axis_position_in_range(move->target) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+}
+
+static cm1e_error_t resolve_none(const cm1e_axis_t *axis, const from_t *from, move_t *move)
+{
+    (void)axis;
+    move->target = from->position;
+    return CM1E_OK;
+}
+
+/* ---- profiles ---------------------------------------------------------------------------------------------------- */
+
+static cm1e_error_t plan_to_target(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
+{
+    cm1e_motion_limits_t limits;
+    cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
+    if (error)
+        return error;
+    const cm1e_motion_state_t start = start_of(from);
+    const double distance = cm1e_position_minus(move->target, from->position) / axis->scale;
+    error = cm1e_profile_to_state(profile, &start, distance, move->exit_velocity, &limits);
+    return error ? CM1E_ERROR_AXIS_POSITION_RANGE : cm1e_axis_limits_check(axis, from, profile);
+}
+
+cm1e_error_t cm1e_axis_signed_velocity(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
+                                       double *velocity)
+{
+    bool positive; /* 3.10: the direction of Direction, turned round by a negative Velocity */
+    switch (move->direction) {
+    case 0:
+    case mcPositiveDirection:
+        positive = true;
+        break;
+    case mcNegativeDirection:
+        positive = false;
+        break;
+    case mcCurrentDirection:
+        positive = from->velocity != 0.0 ? from->velocity > 0.0 : axis->positive_before;
+        break;
+    default: /* the shortest way to a velocity is none */
+        return CM1E_ERROR_AXIS_DIRECTION;
+    }
+    *velocity = positive ? move->velocity : -move->velocity;
+    return CM1E_OK;
+}
+
+/* A velocity that goes on for ever must be allowed, and not begin too late to brake before a limit. */
+static cm1e_error_t check_endless(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
+{
+    const double velocity = profile->end.velocity, now = cm1e_axis_units(axis, from->position);
+    if (!cm1e_axis_direction_enabled(axis, velocity))
+        return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
+    if (axis->software_limits && (velocity > 0.0 ? now >= axis->upper : velocity < 0.0 && now <= axis->lower))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    cm1e_motion_state_t next;
+    cm1e_profile_sample(profile, axis->cycle_s, &next);
+    return cm1e_axis_limits_can_stop(axis, from->position, &next) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+}
+
+static cm1e_error_t plan_velocity(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
+{
+    cm1e_motion_limits_t limits;
+    double velocity;
+    cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
+    if (!error)
+        error = cm1e_axis_signed_velocity(axis, from, move, &velocity);
+    if (error)
+        return error;
+    const cm1e_motion_state_t start = start_of(from);
+    if (cm1e_profile_to_velocity(profile, &start, copysign(limits.velocity, velocity), &limits))
+        return CM1E_ERROR_AXIS_VELOCITY_RANGE;
+    return check_endless(axis, from, profile);
+}
+
+/* 3.11: through the position with the end velocity, if need be from behind it. Where the way there is only too short to
+ * get to that velocity, the axis passes the position as it can and gets there later: nobody wants it to back up first
+ * when the position lies ahead. */
+static cm1e_error_t plan_continuous(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
+{
+    cm1e_motion_limits_t limits;
+    const cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
+    if (error)
+        return error;
+    const cm1e_motion_state_t start = start_of(from);
+    const double distance = cm1e_position_minus(move->target, from->position) / axis->scale;
+    const double end = move->exit_velocity, cruise = limits.velocity;
+    limits.velocity = fmax(cruise, fabs(end));
+    if (cm1e_profile_to_velocity(profile, &start, end, &limits))
+        return CM1E_ERROR_AXIS_VELOCITY_RANGE;
+    const double needed = profile->end.position;
+    if (end > 0.0 ? distance > 0.0 && needed >= distance : end < 0.0 && distance < 0.0 && needed <= distance)
+        move->passing = true;
+    if (move->passing)
+        return check_endless(axis, from, profile);
+    limits.velocity = cruise;
+    if (cm1e_profile_to_state(profile, &start, distance, end, &limits))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    if (!cm1e_axis_direction_enabled(axis, end))
+        return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
+    return cm1e_axis_limits_check(axis, from, profile);
+}
+
+cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *limits,
+                                 cm1e_profile_t *profile)
+{
+    const cm1e_motion_state_t start = start_of(from);
+    const cm1e_error_t error = cm1e_profile_to_velocity(profile, &start, 0.0, limits);
+    if (error || cm1e_axis_limits_contain(axis, from, profile))
+        return error;
+    return cm1e_profile_to_velocity(profile, &start, 0.0, &axis->emergency);
+}
+
+static cm1e_error_t plan_stop(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
+{
+    cm1e_motion_limits_t limits;
+    const cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
+    return error ? error : cm1e_axis_plan_stop(axis, from, &limits, profile);
+}
+
+/* ---- by kind ----------------------------------------------------------------------------------------------------- */
+
+typedef struct planner {
+    cm1e_error_t (*resolve)(const cm1e_axis_t *axis, const from_t *from, move_t *move);
+    cm1e_error_t (*plan)(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile);
+} planner_t;
+
+static const planner_t planners[CM1E_COMMAND_KIND_COUNT] = {
+    [CM1E_COMMAND_MOVE_ABSOLUTE] = {resolve_absolute, plan_to_target},
+    [CM1E_COMMAND_MOVE_RELATIVE] = {resolve_relative, plan_to_target},
+    [CM1E_COMMAND_MOVE_ADDITIVE] = {resolve_relative, plan_to_target},
+    [CM1E_COMMAND_MOVE_VELOCITY] = {resolve_none, plan_velocity},
+    [CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE] = {resolve_absolute, plan_continuous},
+    [CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE] = {resolve_relative, plan_continuous},
+    [CM1E_COMMAND_HALT] = {resolve_none, plan_stop},
+    [CM1E_COMMAND_STOP] = {resolve_none, plan_stop},
+};
+
+bool cm1e_axis_can_plan(cm1e_command_kind_t kind) { return planners[kind].plan != NULL; }
+
+cm1e_error_t cm1e_axis_resolve(const cm1e_axis_t *axis, const from_t *from, move_t *move)
+{
+    return planners[move->kind].resolve(axis, from, move);
+}
+
+cm1e_error_t cm1e_axis_plan(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
+{
+    return planners[move->kind].plan(axis, from, move, profile);
+}
+
+position_t cm1e_axis_profile_end(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
+                                 const cm1e_profile_t *profile)
+{
+    const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
+    if (is_discrete_move(kind) || (is_continuous_move(kind) && !move->passing))
+        return move->target;
+    return cm1e_position_plus(from->position, profile->end.position * axis->scale);
+}
