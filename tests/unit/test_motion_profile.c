@@ -48,6 +48,38 @@ static void test_moves_from_rest_take_the_optimal_time(void)
     }
 }
 
+/** The ten scenarios by which the peers were measured, and the shortest time that any of them takes, to the 0.1 ms in
+ *  which it was measured. The second move begins on the way, `at_s` after the first. */
+static void test_ten_scenarios_take_no_longer_than_the_best_peer(void)
+{
+    const cm1e_motion_limits_t late = {300, 1000, 3000, 30000}, soft = {300, 1500, 1500, 2000};
+    const cm1e_motion_limits_t slow = {100, 1500, 1500, 30000};
+    const struct {
+        double first;
+        cm1e_motion_limits_t first_limits;
+        double at_s, second;
+        cm1e_motion_limits_t second_limits;
+        double best_s;
+        bool overshoots;
+    } scenarios[] = {
+        {250, usual, 0, 250, usual, 1.0833, false},   {5, usual, 0, 5, usual, 0.1747, false},
+        {0.01, usual, 0, 0.01, usual, 0.0220, false}, {100, late, 0, 100, late, 0.6000, false},
+        {-100, usual, 0, -100, usual, 0.5833, false}, {100, usual, 0.20, 250, usual, 1.0833, false},
+        {100, usual, 0.20, -50, usual, 1.1167, true}, {250, usual, 0.35, 250, slow, 2.0500, false},
+        {250, usual, 0.20, 40, usual, 0.8096, true},  {50, soft, 0, 50, soft, 0.9283, false},
+    };
+    for (size_t i = 0; i < sizeof scenarios / sizeof scenarios[0]; i++) {
+        const cm1e_profile_t first = to_position(at_zero, scenarios[i].first, scenarios[i].first_limits);
+        const cm1e_motion_state_t middle = sample(&first, scenarios[i].at_s);
+        const cm1e_profile_t second = to_position(middle, scenarios[i].second, scenarios[i].second_limits);
+        TEST_ASSERT_DOUBLE_WITHIN(0.5e-4, scenarios[i].best_s, scenarios[i].at_s + second.duration_s);
+        double low, high;
+        cm1e_profile_extent(&second, &low, &high);
+        TEST_ASSERT_EQUAL(scenarios[i].overshoots, low < fmin(middle.position, scenarios[i].second) ||
+                                                       high > fmax(middle.position, scenarios[i].second));
+    }
+}
+
 static void test_new_target_at_both_limits_needs_no_braking(void)
 {
     /* a = amax and v + a2/2j = vmax: where rounding must not be read as a violation. */
@@ -253,6 +285,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_moves_from_rest_take_the_optimal_time);
+    RUN_TEST(test_ten_scenarios_take_no_longer_than_the_best_peer);
     RUN_TEST(test_new_target_at_both_limits_needs_no_braking);
     RUN_TEST(test_lower_velocity_on_the_way_is_reached_without_undershoot);
     RUN_TEST(test_target_just_passed_is_reached_by_way_of_the_stop);
