@@ -13,7 +13,7 @@ MACROS = """#define MEMBER(TYPE, NAME, SECTION, KIND) \\
     {#NAME, BLOCK_##SECTION, BLOCK_##KIND, offsetof(TYPE##_t, NAME), sizeof(((TYPE##_t *)0)->NAME)}
 #define BLOCK(TYPE, RULES) \\
     {#TYPE, sizeof(TYPE##_t), call_##TYPE, members_of_##TYPE, sizeof members_of_##TYPE / sizeof *members_of_##TYPE, \\
-     RULES}
+     RULES, errors_of_##TYPE}
 """
 
 
@@ -84,6 +84,10 @@ def block_text(block, sizes, files, tables):
     table = (f"static const block_member_t members_of_{name}[] = {{\n{members}}};\n"
              f"static void call_{name}(void *fb) {{ {name}(fb); }}\n")
     cells = tables.states_of(block)
+    errors = sorted({error for error, _ in tables.errors_of(block)} | set(cells) & set(tables.errors),
+                    key=lambda error: -tables.errors[error][0])
+    table += f"static const cm1e_error_t errors_of_{name}[] = {{\n"
+    table += "".join(f"    CM1E_ERROR_{error},\n" for error in errors) + "    CM1E_OK,\n};\n"
     entry = f"    BLOCK({name}, {'rules_' + block.tags['states'][0] if cells else 'NULL'}),\n"
     return asserts, table, entry
 

@@ -13,7 +13,7 @@ import c_header
 import c_table
 import pages
 import st
-from tables import Tables
+import tables
 
 SOURCE = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../.."))
 FILES = ("types.st", "motion.st", "administrative.st", "homing.st", "standard.st")
@@ -28,11 +28,12 @@ def read(path):
 def outputs():
     """{path below the source tree: text}"""
     files = [st.Reader(f"fb/interface/{name}", read(f"fb/interface/{name}")).read() for name in FILES]
-    tables = Tables(read("fb/interface/classes.md"), read("include/cm1e/error.h"))
+    classes = tables.Tables(read("fb/interface/classes.md"), read("include/cm1e/error.h"))
+    notes = tables.notes(read("fb/interface/notes.md"), {block.name for file in files for block in file.blocks()})
     result = {f"include/cm1e/{file.header}": c_header.header(file) for file in files}
-    result["tests/support/block_table.c"] = c_table.source(files, tables)
+    result["tests/support/block_table.c"] = c_table.source(files, classes)
     has_diagram = lambda name: os.path.exists(os.path.join(SOURCE, "docs/blocks", f"{name}.svg"))
-    result.update(pages.all_pages(files, tables, has_diagram))
+    result.update(pages.all_pages(files, classes, notes, has_diagram))
     return result
 
 

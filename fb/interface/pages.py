@@ -116,9 +116,9 @@ def errors_text(block, tables):
     return f"## Errors\n\n| ErrorID | error | when |\n|---|---|---|\n{rows}\n"
 
 
-def notes_text(block):
-    notes = block.tags.get("note", [])
-    return "## Notes\n\n" + "".join(wrap(note, "- ", "  ") + "\n" for note in notes) + "\n" if notes else ""
+def notes_text(block, notes):
+    parts = [text for names, text in notes if block.name in names]
+    return "## Notes\n\n" + "\n\n".join(parts) + "\n\n" if parts else ""
 
 
 def clause_text(block):
@@ -130,7 +130,7 @@ def first_sentence(text):
     return " ".join(text.split()).partition(". ")[0].rstrip(".") + "."
 
 
-def page(block, file, tables, has_diagram):
+def page(block, file, tables, notes, has_diagram):
     name = block.name
     include = "iec.h" if file.header == "iec.h" else "plcopen.h"
     diagram = f"## Timing\n\n![timing of {name}]({name}.svg)\n\n" if has_diagram else ""
@@ -144,7 +144,7 @@ def page(block, file, tables, has_diagram):
             + f"`#include <cm1e/{include}>`, `{name}_t`, `{name}(&fb)`.\n"
             + "What holds for all blocks: [the function blocks](../FUNCTION-BLOCKS.md).\n\n"
             + f"```iecst\n{st_text(block)}\n```\n\n{defaults}{variables_text(block, tables)}"
-            + states_text(block, tables) + errors_text(block, tables) + notes_text(block) + diagram).rstrip() + "\n"
+            + states_text(block, tables) + errors_text(block, tables) + notes_text(block, notes) + diagram).rstrip() + "\n"
 
 
 def index(files, tables):
@@ -174,9 +174,9 @@ def index(files, tables):
     return text
 
 
-def all_pages(files, tables, has_diagram):
+def all_pages(files, tables, notes, has_diagram):
     result = {"docs/blocks/README.md": index(files, tables)}
     for file in files:
         for block in file.blocks():
-            result[f"docs/blocks/{block.name}.md"] = page(block, file, tables, has_diagram(block.name))
+            result[f"docs/blocks/{block.name}.md"] = page(block, file, tables, notes, has_diagram(block.name))
     return result

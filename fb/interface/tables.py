@@ -17,6 +17,18 @@ def rows(text, heading):
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[2:]]
 
 
+def notes(text, names):
+    """[({names of blocks}, text)] of fb/interface/notes.md: what is said below a heading that names blocks."""
+    result = []
+    for part in re.split(r"^## ", text, flags=re.MULTILINE)[1:]:
+        heading, _, body = part.partition("\n")
+        blocks = {name.strip() for name in heading.split(",")}
+        if not blocks <= names:
+            raise Fault(f"fb/interface/notes.md: {heading}: {', '.join(blocks - names)} is no block")
+        result.append((blocks, body.strip()))
+    return result
+
+
 class Tables:
     def __init__(self, classes, errors):
         self.errors = {name.removeprefix("ERROR_"): (ERROR_ID_BASE - int(value), text) for name, value, text in

@@ -747,7 +747,7 @@ AT(CTUD, Private, 10);
     {#NAME, BLOCK_##SECTION, BLOCK_##KIND, offsetof(TYPE##_t, NAME), sizeof(((TYPE##_t *)0)->NAME)}
 #define BLOCK(TYPE, RULES) \
     {#TYPE, sizeof(TYPE##_t), call_##TYPE, members_of_##TYPE, sizeof members_of_##TYPE / sizeof *members_of_##TYPE, \
-     RULES}
+     RULES, errors_of_##TYPE}
 
 static const block_rule_t rules_discrete[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
@@ -769,6 +769,16 @@ static const block_rule_t rules_continuous[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
     [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
 };
+static const block_rule_t rules_halt[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
+    [CM1E_AXIS_STANDSTILL] = {.next = CM1E_AXIS_STANDSTILL},
+    [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_HOMING},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.next = CM1E_AXIS_DISCRETE_MOTION},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.next = CM1E_AXIS_DISCRETE_MOTION},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.next = CM1E_AXIS_DISCRETE_MOTION},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
+};
 static const block_rule_t rules_stop[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
     [CM1E_AXIS_STANDSTILL] = {.next = CM1E_AXIS_STOPPING},
@@ -776,7 +786,7 @@ static const block_rule_t rules_stop[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_DISCRETE_MOTION] = {.next = CM1E_AXIS_STOPPING},
     [CM1E_AXIS_CONTINUOUS_MOTION] = {.next = CM1E_AXIS_STOPPING},
     [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.next = CM1E_AXIS_STOPPING},
-    [CM1E_AXIS_STOPPING] = {.next = CM1E_AXIS_STOPPING},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
     [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
 };
 static const block_rule_t rules_home[CM1E_AXIS_STATE_COUNT] = {
@@ -851,6 +861,11 @@ static const block_member_t members_of_MC_Power[] = {
     MEMBER(MC_Power, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_Power(void *fb) { MC_Power(fb); }
+static const cm1e_error_t errors_of_MC_Power[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_Home[] = {
     MEMBER(MC_Home, Axis, IN_OUT, POINTER),
     MEMBER(MC_Home, Execute, INPUT, BOOL),
@@ -865,6 +880,19 @@ static const block_member_t members_of_MC_Home[] = {
     MEMBER(MC_Home, Parameters, INPUT, POINTER),
 };
 static void call_MC_Home(void *fb) { MC_Home(fb); }
+static const cm1e_error_t errors_of_MC_Home[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_AXIS_STATE,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_Stop[] = {
     MEMBER(MC_Stop, Axis, IN_OUT, POINTER),
     MEMBER(MC_Stop, Execute, INPUT, BOOL),
@@ -878,6 +906,15 @@ static const block_member_t members_of_MC_Stop[] = {
     MEMBER(MC_Stop, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_Stop(void *fb) { MC_Stop(fb); }
+static const cm1e_error_t errors_of_MC_Stop[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_Halt[] = {
     MEMBER(MC_Halt, Axis, IN_OUT, POINTER),
     MEMBER(MC_Halt, Execute, INPUT, BOOL),
@@ -892,6 +929,18 @@ static const block_member_t members_of_MC_Halt[] = {
     MEMBER(MC_Halt, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_Halt(void *fb) { MC_Halt(fb); }
+static const cm1e_error_t errors_of_MC_Halt[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_MoveAbsolute[] = {
     MEMBER(MC_MoveAbsolute, Axis, IN_OUT, POINTER),
     MEMBER(MC_MoveAbsolute, Execute, INPUT, BOOL),
@@ -911,6 +960,22 @@ static const block_member_t members_of_MC_MoveAbsolute[] = {
     MEMBER(MC_MoveAbsolute, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_MoveAbsolute(void *fb) { MC_MoveAbsolute(fb); }
+static const cm1e_error_t errors_of_MC_MoveAbsolute[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DIRECTION,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_MoveRelative[] = {
     MEMBER(MC_MoveRelative, Axis, IN_OUT, POINTER),
     MEMBER(MC_MoveRelative, Execute, INPUT, BOOL),
@@ -929,6 +994,21 @@ static const block_member_t members_of_MC_MoveRelative[] = {
     MEMBER(MC_MoveRelative, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_MoveRelative(void *fb) { MC_MoveRelative(fb); }
+static const cm1e_error_t errors_of_MC_MoveRelative[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_MoveAdditive[] = {
     MEMBER(MC_MoveAdditive, Axis, IN_OUT, POINTER),
     MEMBER(MC_MoveAdditive, Execute, INPUT, BOOL),
@@ -947,6 +1027,21 @@ static const block_member_t members_of_MC_MoveAdditive[] = {
     MEMBER(MC_MoveAdditive, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_MoveAdditive(void *fb) { MC_MoveAdditive(fb); }
+static const cm1e_error_t errors_of_MC_MoveAdditive[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_MoveSuperimposed[] = {
     MEMBER(MC_MoveSuperimposed, Axis, IN_OUT, POINTER),
     MEMBER(MC_MoveSuperimposed, Execute, INPUT, BOOL),
@@ -964,6 +1059,19 @@ static const block_member_t members_of_MC_MoveSuperimposed[] = {
     MEMBER(MC_MoveSuperimposed, CoveredDistance, OUTPUT, LREAL),
 };
 static void call_MC_MoveSuperimposed(void *fb) { MC_MoveSuperimposed(fb); }
+static const cm1e_error_t errors_of_MC_MoveSuperimposed[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_HaltSuperimposed[] = {
     MEMBER(MC_HaltSuperimposed, Axis, IN_OUT, POINTER),
     MEMBER(MC_HaltSuperimposed, Execute, INPUT, BOOL),
@@ -977,6 +1085,16 @@ static const block_member_t members_of_MC_HaltSuperimposed[] = {
     MEMBER(MC_HaltSuperimposed, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_HaltSuperimposed(void *fb) { MC_HaltSuperimposed(fb); }
+static const cm1e_error_t errors_of_MC_HaltSuperimposed[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_MoveVelocity[] = {
     MEMBER(MC_MoveVelocity, Axis, IN_OUT, POINTER),
     MEMBER(MC_MoveVelocity, Execute, INPUT, BOOL),
@@ -995,6 +1113,21 @@ static const block_member_t members_of_MC_MoveVelocity[] = {
     MEMBER(MC_MoveVelocity, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_MoveVelocity(void *fb) { MC_MoveVelocity(fb); }
+static const cm1e_error_t errors_of_MC_MoveVelocity[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DIRECTION,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_MoveContinuousAbsolute[] = {
     MEMBER(MC_MoveContinuousAbsolute, Axis, IN_OUT, POINTER),
     MEMBER(MC_MoveContinuousAbsolute, Execute, INPUT, BOOL),
@@ -1015,6 +1148,22 @@ static const block_member_t members_of_MC_MoveContinuousAbsolute[] = {
     MEMBER(MC_MoveContinuousAbsolute, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_MoveContinuousAbsolute(void *fb) { MC_MoveContinuousAbsolute(fb); }
+static const cm1e_error_t errors_of_MC_MoveContinuousAbsolute[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DIRECTION,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_MoveContinuousRelative[] = {
     MEMBER(MC_MoveContinuousRelative, Axis, IN_OUT, POINTER),
     MEMBER(MC_MoveContinuousRelative, Execute, INPUT, BOOL),
@@ -1034,6 +1183,21 @@ static const block_member_t members_of_MC_MoveContinuousRelative[] = {
     MEMBER(MC_MoveContinuousRelative, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_MoveContinuousRelative(void *fb) { MC_MoveContinuousRelative(fb); }
+static const cm1e_error_t errors_of_MC_MoveContinuousRelative[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_TorqueControl[] = {
     MEMBER(MC_TorqueControl, Axis, IN_OUT, POINTER),
     MEMBER(MC_TorqueControl, Execute, INPUT, BOOL),
@@ -1054,6 +1218,12 @@ static const block_member_t members_of_MC_TorqueControl[] = {
     MEMBER(MC_TorqueControl, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_TorqueControl(void *fb) { MC_TorqueControl(fb); }
+static const cm1e_error_t errors_of_MC_TorqueControl[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_UNSUPPORTED,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_PositionProfile[] = {
     MEMBER(MC_PositionProfile, Axis, IN_OUT, POINTER),
     MEMBER(MC_PositionProfile, TimePosition, IN_OUT, POINTER),
@@ -1071,6 +1241,18 @@ static const block_member_t members_of_MC_PositionProfile[] = {
     MEMBER(MC_PositionProfile, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_PositionProfile(void *fb) { MC_PositionProfile(fb); }
+static const cm1e_error_t errors_of_MC_PositionProfile[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_VelocityProfile[] = {
     MEMBER(MC_VelocityProfile, Axis, IN_OUT, POINTER),
     MEMBER(MC_VelocityProfile, TimeVelocity, IN_OUT, POINTER),
@@ -1088,6 +1270,18 @@ static const block_member_t members_of_MC_VelocityProfile[] = {
     MEMBER(MC_VelocityProfile, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_VelocityProfile(void *fb) { MC_VelocityProfile(fb); }
+static const cm1e_error_t errors_of_MC_VelocityProfile[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_AccelerationProfile[] = {
     MEMBER(MC_AccelerationProfile, Axis, IN_OUT, POINTER),
     MEMBER(MC_AccelerationProfile, TimeAcceleration, IN_OUT, POINTER),
@@ -1105,6 +1299,18 @@ static const block_member_t members_of_MC_AccelerationProfile[] = {
     MEMBER(MC_AccelerationProfile, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_AccelerationProfile(void *fb) { MC_AccelerationProfile(fb); }
+static const cm1e_error_t errors_of_MC_AccelerationProfile[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_Jog[] = {
     MEMBER(MC_Jog, Axis, IN_OUT, POINTER),
     MEMBER(MC_Jog, JogForward, INPUT, BOOL),
@@ -1123,6 +1329,15 @@ static const block_member_t members_of_MC_Jog[] = {
     MEMBER(MC_Jog, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_Jog(void *fb) { MC_Jog(fb); }
+static const cm1e_error_t errors_of_MC_Jog[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_SetPosition[] = {
     MEMBER(MC_SetPosition, Axis, IN_OUT, POINTER),
     MEMBER(MC_SetPosition, Execute, INPUT, BOOL),
@@ -1135,6 +1350,11 @@ static const block_member_t members_of_MC_SetPosition[] = {
     MEMBER(MC_SetPosition, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_SetPosition(void *fb) { MC_SetPosition(fb); }
+static const cm1e_error_t errors_of_MC_SetPosition[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_SetOverride[] = {
     MEMBER(MC_SetOverride, Axis, IN_OUT, POINTER),
     MEMBER(MC_SetOverride, Enable, INPUT, BOOL),
@@ -1147,6 +1367,11 @@ static const block_member_t members_of_MC_SetOverride[] = {
     MEMBER(MC_SetOverride, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_SetOverride(void *fb) { MC_SetOverride(fb); }
+static const cm1e_error_t errors_of_MC_SetOverride[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_ReadParameter[] = {
     MEMBER(MC_ReadParameter, Axis, IN_OUT, POINTER),
     MEMBER(MC_ReadParameter, Enable, INPUT, BOOL),
@@ -1158,6 +1383,11 @@ static const block_member_t members_of_MC_ReadParameter[] = {
     MEMBER(MC_ReadParameter, Value, OUTPUT, LREAL),
 };
 static void call_MC_ReadParameter(void *fb) { MC_ReadParameter(fb); }
+static const cm1e_error_t errors_of_MC_ReadParameter[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_ReadBoolParameter[] = {
     MEMBER(MC_ReadBoolParameter, Axis, IN_OUT, POINTER),
     MEMBER(MC_ReadBoolParameter, Enable, INPUT, BOOL),
@@ -1169,6 +1399,11 @@ static const block_member_t members_of_MC_ReadBoolParameter[] = {
     MEMBER(MC_ReadBoolParameter, Value, OUTPUT, BOOL),
 };
 static void call_MC_ReadBoolParameter(void *fb) { MC_ReadBoolParameter(fb); }
+static const cm1e_error_t errors_of_MC_ReadBoolParameter[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_WriteParameter[] = {
     MEMBER(MC_WriteParameter, Axis, IN_OUT, POINTER),
     MEMBER(MC_WriteParameter, Execute, INPUT, BOOL),
@@ -1181,6 +1416,11 @@ static const block_member_t members_of_MC_WriteParameter[] = {
     MEMBER(MC_WriteParameter, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_WriteParameter(void *fb) { MC_WriteParameter(fb); }
+static const cm1e_error_t errors_of_MC_WriteParameter[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_WriteBoolParameter[] = {
     MEMBER(MC_WriteBoolParameter, Axis, IN_OUT, POINTER),
     MEMBER(MC_WriteBoolParameter, Execute, INPUT, BOOL),
@@ -1193,6 +1433,11 @@ static const block_member_t members_of_MC_WriteBoolParameter[] = {
     MEMBER(MC_WriteBoolParameter, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_WriteBoolParameter(void *fb) { MC_WriteBoolParameter(fb); }
+static const cm1e_error_t errors_of_MC_WriteBoolParameter[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_ReadDigitalInput[] = {
     MEMBER(MC_ReadDigitalInput, Input, IN_OUT, POINTER),
     MEMBER(MC_ReadDigitalInput, Enable, INPUT, BOOL),
@@ -1204,6 +1449,11 @@ static const block_member_t members_of_MC_ReadDigitalInput[] = {
     MEMBER(MC_ReadDigitalInput, Value, OUTPUT, BOOL),
 };
 static void call_MC_ReadDigitalInput(void *fb) { MC_ReadDigitalInput(fb); }
+static const cm1e_error_t errors_of_MC_ReadDigitalInput[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_ReadDigitalOutput[] = {
     MEMBER(MC_ReadDigitalOutput, Output, IN_OUT, POINTER),
     MEMBER(MC_ReadDigitalOutput, Enable, INPUT, BOOL),
@@ -1215,6 +1465,11 @@ static const block_member_t members_of_MC_ReadDigitalOutput[] = {
     MEMBER(MC_ReadDigitalOutput, Value, OUTPUT, BOOL),
 };
 static void call_MC_ReadDigitalOutput(void *fb) { MC_ReadDigitalOutput(fb); }
+static const cm1e_error_t errors_of_MC_ReadDigitalOutput[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_WriteDigitalOutput[] = {
     MEMBER(MC_WriteDigitalOutput, Output, IN_OUT, POINTER),
     MEMBER(MC_WriteDigitalOutput, Execute, INPUT, BOOL),
@@ -1227,6 +1482,11 @@ static const block_member_t members_of_MC_WriteDigitalOutput[] = {
     MEMBER(MC_WriteDigitalOutput, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_WriteDigitalOutput(void *fb) { MC_WriteDigitalOutput(fb); }
+static const cm1e_error_t errors_of_MC_WriteDigitalOutput[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_ReadActualPosition[] = {
     MEMBER(MC_ReadActualPosition, Axis, IN_OUT, POINTER),
     MEMBER(MC_ReadActualPosition, Enable, INPUT, BOOL),
@@ -1237,6 +1497,12 @@ static const block_member_t members_of_MC_ReadActualPosition[] = {
     MEMBER(MC_ReadActualPosition, Position, OUTPUT, LREAL),
 };
 static void call_MC_ReadActualPosition(void *fb) { MC_ReadActualPosition(fb); }
+static const cm1e_error_t errors_of_MC_ReadActualPosition[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_OFFLINE,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_ReadActualVelocity[] = {
     MEMBER(MC_ReadActualVelocity, Axis, IN_OUT, POINTER),
     MEMBER(MC_ReadActualVelocity, Enable, INPUT, BOOL),
@@ -1247,6 +1513,12 @@ static const block_member_t members_of_MC_ReadActualVelocity[] = {
     MEMBER(MC_ReadActualVelocity, Velocity, OUTPUT, LREAL),
 };
 static void call_MC_ReadActualVelocity(void *fb) { MC_ReadActualVelocity(fb); }
+static const cm1e_error_t errors_of_MC_ReadActualVelocity[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_OFFLINE,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_ReadActualTorque[] = {
     MEMBER(MC_ReadActualTorque, Axis, IN_OUT, POINTER),
     MEMBER(MC_ReadActualTorque, Enable, INPUT, BOOL),
@@ -1257,6 +1529,12 @@ static const block_member_t members_of_MC_ReadActualTorque[] = {
     MEMBER(MC_ReadActualTorque, Torque, OUTPUT, LREAL),
 };
 static void call_MC_ReadActualTorque(void *fb) { MC_ReadActualTorque(fb); }
+static const cm1e_error_t errors_of_MC_ReadActualTorque[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_OFFLINE,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_ReadStatus[] = {
     MEMBER(MC_ReadStatus, Axis, IN_OUT, POINTER),
     MEMBER(MC_ReadStatus, Enable, INPUT, BOOL),
@@ -1274,6 +1552,11 @@ static const block_member_t members_of_MC_ReadStatus[] = {
     MEMBER(MC_ReadStatus, SynchronizedMotion, OUTPUT, BOOL),
 };
 static void call_MC_ReadStatus(void *fb) { MC_ReadStatus(fb); }
+static const cm1e_error_t errors_of_MC_ReadStatus[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_ReadMotionState[] = {
     MEMBER(MC_ReadMotionState, Axis, IN_OUT, POINTER),
     MEMBER(MC_ReadMotionState, Enable, INPUT, BOOL),
@@ -1289,6 +1572,11 @@ static const block_member_t members_of_MC_ReadMotionState[] = {
     MEMBER(MC_ReadMotionState, DirectionNegative, OUTPUT, BOOL),
 };
 static void call_MC_ReadMotionState(void *fb) { MC_ReadMotionState(fb); }
+static const cm1e_error_t errors_of_MC_ReadMotionState[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_ReadAxisInfo[] = {
     MEMBER(MC_ReadAxisInfo, Axis, IN_OUT, POINTER),
     MEMBER(MC_ReadAxisInfo, Enable, INPUT, BOOL),
@@ -1307,6 +1595,11 @@ static const block_member_t members_of_MC_ReadAxisInfo[] = {
     MEMBER(MC_ReadAxisInfo, AxisWarning, OUTPUT, BOOL),
 };
 static void call_MC_ReadAxisInfo(void *fb) { MC_ReadAxisInfo(fb); }
+static const cm1e_error_t errors_of_MC_ReadAxisInfo[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_ReadAxisError[] = {
     MEMBER(MC_ReadAxisError, Axis, IN_OUT, POINTER),
     MEMBER(MC_ReadAxisError, Enable, INPUT, BOOL),
@@ -1318,6 +1611,11 @@ static const block_member_t members_of_MC_ReadAxisError[] = {
     MEMBER(MC_ReadAxisError, DeviceErrorCode, OUTPUT, WORD),
 };
 static void call_MC_ReadAxisError(void *fb) { MC_ReadAxisError(fb); }
+static const cm1e_error_t errors_of_MC_ReadAxisError[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_Reset[] = {
     MEMBER(MC_Reset, Axis, IN_OUT, POINTER),
     MEMBER(MC_Reset, Execute, INPUT, BOOL),
@@ -1327,6 +1625,11 @@ static const block_member_t members_of_MC_Reset[] = {
     MEMBER(MC_Reset, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_Reset(void *fb) { MC_Reset(fb); }
+static const cm1e_error_t errors_of_MC_Reset[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_DigitalCamSwitch[] = {
     MEMBER(MC_DigitalCamSwitch, Axis, IN_OUT, POINTER),
     MEMBER(MC_DigitalCamSwitch, Switches, IN_OUT, POINTER),
@@ -1341,6 +1644,11 @@ static const block_member_t members_of_MC_DigitalCamSwitch[] = {
     MEMBER(MC_DigitalCamSwitch, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_DigitalCamSwitch(void *fb) { MC_DigitalCamSwitch(fb); }
+static const cm1e_error_t errors_of_MC_DigitalCamSwitch[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_TouchProbe[] = {
     MEMBER(MC_TouchProbe, Axis, IN_OUT, POINTER),
     MEMBER(MC_TouchProbe, TriggerInput, IN_OUT, POINTER),
@@ -1356,6 +1664,11 @@ static const block_member_t members_of_MC_TouchProbe[] = {
     MEMBER(MC_TouchProbe, RecordedPosition, OUTPUT, LREAL),
 };
 static void call_MC_TouchProbe(void *fb) { MC_TouchProbe(fb); }
+static const cm1e_error_t errors_of_MC_TouchProbe[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_AbortTrigger[] = {
     MEMBER(MC_AbortTrigger, Axis, IN_OUT, POINTER),
     MEMBER(MC_AbortTrigger, TriggerInput, IN_OUT, POINTER),
@@ -1366,6 +1679,11 @@ static const block_member_t members_of_MC_AbortTrigger[] = {
     MEMBER(MC_AbortTrigger, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_AbortTrigger(void *fb) { MC_AbortTrigger(fb); }
+static const cm1e_error_t errors_of_MC_AbortTrigger[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_StepAbsoluteSwitch[] = {
     MEMBER(MC_StepAbsoluteSwitch, Axis, IN_OUT, POINTER),
     MEMBER(MC_StepAbsoluteSwitch, Execute, INPUT, BOOL),
@@ -1386,6 +1704,18 @@ static const block_member_t members_of_MC_StepAbsoluteSwitch[] = {
     MEMBER(MC_StepAbsoluteSwitch, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_StepAbsoluteSwitch(void *fb) { MC_StepAbsoluteSwitch(fb); }
+static const cm1e_error_t errors_of_MC_StepAbsoluteSwitch[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_AXIS_STATE,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_StepLimitSwitch[] = {
     MEMBER(MC_StepLimitSwitch, Axis, IN_OUT, POINTER),
     MEMBER(MC_StepLimitSwitch, Execute, INPUT, BOOL),
@@ -1405,6 +1735,18 @@ static const block_member_t members_of_MC_StepLimitSwitch[] = {
     MEMBER(MC_StepLimitSwitch, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_StepLimitSwitch(void *fb) { MC_StepLimitSwitch(fb); }
+static const cm1e_error_t errors_of_MC_StepLimitSwitch[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_AXIS_STATE,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_StepBlock[] = {
     MEMBER(MC_StepBlock, Axis, IN_OUT, POINTER),
     MEMBER(MC_StepBlock, Execute, INPUT, BOOL),
@@ -1425,6 +1767,18 @@ static const block_member_t members_of_MC_StepBlock[] = {
     MEMBER(MC_StepBlock, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_StepBlock(void *fb) { MC_StepBlock(fb); }
+static const cm1e_error_t errors_of_MC_StepBlock[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_AXIS_STATE,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_StepReferencePulse[] = {
     MEMBER(MC_StepReferencePulse, Axis, IN_OUT, POINTER),
     MEMBER(MC_StepReferencePulse, Execute, INPUT, BOOL),
@@ -1444,6 +1798,18 @@ static const block_member_t members_of_MC_StepReferencePulse[] = {
     MEMBER(MC_StepReferencePulse, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_StepReferencePulse(void *fb) { MC_StepReferencePulse(fb); }
+static const cm1e_error_t errors_of_MC_StepReferencePulse[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_AXIS_STATE,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_StepDistanceCoded[] = {
     MEMBER(MC_StepDistanceCoded, Axis, IN_OUT, POINTER),
     MEMBER(MC_StepDistanceCoded, Execute, INPUT, BOOL),
@@ -1461,6 +1827,18 @@ static const block_member_t members_of_MC_StepDistanceCoded[] = {
     MEMBER(MC_StepDistanceCoded, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_StepDistanceCoded(void *fb) { MC_StepDistanceCoded(fb); }
+static const cm1e_error_t errors_of_MC_StepDistanceCoded[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_AXIS_STATE,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_HomeDirect[] = {
     MEMBER(MC_HomeDirect, Axis, IN_OUT, POINTER),
     MEMBER(MC_HomeDirect, Execute, INPUT, BOOL),
@@ -1474,6 +1852,11 @@ static const block_member_t members_of_MC_HomeDirect[] = {
     MEMBER(MC_HomeDirect, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_HomeDirect(void *fb) { MC_HomeDirect(fb); }
+static const cm1e_error_t errors_of_MC_HomeDirect[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_HomeAbsolute[] = {
     MEMBER(MC_HomeAbsolute, Axis, IN_OUT, POINTER),
     MEMBER(MC_HomeAbsolute, Execute, INPUT, BOOL),
@@ -1486,6 +1869,11 @@ static const block_member_t members_of_MC_HomeAbsolute[] = {
     MEMBER(MC_HomeAbsolute, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_HomeAbsolute(void *fb) { MC_HomeAbsolute(fb); }
+static const cm1e_error_t errors_of_MC_HomeAbsolute[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_FinishHoming[] = {
     MEMBER(MC_FinishHoming, Axis, IN_OUT, POINTER),
     MEMBER(MC_FinishHoming, Execute, INPUT, BOOL),
@@ -1503,6 +1891,11 @@ static const block_member_t members_of_MC_FinishHoming[] = {
     MEMBER(MC_FinishHoming, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_FinishHoming(void *fb) { MC_FinishHoming(fb); }
+static const cm1e_error_t errors_of_MC_FinishHoming[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_StepReferenceFlyingSwitch[] = {
     MEMBER(MC_StepReferenceFlyingSwitch, Axis, IN_OUT, POINTER),
     MEMBER(MC_StepReferenceFlyingSwitch, Execute, INPUT, BOOL),
@@ -1520,6 +1913,11 @@ static const block_member_t members_of_MC_StepReferenceFlyingSwitch[] = {
     MEMBER(MC_StepReferenceFlyingSwitch, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_StepReferenceFlyingSwitch(void *fb) { MC_StepReferenceFlyingSwitch(fb); }
+static const cm1e_error_t errors_of_MC_StepReferenceFlyingSwitch[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_StepReferenceFlyingRefPulse[] = {
     MEMBER(MC_StepReferenceFlyingRefPulse, Axis, IN_OUT, POINTER),
     MEMBER(MC_StepReferenceFlyingRefPulse, Execute, INPUT, BOOL),
@@ -1536,6 +1934,11 @@ static const block_member_t members_of_MC_StepReferenceFlyingRefPulse[] = {
     MEMBER(MC_StepReferenceFlyingRefPulse, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_StepReferenceFlyingRefPulse(void *fb) { MC_StepReferenceFlyingRefPulse(fb); }
+static const cm1e_error_t errors_of_MC_StepReferenceFlyingRefPulse[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_AbortPassiveHoming[] = {
     MEMBER(MC_AbortPassiveHoming, Axis, IN_OUT, POINTER),
     MEMBER(MC_AbortPassiveHoming, Execute, INPUT, BOOL),
@@ -1546,6 +1949,11 @@ static const block_member_t members_of_MC_AbortPassiveHoming[] = {
     MEMBER(MC_AbortPassiveHoming, ErrorID, OUTPUT, WORD),
 };
 static void call_MC_AbortPassiveHoming(void *fb) { MC_AbortPassiveHoming(fb); }
+static const cm1e_error_t errors_of_MC_AbortPassiveHoming[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_OK,
+};
 static const block_member_t members_of_TON[] = {
     MEMBER(TON, IN, INPUT, BOOL),
     MEMBER(TON, PT, INPUT, TIME),
@@ -1553,6 +1961,9 @@ static const block_member_t members_of_TON[] = {
     MEMBER(TON, ET, OUTPUT, TIME),
 };
 static void call_TON(void *fb) { TON(fb); }
+static const cm1e_error_t errors_of_TON[] = {
+    CM1E_OK,
+};
 static const block_member_t members_of_TOF[] = {
     MEMBER(TOF, IN, INPUT, BOOL),
     MEMBER(TOF, PT, INPUT, TIME),
@@ -1560,6 +1971,9 @@ static const block_member_t members_of_TOF[] = {
     MEMBER(TOF, ET, OUTPUT, TIME),
 };
 static void call_TOF(void *fb) { TOF(fb); }
+static const cm1e_error_t errors_of_TOF[] = {
+    CM1E_OK,
+};
 static const block_member_t members_of_TP[] = {
     MEMBER(TP, IN, INPUT, BOOL),
     MEMBER(TP, PT, INPUT, TIME),
@@ -1567,28 +1981,43 @@ static const block_member_t members_of_TP[] = {
     MEMBER(TP, ET, OUTPUT, TIME),
 };
 static void call_TP(void *fb) { TP(fb); }
+static const cm1e_error_t errors_of_TP[] = {
+    CM1E_OK,
+};
 static const block_member_t members_of_R_TRIG[] = {
     MEMBER(R_TRIG, CLK, INPUT, BOOL),
     MEMBER(R_TRIG, Q, OUTPUT, BOOL),
 };
 static void call_R_TRIG(void *fb) { R_TRIG(fb); }
+static const cm1e_error_t errors_of_R_TRIG[] = {
+    CM1E_OK,
+};
 static const block_member_t members_of_F_TRIG[] = {
     MEMBER(F_TRIG, CLK, INPUT, BOOL),
     MEMBER(F_TRIG, Q, OUTPUT, BOOL),
 };
 static void call_F_TRIG(void *fb) { F_TRIG(fb); }
+static const cm1e_error_t errors_of_F_TRIG[] = {
+    CM1E_OK,
+};
 static const block_member_t members_of_SR[] = {
     MEMBER(SR, S1, INPUT, BOOL),
     MEMBER(SR, R, INPUT, BOOL),
     MEMBER(SR, Q1, OUTPUT, BOOL),
 };
 static void call_SR(void *fb) { SR(fb); }
+static const cm1e_error_t errors_of_SR[] = {
+    CM1E_OK,
+};
 static const block_member_t members_of_RS[] = {
     MEMBER(RS, S, INPUT, BOOL),
     MEMBER(RS, R1, INPUT, BOOL),
     MEMBER(RS, Q1, OUTPUT, BOOL),
 };
 static void call_RS(void *fb) { RS(fb); }
+static const cm1e_error_t errors_of_RS[] = {
+    CM1E_OK,
+};
 static const block_member_t members_of_CTU[] = {
     MEMBER(CTU, CU, INPUT, BOOL),
     MEMBER(CTU, R, INPUT, BOOL),
@@ -1597,6 +2026,9 @@ static const block_member_t members_of_CTU[] = {
     MEMBER(CTU, CV, OUTPUT, INT),
 };
 static void call_CTU(void *fb) { CTU(fb); }
+static const cm1e_error_t errors_of_CTU[] = {
+    CM1E_OK,
+};
 static const block_member_t members_of_CTD[] = {
     MEMBER(CTD, CD, INPUT, BOOL),
     MEMBER(CTD, LD, INPUT, BOOL),
@@ -1605,6 +2037,9 @@ static const block_member_t members_of_CTD[] = {
     MEMBER(CTD, CV, OUTPUT, INT),
 };
 static void call_CTD(void *fb) { CTD(fb); }
+static const cm1e_error_t errors_of_CTD[] = {
+    CM1E_OK,
+};
 static const block_member_t members_of_CTUD[] = {
     MEMBER(CTUD, CU, INPUT, BOOL),
     MEMBER(CTUD, CD, INPUT, BOOL),
@@ -1616,12 +2051,15 @@ static const block_member_t members_of_CTUD[] = {
     MEMBER(CTUD, CV, OUTPUT, INT),
 };
 static void call_CTUD(void *fb) { CTUD(fb); }
+static const cm1e_error_t errors_of_CTUD[] = {
+    CM1E_OK,
+};
 
 const block_t block_table[] = {
     BLOCK(MC_Power, NULL),
     BLOCK(MC_Home, rules_home),
     BLOCK(MC_Stop, rules_stop),
-    BLOCK(MC_Halt, rules_discrete),
+    BLOCK(MC_Halt, rules_halt),
     BLOCK(MC_MoveAbsolute, rules_discrete),
     BLOCK(MC_MoveRelative, rules_discrete),
     BLOCK(MC_MoveAdditive, rules_discrete),

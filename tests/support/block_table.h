@@ -40,6 +40,7 @@ typedef struct block {
     const block_member_t *members;
     size_t member_count;
     const block_rule_t *rules; /**< by cm1e_axis_state_t; NULL: the block's page says it in words */
+    const cm1e_error_t *errors; /**< those of its page; CM1E_OK ends them */
 } block_t;
 
 extern const block_t block_table[];
