@@ -19,7 +19,8 @@ typedef struct {
 
 static double way(const passing_t *passing, double velocity)
 {
-    cm1e_pieces_t change = {.count = 0};
+    cm1e_pieces_t change;
+    change.count = 0;
     cm1e_pieces_append_velocity_change(&change, passing->velocity, passing->acceleration, velocity, passing->limits);
     return cm1e_pieces_displacement(&change, passing->velocity);
 }

@@ -19,6 +19,7 @@ typedef struct cm1e_piece {
 
 enum { CM1E_PIECES_MAX = 16 };
 
+/** An empty one has `count` 0, and nothing else is set: to clear the pieces would cost a tenth of a plan. */
 typedef struct cm1e_pieces {
     int count;
     cm1e_piece_t piece[CM1E_PIECES_MAX];

@@ -29,6 +29,7 @@ typedef struct {
     cm1e_piece_t piece;
     double position, velocity;
     double start_velocity;
+    double per_jerk, per_deceleration; /**< 1 / limit: the solver would divide by them again and again */
 } push_t;
 
 /** A step of the position by this part of the way is none. */
@@ -94,25 +95,27 @@ static double simple_reach(const push_t *push, double time, double *slope)
         return state.position + fmax(0, v - w) / d * ((v + w) / 2);
     }
     /* The change from (v, a) is the change from (peak, 0) plus the way from (v, a) to there, backwards if a < 0. */
-    const double ramp = a / limits->jerk, peak = fmax(w, v + a * ramp / 2), edge = d / limits->jerk;
-    const double mean = (peak + w) / 2;
+    const double ramp = a * push->per_jerk, eased = v + a * ramp / 2, peak = eased > w ? eased : w;
+    const double edge = d * push->per_jerk, mean = (peak + w) / 2;
     double duration, duration_slope;
     if (peak - w > d * edge) {
-        duration = (peak - w) / d + edge;
-        duration_slope = 1 / d;
+        duration = (peak - w) * push->per_deceleration + edge;
+        duration_slope = push->per_deceleration;
     } else {
-        const double side = sqrt((peak - w) / limits->jerk);
+        const double side = sqrt((peak - w) * push->per_jerk);
         duration = 2 * side;
-        duration_slope = 1 / (side * limits->jerk);
+        duration_slope = push->per_jerk / side;
     }
-    *slope = (push->piece.jerk / limits->jerk + 1) * (peak + a * (ramp / 2 + duration / 2 + mean * duration_slope));
-    return state.position + ramp * (v + a * ramp / 3) + mean * duration;
+    *slope = (push->piece.jerk * push->per_jerk + 1) *
+             (peak + a * (ramp / 2 + duration / 2 + mean * duration_slope));
+    return state.position + ramp * (v + a * ramp * (1.0 / 3.0)) + mean * duration;
 }
 
 static double any_reach(const push_t *push, double time)
 {
     const cm1e_motion_state_t state = cm1e_piece_state(&push->piece, push->position, push->velocity, time);
-    cm1e_pieces_t change = {.count = 0};
+    cm1e_pieces_t change;
+    change.count = 0;
     cm1e_pieces_append_velocity_change(&change, state.velocity, state.acceleration, push->target_velocity,
                                        push->limits);
     return state.position + cm1e_pieces_displacement(&change, state.velocity);
@@ -150,7 +153,8 @@ static double steepest(const push_t *push, double velocity)
     const double jerk = push->limits->jerk;
     if (push->simple)
         return fmin(push->limits->deceleration, sqrt((velocity - push->target_velocity) * jerk));
-    cm1e_pieces_t change = {.count = 0};
+    cm1e_pieces_t change;
+    change.count = 0;
     cm1e_pieces_append_velocity_change(&change, velocity, 0, push->target_velocity, push->limits);
     return jerk * change.piece[0].duration_s;
 }
@@ -230,7 +234,8 @@ static double switching_time(const push_t *push, bool first)
  *  taken, and what is missing is gone at target velocity. */
 static void append_change(cm1e_pieces_t *pieces, const push_t *push, double time)
 {
-    const cm1e_pieces_t before = *pieces;
+    const int count = pieces->count; /* and what the last one is, before another may be merged with it */
+    const cm1e_piece_t last = count > 0 ? pieces->piece[count - 1] : (cm1e_piece_t){0, 0, 0};
     const cm1e_piece_t *piece = &push->piece;
     const double w = push->target_velocity, overlooked = OVERLOOKED * fabs(push->target);
     for (double step = DBL_EPSILON;; step *= 4) {
@@ -245,7 +250,9 @@ static void append_change(cm1e_pieces_t *pieces, const push_t *push, double time
         if (left >= -overlooked || !(time > 0))
             return;
         time = fmax(0, time - step * time);
-        *pieces = before;
+        pieces->count = count;
+        if (count > 0)
+            pieces->piece[count - 1] = last;
     }
 }
 
@@ -254,11 +261,13 @@ static void append_push_and_change(cm1e_pieces_t *pieces, double velocity, doubl
                                    double target_velocity, const cm1e_motion_limits_t *limits)
 {
     const double w = target_velocity;
-    cm1e_pieces_t whole = {.count = 0};
+    cm1e_pieces_t whole;
+    whole.count = 0;
     cm1e_pieces_append_velocity_change(&whole, velocity, acceleration, limits->velocity, limits);
     push_t push = {
         .limits = limits, .target = target, .target_velocity = w, .velocity = velocity, .start_velocity = velocity,
         .simple = fabs(w) <= limits->velocity && (w >= 0 || limits->acceleration == limits->deceleration),
+        .per_jerk = 1 / limits->jerk, .per_deceleration = 1 / limits->deceleration,
     };
     for (int i = 0; i < whole.count; i++) {
         const cm1e_piece_t *piece = &push.piece;
@@ -273,7 +282,8 @@ static void append_push_and_change(cm1e_pieces_t *pieces, double velocity, doubl
         push.position = state.position;
         push.velocity = state.velocity;
     }
-    cm1e_pieces_t change = {.count = 0};
+    cm1e_pieces_t change;
+    change.count = 0;
     cm1e_pieces_append_velocity_change(&change, limits->velocity, 0, w, limits);
     const double cruise = target - push.position - cm1e_pieces_displacement(&change, limits->velocity);
     cm1e_pieces_append(pieces, 0, 0, cruise / limits->velocity);
@@ -293,7 +303,8 @@ cm1e_error_t cm1e_profile_to_state(cm1e_profile_t *profile, const cm1e_motion_st
         !cm1e_motion_is_number(target_velocity))
         return CM1E_ERROR_INVALID_ARGUMENT;
     const cm1e_motion_state_t end = {target_position, target_velocity, 0};
-    cm1e_pieces_t pieces = {.count = 0};
+    cm1e_pieces_t pieces;
+    pieces.count = 0;
     cm1e_pieces_append_velocity_change(&pieces, start->velocity, start->acceleration, target_velocity, limits);
     const double distance = target_position - start->position;
     const double change = cm1e_pieces_displacement(&pieces, start->velocity);
@@ -322,7 +333,8 @@ cm1e_error_t cm1e_profile_to_velocity(cm1e_profile_t *profile, const cm1e_motion
     if (!cm1e_motion_is_valid(start, limits) || !cm1e_motion_is_number(velocity))
         return CM1E_ERROR_INVALID_ARGUMENT;
     velocity = fmax(-limits->velocity, fmin(limits->velocity, velocity));
-    cm1e_pieces_t pieces = {.count = 0};
+    cm1e_pieces_t pieces;
+    pieces.count = 0;
     cm1e_pieces_append_velocity_change(&pieces, start->velocity, start->acceleration, velocity, limits);
     const cm1e_motion_state_t end = {NAN, velocity, 0}; /* wherever it is reached */
     return build(profile, start, &pieces, 1, &end, limits);

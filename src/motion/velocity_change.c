@@ -101,7 +101,8 @@ void cm1e_pieces_append_velocity_change(cm1e_pieces_t *pieces, double velocity, 
                                         const cm1e_motion_limits_t *limits)
 {
     const double v = velocity, a = acceleration, w = target, jerk = limits->jerk;
-    cm1e_pieces_t up = {.count = 0};
+    cm1e_pieces_t up;
+    up.count = 0;
     double sign;
     if (isinf(jerk)) {
         sign = w >= v ? 1 : -1;
