@@ -1,0 +1,104 @@
+/**
+ * @file example.h
+ * What the examples from 04 on have in common: options, a bus of one axis, a scheduler with a trace, the run, its files.
+ * The idea of each is in its own file.
+ */
+#ifndef CM1E_EXAMPLES_EXAMPLE_H
+#define CM1E_EXAMPLES_EXAMPLE_H
+
+#include <argp.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <cm1e/plcopen.h>
+#include <cm1e/scheduler.h>
+
+enum { EXAMPLE_TRACE_SAMPLES = 120000, EXAMPLE_VIRTUAL_TIME = 256, EXAMPLE_CSV, EXAMPLE_SVG };
+
+typedef struct example {
+    const char *interface_name, *csv_file, *svg_file;
+    bool virtual_time;
+    cm1e_bus_t *bus;
+    cm1e_scheduler_t *scheduler;
+    AXIS_REF_t axis;
+} example_t;
+
+static inline error_t example_option(int key, char *argument, struct argp_state *state)
+{
+    example_t *e = state->input;
+    switch (key) {
+    case 'i': e->interface_name = argument; return 0;
+    case EXAMPLE_VIRTUAL_TIME: e->virtual_time = true; return 0;
+    case EXAMPLE_CSV: e->csv_file = argument; return 0;
+    case EXAMPLE_SVG: e->svg_file = argument; return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static inline void example_options(example_t *e, int argc, char **argv, const char *purpose)
+{
+    static const struct argp_option options[] = {
+        {"interface", 'i', "NAME", 0, "network interface (the motor turns!), or sim, the simulated segment: the default",
+         0},
+        {"virtual-time", EXAMPLE_VIRTUAL_TIME, NULL, 0, "sim only: do not wait, run as fast as the machine can", 0},
+        {"csv", EXAMPLE_CSV, "FILE", 0, "write the trace as CSV", 0},
+        {"svg", EXAMPLE_SVG, "FILE", 0, "write the trace as a plot", 0},
+        {0},
+    };
+    const struct argp argp = {options, example_option, NULL, purpose, NULL, NULL, NULL};
+    e->interface_name = "sim";
+    argp_parse(&argp, argc, argv, 0, NULL, e);
+}
+
+/** Bus and scheduler stand afterwards, and e->axis is its only axis. */
+static inline cm1e_error_t example_open(example_t *e, cm1e_bus_config_t *config, cm1e_diag_t *why)
+{
+    const cm1e_scheduler_config_t scheduler = {
+        .trace_capacity = e->csv_file || e->svg_file ? EXAMPLE_TRACE_SAMPLES : 0,
+    };
+    cm1e_bus_config_init(config, e->interface_name, 1);
+    config->virtual_time = e->virtual_time;
+    cm1e_error_t error = cm1e_bus_open(&e->bus, config, why);
+    if (error == CM1E_OK)
+        error = cm1e_bus_start(e->bus, why);
+    if (error == CM1E_OK)
+        error = cm1e_scheduler_create(&e->scheduler, e->bus, &scheduler, why);
+    if (error == CM1E_OK)
+        e->axis = cm1e_scheduler_axis(e->scheduler, 0);
+    return error;
+}
+
+/** Runs the program until it calls cm1e_scheduler_stop(), then writes the files asked for. */
+static inline cm1e_error_t example_run(example_t *e, cm1e_program_t program, cm1e_diag_t *why)
+{
+    const cm1e_task_config_t task = {.name = "example", .program = program};
+    cm1e_error_t error = cm1e_scheduler_add_task(e->scheduler, &task, why);
+    cm1e_scheduler_stop_on_signals(e->scheduler); /* Ctrl-C ramps down and disables, as the end of the run does */
+    if (error == CM1E_OK)
+        error = cm1e_scheduler_run(e->scheduler, 0, why);
+    if (error == CM1E_OK && e->csv_file)
+        error = cm1e_scheduler_write_csv(e->scheduler, e->csv_file, why);
+    if (error == CM1E_OK && e->svg_file)
+        error = cm1e_scheduler_write_svg(e->scheduler, e->svg_file, why);
+    return error;
+}
+
+/** What main() returns. */
+static inline int example_end(example_t *e, cm1e_error_t error, const cm1e_diag_t *why, bool well)
+{
+    if (error != CM1E_OK)
+        fprintf(stderr, "%s\n", why->text);
+    cm1e_scheduler_destroy(e->scheduler);
+    cm1e_bus_close(e->bus);
+    return error == CM1E_OK && well ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+/** The sentences about the axis, where something went wrong. In the program's end, not in the cycle. */
+static inline void example_tell_error(const example_t *e, WORD error_id)
+{
+    char text[512];
+    cm1e_axis_error_text(e->axis, text, sizeof text);
+    fprintf(stderr, "%s. %s\n", cm1e_strerror(cm1e_error_from_id(error_id)), text);
+}
+
+#endif
