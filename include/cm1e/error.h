@@ -69,6 +69,13 @@ extern "C" {
     X(ERROR_AXIS_SIGNAL, -85, "the bus reaches no digital input or output of this number")                           \
     X(ERROR_AXIS_PROBE, -86, "a trigger came while the position was not known")                                     \
     X(ERROR_AXIS_NO_TORQUE_MODE, -87, "the drive has no torque mode, only positions and velocities")                \
+    X(ERROR_AXIS_STEP_INPUT, -110, "an input of the homing step is not valid")                                      \
+    X(ERROR_AXIS_STEP_SWITCH, -111, "the switch of the homing step is not configured")                              \
+    X(ERROR_AXIS_STEP_TIME, -112, "homing step: TimeLimit passed before the reference was found")                   \
+    X(ERROR_AXIS_STEP_DISTANCE, -113, "homing step: DistanceLimit reached before the reference was found")          \
+    X(ERROR_AXIS_STEP_TORQUE, -114, "homing step: TorqueLimit reached before the reference was found")              \
+    X(ERROR_AXIS_STEP_LIMIT_SWITCH, -115, "homing step: a limit switch came before the reference")                  \
+    X(ERROR_AXIS_NO_SUCH_SIGNAL, -116, "the drive has no such signal: reference pulse, coded marks, absolute encoder") \
     X(ERROR_FB_AXIS_REF, -90, "AXIS_REF names no axis")                                                             \
     X(ERROR_FB_AXIS_CHANGED, -91, "the axis of a busy function block was changed")                                  \
     X(ERROR_FB_SECOND_POWER, -92, "another MC_Power controls this axis")

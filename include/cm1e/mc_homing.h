@@ -12,7 +12,7 @@
 extern "C" {
 #endif
 
-/** Part 5, 5.4. Searches an absolute switch, turns round at a limit switch, and takes its place as reference.
+/** Part 5, 3.1. Searches an absolute switch, turns round at a limit switch, and takes its place as reference.
  *  @rt cycle */
 typedef struct MC_StepAbsoluteSwitch {
     AXIS_REF_t *Axis;
@@ -21,10 +21,10 @@ typedef struct MC_StepAbsoluteSwitch {
     MC_SWITCH_MODE SwitchMode;
     MC_REF_SIGNAL_REF ReferenceSignal;
     LREAL Velocity;      /**< u/s, > 0 ... maximum; of the search */
-    LREAL SetPosition;   /**< u; position of the axis at the reference */
-    LREAL TorqueLimit;   /**< % of rated torque, >= 0; 0: none */
-    TIME TimeLimit;      /**< ns, >= 0; 0: none */
-    LREAL DistanceLimit; /**< u, >= 0; 0: none */
+    LREAL SetPosition;   /**< u; position of the axis at the reference; NaN: it keeps its own */
+    LREAL TorqueLimit;   /**< % of rated torque, >= 0; more than this gives up; 0: none */
+    TIME TimeLimit;      /**< ns, >= 0; 0: homing.timeout_s of the axis */
+    LREAL DistanceLimit; /**< u, >= 0; of all ways together; 0: none */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;           /**< the reference is found and set */
@@ -34,17 +34,17 @@ typedef struct MC_StepAbsoluteSwitch {
 } MC_StepAbsoluteSwitch_t;
 void MC_StepAbsoluteSwitch(MC_StepAbsoluteSwitch_t *fb);
 
-/** Part 5, 5.5. Searches a limit switch and takes its place as reference. @rt cycle */
+/** Part 5, 3.2. Searches a limit switch and takes its place as reference. @rt cycle */
 typedef struct MC_StepLimitSwitch {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_HOME_DIRECTION Direction;    /**< positive or negative */
     MC_SWITCH_MODE LimitSwitchMode; /**< the four that name no direction */
     LREAL Velocity;                 /**< u/s, > 0 ... maximum; of the search */
-    LREAL SetPosition;              /**< u; position of the axis at the reference */
-    LREAL TorqueLimit;              /**< % of rated torque, >= 0; 0: none */
-    TIME TimeLimit;                 /**< ns, >= 0; 0: none */
-    LREAL DistanceLimit;            /**< u, >= 0; 0: none */
+    LREAL SetPosition;              /**< u; position of the axis at the reference; NaN: it keeps its own */
+    LREAL TorqueLimit;              /**< % of rated torque, >= 0; more than this gives up; 0: none */
+    TIME TimeLimit;                 /**< ns, >= 0; 0: homing.timeout_s of the axis */
+    LREAL DistanceLimit;            /**< u, >= 0; of all ways together; 0: none */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;                      /**< the reference is found and set */
@@ -54,18 +54,18 @@ typedef struct MC_StepLimitSwitch {
 } MC_StepLimitSwitch_t;
 void MC_StepLimitSwitch(MC_StepLimitSwitch_t *fb);
 
-/** Part 5, 5.6. Runs against a hard stop and takes its place as reference. @rt cycle */
+/** Part 5, 3.3. Runs against a hard stop and takes its place as reference. @rt cycle */
 typedef struct MC_StepBlock {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_HOME_DIRECTION Direction;  /**< positive or negative */
     LREAL Velocity;               /**< u/s, > 0 ... maximum; of the search */
-    LREAL SetPosition;            /**< u; position of the axis at the reference */
-    LREAL DetectionVelocityLimit; /**< u/s, >= 0; slower than this at the torque limit is blocked */
-    TIME DetectionVelocityTime;   /**< ns, >= 0; for so long */
-    LREAL TorqueLimit;            /**< % of rated torque, > 0; that shows the stop */
-    TIME TimeLimit;               /**< ns, >= 0; 0: none */
-    LREAL DistanceLimit;          /**< u, >= 0; 0: none */
+    LREAL SetPosition;            /**< u; position of the axis at the reference; NaN: it keeps its own */
+    LREAL DetectionVelocityLimit; /**< u/s, >= 0; slower than this and pressing is blocked; 0: a tenth of Velocity */
+    TIME DetectionVelocityTime;   /**< ns, >= 0; for so long; 0: 50 ms */
+    LREAL TorqueLimit;            /**< % of rated torque, >= 0; that shows the stop; 0: the position lag shows it */
+    TIME TimeLimit;               /**< ns, >= 0; 0: homing.timeout_s of the axis */
+    LREAL DistanceLimit;          /**< u, >= 0; of all ways together; 0: none */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;                    /**< the stop is found and set */
@@ -75,17 +75,17 @@ typedef struct MC_StepBlock {
 } MC_StepBlock_t;
 void MC_StepBlock(MC_StepBlock_t *fb);
 
-/** Part 5, 5.7. Searches the reference pulse of an encoder. @rt cycle */
+/** Part 5, 3.4. Searches the reference pulse of an encoder. @rt cycle */
 typedef struct MC_StepReferencePulse {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_HOME_DIRECTION Direction; /**< positive or negative */
     MC_REF_SIGNAL_REF ReferenceSignal;
     LREAL Velocity;              /**< u/s, > 0 ... maximum; of the search */
-    LREAL SetPosition;           /**< u; position of the axis at the reference */
+    LREAL SetPosition;           /**< u; position of the axis at the reference; NaN: it keeps its own */
     LREAL TorqueLimit;           /**< % of rated torque, >= 0; 0: none */
-    TIME TimeLimit;              /**< ns, >= 0; 0: none */
-    LREAL DistanceLimit;         /**< u, >= 0; 0: none */
+    TIME TimeLimit;              /**< ns, >= 0; 0: homing.timeout_s of the axis */
+    LREAL DistanceLimit;         /**< u, >= 0; of all ways together; 0: none */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;                   /**< the reference is found and set */
@@ -95,15 +95,15 @@ typedef struct MC_StepReferencePulse {
 } MC_StepReferencePulse_t;
 void MC_StepReferencePulse(MC_StepReferencePulse_t *fb);
 
-/** Part 5, 5.8. Searches two marks of a distance coded encoder. @rt cycle */
+/** Part 5, 3.5. Searches two marks of a distance coded encoder. @rt cycle */
 typedef struct MC_StepDistanceCoded {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_HOME_DIRECTION Direction; /**< positive or negative */
     LREAL Velocity;              /**< u/s, > 0 ... maximum; of the search */
     LREAL TorqueLimit;           /**< % of rated torque, >= 0; 0: none */
-    TIME TimeLimit;              /**< ns, >= 0; 0: none */
-    LREAL DistanceLimit;         /**< u, >= 0; 0: none */
+    TIME TimeLimit;              /**< ns, >= 0; 0: homing.timeout_s of the axis */
+    LREAL DistanceLimit;         /**< u, >= 0; of all ways together; 0: none */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;                   /**< the position is known and set */
@@ -113,7 +113,7 @@ typedef struct MC_StepDistanceCoded {
 } MC_StepDistanceCoded_t;
 void MC_StepDistanceCoded(MC_StepDistanceCoded_t *fb);
 
-/** Part 5, 5.9. Gives the axis a position where it stands, and ends the homing. @rt cycle */
+/** Part 5, 3.6. Gives the axis a position where it stands, and ends the homing. @rt cycle */
 typedef struct MC_HomeDirect {
     AXIS_REF_t *Axis;
     BOOL Execute;
@@ -127,7 +127,7 @@ typedef struct MC_HomeDirect {
 } MC_HomeDirect_t;
 void MC_HomeDirect(MC_HomeDirect_t *fb);
 
-/** Part 5, 5.10. Takes the position of an absolute encoder, and ends the homing. @rt cycle */
+/** Part 5, 3.7. Takes the position of an absolute encoder, and ends the homing. @rt cycle */
 typedef struct MC_HomeAbsolute {
     AXIS_REF_t *Axis;
     BOOL Execute;
@@ -140,7 +140,7 @@ typedef struct MC_HomeAbsolute {
 } MC_HomeAbsolute_t;
 void MC_HomeAbsolute(MC_HomeAbsolute_t *fb);
 
-/** Part 5, 5.11. Ends a homing of several steps, after a move away from the reference. @rt cycle */
+/** Part 5, 3.8. Ends a homing of several steps, after a move away from the reference. @rt cycle */
 typedef struct MC_FinishHoming {
     AXIS_REF_t *Axis;
     BOOL Execute;
@@ -158,15 +158,15 @@ typedef struct MC_FinishHoming {
 } MC_FinishHoming_t;
 void MC_FinishHoming(MC_FinishHoming_t *fb);
 
-/** Part 5, 5.12. Takes the place of a switch as reference while another block moves the axis. @rt cycle */
+/** Part 5, 3.9. Takes the place of a switch as reference while another block moves the axis. @rt cycle */
 typedef struct MC_StepReferenceFlyingSwitch {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_SWITCH_MODE SwitchMode;
     MC_REF_SIGNAL_REF ReferenceSignal;
     LREAL SetPosition;   /**< u; position of the axis at the reference */
-    TIME TimeLimit;      /**< ns, >= 0; 0: none */
-    LREAL DistanceLimit; /**< u, >= 0; 0: none */
+    TIME TimeLimit;      /**< ns, >= 0; 0: homing.timeout_s of the axis */
+    LREAL DistanceLimit; /**< u, >= 0; of all ways together; 0: none */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;           /**< the reference is found and set */
@@ -176,14 +176,14 @@ typedef struct MC_StepReferenceFlyingSwitch {
 } MC_StepReferenceFlyingSwitch_t;
 void MC_StepReferenceFlyingSwitch(MC_StepReferenceFlyingSwitch_t *fb);
 
-/** Part 5, 5.13. Takes the reference pulse of an encoder while another block moves the axis. @rt cycle */
+/** Part 5, 3.10. Takes the reference pulse of an encoder while another block moves the axis. @rt cycle */
 typedef struct MC_StepReferenceFlyingRefPulse {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_REF_SIGNAL_REF ReferenceSignal;
     LREAL SetPosition;   /**< u; position of the axis at the reference */
-    TIME TimeLimit;      /**< ns, >= 0; 0: none */
-    LREAL DistanceLimit; /**< u, >= 0; 0: none */
+    TIME TimeLimit;      /**< ns, >= 0; 0: homing.timeout_s of the axis */
+    LREAL DistanceLimit; /**< u, >= 0; of all ways together; 0: none */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;           /**< the reference is found and set */
@@ -193,7 +193,7 @@ typedef struct MC_StepReferenceFlyingRefPulse {
 } MC_StepReferenceFlyingRefPulse_t;
 void MC_StepReferenceFlyingRefPulse(MC_StepReferenceFlyingRefPulse_t *fb);
 
-/** Part 5, 5.14. Ends the waiting of the two flying steps; the motion goes on. @rt cycle */
+/** Part 5, 3.11. Ends the waiting of the two flying steps; the motion goes on. @rt cycle */
 typedef struct MC_AbortPassiveHoming {
     AXIS_REF_t *Axis;
     BOOL Execute;

@@ -30,7 +30,29 @@ typedef enum cm1e_command_kind {
     CM1E_COMMAND_KIND_COUNT,
 } cm1e_command_kind_t;
 
-typedef struct cm1e_homing_step cm1e_homing_step_t;
+/** The steps of a homing that the axis does itself (Part 5, 3.1 ... 3.3, 3.6, 3.8). */
+typedef enum cm1e_homing_step_kind {
+    CM1E_STEP_ABSOLUTE_SWITCH = 0,
+    CM1E_STEP_LIMIT_SWITCH, /**< the one of `direction` */
+    CM1E_STEP_BLOCK,
+    CM1E_STEP_DIRECT,       /**< the position is set where the axis stands; ends the homing */
+    CM1E_STEP_FINISH,       /**< an optional move; ends the homing */
+} cm1e_homing_step_kind_t;
+
+/** Beside it, in the command: `velocity` of the search, and as `position` the one to set at the reference (NAN: none is
+ *  set), of FINISH the distance of its move. */
+typedef struct cm1e_homing_step {
+    cm1e_homing_step_kind_t kind;
+    MC_HOME_DIRECTION direction;    /**< 0 acts as mcPositiveDirection */
+    MC_SWITCH_MODE mode;
+    int input;                      /**< ABSOLUTE_SWITCH: 1 ... 4; 0: the configured home switch */
+    double torque_limit;            /**< % of rated torque; 0: none. BLOCK: what shows the stop; 0: the position lag */
+    double distance_limit;          /**< u, of all ways together; 0: none */
+    int64_t time_limit_ns;          /**< 0: the timeout of the configured homing */
+    double detection_velocity;      /**< u/s, BLOCK: slower is standing; 0: a tenth of `velocity` */
+    int64_t detection_ns;           /**< BLOCK: for so long; 0: 50 ms */
+} cm1e_homing_step_t;
+
 typedef struct cm1e_axis_table cm1e_axis_table_t;
 
 /** A motion command as a function block posts it. Zero acceleration, deceleration or jerk: the axis's maximum. */

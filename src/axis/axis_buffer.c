@@ -216,8 +216,9 @@ bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offse
         const state_rule_t *rule = cm1e_axis_state_rule(axis->state, (cm1e_command_kind_t)move.kind);
         cm1e_error_t error = rule->refusal;
         if (!error)
-            error = is_homing((cm1e_command_kind_t)move.kind) ? cm1e_axis_begin_homing(axis, &move)
-                                                              : begin_move(axis, &move, from, offset_s);
+            error = move.kind == CM1E_COMMAND_HOME          ? cm1e_axis_begin_homing(axis, &move)
+                    : move.kind == CM1E_COMMAND_HOMING_STEP ? cm1e_axis_begin_step(axis, &move)
+                                                            : begin_move(axis, &move, from, offset_s);
         if (!error) {
             axis->state = rule->next;
             return true;
@@ -229,7 +230,8 @@ bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offse
 
 cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis)
 {
-    if (!axis->active || axis->activity != ACTIVITY_PROFILE || axis->kind == CM1E_COMMAND_STOP)
+    if (!axis->active || axis->activity != ACTIVITY_PROFILE || axis->kind == CM1E_COMMAND_STOP ||
+        axis->kind == CM1E_COMMAND_HOMING_STEP)
         return CM1E_OK;
     move_t move = axis->move;
     cm1e_profile_t profile;

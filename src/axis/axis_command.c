@@ -146,6 +146,25 @@ static cm1e_error_t start_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *c
     return CM1E_OK;
 }
 
+/* Part 5: from Standstill, or after another step in Homing; the drive's own homing is no such step. */
+static cm1e_error_t start_step(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+{
+    const move_t move = move_of(command);
+    stepping_t next;
+    cm1e_profile_t profile;
+    cm1e_error_t error = axis->activity == ACTIVITY_HOMING ? CM1E_ERROR_AXIS_HOMING
+                                                           : cm1e_axis_step_check(axis, command->step, &move);
+    if (!error)
+        error = cm1e_axis_step_prepare(axis, command->step, &move, &next, &profile);
+    if (error)
+        return error;
+    cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+    *id = axis->active = cm1e_axis_next_id(axis);
+    axis->kind = command->kind;
+    cm1e_axis_step_begin(axis, &next, &profile);
+    return CM1E_OK;
+}
+
 /* ---- buffered ---------------------------------------------------------------------------------------------------- */
 
 cm1e_error_t cm1e_axis_begin_homing(cm1e_axis_t *axis, const move_t *move)
@@ -182,8 +201,53 @@ static cm1e_error_t keep_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *co
     return CM1E_OK;
 }
 
+static waiting_step_t *step_of(cm1e_axis_t *axis, cm1e_command_id_t id)
+{
+    for (int i = 0; i < STEPS_WAITING; i++)
+        if (axis->waiting_steps[i].id == id)
+            return &axis->waiting_steps[i];
+    return NULL;
+}
+
+cm1e_error_t cm1e_axis_begin_step(cm1e_axis_t *axis, const move_t *move)
+{
+    stepping_t next;
+    cm1e_profile_t profile;
+    const waiting_step_t *waiting = step_of(axis, move->id);
+    const cm1e_error_t error = waiting ? cm1e_axis_step_prepare(axis, &waiting->step, move, &next, &profile)
+                                       : CM1E_ERROR_AXIS_STATE;
+    if (error)
+        return error;
+    axis->active = move->id;
+    axis->kind = CM1E_COMMAND_HOMING_STEP;
+    cm1e_axis_step_begin(axis, &next, &profile);
+    return CM1E_OK;
+}
+
+static waiting_step_t *free_step(cm1e_axis_t *axis)
+{
+    for (int i = 0; i < STEPS_WAITING; i++)
+        if (!cm1e_axis_find_waiting(axis, axis->waiting_steps[i].id))
+            return &axis->waiting_steps[i];
+    return NULL;
+}
+
+static cm1e_error_t buffer_step(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+{
+    move_t move = move_of(command);
+    waiting_step_t *place = free_step(axis);
+    cm1e_error_t error = cm1e_axis_step_check(axis, command->step, &move);
+    if (!error)
+        error = place ? cm1e_axis_buffer(axis, &move) : CM1E_ERROR_FULL;
+    if (!error)
+        *place = (waiting_step_t){.id = *id = move.id, .step = *command->step};
+    return error;
+}
+
 static cm1e_error_t buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
+    if (command->kind == CM1E_COMMAND_HOMING_STEP)
+        return buffer_step(axis, command, id);
     move_t move = move_of(command);
     cm1e_error_t error = command->kind == CM1E_COMMAND_HOME ? keep_homing(axis, command) : CM1E_OK;
     if (!error)
@@ -200,6 +264,16 @@ static bool has_to_wait(const cm1e_axis_t *axis, const cm1e_axis_command_t *comm
            axis->state != CM1E_AXIS_STOPPING;
 }
 
+/* With nothing to wait for. */
+static cm1e_error_t start_now(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+{
+    if (command->kind == CM1E_COMMAND_HOME)
+        return start_homing(axis, command, id);
+    if (command->kind == CM1E_COMMAND_HOMING_STEP)
+        return start_step(axis, command, id);
+    return axis->activity == ACTIVITY_HOMING ? stop_homing(axis, command, id) : start_move(axis, command, id);
+}
+
 static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     *id = 0;
@@ -211,15 +285,14 @@ static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command,
         return rule->refusal;
     if (axis->state == CM1E_AXIS_STOPPING && axis->stop_held)
         return CM1E_ERROR_AXIS_STOPPING;
-    if (command->kind != CM1E_COMMAND_HOME && !cm1e_axis_can_plan(command->kind))
+    if (command->kind != CM1E_COMMAND_HOME && command->kind != CM1E_COMMAND_HOMING_STEP &&
+        !cm1e_axis_can_plan(command->kind))
         return CM1E_ERROR_UNSUPPORTED;
     if (command->kind != CM1E_COMMAND_STOP && (unsigned)command->buffer_mode > mcBlendingHigh)
         return CM1E_ERROR_AXIS_BUFFER_MODE;
     if (waits)
         return buffer(axis, command, id);
-    const cm1e_error_t error = command->kind == CM1E_COMMAND_HOME          ? start_homing(axis, command, id)
-                               : axis->activity == ACTIVITY_HOMING ? stop_homing(axis, command, id)
-                                                                   : start_move(axis, command, id);
+    const cm1e_error_t error = start_now(axis, command, id);
     if (!error)
         axis->state = rule->next;
     return error;

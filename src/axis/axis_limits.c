@@ -117,13 +117,20 @@ bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, position_t from, p
     return contains(axis, from, fmin(way, 0.0), fmax(way, 0.0));
 }
 
-bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
+static bool inside(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
     if (!axis->software_limits)
         return true;
     double lowest, highest;
     cm1e_profile_extent(profile, &lowest, &highest);
     return contains(axis, from->position, lowest, highest);
+}
+
+/* In a homing in steps positions mean nothing until the move that ends it. */
+bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
+{
+    const bool meaningless = axis->state == CM1E_AXIS_HOMING && !axis->stepping.finishing;
+    return meaningless || inside(axis, from, profile);
 }
 
 /* A disabled direction allows what the braking needs that is going on anyway, nothing more. */
@@ -144,7 +151,7 @@ static bool directions_allow(const cm1e_axis_t *axis, const from_t *from, const 
 
 cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
-    if (!cm1e_axis_limits_contain(axis, from, profile))
+    if (!inside(axis, from, profile))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     return directions_allow(axis, from, profile) ? CM1E_OK : CM1E_ERROR_AXIS_DIRECTION_DISABLED;
 }

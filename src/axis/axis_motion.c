@@ -71,7 +71,7 @@ void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign)
 
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
 
-static void stand(cm1e_axis_t *axis)
+void cm1e_axis_stand(cm1e_axis_t *axis)
 {
     axis->set = axis->target;
     axis->set_velocity = 0.0;
@@ -87,6 +87,8 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
 {
     const from_t end = {axis->target, axis->profile.end.velocity, 0.0};
     const bool goes_on = end.velocity != 0.0;
+    if (cm1e_axis_step_profile_ended(axis))
+        return axis->activity == ACTIVITY_PROFILE;
     if (axis->active && is_endless(axis->kind)) {
         if (cm1e_axis_begin_waiting(axis, &end, late_s))
             return true;
@@ -96,7 +98,7 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
     if (axis->active)
         cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
     if (!goes_on)
-        stand(axis);
+        cm1e_axis_stand(axis);
     if (axis->state == CM1E_AXIS_STANDSTILL || axis->state == CM1E_AXIS_DISCRETE_MOTION) {
         if (cm1e_axis_begin_waiting(axis, &end, late_s))
             return axis->activity == ACTIVITY_PROFILE;
@@ -151,6 +153,7 @@ static void profile_step(cm1e_axis_t *axis)
 
 void cm1e_axis_motion_step(cm1e_axis_t *axis)
 {
+    cm1e_axis_step_cycle(axis);
     switch (axis->activity) {
     case ACTIVITY_FREE:
         cm1e_axis_set_to_actual(axis);

@@ -23,6 +23,7 @@ void cm1e_axis_become_free(cm1e_axis_t *axis)
 {
     axis->activity = ACTIVITY_FREE;
     axis->energized = false;
+    axis->stepping.pushing = false;
     axis->free_ns = axis->now_ns;
     cm1e_axis_set_to_actual(axis);
 }
@@ -98,7 +99,8 @@ cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, 
         cm1e_axis_direction_disabled(axis, 1.0);
     if (negative_fell)
         cm1e_axis_direction_disabled(axis, -1.0);
-    if ((positive_fell || negative_fell) && axis->state == CM1E_AXIS_HOMING && axis->active) {
+    if ((positive_fell || negative_fell) && axis->state == CM1E_AXIS_HOMING && axis->active &&
+        axis->activity == ACTIVITY_HOMING) {
         cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
         cm1e_axis_home_abort(axis, HOME_GOAL_HOLD); /* every method moves both ways */
     }

@@ -58,6 +58,14 @@ typedef struct waiting_homing {
     bool configured;    /**< that of the axis instead */
 } waiting_homing_t;
 
+enum { STEPS_WAITING = 3 };
+
+/** What a waiting step of a homing needs beside its command. */
+typedef struct waiting_step {
+    cm1e_command_id_t id;
+    cm1e_homing_step_t step;
+} waiting_step_t;
+
 /** Where a motion begins. */
 typedef struct from {
     position_t position;
@@ -117,6 +125,34 @@ typedef struct backlash {
     double offset_velocity, target;
 } backlash_t;
 
+typedef enum stepping_phase {
+    STEPPING_SEARCH = 0, /**< it moves, or presses against a stop */
+    STEPPING_STOP,       /**< decided; it brakes, or makes the move of MC_FinishHoming */
+    STEPPING_RELIEVE,    /**< the set-point goes back from where the motor was held up */
+    STEPPING_RELIEVED,
+} stepping_phase_t;
+
+/** A homing in steps (axis_homing_steps.c), in force while CM1E_COMMAND_HOMING_STEP is the active command. */
+typedef struct stepping {
+    cm1e_homing_step_t step;
+    cm1e_motion_limits_t limits;
+    stepping_phase_t phase;
+    cm1e_error_t outcome;           /**< from STEPPING_STOP on */
+    double position;                /**< u, to set at the reference; NAN: none */
+    position_t reference;           /**< where the event was */
+    double search, way;             /**< +-1: direction of the search, and the one it goes now */
+    double travel;                  /**< u */
+    double pace;                    /**< u/s, of the set-point while the motor is pressed */
+    int64_t deadline_ns, pressed_ns;
+    position_t actual_before;       /**< at the last look */
+    bool level, seen_on, pressed;
+    bool turned_positive, turned_negative; /**< at a limit switch */
+    bool pushing;                   /**< the set-point may be where the motor cannot go */
+    bool after_stop;                /**< MC_Stop ended the step, and the motor is relieved before it is Done */
+    bool referenced;                /**< the last step set a position */
+    bool finishing;                 /**< positions are valid again: software limits hold */
+} stepping_t;
+
 struct cm1e_axis {
     cm1e_drive_t drive;
     const cm1e_axis_config_t *config;
@@ -164,6 +200,7 @@ struct cm1e_axis {
     move_t move;                    /**< the active one, unless it is a homing */
     buffer_t waiting;
     waiting_homing_t waiting_homing;
+    waiting_step_t waiting_steps[STEPS_WAITING];
     bool reached, positive_before;
     cm1e_error_t refusal;           /**< why the last command was refused, for the text; CM1E_OK: it was not */
     cm1e_axis_command_t refused;    /**< what it asked for */
@@ -190,6 +227,8 @@ struct cm1e_axis {
     cm1e_command_id_t kept;         /**< a command that halts unless it is renewed; 0: none */
     int64_t kept_until_ns;
     cm1e_axis_command_t kept_halt;
+
+    stepping_t stepping;
 };
 
 /* axis.c */
@@ -296,6 +335,8 @@ void cm1e_axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits);
 /** Motion in the direction of `sign` is no longer enabled (MC_Power, 3.1): a command that goes there fails, the next
  *  one begins, or the axis stops. */
 void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign);
+/** The set-point stands at the end of its profile. */
+void cm1e_axis_stand(cm1e_axis_t *axis);
 void cm1e_axis_motion_step(cm1e_axis_t *axis);
 void cm1e_axis_write_set_point(cm1e_axis_t *axis);
 
@@ -310,6 +351,7 @@ cm1e_command_id_t cm1e_axis_next_id(cm1e_axis_t *axis);
 void cm1e_axis_take(cm1e_axis_t *axis, const move_t *move, const from_t *from, const cm1e_profile_t *profile,
                     double offset_s);
 cm1e_error_t cm1e_axis_begin_homing(cm1e_axis_t *axis, const move_t *move);
+cm1e_error_t cm1e_axis_begin_step(cm1e_axis_t *axis, const move_t *move);
 
 /* axis_buffer.c */
 static inline move_t *waiting_move(cm1e_axis_t *axis, int index)
@@ -350,5 +392,22 @@ void cm1e_axis_probe_step(cm1e_axis_t *axis);
 /** What was not renewed goes off or halts, before the set-point of the cycle. */
 void cm1e_axis_signals_step(cm1e_axis_t *axis);
 void cm1e_axis_outputs_off(cm1e_axis_t *axis);
+
+/* axis_homing_steps.c */
+/** What is wrong with a step whatever the state of the axis. */
+cm1e_error_t cm1e_axis_step_check(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move);
+/** Decides how a step begins: `*next` and `*profile`, nothing else. It is in force with cm1e_axis_step_begin(). */
+cm1e_error_t cm1e_axis_step_prepare(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move,
+                                    stepping_t *next, cm1e_profile_t *profile);
+void cm1e_axis_step_begin(cm1e_axis_t *axis, const stepping_t *next, const cm1e_profile_t *profile);
+/** Before every set-point: looks, and decides what the profile is. */
+void cm1e_axis_step_cycle(cm1e_axis_t *axis);
+/** The profile of a step, or of the MC_Stop that ended one, has come to its end. TRUE: what comes next is decided. */
+bool cm1e_axis_step_profile_ended(cm1e_axis_t *axis);
+/** A step is the active command. */
+static inline bool axis_stepping(const cm1e_axis_t *axis)
+{
+    return axis->active != 0 && axis->kind == CM1E_COMMAND_HOMING_STEP;
+}
 
 #endif

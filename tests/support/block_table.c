@@ -809,6 +809,26 @@ static const block_rule_t rules_step[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
     [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
 };
+static const block_rule_t rules_finish[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
+    [CM1E_AXIS_STANDSTILL] = {.refusal = CM1E_ERROR_AXIS_STATE},
+    [CM1E_AXIS_HOMING] = {.next = CM1E_AXIS_HOMING},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.refusal = CM1E_ERROR_AXIS_STATE},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.refusal = CM1E_ERROR_AXIS_STATE},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.refusal = CM1E_ERROR_AXIS_STATE},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
+};
+static const block_rule_t rules_no_such_signal[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NO_SUCH_SIGNAL},
+    [CM1E_AXIS_STANDSTILL] = {.refusal = CM1E_ERROR_AXIS_NO_SUCH_SIGNAL},
+    [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_NO_SUCH_SIGNAL},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.refusal = CM1E_ERROR_AXIS_NO_SUCH_SIGNAL},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.refusal = CM1E_ERROR_AXIS_NO_SUCH_SIGNAL},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.refusal = CM1E_ERROR_AXIS_NO_SUCH_SIGNAL},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_NO_SUCH_SIGNAL},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_NO_SUCH_SIGNAL},
+};
 static const block_rule_t rules_superimposed[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
     [CM1E_AXIS_STANDSTILL] = {.next = CM1E_AXIS_DISCRETE_MOTION},
@@ -1736,14 +1756,24 @@ static const block_member_t members_of_MC_StepAbsoluteSwitch[] = {
 };
 static void call_MC_StepAbsoluteSwitch(void *fb) { MC_StepAbsoluteSwitch(fb); }
 static const cm1e_error_t errors_of_MC_StepAbsoluteSwitch[] = {
+    CM1E_ERROR_AXIS_STEP_LIMIT_SWITCH,
+    CM1E_ERROR_AXIS_STEP_TORQUE,
+    CM1E_ERROR_AXIS_STEP_DISTANCE,
+    CM1E_ERROR_AXIS_STEP_TIME,
+    CM1E_ERROR_AXIS_STEP_SWITCH,
+    CM1E_ERROR_AXIS_STEP_INPUT,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_BUFFER_MODE,
     CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DIRECTION,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
     CM1E_ERROR_AXIS_STOPPING,
     CM1E_ERROR_AXIS_ERROR_STOP,
     CM1E_ERROR_AXIS_NOT_POWERED,
     CM1E_ERROR_AXIS_STATE,
+    CM1E_ERROR_PDO_MAPPING,
     CM1E_ERROR_FULL,
     CM1E_OK,
 };
@@ -1767,14 +1797,24 @@ static const block_member_t members_of_MC_StepLimitSwitch[] = {
 };
 static void call_MC_StepLimitSwitch(void *fb) { MC_StepLimitSwitch(fb); }
 static const cm1e_error_t errors_of_MC_StepLimitSwitch[] = {
+    CM1E_ERROR_AXIS_STEP_LIMIT_SWITCH,
+    CM1E_ERROR_AXIS_STEP_TORQUE,
+    CM1E_ERROR_AXIS_STEP_DISTANCE,
+    CM1E_ERROR_AXIS_STEP_TIME,
+    CM1E_ERROR_AXIS_STEP_SWITCH,
+    CM1E_ERROR_AXIS_STEP_INPUT,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_BUFFER_MODE,
     CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DIRECTION,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
     CM1E_ERROR_AXIS_STOPPING,
     CM1E_ERROR_AXIS_ERROR_STOP,
     CM1E_ERROR_AXIS_NOT_POWERED,
     CM1E_ERROR_AXIS_STATE,
+    CM1E_ERROR_PDO_MAPPING,
     CM1E_ERROR_FULL,
     CM1E_OK,
 };
@@ -1799,14 +1839,22 @@ static const block_member_t members_of_MC_StepBlock[] = {
 };
 static void call_MC_StepBlock(void *fb) { MC_StepBlock(fb); }
 static const cm1e_error_t errors_of_MC_StepBlock[] = {
+    CM1E_ERROR_AXIS_STEP_LIMIT_SWITCH,
+    CM1E_ERROR_AXIS_STEP_DISTANCE,
+    CM1E_ERROR_AXIS_STEP_TIME,
+    CM1E_ERROR_AXIS_STEP_INPUT,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_BUFFER_MODE,
     CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DIRECTION,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
     CM1E_ERROR_AXIS_STOPPING,
     CM1E_ERROR_AXIS_ERROR_STOP,
     CM1E_ERROR_AXIS_NOT_POWERED,
     CM1E_ERROR_AXIS_STATE,
+    CM1E_ERROR_PDO_MAPPING,
     CM1E_ERROR_FULL,
     CM1E_OK,
 };
@@ -1830,15 +1878,9 @@ static const block_member_t members_of_MC_StepReferencePulse[] = {
 };
 static void call_MC_StepReferencePulse(void *fb) { MC_StepReferencePulse(fb); }
 static const cm1e_error_t errors_of_MC_StepReferencePulse[] = {
+    CM1E_ERROR_AXIS_NO_SUCH_SIGNAL,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
-    CM1E_ERROR_AXIS_BUFFER_MODE,
-    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
-    CM1E_ERROR_AXIS_STOPPING,
-    CM1E_ERROR_AXIS_ERROR_STOP,
-    CM1E_ERROR_AXIS_NOT_POWERED,
-    CM1E_ERROR_AXIS_STATE,
-    CM1E_ERROR_FULL,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_StepDistanceCoded[] = {
@@ -1859,15 +1901,9 @@ static const block_member_t members_of_MC_StepDistanceCoded[] = {
 };
 static void call_MC_StepDistanceCoded(void *fb) { MC_StepDistanceCoded(fb); }
 static const cm1e_error_t errors_of_MC_StepDistanceCoded[] = {
+    CM1E_ERROR_AXIS_NO_SUCH_SIGNAL,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
-    CM1E_ERROR_AXIS_BUFFER_MODE,
-    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
-    CM1E_ERROR_AXIS_STOPPING,
-    CM1E_ERROR_AXIS_ERROR_STOP,
-    CM1E_ERROR_AXIS_NOT_POWERED,
-    CM1E_ERROR_AXIS_STATE,
-    CM1E_ERROR_FULL,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_HomeDirect[] = {
@@ -1886,6 +1922,13 @@ static void call_MC_HomeDirect(void *fb) { MC_HomeDirect(fb); }
 static const cm1e_error_t errors_of_MC_HomeDirect[] = {
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_AXIS_STATE,
+    CM1E_ERROR_FULL,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_HomeAbsolute[] = {
@@ -1901,6 +1944,7 @@ static const block_member_t members_of_MC_HomeAbsolute[] = {
 };
 static void call_MC_HomeAbsolute(void *fb) { MC_HomeAbsolute(fb); }
 static const cm1e_error_t errors_of_MC_HomeAbsolute[] = {
+    CM1E_ERROR_AXIS_NO_SUCH_SIGNAL,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_OK,
@@ -1925,6 +1969,16 @@ static void call_MC_FinishHoming(void *fb) { MC_FinishHoming(fb); }
 static const cm1e_error_t errors_of_MC_FinishHoming[] = {
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_AXIS_STATE,
+    CM1E_ERROR_FULL,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_StepReferenceFlyingSwitch[] = {
@@ -1947,6 +2001,7 @@ static void call_MC_StepReferenceFlyingSwitch(void *fb) { MC_StepReferenceFlying
 static const cm1e_error_t errors_of_MC_StepReferenceFlyingSwitch[] = {
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_UNSUPPORTED,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_StepReferenceFlyingRefPulse[] = {
@@ -1966,6 +2021,7 @@ static const block_member_t members_of_MC_StepReferenceFlyingRefPulse[] = {
 };
 static void call_MC_StepReferenceFlyingRefPulse(void *fb) { MC_StepReferenceFlyingRefPulse(fb); }
 static const cm1e_error_t errors_of_MC_StepReferenceFlyingRefPulse[] = {
+    CM1E_ERROR_AXIS_NO_SUCH_SIGNAL,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_OK,
@@ -1983,6 +2039,7 @@ static void call_MC_AbortPassiveHoming(void *fb) { MC_AbortPassiveHoming(fb); }
 static const cm1e_error_t errors_of_MC_AbortPassiveHoming[] = {
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_UNSUPPORTED,
     CM1E_OK,
 };
 static const block_member_t members_of_TON[] = {
@@ -2127,14 +2184,14 @@ const block_t block_table[] = {
     BLOCK(MC_StepAbsoluteSwitch, rules_step),
     BLOCK(MC_StepLimitSwitch, rules_step),
     BLOCK(MC_StepBlock, rules_step),
-    BLOCK(MC_StepReferencePulse, rules_step),
-    BLOCK(MC_StepDistanceCoded, rules_step),
-    BLOCK(MC_HomeDirect, NULL),
-    BLOCK(MC_HomeAbsolute, NULL),
-    BLOCK(MC_FinishHoming, NULL),
-    BLOCK(MC_StepReferenceFlyingSwitch, rules_any),
-    BLOCK(MC_StepReferenceFlyingRefPulse, rules_any),
-    BLOCK(MC_AbortPassiveHoming, rules_any),
+    BLOCK(MC_StepReferencePulse, rules_no_such_signal),
+    BLOCK(MC_StepDistanceCoded, rules_no_such_signal),
+    BLOCK(MC_HomeDirect, rules_step),
+    BLOCK(MC_HomeAbsolute, rules_no_such_signal),
+    BLOCK(MC_FinishHoming, rules_finish),
+    BLOCK(MC_StepReferenceFlyingSwitch, rules_unsupported),
+    BLOCK(MC_StepReferenceFlyingRefPulse, rules_no_such_signal),
+    BLOCK(MC_AbortPassiveHoming, rules_unsupported),
     BLOCK(TON, NULL),
     BLOCK(TOF, NULL),
     BLOCK(TP, NULL),

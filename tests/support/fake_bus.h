@@ -48,7 +48,9 @@ struct cm1e_bus {
     uint16_t mode_status;        /**< statusword bits 10, 12, 13 */
     int64_t torque_step;         /**< largest |target - position| seen while under torque */
     unsigned reset_edges;
+    int16_t torque;              /**< 0.1 % of rated torque */
     void (*homing)(struct cm1e_bus *bus); /**< what the device does in HM each cycle */
+    void (*world)(struct cm1e_bus *bus);  /**< what hangs on the shaft: after the motor has moved, before it shows */
 
     /* SDO */
     fake_sdo_entry_t sdo_log[FAKE_SDO_LOG];
@@ -112,6 +114,7 @@ static inline void fake_bus_show(cm1e_bus_t *bus)
     fake_input(bus, OBJ_603F_ERROR_CODE, bus->error_code);
     fake_input(bus, OBJ_6064_POSITION_ACTUAL_VALUE, (uint32_t)bus->position);
     fake_input(bus, OBJ_606C_VELOCITY_ACTUAL_VALUE, (uint32_t)bus->velocity_raw);
+    fake_input(bus, OBJ_6077_TORQUE_ACTUAL_VALUE, (uint16_t)bus->torque);
     fake_input(bus, OBJ_60FD_DIGITAL_INPUTS, bus->digital_inputs);
     fake_input(bus, OBJ_6061_MODES_OF_OPERATION_DISPLAY, (uint8_t)bus->mode);
 }
@@ -207,6 +210,8 @@ static inline void fake_bus_cycle(cm1e_bus_t *bus, int64_t cycle_ns)
     }
     if (bus->mode == CM1E_MODE_HM && bus->homing)
         bus->homing(bus);
+    if (bus->world)
+        bus->world(bus);
     fake_bus_show(bus);
 }
 

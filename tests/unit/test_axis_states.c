@@ -8,7 +8,9 @@ static const cm1e_homing_config_t hard_stop = {.method = -1};
 
 static cm1e_axis_command_t command_of(cm1e_command_kind_t kind)
 {
-    return (cm1e_axis_command_t){.kind = kind, .position = 2.0, .velocity = 1.0, .homing = &hard_stop};
+    static const cm1e_homing_step_t direct = {.kind = CM1E_STEP_DIRECT};
+    return (cm1e_axis_command_t){.kind = kind, .position = 2.0, .velocity = 1.0, .homing = &hard_stop,
+                                 .step = &direct};
 }
 
 static void raise_error(void)
@@ -60,7 +62,7 @@ static const char *const expected[CM1E_AXIS_STATE_COUNT] = {
     /* abs rel add vel cabs crel profile halt stop home step superimposed haltsuperimposed; K: as it was */
     [CM1E_AXIS_DISABLED] = "ppppppppppppp",
     [CM1E_AXIS_STANDSTILL] = "MMMVVVMMSHHMK",
-    [CM1E_AXIS_HOMING] = "hhhhhhhhShHhh",
+    [CM1E_AXIS_HOMING] = "hhhhhhhhShhhh", /* that of the drive; between steps: test_axis_homing_steps */
     [CM1E_AXIS_DISCRETE_MOTION] = "MMMVVVMMSxxKK",
     [CM1E_AXIS_CONTINUOUS_MOTION] = "MMMVVVMMSxxKK",
     [CM1E_AXIS_SYNCHRONIZED_MOTION] = "MMMVVVMMSxxKK",
@@ -71,7 +73,7 @@ static const char *const expected[CM1E_AXIS_STATE_COUNT] = {
 /* Kinds that wait for their planner. */
 static bool planned(cm1e_command_kind_t kind)
 {
-    return kind != CM1E_COMMAND_PROFILE && kind != CM1E_COMMAND_HOMING_STEP &&
+    return kind != CM1E_COMMAND_PROFILE &&
            kind != CM1E_COMMAND_MOVE_SUPERIMPOSED && kind != CM1E_COMMAND_HALT_SUPERIMPOSED;
 }
 

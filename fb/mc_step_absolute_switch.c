@@ -1,0 +1,37 @@
+#include "edge.h"
+
+/** The position of this axis cannot be told from the input of another motor. */
+static cm1e_error_t signal_of_another_axis(const MC_StepAbsoluteSwitch_t *fb)
+{
+    const UINT handle = fb->ReferenceSignal.Axis.Handle;
+    return handle && fb->Axis && handle != fb->Axis->Handle ? CM1E_ERROR_AXIS_STEP_INPUT : CM1E_OK;
+}
+
+void MC_StepAbsoluteSwitch(MC_StepAbsoluteSwitch_t *fb)
+{
+    if (fb_stands(&fb->Private, fb->Axis, fb->Execute, fb->Active))
+        return;
+    const cm1e_homing_step_t step = {
+        .kind = CM1E_STEP_ABSOLUTE_SWITCH,
+        .direction = fb->Direction,
+        .mode = fb->SwitchMode,
+        .input = fb->ReferenceSignal.InputNumber,
+        .torque_limit = fb->TorqueLimit,
+        .distance_limit = fb->DistanceLimit,
+        .time_limit_ns = fb->TimeLimit,
+    };
+    const cm1e_axis_command_t command = {
+        .kind = CM1E_COMMAND_HOMING_STEP,
+        .velocity = fb->Velocity,
+        .position = fb->SetPosition,
+        .buffer_mode = fb->BufferMode,
+        .step = &step,
+    };
+    fb_motion(&fb->Private, fb->Axis, fb->Execute, &command, signal_of_another_axis(fb));
+    const fb_outputs_t out = fb_outputs(&fb->Private);
+    fb->Done = out.done;
+    fb->Busy = fb->Active = out.busy;
+    fb->CommandAborted = out.aborted;
+    fb->Error = out.error;
+    fb->ErrorID = out.error_id;
+}

@@ -1,0 +1,548 @@
+/*
+ * Homing in steps (Part 5, 3.1 ... 3.8), done by the axis in its own mode: it searches with a velocity, looks at the
+ * inputs and at the motor's torque and velocity in every cycle, stops, and gives the place of the event a position.
+ *
+ * Every step leaves the axis in Homing; MC_HomeDirect and MC_FinishHoming lead to Standstill. A limit that is reached
+ * is an error of the block (Part 1, 2.2.2), shown once the axis stands: it does not lead to ErrorStop. Positions are
+ * not valid in Homing, so the software limits do not hold, but for the move of MC_FinishHoming.
+ *
+ * An event lies between two looks at the process data. It gets the place halfway between the two actual positions,
+ * which is wrong by at most half the way between them.
+ */
+#include <math.h>
+
+#include "axis/axis_private.h"
+#include "axis/axis_signals.h"
+
+static const int64_t default_detection_ns = 50 * MS_IN_NS;
+static const double default_timeout_s = 60.0;
+static const double few_counts = 20.0;
+/* Of a set-point that goes back from a stop, and of one that comes nearer to it again; counts/s. */
+static const double relief_velocity_counts = 5000.0;
+static const double creep_velocity_counts = 250.0;
+static const double farthest_relief_counts = 5000.0;
+/* Part of the allowed lag that shows a stop where no torque is given. */
+static const double pressing_lag = 0.25;
+
+/* ---- signals ----------------------------------------------------------------------------------------------------- */
+
+static cm1e_axis_switch_t limit_switch(double way)
+{
+    return way > 0.0 ? CM1E_SWITCH_LIMIT_POSITIVE : CM1E_SWITCH_LIMIT_NEGATIVE;
+}
+
+/* What a step looks for: a configured switch, or an input as it is. */
+static bool level_of(const cm1e_axis_t *axis, const stepping_t *s)
+{
+    bool level;
+    if (s->step.kind == CM1E_STEP_LIMIT_SWITCH)
+        return cm1e_axis_switch_active(axis, limit_switch(s->search));
+    if (s->step.input == 0)
+        return cm1e_axis_switch_active(axis, CM1E_SWITCH_HOME);
+    cm1e_axis_read_input(axis, s->step.input, &level);
+    return level;
+}
+
+/* ---- check ------------------------------------------------------------------------------------------------------- */
+
+static bool usable(double value) { return isfinite(value) && value >= 0.0; }
+
+static bool by_switch(cm1e_homing_step_kind_t kind)
+{
+    return kind == CM1E_STEP_ABSOLUTE_SWITCH || kind == CM1E_STEP_LIMIT_SWITCH;
+}
+
+static bool searches(cm1e_homing_step_kind_t kind) { return by_switch(kind) || kind == CM1E_STEP_BLOCK; }
+
+static bool direction_valid(const cm1e_homing_step_t *step)
+{
+    switch ((int)step->direction) {
+    case 0:
+    case mcPositiveDirection:
+    case mcNegativeDirection: return true;
+    case mcSwitchPositive:
+    case mcSwitchNegative: return step->kind == CM1E_STEP_ABSOLUTE_SWITCH;
+    default: return false;
+    }
+}
+
+static bool mode_valid(const cm1e_homing_step_t *step)
+{
+    const int last = step->kind == CM1E_STEP_LIMIT_SWITCH ? mcFallingEdge : mcEdgeSwitchNegative;
+    return !by_switch(step->kind) || ((int)step->mode >= mcOn && (int)step->mode <= last);
+}
+
+static double search_direction(const cm1e_homing_step_t *step)
+{
+    return step->direction == mcNegativeDirection || step->direction == mcSwitchNegative ? -1.0 : 1.0;
+}
+
+/* A position to be set: none, or one that the axis can count. */
+static bool position_valid(const cm1e_axis_t *axis, double position)
+{
+    position_t unused;
+    return isnan(position) || cm1e_axis_position_from_units(axis, position, &unused);
+}
+
+static cm1e_error_t check_signal(const cm1e_axis_t *axis, const cm1e_homing_step_t *step)
+{
+    const bool torque = step->torque_limit > 0.0;
+    if ((torque && axis->drive.in_torque.bytes == 0) || (by_switch(step->kind) && axis->drive.in_digital.bytes == 0))
+        return CM1E_ERROR_PDO_MAPPING;
+    if (step->kind == CM1E_STEP_LIMIT_SWITCH)
+        return cm1e_axis_has_switch(axis, limit_switch(search_direction(step))) ? CM1E_OK
+                                                                                : CM1E_ERROR_AXIS_STEP_SWITCH;
+    const bool home = step->kind == CM1E_STEP_ABSOLUTE_SWITCH && step->input == 0;
+    return home && !cm1e_axis_has_switch(axis, CM1E_SWITCH_HOME) ? CM1E_ERROR_AXIS_STEP_SWITCH : CM1E_OK;
+}
+
+cm1e_error_t cm1e_axis_step_check(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move)
+{
+    if (!step || (unsigned)step->kind > CM1E_STEP_FINISH)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    if (move->buffer_mode != mcAborting && move->buffer_mode != mcBuffered)
+        return CM1E_ERROR_AXIS_BUFFER_MODE;
+    if (step->kind == CM1E_STEP_FINISH)
+        return isfinite(move->position) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+    if (!position_valid(axis, move->position) || (step->kind == CM1E_STEP_DIRECT && isnan(move->position)))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    if (!searches(step->kind))
+        return CM1E_OK;
+    if (!direction_valid(step))
+        return CM1E_ERROR_AXIS_DIRECTION;
+    if (!mode_valid(step) || step->input < 0 || step->input > CM1E_AXIS_INPUTS || !usable(step->torque_limit) ||
+        !usable(step->distance_limit) || !usable(step->detection_velocity) || step->time_limit_ns < 0 ||
+        step->detection_ns < 0)
+        return CM1E_ERROR_AXIS_STEP_INPUT;
+    const from_t from = from_set(axis);
+    cm1e_motion_limits_t unused;
+    const cm1e_error_t error = check_signal(axis, step);
+    return error ? error : cm1e_axis_limits_of(axis, &from, move, &unused);
+}
+
+/* ---- motions ----------------------------------------------------------------------------------------------------- */
+
+static cm1e_motion_state_t set_state(const cm1e_axis_t *axis)
+{
+    return (cm1e_motion_state_t){0.0, axis->set_velocity, axis->set_acceleration};
+}
+
+static void run(cm1e_axis_t *axis, const cm1e_profile_t *profile)
+{
+    const from_t from = from_set(axis);
+    cm1e_axis_run(axis, &from, profile, cm1e_position_plus(axis->set, profile->end.position * axis->scale), 0.0);
+}
+
+static void go_within(cm1e_axis_t *axis, double velocity, const cm1e_motion_limits_t *limits)
+{
+    cm1e_profile_t profile;
+    const cm1e_motion_state_t now = set_state(axis);
+    if (cm1e_profile_to_velocity(&profile, &now, velocity, limits) == CM1E_OK)
+        run(axis, &profile);
+}
+
+static void go(cm1e_axis_t *axis, double velocity) { go_within(axis, velocity, &axis->stepping.limits); }
+
+/* While the motor stands at something there is no reason to be gentle with the set-point. */
+static void press_on(cm1e_axis_t *axis, double velocity) { go_within(axis, velocity, &axis->emergency); }
+
+static void turn_to(cm1e_axis_t *axis, double way)
+{
+    axis->stepping.way = way;
+    go(axis, way * axis->stepping.limits.velocity);
+}
+
+static double torque_percent(const cm1e_axis_t *axis)
+{
+    return axis->drive.feedback.torque * (axis->scale < 0.0 ? -0.1 : 0.1);
+}
+
+static double lag_counts(const cm1e_axis_t *axis) { return cm1e_position_minus(axis->set, axis_actual(axis)); }
+
+static double relief_velocity(const cm1e_axis_t *axis)
+{
+    return fmin(relief_velocity_counts / fabs(axis->scale), axis->maximum.velocity);
+}
+
+/* The motor pushes, or is about to, in the direction of `way`. The set-point goes back until it does not any more: to
+ * where the motor is at least, and farther while what the drive has summed up still pushes. */
+static void relieve(cm1e_axis_t *axis, double way)
+{
+    stepping_t *s = &axis->stepping;
+    s->phase = STEPPING_RELIEVE;
+    s->way = -way;
+    s->travel = -fabs(lag_counts(axis) / axis->scale);
+    press_on(axis, s->way * relief_velocity(axis));
+}
+
+static void relieve_cycle(cm1e_axis_t *axis)
+{
+    stepping_t *s = &axis->stepping;
+    s->travel += fabs(axis->set_velocity) * axis->cycle_s;
+    const double push = -s->way, lag = lag_counts(axis) / axis->scale;
+    const bool pushes = lag * push > 0.0 || torque_percent(axis) * push > 0.0;
+    const bool enough = s->travel * fabs(axis->scale) >= farthest_relief_counts;
+    if ((pushes && !enough) || !axis->drive.feedback.fresh)
+        return;
+    s->phase = STEPPING_RELIEVED;
+    press_on(axis, 0.0);
+}
+
+static void decide(cm1e_axis_t *axis, cm1e_error_t outcome)
+{
+    axis->stepping.outcome = outcome;
+    axis->stepping.phase = STEPPING_STOP;
+}
+
+static void found(cm1e_axis_t *axis, position_t reference)
+{
+    axis->stepping.reference = reference;
+    decide(axis, CM1E_OK);
+    go(axis, 0.0);
+}
+
+static void give_up(cm1e_axis_t *axis, cm1e_error_t error)
+{
+    decide(axis, error);
+    go(axis, 0.0);
+}
+
+/* ---- begin ------------------------------------------------------------------------------------------------------- */
+
+static cm1e_error_t prepare_finish(const cm1e_axis_t *axis, const move_t *move, stepping_t *next,
+                                   cm1e_profile_t *profile)
+{
+    if (axis->state != CM1E_AXIS_HOMING)
+        return CM1E_ERROR_AXIS_STATE;
+    const cm1e_motion_state_t now = set_state(axis);
+    const from_t from = from_set(axis);
+    move_t dynamics = *move;
+    if (move->position == 0.0)
+        dynamics.kind = CM1E_COMMAND_HALT; /* no move: the velocity is of no matter */
+    const cm1e_error_t error = cm1e_axis_limits_of(axis, &from, &dynamics, &next->limits);
+    if (error)
+        return error;
+    next->referenced = axis->stepping.referenced;
+    next->finishing = true;
+    if (move->position == 0.0)
+        return cm1e_profile_to_velocity(profile, &now, 0.0, &next->limits);
+    if (cm1e_profile_to_position(profile, &now, move->position, &next->limits))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    return cm1e_axis_limits_check(axis, &from, profile);
+}
+
+/* Where a search begins to go. A switch that is on is left first, unless it is what the step looks for. */
+static double first_way(const cm1e_axis_t *axis, stepping_t *s)
+{
+    const bool by_level = s->step.direction == mcSwitchPositive || s->step.direction == mcSwitchNegative ||
+                          s->step.kind == CM1E_STEP_LIMIT_SWITCH;
+    s->level = level_of(axis, s);
+    s->seen_on = s->level;
+    return by_level && s->level ? -s->search : s->search;
+}
+
+static cm1e_error_t prepare_search(const cm1e_axis_t *axis, const move_t *move, stepping_t *next,
+                                   cm1e_profile_t *profile)
+{
+    const from_t from = from_set(axis);
+    const cm1e_error_t error = cm1e_axis_limits_of(axis, &from, move, &next->limits);
+    if (error)
+        return error;
+    next->search = search_direction(&next->step);
+    next->way = first_way(axis, next);
+    if (!cm1e_axis_direction_enabled(axis, next->way))
+        return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
+    if (next->step.time_limit_ns == 0) {
+        const double timeout_s = axis->config->homing.timeout_s;
+        next->step.time_limit_ns = (int64_t)((timeout_s > 0.0 ? timeout_s : default_timeout_s) * 1e9);
+    }
+    if (next->step.detection_velocity == 0.0)
+        next->step.detection_velocity = 0.1 * next->limits.velocity;
+    if (next->step.detection_ns == 0)
+        next->step.detection_ns = default_detection_ns;
+    next->deadline_ns = next->step.time_limit_ns > INT64_MAX - axis->now_ns
+                            ? INT64_MAX : axis->now_ns + next->step.time_limit_ns;
+    next->actual_before = axis_actual(axis);
+    const cm1e_motion_state_t now = set_state(axis);
+    return cm1e_profile_to_velocity(profile, &now, next->way * next->limits.velocity, &next->limits)
+               ? CM1E_ERROR_AXIS_VELOCITY_RANGE : CM1E_OK;
+}
+
+cm1e_error_t cm1e_axis_step_prepare(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move,
+                                    stepping_t *next, cm1e_profile_t *profile)
+{
+    *next = (stepping_t){.step = *step, .position = move->position};
+    if (searches(next->step.kind))
+        return prepare_search(axis, move, next, profile);
+    next->phase = STEPPING_STOP;
+    if (next->step.kind == CM1E_STEP_FINISH)
+        return prepare_finish(axis, move, next, profile);
+    const cm1e_motion_state_t now = set_state(axis);
+    next->limits = axis->maximum;
+    return cm1e_profile_to_velocity(profile, &now, 0.0, &next->limits);
+}
+
+void cm1e_axis_step_begin(cm1e_axis_t *axis, const stepping_t *next, const cm1e_profile_t *profile)
+{
+    axis->stepping = *next;
+    axis->stepping.pushing = true;
+    axis->state = CM1E_AXIS_HOMING;
+    if (searches(next->step.kind))
+        axis->homed = false;
+    run(axis, profile);
+}
+
+/* ---- search ------------------------------------------------------------------------------------------------------ */
+
+static bool edge_is_meant(const stepping_t *s, bool rising, double moving)
+{
+    const bool limit_switch = s->step.kind == CM1E_STEP_LIMIT_SWITCH;
+    switch (s->step.mode) {
+    case mcOn:
+    case mcRisingEdge: return rising && moving == s->search;
+    case mcOff:
+    case mcFallingEdge: return !rising && moving == (limit_switch ? -s->search : s->search);
+    case mcEdgeSwitchPositive: return rising == (moving > 0.0);
+    case mcEdgeSwitchNegative: return rising == (moving < 0.0);
+    }
+    return false;
+}
+
+/* The levels of an absolute switch are conditions, whenever and however it is met. */
+static bool level_is_meant(const stepping_t *s, bool on)
+{
+    return s->step.kind == CM1E_STEP_ABSOLUTE_SWITCH &&
+           ((s->step.mode == mcOn && on) || (s->step.mode == mcOff && !on));
+}
+
+static position_t halfway(const cm1e_axis_t *axis)
+{
+    const position_t before = axis->stepping.actual_before;
+    return cm1e_position_plus(before, 0.5 * cm1e_position_minus(axis_actual(axis), before));
+}
+
+/* TRUE: the event is there. */
+static bool look_at_switch(cm1e_axis_t *axis)
+{
+    stepping_t *s = &axis->stepping;
+    const bool on = level_of(axis, s), before = s->level;
+    const double moving = axis->set_velocity > 0.0 ? 1.0 : axis->set_velocity < 0.0 ? -1.0 : 0.0;
+    s->level = on;
+    s->seen_on |= on;
+    if (!level_is_meant(s, on) && !(on != before && moving != 0.0 && edge_is_meant(s, on, moving)))
+        return false;
+    found(axis, on != before ? halfway(axis) : axis_actual(axis));
+    return true;
+}
+
+/* A search that went the other way has passed the switch, or has met what it turns at: back to its own direction. */
+static bool time_to_turn(const stepping_t *s)
+{
+    const bool falling_limit = s->step.kind == CM1E_STEP_LIMIT_SWITCH &&
+                               (s->step.mode == mcOff || s->step.mode == mcFallingEdge);
+    if (falling_limit)
+        return s->way == s->search && s->level;
+    return s->way != s->search && s->seen_on && !s->level;
+}
+
+/* Each limit switch is met once: then the search goes back over the switch (Part 5, 3.1). */
+static void look_at_limit_switch(cm1e_axis_t *axis)
+{
+    stepping_t *s = &axis->stepping;
+    if (s->step.kind == CM1E_STEP_LIMIT_SWITCH && s->way == s->search)
+        return; /* that is the one it looks for */
+    if (!cm1e_axis_switch_active(axis, limit_switch(s->way)))
+        return;
+    bool *turned = s->way > 0.0 ? &s->turned_positive : &s->turned_negative;
+    if (s->step.kind != CM1E_STEP_ABSOLUTE_SWITCH || *turned) {
+        give_up(axis, CM1E_ERROR_AXIS_STEP_LIMIT_SWITCH);
+        return;
+    }
+    *turned = true;
+    s->seen_on = s->level;
+    turn_to(axis, -s->way);
+}
+
+static double actual_velocity(const cm1e_axis_t *axis) { return axis->drive.feedback.velocity / axis->scale; }
+
+static bool stands(const cm1e_axis_t *axis)
+{
+    return fabs(actual_velocity(axis)) <= axis->stepping.step.detection_velocity;
+}
+
+/* How much of what shows a stop is there: 1 is enough. */
+static double pressure(const cm1e_axis_t *axis)
+{
+    const stepping_t *s = &axis->stepping;
+    if (s->step.torque_limit > 0.0)
+        return torque_percent(axis) * s->way / s->step.torque_limit;
+    return lag_counts(axis) / axis->scale * s->way / (pressing_lag * axis->max_lag);
+}
+
+/* The set-point that keeps the motor pressed with about TorqueLimit, whatever its controller sums up meanwhile; without
+ * a TorqueLimit it stands. */
+static void keep_pressed(cm1e_axis_t *axis, double now)
+{
+    stepping_t *s = &axis->stepping;
+    const double pace = s->step.torque_limit == 0.0 ? 0.0
+                        : now >= 1.0 ? -relief_velocity(axis) : creep_velocity_counts / fabs(axis->scale);
+    if (s->pressed && pace == s->pace)
+        return;
+    s->pace = pace;
+    press_on(axis, s->way * pace);
+}
+
+/* A stop is where the motor stands, pressed, for long enough. It searches on should it come free. */
+static void look_for_block(cm1e_axis_t *axis)
+{
+    stepping_t *s = &axis->stepping;
+    const double now = pressure(axis);
+    /* Faster than that at first, or a start from rest would look like a stop. */
+    const bool fast = fabs(axis->set_velocity) > s->step.detection_velocity;
+    if (!s->pressed && !(stands(axis) && fast && now >= 1.0))
+        return;
+    if (!stands(axis)) {
+        s->pressed = false;
+        turn_to(axis, s->way);
+        return;
+    }
+    keep_pressed(axis, now);
+    if (!s->pressed || now < 0.5)
+        s->pressed_ns = axis->now_ns;
+    s->pressed = true;
+    if (axis->now_ns - s->pressed_ns >= s->step.detection_ns) {
+        s->reference = axis_actual(axis);
+        decide(axis, CM1E_OK);
+        relieve(axis, s->way);
+    }
+}
+
+/* TRUE: one of the limits of the step is reached, or the direction is taken away. */
+static bool over_a_limit(cm1e_axis_t *axis)
+{
+    const stepping_t *s = &axis->stepping;
+    cm1e_error_t error = CM1E_OK;
+    if (!cm1e_axis_direction_enabled(axis, s->way))
+        error = CM1E_ERROR_AXIS_DIRECTION_DISABLED;
+    else if (axis->now_ns >= s->deadline_ns)
+        error = CM1E_ERROR_AXIS_STEP_TIME;
+    else if (s->step.distance_limit > 0.0 && s->travel >= s->step.distance_limit)
+        error = CM1E_ERROR_AXIS_STEP_DISTANCE;
+    else if (by_switch(s->step.kind) && s->step.torque_limit > 0.0 && axis->drive.feedback.fresh &&
+             fabs(torque_percent(axis)) > s->step.torque_limit)
+        error = CM1E_ERROR_AXIS_STEP_TORQUE;
+    if (error)
+        give_up(axis, error);
+    return error != CM1E_OK;
+}
+
+static void search(cm1e_axis_t *axis)
+{
+    stepping_t *s = &axis->stepping;
+    s->travel += fabs(axis->set_velocity) * axis->cycle_s;
+    const bool look = axis->drive.feedback.fresh;
+    if (look && by_switch(s->step.kind) && look_at_switch(axis))
+        return;
+    if (over_a_limit(axis))
+        return;
+    if (!look)
+        return;
+    look_at_limit_switch(axis);
+    if (s->phase == STEPPING_SEARCH && s->step.kind == CM1E_STEP_BLOCK)
+        look_for_block(axis);
+    else if (s->phase == STEPPING_SEARCH && time_to_turn(s))
+        turn_to(axis, -s->way);
+    s->actual_before = axis_actual(axis);
+}
+
+/* MC_Stop has ended a step at its set-point, but the motor is still to be relieved before it is Done. */
+static bool relieving_after_stop(const cm1e_axis_t *axis)
+{
+    return axis->stepping.after_stop && axis->state == CM1E_AXIS_STOPPING;
+}
+
+void cm1e_axis_step_cycle(cm1e_axis_t *axis)
+{
+    const bool stepping = axis_stepping(axis);
+    if (!stepping && !relieving_after_stop(axis))
+        return;
+    if (axis->stepping.phase == STEPPING_RELIEVE)
+        relieve_cycle(axis);
+    else if (stepping && axis->stepping.phase == STEPPING_SEARCH)
+        search(axis);
+    else if (stepping && axis->stepping.finishing && axis->stepping.outcome == CM1E_OK &&
+             !cm1e_axis_direction_enabled(axis, axis->set_velocity))
+        give_up(axis, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
+}
+
+/* ---- end --------------------------------------------------------------------------------------------------------- */
+
+static void complete(cm1e_axis_t *axis)
+{
+    stepping_t *s = &axis->stepping;
+    const bool last = s->step.kind == CM1E_STEP_DIRECT || s->step.kind == CM1E_STEP_FINISH;
+    s->pushing = false;
+    if (s->outcome) { /* what was to build on it is pointless */
+        cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, s->outcome);
+        cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+        return;
+    }
+    if (s->step.kind != CM1E_STEP_FINISH && !isnan(s->position)) {
+        cm1e_axis_set_origin(axis, s->step.kind == CM1E_STEP_DIRECT ? axis->set : s->reference, s->position);
+        s->referenced = true;
+    }
+    if (last) {
+        axis->homed = s->referenced;
+        axis->state = CM1E_AXIS_STANDSTILL;
+    }
+    cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
+}
+
+static bool held_up(const cm1e_axis_t *axis)
+{
+    const double limit = axis->stepping.step.torque_limit;
+    return axis->drive.feedback.fresh && (fabs(lag_counts(axis)) > few_counts ||
+                                          (limit > 0.0 && fabs(torque_percent(axis)) > 0.5 * limit));
+}
+
+static double pushed_way(const cm1e_axis_t *axis)
+{
+    const double lag = lag_counts(axis) / axis->scale;
+    const double way = fabs(lag * axis->scale) > few_counts ? lag : torque_percent(axis);
+    return way > 0.0 ? 1.0 : -1.0;
+}
+
+/* The set-point of MC_Stop stands, or has been taken back. */
+static bool stop_ended(cm1e_axis_t *axis)
+{
+    stepping_t *s = &axis->stepping;
+    if (axis->state != CM1E_AXIS_STOPPING || !s->pushing)
+        return false;
+    s->pushing = false;
+    if (!held_up(axis))
+        return false;
+    cm1e_axis_stand(axis);
+    s->after_stop = true;
+    relieve(axis, pushed_way(axis));
+    return true;
+}
+
+bool cm1e_axis_step_profile_ended(cm1e_axis_t *axis)
+{
+    const stepping_t *s = &axis->stepping;
+    const bool stepping = axis_stepping(axis);
+    if (axis->profile.end.velocity != 0.0) {
+        axis->reached = stepping || relieving_after_stop(axis);
+        return axis->reached;
+    }
+    if (!stepping)
+        return stop_ended(axis);
+    cm1e_axis_stand(axis);
+    if (s->phase == STEPPING_SEARCH)
+        return true; /* it presses, and waits */
+    if (s->phase == STEPPING_STOP && s->outcome != CM1E_OK && held_up(axis))
+        relieve(axis, pushed_way(axis));
+    else
+        complete(axis);
+    return true;
+}
