@@ -112,6 +112,6 @@ def header(file):
         about += "".join(f" * {line}\n" for line in textwrap.wrap(" ".join(paragraph.split()), WIDTH - 3))
     about += f" * Generated from {file.path} by fb/interface/generate.py; change it there.\n */\n"
     includes = "".join(f'#include "{name}"\n' for name in file.includes)
-    body = "\n".join(declaration_text(item, file.symbol) for item in file.declarations)
+    body = "\n".join(declaration_text(item, file.symbol) for item in file.declarations if "external" not in item.tags)
     return (f"{about}#ifndef {guard}\n#define {guard}\n\n{includes}\n"
             f'#ifdef __cplusplus\nextern "C" {{\n#endif\n\n{body}\n#ifdef __cplusplus\n}}\n#endif\n#endif\n')

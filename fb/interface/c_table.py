@@ -32,7 +32,6 @@ def layout(variables, sizes):
 
 def sizes_of(files):
     sizes = {name: (size, size) for name, size in st.ELEMENTARY.items()}
-    sizes["AXIS_REF"] = (2, 2)
     for declaration in (item for file in files for item in file.declarations):
         if declaration.kind == "enum":
             sizes[declaration.name] = (4, 4)

@@ -144,15 +144,16 @@ def page(block, file, tables, notes, has_diagram):
             + f"`#include <cm1e/{include}>`, `{name}_t`, `{name}(&fb)`.\n"
             + "What holds for all blocks: [the function blocks](../FUNCTION-BLOCKS.md).\n\n"
             + f"```iecst\n{st_text(block)}\n```\n\n{defaults}{variables_text(block, tables)}"
-            + states_text(block, tables) + errors_text(block, tables) + notes_text(block, notes) + diagram).rstrip() + "\n"
+            + states_text(block, tables) + errors_text(block, tables) + notes_text(block, notes)
+            + diagram).rstrip() + "\n"
 
 
 def index(files, tables):
     text = "# The blocks\n\n"
-    text += wrap("One page a block: what it is for, its declaration, inputs and outputs with units, the states in which "
-                 "it may be called, its errors, a timing diagram that a real run on the simulated motor has drawn. What "
-                 "holds for all of them is in [the function blocks](../FUNCTION-BLOCKS.md). The pages are generated from "
-                 "`fb/interface/`.") + "\n\n"
+    text += wrap("One page a block: what it is for, its declaration, inputs and outputs with units, the states in "
+                 "which it may be called, its errors, a timing diagram that a real run on the simulated motor has "
+                 "drawn. What holds for all of them is in [the function blocks](../FUNCTION-BLOCKS.md). The pages are "
+                 "generated from `fb/interface/`.") + "\n\n"
     for file in files:
         if not file.blocks():
             continue

@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 typedef uint8_t BOOL;
+typedef int8_t SINT;
 typedef int16_t INT;
 typedef uint16_t UINT;
 typedef uint16_t WORD;

@@ -7,6 +7,8 @@
 /* The layout that an ST compiler gives the declarations: order of declaration, natural alignment. */
 #define AT(TYPE, NAME, OFFSET) _Static_assert(offsetof(TYPE##_t, NAME) == OFFSET, #TYPE "." #NAME)
 #if UINTPTR_MAX == UINT64_MAX
+_Static_assert(sizeof(AXIS_REF_t) == 2, "AXIS_REF_t");
+_Static_assert(sizeof(cm1e_homing_config_t) == 48, "cm1e_homing_config_t");
 _Static_assert(sizeof(MC_INPUT_REF) == 4, "MC_INPUT_REF");
 _Static_assert(sizeof(MC_OUTPUT_REF) == 8, "MC_OUTPUT_REF");
 _Static_assert(sizeof(MC_TRIGGER_REF) == 6, "MC_TRIGGER_REF");
