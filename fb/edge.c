@@ -140,3 +140,14 @@ BOOL fb_read(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, cm
         cm1e_axis_get(axis, info);
     return axis != NULL;
 }
+
+fb_reading_t fb_reading(const cm1e_fb_private_t *fb, const cm1e_axis_t *axis, cm1e_error_t passing)
+{
+    const bool passes = axis && passing;
+    return (fb_reading_t){
+        .valid = axis && !passing,
+        .busy = fb->state == FB_BUSY,
+        .error = fb->state == FB_ERROR || passes,
+        .error_id = passes ? cm1e_error_id(passing) : fb->error_id,
+    };
+}

@@ -55,6 +55,20 @@ const cm1e_axis_t *fb_enable(cm1e_fb_private_t *fb, const AXIS_REF_t *reference,
 /** The same for blocks that read: TRUE and a copy of the axis's data when it can be read. */
 BOOL fb_read(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, cm1e_axis_info_t *info);
 
+/** What a block that reads shows: a `passing` error keeps Busy TRUE, and Valid comes back by itself (2.2.3, figure 5). */
+typedef struct fb_reading {
+    BOOL valid, busy, error;
+    WORD error_id;
+} fb_reading_t;
+/** `axis`: what fb_enable() gave. */
+fb_reading_t fb_reading(const cm1e_fb_private_t *fb, const cm1e_axis_t *axis, cm1e_error_t passing);
+
+/** mcQueued: no block that moves nothing waits among the commands yet. */
+static inline cm1e_error_t fb_refuse_queued(MC_EXECUTION_MODE mode)
+{
+    return mode == mcImmediately ? CM1E_OK : CM1E_ERROR_AXIS_BUFFER_MODE;
+}
+
 /** Inputs that this version has no use for yet. */
 static inline cm1e_error_t fb_refuse_continuous_update(BOOL continuous_update)
 {

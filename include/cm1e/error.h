@@ -78,7 +78,8 @@ extern "C" {
     X(ERROR_AXIS_NO_SUCH_SIGNAL, -116, "the drive has no such signal: reference pulse, coded marks, absolute encoder") \
     X(ERROR_FB_AXIS_REF, -90, "AXIS_REF names no axis")                                                             \
     X(ERROR_FB_AXIS_CHANGED, -91, "the axis of a busy function block was changed")                                  \
-    X(ERROR_FB_SECOND_POWER, -92, "another MC_Power controls this axis")
+    X(ERROR_FB_SECOND_POWER, -92, "another MC_Power controls this axis")                                            \
+    X(ERROR_FB_CAM_SWITCH, -96, "a switch or a track of MC_DigitalCamSwitch is not one that can be")
 
 typedef enum cm1e_error {
 #define CM1E_ERROR_ENUM(name, value, text) CM1E_##name = (value),

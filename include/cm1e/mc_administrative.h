@@ -204,7 +204,7 @@ typedef struct MC_ReadMotionState {
     BOOL Decelerating;      /**< its amount falls */
     BOOL DirectionPositive; /**< the position grows */
     BOOL DirectionNegative; /**< the position falls */
-    cm1e_fb_private_t Private;
+    cm1e_motion_private_t Private;
 } MC_ReadMotionState_t;
 void MC_ReadMotionState(MC_ReadMotionState_t *fb);
 
@@ -285,6 +285,7 @@ typedef struct MC_TouchProbe {
     BOOL Error;
     WORD ErrorID;
     LREAL RecordedPosition;             /**< u; actual position at the event */
+    LREAL Uncertainty;                  /**< u; the event was at most so far from there (not in the standard) */
     cm1e_fb_private_t Private;
 } MC_TouchProbe_t;
 void MC_TouchProbe(MC_TouchProbe_t *fb);

@@ -225,7 +225,8 @@ typedef struct MC_MoveContinuousRelative {
 } MC_MoveContinuousRelative_t;
 void MC_MoveContinuousRelative(MC_MoveContinuousRelative_t *fb);
 
-/** 3.13. Exerts a torque. The CM1-E has no mode for it: always Error, CM1E_ERROR_UNSUPPORTED. @rt cycle */
+/** 3.13. Exerts a torque. The CM1-E has no mode for it (0x6502 = 0x1A5): always Error,
+ *  CM1E_ERROR_AXIS_NO_TORQUE_MODE. @rt cycle */
 typedef struct MC_TorqueControl {
     AXIS_REF_t *Axis;
     BOOL Execute, ContinuousUpdate;
@@ -298,11 +299,11 @@ void MC_AccelerationProfile(MC_AccelerationProfile_t *fb);
 /** Tc2_MC2. Moves the axis by push-buttons, as TwinCAT's block of this name. @rt cycle */
 typedef struct MC_Jog {
     AXIS_REF_t *Axis;
-    BOOL JogForward;    /**< moves in positive direction; goes before JogBackwards */
-    BOOL JogBackwards;  /**< moves in negative direction */
+    BOOL JogForward;    /**< moves in positive direction from its rising edge on; both buttons TRUE: stop */
+    BOOL JogBackwards;  /**< the same in negative direction */
     E_JogMode Mode;
     LREAL Position;     /**< u, > 0; step of the inching modes */
-    LREAL Velocity;     /**< u/s, > 0 ... maximum; not in the two standard modes */
+    LREAL Velocity;     /**< u/s, > 0 ... maximum; this and the next three: not in the two standard modes */
     LREAL Acceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
     LREAL Deceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
     LREAL Jerk;         /**< u/s3, 0 ... maximum; 0: the axis's maximum */
@@ -310,7 +311,7 @@ typedef struct MC_Jog {
     BOOL Done;          /**< the jog has ended and the axis stands */
     BOOL Busy, Active, CommandAborted, Error;
     WORD ErrorID;
-    cm1e_fb_private_t Private;
+    cm1e_jog_private_t Private;
 } MC_Jog_t;
 void MC_Jog(MC_Jog_t *fb);
 

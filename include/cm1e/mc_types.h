@@ -180,13 +180,55 @@ typedef struct cm1e_fb_private {
     BOOL active;            /**< what Active showed */
 } cm1e_fb_private_t;
 
+/** State of MC_ReadMotionState that is not to be touched. */
+typedef struct cm1e_motion_private {
+    cm1e_fb_private_t common;
+    LREAL reference; /**< u/s; speed that changes are seen against */
+    TIME changed;    /**< when one was */
+    BOOL rising, measuring;
+} cm1e_motion_private_t;
+
+/** State of MC_Jog that is not to be touched. */
+typedef struct cm1e_jog_private {
+    cm1e_fb_private_t common;
+    TIME called;        /**< time of the last call */
+    LREAL deceleration; /**< u/s2; latched at the edge */
+    LREAL jerk;         /**< u/s3; latched at the edge */
+    BOOL forward_before, backwards_before;
+    BOOL backwards;     /**< the way of the jog under way */
+    BOOL held;          /**< it goes on as long as its button is held */
+    BOOL stopping;      /**< its stop is under way */
+} cm1e_jog_private_t;
+
+/** A point that runs over a switch of MC_DigitalCamSwitch. Not to be touched. */
+typedef struct cm1e_cam_point {
+    LREAL position; /**< u; at the last call */
+    BOOL inside;
+    BOOL held;      /**< 1, 2: at the first, last position, where nothing switches before the hysteresis is left */
+} cm1e_cam_point_t;
+
+/** State of a switch of MC_DigitalCamSwitch. Not to be touched. */
+typedef struct cm1e_cam_switch {
+    cm1e_cam_point_t on_point, off_point;
+    BOOL wanted;       /**< by position or time alone, before it is delayed */
+    TIME wanted_until; /**< by time */
+    TIME on_from;      /**< when the delayed one goes on */
+    TIME off_at;       /**< ... and off */
+    TIME still_until;  /**< the one before lasts so long */
+} cm1e_cam_switch_t;
+
 /** State of MC_DigitalCamSwitch that is not to be touched. */
 typedef struct cm1e_cam_private {
     cm1e_fb_private_t common;
-    DWORD on;                    /**< switches that are on */
-    DWORD pending;               /**< switches that wait for their compensation */
-    TIME due[CM1E_CAM_SWITCHES]; /**< when they switch */
-    LREAL position_before;
+    TIME called;    /**< time of the last call */
+    TIME seen;      /**< when the position was known last */
+    LREAL position; /**< u; at the last call */
+    LREAL turn;     /**< u; where the axis was farthest in its direction */
+    BOOL running;   /**< the last call knew the position */
+    BOOL negative;  /**< direction of the last motion */
+    BOOL moved;     /**< there was one */
+    UINT output;    /**< handle of the axis whose output is written */
+    cm1e_cam_switch_t switches[CM1E_CAM_SWITCHES];
 } cm1e_cam_private_t;
 
 #ifdef __cplusplus

@@ -1,4 +1,5 @@
 /* Digital inputs and the output of the motor, the switches among them, and what goes off when it is not renewed. */
+#include <math.h>
 #include <string.h>
 
 #include "axis/axis_private.h"
@@ -88,6 +89,13 @@ cm1e_error_t cm1e_axis_read_output(const cm1e_axis_t *axis, int number, bool *va
 
 /* ---- condition --------------------------------------------------------------------------------------------------- */
 
+/* UG 7.3.1: what a drive says that is just not enabled, and otherwise would be worth a look. */
+static bool tells_only_that_it_is_off(const cm1e_drive_feedback_t *f)
+{
+    const uint16_t code = f->error_code;
+    return f->state != OPERATION_ENABLED && (code == 0x4502 || code == 0x8611 || code == 0xFF01);
+}
+
 cm1e_axis_condition_t cm1e_axis_condition(const cm1e_axis_t *axis)
 {
     const cm1e_drive_feedback_t *f = &axis->drive.feedback;
@@ -97,8 +105,23 @@ cm1e_axis_condition_t cm1e_axis_condition(const cm1e_axis_t *axis)
         .communication = f->online,
         .ready_for_power_on = axis->state == CM1E_AXIS_DISABLED && f->online && f->voltage && !f->fault &&
                               (f->state == READY_TO_SWITCH_ON || f->state == SWITCHED_ON),
-        /* Some codes of UG 7.3.1 are no faults: 0x4502, 0x8611, 0xFF01. */
-        .warning = !f->fault && (f->error_code != 0 || f->statusword & STATUSWORD_WARNING),
+        .warning = !f->fault && (f->statusword & STATUSWORD_WARNING ||
+                                 (f->error_code != 0 && !tells_only_that_it_is_off(f))),
+    };
+}
+
+cm1e_axis_measures_t cm1e_axis_measures(const cm1e_axis_t *axis)
+{
+    const cm1e_axis_config_t *config = axis->config;
+    const double most = axis->maximum.velocity;
+    return (cm1e_axis_measures_t){
+        .resolution = 1.0 / fabs(axis->scale),
+        .modulo_range = axis->modulo_range,
+        .max_velocity = most,
+        .lower = axis->software_limits ? axis->lower : -INFINITY,
+        .upper = axis->software_limits ? axis->upper : INFINITY,
+        .jog_slow = fmin(config->jog_slow > 0.0 ? config->jog_slow : 0.05 * most, most),
+        .jog_fast = fmin(config->jog_fast > 0.0 ? config->jog_fast : 0.25 * most, most),
     };
 }
 

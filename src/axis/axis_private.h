@@ -113,7 +113,8 @@ typedef struct probe {
 } probe_t;
 
 typedef struct probe_sample {
-    int64_t time_ns, counts;
+    int64_t time_ns;
+    position_t position;            /**< of the load */
     uint16_t inputs;
 } probe_sample_t;
 

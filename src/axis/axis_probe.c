@@ -25,7 +25,7 @@ static probe_sample_t sample(const cm1e_axis_t *axis)
 {
     return (probe_sample_t){
         .time_ns = axis->drive.read_ns,
-        .counts = axis->actual_counts,
+        .position = axis_actual(axis),
         .inputs = axis->drive.feedback.digital_inputs,
     };
 }
@@ -115,8 +115,8 @@ static void triggered(cm1e_axis_t *axis, probe_t *probe, const probe_sample_t *b
         end(axis, probe, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_PROBE);
         return;
     }
-    const double way = (double)(now->counts - before->counts);
-    const position_t middle = cm1e_position_plus((position_t){before->counts, 0.0}, way / 2.0);
+    const double way = cm1e_position_minus(now->position, before->position);
+    const position_t middle = cm1e_position_plus(before->position, way / 2.0);
     const double position = cm1e_axis_units(axis, middle);
     if (probe->window && !in_window(axis, probe, position))
         return;

@@ -44,6 +44,16 @@ typedef struct cm1e_axis_condition {
 } cm1e_axis_condition_t;
 cm1e_axis_condition_t cm1e_axis_condition(const cm1e_axis_t *axis);
 
+/** What blocks have to know of an axis that they do not move by one command. */
+typedef struct cm1e_axis_measures {
+    double resolution;           /**< u per count of the motor */
+    double modulo_range;         /**< u; 0: a linear axis */
+    double max_velocity;         /**< u/s */
+    double lower, upper;         /**< u, the software limits in force; infinite: none */
+    double jog_slow, jog_fast;   /**< u/s */
+} cm1e_axis_measures_t;
+cm1e_axis_measures_t cm1e_axis_measures(const cm1e_axis_t *axis);
+
 /* ---- touch probes (3.33, 3.34) ---------------------------------------------------------------------------------- */
 
 /** A trigger is an input and an edge of it; each has at most one probe. */

@@ -24,7 +24,11 @@ _Static_assert(sizeof(MC_CAMSWITCH_REF) == 1288, "MC_CAMSWITCH_REF");
 _Static_assert(sizeof(MC_TRACK) == 24, "MC_TRACK");
 _Static_assert(sizeof(MC_TRACK_REF) == 768, "MC_TRACK_REF");
 _Static_assert(sizeof(cm1e_fb_private_t) == 12, "cm1e_fb_private_t");
-_Static_assert(sizeof(cm1e_cam_private_t) == 288, "cm1e_cam_private_t");
+_Static_assert(sizeof(cm1e_motion_private_t) == 40, "cm1e_motion_private_t");
+_Static_assert(sizeof(cm1e_jog_private_t) == 48, "cm1e_jog_private_t");
+_Static_assert(sizeof(cm1e_cam_point_t) == 16, "cm1e_cam_point_t");
+_Static_assert(sizeof(cm1e_cam_switch_t) == 72, "cm1e_cam_switch_t");
+_Static_assert(sizeof(cm1e_cam_private_t) == 2360, "cm1e_cam_private_t");
 _Static_assert(sizeof(cm1e_iec_timer_t) == 16, "cm1e_iec_timer_t");
 _Static_assert(sizeof(cm1e_iec_edges_t) == 2, "cm1e_iec_edges_t");
 _Static_assert(sizeof(MC_Power_t) == 32, "MC_Power");
@@ -276,7 +280,7 @@ AT(MC_AccelerationProfile, CommandAborted, 55);
 AT(MC_AccelerationProfile, Error, 56);
 AT(MC_AccelerationProfile, ErrorID, 58);
 AT(MC_AccelerationProfile, Private, 60);
-_Static_assert(sizeof(MC_Jog_t) == 80, "MC_Jog");
+_Static_assert(sizeof(MC_Jog_t) == 112, "MC_Jog");
 AT(MC_Jog, Axis, 0);
 AT(MC_Jog, JogForward, 8);
 AT(MC_Jog, JogBackwards, 9);
@@ -431,7 +435,7 @@ AT(MC_ReadStatus, DiscreteMotion, 19);
 AT(MC_ReadStatus, ContinuousMotion, 20);
 AT(MC_ReadStatus, SynchronizedMotion, 21);
 AT(MC_ReadStatus, Private, 24);
-_Static_assert(sizeof(MC_ReadMotionState_t) == 40, "MC_ReadMotionState");
+_Static_assert(sizeof(MC_ReadMotionState_t) == 72, "MC_ReadMotionState");
 AT(MC_ReadMotionState, Axis, 0);
 AT(MC_ReadMotionState, Enable, 8);
 AT(MC_ReadMotionState, Source, 12);
@@ -444,7 +448,7 @@ AT(MC_ReadMotionState, Accelerating, 23);
 AT(MC_ReadMotionState, Decelerating, 24);
 AT(MC_ReadMotionState, DirectionPositive, 25);
 AT(MC_ReadMotionState, DirectionNegative, 26);
-AT(MC_ReadMotionState, Private, 28);
+AT(MC_ReadMotionState, Private, 32);
 _Static_assert(sizeof(MC_ReadAxisInfo_t) == 40, "MC_ReadAxisInfo");
 AT(MC_ReadAxisInfo, Axis, 0);
 AT(MC_ReadAxisInfo, Enable, 8);
@@ -480,7 +484,7 @@ AT(MC_Reset, Busy, 10);
 AT(MC_Reset, Error, 11);
 AT(MC_Reset, ErrorID, 12);
 AT(MC_Reset, Private, 16);
-_Static_assert(sizeof(MC_DigitalCamSwitch_t) == 344, "MC_DigitalCamSwitch");
+_Static_assert(sizeof(MC_DigitalCamSwitch_t) == 2416, "MC_DigitalCamSwitch");
 AT(MC_DigitalCamSwitch, Axis, 0);
 AT(MC_DigitalCamSwitch, Switches, 8);
 AT(MC_DigitalCamSwitch, Outputs, 16);
@@ -493,7 +497,7 @@ AT(MC_DigitalCamSwitch, Busy, 45);
 AT(MC_DigitalCamSwitch, Error, 46);
 AT(MC_DigitalCamSwitch, ErrorID, 48);
 AT(MC_DigitalCamSwitch, Private, 56);
-_Static_assert(sizeof(MC_TouchProbe_t) == 72, "MC_TouchProbe");
+_Static_assert(sizeof(MC_TouchProbe_t) == 80, "MC_TouchProbe");
 AT(MC_TouchProbe, Axis, 0);
 AT(MC_TouchProbe, TriggerInput, 8);
 AT(MC_TouchProbe, Execute, 16);
@@ -506,7 +510,8 @@ AT(MC_TouchProbe, CommandAborted, 42);
 AT(MC_TouchProbe, Error, 43);
 AT(MC_TouchProbe, ErrorID, 44);
 AT(MC_TouchProbe, RecordedPosition, 48);
-AT(MC_TouchProbe, Private, 56);
+AT(MC_TouchProbe, Uncertainty, 56);
+AT(MC_TouchProbe, Private, 64);
 _Static_assert(sizeof(MC_AbortTrigger_t) == 40, "MC_AbortTrigger");
 AT(MC_AbortTrigger, Axis, 0);
 AT(MC_AbortTrigger, TriggerInput, 8);
@@ -860,6 +865,16 @@ static const block_rule_t rules_unsupported[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.refusal = CM1E_ERROR_UNSUPPORTED},
     [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_UNSUPPORTED},
     [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_UNSUPPORTED},
+};
+static const block_rule_t rules_no_torque_mode[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NO_TORQUE_MODE},
+    [CM1E_AXIS_STANDSTILL] = {.refusal = CM1E_ERROR_AXIS_NO_TORQUE_MODE},
+    [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_NO_TORQUE_MODE},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.refusal = CM1E_ERROR_AXIS_NO_TORQUE_MODE},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.refusal = CM1E_ERROR_AXIS_NO_TORQUE_MODE},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.refusal = CM1E_ERROR_AXIS_NO_TORQUE_MODE},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_NO_TORQUE_MODE},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_NO_TORQUE_MODE},
 };
 static const block_rule_t rules_any[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_DISABLED] = {.unchanged = true},
@@ -1268,7 +1283,7 @@ static void call_MC_TorqueControl(void *fb) { MC_TorqueControl(fb); }
 static const cm1e_error_t errors_of_MC_TorqueControl[] = {
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
-    CM1E_ERROR_UNSUPPORTED,
+    CM1E_ERROR_AXIS_NO_TORQUE_MODE,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_PositionProfile[] = {
@@ -1382,7 +1397,9 @@ static const cm1e_error_t errors_of_MC_Jog[] = {
     CM1E_ERROR_AXIS_DIRECTION_DISABLED,
     CM1E_ERROR_AXIS_DYNAMICS_RANGE,
     CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
     CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_INVALID_ARGUMENT,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_SetPosition[] = {
@@ -1499,6 +1516,9 @@ static void call_MC_ReadDigitalInput(void *fb) { MC_ReadDigitalInput(fb); }
 static const cm1e_error_t errors_of_MC_ReadDigitalInput[] = {
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_SIGNAL,
+    CM1E_ERROR_AXIS_OFFLINE,
+    CM1E_ERROR_PDO_MAPPING,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_ReadDigitalOutput[] = {
@@ -1515,6 +1535,8 @@ static void call_MC_ReadDigitalOutput(void *fb) { MC_ReadDigitalOutput(fb); }
 static const cm1e_error_t errors_of_MC_ReadDigitalOutput[] = {
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_SIGNAL,
+    CM1E_ERROR_PDO_MAPPING,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_WriteDigitalOutput[] = {
@@ -1532,6 +1554,10 @@ static void call_MC_WriteDigitalOutput(void *fb) { MC_WriteDigitalOutput(fb); }
 static const cm1e_error_t errors_of_MC_WriteDigitalOutput[] = {
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_SIGNAL,
+    CM1E_ERROR_AXIS_OFFLINE,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_PDO_MAPPING,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_ReadActualPosition[] = {
@@ -1622,6 +1648,8 @@ static void call_MC_ReadMotionState(void *fb) { MC_ReadMotionState(fb); }
 static const cm1e_error_t errors_of_MC_ReadMotionState[] = {
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_OFFLINE,
+    CM1E_ERROR_INVALID_ARGUMENT,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_ReadAxisInfo[] = {
@@ -1715,11 +1743,18 @@ static const block_member_t members_of_MC_TouchProbe[] = {
     MEMBER(MC_TouchProbe, Error, OUTPUT, BOOL),
     MEMBER(MC_TouchProbe, ErrorID, OUTPUT, WORD),
     MEMBER(MC_TouchProbe, RecordedPosition, OUTPUT, LREAL),
+    MEMBER(MC_TouchProbe, Uncertainty, OUTPUT, LREAL),
 };
 static void call_MC_TouchProbe(void *fb) { MC_TouchProbe(fb); }
 static const cm1e_error_t errors_of_MC_TouchProbe[] = {
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_PROBE,
+    CM1E_ERROR_AXIS_SIGNAL,
+    CM1E_ERROR_AXIS_OFFLINE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
+    CM1E_ERROR_PDO_MAPPING,
+    CM1E_ERROR_UNSUPPORTED,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_AbortTrigger[] = {
@@ -1735,6 +1770,9 @@ static void call_MC_AbortTrigger(void *fb) { MC_AbortTrigger(fb); }
 static const cm1e_error_t errors_of_MC_AbortTrigger[] = {
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_SIGNAL,
+    CM1E_ERROR_PDO_MAPPING,
+    CM1E_ERROR_UNSUPPORTED,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_StepAbsoluteSwitch[] = {
@@ -2158,7 +2196,7 @@ const block_t block_table[] = {
     BLOCK(MC_MoveVelocity, rules_continuous),
     BLOCK(MC_MoveContinuousAbsolute, rules_continuous),
     BLOCK(MC_MoveContinuousRelative, rules_continuous),
-    BLOCK(MC_TorqueControl, rules_unsupported),
+    BLOCK(MC_TorqueControl, rules_no_torque_mode),
     BLOCK(MC_PositionProfile, rules_discrete),
     BLOCK(MC_VelocityProfile, rules_continuous),
     BLOCK(MC_AccelerationProfile, rules_continuous),

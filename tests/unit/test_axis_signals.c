@@ -237,7 +237,13 @@ static void test_condition_follows_bus_power_state_and_error_code(void)
     cm1e_axis_condition_t c = cm1e_axis_condition(axis);
     TEST_ASSERT_TRUE(c.simulation && c.communication && c.ready_for_power_on && !c.warning);
     strcpy(bus.config.interface_name, "eth1");
-    bus.error_code = 0x4502;
+    static const uint16_t off_codes[] = {0x4502, 0x8611, 0xFF01};
+    for (int i = 0; i < 3; i++) { /* a drive that is off and says so warns of nothing */
+        bus.error_code = off_codes[i];
+        bench_cycles(1);
+        TEST_ASSERT_FALSE(cm1e_axis_condition(axis).warning);
+    }
+    bus.error_code = 0xFF05;
     bench_cycles(1);
     c = cm1e_axis_condition(axis);
     TEST_ASSERT_TRUE(!c.simulation && c.communication && c.ready_for_power_on && c.warning);
@@ -255,6 +261,9 @@ static void test_condition_follows_bus_power_state_and_error_code(void)
     received = CM1E_OK;
     bench_enable();
     TEST_ASSERT_FALSE(cm1e_axis_condition(axis).ready_for_power_on); /* it is on */
+    bus.error_code = 0x8611;
+    bench_cycles(1);
+    TEST_ASSERT_TRUE(cm1e_axis_condition(axis).warning);
     fake_bus_fault(&bus, 0x2310);
     bench_cycles(5);
     c = cm1e_axis_condition(axis);

@@ -1,0 +1,16 @@
+#include "edge.h"
+
+/** 3.13. The CM1-E knows positions and velocities only (0x6502 = 0x1A5, UG 6.2): an error that says so, nothing else. */
+void MC_TorqueControl(MC_TorqueControl_t *fb)
+{
+    cm1e_axis_t *axis = NULL;
+    if (fb_execute(&fb->Private, fb->Axis, fb->Execute, &axis) == FB_STEP_START)
+        fb_started(&fb->Private, CM1E_ERROR_AXIS_NO_TORQUE_MODE);
+    const fb_outputs_t out = fb_outputs(&fb->Private);
+    fb->InTorque = FALSE;
+    fb->Busy = out.busy;
+    fb->Active = FALSE;
+    fb->CommandAborted = out.aborted;
+    fb->Error = out.error;
+    fb->ErrorID = out.error_id;
+}
