@@ -1,6 +1,6 @@
 /**
  * @file example.h
- * What the examples from 04 on have in common: options, a bus of one axis, a scheduler with a trace, the run, its files.
+ * What the examples from 04 on have in common: options, a bus of one axis, a scheduler with a trace, run and files.
  * The idea of each is in its own file.
  */
 #ifndef CM1E_EXAMPLES_EXAMPLE_H
@@ -38,8 +38,7 @@ static inline error_t example_option(int key, char *argument, struct argp_state 
 static inline void example_options(example_t *e, int argc, char **argv, const char *purpose)
 {
     static const struct argp_option options[] = {
-        {"interface", 'i', "NAME", 0, "network interface (the motor turns!), or sim, the simulated segment: the default",
-         0},
+        {"interface", 'i', "NAME", 0, "network interface (the motor turns!); default: sim, the simulated segment", 0},
         {"virtual-time", EXAMPLE_VIRTUAL_TIME, NULL, 0, "sim only: do not wait, run as fast as the machine can", 0},
         {"csv", EXAMPLE_CSV, "FILE", 0, "write the trace as CSV", 0},
         {"svg", EXAMPLE_SVG, "FILE", 0, "write the trace as a plot", 0},
