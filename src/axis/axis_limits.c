@@ -45,6 +45,8 @@ cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
     axis->maximum.jerk = or_default(c->max_jerk, default_jerk_counts / counts);
     axis->emergency = axis->maximum;
     axis->emergency.jerk = INFINITY;
+    axis->emergency_way = 0.5 / axis->emergency.deceleration;
+    axis->tolerance = tolerance_counts / fabs(axis->scale);
     cm1e_axis_backlash_init(axis);
     axis->max_lag = or_default(c->max_position_lag, default_lag_counts / counts);
     return CM1E_OK;
@@ -107,7 +109,7 @@ static bool contains(const cm1e_axis_t *axis, position_t from, double lowest, do
 {
     if (!axis->software_limits)
         return true;
-    const double tolerance = tolerance_counts / fabs(axis->scale), now = cm1e_axis_units(axis, from);
+    const double tolerance = axis->tolerance, now = cm1e_axis_units(axis, from);
     return now + highest <= fmax(axis->upper, now) + tolerance && now + lowest >= fmin(axis->lower, now) - tolerance;
 }
 
@@ -138,15 +140,14 @@ static bool directions_allow(const cm1e_axis_t *axis, const from_t *from, const 
 {
     if (axis->enable_positive && axis->enable_negative)
         return true;
-    const double tolerance = tolerance_counts / fabs(axis->scale);
     double lowest, highest, brake_lowest, brake_highest;
     cm1e_profile_extent(profile, &lowest, &highest);
     cm1e_profile_t brake;
     if (cm1e_axis_plan_stop(axis, from, &axis->maximum, &brake))
         return false;
     cm1e_profile_extent(&brake, &brake_lowest, &brake_highest);
-    return (axis->enable_positive || highest <= fmax(brake_highest, 0.0) + tolerance) &&
-           (axis->enable_negative || lowest >= fmin(brake_lowest, 0.0) - tolerance);
+    return (axis->enable_positive || highest <= fmax(brake_highest, 0.0) + axis->tolerance) &&
+           (axis->enable_negative || lowest >= fmin(brake_lowest, 0.0) - axis->tolerance);
 }
 
 cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
@@ -154,16 +155,4 @@ cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from,
     if (!inside(axis, from, profile))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     return directions_allow(axis, from, profile) ? CM1E_OK : CM1E_ERROR_AXIS_DIRECTION_DISABLED;
-}
-
-/* Without a limit of jerk the way of a stop is known in closed form, whatever the acceleration is. */
-bool cm1e_axis_limits_can_stop(const cm1e_axis_t *axis, position_t base, const cm1e_motion_state_t *next)
-{
-    if (!axis->software_limits)
-        return true;
-    const double tolerance = tolerance_counts / fabs(axis->scale);
-    const double braking = next->velocity * fabs(next->velocity) / (2.0 * axis->emergency.deceleration);
-    const double end = cm1e_axis_units(axis, base) + next->position + braking;
-    return next->velocity > 0.0 ? end <= axis->upper + tolerance
-           : next->velocity < 0.0 ? end >= axis->lower - tolerance : true;
 }

@@ -9,11 +9,15 @@ static const double csv_position_gain = 20.0;
 /* A profile that ends so shortly after a set-point has ended with it; in cycles. */
 static const double same_moment = 1e-6;
 
+static const cm1e_profile_stretch_t no_stretch = {.from_s = INFINITY};
+
 void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile, position_t target,
                    double offset_s)
 {
     axis->profile = *profile;
+    axis->stretch = no_stretch;
     axis->base = from->position;
+    axis->base_units = cm1e_axis_units(axis, axis->base);
     axis->target = target;
     axis->profile_cycles = 0;
     axis->profile_offset_s = offset_s;
@@ -111,12 +115,12 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
 /* The motion of a command goes on only while it could still be stopped before a software limit. FALSE: a ramp has
  * replaced the profile. Moves to a position were checked as a whole when they were planned; velocities, and whatever
  * changes on the way, meet a limit here. */
-static bool may_go_on(cm1e_axis_t *axis, const cm1e_motion_state_t *next)
+static bool may_go_on(cm1e_axis_t *axis, cm1e_motion_state_t next)
 {
-    if (!axis->software_limits || !commanded_motion(axis) || cm1e_axis_limits_can_stop(axis, axis->base, next))
+    if (!axis->software_limits || !commanded_motion(axis) || cm1e_axis_limits_can_stop(axis, axis->base_units, next))
         return true;
     cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->set),
-                   next->velocity > 0.0 ? axis->upper : axis->lower);
+                   next.velocity > 0.0 ? axis->upper : axis->lower);
     return false;
 }
 
@@ -125,9 +129,15 @@ static double next_time(cm1e_axis_t *axis)
     return axis->profile_offset_s + (double)++axis->profile_cycles * axis->cycle_s;
 }
 
+static cm1e_motion_state_t sample(cm1e_axis_t *axis, double time_s)
+{
+    if (!(time_s >= axis->stretch.from_s && time_s < axis->stretch.until_s))
+        cm1e_profile_stretch_at(&axis->profile, time_s, &axis->stretch);
+    return cm1e_profile_stretch_state(&axis->stretch, time_s);
+}
+
 static void profile_step(cm1e_axis_t *axis)
 {
-    cm1e_motion_state_t next;
     double time_s = next_time(axis);
     while (!axis->reached && time_s >= axis->profile.duration_s - same_moment * axis->cycle_s) {
         if (!profile_ended(axis, fmax(time_s - axis->profile.duration_s, 0.0)))
@@ -135,18 +145,18 @@ static void profile_step(cm1e_axis_t *axis)
         if (!axis->reached)
             time_s = axis->profile_offset_s;
     }
-    cm1e_profile_sample(&axis->profile, time_s, &next);
-    if (!may_go_on(axis, &next)) {
+    cm1e_motion_state_t next = sample(axis, time_s);
+    if (!may_go_on(axis, next)) {
         if (axis->activity != ACTIVITY_PROFILE)
             return;
-        cm1e_profile_sample(&axis->profile, next_time(axis), &next);
+        next = sample(axis, next_time(axis));
     }
     axis->set = cm1e_position_plus(axis->base, next.position * axis->scale);
     axis->set_velocity = next.velocity;
     axis->set_acceleration = next.acceleration;
     if (next.velocity != 0.0)
         axis->positive_before = next.velocity > 0.0;
-    if (!cm1e_axis_position_in_range(axis->set))
+    if (!cm1e_position_in_range(axis->set))
         cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->set),
                        cm1e_axis_farthest(axis));
 }

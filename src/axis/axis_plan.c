@@ -38,7 +38,7 @@ static cm1e_error_t resolve_relative(const cm1e_axis_t *axis, const from_t *from
     if (!isfinite(counts) || fabs(counts) > 4.5e15)
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     move->target = cm1e_position_plus(move->origin, counts);
-    return cm1e_axis_position_in_range(move->target) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+    return cm1e_position_in_range(move->target) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
 }
 
 static cm1e_error_t resolve_none(const cm1e_axis_t *axis, const from_t *from, move_t *move)
@@ -94,7 +94,7 @@ static cm1e_error_t check_endless(const cm1e_axis_t *axis, const from_t *from, c
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     cm1e_motion_state_t next;
     cm1e_profile_sample(profile, axis->cycle_s, &next);
-    return cm1e_axis_limits_can_stop(axis, from->position, &next) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+    return cm1e_axis_limits_can_stop(axis, now, next) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
 }
 
 static cm1e_error_t plan_velocity(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)

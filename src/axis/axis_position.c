@@ -9,8 +9,6 @@
 
 __extension__ typedef __int128 wide_t;
 
-/* Beyond 2^52 a double no longer resolves half a count; at full speed that is 57 years away. */
-static const int64_t farthest_counts = INT64_C(1) << 52;
 /* Positions that a drive of whole counts cannot tell apart are the same: nobody means a whole turn by that. */
 static const double same_counts = 0.5 + 1e-6;
 
@@ -30,17 +28,6 @@ static position_t normal(int64_t counts, double fraction)
     return fraction < 1.0 ? (position_t){counts, fraction} : (position_t){counts + 1, 0.0};
 }
 
-position_t cm1e_position_plus(position_t position, double counts)
-{
-    const int64_t whole = floor_of(counts);
-    return normal(position.counts + whole, position.fraction + (counts - (double)whole));
-}
-
-double cm1e_position_minus(position_t a, position_t b)
-{
-    return (double)(a.counts - b.counts) + (a.fraction - b.fraction);
-}
-
 static position_t sum(position_t a, position_t b) { return normal(a.counts + b.counts, a.fraction + b.fraction); }
 
 /* Seen from the origin, counted in the direction in which u grows. */
@@ -51,12 +38,7 @@ static position_t from_origin(const cm1e_axis_t *axis, position_t position)
                              : normal(o.counts - position.counts, o.fraction - position.fraction);
 }
 
-bool cm1e_axis_position_in_range(position_t position)
-{
-    return position.counts < farthest_counts && position.counts > -farthest_counts;
-}
-
-double cm1e_axis_farthest(const cm1e_axis_t *axis) { return (double)farthest_counts / fabs(axis->scale); }
+double cm1e_axis_farthest(const cm1e_axis_t *axis) { return (double)CM1E_FARTHEST_COUNTS / fabs(axis->scale); }
 
 static double to_units(const cm1e_axis_t *axis, double counts) { return counts * axis->unit.units / axis->unit.counts; }
 static double to_counts(const cm1e_axis_t *axis, double units) { return units * axis->unit.counts / axis->unit.units; }
@@ -131,13 +113,13 @@ bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, positi
         if (!in_modulo_range(axis, units))
             return false;
         *position = in_turn(axis, turn_of(axis, from_origin(axis, axis->set), &phase), to_counts(axis, units));
-        return cm1e_axis_position_in_range(*position);
+        return cm1e_position_in_range(*position);
     }
     const double counts = to_counts(axis, units - axis->origin_units);
-    if (!isfinite(units) || !(fabs(counts) < (double)farthest_counts))
+    if (!isfinite(units) || !(fabs(counts) < (double)CM1E_FARTHEST_COUNTS))
         return false;
     *position = cm1e_position_plus(axis->origin, axis->scale > 0.0 ? counts : -counts);
-    return cm1e_axis_position_in_range(*position);
+    return cm1e_position_in_range(*position);
 }
 
 /* Which repetition of a position, `way` counts away, the axis goes to: the first one in the direction asked for that
@@ -186,10 +168,10 @@ cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, 
         return CM1E_ERROR_AXIS_DIRECTION;
     }
     const double more = repetitions(way, turn, stop * fabs(axis->scale), positive);
-    if (!(fabs(more) * turn < (double)farthest_counts))
+    if (!(fabs(more) * turn < (double)CM1E_FARTHEST_COUNTS))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     *target = in_turn(axis, number + (int64_t)more, phase);
-    return cm1e_axis_position_in_range(*target) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+    return cm1e_position_in_range(*target) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
 }
 
 /* ---- the origin -------------------------------------------------------------------------------------------------- */
@@ -203,6 +185,7 @@ void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units)
         axis->origin = at;
         axis->origin_units = units;
     }
+    axis->base_units = cm1e_axis_units(axis, axis->base);
 }
 
 /* ---- the drive's counts ------------------------------------------------------------------------------------------ */

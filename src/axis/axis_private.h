@@ -5,6 +5,8 @@
 #ifndef CM1E_AXIS_AXIS_PRIVATE_H
 #define CM1E_AXIS_AXIS_PRIVATE_H
 
+#include <math.h>
+
 #include "axis/axis.h"
 #include "device/unit.h"
 #include "motion/profile.h"
@@ -17,6 +19,26 @@ typedef struct position {
     int64_t counts;
     double fraction;
 } position_t;
+
+static inline position_t cm1e_position_plus(position_t position, double counts)
+{
+    const int64_t whole = (int64_t)counts;
+    const double sum = position.fraction + (counts - (double)whole); /* -1 < sum < 2 */
+    const double carry = sum >= 1.0 ? 1.0 : sum < 0.0 ? -1.0 : 0.0, fraction = sum - carry;
+    position.counts += whole + (int64_t)carry;
+    /* -1e-20 + 1 is 1 */
+    return fraction < 1.0 ? (position_t){position.counts, fraction} : (position_t){position.counts + 1, 0.0};
+}
+static inline double cm1e_position_minus(position_t a, position_t b)
+{
+    return (double)(a.counts - b.counts) + (a.fraction - b.fraction);
+}
+/** Beyond 2^52 a double no longer resolves half a count; at full speed that is 57 years away. */
+#define CM1E_FARTHEST_COUNTS (INT64_C(1) << 52)
+static inline bool cm1e_position_in_range(position_t position)
+{
+    return position.counts < CM1E_FARTHEST_COUNTS && position.counts > -CM1E_FARTHEST_COUNTS;
+}
 
 /** Where the set-point comes from. */
 typedef enum activity {
@@ -167,8 +189,10 @@ struct cm1e_axis {
     cm1e_fraction_t turn;           /**< counts of it */
     cm1e_motion_limits_t maximum;   /**< u */
     cm1e_motion_limits_t emergency; /**< u; the ramp of an error: the maximum without a limit of jerk */
+    double emergency_way;           /**< s2/u; times the square of a velocity: that it goes */
     bool software_limits;
     double lower, upper;            /**< u */
+    double tolerance;               /**< u; which they are kept with */
     double max_lag;                 /**< u */
     double lag_seen;                /**< u; amount, when the inputs were fresh last */
     bool blind;                     /**< they are not, and the set-point goes on */
@@ -190,7 +214,9 @@ struct cm1e_axis {
     position_t set, base, target;   /**< base: where the profile began; target: where it ends, exactly */
     double set_velocity, set_acceleration; /**< u/s, u/s2 */
     double loop_velocity;           /**< counts/s that the position loop adds in CSV */
+    double base_units;              /**< u; where base is */
     cm1e_profile_t profile;         /**< relative to base, in u */
+    cm1e_profile_stretch_t stretch; /**< of it, the one that the set-point is in */
     int64_t profile_cycles;         /**< since it began ... */
     double profile_offset_s;        /**< ... so long before the first of them */
 
@@ -237,8 +263,6 @@ struct cm1e_axis {
 void cm1e_axis_advance(cm1e_axis_t *axis);
 
 /* axis_position.c */
-position_t cm1e_position_plus(position_t position, double counts);
-double cm1e_position_minus(position_t a, position_t b);
 double cm1e_axis_units(const cm1e_axis_t *axis, position_t position);
 /** FALSE: not finite, or farther away than the axis counts. */
 bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position);
@@ -249,7 +273,6 @@ cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, 
                                       position_t from, double velocity, double stop, position_t *target);
 /** From now on the axis is at `units` when it is at `at`; on a modulo axis `units` is less than a turn. */
 void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units);
-bool cm1e_axis_position_in_range(position_t position);
 /** u; about where that range ends. */
 double cm1e_axis_farthest(const cm1e_axis_t *axis);
 void cm1e_axis_track(cm1e_axis_t *axis);
@@ -281,8 +304,17 @@ bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, position_t from, p
 bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
 /** The same, and no disabled direction in it. */
 cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
-/** Whether the emergency ramp from `next` (its position counted from `base`) would end inside the software limits. */
-bool cm1e_axis_limits_can_stop(const cm1e_axis_t *axis, position_t base, const cm1e_motion_state_t *next);
+/** Whether the emergency ramp from `next` (its position counted from `base_units`, u) would end inside the software
+ *  limits. */
+static inline bool cm1e_axis_limits_can_stop(const cm1e_axis_t *axis, double base_units, cm1e_motion_state_t next)
+{
+    if (!axis->software_limits)
+        return true;
+    /* Without a limit of jerk the way of a stop is known in closed form, whatever the acceleration is. */
+    const double end = base_units + next.position + next.velocity * fabs(next.velocity) * axis->emergency_way;
+    return next.velocity > 0.0 ? end <= axis->upper + axis->tolerance
+           : next.velocity < 0.0 ? end >= axis->lower - axis->tolerance : true;
+}
 bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity);
 
 /* axis_state.c */
