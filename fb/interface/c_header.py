@@ -29,12 +29,17 @@ def is_pointer(variable):
     return variable.section == "in_out" or variable.reference
 
 
+def c_name(variable):
+    """Of the one member that cannot have its name in ST, where PRIVATE is a keyword."""
+    return "Private" if variable.section == "private" and variable.name == "Priv" else variable.name
+
+
 def declarator(variable):
     kind = c_type(variable.type)
     if is_pointer(variable):
         const = "const " if variable.const or variable.reference else ""
-        return f"{const}{kind} *", variable.name
-    return f"{kind} ", variable.name + (f"[{variable.length}]" if variable.length else "")
+        return f"{const}{kind} *", c_name(variable)
+    return f"{kind} ", c_name(variable) + (f"[{variable.length}]" if variable.length else "")
 
 
 def members(variables):

@@ -76,7 +76,7 @@ def block_text(block, sizes, files, tables):
     rows, (size, _) = layout(block.variables, sizes)
     asserts = f'_Static_assert(sizeof({name}_t) == {size}, "{name}");\n'
     for variable, offset, _ in rows:
-        asserts += f"AT({name}, {variable.name}, {offset});\n"
+        asserts += f"AT({name}, {c_header.c_name(variable)}, {offset});\n"
         if variable.section != "private":
             kind = member_type(variable, files)
             members += f"    MEMBER({name}, {variable.name}, {variable.section.upper()}, {kind}),\n"

@@ -8,6 +8,7 @@ VARIABLE = re.compile(r"(\w+)\s*:\s*(REF_TO\s+\w+|ARRAY\s*\[1\.\.\w+\]\s*OF\s+\w
                       r"\s*(?://\s*(.*))?$")
 ENUMERATOR = re.compile(r"(\w+)\s*:=\s*(\d+)\s*,?\s*(?://\s*(.*))?$")
 COMMENT = re.compile(r"(\(const\))?\s*(?:\[([^\]]*)\])?\s*(?:\{([^}]*)\})?\s*(.*)$")
+KEYWORDS = {"PRIVATE", "PUBLIC", "INTERNAL", "PROTECTED", "AT", "BY", "DO", "OF", "TO", "ON"}
 SECTIONS = {"VAR_IN_OUT": "in_out", "VAR_INPUT": "input", "VAR_OUTPUT": "output", "VAR": "private"}
 
 
@@ -150,6 +151,8 @@ class Reader:
             if line is None:
                 raise Fault(f"{self.where()}: {end} is missing")
             result.append(variable(line, section, self.where()))
+            if result[-1].name.upper() in KEYWORDS:
+                raise Fault(f"{self.where()}: {result[-1].name} is a keyword of IEC 61131-3")
         return result
 
     def sections(self):
