@@ -816,6 +816,16 @@ static const block_rule_t rules_step[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
     [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
 };
+static const block_rule_t rules_direct[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
+    [CM1E_AXIS_STANDSTILL] = {.next = CM1E_AXIS_STANDSTILL},
+    [CM1E_AXIS_HOMING] = {.next = CM1E_AXIS_HOMING},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.refusal = CM1E_ERROR_AXIS_STATE},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.refusal = CM1E_ERROR_AXIS_STATE},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.refusal = CM1E_ERROR_AXIS_STATE},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
+};
 static const block_rule_t rules_finish[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
     [CM1E_AXIS_STANDSTILL] = {.refusal = CM1E_ERROR_AXIS_STATE},
@@ -2231,7 +2241,7 @@ const block_t block_table[] = {
     BLOCK(MC_StepBlock, rules_step),
     BLOCK(MC_StepReferencePulse, rules_no_such_signal),
     BLOCK(MC_StepDistanceCoded, rules_no_such_signal),
-    BLOCK(MC_HomeDirect, rules_step),
+    BLOCK(MC_HomeDirect, rules_direct),
     BLOCK(MC_HomeAbsolute, rules_no_such_signal),
     BLOCK(MC_FinishHoming, rules_finish),
     BLOCK(MC_StepReferenceFlyingSwitch, rules_unsupported),
