@@ -472,6 +472,51 @@ START_TEST(test_a_trigger_while_the_bus_is_away_is_an_error)
 }
 END_TEST
 
+/* ---- cam switches on the motor's output -------------------------------------------------------------------------- */
+
+START_TEST(test_digital_cam_switch_drives_the_output_of_the_motor)
+{
+    begin();
+    enable();
+    static MC_CAMSWITCH_REF cams = {.NumberOfSwitches = 1,
+                                    .Switches = {{.TrackNumber = 1, .FirstOnPosition = 1.0, .LastOnPosition = 2.5}}};
+    MC_OUTPUT_REF output = {.Axis = reference};
+    MC_DigitalCamSwitch_t fb = {.Axis = &reference, .Switches = &cams, .Outputs = &output, .Enable = TRUE,
+                                .EnableMask = 1, .ValueSource = mcActualValue};
+    const double zero = probe().position_counts / 50000.0 - info().actual_position;
+    int changes = 0;
+    for (int way = 0; way < 2; way++) {
+        const cm1e_command_id_t move = command(&(cm1e_axis_command_t){
+            .kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = way ? 0.0 : 4.0, .velocity = 4.0});
+        bool before = false;
+        while (cm1e_axis_command_status(axis, move).state == CM1E_COMMAND_ACTIVE) {
+            inputs();
+            MC_DigitalCamSwitch(&fb);
+            outputs();
+            const cm1e_sim_probe_t now = probe();
+            const double p = now.position_counts / 50000.0 - zero;
+            changes += (now.digital_outputs & 1) != before;
+            before = now.digital_outputs & 1;
+            if ((p > 1.02 && p < 2.48 && !before) || ((p < 0.98 || p > 2.52) && before))
+                ck_abort_msg("at %g the output is %d", p, before);
+        }
+    }
+    ck_assert_int_eq(changes, 4);
+    move_to(2.0, 10.0);
+    for (int i = 0; i < 50; i++) {
+        inputs();
+        MC_DigitalCamSwitch(&fb);
+        outputs();
+    }
+    ck_assert_uint_eq(probe().digital_outputs, 1);
+    cycles(98); /* nobody asks for it any more */
+    ck_assert_uint_eq(probe().digital_outputs, 1);
+    cycles(5);
+    ck_assert_uint_eq(probe().digital_outputs, 0);
+    close_segment();
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("signals");
@@ -488,6 +533,7 @@ int main(void)
     tcase_add_test(tcase, test_abort_and_a_second_block_show_command_aborted);
     tcase_add_test(tcase, test_triggers_and_windows_that_cannot_be_are_refused);
     tcase_add_test(tcase, test_a_trigger_while_the_bus_is_away_is_an_error);
+    tcase_add_test(tcase, test_digital_cam_switch_drives_the_output_of_the_motor);
     suite_add_tcase(suite, tcase);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);

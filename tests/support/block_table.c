@@ -1736,8 +1736,13 @@ static const block_member_t members_of_MC_DigitalCamSwitch[] = {
 };
 static void call_MC_DigitalCamSwitch(void *fb) { MC_DigitalCamSwitch(fb); }
 static const cm1e_error_t errors_of_MC_DigitalCamSwitch[] = {
+    CM1E_ERROR_FB_CAM_SWITCH,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_SIGNAL,
+    CM1E_ERROR_AXIS_OFFLINE,
+    CM1E_ERROR_PDO_MAPPING,
+    CM1E_ERROR_INVALID_ARGUMENT,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_TouchProbe[] = {

@@ -1,0 +1,294 @@
+#include <math.h>
+
+#include "axis/axis_signals.h"
+#include "edge.h"
+#include "lease.h"
+
+/*
+ * 3.32. Each switch is looked at by two points that run with the axis: the one that switches on and the one that
+ * switches off. A negative compensation puts a point ahead by the way of that time at the present velocity; a positive
+ * one delays what has been seen by that time, which is exact however the velocity changes. Where the two points differ,
+ * the one that enters switches on, the one that leaves switches off; where they agree, they are right, so that an axis
+ * that stops between them ends with the switch as its position says.
+ */
+
+/* So long the actual position may be unknown before the outputs go off: a lost frame is no reason. */
+static const TIME unseen_ns = 20000000;
+/* Fewer counts than this are no motion when the direction matters: a motor that stands trembles. */
+static const double trembling_counts = 20.0;
+
+/** What a call knows of the axis. */
+typedef struct look {
+    cm1e_axis_measures_t axis;
+    TIME now;
+    double position, velocity;
+    bool first;      /* nothing is known of a last call */
+    int direction;   /* of the last motion: 1 positive, 2 negative, 0 there was none */
+} look_t;
+
+/* ---- positions --------------------------------------------------------------------------------------------------- */
+
+/** The shortest way from `a` to `b`. */
+static double way_between(const look_t *look, double a, double b)
+{
+    const double range = look->axis.modulo_range;
+    return range > 0.0 ? remainder(b - a, range) : b - a;
+}
+
+static bool inside(const look_t *look, const MC_CAMSWITCH *cam, double position)
+{
+    const double few = 0.01 * look->axis.resolution;
+    if (look->axis.modulo_range > 0.0)
+        position -= floor(position / look->axis.modulo_range) * look->axis.modulo_range;
+    const bool above = position >= cam->FirstOnPosition - few, below = position <= cam->LastOnPosition + few;
+    return cam->FirstOnPosition <= cam->LastOnPosition ? above && below : above || below;
+}
+
+/** The point moves to `position`; its way since the last call, with its sign. */
+static double move(const look_t *look, cm1e_cam_point_t *point, double position)
+{
+    const double way = look->first ? 0.0 : way_between(look, point->position, position);
+    point->position = position;
+    return way;
+}
+
+/** A point that has come `way` to `position` came over `place`. */
+static bool crossed(const look_t *look, double position, double way, double place)
+{
+    const double to_place = way_between(look, position - way, place);
+    return way > 0.0 ? to_place > 0.0 && to_place <= way : to_place < 0.0 && to_place >= way;
+}
+
+/** Follows one point over a switch, with its hysteresis. */
+static void follow(const look_t *look, const MC_CAMSWITCH *cam, double hysteresis, double position,
+                   cm1e_cam_point_t *point)
+{
+    const double way = move(look, point, position);
+    const double first = fabs(way_between(look, position, cam->FirstOnPosition));
+    const double last = fabs(way_between(look, position, cam->LastOnPosition));
+    if (!look->first && point->held && (point->held == 1 ? first : last) <= hysteresis)
+        return;
+    point->held = 0;
+    bool now = inside(look, cam, position);
+    if (!now && !point->inside && crossed(look, position, way, cam->FirstOnPosition) &&
+        crossed(look, position, way, cam->LastOnPosition))
+        now = true; /* a switch that is shorter than the way of a call is on for one */
+    if (now != point->inside && !look->first && hysteresis > 0.0)
+        point->held = first <= last ? 1 : 2;
+    point->inside = now;
+}
+
+/* ---- one switch -------------------------------------------------------------------------------------------------- */
+
+static double ahead(const look_t *look, TIME compensation)
+{
+    return compensation < 0 ? look->position - look->velocity * (double)compensation * 1e-9 : look->position;
+}
+
+static bool wanted_by_position(const look_t *look, const MC_CAMSWITCH *cam, const MC_TRACK *track,
+                               cm1e_cam_switch_t *state)
+{
+    const bool on_before = state->on_point.inside, off_before = state->off_point.inside;
+    follow(look, cam, track->Hysteresis, ahead(look, track->OnCompensation), &state->on_point);
+    follow(look, cam, track->Hysteresis, ahead(look, track->OffCompensation), &state->off_point);
+    const bool on = state->on_point.inside, off = state->off_point.inside;
+    if (cam->AxisDirection != 0 && cam->AxisDirection != look->direction)
+        return false;
+    if (on == off)
+        return on;
+    if (on && !on_before)
+        return true;
+    if (!off && off_before)
+        return false;
+    return state->wanted;
+}
+
+static bool wanted_by_time(const look_t *look, const MC_CAMSWITCH *cam, const MC_TRACK *track,
+                           cm1e_cam_switch_t *state)
+{
+    cm1e_cam_point_t *point = &state->on_point;
+    const double position = ahead(look, track->OnCompensation), way = move(look, point, position);
+    const bool fits = cam->AxisDirection == 0 || (cam->AxisDirection == 2) == (way < 0.0);
+    if (point->held && fabs(way_between(look, position, cam->FirstOnPosition)) > track->Hysteresis)
+        point->held = 0;
+    if (!point->held && fits && crossed(look, position, way, cam->FirstOnPosition)) {
+        state->wanted_until = look->now + cam->Duration;
+        point->held = track->Hysteresis > 0.0;
+    }
+    return look->now < state->wanted_until;
+}
+
+static TIME delay(TIME compensation) { return compensation > 0 ? compensation : 0; }
+
+/** On from when it is wanted until it is no longer, each later by its delay. What is on of the time before lasts as long
+ *  as it has to; one that has not begun yet and the next one become one. */
+static bool delayed(const look_t *look, const MC_TRACK *track, bool wanted, TIME off_delay, cm1e_cam_switch_t *state)
+{
+    if (wanted && !state->wanted) {
+        const bool pending = state->on_from > look->now && state->on_from < state->off_at;
+        if (!pending && state->on_from < state->off_at && state->off_at > state->still_until)
+            state->still_until = state->off_at;
+        if (!pending)
+            state->on_from = look->now + delay(track->OnCompensation);
+        state->off_at = INT64_MAX;
+    } else if (!wanted && state->wanted) {
+        state->off_at = look->now + off_delay;
+    }
+    state->wanted = wanted;
+    return (look->now >= state->on_from && look->now < state->off_at) || look->now < state->still_until;
+}
+
+static bool evaluate(const look_t *look, const MC_CAMSWITCH *cam, const MC_TRACK *track, cm1e_cam_switch_t *state)
+{
+    if (cam->CamSwitchMode == 1) /* Duration says how long: both ends are delayed alike */
+        return delayed(look, track, wanted_by_time(look, cam, track, state), delay(track->OnCompensation), state);
+    return delayed(look, track, wanted_by_position(look, cam, track, state), delay(track->OffCompensation), state);
+}
+
+/* ---- the block --------------------------------------------------------------------------------------------------- */
+
+static bool switch_is_right(const look_t *look, const MC_CAMSWITCH *cam)
+{
+    return cam->TrackNumber >= 1 && cam->TrackNumber <= CM1E_CAM_TRACKS && isfinite(cam->FirstOnPosition) &&
+           (cam->CamSwitchMode == 1 || isfinite(cam->LastOnPosition)) &&
+           (cam->CamSwitchMode == 1 || look->axis.modulo_range > 0.0 || cam->FirstOnPosition <= cam->LastOnPosition) &&
+           cam->AxisDirection >= 0 && cam->AxisDirection <= 2 &&
+           (cam->CamSwitchMode == 0 || (cam->CamSwitchMode == 1 && cam->Duration >= 0));
+}
+
+static bool track_is_right(const MC_TRACK *track)
+{
+    const TIME most = INT64_C(3600) * 1000000000;
+    return track->Hysteresis >= 0.0 && isfinite(track->Hysteresis) && track->OnCompensation <= most &&
+           track->OnCompensation >= -most && track->OffCompensation <= most && track->OffCompensation >= -most;
+}
+
+static const MC_TRACK *track_of(const MC_DigitalCamSwitch_t *fb, const MC_CAMSWITCH *cam)
+{
+    static const MC_TRACK plain;
+    return fb->TrackOptions ? &fb->TrackOptions->Tracks[cam->TrackNumber - 1] : &plain;
+}
+
+/** All switches; an error leaves the tracks off. */
+static cm1e_error_t evaluate_all(MC_DigitalCamSwitch_t *fb, const look_t *look, DWORD *tracks)
+{
+    const MC_CAMSWITCH_REF *cams = fb->Switches;
+    *tracks = 0;
+    if (!cams || cams->NumberOfSwitches < 1 || cams->NumberOfSwitches > CM1E_CAM_SWITCHES)
+        return CM1E_ERROR_FB_CAM_SWITCH;
+    DWORD on = 0;
+    for (int i = 0; i < cams->NumberOfSwitches; i++) {
+        const MC_CAMSWITCH *cam = &cams->Switches[i];
+        if (!switch_is_right(look, cam) || !track_is_right(track_of(fb, cam)))
+            return CM1E_ERROR_FB_CAM_SWITCH;
+        if (evaluate(look, cam, track_of(fb, cam), &fb->Private.switches[i]))
+            on |= (DWORD)1 << (cam->TrackNumber - 1);
+    }
+    *tracks = on & fb->EnableMask;
+    return CM1E_OK;
+}
+
+/** The direction turns when the axis comes back by more than it trembles; a set-point does not. */
+static void follow_direction(cm1e_cam_private_t *p, look_t *look, double trembling)
+{
+    const double away = look->first ? 0.0 : way_between(look, p->turn, look->position);
+    const bool on = p->moved && (p->negative ? away < 0.0 : away > 0.0);
+    if (!p->running)
+        p->moved = FALSE;
+    if (!on && fabs(away) > trembling) {
+        p->moved = TRUE;
+        p->negative = away < 0.0;
+    }
+    if (look->first || on || fabs(away) > trembling)
+        p->turn = look->position;
+    look->direction = !p->moved ? 0 : p->negative ? 2 : 1;
+}
+
+static void forget(cm1e_cam_private_t *p)
+{
+    p->running = FALSE;
+    for (int i = 0; i < CM1E_CAM_SWITCHES; i++)
+        p->switches[i] = (cm1e_cam_switch_t){0};
+}
+
+/** FALSE: the position is not known. */
+static bool look_at(MC_DigitalCamSwitch_t *fb, const cm1e_axis_t *axis, look_t *look)
+{
+    cm1e_cam_private_t *p = &fb->Private;
+    cm1e_axis_info_t info;
+    cm1e_axis_get(axis, &info);
+    const bool actual = fb->ValueSource == mcActualValue;
+    *look = (look_t){.axis = cm1e_axis_measures(axis), .now = cm1e_axis_time(axis),
+                     .position = actual ? info.actual_position : info.set_position,
+                     .velocity = actual ? info.actual_velocity : info.set_velocity};
+    if (actual && !info.online)
+        return false;
+    const double since_s = (double)(look->now - p->seen) * 1e-9, trembling = trembling_counts * look->axis.resolution;
+    /* Farther than the axis can have moved: its coordinates were changed, and nothing was passed on the way. */
+    const double most = 2.0 * look->axis.max_velocity * since_s + trembling;
+    look->first = !p->running || fabs(way_between(look, p->position, look->position)) > most;
+    follow_direction(p, look, actual ? trembling : 0.0);
+    p->running = TRUE;
+    p->position = look->position;
+    p->seen = look->now;
+    return true;
+}
+
+static cm1e_error_t write_output(MC_DigitalCamSwitch_t *fb, DWORD tracks, TIME lease)
+{
+    fb->Outputs->Values = tracks;
+    if (fb->Outputs->Axis.Handle == 0)
+        return CM1E_OK;
+    cm1e_axis_t *axis = cm1e_axis_from_reference(&fb->Outputs->Axis);
+    if (!axis)
+        return CM1E_ERROR_FB_AXIS_REF;
+    fb->Private.output = fb->Outputs->Axis.Handle;
+    return cm1e_axis_hold_output(axis, fb->Outputs->Number ? fb->Outputs->Number : 1, tracks & 1, lease);
+}
+
+static void outputs_off(MC_DigitalCamSwitch_t *fb)
+{
+    const AXIS_REF_t reference = {.Handle = fb->Private.output};
+    cm1e_axis_t *axis = reference.Handle ? cm1e_axis_from_reference(&reference) : NULL;
+    if (fb->Outputs)
+        fb->Outputs->Values = 0;
+    if (axis)
+        cm1e_axis_write_output(axis, 1, false);
+    fb->Private.output = 0;
+}
+
+static cm1e_error_t operate(MC_DigitalCamSwitch_t *fb, const cm1e_axis_t *axis, TIME called)
+{
+    look_t look;
+    DWORD tracks;
+    if (!fb->Outputs || (unsigned)fb->ValueSource > mcCommandedValue)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    if (!look_at(fb, axis, &look)) {
+        if (fb->Private.running && look.now - fb->Private.seen <= unseen_ns)
+            return write_output(fb, fb->Outputs->Values, fb_lease_ns(look.now, called));
+        return CM1E_ERROR_AXIS_OFFLINE;
+    }
+    const cm1e_error_t error = evaluate_all(fb, &look, &tracks);
+    return error ? error : write_output(fb, tracks, fb_lease_ns(look.now, called));
+}
+
+void MC_DigitalCamSwitch(MC_DigitalCamSwitch_t *fb)
+{
+    cm1e_cam_private_t *p = &fb->Private;
+    const cm1e_axis_t *axis = fb_enable(&p->common, fb->Axis, fb->Enable);
+    const TIME called = p->called;
+    cm1e_error_t error = CM1E_OK;
+    if (axis) {
+        p->called = cm1e_axis_time(axis);
+        error = operate(fb, axis, called);
+    }
+    const fb_reading_t out = fb_reading(&p->common, axis, error);
+    if (!out.valid && (p->running || p->output || error)) {
+        outputs_off(fb);
+        forget(p);
+    }
+    fb->InOperation = out.valid;
+    fb->Busy = out.busy;
+    fb->Error = out.error;
+    fb->ErrorID = out.error_id;
+}

@@ -1,0 +1,614 @@
+/* MC_DigitalCamSwitch on an axis that is where the test says (PLCopen Part 1 v2.0, 3.32 with figures 37 to 39). */
+#include <check.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "fake_axis.h"
+#include "axis/axis_signals.h"
+
+#define MS INT64_C(1000000)
+
+/* ---- what the block asks the axis -------------------------------------------------------------------------------- */
+
+static TIME now_ns;
+static cm1e_axis_measures_t measures;
+static struct {
+    int axis, number;
+    bool value;
+    int64_t keep_ns;
+    unsigned writes;
+    cm1e_error_t error;
+} output;
+
+int64_t cm1e_axis_time(const cm1e_axis_t *axis)
+{
+    (void)axis;
+    return now_ns;
+}
+cm1e_axis_measures_t cm1e_axis_measures(const cm1e_axis_t *axis)
+{
+    (void)axis;
+    return measures;
+}
+cm1e_error_t cm1e_axis_hold_output(cm1e_axis_t *axis, int number, bool value, int64_t keep_ns)
+{
+    if (output.error)
+        return output.error;
+    output.axis = (int)(axis - fake_axes);
+    output.number = number;
+    output.value = value;
+    output.keep_ns = keep_ns;
+    output.writes++;
+    return CM1E_OK;
+}
+cm1e_error_t cm1e_axis_write_output(cm1e_axis_t *axis, int number, bool value)
+{
+    return cm1e_axis_hold_output(axis, number, value, -1);
+}
+
+/* ---- the axis ---------------------------------------------------------------------------------------------------- */
+
+static AXIS_REF_t reference = {1};
+static MC_CAMSWITCH_REF cams;
+static MC_TRACK_REF tracks;
+static MC_OUTPUT_REF outputs;
+static MC_DigitalCamSwitch_t fb;
+static double position, velocity; /* u, u/s */
+
+static void fresh(double modulo_range)
+{
+    fake_reset();
+    now_ns = 1000 * MS;
+    measures = (cm1e_axis_measures_t){.resolution = 0.001, .modulo_range = modulo_range, .max_velocity = 50000.0};
+    memset(&output, 0, sizeof output);
+    memset(&cams, 0, sizeof cams);
+    memset(&tracks, 0, sizeof tracks);
+    memset(&outputs, 0, sizeof outputs);
+    fb = (MC_DigitalCamSwitch_t){.Axis = &reference, .Switches = &cams, .Outputs = &outputs, .TrackOptions = &tracks,
+                                 .Enable = TRUE, .EnableMask = 0xFFFFFFFF};
+    position = velocity = 0.0;
+}
+
+static MC_CAMSWITCH *add(int track, double first, double last)
+{
+    MC_CAMSWITCH *cam = &cams.Switches[cams.NumberOfSwitches++];
+    *cam = (MC_CAMSWITCH){.TrackNumber = (INT)track, .FirstOnPosition = first, .LastOnPosition = last};
+    return cam;
+}
+
+static void call(void)
+{
+    const double range = measures.modulo_range;
+    const double shown = range > 0.0 ? position - floor(position / range) * range : position;
+    fake_axes[0].info.set_position = fake_axes[0].info.actual_position = shown;
+    fake_axes[0].info.set_velocity = fake_axes[0].info.actual_velocity = velocity;
+    MC_DigitalCamSwitch(&fb);
+    if (fb.InOperation + fb.Error > 1 || (fb.InOperation && !fb.Busy) || (!fb.InOperation && outputs.Values))
+        ck_abort_msg("InOperation %d Busy %d Error %d, %X", fb.InOperation, fb.Busy, fb.Error, outputs.Values);
+}
+
+/** One scan of a millisecond at the present velocity. */
+static DWORD step(void)
+{
+    now_ns += MS;
+    position += velocity * 1e-3;
+    call();
+    return outputs.Values;
+}
+
+static void at(double to, double with)
+{
+    position = to;
+    velocity = with;
+    now_ns += MS;
+    call();
+}
+
+static void expect_error(cm1e_error_t error)
+{
+    ck_assert_msg(fb.Error && fb.ErrorID == cm1e_error_id(error) && !fb.InOperation && outputs.Values == 0,
+                  "0x%04X, not 0x%04X", fb.ErrorID, cm1e_error_id(error));
+}
+
+/* ---- positions, directions, times -------------------------------------------------------------------------------- */
+
+/* The standard's own example: a modulo axis of 5000 u, tracks 1 and 2. */
+START_TEST(test_the_example_of_the_standard_in_both_directions)
+{
+    for (int source = 0; source < 2; source++)
+        for (int sign = 1; sign >= -1; sign -= 2) {
+            fresh(5000.0);
+            fb.ValueSource = source ? mcActualValue : mcSetValue;
+            add(1, 2000.0, 3000.0)->AxisDirection = 1;
+            add(1, 2500.0, 3000.0)->AxisDirection = 2;
+            add(1, 4000.0, 1000.0);
+            MC_CAMSWITCH *timed = add(2, 3000.0, 0.0);
+            timed->CamSwitchMode = 1;
+            timed->Duration = 1350 * MS;
+            position = 1200.25;
+            velocity = sign * 1000.0;
+            TIME crossed = -2000 * MS;
+            for (int n = 0; n < 30000; n++) {
+                const double before = position - floor(position / 5000.0) * 5000.0;
+                const DWORD values = step();
+                const double p = position - floor(position / 5000.0) * 5000.0;
+                if (n > 0 && (sign > 0 ? before < 3000.0 && p >= 3000.0 : before > 3000.0 && p <= 3000.0))
+                    crossed = now_ns;
+                const bool own = sign > 0 ? p >= 2000.0 && p <= 3000.0 : p >= 2500.0 && p <= 3000.0;
+                const bool one = (n > 30 && own) || p >= 4000.0 || p <= 1000.0, two = now_ns - crossed < 1350 * MS;
+                if (values != (DWORD)(one | two << 1))
+                    ck_abort_msg("source %d, sign %d, at %g: %X, not %d %d", source, sign, p, values, one, two);
+            }
+        }
+}
+END_TEST
+
+START_TEST(test_ends_are_included_and_a_standing_axis_is_judged_at_once)
+{
+    fresh(0.0);
+    add(3, -10.0, 10.0);
+    static const double inside[] = {-10.0, 10.0, 0.0}, outside[] = {-10.001, 10.001, 1e6, -1e6};
+    for (int i = 0; i < 7; i++) {
+        fb.Enable = FALSE;
+        call();
+        ck_assert(!fb.InOperation && !fb.Busy);
+        fb.Enable = TRUE;
+        at(i < 3 ? inside[i] : outside[i - 3], 0.0);
+        ck_assert(fb.InOperation && fb.Busy);
+        ck_assert_uint_eq(outputs.Values, i < 3 ? 4 : 0);
+    }
+}
+END_TEST
+
+START_TEST(test_a_switch_of_one_direction_needs_a_motion_in_it)
+{
+    fresh(0.0);
+    add(1, -100.0, 100.0)->AxisDirection = 1;
+    add(2, -100.0, 100.0)->AxisDirection = 2;
+    at(0.0, 0.0);
+    ck_assert_uint_eq(outputs.Values, 0); /* nobody knows */
+    at(1.0, 10.0);
+    ck_assert_uint_eq(outputs.Values, 1);
+    at(1.0, 0.0);
+    ck_assert_uint_eq(outputs.Values, 1); /* stands: as it came */
+    at(0.5, -10.0);
+    ck_assert_uint_eq(outputs.Values, 2);
+    fb.ValueSource = mcActualValue; /* a motor that trembles has not turned round */
+    for (int i = 0; i < 100; i++) {
+        at(0.5 + (i % 2 ? 0.004 : 0.0), i % 2 ? 4.0 : -4.0);
+        ck_assert_uint_eq(outputs.Values, 2);
+    }
+    at(0.6, 4.0);
+    ck_assert_uint_eq(outputs.Values, 1);
+}
+END_TEST
+
+START_TEST(test_what_is_shorter_than_the_way_of_a_call_is_on_for_one)
+{
+    fresh(0.0);
+    add(1, 5.2, 5.4);
+    add(2, 5.3, 5.3);
+    MC_CAMSWITCH *timed = add(3, 5.3, 0.0);
+    timed->CamSwitchMode = 1;
+    timed->Duration = 3 * MS;
+    for (int sign = 1; sign >= -1; sign -= 2) {
+        velocity = sign * 1000.0;
+        for (int n = 0; n < 12; n++) {
+            const DWORD values = step();
+            const double p = position, passed = sign > 0 ? 6.0 : 5.0;
+            ck_assert_msg((values & 3) == (p == passed ? 3u : 0u), "at %g: %X", p, values);
+            const double since = (p - passed) * sign;
+            ck_assert_msg(!!(values & 4) == (since >= 0.0 && since < 3.0), "at %g: %X", p, values);
+        }
+    }
+}
+END_TEST
+
+/* ---- compensation ------------------------------------------------------------------------------------------------ */
+
+/* Figure 38 with every sign, at constant velocity: a line of both ends in time. */
+START_TEST(test_compensations_move_the_ends_in_time)
+{
+    static const TIME shifts[] = {-125 * MS, -40 * MS, 0, 40 * MS, 250 * MS};
+    for (int on = 0; on < 5; on++)
+        for (int off = 0; off < 5; off++)
+            for (int speed = -2; speed <= 2; speed++) {
+                if (speed == 0)
+                    continue;
+                fresh(0.0);
+                add(1, 2000.0, 3000.0);
+                tracks.Tracks[0] = (MC_TRACK){.OnCompensation = shifts[on], .OffCompensation = shifts[off]};
+                velocity = speed * 1000.0;
+                position = speed > 0 ? 1000.5 : 4000.5;
+                const TIME start = now_ns, way = 1000 * MS / abs(speed);
+                const TIME first = start + way + shifts[on], last = start + 2 * way + shifts[off];
+                int wrong = 0, count = 0;
+                for (int n = 0; n < 4000; n++) {
+                    const bool is = step() & 1, should = now_ns >= first && now_ns < last;
+                    wrong += is != should;
+                    count += is;
+                }
+                ck_assert_msg(wrong <= 4, "on %d off %d ms, %d u/s: %d ms wrong", (int)(shifts[on] / MS),
+                              (int)(shifts[off] / MS), speed * 1000, wrong);
+                ck_assert_int_gt(count, 100);
+            }
+}
+END_TEST
+
+START_TEST(test_a_delay_goes_on_when_the_axis_stops)
+{
+    fresh(0.0);
+    add(1, 10.0, 20.0);
+    tracks.Tracks[0] = (MC_TRACK){.OnCompensation = 100 * MS, .OffCompensation = 250 * MS};
+    at(9.0, 1000.0);
+    for (int n = 0; n < 3; n++)
+        step();
+    velocity = 0.0; /* at 12 */
+    for (int n = 0; n < 400; n++)
+        ck_assert_uint_eq(step(), n >= 97); /* since 10 was reached */
+    velocity = 1000.0;
+    for (int n = 0; n < 9; n++)
+        step();
+    velocity = 0.0; /* at 21 */
+    for (int n = 0; n < 400; n++)
+        ck_assert_uint_eq(step(), n < 249);
+}
+END_TEST
+
+START_TEST(test_what_was_switched_ahead_is_right_when_the_axis_stops_before)
+{
+    fresh(0.0);
+    add(1, 100.0, 200.0);
+    tracks.Tracks[0] = (MC_TRACK){.OnCompensation = -50 * MS, .OffCompensation = -50 * MS};
+    at(0.0, 1000.0);
+    for (int n = 0; n < 60; n++)
+        step();
+    ck_assert_uint_eq(outputs.Values, 1); /* at 60, 40 ms before */
+    velocity = 0.0;
+    ck_assert_uint_eq(step(), 0);
+    velocity = 1000.0;
+    for (int n = 0; n < 100; n++)
+        step();
+    ck_assert_uint_eq(outputs.Values, 0); /* at 160, 40 ms before the end */
+    velocity = 0.0;
+    ck_assert_uint_eq(step(), 1);
+}
+END_TEST
+
+START_TEST(test_a_time_switch_can_be_ahead_and_late)
+{
+    for (int i = 0; i < 2; i++) {
+        fresh(0.0);
+        MC_CAMSWITCH *cam = add(1, 1000.0, 0.0);
+        cam->CamSwitchMode = 1;
+        cam->Duration = 300 * MS;
+        tracks.Tracks[0] = (MC_TRACK){.OnCompensation = i ? 100 * MS : -100 * MS, .OffCompensation = 77 * MS};
+        velocity = 1000.0;
+        position = 0.5;
+        const TIME first = now_ns + 1000 * MS + tracks.Tracks[0].OnCompensation;
+        int wrong = 0;
+        for (int n = 0; n < 2000; n++) {
+            const bool should = step() & 1;
+            wrong += should != (now_ns >= first && now_ns < first + 300 * MS);
+        }
+        ck_assert_int_le(wrong, 3);
+    }
+}
+END_TEST
+
+/* ---- hysteresis -------------------------------------------------------------------------------------------------- */
+
+START_TEST(test_hysteresis_switches_once_until_it_is_left)
+{
+    fresh(0.0);
+    add(1, 10.0, 20.0);
+    tracks.Tracks[0].Hysteresis = 0.5;
+    at(9.0, 10.0);
+    at(10.1, 10.0);
+    ck_assert_uint_eq(outputs.Values, 1); /* at once */
+    for (int i = 0; i < 100; i++) {
+        at(10.0 + 0.4 * sin(i), 4.0);
+        ck_assert_uint_eq(outputs.Values, 1);
+    }
+    at(9.6, -10.0);
+    ck_assert_uint_eq(outputs.Values, 1);
+    at(9.4, -10.0); /* left, on the wrong side */
+    ck_assert_uint_eq(outputs.Values, 0);
+    at(10.2, 10.0); /* 9.4 was outside of the area: a new one begins at the point itself */
+    ck_assert_uint_eq(outputs.Values, 0);
+    at(10.6, 10.0);
+    ck_assert_uint_eq(outputs.Values, 1);
+    at(20.3, 10.0); /* the other end has an area of its own */
+    ck_assert_uint_eq(outputs.Values, 0);
+    at(19.8, -10.0);
+    ck_assert_uint_eq(outputs.Values, 0);
+    at(19.4, -10.0);
+    ck_assert_uint_eq(outputs.Values, 1);
+}
+END_TEST
+
+/* ---- enable, mask, outputs --------------------------------------------------------------------------------------- */
+
+START_TEST(test_the_mask_takes_tracks_away_and_gives_them_back_at_once)
+{
+    fresh(0.0);
+    for (int track = 1; track <= 32; track++)
+        add(track, -1.0, 1.0);
+    at(0.0, 0.0);
+    ck_assert_uint_eq(outputs.Values, 0xFFFFFFFF);
+    fb.EnableMask = 0x80000005;
+    at(0.0, 0.0);
+    ck_assert_uint_eq(outputs.Values, 0x80000005);
+    fb.EnableMask = 0;
+    at(0.0, 0.0);
+    ck_assert(fb.InOperation && outputs.Values == 0);
+    fb.EnableMask = 0x00000100;
+    at(0.0, 0.0);
+    ck_assert_uint_eq(outputs.Values, 0x100);
+    at(2.0, 0.0);
+    ck_assert_uint_eq(outputs.Values, 0);
+}
+END_TEST
+
+START_TEST(test_enable_that_falls_switches_everything_off_and_forgets)
+{
+    fresh(0.0);
+    outputs.Axis = (AXIS_REF_t){2};
+    add(1, 0.0, 10.0);
+    MC_CAMSWITCH *cam = add(2, 5.0, 0.0);
+    cam->CamSwitchMode = 1;
+    cam->Duration = 10000 * MS;
+    tracks.Tracks[0].OffCompensation = 10000 * MS;
+    at(4.0, 1000.0);
+    at(6.0, 1000.0);
+    ck_assert_uint_eq(outputs.Values, 3);
+    ck_assert(output.axis == 1 && output.number == 1 && output.value);
+    fb.Enable = FALSE;
+    at(20.0, 0.0);
+    ck_assert(!fb.InOperation && !fb.Busy && outputs.Values == 0 && !output.value);
+    const unsigned writes = output.writes;
+    at(20.0, 0.0);
+    ck_assert_uint_eq(output.writes, writes); /* somebody else may write it now */
+    fb.Enable = TRUE;
+    at(20.0, 0.0);
+    ck_assert(fb.InOperation && outputs.Values == 0);
+}
+END_TEST
+
+START_TEST(test_the_output_of_track_1_is_lent_for_a_while_only)
+{
+    fresh(0.0);
+    outputs.Axis = (AXIS_REF_t){1};
+    outputs.Number = 1;
+    add(1, 0.0, 10.0);
+    add(2, 0.0, 20.0);
+    for (int n = 0; n < 20; n++) {
+        position = n;
+        now_ns += (n < 10 ? 1 : 100) * MS;
+        call();
+        ck_assert(output.axis == 0 && output.number == 1 && output.value == (n <= 10));
+        ck_assert_int_eq(output.keep_ns / MS, n == 0 ? 1000 : n < 10 ? 100 : 400);
+    }
+    const unsigned writes = output.writes;
+    outputs.Axis.Handle = 0; /* shown only */
+    fb.Enable = FALSE;
+    call();
+    fb.Enable = TRUE;
+    at(5.0, 0.0);
+    ck_assert_uint_eq(outputs.Values, 3);
+    ck_assert_uint_eq(output.writes, writes + 1); /* off, when Enable fell */
+}
+END_TEST
+
+START_TEST(test_an_output_that_cannot_be_written_is_an_error_that_passes)
+{
+    static const cm1e_error_t errors[] = {CM1E_ERROR_AXIS_SIGNAL, CM1E_ERROR_PDO_MAPPING, CM1E_ERROR_AXIS_OFFLINE};
+    fresh(0.0);
+    outputs.Axis = (AXIS_REF_t){1};
+    add(1, 0.0, 10.0);
+    for (int i = 0; i < 3; i++) {
+        output.error = errors[i];
+        at(5.0, 0.0);
+        expect_error(errors[i]);
+        output.error = CM1E_OK;
+        at(5.0, 0.0);
+        ck_assert(fb.InOperation && outputs.Values == 1 && output.value);
+    }
+    outputs.Axis.Handle = 99;
+    at(5.0, 0.0);
+    expect_error(CM1E_ERROR_FB_AXIS_REF);
+}
+END_TEST
+
+START_TEST(test_switches_and_tracks_that_cannot_be)
+{
+    const TIME day = INT64_C(86400000) * MS;
+    static const MC_CAMSWITCH good = {.TrackNumber = 1, .FirstOnPosition = 1.0, .LastOnPosition = 2.0};
+    for (int i = 0; i < 18; i++) {
+        fresh(0.0);
+        add(2, 0.0, 10.0);
+        MC_CAMSWITCH *cam = add(1, 1.0, 2.0);
+        at(5.0, 0.0);
+        ck_assert_uint_eq(outputs.Values, 2);
+        switch (i) {
+        case 0: cam->TrackNumber = 0; break;
+        case 1: cam->TrackNumber = 33; break;
+        case 2: cam->TrackNumber = -1; break;
+        case 3: cam->FirstOnPosition = NAN; break;
+        case 4: cam->LastOnPosition = INFINITY; break;
+        case 5: cam->LastOnPosition = 0.5; break;
+        case 6: cam->AxisDirection = 3; break;
+        case 7: cam->AxisDirection = -1; break;
+        case 8: cam->CamSwitchMode = 2; break;
+        case 9: cam->CamSwitchMode = 1, cam->Duration = -1; break;
+        case 10: tracks.Tracks[0].Hysteresis = -0.1; break;
+        case 11: tracks.Tracks[0].Hysteresis = NAN; break;
+        case 12: tracks.Tracks[0].OnCompensation = -day; break;
+        case 13: tracks.Tracks[0].OffCompensation = INT64_MAX; break;
+        case 14: tracks.Tracks[0].OffCompensation = INT64_MIN; break;
+        case 15: cams.NumberOfSwitches = 0; break;
+        case 16: cams.NumberOfSwitches = 33; break;
+        case 17: fb.Switches = NULL; break;
+        }
+        at(5.0, 0.0);
+        expect_error(CM1E_ERROR_FB_CAM_SWITCH);
+        *cam = good;
+        memset(&tracks, 0, sizeof tracks);
+        cams.NumberOfSwitches = 2;
+        fb.Switches = &cams;
+        at(5.0, 0.0);
+        ck_assert(fb.InOperation && outputs.Values == 2);
+    }
+    fb.ValueSource = (MC_SOURCE)7;
+    at(5.0, 0.0);
+    expect_error(CM1E_ERROR_INVALID_ARGUMENT);
+    fb.ValueSource = mcSetValue;
+    fb.Outputs = NULL;
+    now_ns += MS;
+    MC_DigitalCamSwitch(&fb);
+    ck_assert(fb.Error && fb.ErrorID == cm1e_error_id(CM1E_ERROR_INVALID_ARGUMENT) && !fb.InOperation);
+    fb.Outputs = &outputs;
+    fb.TrackOptions = NULL; /* none are needed */
+    at(5.0, 0.0);
+    ck_assert(fb.InOperation && outputs.Values == 2);
+}
+END_TEST
+
+/* ---- an axis that is not seen, or is called something else ------------------------------------------------------- */
+
+START_TEST(test_a_position_that_is_unknown_for_long_switches_off)
+{
+    fresh(0.0);
+    fb.ValueSource = mcActualValue;
+    add(1, 0.0, 10.0);
+    at(5.0, 0.0);
+    fake_axes[0].info.online = false;
+    for (int n = 1; n <= 20; n++) {
+        at(5.0, 0.0);
+        ck_assert(fb.InOperation && outputs.Values == 1);
+    }
+    at(5.0, 0.0);
+    expect_error(CM1E_ERROR_AXIS_OFFLINE);
+    ck_assert(fb.Busy);
+    fake_axes[0].info.online = true;
+    at(5.0, 0.0);
+    ck_assert(fb.InOperation && outputs.Values == 1);
+    fake_axes[0].info.online = false;
+    fb.ValueSource = mcSetValue; /* the set-point is the axis's own */
+    for (int n = 0; n < 100; n++)
+        at(5.0, 0.0);
+    ck_assert(fb.InOperation && outputs.Values == 1);
+}
+END_TEST
+
+START_TEST(test_coordinates_that_are_shifted_pass_nothing)
+{
+    fresh(0.0);
+    MC_CAMSWITCH *cam = add(1, 500.0, 0.0);
+    cam->CamSwitchMode = 1;
+    cam->Duration = 100 * MS;
+    add(2, 500.0, 501.0);
+    add(3, 1000.0, 2000.0);
+    at(0.0, 0.0);
+    at(1500.0, 0.0);
+    ck_assert_uint_eq(outputs.Values, 4); /* where it is now, and nothing of the way there */
+    at(0.0, 0.0);
+    ck_assert_uint_eq(outputs.Values, 0);
+}
+END_TEST
+
+START_TEST(test_the_axis_is_latched)
+{
+    AXIS_REF_t other = {2}, nothing = {0};
+    fresh(0.0);
+    add(1, -1.0, 1.0);
+    at(0.0, 0.0);
+    fb.Axis = &other;
+    at(0.0, 0.0);
+    expect_error(CM1E_ERROR_FB_AXIS_CHANGED);
+    ck_assert(!fb.Busy);
+    fb.Enable = FALSE;
+    call();
+    fb.Enable = TRUE;
+    fb.Axis = &nothing;
+    call();
+    expect_error(CM1E_ERROR_FB_AXIS_REF);
+}
+END_TEST
+
+/* ---- any motion -------------------------------------------------------------------------------------------------- */
+
+START_TEST(test_random_motion_over_random_switches)
+{
+    const char *given = getenv("CM1E_TEST_SEED");
+    const unsigned seed = given ? (unsigned)strtoul(given, NULL, 10) : 332u;
+    printf("seed %u\n", seed);
+    srand(seed);
+    for (int run = 0; run < 40; run++) {
+        fresh(run % 2 ? 360.0 : 0.0);
+        TIME until[32] = {0};
+        for (int i = 0; i < 32; i++) {
+            const double a = rand() % 3600 / 10.0, b = rand() % 3600 / 10.0;
+            MC_CAMSWITCH *cam = run % 2 ? add(i + 1, a, b) : add(i + 1, fmin(a, b), fmax(a, b) + 2.0);
+            cam->CamSwitchMode = rand() % 3 == 0;
+            cam->Duration = rand() % 200 * MS;
+        }
+        at(180.0, 0.0);
+        for (int n = 0; n < 5000; n++) {
+            velocity += (rand() % 201 - 100) * 2.0 - 0.2 * (position - 180.0);
+            velocity = fmax(-1500.0, fmin(velocity, 1500.0));
+            const double before = position;
+            const DWORD values = step();
+            for (int i = 0; i < 32; i++) {
+                const MC_CAMSWITCH *cam = &cams.Switches[i];
+                const double range = measures.modulo_range, first = cam->FirstOnPosition;
+                /* the nearest repetition of the switching point that may have been passed */
+                const double place = range > 0.0 ? first + range * round((position - first) / range) : first;
+                const double p = range > 0.0 ? position - floor(position / range) * range : position;
+                const double edge = fmin(fabs(p - first), fabs(p - cam->LastOnPosition));
+                if ((before < place && place <= position) || (before > place && place >= position))
+                    until[i] = now_ns + cam->Duration;
+                const bool over = first > cam->LastOnPosition;
+                const bool in = over ? p >= first || p <= cam->LastOnPosition
+                                     : p >= first && p <= cam->LastOnPosition;
+                const bool should = cam->CamSwitchMode ? now_ns < until[i] : in;
+                const bool narrow = fabs(cam->LastOnPosition - first) < 2.0; /* on for a call when it is passed */
+                if (!!(values >> i & 1) != should && edge > 2e-5 && !(narrow && !cam->CamSwitchMode))
+                    ck_abort_msg("seed %u, run %d, call %d, switch %d (%g ... %g, mode %d), %g to %g: %d", seed, run, n,
+                                 i, first, cam->LastOnPosition, cam->CamSwitchMode, before, position, should);
+            }
+        }
+    }
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("MC_DigitalCamSwitch");
+    TCase *tcase = tcase_create("cams");
+    tcase_add_test(tcase, test_the_example_of_the_standard_in_both_directions);
+    tcase_add_test(tcase, test_ends_are_included_and_a_standing_axis_is_judged_at_once);
+    tcase_add_test(tcase, test_a_switch_of_one_direction_needs_a_motion_in_it);
+    tcase_add_test(tcase, test_what_is_shorter_than_the_way_of_a_call_is_on_for_one);
+    tcase_add_test(tcase, test_compensations_move_the_ends_in_time);
+    tcase_add_test(tcase, test_a_delay_goes_on_when_the_axis_stops);
+    tcase_add_test(tcase, test_what_was_switched_ahead_is_right_when_the_axis_stops_before);
+    tcase_add_test(tcase, test_a_time_switch_can_be_ahead_and_late);
+    tcase_add_test(tcase, test_hysteresis_switches_once_until_it_is_left);
+    tcase_add_test(tcase, test_the_mask_takes_tracks_away_and_gives_them_back_at_once);
+    tcase_add_test(tcase, test_enable_that_falls_switches_everything_off_and_forgets);
+    tcase_add_test(tcase, test_the_output_of_track_1_is_lent_for_a_while_only);
+    tcase_add_test(tcase, test_an_output_that_cannot_be_written_is_an_error_that_passes);
+    tcase_add_test(tcase, test_switches_and_tracks_that_cannot_be);
+    tcase_add_test(tcase, test_a_position_that_is_unknown_for_long_switches_off);
+    tcase_add_test(tcase, test_coordinates_that_are_shifted_pass_nothing);
+    tcase_add_test(tcase, test_the_axis_is_latched);
+    tcase_add_test(tcase, test_random_motion_over_random_switches);
+    suite_add_tcase(suite, tcase);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_ENV);
+    const int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed != 0;
+}
