@@ -52,11 +52,11 @@ static bool powered_state(cm1e_axis_state_t state)
     return state != CM1E_AXIS_DISABLED && state != CM1E_AXIS_ERROR_STOP;
 }
 
-/* More lag than the cycles without inputs explain: the drive did not hear the set-points of that time. */
+/* Counts. More lag than the cycles without inputs explain: the drive did not hear the set-points of that time. */
 static bool was_deaf(const cm1e_axis_t *axis, double lag, double lag_before)
 {
-    const double few_counts = 50.0 / fabs(axis->scale);
-    return lag > lag_before + 2.0 * fabs(axis->set_velocity) * axis->cycle_s + few_counts;
+    const double few_counts = 50.0;
+    return lag > lag_before + 2.0 * fabs(axis->set_velocity * axis->scale) * axis->cycle_s + few_counts;
 }
 
 /* A set-point that the motor has lost is a jump to come: braking begins anew where the motor is. */
@@ -67,14 +67,14 @@ static void watch_lag(cm1e_axis_t *axis)
     axis->blind = own && !axis->drive.feedback.fresh;
     if (axis->blind)
         return;
-    const double lag = own ? cm1e_position_minus(axis->set, axis_actual(axis)) / axis->scale : 0.0;
+    const double lag = own ? cm1e_position_minus(axis->set, axis_actual(axis)) : 0.0; /* counts */
     const double lag_before = axis->lag_seen;
     axis->lag_seen = fabs(lag);
-    const bool lost = fabs(lag) > axis->max_lag;
-    if (axis->state == CM1E_AXIS_ERROR_STOP && blind_before && was_deaf(axis, fabs(lag), lag_before)) {
+    const bool lost = axis->lag_seen > axis->max_lag * fabs(axis->scale);
+    if (axis->state == CM1E_AXIS_ERROR_STOP && blind_before && was_deaf(axis, axis->lag_seen, lag_before)) {
         cm1e_axis_brake_from_actual(axis);
     } else if (lost && powered_state(axis->state)) {
-        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, lag, axis->max_lag);
+        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, lag / axis->scale, axis->max_lag);
         cm1e_axis_brake_from_actual(axis);
     } else if (lost) {
         cm1e_axis_become_free(axis); /* a last ramp that the motor does not follow either */
@@ -94,10 +94,13 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
     cm1e_drive_read(drive, received == CM1E_OK, now_ns);
     if (drive->feedback.fresh)
         cm1e_axis_track(axis);
-    cm1e_axis_probe_step(axis);
+    if (axis->probes_armed > 0 && drive->feedback.fresh)
+        cm1e_axis_probe_step(axis);
     if (drive->watch.lost || (drive->watch.al_state & 0x0F) == CM1E_AL_INIT)
         axis->homed = false; /* it may have been without power, and count from somewhere else now */
-    cm1e_axis_reset_step(axis); /* here, so that no program sees an axis in error whose drive has forgotten why */
+    if (axis->reset_state == CM1E_COMMAND_ACTIVE) /* here, so that no program sees an axis in error whose drive has
+                                                     forgotten why */
+        cm1e_axis_reset_step(axis);
     if (cm1e_drive_resetting(drive))
         return;
     if (health && depends_on_bus(axis))
@@ -117,7 +120,8 @@ void cm1e_axis_advance(cm1e_axis_t *axis)
     cm1e_axis_signals_step(axis);
     cm1e_axis_power_step(axis);
     cm1e_axis_motion_step(axis);
-    cm1e_axis_backlash_step(axis);
+    if (axis->backlash.gap > 0.0)
+        cm1e_axis_backlash_step(axis);
     cm1e_axis_enable_step(axis);
 }
 

@@ -33,18 +33,7 @@ void cm1e_axis_backlash_init(cm1e_axis_t *axis)
 
 static double sign(const cm1e_axis_t *axis) { return axis->scale < 0.0 ? -1.0 : 1.0; }
 
-position_t cm1e_axis_load(const cm1e_axis_t *axis, int64_t motor_counts)
-{
-    const position_t motor = {motor_counts, 0.0};
-    return axis->backlash.gap > 0.0 ? cm1e_position_plus(motor, -sign(axis) * axis->backlash.offset) : motor;
-}
-
-int64_t cm1e_axis_motor_target(const cm1e_axis_t *axis)
-{
-    const position_t target = axis->backlash.gap > 0.0
-                                  ? cm1e_position_plus(axis->set, sign(axis) * axis->backlash.offset) : axis->set;
-    return target.counts + (target.fraction >= 0.5);
-}
+double cm1e_axis_backlash_offset(const cm1e_axis_t *axis) { return sign(axis) * axis->backlash.offset; }
 
 double cm1e_axis_backlash_velocity(const cm1e_axis_t *axis) { return sign(axis) * axis->backlash.offset_velocity; }
 
@@ -59,7 +48,7 @@ static bool foreign(const cm1e_axis_t *axis)
 void cm1e_axis_backlash_track(cm1e_axis_t *axis, int32_t moved_counts)
 {
     backlash_t *b = &axis->backlash;
-    if (b->gap > 0.0 && foreign(axis))
+    if (foreign(axis))
         b->offset = fmax(-b->gap, fmin(b->offset + sign(axis) * moved_counts, 0.0));
 }
 
@@ -85,8 +74,6 @@ static void ramp(backlash_t *b, double cycle_s)
 void cm1e_axis_backlash_step(cm1e_axis_t *axis)
 {
     backlash_t *b = &axis->backlash;
-    if (!(b->gap > 0.0))
-        return;
     if (foreign(axis)) {
         b->target = b->offset;
         b->offset_velocity = 0.0;

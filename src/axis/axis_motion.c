@@ -197,13 +197,19 @@ static double loop_velocity(cm1e_axis_t *axis)
     return axis->loop_velocity;
 }
 
+/* The loop catches up, but not beyond what the axis may do. Motors stay far below 2^31 counts/s. */
+static int32_t target_velocity(cm1e_axis_t *axis)
+{
+    const double most = axis->maximum.velocity * fabs(axis->scale) + axis->backlash.velocity;
+    const double velocity = axis->set_velocity * axis->scale + cm1e_axis_backlash_velocity(axis) + loop_velocity(axis);
+    return (int32_t)round(fmax(-most, fmin(velocity, most)));
+}
+
 void cm1e_axis_write_set_point(cm1e_axis_t *axis)
 {
     cm1e_drive_command_t *command = &axis->drive.command;
     /* The drive's counts and ours differ by whole turns of 2^32 only. */
     command->target_position = (int32_t)(uint32_t)(uint64_t)cm1e_axis_motor_target(axis);
-    /* The loop catches up, but not beyond what the axis may do. Motors stay far below 2^31 counts/s. */
-    const double most = axis->maximum.velocity * fabs(axis->scale) + axis->backlash.velocity;
-    const double velocity = axis->set_velocity * axis->scale + cm1e_axis_backlash_velocity(axis) + loop_velocity(axis);
-    command->target_velocity = (int32_t)round(fmax(-most, fmin(velocity, most)));
+    if (axis->mode == CM1E_MODE_CSV)
+        command->target_velocity = target_velocity(axis);
 }

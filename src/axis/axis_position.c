@@ -197,7 +197,8 @@ void cm1e_axis_track(cm1e_axis_t *axis)
     if (axis->position_known) {
         const int32_t moved = (int32_t)((uint32_t)raw - (uint32_t)axis->raw);
         axis->actual_counts += moved;
-        cm1e_axis_backlash_track(axis, moved);
+        if (axis->backlash.gap > 0.0)
+            cm1e_axis_backlash_track(axis, moved);
     } else {
         axis->actual_counts = raw;
         axis->position_known = true;

@@ -188,7 +188,7 @@ static void reset_finished(cm1e_axis_t *axis)
 /* After the ramp of ErrorStop has ended: the drive's reset, which also brings back a slave that was away. */
 void cm1e_axis_reset_step(cm1e_axis_t *axis)
 {
-    if (axis->reset_state != CM1E_COMMAND_ACTIVE || axis->activity != ACTIVITY_FREE)
+    if (axis->activity != ACTIVITY_FREE)
         return;
     if (!axis->reset_sent) {
         axis->drive.command.reset = true;

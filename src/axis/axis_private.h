@@ -194,7 +194,7 @@ struct cm1e_axis {
     double lower, upper;            /**< u */
     double tolerance;               /**< u; which they are kept with */
     double max_lag;                 /**< u */
-    double lag_seen;                /**< u; amount, when the inputs were fresh last */
+    double lag_seen;                /**< counts; amount, when the inputs were fresh last */
     bool blind;                     /**< they are not, and the set-point goes on */
 
     cm1e_axis_state_t state;
@@ -280,15 +280,27 @@ void cm1e_axis_set_to_actual(cm1e_axis_t *axis);
 
 /* axis_backlash.c */
 void cm1e_axis_backlash_init(cm1e_axis_t *axis); /* @rt init; after the limits */
+/** Counts of the motor beyond its load; 0 without backlash. */
+double cm1e_axis_backlash_offset(const cm1e_axis_t *axis);
 /** Where the load is while the motor is there. */
-position_t cm1e_axis_load(const cm1e_axis_t *axis, int64_t motor_counts);
+static inline position_t cm1e_axis_load(const cm1e_axis_t *axis, int64_t motor_counts)
+{
+    const position_t motor = {motor_counts, 0.0};
+    return axis->backlash.gap > 0.0 ? cm1e_position_plus(motor, -cm1e_axis_backlash_offset(axis)) : motor;
+}
 /** Actual position, of the load. */
 static inline position_t axis_actual(const cm1e_axis_t *axis) { return cm1e_axis_load(axis, axis->actual_counts); }
 /** Where the motor has to be for the set-point; whole counts. */
-int64_t cm1e_axis_motor_target(const cm1e_axis_t *axis);
+static inline int64_t cm1e_axis_motor_target(const cm1e_axis_t *axis)
+{
+    const position_t target = axis->backlash.gap > 0.0 ? cm1e_position_plus(axis->set, cm1e_axis_backlash_offset(axis))
+                                                       : axis->set;
+    return target.counts + (target.fraction >= 0.5);
+}
 /** Counts/s of the motor that its load does not do. */
 double cm1e_axis_backlash_velocity(const cm1e_axis_t *axis);
 bool cm1e_axis_backlash_at_rest(const cm1e_axis_t *axis);
+/* Both only where there is a gap. */
 void cm1e_axis_backlash_track(cm1e_axis_t *axis, int32_t moved_counts);
 void cm1e_axis_backlash_step(cm1e_axis_t *axis);
 
@@ -410,7 +422,7 @@ void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double 
 void cm1e_axis_brake_from_actual(cm1e_axis_t *axis);
 void cm1e_axis_power_step(cm1e_axis_t *axis);
 void cm1e_axis_enable_step(cm1e_axis_t *axis);
-void cm1e_axis_reset_step(cm1e_axis_t *axis);
+void cm1e_axis_reset_step(cm1e_axis_t *axis); /* while a reset is under way */
 
 /* axis_home.c */
 cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *command);
@@ -419,7 +431,7 @@ void cm1e_axis_home_abort(cm1e_axis_t *axis, home_goal_t goal);
 void cm1e_axis_home_step(cm1e_axis_t *axis);
 
 /* axis_probe.c */
-void cm1e_axis_probe_step(cm1e_axis_t *axis);
+void cm1e_axis_probe_step(cm1e_axis_t *axis); /* with fresh inputs, while probes are armed */
 
 /* axis_digital.c */
 /** What was not renewed goes off or halts, before the set-point of the cycle. */

@@ -127,8 +127,6 @@ static void triggered(cm1e_axis_t *axis, probe_t *probe, const probe_sample_t *b
 
 void cm1e_axis_probe_step(cm1e_axis_t *axis)
 {
-    if (axis->probes_armed == 0 || !axis->drive.feedback.fresh)
-        return;
     const probe_sample_t before = axis->probe_sample, now = sample(axis);
     axis->probe_sample = now;
     const unsigned changed = (unsigned)(before.inputs ^ now.inputs);
