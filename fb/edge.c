@@ -74,11 +74,13 @@ fb_step_t fb_execute(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL ex
 
 void fb_started(cm1e_fb_private_t *fb, cm1e_error_t error)
 {
+    fb->active = error == CM1E_OK;
     set_state(fb, error == CM1E_OK ? FB_BUSY : FB_ERROR, error);
 }
 
 void fb_polled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error)
 {
+    fb->active = state == CM1E_COMMAND_ACTIVE;
     switch (state) {
     case CM1E_COMMAND_BUFFERED:
     case CM1E_COMMAND_ACTIVE: break;
@@ -95,29 +97,55 @@ fb_outputs_t fb_outputs(const cm1e_fb_private_t *fb)
     return (fb_outputs_t){
         .done = fb->state == FB_DONE,
         .busy = fb->state == FB_BUSY,
+        .active = fb->state == FB_BUSY && fb->active,
         .aborted = fb->state == FB_ABORTED,
         .error = fb->state == FB_ERROR,
         .error_id = fb->error_id,
     };
 }
 
-cm1e_command_status_t fb_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute,
-                                const cm1e_axis_command_t *command, cm1e_error_t refusal)
+/** New inputs of a command that is under way or waits; FALSE: they were refused. */
+static bool update(cm1e_fb_private_t *fb, cm1e_axis_t *axis, BOOL continuous_update,
+                   const cm1e_axis_command_t *command)
+{
+    fb->continuous_update = fb->continuous_update && continuous_update;
+    const cm1e_error_t error = fb->continuous_update ? cm1e_axis_update(axis, fb->command, command) : CM1E_OK;
+    if (error)
+        fb_fail(fb, error);
+    return error == CM1E_OK;
+}
+
+fb_outputs_t fb_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, BOOL continuous_update,
+                       const cm1e_axis_command_t *command)
+{
+    return fb_motion_unless(CM1E_OK, fb, reference, execute, continuous_update, command);
+}
+
+fb_outputs_t fb_motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute,
+                              BOOL continuous_update, const cm1e_axis_command_t *command)
 {
     cm1e_command_status_t status = {.state = CM1E_COMMAND_UNKNOWN};
     cm1e_axis_t *axis = NULL;
     switch (fb_execute(fb, reference, execute, &axis)) {
     case FB_STEP_START:
         fb->command = 0;
+        fb->continuous_update = continuous_update ? TRUE : FALSE;
         fb_started(fb, refusal ? refusal : cm1e_axis_start(axis, command, &fb->command));
+        status = cm1e_axis_command_status(axis, fb->command);
+        fb->active = status.state == CM1E_COMMAND_ACTIVE;
         break;
     case FB_STEP_POLL:
-        status = cm1e_axis_command_status(axis, fb->command);
-        fb_polled(fb, status.state, status.error);
+        if (update(fb, axis, continuous_update, command)) {
+            status = cm1e_axis_command_status(axis, fb->command);
+            fb_polled(fb, status.state, status.error);
+        }
         break;
     case FB_STEP_NONE: break;
     }
-    return status;
+    fb_outputs_t out = fb_outputs(fb);
+    out.reached = out.active && status.reached;
+    out.covered = status.covered;
+    return out;
 }
 
 /* ---- Enable ---------------------------------------------------------------------------------------------------- */

@@ -22,8 +22,10 @@ typedef enum fb_step {
 } fb_step_t;
 
 typedef struct fb_outputs {
-    BOOL done, busy, aborted, error;
+    BOOL done, busy, active, aborted, error;
     WORD error_id;
+    BOOL reached;  /**< InVelocity and its like (2.4.1): TRUE at times while Busy and Active */
+    LREAL covered; /**< MC_MoveSuperimposed: CoveredDistance */
 } fb_outputs_t;
 
 /** `*axis` is valid unless the step is FB_STEP_NONE. */
@@ -34,17 +36,31 @@ void fb_started(cm1e_fb_private_t *fb, cm1e_error_t error);
 void fb_polled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error);
 fb_outputs_t fb_outputs(const cm1e_fb_private_t *fb);
 
-/** A whole block of the Execute type that is one motion command: starts it at the edge (unless `refusal` is an error),
- *  polls it after. Returns the command's last status for what is special in a block. */
-cm1e_command_status_t fb_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute,
-                                const cm1e_axis_command_t *command, cm1e_error_t refusal);
-/** TRUE: no edge, the same axis, and its command still is the active one, so that the outputs (`active`: one of them)
+/** A whole block of the Execute type that is one motion command: starts it at the edge, hands on new inputs while
+ *  ContinuousUpdate says so (2.4.6: TRUE at the edge and ever since), and shows what has become of it. A refused update
+ *  is an error of the block; the motion goes on without it by the last good inputs. */
+fb_outputs_t fb_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, BOOL continuous_update,
+                       const cm1e_axis_command_t *command);
+/** The same for a block that has a reason of its own not to start: `refusal` is an error at the edge. */
+fb_outputs_t fb_motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute,
+                              BOOL continuous_update, const cm1e_axis_command_t *command);
+/** TRUE: no edge, the same axis, no inputs to hand on, and its command still is the active one, so that the outputs
  *  stand as they are. Most calls of a block are such; they cost little that way. */
-static inline bool fb_stands(const cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, BOOL active)
+static inline bool fb_stands(const cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute)
 {
-    return active && fb->state == FB_BUSY && !execute == !fb->trigger_before && reference &&
-           reference->Handle == fb->axis_handle && cm1e_axis_runs(*reference, fb->command);
+    return fb->active && fb->state == FB_BUSY && !fb->continuous_update && !execute == !fb->trigger_before &&
+           reference && reference->Handle == fb->axis_handle && cm1e_axis_runs(*reference, fb->command);
 }
+
+/* What the files of motion blocks have in common: inputs and outputs of the standard's names. */
+#define FB_STANDS(fb) fb_stands(&(fb)->Private, (fb)->Axis, (fb)->Execute)
+#define FB_DYNAMICS(fb)                                                                                              \
+    .acceleration = (fb)->Acceleration, .deceleration = (fb)->Deceleration, .jerk = (fb)->Jerk
+#define FB_SHOW(fb, out)                                                                                             \
+    ((fb)->Busy = (out).busy, (fb)->CommandAborted = (out).aborted, (fb)->Error = (out).error,                       \
+     (fb)->ErrorID = (out).error_id)
+#define FB_SHOW_ACTIVE(fb, out) (FB_SHOW(fb, out), (fb)->Active = (out).active)
+
 /** The axis that the block works on, latched at its last rising edge; NULL: none. */
 cm1e_axis_t *fb_axis(const cm1e_fb_private_t *fb);
 /** An error of the block itself, shown until Execute or Enable falls. */
@@ -67,12 +83,6 @@ fb_reading_t fb_reading(const cm1e_fb_private_t *fb, const cm1e_axis_t *axis, cm
 static inline cm1e_error_t fb_refuse_queued(MC_EXECUTION_MODE mode)
 {
     return mode == mcImmediately ? CM1E_OK : CM1E_ERROR_AXIS_BUFFER_MODE;
-}
-
-/** Inputs that this version has no use for yet. */
-static inline cm1e_error_t fb_refuse_continuous_update(BOOL continuous_update)
-{
-    return continuous_update ? CM1E_ERROR_UNSUPPORTED : CM1E_OK;
 }
 
 #endif

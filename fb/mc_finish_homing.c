@@ -2,7 +2,7 @@
 
 void MC_FinishHoming(MC_FinishHoming_t *fb)
 {
-    if (fb_stands(&fb->Private, fb->Axis, fb->Execute, fb->Active))
+    if (FB_STANDS(fb))
         return;
     const cm1e_homing_step_t step = {
         .kind = CM1E_STEP_FINISH,
@@ -11,17 +11,11 @@ void MC_FinishHoming(MC_FinishHoming_t *fb)
         .kind = CM1E_COMMAND_HOMING_STEP,
         .position = fb->Distance,
         .velocity = fb->Velocity,
-        .acceleration = fb->Acceleration,
-        .deceleration = fb->Deceleration,
-        .jerk = fb->Jerk,
+        FB_DYNAMICS(fb),
         .buffer_mode = fb->BufferMode,
         .step = &step,
     };
-    fb_motion(&fb->Private, fb->Axis, fb->Execute, &command, CM1E_OK);
-    const fb_outputs_t out = fb_outputs(&fb->Private);
+    const fb_outputs_t out = fb_motion(&fb->Private, fb->Axis, fb->Execute, FALSE, &command);
     fb->Done = out.done;
-    fb->Busy = fb->Active = out.busy;
-    fb->CommandAborted = out.aborted;
-    fb->Error = out.error;
-    fb->ErrorID = out.error_id;
+    FB_SHOW_ACTIVE(fb, out);
 }

@@ -2,23 +2,17 @@
 
 void MC_MoveAbsolute(MC_MoveAbsolute_t *fb)
 {
-    if (fb_stands(&fb->Private, fb->Axis, fb->Execute, fb->Active && !fb->ContinuousUpdate))
+    if (FB_STANDS(fb))
         return;
     const cm1e_axis_command_t command = {
         .kind = CM1E_COMMAND_MOVE_ABSOLUTE,
         .position = fb->Position,
         .velocity = fb->Velocity,
-        .acceleration = fb->Acceleration,
-        .deceleration = fb->Deceleration,
-        .jerk = fb->Jerk,
+        FB_DYNAMICS(fb),
         .direction = fb->Direction,
         .buffer_mode = fb->BufferMode,
     };
-    fb_motion(&fb->Private, fb->Axis, fb->Execute, &command, fb_refuse_continuous_update(fb->ContinuousUpdate));
-    const fb_outputs_t out = fb_outputs(&fb->Private);
+    const fb_outputs_t out = fb_motion(&fb->Private, fb->Axis, fb->Execute, fb->ContinuousUpdate, &command);
     fb->Done = out.done;
-    fb->Busy = fb->Active = out.busy;
-    fb->CommandAborted = out.aborted;
-    fb->Error = out.error;
-    fb->ErrorID = out.error_id;
+    FB_SHOW_ACTIVE(fb, out);
 }

@@ -9,7 +9,7 @@ static cm1e_error_t signal_of_another_axis(const MC_StepAbsoluteSwitch_t *fb)
 
 void MC_StepAbsoluteSwitch(MC_StepAbsoluteSwitch_t *fb)
 {
-    if (fb_stands(&fb->Private, fb->Axis, fb->Execute, fb->Active))
+    if (FB_STANDS(fb))
         return;
     const cm1e_homing_step_t step = {
         .kind = CM1E_STEP_ABSOLUTE_SWITCH,
@@ -27,11 +27,8 @@ void MC_StepAbsoluteSwitch(MC_StepAbsoluteSwitch_t *fb)
         .buffer_mode = fb->BufferMode,
         .step = &step,
     };
-    fb_motion(&fb->Private, fb->Axis, fb->Execute, &command, signal_of_another_axis(fb));
-    const fb_outputs_t out = fb_outputs(&fb->Private);
+    const fb_outputs_t out = fb_motion_unless(signal_of_another_axis(fb), &fb->Private, fb->Axis, fb->Execute, FALSE,
+                                              &command);
     fb->Done = out.done;
-    fb->Busy = fb->Active = out.busy;
-    fb->CommandAborted = out.aborted;
-    fb->Error = out.error;
-    fb->ErrorID = out.error_id;
+    FB_SHOW_ACTIVE(fb, out);
 }

@@ -4,11 +4,8 @@
 void MC_StepReferenceFlyingRefPulse(MC_StepReferenceFlyingRefPulse_t *fb)
 {
     const cm1e_axis_command_t none = {.kind = CM1E_COMMAND_HOMING_STEP};
-    fb_motion(&fb->Private, fb->Axis, fb->Execute, &none, CM1E_ERROR_AXIS_NO_SUCH_SIGNAL);
-    const fb_outputs_t out = fb_outputs(&fb->Private);
+    const fb_outputs_t out = fb_motion_unless(CM1E_ERROR_AXIS_NO_SUCH_SIGNAL, &fb->Private, fb->Axis, fb->Execute, FALSE,
+                                              &none);
     fb->Done = out.done;
-    fb->Busy = fb->Active = out.busy;
-    fb->CommandAborted = out.aborted;
-    fb->Error = out.error;
-    fb->ErrorID = out.error_id;
+    FB_SHOW_ACTIVE(fb, out);
 }

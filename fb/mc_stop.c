@@ -19,13 +19,9 @@ void MC_Stop(MC_Stop_t *fb)
         .deceleration = fb->Deceleration,
         .jerk = fb->Jerk,
     };
-    fb_motion(&fb->Private, fb->Axis, fb->Execute, &command, CM1E_OK);
+    const fb_outputs_t out = fb_motion(&fb->Private, fb->Axis, fb->Execute, FALSE, &command);
     const bool held = hold_axis(&fb->Private);
-    const fb_outputs_t out = fb_outputs(&fb->Private);
     fb->Done = out.done;
-    fb->Busy = out.busy;
+    FB_SHOW(fb, out);
     fb->Active = out.busy || (out.done && held); /* 2.4.1: the one block that may show Active with Done */
-    fb->CommandAborted = out.aborted;
-    fb->Error = out.error;
-    fb->ErrorID = out.error_id;
 }

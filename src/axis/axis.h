@@ -106,9 +106,10 @@ void cm1e_axis_outputs(cm1e_axis_t *axis);
 /** Starts a command or refuses it (then *id is 0 and nothing has changed). Kinds that the axis does not know how to
  *  do yet are CM1E_ERROR_UNSUPPORTED. @rt cycle */
 cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
-/** ContinuousUpdate (2.4.6): the present inputs of a command that is still buffered or active; relative values count
- *  from where the command began. A refused update changes nothing: the motion goes on by the last good inputs, and the
- *  error is for the block to show. @rt cycle */
+/** ContinuousUpdate (2.4.6): the present inputs of a command; the same ones cost a comparison. Relative values count
+ *  from where the command began; the buffer mode stays what it was. A refused update changes nothing: the motion goes
+ *  on by the last good inputs, and the error is for the block to show. After the command's end nothing happens.
+ *  CM1E_ERROR_INVALID_ARGUMENT: another kind of command, or one that has no inputs to change. @rt cycle */
 cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command);
 /** MC_SetOverride: factors on the velocity (0 ... 1; 0: the axis stands, but not in Standstill), on acceleration and
  *  deceleration, and on jerk (above 0 ... 1) of the commands. Kept until changed. @rt cycle */

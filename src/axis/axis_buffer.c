@@ -151,27 +151,28 @@ static cm1e_error_t check(const cm1e_axis_t *axis, move_t *move, const position_
     return CM1E_OK;
 }
 
-/* Where the last of all commands so far ends; NULL: nobody knows. */
-static const move_t *last_move(cm1e_axis_t *axis)
+/* The command that is before the waiting one of that index. */
+static const move_t *before(cm1e_axis_t *axis, int index, cm1e_command_kind_t *kind)
 {
-    return axis->waiting.count > 0 ? waiting_move(axis, axis->waiting.count - 1) : &axis->move;
+    const move_t *move = index > 0 ? waiting_move(axis, index - 1) : &axis->move;
+    *kind = index > 0 ? (cm1e_command_kind_t)move->kind : axis->kind; /* a homing that is active has no move */
+    return move;
 }
 
-static const position_t *end_of(const move_t *move)
+static cm1e_error_t check_behind(cm1e_axis_t *axis, int index, move_t *move)
 {
-    const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
-    return is_discrete_move(kind) || is_continuous_move(kind) ? &move->target : NULL;
+    cm1e_command_kind_t kind;
+    const move_t *first = before(axis, index, &kind);
+    if (is_homing((cm1e_command_kind_t)move->kind) && is_endless(kind))
+        return CM1E_ERROR_AXIS_STATE; /* homing begins at rest */
+    return check(axis, move, is_discrete_move(kind) || is_continuous_move(kind) ? &first->target : NULL);
 }
 
 cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move)
 {
-    const move_t *last = last_move(axis);
-    const cm1e_command_kind_t last_kind = axis->waiting.count > 0 ? (cm1e_command_kind_t)last->kind : axis->kind;
     if (axis->waiting.count == CM1E_AXIS_BUFFER_DEPTH)
         return CM1E_ERROR_FULL;
-    if (is_homing((cm1e_command_kind_t)move->kind) && is_endless(last_kind))
-        return CM1E_ERROR_AXIS_STATE; /* homing begins at rest */
-    const cm1e_error_t error = check(axis, move, is_homing(last_kind) ? NULL : end_of(last));
+    const cm1e_error_t error = check_behind(axis, axis->waiting.count, move);
     if (error)
         return error;
     move->id = cm1e_axis_next_id(axis);
@@ -179,8 +180,24 @@ cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move)
     if (axis->reached) { /* the signal that it waits for is there already (table 4) */
         const from_t from = from_set(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
-    } else if (move->buffer_mode != mcBuffered) {
+    } else if (is_discrete_move(axis->kind)) {
         (void)cm1e_axis_replan(axis);
+    }
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_axis_update_waiting(cm1e_axis_t *axis, const move_t *move)
+{
+    for (int i = 0; i < axis->waiting.count; i++) {
+        if (waiting_move(axis, i)->id != move->id)
+            continue;
+        move_t checked = *move;
+        const cm1e_error_t error = check_behind(axis, i, &checked);
+        if (error)
+            return error;
+        *waiting_move(axis, i) = checked;
+        if (is_discrete_move(axis->kind))
+            (void)cm1e_axis_replan(axis);
     }
     return CM1E_OK;
 }
@@ -228,12 +245,9 @@ bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offse
     return false;
 }
 
-cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis)
+cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *as)
 {
-    if (!axis->active || axis->activity != ACTIVITY_PROFILE || axis->kind == CM1E_COMMAND_STOP ||
-        axis->kind == CM1E_COMMAND_HOMING_STEP)
-        return CM1E_OK;
-    move_t move = axis->move;
+    move_t move = *as;
     cm1e_profile_t profile;
     const from_t from = from_set(axis);
     move.exit_velocity = cm1e_axis_exit_velocity(axis, &from, &move);
@@ -243,4 +257,13 @@ cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis)
     axis->move = move;
     cm1e_axis_run(axis, &from, &profile, cm1e_axis_profile_end(axis, &from, &move, &profile), 0.0);
     return CM1E_OK;
+}
+
+cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis)
+{
+    if (!axis->active || axis->activity != ACTIVITY_PROFILE || axis->kind == CM1E_COMMAND_STOP ||
+        axis->kind == CM1E_COMMAND_HOMING_STEP)
+        return CM1E_OK;
+    const move_t move = axis->move;
+    return cm1e_axis_replan_as(axis, &move);
 }

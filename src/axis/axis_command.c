@@ -58,21 +58,6 @@ bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id)
 
 /* ---- start ------------------------------------------------------------------------------------------------------- */
 
-static move_t move_of(const cm1e_axis_command_t *command)
-{
-    return (move_t){
-        .kind = (uint8_t)command->kind,
-        .buffer_mode = (uint8_t)command->buffer_mode,
-        .direction = (unsigned)command->direction <= UINT8_MAX ? (uint8_t)command->direction : UINT8_MAX,
-        .position = command->position,
-        .velocity = command->velocity,
-        .end_velocity = is_continuous_move(command->kind) ? command->end_velocity : 0.0,
-        .acceleration = command->acceleration,
-        .deceleration = command->deceleration,
-        .jerk = command->jerk,
-    };
-}
-
 void cm1e_axis_take(cm1e_axis_t *axis, const move_t *move, const from_t *from, const cm1e_profile_t *profile,
                     double offset_s)
 {
@@ -100,7 +85,7 @@ static void hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id)
 static cm1e_error_t start_move(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     const from_t from = from_set(axis);
-    move_t move = move_of(command);
+    move_t move = cm1e_axis_move_of(command);
     cm1e_profile_t profile;
     move.origin = move.kind == CM1E_COMMAND_MOVE_ADDITIVE ? commanded_position(axis) : from.position;
     move.exit_velocity = move.end_velocity;
@@ -121,7 +106,7 @@ static cm1e_error_t start_move(cm1e_axis_t *axis, const cm1e_axis_command_t *com
 static cm1e_error_t stop_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     const from_t from = from_set(axis);
-    const move_t move = move_of(command);
+    const move_t move = cm1e_axis_move_of(command);
     cm1e_motion_limits_t unused;
     const cm1e_error_t error = cm1e_axis_limits_of(axis, &from, &move, &unused);
     if (error)
@@ -149,7 +134,7 @@ static cm1e_error_t start_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *c
 /* Part 5: from Standstill, or after another step in Homing; the drive's own homing is no such step. */
 static cm1e_error_t start_step(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
-    const move_t move = move_of(command);
+    const move_t move = cm1e_axis_move_of(command);
     stepping_t next;
     cm1e_profile_t profile;
     cm1e_error_t error = axis->activity == ACTIVITY_HOMING ? CM1E_ERROR_AXIS_HOMING
@@ -234,7 +219,7 @@ static waiting_step_t *free_step(cm1e_axis_t *axis)
 
 static cm1e_error_t buffer_step(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
-    move_t move = move_of(command);
+    move_t move = cm1e_axis_move_of(command);
     waiting_step_t *place = free_step(axis);
     cm1e_error_t error = cm1e_axis_step_check(axis, command->step, &move);
     if (!error)
@@ -248,7 +233,7 @@ static cm1e_error_t buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command
 {
     if (command->kind == CM1E_COMMAND_HOMING_STEP)
         return buffer_step(axis, command, id);
-    move_t move = move_of(command);
+    move_t move = cm1e_axis_move_of(command);
     cm1e_error_t error = command->kind == CM1E_COMMAND_HOME ? keep_homing(axis, command) : CM1E_OK;
     if (!error)
         error = cm1e_axis_buffer(axis, &move);
@@ -310,13 +295,6 @@ void cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold)
 {
     if (id != 0 && id == axis->stop)
         axis->stop_held = hold;
-}
-
-cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
-{
-    (void)command;
-    return cm1e_axis_command_status(axis, id).state == CM1E_COMMAND_UNKNOWN ? CM1E_ERROR_INVALID_ARGUMENT
-                                                                            : CM1E_ERROR_UNSUPPORTED;
 }
 
 cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double acceleration, double jerk)

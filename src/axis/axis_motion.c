@@ -97,6 +97,7 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
         if (cm1e_axis_begin_waiting(axis, &end, late_s))
             return true;
         axis->reached = true;
+        axis->move.passing = true; /* the position lies behind now, whatever else changes */
         return true;
     }
     if (axis->active)

@@ -405,7 +405,10 @@ static inline move_t *waiting_move(cm1e_axis_t *axis, int index)
 }
 /** The waiting command of that number; NULL: none. */
 move_t *cm1e_axis_find_waiting(cm1e_axis_t *axis, cm1e_command_id_t id);
+/** Takes it in behind the others and gives it its number. */
 cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move);
+/** A waiting command with this number, if there is one, gets these inputs. */
+cm1e_error_t cm1e_axis_update_waiting(cm1e_axis_t *axis, const move_t *move);
 /** The velocity with which a move that begins there shall pass its target, for the sake of those that wait. */
 double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t *move);
 /** The first waiting command that can begin there does; those before it fail. FALSE: none could. */
@@ -413,6 +416,11 @@ bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offse
 /** Something that the active command's profile depends on has changed: it is planned anew from the present set-point.
  *  Where that is refused, it goes on as it was. */
 cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis);
+/** The same with other inputs, which are in force when it is not refused. */
+cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *move);
+
+/* axis_update.c */
+move_t cm1e_axis_move_of(const cm1e_axis_command_t *command);
 
 /* axis_power.c */
 bool cm1e_axis_wants_enable(const cm1e_axis_t *axis);

@@ -15,7 +15,9 @@ enum { FAKE_AXES = 2, FAKE_COMMANDS = 8 };
 struct cm1e_axis {
     cm1e_axis_info_t info;
     cm1e_error_t start_error;       /**< answer to the next cm1e_axis_start() and cm1e_axis_reset() */
-    unsigned starts, resets;
+    unsigned starts, resets, updates;
+    cm1e_command_id_t updated;      /**< whose inputs */
+    cm1e_error_t update_error;      /**< answer to cm1e_axis_update() */
     cm1e_axis_command_t command;    /**< the last one */
     cm1e_command_id_t id;           /**< of the last one */
     cm1e_command_status_t status[FAKE_COMMANDS]; /**< by id % FAKE_COMMANDS */
@@ -56,6 +58,15 @@ cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *comma
     axis->id = *id = ++next_id;
     axis->status[axis->id % FAKE_COMMANDS] = (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE};
     return CM1E_OK;
+}
+
+cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
+{
+    axis->updates++;
+    axis->updated = id;
+    if (!axis->update_error)
+        axis->command = *command;
+    return axis->update_error;
 }
 
 cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_command_id_t id)

@@ -37,7 +37,10 @@ typedef struct block {
 
 BLOCK_FUNCTIONS(MC_MoveAbsolute, fb->Done, fb->Active, fb->CommandAborted)
 BLOCK_FUNCTIONS(MC_MoveRelative, fb->Done, fb->Active, fb->CommandAborted)
+BLOCK_FUNCTIONS(MC_MoveAdditive, fb->Done, fb->Active, fb->CommandAborted)
 BLOCK_FUNCTIONS(MC_MoveVelocity, fb->InVelocity, fb->Active, fb->CommandAborted)
+BLOCK_FUNCTIONS(MC_MoveContinuousAbsolute, fb->InEndVelocity, fb->Active, fb->CommandAborted)
+BLOCK_FUNCTIONS(MC_MoveContinuousRelative, fb->InEndVelocity, fb->Active, fb->CommandAborted)
 BLOCK_FUNCTIONS(MC_Halt, fb->Done, fb->Active, fb->CommandAborted)
 BLOCK_FUNCTIONS(MC_Stop, fb->Done, fb->Active, fb->CommandAborted)
 BLOCK_FUNCTIONS(MC_Home, fb->Done, fb->Active, fb->CommandAborted)
@@ -54,6 +57,9 @@ static const block_t blocks[] = {
     BLOCK(MC_Stop, CM1E_COMMAND_STOP, true, true, false),
     BLOCK(MC_Home, CM1E_COMMAND_HOME, true, true, false),
     BLOCK(MC_Reset, CM1E_COMMAND_KIND_COUNT, false, false, false),
+    BLOCK(MC_MoveAdditive, CM1E_COMMAND_MOVE_ADDITIVE, true, true, false),
+    BLOCK(MC_MoveContinuousAbsolute, CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE, true, true, true),
+    BLOCK(MC_MoveContinuousRelative, CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE, true, true, true),
 };
 enum { BLOCKS = sizeof blocks / sizeof blocks[0] };
 
@@ -409,27 +415,91 @@ START_TEST(test_stop_whose_axis_was_changed_still_holds_and_releases_its_axis)
 }
 END_TEST
 
-START_TEST(test_continuous_update_is_unsupported)
+START_TEST(test_buffered_is_busy_but_not_active)
 {
-    fresh(0);
-    MC_MoveAbsolute_t absolute = {.Axis = &x, .Execute = TRUE, .ContinuousUpdate = TRUE};
-    MC_MoveRelative_t relative = {.Axis = &x, .Execute = TRUE, .ContinuousUpdate = TRUE};
-    MC_MoveVelocity_t velocity = {.Axis = &x, .Execute = TRUE, .ContinuousUpdate = TRUE};
-    MC_MoveAbsolute(&absolute);
-    MC_MoveRelative(&relative);
-    MC_MoveVelocity(&velocity);
-    const WORD id = cm1e_error_id(CM1E_ERROR_UNSUPPORTED);
-    ck_assert(absolute.Error && absolute.ErrorID == id && !absolute.Busy);
-    ck_assert(relative.Error && relative.ErrorID == id && !relative.Busy);
-    ck_assert(velocity.Error && velocity.ErrorID == id && !velocity.Busy);
-    ck_assert_uint_eq(axis_x->starts, 0);
-    absolute.Execute = absolute.ContinuousUpdate = FALSE;
-    MC_MoveAbsolute(&absolute);
-    absolute.Execute = TRUE;
-    MC_MoveAbsolute(&absolute);
-    absolute.ContinuousUpdate = TRUE; /* 2.4.6: set later it has no effect */
-    MC_MoveAbsolute(&absolute);
-    ck_assert(absolute.Busy && !absolute.Error);
+    const block_t *block = fresh(_i);
+    if (!block->has_active || block->kind == CM1E_COMMAND_STOP)
+        return;
+    EXPECT(block->call(&x, TRUE), BUSY);
+    axis_x->status[axis_x->id % FAKE_COMMANDS].state = CM1E_COMMAND_BUFFERED;
+    for (int i = 0; i < 3; i++)
+        EXPECT(block->call(&x, TRUE), ".B...");
+    EXPECT(block->call(&x, FALSE), ".B...");
+    axis_x->status[axis_x->id % FAKE_COMMANDS] = (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE};
+    EXPECT(block->call(&x, FALSE), BUSY);
+    axis_x->status[axis_x->id % FAKE_COMMANDS].state = CM1E_COMMAND_ABORTED;
+    EXPECT(block->call(&x, FALSE), ABORTED);
+}
+END_TEST
+
+START_TEST(test_continuous_update_hands_on_inputs_while_it_stays_true)
+{
+    fake_reset();
+    MC_MoveAbsolute_t fb = {.Axis = &x, .Execute = TRUE, .ContinuousUpdate = 3, .Position = 1.0, .Velocity = 2.0};
+    MC_MoveAbsolute(&fb);
+    ck_assert_uint_eq(axis_x->updates, 0); /* the edge has them already */
+    fb.Position = 5.0;
+    MC_MoveAbsolute(&fb);
+    ck_assert_uint_eq(axis_x->updates, 1);
+    ck_assert_uint_eq(axis_x->updated, axis_x->id);
+    ck_assert_double_eq(axis_x->command.position, 5.0);
+    fb.Execute = FALSE; /* does not influence the execution */
+    fb.Velocity = 4.0;
+    MC_MoveAbsolute(&fb);
+    ck_assert_double_eq(axis_x->command.velocity, 4.0);
+    fb.ContinuousUpdate = FALSE;
+    MC_MoveAbsolute(&fb);
+    const unsigned updates = axis_x->updates;
+    fb.ContinuousUpdate = TRUE; /* too late */
+    fb.Position = 6.0;
+    MC_MoveAbsolute(&fb);
+    ck_assert_uint_eq(axis_x->updates, updates);
+    ck_assert_double_eq(axis_x->command.position, 5.0);
+    ck_assert(fb.Busy && fb.Active);
+    fb.Execute = TRUE; /* a new edge takes the new inputs, and updates again */
+    MC_MoveAbsolute(&fb);
+    MC_MoveAbsolute(&fb);
+    ck_assert_uint_eq(axis_x->updates, updates + 1);
+    ck_assert_double_eq(axis_x->command.position, 6.0);
+    fake_finish(axis_x, CM1E_COMMAND_DONE, CM1E_OK);
+    MC_MoveAbsolute(&fb);
+    ck_assert(fb.Done);
+    MC_MoveAbsolute(&fb);
+    ck_assert_uint_le(axis_x->updates, updates + 2); /* ended with Busy */
+    ck_assert_uint_eq(axis_x->starts, 2);
+}
+END_TEST
+
+START_TEST(test_continuous_update_later_than_the_edge_has_no_effect)
+{
+    fake_reset();
+    MC_MoveVelocity_t fb = {.Axis = &x, .Execute = TRUE, .Velocity = 2.0};
+    MC_MoveVelocity(&fb);
+    fb.ContinuousUpdate = TRUE;
+    fb.Velocity = 3.0;
+    for (int i = 0; i < 3; i++)
+        MC_MoveVelocity(&fb);
+    ck_assert_uint_eq(axis_x->updates, 0);
+    ck_assert_double_eq(axis_x->command.velocity, 2.0);
+}
+END_TEST
+
+START_TEST(test_refused_update_is_an_error_and_ends_the_updates)
+{
+    fake_reset();
+    MC_MoveRelative_t fb = {.Axis = &x, .Execute = TRUE, .ContinuousUpdate = TRUE, .Distance = 1.0, .Velocity = 2.0};
+    MC_MoveRelative(&fb);
+    axis_x->update_error = CM1E_ERROR_AXIS_VELOCITY_RANGE;
+    fb.Velocity = -1.0;
+    for (int i = 0; i < 3; i++) {
+        MC_MoveRelative(&fb);
+        ck_assert(fb.Error && !fb.Busy && !fb.Active && !fb.Done);
+        ck_assert_uint_eq(fb.ErrorID, cm1e_error_id(CM1E_ERROR_AXIS_VELOCITY_RANGE));
+    }
+    ck_assert_uint_eq(axis_x->updates, 1);
+    fb.Execute = FALSE;
+    MC_MoveRelative(&fb);
+    ck_assert(!fb.Error && !fb.Busy && fb.ErrorID == 0);
 }
 END_TEST
 
@@ -439,7 +509,7 @@ static void expect_command(cm1e_axis_command_t expected, int line)
     ck_assert_msg(got->kind == expected.kind && got->position == expected.position
                       && got->velocity == expected.velocity && got->acceleration == expected.acceleration
                       && got->deceleration == expected.deceleration && got->jerk == expected.jerk
-                      && got->direction == expected.direction && got->buffer_mode == expected.buffer_mode
+                      && got->end_velocity == expected.end_velocity && got->direction == expected.direction && got->buffer_mode == expected.buffer_mode
                       && got->homing == expected.homing,
                   "line %d: the command is not what the inputs say", line);
 }
@@ -491,6 +561,31 @@ START_TEST(test_inputs_reach_the_axis_at_the_edge_and_not_later)
     MC_Stop(&stop);
     expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_STOP, .deceleration = 6, .jerk = 7}, __LINE__);
 
+    MC_MoveAdditive_t additive = {.Axis = &x, .Execute = TRUE, .Distance = -1, .Velocity = 2, .Acceleration = 3,
+                                  .Deceleration = 4, .Jerk = 5, .BufferMode = mcBlendingPrevious};
+    MC_MoveAdditive(&additive);
+    expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_ADDITIVE, .position = -1, .velocity = 2,
+                                         .acceleration = 3, .deceleration = 4, .jerk = 5,
+                                         .buffer_mode = mcBlendingPrevious},
+                   __LINE__);
+
+    MC_MoveContinuousAbsolute_t through = {.Axis = &x, .Execute = TRUE, .Position = 1, .EndVelocity = -9, .Velocity = 2,
+                                           .Acceleration = 3, .Deceleration = 4, .Jerk = 5,
+                                           .Direction = mcNegativeDirection, .BufferMode = mcBlendingLow};
+    MC_MoveContinuousAbsolute(&through);
+    expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE, .position = 1,
+                                         .end_velocity = -9, .velocity = 2, .acceleration = 3, .deceleration = 4,
+                                         .jerk = 5, .direction = mcNegativeDirection, .buffer_mode = mcBlendingLow},
+                   __LINE__);
+
+    MC_MoveContinuousRelative_t onward = {.Axis = &x, .Execute = TRUE, .Distance = 1, .EndVelocity = 9, .Velocity = 2,
+                                          .Acceleration = 3, .Deceleration = 4, .Jerk = 5, .BufferMode = mcBuffered};
+    MC_MoveContinuousRelative(&onward);
+    expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE, .position = 1,
+                                         .end_velocity = 9, .velocity = 2, .acceleration = 3, .deceleration = 4,
+                                         .jerk = 5, .buffer_mode = mcBuffered},
+                   __LINE__);
+
     MC_Home_t home = {.Axis = &x, .Execute = TRUE, .Position = 8, .BufferMode = mcBuffered, .Parameters = &homing};
     MC_Home(&home);
     expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_HOME, .position = 8, .buffer_mode = mcBuffered,
@@ -525,7 +620,7 @@ static void check_rules(const block_t *block, outputs_t now, outputs_t before, B
     RULE(!execute || shown == 1, "Execute and no output");
     RULE(!velocity || !now.done || now.busy, "InVelocity without Busy");
     RULE(now.error == (now.error_id != 0), "Error and ErrorID");
-    RULE(!block->has_active || block->kind == CM1E_COMMAND_STOP || now.active == now.busy, "Active goes with Busy");
+    RULE(!block->has_active || block->kind == CM1E_COMMAND_STOP || now.busy || !now.active, "Active goes with Busy");
     RULE(velocity || results == 0 || before.busy || edge || execute, "a result outlived Execute");
     RULE(!before.busy || edge || now.busy || results >= 1, "Busy fell and nothing rose");
     RULE(before.busy || !now.busy || edge, "Busy rose without an edge");
@@ -534,7 +629,7 @@ static void check_rules(const block_t *block, outputs_t now, outputs_t before, B
 
 START_TEST(test_random_calls_keep_the_rules)
 {
-    static const cm1e_command_state_t states[] = {CM1E_COMMAND_ACTIVE, CM1E_COMMAND_ACTIVE, CM1E_COMMAND_DONE,
+    static const cm1e_command_state_t states[] = {CM1E_COMMAND_ACTIVE, CM1E_COMMAND_BUFFERED, CM1E_COMMAND_DONE,
                                                   CM1E_COMMAND_ABORTED, CM1E_COMMAND_ERROR, CM1E_COMMAND_UNKNOWN};
     AXIS_REF_t *const references[] = {&x, &x, &x, &x, &x, &x, &y, NULL};
     const block_t *block = fresh(_i);
@@ -583,6 +678,7 @@ int main(void)
         test_axis_changed_while_busy_is_an_error_and_touches_neither_axis,
         test_copy_of_the_axis_reference_is_the_same_axis,
         test_instance_is_used_again_on_another_axis,
+        test_buffered_is_busy_but_not_active,
         test_random_calls_keep_the_rules,
     };
     const TTest *const single[] = {
@@ -590,7 +686,9 @@ int main(void)
         test_stop_holds_the_axis_while_execute,
         test_stop_whose_execute_fell_does_not_hold,
         test_stop_whose_axis_was_changed_still_holds_and_releases_its_axis,
-        test_continuous_update_is_unsupported,
+        test_continuous_update_hands_on_inputs_while_it_stays_true,
+        test_continuous_update_later_than_the_edge_has_no_effect,
+        test_refused_update_is_an_error_and_ends_the_updates,
         test_inputs_reach_the_axis_at_the_edge_and_not_later,
     };
     for (size_t i = 0; i < sizeof every / sizeof every[0]; i++)

@@ -1,0 +1,16 @@
+#include "edge.h"
+
+void MC_MoveContinuousRelative(MC_MoveContinuousRelative_t *fb)
+{
+    const cm1e_axis_command_t command = {
+        .kind = CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE,
+        .position = fb->Distance,
+        .end_velocity = fb->EndVelocity,
+        .velocity = fb->Velocity,
+        FB_DYNAMICS(fb),
+        .buffer_mode = fb->BufferMode,
+    };
+    const fb_outputs_t out = fb_motion(&fb->Private, fb->Axis, fb->Execute, fb->ContinuousUpdate, &command);
+    fb->InEndVelocity = out.reached;
+    FB_SHOW_ACTIVE(fb, out);
+}

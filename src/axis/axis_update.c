@@ -1,0 +1,76 @@
+/*
+ * ContinuousUpdate (2.4.6): new inputs of a command that runs or waits. What has not changed costs a comparison. What
+ * has is planned anew from the present set-point; relative values go on counting from where the command began.
+ */
+#include "axis/axis_private.h"
+
+move_t cm1e_axis_move_of(const cm1e_axis_command_t *command)
+{
+    return (move_t){
+        .kind = (uint8_t)command->kind,
+        .buffer_mode = (uint8_t)command->buffer_mode,
+        .direction = (unsigned)command->direction <= UINT8_MAX ? (uint8_t)command->direction : UINT8_MAX,
+        .position = command->position,
+        .velocity = command->velocity,
+        .end_velocity = is_continuous_move(command->kind) ? command->end_velocity : 0.0,
+        .acceleration = command->acceleration,
+        .deceleration = command->deceleration,
+        .jerk = command->jerk,
+    };
+}
+
+static bool same_way(const move_t *a, const move_t *b)
+{
+    return a->position == b->position && a->direction == b->direction;
+}
+
+static bool same_inputs(const move_t *a, const move_t *b)
+{
+    return same_way(a, b) && a->velocity == b->velocity && a->end_velocity == b->end_velocity &&
+           a->acceleration == b->acceleration && a->deceleration == b->deceleration && a->jerk == b->jerk;
+}
+
+/* The new inputs in an old command. */
+static move_t merged(const move_t *old, const move_t *inputs)
+{
+    move_t move = *inputs;
+    move.id = old->id;
+    move.buffer_mode = old->buffer_mode; /* it has been used */
+    move.origin = old->origin;
+    move.target = old->target;
+    move.passing = old->passing && same_way(old, inputs);
+    return move;
+}
+
+static cm1e_error_t update_active(cm1e_axis_t *axis, const move_t *inputs)
+{
+    if (axis->activity != ACTIVITY_PROFILE || inputs->kind != axis->kind)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    if (same_inputs(&axis->move, inputs))
+        return CM1E_OK;
+    move_t move = merged(&axis->move, inputs);
+    if (!same_way(&axis->move, inputs)) {
+        const from_t from = from_set(axis);
+        const cm1e_error_t error = cm1e_axis_resolve(axis, &from, &move);
+        if (error)
+            return error;
+    }
+    return cm1e_axis_replan_as(axis, &move);
+}
+
+cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
+{
+    if (id == 0 || !cm1e_axis_can_plan(command->kind))
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    const move_t inputs = cm1e_axis_move_of(command);
+    if (id == axis->active)
+        return update_active(axis, &inputs);
+    const move_t *waiting = cm1e_axis_find_waiting(axis, id);
+    if (waiting && waiting->kind != inputs.kind)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    if (waiting && !same_inputs(waiting, &inputs)) {
+        const move_t move = merged(waiting, &inputs);
+        return cm1e_axis_update_waiting(axis, &move);
+    }
+    return CM1E_OK; /* nothing new, or it has ended */
+}
