@@ -74,6 +74,8 @@ static void watch_lag(cm1e_axis_t *axis)
     if (axis->state == CM1E_AXIS_ERROR_STOP && blind_before && was_deaf(axis, axis->lag_seen, lag_before)) {
         cm1e_axis_brake_from_actual(axis);
     } else if (lost && powered_state(axis->state)) {
+        if (!axis->lag_monitoring)
+            return;
         cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, lag / axis->scale, axis->max_lag);
         cm1e_axis_brake_from_actual(axis);
     } else if (lost) {
@@ -122,6 +124,8 @@ void cm1e_axis_advance(cm1e_axis_t *axis)
     cm1e_axis_motion_step(axis);
     if (axis->backlash.gap > 0.0)
         cm1e_axis_backlash_step(axis);
+    if (axis->objects.head != axis->objects.next)
+        cm1e_axis_objects_step(axis);
     cm1e_axis_enable_step(axis);
 }
 

@@ -114,6 +114,13 @@ cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1
 /** MC_SetOverride: factors on the velocity (0 ... 1; 0: the axis stands, but not in Standstill), on acceleration and
  *  deceleration, and on jerk (above 0 ... 1) of the commands. Kept until changed. @rt cycle */
 cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double acceleration, double jerk);
+/** MC_SetPosition (3.17): from now on the axis is at `position` (u), or `relative` that much farther. Set and actual
+ *  position shift alike and keep their lag; nothing moves, what runs ends where it would have ended, and software
+ *  limits and positions asked for later are meant in the new coordinates. CM1E_ERROR_AXIS_POSITION_RANGE: not
+ *  finite, outside the range of a modulo axis, or outside the software limits, also on the way of a running motion;
+ *  CM1E_ERROR_AXIS_HOMING; CM1E_ERROR_AXIS_OFFLINE: the actual position is not known. Refused: nothing has changed.
+ *  @rt cycle */
+cm1e_error_t cm1e_axis_set_position(cm1e_axis_t *axis, double position, bool relative);
 cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_command_id_t id);
 /** TRUE while this is the active command of an axis that exists: the short question of a block to which nothing has
  *  happened. @rt cycle */

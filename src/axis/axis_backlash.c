@@ -2,9 +2,9 @@
  * Backlash. Between the motor and its load is a gap of `gap` counts. Pushed in the positive direction of the axis the
  * motor stands where the load is, pushed in the negative direction it stands a gap before it; `offset`, -gap ... 0, is
  * where the motor is as seen from the load. At a reversal the offset is ramped from one flank to the other, on top of
- * the axis's own motion, whose maximum velocity leaves room for it. Without set-points of ours (no torque, homing by the
- * drive) the offset follows the motor as the gap does: the load moves only when a flank is reached. At the start, when
- * nobody knows, the positive flank is taken for closed.
+ * the axis's own motion, whose maximum velocity leaves room for it. Without set-points of ours (no torque, homing by
+ * the drive) the offset follows the motor as the gap does: the load moves only when a flank is reached. At the start,
+ * when nobody knows, the positive flank is taken for closed.
  *
  * Everything else of the axis knows the load alone: its set-point, its actual position, its lag.
  */

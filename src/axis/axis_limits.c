@@ -13,42 +13,67 @@ static const double default_lag_counts = 25000.0;
 
 static double or_default(double value, double otherwise) { return value > 0.0 ? value : otherwise; }
 
-static bool usable(double value) { return isfinite(value) && value >= 0.0; }
+static cm1e_error_t check_configuration(const cm1e_axis_t *axis, cm1e_diag_t *diag)
+{
+    const cm1e_axis_config_t *c = axis->config;
+    const double numbers[] = {c->counts_per_unit, c->units_per_revolution, c->modulo_range, c->backlash,
+                              c->backlash_velocity, c->max_velocity, c->max_acceleration, c->max_deceleration,
+                              c->max_jerk, c->max_position_lag};
+    bool good = !isnan(c->software_limit_negative) && !isnan(c->software_limit_positive);
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+        good = good && isfinite(numbers[i]) && numbers[i] >= 0.0;
+    if (!good)
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": a limit or the scale of the axis is negative "
+                             "or not a finite number.", c->name);
+    const bool limited = c->software_limit_negative != 0.0 || c->software_limit_positive != 0.0;
+    if (limited && c->modulo_range > 0.0)
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": a modulo axis has no software limits.", c->name);
+    if (limited && !(c->software_limit_negative < c->software_limit_positive))
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": the negative software limit %g is not below "
+                             "the positive one %g.", c->name, c->software_limit_negative, c->software_limit_positive);
+    return CM1E_OK;
+}
+
+static void take_software_limits(cm1e_axis_t *axis)
+{
+    const double negative = axis->config->software_limit_negative, positive = axis->config->software_limit_positive;
+    const bool limited = negative != 0.0 || positive != 0.0;
+    axis->limit_positive_enabled = limited && isfinite(positive);
+    axis->limit_negative_enabled = limited && isfinite(negative);
+    axis->limit_positive = axis->limit_positive_enabled ? positive : 0.0;
+    axis->limit_negative = axis->limit_negative_enabled ? negative : 0.0;
+    cm1e_axis_apply_software_limits(axis);
+}
 
 cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {
     const cm1e_axis_config_t *c = axis->config;
+    const cm1e_error_t error = check_configuration(axis, diag);
+    if (error)
+        return error;
     const double counts = cm1e_unit_scale(c);
-    if (!usable(c->counts_per_unit) || !usable(c->units_per_revolution) || !usable(c->max_velocity) || !usable(c->max_acceleration) ||
-        !usable(c->max_deceleration) || !usable(c->max_jerk) || !usable(c->max_position_lag) ||
-        !usable(c->modulo_range) || !usable(c->backlash) || !usable(c->backlash_velocity) || isnan(c->software_limit_negative) || isnan(c->software_limit_positive))
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": a limit or the scale of the axis is negative "
-                             "or not a finite number.", c->name);
-    axis->modulo_range = c->modulo_range;
-    if (c->modulo_range > 0.0 && !cm1e_unit_modulo(c, &axis->turn))
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": a turn of %.17g u is no fraction of counts that "
-                             "can be computed with.", c->name, c->modulo_range);
-    axis->software_limits = c->software_limit_negative != 0.0 || c->software_limit_positive != 0.0;
-    if (axis->software_limits && !(c->software_limit_negative < c->software_limit_positive))
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": the negative software limit %g is not below "
-                             "the positive one %g.", c->name, c->software_limit_negative, c->software_limit_positive);
-    axis->unit = cm1e_unit_of(c);
-    axis->scale = c->invert ? -counts : counts;
-    axis->lower = c->software_limit_negative;
-    axis->upper = c->software_limit_positive;
     const double backlash_velocity = c->backlash == 0.0 ? 0.0
                                      : or_default(c->backlash_velocity, CM1E_BACKLASH_VELOCITY_COUNTS / counts);
     const double peak = axis->drive.motor->max_velocity_counts_per_s / counts - backlash_velocity;
+    axis->unit = cm1e_unit_of(c);
+    axis->scale = c->invert ? -counts : counts;
+    axis->modulo_range = c->modulo_range;
+    if (!(peak > 0.0) || (c->modulo_range > 0.0 && !cm1e_unit_modulo(c, &axis->turn)))
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": backlash velocity, unit or a turn of %.17g u "
+                             "are numbers that the axis cannot compute with.", c->name, c->modulo_range);
     axis->maximum.velocity = fmin(or_default(c->max_velocity, peak), peak);
     axis->maximum.acceleration = or_default(c->max_acceleration, default_acceleration_counts / counts);
     axis->maximum.deceleration = or_default(c->max_deceleration, axis->maximum.acceleration);
     axis->maximum.jerk = or_default(c->max_jerk, default_jerk_counts / counts);
-    axis->emergency = axis->maximum;
+    axis->system = axis->maximum;
+    axis->emergency = axis->system;
     axis->emergency.jerk = INFINITY;
     axis->emergency_way = 0.5 / axis->emergency.deceleration;
     axis->tolerance = tolerance_counts / fabs(axis->scale);
-    cm1e_axis_backlash_init(axis);
     axis->max_lag = or_default(c->max_position_lag, default_lag_counts / counts);
+    axis->lag_monitoring = true;
+    take_software_limits(axis);
+    cm1e_axis_backlash_init(axis);
     return CM1E_OK;
 }
 
@@ -155,4 +180,21 @@ cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from,
     if (!inside(axis, from, profile))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     return directions_allow(axis, from, profile) ? CM1E_OK : CM1E_ERROR_AXIS_DIRECTION_DISABLED;
+}
+
+/* What runs is judged as a whole, from where it began, so that a limit may be refused that lies behind the axis. */
+bool cm1e_axis_limits_hold(const cm1e_axis_t *axis, double lower, double upper)
+{
+    if (axis->activity != ACTIVITY_PROFILE)
+        return true;
+    const double base = axis->base_units, now = cm1e_axis_units(axis, axis->set), v = axis->set_velocity;
+    const double end = axis->profile.end.velocity, brake = axis->emergency_way;
+    double lowest, highest;
+    cm1e_profile_extent(&axis->profile, &lowest, &highest);
+    const double stops[] = {base + lowest, base + highest, now + v * fabs(v) * brake,
+                            base + axis->profile.end.position + end * fabs(end) * brake};
+    for (int i = 0; i < 4; i++)
+        if (stops[i] > upper + axis->tolerance || stops[i] < lower - axis->tolerance)
+            return false;
+    return true;
 }

@@ -201,7 +201,7 @@ static double loop_velocity(cm1e_axis_t *axis)
 /* The loop catches up, but not beyond what the axis may do. Motors stay far below 2^31 counts/s. */
 static int32_t target_velocity(cm1e_axis_t *axis)
 {
-    const double most = axis->maximum.velocity * fabs(axis->scale) + axis->backlash.velocity;
+    const double most = axis->system.velocity * fabs(axis->scale) + axis->backlash.velocity;
     const double velocity = axis->set_velocity * axis->scale + cm1e_axis_backlash_velocity(axis) + loop_velocity(axis);
     return (int32_t)round(fmax(-most, fmin(velocity, most)));
 }

@@ -1,7 +1,7 @@
 /*
- * Positions: from the drive's 32-bit counts, which wrap, to 64 bits and to units; the turns of a modulo axis; the shift
- * of the coordinates by MC_SetPosition and homing. A turn of a modulo axis is a fraction of counts, and turn k begins at
- * k times that fraction exactly, computed anew each time: nothing adds up, however long the axis turns.
+ * Positions: from the drive's 32-bit counts, which wrap, to 64 bits and to units; the turns of a modulo axis; the
+ * shift of the coordinates by MC_SetPosition and homing. A turn of a modulo axis is a fraction of counts, and turn k
+ * begins at k times that fraction exactly, computed anew each time: nothing adds up, however long the axis turns.
  */
 #include <math.h>
 
@@ -90,7 +90,10 @@ static position_t in_turn(const cm1e_axis_t *axis, int64_t turn, double phase)
     return sum(axis->origin, axis->scale > 0.0 ? way : normal(-way.counts, -way.fraction));
 }
 
-static bool in_modulo_range(const cm1e_axis_t *axis, double units) { return units >= 0.0 && units < axis->modulo_range; }
+static bool in_modulo_range(const cm1e_axis_t *axis, double units)
+{
+    return units >= 0.0 && units < axis->modulo_range;
+}
 
 /* ---- units ------------------------------------------------------------------------------------------------------- */
 
@@ -151,7 +154,6 @@ cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, 
     const double way = phase - now;
     bool positive;
     switch ((int)direction) {
-    case 0: /* as IEC initialises it: the first of the enumeration */
     case mcPositiveDirection:
         positive = true;
         break;
@@ -161,6 +163,7 @@ cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, 
     case mcCurrentDirection:
         positive = velocity != 0.0 ? velocity > 0.0 : axis->positive_before;
         break;
+    case 0: /* not given */
     case mcShortestWay:
         positive = shortest_is_positive(way, turn, velocity);
         break;
@@ -186,6 +189,49 @@ void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units)
         axis->origin_units = units;
     }
     axis->base_units = cm1e_axis_units(axis, axis->base);
+}
+
+/* What the actual position becomes; FALSE: out of range. */
+static bool new_position(const cm1e_axis_t *axis, double now, double position, bool relative, double *value)
+{
+    if (!isfinite(position))
+        return false;
+    if (axis->modulo_range > 0.0) {
+        double turned = now + fmod(position, axis->modulo_range);
+        turned = fmod(turned + axis->modulo_range, axis->modulo_range);
+        *value = relative ? turned : position;
+        return in_modulo_range(axis, *value);
+    }
+    *value = relative ? now + position : position;
+    return fabs(to_counts(axis, *value)) < (double)CM1E_FARTHEST_COUNTS;
+}
+
+static cm1e_error_t set_position(cm1e_axis_t *axis, double position, bool relative)
+{
+    if (axis->state == CM1E_AXIS_HOMING || axis->activity == ACTIVITY_HOMING)
+        return CM1E_ERROR_AXIS_HOMING;
+    if (!axis->position_known || !axis->drive.feedback.online)
+        return CM1E_ERROR_AXIS_OFFLINE;
+    const position_t actual = axis_actual(axis);
+    const double now = cm1e_axis_units(axis, actual);
+    double value;
+    if (!new_position(axis, now, position, relative, &value))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    if (axis->software_limits) {
+        const double shift = value - now, set = cm1e_axis_units(axis, axis->set) + shift;
+        if (!(set >= axis->lower && set <= axis->upper) ||
+            !cm1e_axis_limits_hold(axis, axis->lower - shift, axis->upper - shift))
+            return CM1E_ERROR_AXIS_POSITION_RANGE;
+    }
+    cm1e_axis_set_origin(axis, actual, value);
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_axis_set_position(cm1e_axis_t *axis, double position, bool relative)
+{
+    const cm1e_error_t error = set_position(axis, position, relative);
+    axis->not_set = (not_set_t){.error = error, .position = true, .value = position};
+    return error;
 }
 
 /* ---- the drive's counts ------------------------------------------------------------------------------------------ */

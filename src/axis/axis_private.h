@@ -140,6 +140,34 @@ typedef struct probe_sample {
     uint16_t inputs;
 } probe_sample_t;
 
+enum { OBJECT_REQUESTS = 8 };
+
+/** A vendor parameter that is asked for (axis_object.c). */
+typedef struct object_request {
+    uint32_t ticket; /**< number << 16 | sequence; 0: none */
+    int16_t error;   /**< cm1e_error_t */
+    uint8_t state;   /**< cm1e_command_state_t */
+    bool write;
+    double value;
+} object_request_t;
+
+typedef struct objects {
+    object_request_t requests[OBJECT_REQUESTS]; /**< by sequence */
+    uint16_t head, next;                        /**< sequence of the one under way, and of the next to be asked for */
+    bool submitted;
+    uint8_t data[8];
+    cm1e_sdo_t sdo;
+} objects_t;
+
+/** The parameter or position that was last to be set, for the text of a refusal. */
+typedef struct not_set {
+    cm1e_error_t error; /**< CM1E_OK: it was */
+    bool position;      /**< MC_SetPosition; else ... */
+    int number;         /**< ... this parameter */
+    double value;
+    uint32_t abort_code;
+} not_set_t;
+
 /** The gap between motor and load (axis_backlash.c); counts in the direction in which u grows. */
 typedef struct backlash {
     double gap;                    /**< 0: none */
@@ -187,12 +215,16 @@ struct cm1e_axis {
     cm1e_unit_t unit;               /**< its amount, exactly */
     double modulo_range;            /**< u; 0: a linear axis */
     cm1e_fraction_t turn;           /**< counts of it */
-    cm1e_motion_limits_t maximum;   /**< u */
-    cm1e_motion_limits_t emergency; /**< u; the ramp of an error: the maximum without a limit of jerk */
+    cm1e_motion_limits_t system;    /**< u; of motor and configuration */
+    cm1e_motion_limits_t maximum;   /**< u; what the application allows of it: the bounds of commands */
+    cm1e_motion_limits_t emergency; /**< u; the ramp of an error: that of `system` without a limit of jerk */
     double emergency_way;           /**< s2/u; times the square of a velocity: that it goes */
-    bool software_limits;
-    double lower, upper;            /**< u */
+    double limit_positive, limit_negative; /**< u */
+    bool limit_positive_enabled, limit_negative_enabled;
+    bool software_limits;           /**< one of them at least; those in force are ... */
+    double lower, upper;            /**< u; infinite: none on that side */
     double tolerance;               /**< u; which they are kept with */
+    bool lag_monitoring;
     double max_lag;                 /**< u */
     double lag_seen;                /**< counts; amount, when the inputs were fresh last */
     bool blind;                     /**< they are not, and the set-point goes on */
@@ -245,6 +277,8 @@ struct cm1e_axis {
     cm1e_error_t reset_error;
     bool reset_sent;
 
+    objects_t objects;
+    not_set_t not_set;
     homing_t home;
 
     probe_t probes[PROBES];
@@ -328,6 +362,16 @@ static inline bool cm1e_axis_limits_can_stop(const cm1e_axis_t *axis, double bas
            : next.velocity < 0.0 ? end >= axis->lower - axis->tolerance : true;
 }
 bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity);
+
+/** Whether the motion under way, and a stop from it, would keep these software limits (u). */
+bool cm1e_axis_limits_hold(const cm1e_axis_t *axis, double lower, double upper);
+
+/* axis_parameter.c, axis_object.c */
+void cm1e_axis_apply_software_limits(cm1e_axis_t *axis);
+void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size);
+void cm1e_axis_object_text(const cm1e_axis_t *axis, char *text, size_t size);
+/** While one waits or is under way. */
+void cm1e_axis_objects_step(cm1e_axis_t *axis);
 
 /* axis_state.c */
 typedef struct state_rule {

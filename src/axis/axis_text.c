@@ -72,7 +72,10 @@ static void refused_dynamics_text(const cm1e_axis_t *axis, char *text, size_t si
 static void refused_position_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const double position = cm1e_axis_units(axis, axis->set);
-    if (axis->software_limits)
+    if (axis->modulo_range > 0.0)
+        snprintf(text, size, "Axis \"%s\": position or distance %.6g was asked for; positions of this modulo axis are "
+                 "0 ... below %.6g u.", axis->config->name, axis->refused.position, axis->modulo_range);
+    else if (axis->software_limits)
         snprintf(text, size,
                  "Axis \"%s\": a motion from %.6g with target, distance or stopping way %.6g would leave the software "
                  "limits %.6g ... %.6g u.",
@@ -124,6 +127,8 @@ void cm1e_axis_error_text(AXIS_REF_t reference, char *text, size_t size)
     if (axis->error == CM1E_OK) {
         if (axis->refusal)
             refused_text(axis, text, size);
+        else if (axis->not_set.error)
+            cm1e_axis_not_set_text(axis, text, size);
         else if (axis->home.refused)
             refused_homing_text(axis, text, size);
         return;

@@ -197,8 +197,8 @@ static bool check_gear(const check_t *check)
                           {"unit.units_per_revolution", axis->units_per_revolution != 0}};
     for (int i = 0; i < 3; i++)
         if (by_revolutions[i].given && axis->counts_per_unit != 0)
-            return axis_wrong(check, by_revolutions[i].key, "is given, and counts_per_unit too, which already says what "
-                              "it would; expected counts_per_unit alone, or gear and units_per_revolution");
+            return axis_wrong(check, by_revolutions[i].key, "is given, and counts_per_unit too, which already says "
+                              "what it would; expected counts_per_unit alone, or gear and units_per_revolution");
     if (axis->gear_numerator > 1000000)
         return axis_wrong(check, "unit.gear_numerator", "is %u; expected 1 ... 1000000", axis->gear_numerator);
     if (axis->gear_denominator > 1000000)

@@ -1427,6 +1427,10 @@ static void call_MC_SetPosition(void *fb) { MC_SetPosition(fb); }
 static const cm1e_error_t errors_of_MC_SetPosition[] = {
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_OFFLINE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_UNSUPPORTED,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_SetOverride[] = {
@@ -1460,6 +1464,10 @@ static void call_MC_ReadParameter(void *fb) { MC_ReadParameter(fb); }
 static const cm1e_error_t errors_of_MC_ReadParameter[] = {
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_PARAMETER,
+    CM1E_ERROR_AXIS_OFFLINE,
+    CM1E_ERROR_SDO_ABORT,
+    CM1E_ERROR_UNSUPPORTED,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_ReadBoolParameter[] = {
@@ -1476,6 +1484,7 @@ static void call_MC_ReadBoolParameter(void *fb) { MC_ReadBoolParameter(fb); }
 static const cm1e_error_t errors_of_MC_ReadBoolParameter[] = {
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_PARAMETER,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_WriteParameter[] = {
@@ -1493,6 +1502,13 @@ static void call_MC_WriteParameter(void *fb) { MC_WriteParameter(fb); }
 static const cm1e_error_t errors_of_MC_WriteParameter[] = {
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_PARAMETER_RANGE,
+    CM1E_ERROR_AXIS_PARAMETER_READ_ONLY,
+    CM1E_ERROR_AXIS_PARAMETER,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
+    CM1E_ERROR_SDO_ABORT,
+    CM1E_ERROR_UNSUPPORTED,
+    CM1E_ERROR_FULL,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_WriteBoolParameter[] = {
@@ -1510,6 +1526,10 @@ static void call_MC_WriteBoolParameter(void *fb) { MC_WriteBoolParameter(fb); }
 static const cm1e_error_t errors_of_MC_WriteBoolParameter[] = {
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_PARAMETER_RANGE,
+    CM1E_ERROR_AXIS_PARAMETER,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
+    CM1E_ERROR_UNSUPPORTED,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_ReadDigitalInput[] = {

@@ -56,6 +56,8 @@ struct cm1e_bus {
     fake_sdo_entry_t sdo_log[FAKE_SDO_LOG];
     unsigned sdo_count, sdo_delay, sdo_wait;
     bool sdo_full;
+    int64_t sdo_read_value;      /**< what other objects hold ... */
+    unsigned sdo_read_bytes;     /**< ... and how long they are; 0: reads leave the buffer alone */
     uint16_t sdo_abort_index;    /**< transfers of this object are aborted */
     cm1e_sdo_t *sdo;
 };
@@ -172,6 +174,9 @@ static void fake_serve_sdo(cm1e_bus_t *bus)
     if (!sdo->write && sdo->index == OBJ_6061_MODES_OF_OPERATION_DISPLAY) {
         data[0] = (uint8_t)bus->mode;
         sdo->size = 1;
+    } else if (!sdo->write && bus->sdo_read_bytes) {
+        cm1e_put_uint(data, bus->sdo_read_bytes, (uint64_t)bus->sdo_read_value);
+        sdo->size = bus->sdo_read_bytes;
     }
     if (sdo->write && sdo->index == OBJ_6060_MODES_OF_OPERATION)
         bus->sdo_mode = (int8_t)data[0];

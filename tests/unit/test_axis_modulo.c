@@ -136,7 +136,7 @@ static const MC_DIRECTION directions[] = {(MC_DIRECTION)0, mcPositiveDirection, 
 
 static bool goes_positive(MC_DIRECTION direction, double velocity, double way)
 {
-    if (direction == mcShortestWay) {
+    if (direction == mcShortestWay || direction == 0) {
         if (fabs(remainder(way, 360.0)) < 0.5 * 360 * 3 / 350000)
             return velocity >= 0.0; /* it is there */
         while (way > 180.0)
@@ -267,7 +267,7 @@ static void test_asked_to_turn_round_it_brakes_first(void)
     const double way = (double)(axis->actual_counts - there) / axis->scale;
     TEST_ASSERT_TRUE(way >= 0.99);
     TEST_ASSERT_DOUBLE_WITHIN(2.1, 1.0, fmod(way, 360.0)); /* the motor is a cycle behind */
-    TEST_ASSERT_LESS_OR_EQUAL_INT64((int64_t)(axis->maximum.velocity * fabs(axis->scale) * axis->cycle_s) + 1, worst_step);
+    TEST_ASSERT_LESS_OR_EQUAL_INT64((int64_t)(2500000.0 * axis->cycle_s) + 1, worst_step);
 }
 
 int main(void)

@@ -1,0 +1,97 @@
+#include "parameter.h"
+
+/** An object of the drive, read again and again: a transfer always waits or is under way. */
+static cm1e_error_t read_object(cm1e_fb_private_t *fb, cm1e_axis_t *axis, INT number, fb_parameter_t *shown)
+{
+    double value;
+    cm1e_error_t error = CM1E_OK;
+    const bool asked = fb->command && cm1e_axis_object_number(fb->command) == number;
+    const cm1e_command_state_t state = asked ? cm1e_axis_object_state(axis, fb->command, &value, &error)
+                                             : CM1E_COMMAND_UNKNOWN;
+    if (state == CM1E_COMMAND_BUFFERED || state == CM1E_COMMAND_ACTIVE)
+        return CM1E_OK;
+    shown->valid = state == CM1E_COMMAND_DONE;
+    if (shown->valid)
+        shown->value = value;
+    DWORD ticket;
+    const cm1e_error_t refused = cm1e_axis_object_start(axis, number, false, 0.0, &ticket);
+    if (refused == CM1E_OK)
+        fb->command = ticket; /* full: again in the next call */
+    return error ? error : refused == CM1E_ERROR_FULL ? CM1E_OK : refused;
+}
+
+static cm1e_error_t read(cm1e_fb_private_t *fb, cm1e_axis_t *axis, INT number, bool boolean, fb_parameter_t *shown)
+{
+    if (boolean && !cm1e_axis_parameter_is_bool(number))
+        return CM1E_ERROR_AXIS_PARAMETER;
+    if (number >= CM1E_PARAMETER_VENDOR)
+        return read_object(fb, axis, number, shown);
+    const cm1e_error_t error = cm1e_axis_read_parameter(axis, number, &shown->value);
+    shown->valid = error == CM1E_OK;
+    return error;
+}
+
+void fb_read_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, INT number, bool boolean,
+                       fb_parameter_t *shown)
+{
+    const bool edge = enable && !fb->trigger_before;
+    const bool readable = fb_enable(fb, reference, enable) != NULL;
+    /* A wrong number or a refusal of the drive goes away by itself or with another number: Busy stays (2.2.3). */
+    cm1e_error_t error = CM1E_OK;
+    if (edge || !readable) {
+        fb->command = 0;
+        shown->valid = FALSE;
+    }
+    if (readable)
+        error = read(fb, fb_axis(fb), number, boolean, shown);
+    const fb_outputs_t out = fb_outputs(fb);
+    shown->busy = out.busy;
+    shown->error = out.error || error;
+    shown->error_id = error ? cm1e_error_id(error) : out.error_id;
+    if (shown->error)
+        shown->valid = FALSE;
+    if (!shown->valid)
+        shown->value = 0.0;
+}
+
+static cm1e_error_t start(cm1e_fb_private_t *fb, cm1e_axis_t *axis, INT number, bool boolean, LREAL value)
+{
+    fb->command = 0;
+    if (boolean && !cm1e_axis_parameter_is_bool(number))
+        return CM1E_ERROR_AXIS_PARAMETER;
+    if (number < CM1E_PARAMETER_VENDOR)
+        return cm1e_axis_write_parameter(axis, number, value);
+    return cm1e_axis_object_start(axis, number, true, value, &fb->command);
+}
+
+/** A block that was not called for so long that its result is gone cannot say what became of it. */
+static void poll_object(cm1e_fb_private_t *fb, const cm1e_axis_t *axis)
+{
+    double written;
+    cm1e_error_t error;
+    const cm1e_command_state_t state = cm1e_axis_object_state(axis, fb->command, &written, &error);
+    if (state == CM1E_COMMAND_UNKNOWN)
+        fb_polled(fb, CM1E_COMMAND_ERROR, CM1E_ERROR_CANCELLED);
+    else
+        fb_polled(fb, state, error);
+}
+
+fb_outputs_t fb_write_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, INT number,
+                                bool boolean, LREAL value, MC_EXECUTION_MODE mode)
+{
+    cm1e_axis_t *axis = NULL;
+    const cm1e_error_t error = fb_refuse_execution_mode(mode);
+    switch (fb_execute(fb, reference, execute, &axis)) {
+    case FB_STEP_START:
+        fb_started(fb, error ? error : start(fb, axis, number, boolean, value));
+        break;
+    case FB_STEP_POLL:
+        if (fb->command == 0) /* of the axis: done at the edge, shown a call later, as by all blocks */
+            fb_polled(fb, CM1E_COMMAND_DONE, CM1E_OK);
+        else
+            poll_object(fb, axis);
+        break;
+    case FB_STEP_NONE: break;
+    }
+    return fb_outputs(fb);
+}

@@ -1,0 +1,203 @@
+/* Vendor parameters: objects of the drive by number, over SDO. Requests wait in a ring and are worked on one after the
+ * other, a step a cycle; who asked polls by ticket, so a block may vanish at any time. */
+#include <math.h>
+#include <stdio.h>
+
+#include "axis/axis_parameters.h"
+#include "axis/axis_private.h"
+#include "core/bytes.h"
+
+/* docs/DEVICE.md has the same table in words. No commands: what moves the motor goes through the blocks for it. */
+static const cm1e_axis_objects_t table[] = {
+    {1021, 1101, OBJ_60F6_K_PARAMETERS, 1}, /* K21 ... K101 */
+    {1200, 1208, OBJ_60FB_H_PARAMETERS, 1}, /* H0 ... H8 */
+    {1301, 1304, OBJ_2201_USER_VARIABLES, 1},
+    {1400, 1400, OBJ_607C_HOME_OFFSET, 0},
+    {1401, 1401, OBJ_6098_HOMING_METHOD, 0},
+    {1402, 1402, OBJ_6099_HOMING_SPEEDS, 1},
+    {1403, 1403, OBJ_609A_HOMING_ACCELERATION, 0},
+    {1410, 1410, OBJ_6081_PROFILE_VELOCITY, 0},
+    {1411, 1411, OBJ_6083_PROFILE_ACCELERATION, 0},
+    {1412, 1412, OBJ_6084_PROFILE_DECELERATION, 0},
+    {1420, 1420, 0x605A, 0},
+    {1421, 1421, 0x605B, 0},
+    {1422, 1422, 0x605C, 0},
+    {1423, 1423, 0x605E, 0},
+    {1500, 1500, OBJ_2301_TEMPERATURE, 0},
+    {1501, 1501, OBJ_6079_DC_LINK_VOLTAGE, 0},
+    {1502, 1502, OBJ_6077_TORQUE_ACTUAL_VALUE, 0},
+    {1503, 1503, OBJ_6064_POSITION_ACTUAL_VALUE, 0},
+    {1504, 1504, OBJ_606C_VELOCITY_ACTUAL_VALUE, 0},
+    {1505, 1505, OBJ_6041_STATUSWORD, 0},
+    {1506, 1506, OBJ_603F_ERROR_CODE, 0},
+    {1507, 1507, OBJ_1001_ERROR_REGISTER, 0},
+    {1508, 1508, OBJ_6061_MODES_OF_OPERATION_DISPLAY, 0},
+    {1509, 1509, OBJ_60FD_DIGITAL_INPUTS, 0},
+    {1510, 1510, OBJ_60FE_DIGITAL_OUTPUTS, 0},
+    {1520, 1520, 0x6072, 0},
+    {1521, 1521, 0x6073, 0},
+    {1522, 1522, 0x6075, 0},
+    {1523, 1523, 0x6076, 0},
+    {1524, 1524, OBJ_6502_SUPPORTED_DRIVE_MODES, 0},
+    {1600, 1600, OBJ_FF00_LED_BRIGHTNESS, 0},
+    {1601, 1601, OBJ_FF01_LED_OVERRIDE, 0},
+    {1610, 1610, OBJ_FE00_PDO_TIMING, 1},
+    {1700, 1700, OBJ_1000_DEVICE_TYPE, 0},
+    {1701, 1704, OBJ_1018_IDENTITY, 1},
+};
+
+const cm1e_axis_objects_t *cm1e_axis_object_table(size_t *count)
+{
+    *count = sizeof table / sizeof table[0];
+    return table;
+}
+
+static const cm1e_entry_t *entry_of(int number)
+{
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++)
+        if (number >= table[i].first && number <= table[i].last)
+            return cm1e_device_entry(table[i].index, (uint8_t)(table[i].subindex + number - table[i].first));
+    return NULL;
+}
+
+static object_request_t *request_of(cm1e_axis_t *axis, uint16_t sequence)
+{
+    return &axis->objects.requests[sequence % OBJECT_REQUESTS];
+}
+
+static cm1e_error_t check_write(const cm1e_axis_t *axis, const cm1e_entry_t *entry, double value)
+{
+    if (!(entry->access & CM1E_ACCESS_WRITE))
+        return CM1E_ERROR_AXIS_PARAMETER_READ_ONLY;
+    /* The next cycle would write something else. */
+    if (cm1e_bus_find_output(axis->drive.bus, axis->drive.position, entry->index, entry->subindex).bytes)
+        return CM1E_ERROR_AXIS_PARAMETER_READ_ONLY;
+    return value == floor(value) && value >= (double)entry->minimum && value <= (double)entry->maximum
+               ? CM1E_OK : CM1E_ERROR_AXIS_PARAMETER_RANGE;
+}
+
+static cm1e_error_t check(const cm1e_axis_t *axis, const cm1e_entry_t *entry, bool write, double value)
+{
+    if (!entry)
+        return CM1E_ERROR_AXIS_PARAMETER;
+    if (axis->drive.firmware && entry->since > axis->drive.firmware->firmware)
+        return CM1E_ERROR_UNSUPPORTED;
+    const cm1e_error_t error = write ? check_write(axis, entry, value) : CM1E_OK;
+    if (error)
+        return error;
+    /* One less than there are: a result stays for a cycle at least. */
+    return (uint16_t)(axis->objects.next - axis->objects.head) < OBJECT_REQUESTS - 1 ? CM1E_OK : CM1E_ERROR_FULL;
+}
+
+cm1e_error_t cm1e_axis_object_start(cm1e_axis_t *axis, int number, bool write, double value, uint32_t *ticket)
+{
+    *ticket = 0;
+    const cm1e_error_t error = check(axis, entry_of(number), write, value);
+    if (error) {
+        if (error != CM1E_ERROR_FULL)
+            axis->not_set = (not_set_t){.error = error, .number = number, .value = value};
+        return error;
+    }
+    const uint16_t sequence = axis->objects.next++;
+    *ticket = (uint32_t)number << 16 | sequence;
+    *request_of(axis, sequence) = (object_request_t){.ticket = *ticket, .state = CM1E_COMMAND_BUFFERED, .write = write,
+                                                     .value = value};
+    return CM1E_OK;
+}
+
+cm1e_command_state_t cm1e_axis_object_state(const cm1e_axis_t *axis, uint32_t ticket, double *value,
+                                            cm1e_error_t *error)
+{
+    const object_request_t *request = &axis->objects.requests[(uint16_t)ticket % OBJECT_REQUESTS];
+    const bool mine = ticket != 0 && request->ticket == ticket;
+    *value = mine ? request->value : 0.0;
+    *error = mine ? (cm1e_error_t)request->error : CM1E_OK;
+    return mine ? (cm1e_command_state_t)request->state : CM1E_COMMAND_UNKNOWN;
+}
+
+/* ---- the transfer ------------------------------------------------------------------------------------------------ */
+
+static bool is_signed(const cm1e_entry_t *entry)
+{
+    return entry->type == CM1E_TYPE_SINT || entry->type == CM1E_TYPE_INT || entry->type == CM1E_TYPE_DINT;
+}
+
+static void finish(cm1e_axis_t *axis, object_request_t *request, cm1e_error_t error)
+{
+    objects_t *objects = &axis->objects;
+    request->state = error ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE;
+    request->error = (int16_t)error;
+    objects->submitted = false;
+    objects->head++;
+    if (error)
+        axis->not_set = (not_set_t){.error = error, .number = cm1e_axis_object_number(request->ticket),
+                                    .value = request->value, .abort_code = objects->sdo.abort_code};
+}
+
+static void submit(cm1e_axis_t *axis, object_request_t *request, const cm1e_entry_t *entry)
+{
+    objects_t *objects = &axis->objects;
+    const unsigned bytes = entry->bits / 8u;
+    if (request->write)
+        cm1e_put_uint(objects->data, bytes, (uint32_t)(int64_t)request->value);
+    objects->sdo = (cm1e_sdo_t){.position = axis->drive.position, .index = entry->index, .subindex = entry->subindex,
+                                .write = request->write, .data = objects->data,
+                                .size = request->write ? bytes : sizeof objects->data};
+    const cm1e_error_t error = cm1e_sdo_submit(axis->drive.bus, &objects->sdo);
+    if (error == CM1E_OK) {
+        objects->submitted = true;
+        request->state = CM1E_COMMAND_ACTIVE;
+    } else if (error != CM1E_ERROR_FULL) { /* full: again in the next cycle */
+        finish(axis, request, error);
+    }
+}
+
+static double decode(const objects_t *objects, const cm1e_entry_t *entry)
+{
+    const unsigned bytes = (unsigned)objects->sdo.size;
+    const uint64_t raw = cm1e_get_uint(objects->data, bytes), sign = UINT64_C(1) << (8 * bytes - 1);
+    return is_signed(entry) ? (double)((int64_t)(raw ^ sign) - (int64_t)sign) : (double)raw;
+}
+
+void cm1e_axis_objects_step(cm1e_axis_t *axis)
+{
+    objects_t *objects = &axis->objects;
+    object_request_t *request = request_of(axis, objects->head);
+    const cm1e_entry_t *entry = entry_of(cm1e_axis_object_number(request->ticket));
+    if (!objects->submitted) {
+        submit(axis, request, entry);
+        return;
+    }
+    const cm1e_sdo_state_t state = cm1e_sdo_state(&objects->sdo);
+    if (state == CM1E_SDO_ERROR) {
+        finish(axis, request, objects->sdo.error);
+    } else if (state == CM1E_SDO_DONE) {
+        if (!request->write && (objects->sdo.size == 0 || objects->sdo.size > sizeof objects->data)) {
+            finish(axis, request, CM1E_ERROR_BUS_MAILBOX);
+            return;
+        }
+        if (!request->write)
+            request->value = decode(objects, entry);
+        finish(axis, request, CM1E_OK);
+    }
+}
+
+void cm1e_axis_object_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const not_set_t *refused = &axis->not_set;
+    const cm1e_entry_t *entry = entry_of(refused->number);
+    const char *name = axis->config->name;
+    if (!entry)
+        snprintf(text, size, "Axis \"%s\": parameter %d: %s.", name, refused->number, cm1e_strerror(refused->error));
+    else if (refused->error == CM1E_ERROR_SDO_ABORT)
+        snprintf(text, size, "Axis \"%s\": parameter %d, object 0x%04X:%02X \"%s\": the drive refused with SDO abort "
+                 "code 0x%08X (%s).", name, refused->number, entry->index, entry->subindex, entry->name,
+                 (unsigned)refused->abort_code, cm1e_sdo_abort_text(refused->abort_code));
+    else if (refused->error == CM1E_ERROR_AXIS_PARAMETER_RANGE)
+        snprintf(text, size, "Axis \"%s\": parameter %d, object 0x%04X:%02X \"%s\": %.10g was to be written; a whole "
+                 "number, %lld ... %lld is right.", name, refused->number, entry->index, entry->subindex, entry->name,
+                 refused->value, (long long)entry->minimum, (long long)entry->maximum);
+    else
+        snprintf(text, size, "Axis \"%s\": parameter %d, object 0x%04X:%02X \"%s\": %s.", name, refused->number,
+                 entry->index, entry->subindex, entry->name, cm1e_strerror(refused->error));
+}

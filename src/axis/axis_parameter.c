@@ -1,0 +1,208 @@
+/* Parameters of table 5 (3.19, 3.20). System values are the bounds of motor and configuration, Appl values the smaller
+ * ones that the application asks for; commands are held to the latter, the ramp of an error keeps the former. */
+#include "axis/axis_parameters.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+
+#include "axis/axis_private.h"
+
+/* The axis keeps positions as doubles: whole counts are exact up to 2^53. */
+static const double farthest_limit_counts = 9e15;
+
+/* How a parameter is written. */
+typedef enum rule { READ_ONLY = 0, LIMIT, SWITCH, LAG, APPLICATION } rule_t;
+
+typedef struct parameter {
+    const char *name;
+    rule_t rule;
+    size_t value;        /* in the axis; 0: none, see value_of() */
+    size_t system;       /* APPLICATION: the largest value */
+    double least_counts; /* ... and the smallest */
+} parameter_t;
+
+#define AT(member) offsetof(struct cm1e_axis, member)
+static const parameter_t parameters[CM1E_PARAMETER_END] = {
+    [CM1E_PARAMETER_COMMANDED_POSITION] = {"CommandedPosition", READ_ONLY, 0, 0, 0},
+    [CM1E_PARAMETER_SW_LIMIT_POS] = {"SWLimitPos", LIMIT, AT(limit_positive), 0, 0},
+    [CM1E_PARAMETER_SW_LIMIT_NEG] = {"SWLimitNeg", LIMIT, AT(limit_negative), 0, 0},
+    [CM1E_PARAMETER_ENABLE_LIMIT_POS] = {"EnableLimitPos", SWITCH, AT(limit_positive_enabled), 0, 0},
+    [CM1E_PARAMETER_ENABLE_LIMIT_NEG] = {"EnableLimitNeg", SWITCH, AT(limit_negative_enabled), 0, 0},
+    [CM1E_PARAMETER_ENABLE_POS_LAG_MONITORING] = {"EnablePosLagMonitoring", SWITCH, AT(lag_monitoring), 0, 0},
+    [CM1E_PARAMETER_MAX_POSITION_LAG] = {"MaxPositionLag", LAG, AT(max_lag), 0, 0},
+    [CM1E_PARAMETER_MAX_VELOCITY_SYSTEM] = {"MaxVelocitySystem", READ_ONLY, AT(system.velocity), 0, 0},
+    [CM1E_PARAMETER_MAX_VELOCITY_APPL] = {"MaxVelocityAppl", APPLICATION, AT(maximum.velocity), AT(system.velocity),
+                                          CM1E_LEAST_VELOCITY_COUNTS},
+    [CM1E_PARAMETER_ACTUAL_VELOCITY] = {"ActualVelocity", READ_ONLY, 0, 0, 0},
+    [CM1E_PARAMETER_COMMANDED_VELOCITY] = {"CommandedVelocity", READ_ONLY, AT(set_velocity), 0, 0},
+    [CM1E_PARAMETER_MAX_ACCELERATION_SYSTEM] = {"MaxAccelerationSystem", READ_ONLY, AT(system.acceleration), 0, 0},
+    [CM1E_PARAMETER_MAX_ACCELERATION_APPL] = {"MaxAccelerationAppl", APPLICATION, AT(maximum.acceleration),
+                                              AT(system.acceleration), CM1E_LEAST_ACCELERATION_COUNTS},
+    [CM1E_PARAMETER_MAX_DECELERATION_SYSTEM] = {"MaxDecelerationSystem", READ_ONLY, AT(system.deceleration), 0, 0},
+    [CM1E_PARAMETER_MAX_DECELERATION_APPL] = {"MaxDecelerationAppl", APPLICATION, AT(maximum.deceleration),
+                                              AT(system.deceleration), CM1E_LEAST_ACCELERATION_COUNTS},
+    [CM1E_PARAMETER_MAX_JERK_SYSTEM] = {"MaxJerkSystem", READ_ONLY, AT(system.jerk), 0, 0},
+    [CM1E_PARAMETER_MAX_JERK_APPL] = {"MaxJerkAppl", APPLICATION, AT(maximum.jerk), AT(system.jerk),
+                                      CM1E_LEAST_JERK_COUNTS},
+};
+
+static bool known(int number) { return number > 0 && number < CM1E_PARAMETER_END; }
+
+bool cm1e_axis_parameter_is_bool(int number) { return known(number) && parameters[number].rule == SWITCH; }
+
+static const void *at(const cm1e_axis_t *axis, size_t offset) { return (const char *)axis + offset; }
+static double double_at(const cm1e_axis_t *axis, size_t offset) { return *(const double *)at(axis, offset); }
+static bool bool_at(const cm1e_axis_t *axis, size_t offset) { return *(const bool *)at(axis, offset); }
+
+cm1e_error_t cm1e_axis_read_parameter(const cm1e_axis_t *axis, int number, double *value)
+{
+    *value = 0.0;
+    if (!known(number))
+        return CM1E_ERROR_AXIS_PARAMETER;
+    const parameter_t *parameter = &parameters[number];
+    cm1e_axis_info_t info;
+    if (number == CM1E_PARAMETER_ACTUAL_VELOCITY && !axis->drive.feedback.online)
+        return CM1E_ERROR_AXIS_OFFLINE;
+    if (parameter->rule == SWITCH) {
+        *value = bool_at(axis, parameter->value) ? 1.0 : 0.0;
+    } else if (parameter->value) {
+        *value = double_at(axis, parameter->value);
+    } else {
+        cm1e_axis_get(axis, &info);
+        *value = number == CM1E_PARAMETER_ACTUAL_VELOCITY ? info.actual_velocity : info.set_position;
+    }
+    return CM1E_OK;
+}
+
+/* ---- writing ----------------------------------------------------------------------------------------------------- */
+
+void cm1e_axis_apply_software_limits(cm1e_axis_t *axis)
+{
+    axis->upper = axis->limit_positive_enabled ? axis->limit_positive : INFINITY;
+    axis->lower = axis->limit_negative_enabled ? axis->limit_negative : -INFINITY;
+    axis->software_limits = axis->limit_positive_enabled || axis->limit_negative_enabled;
+}
+
+/* Limits as they would be: in order, and kept by what runs. One who stands outside may come back but go no farther. */
+static cm1e_error_t change_limits(cm1e_axis_t *axis, double positive, double negative, bool positive_enabled,
+                                  bool negative_enabled)
+{
+    const bool enabled = positive_enabled || negative_enabled;
+    if (enabled && axis->modulo_range > 0.0)
+        return CM1E_ERROR_UNSUPPORTED;
+    if (positive_enabled && negative_enabled && !(negative < positive))
+        return CM1E_ERROR_AXIS_PARAMETER_RANGE;
+    if (!cm1e_axis_limits_hold(axis, negative_enabled ? negative : -INFINITY, positive_enabled ? positive : INFINITY))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    axis->limit_positive = positive;
+    axis->limit_negative = negative;
+    axis->limit_positive_enabled = positive_enabled;
+    axis->limit_negative_enabled = negative_enabled;
+    cm1e_axis_apply_software_limits(axis);
+    return CM1E_OK;
+}
+
+static cm1e_error_t write_limit(cm1e_axis_t *axis, int number, double value)
+{
+    if (!(fabs(value * axis->scale) <= farthest_limit_counts))
+        return CM1E_ERROR_AXIS_PARAMETER_RANGE;
+    const bool positive = number == CM1E_PARAMETER_SW_LIMIT_POS;
+    return change_limits(axis, positive ? value : axis->limit_positive, positive ? axis->limit_negative : value,
+                         axis->limit_positive_enabled, axis->limit_negative_enabled);
+}
+
+static cm1e_error_t write_switch(cm1e_axis_t *axis, int number, double value)
+{
+    if (value != 0.0 && value != 1.0)
+        return CM1E_ERROR_AXIS_PARAMETER_RANGE;
+    const bool on = value != 0.0;
+    if (number == CM1E_PARAMETER_ENABLE_POS_LAG_MONITORING) {
+        axis->lag_monitoring = on;
+        return CM1E_OK;
+    }
+    const bool positive = number == CM1E_PARAMETER_ENABLE_LIMIT_POS;
+    return change_limits(axis, axis->limit_positive, axis->limit_negative, positive ? on : axis->limit_positive_enabled,
+                         positive ? axis->limit_negative_enabled : on);
+}
+
+static cm1e_error_t write_number(cm1e_axis_t *axis, const parameter_t *parameter, double value, double least_counts,
+                                 double largest)
+{
+    if (!(value * fabs(axis->scale) >= least_counts * (1.0 - 1e-9)) || !(value <= largest))
+        return CM1E_ERROR_AXIS_PARAMETER_RANGE;
+    *(double *)((char *)axis + parameter->value) = value;
+    return CM1E_OK;
+}
+
+static cm1e_error_t write(cm1e_axis_t *axis, int number, double value)
+{
+    if (!known(number))
+        return CM1E_ERROR_AXIS_PARAMETER;
+    const parameter_t *parameter = &parameters[number];
+    switch (parameter->rule) {
+    case LIMIT: return write_limit(axis, number, value);
+    case SWITCH: return write_switch(axis, number, value);
+    case LAG:
+        return write_number(axis, parameter, value, CM1E_LEAST_LAG_COUNTS, CM1E_LARGEST_LAG_COUNTS / fabs(axis->scale));
+    case APPLICATION:
+        return write_number(axis, parameter, value, parameter->least_counts, double_at(axis, parameter->system));
+    case READ_ONLY: break;
+    }
+    return CM1E_ERROR_AXIS_PARAMETER_READ_ONLY;
+}
+
+cm1e_error_t cm1e_axis_write_parameter(cm1e_axis_t *axis, int number, double value)
+{
+    const cm1e_error_t error = write(axis, number, value);
+    axis->not_set = (not_set_t){.error = error, .number = number, .value = value};
+    return error;
+}
+
+/* ---- the refusal in words ---------------------------------------------------------------------------------------- */
+
+static void range_text(const cm1e_axis_t *axis, const parameter_t *parameter, char *text, size_t size)
+{
+    const double scale = fabs(axis->scale), value = axis->not_set.value;
+    switch (parameter->rule) {
+    case APPLICATION:
+        snprintf(text, size, "%.6g was to be written; %.6g ... %.6g is right, which is %s.", value,
+                 parameter->least_counts / scale, double_at(axis, parameter->system), (parameter - 1)->name);
+        break;
+    case LAG:
+        snprintf(text, size, "%.6g was to be written; %.6g ... %.6g u is right.", value, CM1E_LEAST_LAG_COUNTS / scale,
+                 CM1E_LARGEST_LAG_COUNTS / scale);
+        break;
+    case SWITCH:
+        snprintf(text, size, "%.6g was to be written; 0 or 1 is right, and SWLimitNeg, %.6g u, has to be below "
+                 "SWLimitPos, %.6g u.", value, axis->limit_negative, axis->limit_positive);
+        break;
+    default:
+        snprintf(text, size, "%.6g was to be written; a finite value is right, SWLimitNeg (%.6g u) below SWLimitPos "
+                 "(%.6g u).", value, axis->limit_negative, axis->limit_positive);
+        break;
+    }
+}
+
+void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const not_set_t *refused = &axis->not_set;
+    const char *name = axis->config->name;
+    int length;
+    if (refused->position) {
+        snprintf(text, size, "Axis \"%s\": MC_SetPosition to %.6g u: %s.", name, refused->value,
+                 cm1e_strerror(refused->error));
+    } else if (refused->number >= CM1E_PARAMETER_VENDOR) {
+        cm1e_axis_object_text(axis, text, size);
+    } else if (!known(refused->number)) {
+        snprintf(text, size, "Axis \"%s\": parameter %d: %s.", name, refused->number, cm1e_strerror(refused->error));
+    } else if (refused->error == CM1E_ERROR_AXIS_PARAMETER_RANGE) {
+        length = snprintf(text, size, "Axis \"%s\": parameter %d, %s: ", name, refused->number,
+                          parameters[refused->number].name);
+        if (length > 0 && (size_t)length < size)
+            range_text(axis, &parameters[refused->number], text + length, size - (size_t)length);
+    } else {
+        snprintf(text, size, "Axis \"%s\": parameter %d, %s: %.6g was to be written: %s.", name, refused->number,
+                 parameters[refused->number].name, refused->value, cm1e_strerror(refused->error));
+    }
+}

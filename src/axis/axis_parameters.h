@@ -1,0 +1,64 @@
+/**
+ * @file axis/axis_parameters.h
+ * Parameters of an axis by number: those of PLCopen Part 1 v2.0, table 5, and from 1000 on objects of the drive over
+ * SDO. In the cycle thread, between cm1e_axis_inputs() and cm1e_axis_outputs().
+ */
+#ifndef CM1E_AXIS_AXIS_PARAMETERS_H
+#define CM1E_AXIS_AXIS_PARAMETERS_H
+
+#include "axis/axis.h"
+
+/** Table 5. */
+enum {
+    CM1E_PARAMETER_COMMANDED_POSITION = 1,
+    CM1E_PARAMETER_SW_LIMIT_POS,
+    CM1E_PARAMETER_SW_LIMIT_NEG,
+    CM1E_PARAMETER_ENABLE_LIMIT_POS,
+    CM1E_PARAMETER_ENABLE_LIMIT_NEG,
+    CM1E_PARAMETER_ENABLE_POS_LAG_MONITORING,
+    CM1E_PARAMETER_MAX_POSITION_LAG,
+    CM1E_PARAMETER_MAX_VELOCITY_SYSTEM,
+    CM1E_PARAMETER_MAX_VELOCITY_APPL,
+    CM1E_PARAMETER_ACTUAL_VELOCITY,
+    CM1E_PARAMETER_COMMANDED_VELOCITY,
+    CM1E_PARAMETER_MAX_ACCELERATION_SYSTEM,
+    CM1E_PARAMETER_MAX_ACCELERATION_APPL,
+    CM1E_PARAMETER_MAX_DECELERATION_SYSTEM,
+    CM1E_PARAMETER_MAX_DECELERATION_APPL,
+    CM1E_PARAMETER_MAX_JERK_SYSTEM,
+    CM1E_PARAMETER_MAX_JERK_APPL,
+    CM1E_PARAMETER_END,
+    CM1E_PARAMETER_VENDOR = 1000, /**< from here on: objects of the drive */
+};
+
+/** 4, 5 and 6. @rt any */
+bool cm1e_axis_parameter_is_bool(int number);
+/** BOOL ones as 0 and 1. CM1E_ERROR_AXIS_PARAMETER: not of table 5; CM1E_ERROR_AXIS_OFFLINE: an actual value that is
+ *  not known now. @rt cycle */
+cm1e_error_t cm1e_axis_read_parameter(const cm1e_axis_t *axis, int number, double *value);
+/** In force for what is planned from now on; what runs goes on as it was planned. A software limit that the running
+ *  motion would not keep is refused. Also CM1E_ERROR_AXIS_PARAMETER, _READ_ONLY, _RANGE; refused: nothing has changed.
+ *  @rt cycle */
+cm1e_error_t cm1e_axis_write_parameter(cm1e_axis_t *axis, int number, double value);
+
+/** Vendor parameters `first` ... `last` are consecutive sub-indexes of one object. */
+typedef struct cm1e_axis_objects {
+    int first, last;
+    uint16_t index;
+    uint8_t subindex; /**< of the first */
+} cm1e_axis_objects_t;
+/** The table; `*count` rows in order of their numbers. @rt any */
+const cm1e_axis_objects_t *cm1e_axis_object_table(size_t *count);
+
+/** Asks for a transfer of a vendor parameter; transfers of an axis are worked on one after the other. The value is the
+ *  object's own number: a whole one, within the range of the dictionary. CM1E_ERROR_FULL: 7 wait already;
+ *  CM1E_ERROR_UNSUPPORTED: the drive's firmware does not have the object; _PARAMETER, _READ_ONLY (also while the object
+ *  is process data), _RANGE as above. @rt cycle */
+cm1e_error_t cm1e_axis_object_start(cm1e_axis_t *axis, int number, bool write, double value, uint32_t *ticket);
+/** BUFFERED or ACTIVE, DONE with the value, ERROR; UNKNOWN: 7 or more others were asked for since. @rt cycle */
+cm1e_command_state_t cm1e_axis_object_state(const cm1e_axis_t *axis, uint32_t ticket, double *value,
+                                            cm1e_error_t *error);
+/** The number that a ticket was asked for. */
+static inline int cm1e_axis_object_number(uint32_t ticket) { return (int)(ticket >> 16); }
+
+#endif
