@@ -96,9 +96,10 @@ static void keep_below_maximum_velocity(const cm1e_axis_t *axis, const from_t *f
     const double a = from->acceleration;
     if (a == 0.0)
         return;
-    const double room = axis->maximum.velocity - (a > 0.0 ? from->velocity : -from->velocity);
-    const double needed = room > 0.0 ? a * a / (2.0 * room) : axis->maximum.jerk;
-    limits->jerk = fmin(fmax(limits->jerk, needed), axis->maximum.jerk);
+    const double most = axis->maximum.velocity, room = most - (a > 0.0 ? from->velocity : -from->velocity);
+    limits->jerk = fmax(limits->jerk, fmin(a * a / (2.0 * fmax(room, 0.0)), axis->maximum.jerk));
+    if (a * a / (2.0 * axis->maximum.jerk) > room + relative_tolerance * most) /* a ramp without limit of jerk left it */
+        limits->jerk = a * a / (2.0 * fmax(room, relative_tolerance * most));
 }
 
 cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
