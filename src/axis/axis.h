@@ -102,6 +102,9 @@ cm1e_axis_t *cm1e_axis_from_reference(const AXIS_REF_t *reference);
 void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t health, int64_t now_ns);
 /** Next set-point, state diagram, drive outputs. @rt cycle */
 void cm1e_axis_outputs(cm1e_axis_t *axis);
+/** Before cm1e_axis_outputs(): no frame was sent for so long beyond the cycle that the motor no longer moves as the
+ *  set-point does. What moves begins anew from rest (CSP), or from where the motor has gone on to (CSV). @rt cycle */
+void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns);
 
 /** Starts a command or refuses it (then *id is 0 and nothing has changed). Kinds that the axis does not know how to
  *  do yet are CM1E_ERROR_UNSUPPORTED. @rt cycle */

@@ -33,6 +33,7 @@ struct cm1e_scheduler {
     int64_t start_ns;      /**< of cycle 0 */
     int64_t number;        /**< of this cycle; skipped ones count */
     int64_t begin_ns;      /**< when this cycle really began */
+    int64_t sent_ns;       /**< when the outputs of the last one were made */
 };
 
 /* ---- the cycle ------------------------------------------------------------------------------------------------- */
@@ -53,8 +54,19 @@ static void shut_down_axes(cm1e_scheduler_t *s)
         s->shut_down &= cm1e_axis_shut_down(s->axes[i]);
 }
 
+/** So many lost frames would be an error. Less is ridden out: the motor hardly feels it. */
+static bool is_pause(const cm1e_scheduler_t *s, int64_t silence_ns)
+{
+    const int64_t limit = cm1e_bus_configuration(s->bus)->lost_cycles_limit;
+    return 2 * silence_ns > (2 * limit + 1) * s->cycle_time_ns;
+}
+
 static void set_outputs(cm1e_scheduler_t *s)
 {
+    const int64_t now_ns = cm1e_clock_now(s->clock), silence_ns = now_ns - s->sent_ns - s->cycle_time_ns;
+    s->sent_ns = now_ns;
+    for (uint32_t i = 0; i < s->axis_count && is_pause(s, silence_ns); i++)
+        cm1e_axis_after_pause(s->axes[i], silence_ns);
     for (uint32_t i = 0; i < s->axis_count; i++)
         cm1e_axis_outputs(s->axes[i]);
 }
@@ -144,7 +156,7 @@ static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *d
     realtime_t realtime = {0};
     cm1e_error_t error = take_real_time(s, &realtime, diag);
     if (error == CM1E_OK) {
-        s->start_ns = cm1e_clock_now(s->clock);
+        s->start_ns = s->sent_ns = cm1e_clock_now(s->clock);
         while (!stop_asked(s) && (duration_ns == 0 || cm1e_scheduler_time_ns(s) < duration_ns))
             cycle(s);
         error = shut_down(s, diag);

@@ -15,60 +15,16 @@
 #include <string.h>
 
 #include "bus/bus_image.h"
+#include "chance.h"
 #include "cm1e/plcopen.h"
 #include "cm1e/scheduler.h"
 #include "nic/nic.h"
 #include "sim/cm1e_app.h"
 #include "sim/esc.h"
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-enum { SLOWNESS = 12 }; /* sanitizers: fewer and shorter runs */
-#else
-enum { SLOWNESS = 1 };
-#endif
-
 enum { BENCH_AXES = 3, LRW = 12, LRW_DATA = 26, SLAVE_WORKING_COUNTER = 3 };
 
 typedef struct bench bench_t;
-
-/* ---- chance ------------------------------------------------------------------------------------------------------ */
-
-static uint64_t chance_state;
-
-static inline void chance_seed(uint64_t seed)
-{
-    chance_state = (seed + 1) * UINT64_C(0x9E3779B97F4A7C15);
-    chance_state ^= chance_state >> 29;
-}
-
-static inline uint64_t chance(void)
-{
-    chance_state ^= chance_state << 13;
-    chance_state ^= chance_state >> 7;
-    chance_state ^= chance_state << 17;
-    return chance_state;
-}
-
-static inline double uniform(double low, double high)
-{
-    return low + (high - low) * (double)(chance() >> 11) * 0x1p-53;
-}
-
-static inline bool one_in(unsigned n) { return (chance() >> 11) % n == 0; }
-static inline int pick(int count) { return (int)((chance() >> 11) % (unsigned)count); }
-
-/** Runs of a random test: all seeds, or the one that the environment names. */
-static inline int seed_count(int count)
-{
-    const int all = count / SLOWNESS;
-    return getenv("CM1E_TEST_SEED") ? 1 : all > 0 ? all : 1;
-}
-
-static inline unsigned seed_of(int run)
-{
-    const char *word = getenv("CM1E_TEST_SEED");
-    return word ? (unsigned)strtoul(word, NULL, 10) : (unsigned)run + 1;
-}
 
 /* ---- the witness ------------------------------------------------------------------------------------------------- */
 
@@ -108,6 +64,7 @@ struct bench {
     uint8_t last_outputs[256];
     /** What happens to a process data frame; NULL: nothing. Called before the witness looks at what is sent. */
     cm1e_tap_verdict_t (*fault)(bench_t *bench, cm1e_tap_frame_t *frame);
+    bool paused;                       /**< the frame that comes now is the first after a pause of the master */
     bool frames_late;                  /**< frames are delayed: what the drive showed may be one frame older */
     void (*program)(bench_t *bench);
     void *context;
@@ -301,6 +258,8 @@ static void witness_sent_axis(bench_t *bench, uint32_t n, const uint8_t *data)
     if (w->holding && (word_at(data, w->out_controlword) & 0x08) == 0)
         judge_end_of_torque(bench, n, w);
     const int32_t target_before = w->target;
+    if (bench->paused)
+        w->step = 0; /* the motor stands at that target */
     const bool enabling_before = w->enabling, holding_before = w->holding;
     w->controlword = word_at(data, w->out_controlword);
     w->enabling = (w->controlword & 0x08) != 0;
@@ -346,6 +305,7 @@ static cm1e_tap_verdict_t bench_tap(void *context, cm1e_tap_frame_t *frame)
     memcpy(bench->last_outputs, frame->bytes + LRW_DATA, (size_t)bench->output_bytes);
     for (uint32_t n = 0; n < bench->config.axis_count; n++)
         witness_sent_axis(bench, n, frame->bytes + LRW_DATA);
+    bench->paused = false;
     return verdict;
 }
 

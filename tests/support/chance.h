@@ -1,0 +1,56 @@
+/**
+ * @file chance.h
+ * Random numbers that a seed repeats, and how many runs of a random test there are. Include it once in a test program.
+ * CM1E_TEST_SEED=<n> in the environment repeats one run.
+ */
+#ifndef CM1E_TESTS_CHANCE_H
+#define CM1E_TESTS_CHANCE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+enum { SLOWNESS = 12 }; /* sanitizers: fewer and shorter runs */
+#else
+enum { SLOWNESS = 1 };
+#endif
+
+static uint64_t chance_state;
+
+static inline void chance_seed(uint64_t seed)
+{
+    chance_state = (seed + 1) * UINT64_C(0x9E3779B97F4A7C15);
+    chance_state ^= chance_state >> 29;
+}
+
+static inline uint64_t chance(void)
+{
+    chance_state ^= chance_state << 13;
+    chance_state ^= chance_state >> 7;
+    chance_state ^= chance_state << 17;
+    return chance_state;
+}
+
+static inline double uniform(double low, double high)
+{
+    return low + (high - low) * (double)(chance() >> 11) * 0x1p-53;
+}
+
+static inline bool one_in(unsigned n) { return (chance() >> 11) % n == 0; }
+static inline int pick(int count) { return (int)((chance() >> 11) % (unsigned)count); }
+
+/** Runs of a random test: all seeds, or the one that the environment names. */
+static inline int seed_count(int count)
+{
+    const int all = count / SLOWNESS;
+    return getenv("CM1E_TEST_SEED") ? 1 : all > 0 ? all : 1;
+}
+
+static inline unsigned seed_of(int run)
+{
+    const char *word = getenv("CM1E_TEST_SEED");
+    return word ? (unsigned)strtoul(word, NULL, 10) : (unsigned)run + 1;
+}
+
+#endif
