@@ -20,6 +20,29 @@ static cm1e_error_t stop_anew(cm1e_axis_t *axis)
     return error;
 }
 
+/* A step of a homing goes on as it was about to: to the velocity of its search, or to the end of MC_FinishHoming. */
+static cm1e_error_t step_anew(cm1e_axis_t *axis)
+{
+    const cm1e_motion_state_t now = {0.0, axis->set_velocity, axis->set_acceleration};
+    const double way = cm1e_position_minus(axis->target, axis->set) / axis->scale, end = axis->profile.end.velocity;
+    const from_t from = from_set(axis);
+    cm1e_profile_t profile;
+    const bool planned = axis->stepping.finishing
+                             ? cm1e_profile_to_position(&profile, &now, way, &axis->stepping.limits) == CM1E_OK
+                             : cm1e_profile_to_velocity(&profile, &now, end, &axis->stepping.limits) == CM1E_OK;
+    if (!planned)
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    cm1e_axis_run(axis, &from, &profile, cm1e_position_plus(axis->set, profile.end.position * axis->scale), 0.0);
+    return CM1E_OK;
+}
+
+static cm1e_error_t move_anew(cm1e_axis_t *axis)
+{
+    if (!axis->active || axis->kind == CM1E_COMMAND_STOP)
+        return stop_anew(axis);
+    return axis->kind == CM1E_COMMAND_HOMING_STEP ? step_anew(axis) : cm1e_axis_replan(axis);
+}
+
 void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
 {
     const bool goes_on = axis->mode == CM1E_MODE_CSV;
@@ -32,8 +55,7 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
     else
         axis->set_velocity = 0.0;
     axis->set_acceleration = 0.0;
-    const bool stops = !axis->active || axis->kind == CM1E_COMMAND_STOP;
-    const cm1e_error_t error = stops ? stop_anew(axis) : cm1e_axis_replan(axis);
+    const cm1e_error_t error = move_anew(axis);
     if (error)
         cm1e_axis_fail(axis, error, cm1e_axis_units(axis, axis->set),
                        axis->set_velocity > 0.0 ? axis->upper : axis->lower);
