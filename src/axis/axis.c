@@ -117,10 +117,18 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
     watch_lag(axis);
 }
 
+/* In most cycles of a motion nothing happens to it: the motor takes its set-points, and nobody ends that. */
+static bool moves_on(const cm1e_axis_t *axis)
+{
+    return axis->activity == ACTIVITY_PROFILE && axis->state != CM1E_AXIS_DISABLED && axis_acts(axis);
+}
+
 void cm1e_axis_advance(cm1e_axis_t *axis)
 {
-    cm1e_axis_signals_step(axis);
-    cm1e_axis_power_step(axis);
+    if (axis->kept != 0 || axis->drive.command.digital_outputs != 0)
+        cm1e_axis_signals_step(axis);
+    if (!moves_on(axis))
+        cm1e_axis_power_step(axis);
     cm1e_axis_motion_step(axis);
     if (axis->backlash.gap > 0.0)
         cm1e_axis_backlash_step(axis);

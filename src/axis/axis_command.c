@@ -1,7 +1,7 @@
 /* Commands: posted by function blocks, known by number, one of them active. */
 #include <math.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_handle.h"
 
 /* ---- records ----------------------------------------------------------------------------------------------------- */
 
@@ -52,7 +52,7 @@ cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_com
 
 bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id)
 {
-    const cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
+    const cm1e_axis_t *axis = cm1e_axis_from_handle(reference.Handle);
     return axis && id != 0 && axis->active == id;
 }
 

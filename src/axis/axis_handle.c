@@ -1,18 +1,13 @@
 #include "axis/axis_handle.h"
 
-#include <stdatomic.h>
-
-#include "axis/axis_private.h"
-
-/* Schedulers in several threads may make their axes at the same time. */
-static _Atomic(cm1e_axis_t *) table[CM1E_AXIS_HANDLES];
+_Atomic(cm1e_axis_t *) cm1e_axis_table[CM1E_AXIS_HANDLES];
 static _Atomic uint8_t uses[CM1E_AXIS_HANDLES];
 
 bool cm1e_axis_handle_take(cm1e_axis_t *axis, uint16_t *handle)
 {
     for (unsigned i = 0; i < CM1E_AXIS_HANDLES; i++) {
         cm1e_axis_t *none = NULL;
-        if (atomic_load(&table[i]) || !atomic_compare_exchange_strong(&table[i], &none, axis))
+        if (atomic_load(&cm1e_axis_table[i]) || !atomic_compare_exchange_strong(&cm1e_axis_table[i], &none, axis))
             continue;
         uint8_t use = (uint8_t)(atomic_fetch_add(&uses[i], 1) + 1);
         if (use == 0) /* 0 is left to "no axis" */
@@ -23,14 +18,11 @@ bool cm1e_axis_handle_take(cm1e_axis_t *axis, uint16_t *handle)
     return false;
 }
 
-void cm1e_axis_handle_give_back(uint16_t handle) { atomic_store(&table[handle & 0xFF], NULL); }
+void cm1e_axis_handle_give_back(uint16_t handle) { atomic_store(&cm1e_axis_table[handle & 0xFF], NULL); }
 
 cm1e_axis_t *cm1e_axis_from_reference(const AXIS_REF_t *reference)
 {
-    if (!reference || reference->Handle == 0)
-        return NULL;
-    cm1e_axis_t *axis = atomic_load(&table[reference->Handle & 0xFF]);
-    return axis && axis->handle == reference->Handle ? axis : NULL;
+    return reference ? cm1e_axis_from_handle(reference->Handle) : NULL;
 }
 
 cm1e_error_t cm1e_axis_read(AXIS_REF_t reference, cm1e_axis_info_t *info)

@@ -8,7 +8,7 @@
  */
 #include <math.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_handle.h"
 
 /* How long a drive that cannot be heard any more counts as "still there" at the end. */
 static const int64_t gone_after_ns = 100 * MS_IN_NS;
@@ -109,7 +109,7 @@ cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, 
 
 bool cm1e_axis_power_stands(AXIS_REF_t reference, const void *owner, bool enable_positive, bool enable_negative)
 {
-    const cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
+    const cm1e_axis_t *axis = cm1e_axis_from_handle(reference.Handle);
     return axis && axis->power_owner == owner && axis->power_enable && !axis->shutting_down &&
            axis->enable_positive == enable_positive && axis->enable_negative == enable_negative &&
            cm1e_axis_powered(axis);
@@ -132,8 +132,7 @@ static void take_over(cm1e_axis_t *axis)
 
 void cm1e_axis_power_step(cm1e_axis_t *axis)
 {
-    const cm1e_drive_feedback_t *feedback = &axis->drive.feedback;
-    const bool acting = feedback->enabled && feedback->mode == (int8_t)axis->mode;
+    const bool acting = axis_acts(axis);
     const bool wanted = cm1e_axis_wants_enable(axis);
     const bool still = axis->activity == ACTIVITY_FREE || axis->activity == ACTIVITY_HOLD;
     if (axis->state == CM1E_AXIS_DISABLED && wanted && acting && still)

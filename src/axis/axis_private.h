@@ -468,6 +468,11 @@ move_t cm1e_axis_move_of(const cm1e_axis_command_t *command);
 
 /* axis_power.c */
 bool cm1e_axis_wants_enable(const cm1e_axis_t *axis);
+/** Set-points of ours reach the motor. */
+static inline bool axis_acts(const cm1e_axis_t *axis)
+{
+    return axis->drive.feedback.enabled && axis->drive.feedback.mode == (int8_t)axis->mode;
+}
 void cm1e_axis_become_free(cm1e_axis_t *axis);
 void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound);
 /** A ramp of ErrorStop begins anew, from the motor's own position and speed. */
@@ -486,7 +491,7 @@ void cm1e_axis_home_step(cm1e_axis_t *axis);
 void cm1e_axis_probe_step(cm1e_axis_t *axis); /* with fresh inputs, while probes are armed */
 
 /* axis_digital.c */
-/** What was not renewed goes off or halts, before the set-point of the cycle. */
+/** What was not renewed goes off or halts, before the set-point of the cycle. Called while there is something. */
 void cm1e_axis_signals_step(cm1e_axis_t *axis);
 void cm1e_axis_outputs_off(cm1e_axis_t *axis);
 
