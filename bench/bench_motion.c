@@ -11,12 +11,13 @@
 #include <time.h>
 
 #include "motion/profile.h"
+#include "motion/table_profile.h"
 
 enum { PROBLEMS = 20000, BATCHES = 7, BATCH = 8 };
 
 typedef struct {
     cm1e_motion_state_t start;
-    double target;
+    double target, target_velocity;
     cm1e_motion_limits_t limits;
 } problem_t;
 
@@ -77,6 +78,51 @@ static problem_t from_motion(void)
     return problem;
 }
 
+/** A move that passes its target: as blending asks for it. */
+static problem_t from_rest_to_pass(void)
+{
+    problem_t problem = from_rest();
+    problem.target_velocity = copysign(random_between(0.1, 1) * problem.limits.velocity, problem.target);
+    return problem;
+}
+
+static problem_t from_motion_to_any_state(void)
+{
+    problem_t problem = from_motion();
+    problem.target_velocity = random_between(-1, 1) * problem.limits.velocity;
+    return problem;
+}
+
+static void passing(cm1e_profile_t *profile, const problem_t *problem)
+{
+    profile->duration_s = cm1e_profile_passing_velocity(&problem->start, problem->target, problem->target_velocity,
+                                                        &problem->limits);
+}
+
+static void to_passed_state(cm1e_profile_t *profile, const problem_t *problem)
+{
+    const double velocity = cm1e_profile_passing_velocity(&problem->start, problem->target, problem->target_velocity,
+                                                          &problem->limits);
+    cm1e_profile_to_state(profile, &problem->start, problem->target, velocity, &problem->limits);
+}
+
+static void to_state(cm1e_profile_t *profile, const problem_t *problem)
+{
+    cm1e_profile_to_state(profile, &problem->start, problem->target, problem->target_velocity, &problem->limits);
+}
+
+static void along_a_table(cm1e_profile_t *profile, const problem_t *problem)
+{
+    static cm1e_table_profile_t table;
+    cm1e_table_point_t points[CM1E_TABLE_POINTS_MAX];
+    for (int i = 0; i < CM1E_TABLE_POINTS_MAX; i++)
+        points[i] = (cm1e_table_point_t){i + 1, problem->target * i};
+    cm1e_table_extremes_t extremes;
+    cm1e_table_profile(&table, CM1E_TABLE_POSITION, &problem->start, points, CM1E_TABLE_POINTS_MAX, INFINITY,
+                       &extremes);
+    profile->duration_s = extremes.velocity;
+}
+
 static void to_position(cm1e_profile_t *profile, const problem_t *problem)
 {
     cm1e_profile_to_position(profile, &problem->start, problem->target, &problem->limits);
@@ -122,8 +168,23 @@ static void report_plan(const char *name, problem_t (*make)(void), void (*plan)(
            costs[PROBLEMS / 2], costs[PROBLEMS * 99 / 100], costs[PROBLEMS - 1], costs[PROBLEMS / 2] / yardstick);
 }
 
+static cm1e_motion_state_t sample(const cm1e_profile_t *profile, double time_s)
+{
+    cm1e_motion_state_t state;
+    cm1e_profile_sample(profile, time_s, &state);
+    return state;
+}
+
+static cm1e_motion_state_t sample_by_stretches(const cm1e_profile_t *profile, double time_s)
+{
+    static cm1e_profile_stretch_t stretch;
+    if (time_s == 0 || time_s >= stretch.until_s)
+        cm1e_profile_stretch_at(profile, time_s, &stretch);
+    return cm1e_profile_stretch_state(&stretch, time_s);
+}
+
 /** As an axis does it: one profile sampled from its beginning to its end. */
-static void report_sample(void)
+static void report_sample(const char *name, cm1e_motion_state_t (*state_at)(const cm1e_profile_t *, double))
 {
     enum { STEPS = 1000, PROFILES = 200 };
     static double batches[PROFILES];
@@ -136,9 +197,9 @@ static void report_sample(void)
         for (int batch = 0; batch < BATCHES; batch++) {
             double sum = 0;
             const double start = now_ns();
+            const double step = profile.duration_s / STEPS;
             for (int k = 0; k < STEPS; k++) {
-                cm1e_motion_state_t state;
-                cm1e_profile_sample(&profile, profile.duration_s * k / STEPS, &state);
+                const cm1e_motion_state_t state = state_at(&profile, step * k);
                 sum += state.position + state.velocity + state.acceleration;
             }
             batches[i] = fmin(batches[i], (now_ns() - start) / STEPS);
@@ -146,7 +207,7 @@ static void report_sample(void)
         }
     }
     qsort(batches, PROFILES, sizeof batches[0], compare);
-    printf("sample %-34s median %6.1f ns  p99 %6.1f ns  worst %6.1f ns  median / cbrt %5.1f\n", "all along a motion",
+    printf("sample %-34s median %6.1f ns  p99 %6.1f ns  worst %6.1f ns  median / cbrt %5.1f\n", name,
            batches[PROFILES / 2], batches[PROFILES * 99 / 100], batches[PROFILES - 1],
            batches[PROFILES / 2] / yardstick);
 }
@@ -157,8 +218,14 @@ int main(void)
     report_plan("to a position, on the way", from_motion, to_position);
     report_plan("to a position, infinite jerk", from_rest_without_jerk_limit, to_position);
     report_plan("to standstill, on the way", from_motion, to_velocity);
-    report_sample();
+    report_plan("to a position passed, from rest", from_rest_to_pass, to_passed_state);
+    report_plan("to any state, on the way", from_motion_to_any_state, to_state);
+    report_plan("how fast a position can be passed", from_rest_to_pass, passing);
+    report_plan("along a table of 64 positions", from_rest, along_a_table);
+    report_sample("all along a motion", sample);
+    report_sample("the same by stretches", sample_by_stretches);
     printf("cbrt   %43s %6.1f ns\n", "", yardstick_ns());
-    printf("bytes  cm1e_profile_t %zu\n", sizeof(cm1e_profile_t));
+    printf("bytes  cm1e_profile_t %zu, cm1e_table_profile_t %zu\n", sizeof(cm1e_profile_t),
+           sizeof(cm1e_table_profile_t));
     return 0;
 }

@@ -9,7 +9,7 @@
 
 #include "motion/pieces.h"
 
-enum { SOLVER_STEPS_MAX = 200 };
+enum { SOLVER_STEPS_MAX = 200, NEWTON_STEPS = 12 };
 
 /** All mirrored so that the target is to be passed with a velocity >= 0. */
 typedef struct {
@@ -63,6 +63,35 @@ static double last_fitting(const passing_t *passing, double fitting, double too_
     return fitting + low * low;
 }
 
+/** The same in closed form, or by Newton's method from above on a convex function, for an axis that goes towards the
+ *  target and gets faster: from (v, a) as from (rest, 0), only without the way from there. NaN: another case. */
+static double last_rise(const passing_t *passing)
+{
+    const cm1e_motion_limits_t *limits = passing->limits;
+    const double v = passing->velocity, a = passing->acceleration, jerk = limits->jerk, most = limits->acceleration;
+    if (isinf(jerk))
+        return v >= 0 ? sqrt(v * v + 2 * passing->distance * most) : NAN;
+    const double ramp = fabs(a) / jerk, rest = v - fabs(a) * ramp / 2;
+    if (v < 0 || fabs(a) > most || (a < 0 && rest < 0))
+        return NAN;
+    /* From -a the velocity falls to rest, while the position goes on as it would have come from there with a. */
+    const double way = ramp * (rest + fabs(a) * ramp / 6), whole = passing->distance + (a < 0 ? -way : way);
+    const double edge = most / jerk * most, long_way = rest - edge / 2;
+    const double velocity = sqrt(fmax(0, long_way * long_way + 2 * whole * most)) - edge / 2;
+    if (velocity - rest >= edge)
+        return velocity;
+    /* u3 + 2 rest u = whole sqrt(jerk), where u is the root of the velocity gained */
+    const double right = whole * sqrt(jerk);
+    double u = sqrt(fmin(edge, fmax(0, limits->velocity * 4 - rest)));
+    for (int i = 0; i < NEWTON_STEPS; i++) {
+        const double less = (u * (u * u + 2 * rest) - right) / (3 * u * u + 2 * rest);
+        u -= less;
+        if (!(less > DBL_EPSILON * u))
+            break;
+    }
+    return rest + u * u;
+}
+
 double cm1e_profile_passing_velocity(const cm1e_motion_state_t *start, double target, double velocity,
                                      const cm1e_motion_limits_t *limits)
 {
@@ -77,6 +106,10 @@ double cm1e_profile_passing_velocity(const cm1e_motion_state_t *start, double ta
     if (fits(&passing, fabs(velocity)))
         return velocity;
     const double eased = fmax(0, passing.velocity + (isinf(limits->jerk) ? 0 : fabs(a) * (a / limits->jerk) / 2));
+    const double rise = last_rise(&passing) * (1 - 1e-13);
+    if (rise > eased && rise < fabs(velocity) && way(&passing, rise) <= passing.distance &&
+        way(&passing, rise * (1 + 1e-12)) > passing.distance)
+        return sign * rise;
     if (eased < fabs(velocity) && fits(&passing, eased))
         return sign * last_fitting(&passing, eased, fabs(velocity));
     return fits(&passing, 0) ? sign * last_fitting(&passing, 0, fmin(eased, fabs(velocity))) : 0;

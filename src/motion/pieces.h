@@ -17,7 +17,7 @@ typedef struct cm1e_piece {
     double jerk, acceleration, duration_s;
 } cm1e_piece_t;
 
-enum { CM1E_PIECES_MAX = 16 };
+enum { CM1E_PIECES_MAX = CM1E_PROFILE_MAX_SEGMENTS };
 
 /** An empty one has `count` 0, and nothing else is set: to clear the pieces would cost a tenth of a plan. */
 typedef struct cm1e_pieces {

@@ -24,13 +24,18 @@ enum { SOLVER_STEPS_MAX = 120, HILL_STEPS = 30 };
  *  in which that piece is entered. */
 typedef struct {
     const cm1e_motion_limits_t *limits;
-    double target, target_velocity;
+    double start_velocity, target, target_velocity;
+    double per_jerk, per_deceleration; /**< 1 / the limit */
     bool simple; /**< the change of velocity needs no look at standstill, nor more than limits->velocity */
     cm1e_piece_t piece;
     double position, velocity;
-    double start_velocity;
-    double per_jerk, per_deceleration; /**< 1 / limit: the solver would divide by them again and again */
+    double reached; /**< where the change leads from this state */
 } push_t;
+
+/** Where the axis gets to the target velocity when it begins to change to it after a time of the piece. */
+typedef struct {
+    double position, slope;
+} reach_t;
 
 /** A step of the position by this part of the way is none. */
 static const double OVERLOOKED = 1e-11;
@@ -82,69 +87,107 @@ static cm1e_error_t build(cm1e_profile_t *profile, const cm1e_motion_state_t *st
     return isfinite(time) && isfinite(noise) && fabs(missing) <= noise ? CM1E_OK : CM1E_ERROR_INVALID_ARGUMENT;
 }
 
-/** Where the axis gets to the target velocity when it begins to change to it after `time` of the piece, and the
- *  derivative. Valid where the change begins by lowering the acceleration; where it does not, push and change are still
- *  the same. */
-static double simple_reach(const push_t *push, double time, double *slope)
+/** Valid where the change begins by lowering the acceleration; where it does not, push and change are the same. */
+static reach_t simple_reach(const push_t *push, double time)
 {
-    const cm1e_motion_limits_t *limits = push->limits;
+    const double d = push->limits->deceleration, w = push->target_velocity, per_jerk = push->per_jerk;
     const cm1e_motion_state_t state = cm1e_piece_state(&push->piece, push->position, push->velocity, time);
-    const double v = state.velocity, a = state.acceleration, w = push->target_velocity, d = limits->deceleration;
-    if (isinf(limits->jerk)) {
-        *slope = v * (1 + a / d);
-        return state.position + fmax(0, v - w) / d * ((v + w) / 2);
+    const double v = state.velocity, a = state.acceleration;
+    if (per_jerk == 0) {
+        const double less = v > w ? v - w : 0;
+        return (reach_t){state.position + less * push->per_deceleration * ((v + w) / 2),
+                         v * (1 + a * push->per_deceleration)};
     }
     /* The change from (v, a) is the change from (peak, 0) plus the way from (v, a) to there, backwards if a < 0. */
-    const double ramp = a * push->per_jerk, eased = v + a * ramp / 2, peak = eased > w ? eased : w;
-    const double edge = d * push->per_jerk, mean = (peak + w) / 2;
+    const double ramp = a * per_jerk, less = v + a * ramp / 2 - w, edge = d * per_jerk;
+    const double mean = w + less / 2;
     double duration, duration_slope;
-    if (peak - w > d * edge) {
-        duration = (peak - w) * push->per_deceleration + edge;
+    if (less > d * edge) {
+        duration = less * push->per_deceleration + edge;
         duration_slope = push->per_deceleration;
-    } else {
-        const double side = sqrt((peak - w) * push->per_jerk);
+    } else if (less > 0) {
+        const double side = sqrt(less * per_jerk);
         duration = 2 * side;
-        duration_slope = push->per_jerk / side;
+        duration_slope = side / less;
+    } else {
+        return (reach_t){state.position + ramp * (v + a * ramp * (1.0 / 3.0)), 0};
     }
-    *slope = (push->piece.jerk * push->per_jerk + 1) *
-             (peak + a * (ramp / 2 + duration / 2 + mean * duration_slope));
-    return state.position + ramp * (v + a * ramp * (1.0 / 3.0)) + mean * duration;
+    return (reach_t){
+        state.position + ramp * (v + a * ramp * (1.0 / 3.0)) + mean * duration,
+        (push->piece.jerk * per_jerk + 1) * (w + less + a * (ramp / 2 + duration / 2 + mean * duration_slope)),
+    };
 }
 
-static double any_reach(const push_t *push, double time)
+/** Any change of velocity as a whole. The derivative follows from its steepest acceleration (m, at the end of its first
+ *  ramp) and from the velocity at which it would have begun with no acceleration (p): (1 + a/m)(p + a m / 2 jerk) for
+ *  one downwards, whatever comes after its first ramp. */
+static reach_t any_reach(const push_t *push, double time)
 {
     const cm1e_motion_state_t state = cm1e_piece_state(&push->piece, push->position, push->velocity, time);
+    const double v = state.velocity, a = state.acceleration, per_jerk = push->per_jerk;
     cm1e_pieces_t change;
     change.count = 0;
-    cm1e_pieces_append_velocity_change(&change, state.velocity, state.acceleration, push->target_velocity,
-                                       push->limits);
-    return state.position + cm1e_pieces_displacement(&change, state.velocity);
+    cm1e_pieces_append_velocity_change(&change, v, a, push->target_velocity, push->limits);
+    reach_t reach = {state.position + cm1e_pieces_displacement(&change, v), 0};
+    if (per_jerk == 0) {
+        const double limit = v > 0 ? push->limits->deceleration : push->limits->acceleration;
+        reach.slope = v > push->target_velocity ? v * (1 + a / limit) : 0;
+    } else if (change.count > 0) {
+        const double end = a + change.piece[0].jerk * change.piece[0].duration_s; /* -m or m */
+        const double turn = change.piece[0].jerk < 0 ? 1 : -1, from = v + turn * a * (a * per_jerk) / 2;
+        reach.slope = (1 + turn * push->piece.jerk * per_jerk) * (1 - a / end) * (from - turn * a * end * per_jerk / 2);
+    }
+    return reach;
 }
 
-static double reach(const push_t *push, double time, double *slope)
+static reach_t reach(const push_t *push, double time)
 {
-    if (push->simple)
-        return simple_reach(push, time, slope);
-    const double step = 1e-7 * push->piece.duration_s, here = any_reach(push, time);
-    const double aside = time + step <= push->piece.duration_s ? time + step : time - step;
-    *slope = (any_reach(push, aside) - here) / (aside - time);
-    return here;
+    return push->simple ? simple_reach(push, time) : any_reach(push, time);
 }
 
 /** From which time of the piece on the reach is what reach() says; its duration if nowhere. */
 static double growth_start(const push_t *push)
 {
     const cm1e_piece_t *piece = &push->piece;
-    const double v = push->velocity, a = piece->acceleration, w = push->target_velocity, jerk = push->limits->jerk;
+    const double v = push->velocity, a = piece->acceleration, w = push->target_velocity;
     if (!push->simple)
         return 0;
     if (piece->jerk < 0 || (piece->jerk == 0 && a <= 0))
         return piece->duration_s;
     if (piece->jerk == 0)
-        return fmax(0, (w - v - a * (a / jerk) / 2) / a);
-    const double at_rest = v - a * (a / jerk) / 2; /* the velocity at which the acceleration is zero */
-    const double from = at_rest > w ? -push->limits->deceleration : sqrt((w - at_rest) * jerk);
-    return fmax(0, (from - a) / jerk);
+        return fmax(0, (w - v - a * (a * push->per_jerk) / 2) / a);
+    const double at_rest = v - a * (a * push->per_jerk) / 2; /* the velocity at which the acceleration is zero */
+    const double from = at_rest > w ? -push->limits->deceleration : sqrt((w - at_rest) * push->limits->jerk);
+    return from > a ? (from - a) * push->per_jerk : 0;
+}
+
+/** The switching time between low and high, where the reach is below and not below the target; `from`: the reach at
+ *  low. The reach mostly grows from there on like a power of the time, with an exponent between 1/2 and 4 that changes
+ *  on the way: Newton's method on its logarithm comes close from anywhere, Newton's method proper does the rest, and
+ *  bisection takes over where that leaves the bracket or its steps do not get shorter. */
+static double solve(const push_t *push, double low, double from, double high, reach_t at_high)
+{
+    const double origin = low, missing = push->target - from;
+    double time = high, last_step = 2 * (high - low);
+    reach_t at = at_high;
+    for (int i = 0; i < SOLVER_STEPS_MAX; i++) {
+        const double grown = at.position - from, excess = at.position - push->target;
+        double next = time - excess / at.slope;
+        if (fabs(excess) <= 1e-8 * missing || fabs(next - time) <= DBL_EPSILON * time) /* quadratic: that was it */
+            return fmin(fmax(next, low), high);
+        if (excess > 0)
+            high = time;
+        else
+            low = time;
+        if (grown > 2 * missing)
+            next = origin + (time - origin) * pow(missing / grown, grown / (at.slope * (time - origin)));
+        if (!(next > low && next < high) || fabs(next - time) > last_step / 2)
+            next = low + (high - low) / 2;
+        last_step = fabs(next - time);
+        time = next;
+        at = reach(push, time);
+    }
+    return time;
 }
 
 /** The steepest acceleration of the beginning of the change from (velocity, 0). */
@@ -189,44 +232,26 @@ static double hill(const push_t *push)
     return (-piece->acceleration - grows) / jerk;
 }
 
-/** The switching time between low and high, where the reach is below and not below the target. The reach mostly grows
- *  from `low` on like a power of the time, with an exponent between 1/2 and 4 that changes on the way: Newton's method
- *  on its logarithm comes close from anywhere, Newton's method proper does the rest, and bisection takes over where
- *  that leaves the bracket or its steps do not get shorter. */
-static double solve(const push_t *push, double low, double high)
-{
-    const double origin = low;
-    double slope, time = high, last_step = 2 * (high - low);
-    const double origin_reach = reach(push, low, &slope), missing = push->target - origin_reach;
-    for (int i = 0; i < SOLVER_STEPS_MAX; i++) {
-        const double grown = reach(push, time, &slope) - origin_reach, excess = grown - missing;
-        double next = time - excess / slope;
-        if (fabs(excess) <= 1e-8 * missing || fabs(next - time) <= DBL_EPSILON * time) /* quadratic: that was it */
-            return fmin(fmax(next, low), high);
-        if (excess > 0)
-            high = time;
-        else
-            low = time;
-        if (grown > 2 * missing)
-            next = origin + (time - origin) * pow(missing / grown, grown / (slope * (time - origin)));
-        if (!(next > low && next < high) || fabs(next - time) > last_step / 2)
-            next = low + (high - low) / 2;
-        last_step = fabs(next - time);
-        time = next;
-    }
-    return time;
-}
-
 /** When to switch within the piece; a negative number: not in this one. */
-static double switching_time(const push_t *push, bool first)
+static double switching_time(push_t *push, bool first)
 {
     const double end = push->piece.duration_s, grows = growth_start(push), top = first ? hill(push) : 0;
-    double slope;
-    if (top > 0 && reach(push, top, &slope) >= push->target)
-        return solve(push, fmin(grows, top), top);
-    if (!(grows < end && reach(push, end, &slope) >= push->target))
+    reach_t at;
+    double low = grows;
+    if (top > 0 && top > grows) {
+        at = reach(push, top);
+        if (at.position >= push->target)
+            return solve(push, grows, push->reached, top, at);
+        low = top;
+        push->reached = at.position;
+    }
+    if (!(low < end))
         return -1;
-    return solve(push, fmax(grows, top), end);
+    at = reach(push, end);
+    if (at.position >= push->target)
+        return solve(push, low, push->reached, end, at);
+    push->reached = at.position;
+    return -1;
 }
 
 /** The piece up to the switching time, and the change. With a target velocity towards the target, the reach begins to
@@ -237,7 +262,8 @@ static void append_change(cm1e_pieces_t *pieces, const push_t *push, double time
     const int count = pieces->count; /* and what the last one is, before another may be merged with it */
     const cm1e_piece_t last = count > 0 ? pieces->piece[count - 1] : (cm1e_piece_t){0, 0, 0};
     const cm1e_piece_t *piece = &push->piece;
-    const double w = push->target_velocity, overlooked = OVERLOOKED * fabs(push->target);
+    const double w = push->target_velocity;
+    const double overlooked = OVERLOOKED * (fabs(push->target) + fabs(push->start_velocity) * time);
     for (double step = DBL_EPSILON;; step *= 4) {
         const cm1e_motion_state_t state = cm1e_piece_state(piece, push->position, push->velocity, time);
         cm1e_pieces_append(pieces, piece->jerk, piece->acceleration, time);
@@ -256,18 +282,19 @@ static void append_change(cm1e_pieces_t *pieces, const push_t *push, double time
     }
 }
 
-/** All mirrored so that the target lies beyond the end of the soonest change of velocity. */
+/** All mirrored so that the target lies beyond the end of the soonest change of velocity, `direct`. */
 static void append_push_and_change(cm1e_pieces_t *pieces, double velocity, double acceleration, double target,
-                                   double target_velocity, const cm1e_motion_limits_t *limits)
+                                   double target_velocity, double direct, const cm1e_motion_limits_t *limits)
 {
     const double w = target_velocity;
     cm1e_pieces_t whole;
     whole.count = 0;
     cm1e_pieces_append_velocity_change(&whole, velocity, acceleration, limits->velocity, limits);
     push_t push = {
-        .limits = limits, .target = target, .target_velocity = w, .velocity = velocity, .start_velocity = velocity,
-        .simple = fabs(w) <= limits->velocity && (w >= 0 || limits->acceleration == limits->deceleration),
+        .limits = limits, .start_velocity = velocity, .target = target, .target_velocity = w,
         .per_jerk = 1 / limits->jerk, .per_deceleration = 1 / limits->deceleration,
+        .velocity = velocity, .reached = direct,
+        .simple = fabs(w) <= limits->velocity && (w >= 0 || limits->acceleration == limits->deceleration),
     };
     for (int i = 0; i < whole.count; i++) {
         const cm1e_piece_t *piece = &push.piece;
@@ -311,13 +338,15 @@ cm1e_error_t cm1e_profile_to_state(cm1e_profile_t *profile, const cm1e_motion_st
     double noise = cm1e_motion_noise(start->position, target_position, change);
     if ((distance - change) * target_velocity < 0) /* too short by that much: nothing to run up anew for */
         noise += CM1E_MOTION_TOO_SHORT * fabs(change);
+    else if (target_velocity != 0) /* as passing velocities leave it */
+        noise += OVERLOOKED * fabs(change);
     if (fabs(distance - change) <= noise)
         return build(profile, start, &pieces, 1, &end, limits);
 
     const double sign = distance > change ? 1 : -1;
     pieces.count = 0;
     append_push_and_change(&pieces, sign * start->velocity, sign * start->acceleration, sign * distance,
-                           sign * target_velocity, limits);
+                           sign * target_velocity, sign * change, limits);
     return build(profile, start, &pieces, sign, &end, limits);
 }
 

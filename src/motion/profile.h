@@ -25,7 +25,9 @@ typedef struct cm1e_profile_segment {
     cm1e_motion_state_t start;
 } cm1e_profile_segment_t;
 
-enum { CM1E_PROFILE_MAX_SEGMENTS = 24 };
+/** A change of velocity takes at most 5: three on one side of standstill and two on the other, where it begins or ends
+ *  at the lower of the limits. So a push and a change with a cruise in between take 11. */
+enum { CM1E_PROFILE_MAX_SEGMENTS = 11 };
 
 typedef struct cm1e_profile {
     int segment_count;

@@ -3,7 +3,7 @@
  * A motion along a table of positions, velocities or accelerations over time: a chain of pieces of constant jerk, with
  * position, velocity and (but for steps in a table of accelerations) acceleration continuous. It starts with the axis's
  * own state. Pure functions, no clock, no heap; memory is the caller's. Units: u, u/s, u/s2, u/s3, s. @rt cycle
- * throughout; the cost grows in proportion to the number of points, about 1.5 us for 64.
+ * throughout; the cost grows in proportion to the number of points, about 5 us for 64.
  */
 #ifndef CM1E_MOTION_TABLE_PROFILE_H
 #define CM1E_MOTION_TABLE_PROFILE_H

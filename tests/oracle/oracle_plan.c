@@ -1,5 +1,5 @@
-/* Plans the problems that come in on stdin, nine doubles each (position, velocity, acceleration, target position, target
- * velocity, limits of velocity, acceleration, deceleration, jerk), and writes the duration of each; -1: no plan. */
+/* Plans the problems that come in on stdin, nine doubles each (position, velocity, acceleration, target position,
+ * target velocity, limits of velocity, acceleration, deceleration, jerk), and writes each duration; -1: no plan. */
 #include <stdio.h>
 
 #include "motion/profile.h"

@@ -24,7 +24,7 @@ def decade(low, high):
 
 
 def random_start(vmax, acc, dec, jerk):
-    """Within the limits: when its acceleration is eased, the velocity stays inside. Often at a limit to the last bit."""
+    """Within the limits, also when its acceleration is eased. Often at a limit to the last bit."""
     kind = random.random()
     if kind < 0.2:
         return 0.0, 0.0
@@ -61,7 +61,7 @@ def scenario_s6():
 
 
 def goes_backwards(profile, vmax):
-    """Whether the velocity gets below zero, at a border of pieces or, where the acceleration passes zero, in between."""
+    """Whether the velocity gets below zero: at a border of pieces, or where the acceleration passes zero."""
     pieces = zip(profile.t, profile.v, profile.a, profile.j)
     lowest = min(v - a * a / j / 2 if j > 0 and a < 0 and -a / j < t else v for t, v, a, j in pieces)
     return min(lowest, profile.v[-1]) < -1e-9 * vmax
