@@ -154,7 +154,10 @@ static cm1e_error_t plan_stop(const cm1e_axis_t *axis, const from_t *from, move_
 {
     cm1e_motion_limits_t limits;
     const cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
-    return error ? error : cm1e_axis_plan_stop(axis, from, &limits, profile);
+    if (error)
+        return error;
+    /* The rest of the numbers are the axis's own: these are too small to compute with. */
+    return cm1e_axis_plan_stop(axis, from, &limits, profile) ? CM1E_ERROR_AXIS_DYNAMICS_RANGE : CM1E_OK;
 }
 
 /* ---- by kind ----------------------------------------------------------------------------------------------------- */
