@@ -18,6 +18,7 @@ enum { EXAMPLE_TRACE_SAMPLES = 120000, EXAMPLE_VIRTUAL_TIME = 256, EXAMPLE_CSV, 
 typedef struct example {
     const char *interface_name, *csv_file, *svg_file;
     bool virtual_time;
+    void (*describe)(cm1e_axis_config_t *axis); /**< what is special about the axis; NULL: nothing */
     cm1e_bus_t *bus;
     cm1e_scheduler_t *scheduler;
     AXIS_REF_t axis;
@@ -57,6 +58,8 @@ static inline cm1e_error_t example_open(example_t *e, cm1e_bus_config_t *config,
     };
     cm1e_bus_config_init(config, e->interface_name, 1);
     config->virtual_time = e->virtual_time;
+    if (e->describe)
+        e->describe(&config->axes[0]);
     cm1e_error_t error = cm1e_bus_open(&e->bus, config, why);
     if (error == CM1E_OK)
         error = cm1e_bus_start(e->bus, why);

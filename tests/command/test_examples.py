@@ -6,9 +6,12 @@ test_examples.py BIN-DIRECTORY OUTPUT-DIRECTORY
 """
 import csv
 import os
+import pty
 import re
+import select
 import subprocess
 import sys
+import time
 import xml.etree.ElementTree
 
 BIN, OUTPUT = sys.argv[1], sys.argv[2]
@@ -73,8 +76,85 @@ def check_buffer_modes():
            f"04_buffer_modes: the plot's marks are not the modes: {words}")
 
 
+def check_touch_probe():
+    printed, trace, _ = run("07_touch_probe")
+    rows = re.findall(r"^ *(\d+) +([\d.]+) +([\d.]+) +([\d.]+) +([\d.]+) +-?\d+ us$", printed, re.MULTILINE)
+    expect([row[0] for row in rows] == ["1", "3", "9"], f"07_touch_probe: {printed}")
+    for velocity, on, off, uncertainty, between in (map(float, row) for row in rows):
+        half = velocity * 0.001 / 2  # of a cycle; the simulated switch is at 3 u, whichever way it is passed
+        expect(abs(uncertainty - half) < 1e-4, f"07_touch_probe: +-{uncertainty} u at {velocity} u/s")
+        for what, position, within in (("on", on, half), ("off", off, half), ("between", between, half)):
+            expect(abs(position - 3) <= within + 1e-4, f"07_touch_probe: {what} at {position} u, {velocity} u/s")
+    expect(len(crossings(trace, 3)) == 6, "07_touch_probe: the switch is not passed six times")
+
+
+# What each line does to the axis: key, milliseconds, where it is afterwards. Limits at +-4 u, 1 u/s and 8 u/s.
+KEYS = (("e", 300, 0), ("l", 1000, 1), ("-", 500, 1), ("2", 100, 1), ("l", 2000, 4), ("-", 100, 4), ("h", 2000, -4),
+        ("-", 100, -4), ("1", 100, -4), ("l", 500, None), ("b", 500, None), ("l", 500, None), ("-", 100, None),
+        ("5", 100, None), ("l", 50, None), ("-", 800, -3), ("4", 100, -3), ("h", 50, None), ("-", 800, -3.5),
+        ("e", 200, -3.5))
+
+
+def check_jog_panel():
+    printed, trace, _ = run("08_jog_panel", "".join(f"{key} {ms}\n" for key, ms, _ in KEYS))
+    expect("-3.500 u" in printed, f"08_jog_panel: {printed}")
+    position_at = {round(sample["time"] * 1000): sample["set_position"] for sample in trace}
+    end_ms, ends = 0, []
+    for key, ms, position in KEYS:
+        end_ms += ms
+        ends.append(position_at[end_ms - 1])
+        if position is not None:
+            expect(abs(ends[-1] - position) < 0.05,
+                   f"08_jog_panel: {key} for {ms} ms ends at {ends[-1]}, not {position}")
+    both = [key for key, _, _ in KEYS].index("b")
+    expect(abs(ends[both + 1] - ends[both]) < 1e-9, "08_jog_panel: the button that is left of two moves the axis")
+    expect(all(abs(sample["set_position"]) <= 4 + 1e-9 for sample in trace), "08_jog_panel: a limit is overrun")
+    expect(not any(sample["state"] == "ErrorStop" for sample in trace), "08_jog_panel: ErrorStop")
+
+
+def check_jog_panel_on_a_terminal():
+    """Keys that repeat move the axis; when they come no more it stops by itself; q ends the program."""
+    terminal, other_end = pty.openpty()
+    panel = subprocess.Popen([os.path.join(BIN, "08_jog_panel")], stdin=other_end, stdout=other_end, stderr=other_end)
+    os.close(other_end)
+    shown = ""
+
+    def type_in(text, seconds):
+        nonlocal shown
+        os.write(terminal, text)
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            try:
+                if select.select([terminal], [], [], 0.05)[0]:
+                    shown = (shown + os.read(terminal, 4096).decode(errors="replace"))[-4000:]
+            except OSError:
+                return  # the program has ended
+
+    def position():
+        found = re.findall(r"(-?\d+\.\d+) u ", shown)
+        return float(found[-1]) if found else None
+
+    type_in(b"", 1)
+    type_in(b"e", 1)
+    type_in(b"l", 0.4)
+    for _ in range(20):
+        type_in(b"l", 0.05)
+    held = position()
+    type_in(b"", 1.2)
+    stopped = position()
+    type_in(b"", 0.4)
+    expect(held is not None and held > 0.5, f"08_jog_panel: a key that repeats leads to {held} u: {shown[-300:]}")
+    expect(stopped == position(), f"08_jog_panel: released, and it goes on from {stopped} to {position()}")
+    type_in(b"q", 0.5)
+    expect(panel.wait(timeout=20) == 0, "08_jog_panel: exit status")
+    os.close(terminal)
+
+
 def main():
     check_buffer_modes()
+    check_touch_probe()
+    check_jog_panel()
+    check_jog_panel_on_a_terminal()
     print("\n".join(faults) or "the examples: their traces show what they are about")
     return 1 if faults else 0
 
