@@ -146,6 +146,13 @@ static void test_reversals_at_any_time_keep_the_motors_limits(void)
                     .direction = draw(2) ? mcPositiveDirection : mcNegativeDirection};
                 TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_start(axis, &command, &id));
             }
+            if (draw(4 * pace) == 0) { /* on top of it, or slower: refused or not, the sum is bounded */
+                cm1e_command_id_t id;
+                const cm1e_axis_command_t command = {.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = uniform(-5, 5),
+                                                     .velocity = uniform(0.1, 50)};
+                (void)cm1e_axis_start(axis, &command, &id);
+                (void)cm1e_axis_set_override(axis, uniform(0, 1), uniform(0.1, 1), uniform(0.1, 1));
+            }
             cycles(1);
             TEST_ASSERT_TRUE(axis->backlash.offset <= 1e-6 && axis->backlash.offset >= -GAP - 1e-6);
             TEST_ASSERT_TRUE(fabs(axis->set_velocity * axis->scale) + fabs(axis->backlash.offset_velocity) <=
