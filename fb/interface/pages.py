@@ -1,6 +1,7 @@
 """Writes docs/blocks/: a page for each block, and the index with the table of states."""
 import textwrap
 
+from st import ELEMENTARY
 from tables import STATES
 
 SECTIONS = (("in_out", "VAR_IN_OUT"), ("input", "VAR_INPUT"), ("output", "VAR_OUTPUT"))
@@ -46,13 +47,24 @@ def st_text(block):
     return "\n".join(lines + ["END_FUNCTION_BLOCK"])
 
 
-def variable_row(variable, tables):
-    text = "; ".join(part for part in (tables.meanings.get(variable.name, ""), variable.text) if part)
-    if variable.name in tables.meanings and variable.text and variable.text[0] != "(":
-        text = variable.text  # what is said of this block goes before what is said of all
+def type_link(name):
+    return name if name in ELEMENTARY else f"[{name}](TYPES.md#{name.lower()})"
+
+
+def meaning(variable, block, tables):
+    """What is said of this block goes before what is said of all."""
+    is_enabled = any(other.name == "Enable" for other in block.variables)
+    common = is_enabled and tables.meanings.get(f"{variable.name} (Enable)") or tables.meanings.get(variable.name, "")
+    if variable.text and variable.text[0] != "(":
+        return variable.text
+    return " ".join(part for part in (common, variable.text) if part)
+
+
+def variable_row(variable, block, tables):
     unit = ", ".join(part for part in (variable.unit, variable.range) if part)
     default = variable.default or ("" if variable.section != "input" else zero(variable))
-    return f"| `{variable.name}` | {variable.type} | {unit} | {default} | {text} |\n"
+    kind, text = type_link(variable.type), meaning(variable, block, tables)
+    return f"| `{variable.name}` | {kind} | {unit} | {default} | {text} |\n"
 
 
 def zero(variable):
@@ -69,7 +81,8 @@ def variables_text(block, tables):
             head, line = "| name | type | unit, range | meaning |\n|---|---|---|---|\n", lambda row: drop_default(row)
         else:
             head, line = "| name | type | unit, range | default | meaning |\n|---|---|---|---|---|\n", lambda row: row
-        result += f"## {title}\n\n{head}" + "".join(line(variable_row(item, tables)) for item in variables) + "\n"
+        rows = "".join(line(variable_row(item, block, tables)) for item in variables)
+        result += f"## {title}\n\n{head}{rows}\n"
     return result
 
 
@@ -134,8 +147,6 @@ def page(block, file, tables, notes, has_diagram):
     name = block.name
     include = "iec.h" if file.header == "iec.h" else "plcopen.h"
     diagram = f"## Timing\n\n![timing of {name}]({name}.svg)\n\n" if has_diagram else ""
-    if diagram and block.tags.get("timing"):
-        diagram += wrap(" ".join(block.tags["timing"])) + "\n\n"
     defaults = ""
     if any(variable.default for variable in block.variables):
         defaults = (f"A zeroed struct has 0 where a default is given below; `{name.upper()}_DEFAULTS` in its "
@@ -152,8 +163,8 @@ def index(files, tables):
     text = "# The blocks\n\n"
     text += wrap("One page a block: what it is for, its declaration, inputs and outputs with units, the states in "
                  "which it may be called, its errors, a timing diagram that a real run on the simulated motor has "
-                 "drawn. What holds for all of them is in [the function blocks](../FUNCTION-BLOCKS.md). The pages are "
-                 "generated from `fb/interface/`.") + "\n\n"
+                 "drawn. What holds for all of them is in [the function blocks](../FUNCTION-BLOCKS.md), their types "
+                 "are in [the types](TYPES.md). The pages are generated from `fb/interface/`.") + "\n\n"
     for file in files:
         if not file.blocks():
             continue
@@ -175,8 +186,36 @@ def index(files, tables):
     return text
 
 
+def type_text(declaration):
+    doc = " ".join(declaration.doc.split())
+    if declaration.kind == "enum":
+        rows = "".join(f"| {item.default} | `{item.name}` | {item.text} |\n" for item in declaration.variables)
+        return f"{doc}\n\n| number | name | |\n|---|---|---|\n{rows}"
+    if declaration.kind == "alias":
+        return f"{doc}\n\nThe same as {type_link(declaration.base)}.\n"
+    rows = ""
+    for item in declaration.variables:
+        unit = ", ".join(part for part in (item.unit, item.range) if part)
+        kind = f"{type_link(item.type)}[{item.length}]" if item.length else type_link(item.type)
+        rows += f"| `{item.name}` | {kind} | {unit} | {item.text} |\n"
+    return f"{doc}\n\n| member | type | unit, range | |\n|---|---|---|---|\n{rows}"
+
+
+def types(files):
+    """The page of all types that an application sees."""
+    text = "# The types of the blocks\n\n"
+    for declaration in (item for file in files for item in file.declarations):
+        if declaration.kind in ("enum", "alias", "struct") and not declaration.name.endswith(("_private", "_timer",
+                                                                                             "_edges")):
+            text += f"## {declaration.name}\n\n{type_text(declaration)}\n"
+        elif declaration.kind == "constants":
+            constants = ", ".join(f"`{item.name}` {item.default}" for item in declaration.variables)
+            text += f"## Sizes\n\n{' '.join(declaration.doc.split())} {constants}.\n\n"
+    return text.rstrip() + "\n"
+
+
 def all_pages(files, tables, notes, has_diagram):
-    result = {"docs/blocks/README.md": index(files, tables)}
+    result = {"docs/blocks/README.md": index(files, tables), "docs/blocks/TYPES.md": types(files)}
     for file in files:
         for block in file.blocks():
             result[f"docs/blocks/{block.name}.md"] = page(block, file, tables, notes, has_diagram(block.name))

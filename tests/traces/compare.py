@@ -17,7 +17,7 @@ TOLERANCE = 0.75
 
 
 def pages(folder):
-    return {os.path.basename(path)[:-3] for path in glob.glob(os.path.join(folder, "*.md"))} - {"README"}
+    return {os.path.basename(path)[:-3] for path in glob.glob(os.path.join(folder, "*.md"))} - {"README", "TYPES"}
 
 
 def diagrams(folder):
