@@ -15,7 +15,7 @@
 enum {
     COLUMNS_PER_ROW = 3,
     COLUMN_LEFT = 72, COLUMN_RIGHT = 18, PLOT_WIDTH = 400, ONLY_PLOT_WIDTH = 810, /* as wide as the head */
-    HEAD = 84, NAME = 24, MARKS = 14, BAND = 12, PANEL_GAP = 16, TIME_AXIS = 44,
+    HEAD = 84, NAME = 24, MARK_ROW = 12, MARK_LETTER = 6, BAND = 12, PANEL_GAP = 16, TIME_AXIS = 44,
     BYTES_FOR_CURVES = 380000, BYTES_PER_POINT = 13,
 };
 
@@ -310,7 +310,7 @@ static void print_panel(const plot_t *plot, const box_t *box, uint32_t axis, uns
 
 static double column_width(const plot_t *plot) { return COLUMN_LEFT + plot->width + COLUMN_RIGHT; }
 
-static double marks_height(const trace_t *trace) { return trace->mark_count > 0 ? MARKS : 0; }
+static double marks_height(const trace_t *trace) { return trace->mark_count > 0 ? 2 * MARK_ROW + 2 : 0; }
 
 static double column_height(const trace_t *trace)
 {
@@ -320,18 +320,22 @@ static double column_height(const trace_t *trace)
     return height;
 }
 
-/** Those of the time shown, from the row of their texts above `band` down to `bottom`. */
+/** Those of the time shown, from the rows of their texts above `band` down to `bottom`. A text that would run into the
+ *  one before stands in the upper row. */
 static void print_marks(const plot_t *plot, const box_t *band, double bottom)
 {
     const trace_t *trace = plot->trace;
+    double row_end = band->x; /* of the texts in the lower row */
     for (uint32_t n = 0; n < trace->mark_count; n++) {
         const trace_mark_t *mark = trace_mark_at(trace, n);
         const double x = x_of(plot, band, (double)mark->time_ns * 1e-9);
         if (x < band->x || x > band->x + band->width)
             continue;
-        fprintf(plot->file, "<path class=\"mark\" d=\"M%.1f,%.0fv%.0f\"/>", x, band->y - MARKS,
-                bottom - band->y + MARKS);
-        fprintf(plot->file, "<text class=\"tick\" x=\"%.1f\" y=\"%.0f\">", x + 3, band->y - 4);
+        const double y = x < row_end ? band->y - MARK_ROW - 4 : band->y - 4;
+        if (x >= row_end)
+            row_end = x + MARK_LETTER * (double)strlen(mark->text);
+        fprintf(plot->file, "<path class=\"mark\" d=\"M%.1f,%.1fv%.1f\"/>", x, y - 7, bottom - y + 7);
+        fprintf(plot->file, "<text class=\"tick\" x=\"%.1f\" y=\"%.0f\">", x + 3, y);
         print_escaped(plot->file, mark->text);
         fputs("</text>\n", plot->file);
     }
