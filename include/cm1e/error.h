@@ -69,6 +69,7 @@ extern "C" {
     X(ERROR_AXIS_PARAMETER, -80, "the axis has no such parameter, or it is not of type BOOL")                       \
     X(ERROR_AXIS_PARAMETER_READ_ONLY, -81, "the parameter cannot be written")                                       \
     X(ERROR_AXIS_PARAMETER_RANGE, -82, "the value is out of the parameter's range")                                 \
+    X(ERROR_AXIS_OVERRIDE, -83, "an override factor is out of its range")                                           \
     X(ERROR_AXIS_SIGNAL, -85, "the bus reaches no digital input or output of this number")                           \
     X(ERROR_AXIS_PROBE, -86, "a trigger came while the position was not known")                                     \
     X(ERROR_AXIS_NO_TORQUE_MODE, -87, "the drive has no torque mode, only positions and velocities")                \

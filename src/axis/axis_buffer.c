@@ -47,7 +47,7 @@ static double junction_velocity(MC_BUFFER_MODE mode, double first, double second
 }
 
 /* FALSE: the command before it has to stop. `end` is where that one ends, `sign` the way it goes; both are moved on. */
-static bool make_leg(const cm1e_axis_t *axis, move_t *move, position_t *end, double sign, leg_t *leg)
+static bool make_leg(cm1e_axis_t *axis, move_t *move, position_t *end, double sign, leg_t *leg)
 {
     const from_t from = {*end, sign * DBL_MIN, 0.0}; /* only the direction is known yet */
     move->origin = *end;
@@ -66,7 +66,8 @@ static bool make_leg(const cm1e_axis_t *axis, move_t *move, position_t *end, dou
         leg->distance = sign;
         leg->limits.velocity = 0.0;
     } else if (is_continuous_move((cm1e_command_kind_t)move->kind)) {
-        leg->exit_velocity = fmax(0.0, leg->distance > 0.0 ? move->end_velocity : -move->end_velocity);
+        const double exit_velocity = cm1e_axis_exit_velocity(axis, &from, move);
+        leg->exit_velocity = fmax(0.0, leg->distance > 0.0 ? exit_velocity : -exit_velocity);
     }
     *end = move->target;
     return leg->distance != 0.0;
@@ -89,8 +90,9 @@ static double entry_velocity(const leg_t *leg, double velocity_before, double si
 
 double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t *move)
 {
+    const double factor = axis->override.velocity > 0.0 ? axis->override.velocity : 1.0;
     if (is_continuous_move((cm1e_command_kind_t)move->kind))
-        return move->end_velocity;
+        return factor * move->end_velocity;
     cm1e_motion_limits_t limits;
     if (axis->waiting.count == 0 || !is_discrete_move((cm1e_command_kind_t)move->kind) ||
         cm1e_axis_limits_of(axis, from, move, &limits))
@@ -245,25 +247,43 @@ bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offse
     return false;
 }
 
+static cm1e_error_t plan_again(cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
+{
+    move->exit_velocity = cm1e_axis_exit_velocity(axis, from, move);
+    return cm1e_axis_plan(axis, from, move, profile);
+}
+
+static void go_on_as(cm1e_axis_t *axis, const from_t *from, const move_t *move, const cm1e_profile_t *profile)
+{
+    axis->move = *move;
+    cm1e_axis_run(axis, from, profile, cm1e_axis_profile_end(axis, from, move, profile), 0.0);
+    axis->paused = move->paused;
+}
+
 cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *as)
 {
     move_t move = *as;
     cm1e_profile_t profile;
     const from_t from = from_set(axis);
-    move.exit_velocity = cm1e_axis_exit_velocity(axis, &from, &move);
-    const cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, &profile);
-    if (error)
-        return error;
-    axis->move = move;
-    cm1e_axis_run(axis, &from, &profile, cm1e_axis_profile_end(axis, &from, &move, &profile), 0.0);
-    return CM1E_OK;
+    const cm1e_error_t error = plan_again(axis, &from, &move, &profile);
+    if (!error)
+        go_on_as(axis, &from, &move, &profile);
+    return error;
 }
 
+/* A profile that is to pass its target with a velocity cannot always be slowed down any more: then it stays. */
 cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis)
 {
     if (!axis->active || axis->activity != ACTIVITY_PROFILE || axis->kind == CM1E_COMMAND_STOP ||
         axis->kind == CM1E_COMMAND_HOMING_STEP)
         return CM1E_OK;
-    const move_t move = axis->move;
-    return cm1e_axis_replan_as(axis, &move);
+    move_t move = axis->move;
+    cm1e_profile_t profile;
+    const from_t from = from_set(axis);
+    const cm1e_error_t error = plan_again(axis, &from, &move, &profile);
+    const bool too_late = !axis->paused && is_discrete_move(axis->kind) && axis->move.exit_velocity != 0.0 &&
+                          cm1e_axis_profile_passes(axis, &from, &move, &profile);
+    if (!error && !too_late)
+        go_on_as(axis, &from, &move, &profile);
+    return error;
 }

@@ -66,13 +66,16 @@ void cm1e_axis_take(cm1e_axis_t *axis, const move_t *move, const from_t *from, c
     axis->kind = (cm1e_command_kind_t)move->kind;
     axis->move = *move;
     cm1e_axis_run(axis, from, profile, cm1e_axis_profile_end(axis, from, move, profile), offset_s);
+    axis->paused = move->paused;
 }
 
 /* 3.7: most recently commanded is the position that a discrete motion goes to, or went to until it was aborted; a
  * continuous one has none. */
 static position_t commanded_position(const cm1e_axis_t *axis)
 {
-    return axis->activity == ACTIVITY_PROFILE && axis->state == CM1E_AXIS_DISCRETE_MOTION ? axis->target : axis->set;
+    if (axis->activity != ACTIVITY_PROFILE || axis->state != CM1E_AXIS_DISCRETE_MOTION)
+        return axis->set;
+    return axis->active && is_discrete_move(axis->kind) ? axis->move.target : axis->target;
 }
 
 static void hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id)
@@ -88,7 +91,7 @@ static cm1e_error_t start_move(cm1e_axis_t *axis, const cm1e_axis_command_t *com
     move_t move = cm1e_axis_move_of(command);
     cm1e_profile_t profile;
     move.origin = move.kind == CM1E_COMMAND_MOVE_ADDITIVE ? commanded_position(axis) : from.position;
-    move.exit_velocity = move.end_velocity;
+    move.exit_velocity = is_endless(command->kind) ? cm1e_axis_exit_velocity(axis, &from, &move) : 0.0;
     cm1e_error_t error = cm1e_axis_resolve(axis, &from, &move);
     if (!error)
         error = cm1e_axis_plan(axis, &from, &move, &profile);
@@ -295,10 +298,4 @@ void cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold)
 {
     if (id != 0 && id == axis->stop)
         axis->stop_held = hold;
-}
-
-cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double acceleration, double jerk)
-{
-    (void)axis;
-    return velocity == 1.0 && acceleration == 1.0 && jerk == 1.0 ? CM1E_OK : CM1E_ERROR_UNSUPPORTED;
 }

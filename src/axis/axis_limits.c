@@ -67,6 +67,7 @@ cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
     axis->maximum.jerk = or_default(c->max_jerk, default_jerk_counts / counts);
     axis->system = axis->maximum;
     axis->emergency = axis->system;
+    axis->override = (override_t){1.0, 1.0, 1.0};
     axis->emergency.jerk = INFINITY;
     axis->emergency_way = 0.5 / axis->emergency.deceleration;
     axis->tolerance = tolerance_counts / fabs(axis->scale);
@@ -102,8 +103,8 @@ static void keep_below_maximum_velocity(const cm1e_axis_t *axis, const from_t *f
         limits->jerk = a * a / (2.0 * fmax(room, relative_tolerance * most));
 }
 
-cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
-                                 cm1e_motion_limits_t *limits)
+/* What a command asks for, checked against the axis's maxima. */
+static cm1e_error_t asked_limits(const cm1e_axis_t *axis, const move_t *move, cm1e_motion_limits_t *limits)
 {
     const cm1e_motion_limits_t *most = &axis->maximum;
     const bool stopping = move->kind == CM1E_COMMAND_HALT || move->kind == CM1E_COMMAND_STOP;
@@ -112,7 +113,6 @@ cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const from_t *from, co
         !choose(move->deceleration, most->deceleration, stopping, &limits->deceleration) ||
         !choose(move->jerk, most->jerk, stopping, &limits->jerk))
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
-    keep_below_maximum_velocity(axis, from, limits);
     limits->velocity = most->velocity;
     if (stopping)
         return CM1E_OK;
@@ -123,6 +123,33 @@ cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const from_t *from, co
         return CM1E_ERROR_AXIS_VELOCITY_RANGE;
     limits->velocity = fmin(speed, most->velocity);
     return CM1E_OK;
+}
+
+/* Where MC_SetOverride does not act: MC_Stop is a matter of safety, and a homing has its own measures. */
+static bool has_override(cm1e_command_kind_t kind)
+{
+    return kind != CM1E_COMMAND_STOP && kind != CM1E_COMMAND_HOMING_STEP && kind != CM1E_COMMAND_HOME;
+}
+
+cm1e_error_t cm1e_axis_limits_with(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
+                                   const override_t *override, cm1e_motion_limits_t *limits)
+{
+    const cm1e_error_t error = asked_limits(axis, move, limits);
+    if (!error && has_override((cm1e_command_kind_t)move->kind)) {
+        limits->velocity *= override->velocity > 0.0 ? override->velocity : 1.0; /* 0: it waits, see axis_override.c */
+        limits->acceleration *= override->acceleration;
+        limits->deceleration *= override->acceleration;
+        limits->jerk *= override->jerk;
+    }
+    if (!error)
+        keep_below_maximum_velocity(axis, from, limits);
+    return error;
+}
+
+cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
+                                 cm1e_motion_limits_t *limits)
+{
+    return cm1e_axis_limits_with(axis, from, move, &axis->override, limits);
 }
 
 bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity)

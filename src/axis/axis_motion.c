@@ -22,6 +22,7 @@ void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *
     axis->profile_cycles = 0;
     axis->profile_offset_s = offset_s;
     axis->reached = false;
+    axis->paused = false;
     axis->activity = ACTIVITY_PROFILE;
 }
 
@@ -140,7 +141,8 @@ static cm1e_motion_state_t sample(cm1e_axis_t *axis, double time_s)
 static void profile_step(cm1e_axis_t *axis)
 {
     double time_s = next_time(axis);
-    while (!axis->reached && time_s >= axis->profile.duration_s - same_moment * axis->cycle_s) {
+    while (!axis->reached && !axis->paused &&
+           time_s >= axis->profile.duration_s - same_moment * axis->cycle_s) {
         if (!profile_ended(axis, fmax(time_s - axis->profile.duration_s, 0.0)))
             return;
         if (!axis->reached)

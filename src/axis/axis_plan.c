@@ -50,16 +50,41 @@ static cm1e_error_t resolve_none(const cm1e_axis_t *axis, const from_t *from, mo
 
 /* ---- profiles ---------------------------------------------------------------------------------------------------- */
 
-static cm1e_error_t plan_to_target(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
+/* Whether it leaves the way between its start and a target `distance` away on the far side. */
+static bool passes(const cm1e_axis_t *axis, const cm1e_profile_t *profile, double distance)
+{
+    double lowest, highest;
+    cm1e_profile_extent(profile, &lowest, &highest);
+    return distance > 0.0 ? highest > distance + axis->tolerance : lowest < distance - axis->tolerance;
+}
+
+static bool slowed(const cm1e_axis_t *axis)
+{
+    return axis->override.acceleration < 1.0 || axis->override.jerk < 1.0;
+}
+
+static cm1e_error_t to_target(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
+                              const override_t *override, double distance, cm1e_profile_t *profile)
 {
     cm1e_motion_limits_t limits;
-    cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
+    const cm1e_error_t error = cm1e_axis_limits_with(axis, from, move, override, &limits);
     if (error)
         return error;
     const cm1e_motion_state_t start = start_of(from);
+    return cm1e_profile_to_state(profile, &start, distance, move->exit_velocity, &limits)
+               ? CM1E_ERROR_AXIS_POSITION_RANGE : CM1E_OK;
+}
+
+/* An override that takes away deceleration on the way does so only as far as the target is not passed (3.18, note 9). */
+static cm1e_error_t plan_to_target(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
+{
     const double distance = cm1e_position_minus(move->target, from->position) / axis->scale;
-    error = cm1e_profile_to_state(profile, &start, distance, move->exit_velocity, &limits);
-    return error ? CM1E_ERROR_AXIS_POSITION_RANGE : cm1e_axis_limits_check(axis, from, profile);
+    cm1e_error_t error = to_target(axis, from, move, &axis->override, distance, profile);
+    if (!error && slowed(axis) && passes(axis, profile, distance)) {
+        const override_t full = {axis->override.velocity, 1.0, 1.0};
+        error = to_target(axis, from, move, &full, distance, profile);
+    }
+    return error ? error : cm1e_axis_limits_check(axis, from, profile);
 }
 
 cm1e_error_t cm1e_axis_signed_velocity(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
@@ -150,14 +175,23 @@ cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const from_t *from, co
     return cm1e_profile_to_velocity(profile, &start, 0.0, &axis->emergency);
 }
 
+static const override_t no_override = {1.0, 1.0, 1.0};
+
+/* A stop by a command: with the override as far as that keeps it inside the software limits. */
 static cm1e_error_t plan_stop(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
 {
     cm1e_motion_limits_t limits;
-    const cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
+    const cm1e_motion_state_t start = start_of(from);
+    cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
     if (error)
         return error;
     /* The rest of the numbers are the axis's own: these are too small to compute with. */
-    return cm1e_axis_plan_stop(axis, from, &limits, profile) ? CM1E_ERROR_AXIS_DYNAMICS_RANGE : CM1E_OK;
+    if (cm1e_profile_to_velocity(profile, &start, 0.0, &limits))
+        return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
+    if (cm1e_axis_limits_contain(axis, from, profile))
+        return CM1E_OK;
+    error = cm1e_axis_limits_with(axis, from, move, &no_override, &limits);
+    return error ? error : cm1e_axis_plan_stop(axis, from, &limits, profile);
 }
 
 /* ---- by kind ----------------------------------------------------------------------------------------------------- */
@@ -185,16 +219,44 @@ cm1e_error_t cm1e_axis_resolve(const cm1e_axis_t *axis, const from_t *from, move
     return planners[move->kind].resolve(axis, from, move);
 }
 
+/* An override of velocity 0: down to a standstill, and there it waits. Where a position is to be passed with a velocity
+ * and it is too late to stop before, it is passed, and the next command waits. */
+static bool plan_pause(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
+{
+    const bool has_target = is_discrete_move((cm1e_command_kind_t)move->kind);
+    const double distance = cm1e_position_minus(move->target, from->position) / axis->scale;
+    cm1e_motion_limits_t limits;
+    cm1e_profile_t stop;
+    if (plan_stop(axis, from, move, &stop))
+        return false;
+    if (has_target && passes(axis, &stop, distance) &&
+        (cm1e_axis_limits_with(axis, from, move, &no_override, &limits) ||
+         cm1e_axis_plan_stop(axis, from, &limits, &stop) || passes(axis, &stop, distance)))
+        return false;
+    *profile = stop;
+    return true;
+}
+
 cm1e_error_t cm1e_axis_plan(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
 {
-    return planners[move->kind].plan(axis, from, move, profile);
+    const cm1e_error_t error = planners[move->kind].plan(axis, from, move, profile);
+    const bool moves = is_discrete_move((cm1e_command_kind_t)move->kind) ||
+                       is_endless((cm1e_command_kind_t)move->kind);
+    move->paused = !error && moves && axis->override.velocity == 0.0 && plan_pause(axis, from, move, profile);
+    return error;
 }
 
 position_t cm1e_axis_profile_end(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                                  const cm1e_profile_t *profile)
 {
     const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
-    if (is_discrete_move(kind) || (is_continuous_move(kind) && !move->passing))
+    if (!move->paused && (is_discrete_move(kind) || (is_continuous_move(kind) && !move->passing)))
         return move->target;
     return cm1e_position_plus(from->position, profile->end.position * axis->scale);
+}
+
+bool cm1e_axis_profile_passes(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
+                              const cm1e_profile_t *profile)
+{
+    return passes(axis, profile, cm1e_position_minus(move->target, from->position) / axis->scale);
 }

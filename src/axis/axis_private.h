@@ -66,6 +66,7 @@ typedef struct move {
     position_t origin;      /**< what a relative position counts from */
     position_t target;      /**< where it ends */
     double exit_velocity;   /**< u/s, signed: with which it passes its target, because another one goes on from there */
+    bool paused;            /**< an override of velocity 0: it brakes to a standstill and waits */
 } move_t;
 
 /** Commands that wait behind the active one, in their order: a ring. */
@@ -87,6 +88,11 @@ typedef struct waiting_step {
     cm1e_command_id_t id;
     cm1e_homing_step_t step;
 } waiting_step_t;
+
+/** Factors of MC_SetOverride; acceleration: also for the deceleration. */
+typedef struct override {
+    double velocity, acceleration, jerk;
+} override_t;
 
 /** Where a motion begins. */
 typedef struct from {
@@ -251,6 +257,8 @@ struct cm1e_axis {
     cm1e_profile_stretch_t stretch; /**< of it, the one that the set-point is in */
     int64_t profile_cycles;         /**< since it began ... */
     double profile_offset_s;        /**< ... so long before the first of them */
+    bool paused;                    /**< its end is not that of its command, which waits (MC_SetOverride) */
+    override_t override;
 
     command_record_t records[COMMANDS_REMEMBERED];
     cm1e_command_id_t last_id;
@@ -344,6 +352,9 @@ cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt
  *  refused. */
 cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                                  cm1e_motion_limits_t *limits);
+/** The same with these factors instead of the axis's override. */
+cm1e_error_t cm1e_axis_limits_with(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
+                                   const override_t *override, cm1e_motion_limits_t *limits);
 /** A target inside the software limits, or not farther outside than where the way there begins. */
 bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, position_t from, position_t target);
 /** Whether a profile that begins there stays inside the software limits. */
@@ -412,6 +423,9 @@ cm1e_error_t cm1e_axis_plan(const cm1e_axis_t *axis, const from_t *from, move_t 
 /** Where that profile ends: at the target, exactly, if the command has one. */
 position_t cm1e_axis_profile_end(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                                  const cm1e_profile_t *profile);
+/** Whether it goes beyond the target on the way. */
+bool cm1e_axis_profile_passes(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
+                              const cm1e_profile_t *profile);
 /** A stop; one that would run over a software limit brakes as an error does instead. */
 cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *limits,
                                  cm1e_profile_t *profile);

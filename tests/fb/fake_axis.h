@@ -29,6 +29,7 @@ struct cm1e_axis {
     bool enable, positive, negative, powered;
     cm1e_error_t power_error;
     unsigned power_calls;
+    double override[3];
 };
 
 static cm1e_axis_t fake_axes[FAKE_AXES];
@@ -57,6 +58,16 @@ cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *comma
     axis->command = *command;
     axis->id = *id = ++next_id;
     axis->status[axis->id % FAKE_COMMANDS] = (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE};
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double acceleration, double jerk)
+{
+    if (!(acceleration > 0.0))
+        return CM1E_ERROR_AXIS_OVERRIDE;
+    axis->override[0] = velocity;
+    axis->override[1] = acceleration;
+    axis->override[2] = jerk;
     return CM1E_OK;
 }
 

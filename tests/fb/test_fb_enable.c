@@ -322,6 +322,39 @@ START_TEST(test_values_are_the_axis_s_and_0_while_not_valid)
 }
 END_TEST
 
+/* ---- MC_SetOverride -------------------------------------------------------------------------------------------- */
+
+START_TEST(test_override_is_written_while_enabled_and_kept)
+{
+    fake_reset();
+    MC_SetOverride_t fb = {.Axis = &x, .VelFactor = 0.5, .AccFactor = 0.25, .JerkFactor = 0.75};
+    MC_SetOverride(&fb);
+    ck_assert(!fb.Enabled && !fb.Busy && !fb.Error && axis_x->override[0] == 0.0);
+    fb.Enable = TRUE;
+    MC_SetOverride(&fb);
+    ck_assert(fb.Enabled && fb.Busy && !fb.Error);
+    ck_assert(axis_x->override[0] == 0.5 && axis_x->override[1] == 0.25 && axis_x->override[2] == 0.75);
+    fb.VelFactor = 0.0;
+    fb.AccFactor = 0.0; /* figure 36, 4: nothing changes, and it passes */
+    MC_SetOverride(&fb);
+    ck_assert(!fb.Enabled && fb.Busy && fb.Error && fb.ErrorID == id(CM1E_ERROR_AXIS_OVERRIDE));
+    ck_assert(axis_x->override[0] == 0.5);
+    fb.AccFactor = 1.0;
+    MC_SetOverride(&fb);
+    ck_assert(fb.Enabled && fb.Busy && !fb.Error && fb.ErrorID == 0 && axis_x->override[0] == 0.0);
+    fb.Enable = FALSE;
+    fb.VelFactor = 1.0;
+    MC_SetOverride(&fb);
+    ck_assert(!fb.Enabled && !fb.Busy && !fb.Error && axis_x->override[0] == 0.0);
+    fb.Enable = TRUE;
+    MC_SetOverride(&fb);
+    fb.Axis = &y;
+    MC_SetOverride(&fb);
+    ck_assert(!fb.Enabled && !fb.Busy && fb.Error && fb.ErrorID == id(CM1E_ERROR_FB_AXIS_CHANGED));
+    ck_assert(axis_y->override[0] == 0.0);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("Enable");
@@ -346,6 +379,7 @@ int main(void)
         tcase_add_test(powers, power_tests[i]);
     for (size_t i = 0; i < sizeof reader_tests / sizeof reader_tests[0]; i++)
         tcase_add_loop_test(reads, reader_tests[i], 0, READERS);
+    tcase_add_test(powers, test_override_is_written_while_enabled_and_kept);
     suite_add_tcase(suite, powers);
     suite_add_tcase(suite, reads);
     SRunner *runner = srunner_create(suite);

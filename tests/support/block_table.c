@@ -1448,6 +1448,7 @@ static void call_MC_SetOverride(void *fb) { MC_SetOverride(fb); }
 static const cm1e_error_t errors_of_MC_SetOverride[] = {
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_OVERRIDE,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_ReadParameter[] = {

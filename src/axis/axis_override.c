@@ -1,0 +1,33 @@
+/*
+ * MC_SetOverride (3.18): factors on the dynamics of every command but MC_Stop and homing. A change is planned in at
+ * once, from the present set-point. A velocity of 0 brakes the command to a standstill in which it stays active, in its
+ * state of the diagram, and from which it goes on when the factor is larger again.
+ */
+#include "axis/axis_private.h"
+
+static bool is_factor(double value) { return value > 0.0 && value <= 1.0; }
+
+/* What cannot go on after a pause ends with that error, as if it began now (2.2.2, case 2: the next one does). */
+static void resume_failed(cm1e_axis_t *axis, cm1e_error_t error)
+{
+    const from_t from = from_set(axis);
+    cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, error);
+    axis->state = CM1E_AXIS_DISCRETE_MOTION;
+    if (!cm1e_axis_begin_waiting(axis, &from, 0.0))
+        cm1e_axis_ramp_down(axis, &axis->maximum);
+}
+
+cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double acceleration, double jerk)
+{
+    const override_t before = axis->override;
+    if (!(velocity >= 0.0 && velocity <= 1.0) || !is_factor(acceleration) || !is_factor(jerk))
+        return CM1E_ERROR_AXIS_OVERRIDE;
+    if (velocity == before.velocity && acceleration == before.acceleration && jerk == before.jerk)
+        return CM1E_OK;
+    axis->override = (override_t){velocity, acceleration, jerk};
+    const bool paused = axis->paused;
+    const cm1e_error_t error = cm1e_axis_replan(axis);
+    if (error && paused && velocity > 0.0)
+        resume_failed(axis, error);
+    return CM1E_OK;
+}

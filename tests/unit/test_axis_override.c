@@ -1,0 +1,217 @@
+/* MC_SetOverride (3.18): factors on the dynamics of what moves the axis. */
+#include "../support/axis_bench.h"
+#include "../support/axis_watch.h"
+
+static uint64_t seed;
+
+static double draw(double low, double high)
+{
+    seed ^= seed << 13;
+    seed ^= seed >> 7;
+    seed ^= seed << 17;
+    return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
+}
+
+void setUp(void)
+{
+    bench_end();
+    fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+    bus.config.axes[0].max_acceleration = 100.0;
+    bus.config.axes[0].max_deceleration = 80.0;
+    bus.config.axes[0].max_jerk = 2000.0;
+    bus.config.axes[0].software_limit_negative = -50.0;
+    bus.config.axes[0].software_limit_positive = 50.0;
+    bench_create();
+    bench_enable();
+    watch_begin();
+}
+void tearDown(void) { bench_end(); }
+
+static void override(double velocity, double acceleration, double jerk)
+{
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_override(axis, velocity, acceleration, jerk));
+}
+
+static cm1e_command_id_t post(cm1e_command_kind_t kind, double position, double velocity, MC_BUFFER_MODE mode)
+{
+    return bench_start_command(&(cm1e_axis_command_t){.kind = kind, .position = position, .velocity = velocity,
+                                                      .end_velocity = 2.0, .buffer_mode = mode});
+}
+
+static void test_velocity_factor_acts_on_the_motion_and_on_the_next(void)
+{
+    const cm1e_command_id_t first = bench_move_to(20.0, 10.0);
+    watch_cycles(500);
+    TEST_ASSERT_EQUAL_DOUBLE(10.0, axis->set_velocity);
+    override(0.5, 1.0, 1.0);
+    watch_cycles(300);
+    TEST_ASSERT_EQUAL_DOUBLE(5.0, axis->set_velocity);
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_DISCRETE_MOTION, bench_info().state);
+    override(1.0, 1.0, 1.0);
+    watch_cycles(300);
+    TEST_ASSERT_EQUAL_DOUBLE(10.0, axis->set_velocity);
+    override(0.3, 1.0, 1.0);
+    watch_cycles(6000);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(first));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 20.0, bench_info().set_position);
+    const cm1e_command_id_t second = bench_move_velocity(10.0); /* kept until it is set anew */
+    watch_cycles(300);
+    TEST_ASSERT_EQUAL_DOUBLE(3.0, axis->set_velocity);
+    TEST_ASSERT_TRUE(cm1e_axis_command_status(axis, second).reached);
+}
+
+static void test_acceleration_and_jerk_factors_bound_what_follows(void)
+{
+    override(1.0, 0.25, 0.5);
+    bench_move_to(20.0, 10.0);
+    double most = 0.0, jerk = 0.0, before = 0.0;
+    for (int i = 0; i < 4000; i++) {
+        watch_cycles(1);
+        most = fmax(most, fabs(axis->set_acceleration));
+        jerk = fmax(jerk, fabs(axis->set_acceleration - before) / 1e-3);
+        before = axis->set_acceleration;
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 25.0, most);
+    TEST_ASSERT_TRUE(jerk <= 1000.0 + 1e-6);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 20.0, bench_info().set_position);
+}
+
+static void test_velocity_0_stands_without_standstill_and_goes_on(void)
+{
+    static const cm1e_command_kind_t kinds[] = {CM1E_COMMAND_MOVE_ABSOLUTE, CM1E_COMMAND_MOVE_VELOCITY,
+                                                CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE};
+    for (int k = 0; k < 3; k++)
+        for (int wait = 0; wait < 1200; wait += 97) {
+            setUp();
+            const cm1e_command_id_t id = post(kinds[k], 8.0, 10.0, mcAborting);
+            watch_cycles(wait);
+            const bool over = bench_state_of(id) == CM1E_COMMAND_DONE;
+            override(0.0, 1.0, 1.0);
+            watch_cycles(400);
+            TEST_ASSERT_EQUAL_DOUBLE(0.0, axis->set_velocity);
+            TEST_ASSERT_FALSE(cm1e_axis_command_status(axis, id).reached);
+            const double at = bench_info().set_position;
+            watch_cycles(100);
+            TEST_ASSERT_EQUAL_DOUBLE(at, bench_info().set_position);
+            if (!over) {
+                TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(id));
+                TEST_ASSERT_EQUAL_INT(k == 0 ? CM1E_AXIS_DISCRETE_MOTION : CM1E_AXIS_CONTINUOUS_MOTION,
+                                      bench_info().state);
+            }
+            override(1.0, 1.0, 1.0);
+            watch_cycles(2500);
+            if (k == 0) {
+                TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
+                TEST_ASSERT_DOUBLE_WITHIN(1e-9, 8.0, bench_info().set_position);
+                TEST_ASSERT_TRUE(watch.highest <= 8.0 + 1e-9);
+            } else {
+                TEST_ASSERT_TRUE(cm1e_axis_command_status(axis, id).reached);
+            }
+        }
+}
+
+static void test_commands_given_while_velocity_is_0_begin_when_it_is_not(void)
+{
+    override(0.0, 1.0, 1.0);
+    const cm1e_command_id_t first = post(CM1E_COMMAND_MOVE_ABSOLUTE, 2.0, 5.0, mcAborting);
+    const cm1e_command_id_t second = post(CM1E_COMMAND_MOVE_ADDITIVE, 3.0, 5.0, mcBlendingHigh);
+    watch_cycles(500);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, bench_info().set_position);
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_DISCRETE_MOTION, bench_info().state);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(first));
+    const cm1e_axis_command_t bad = {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 51.0, .velocity = 1.0};
+    cm1e_command_id_t id;
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_start(axis, &bad, &id));
+    const cm1e_command_id_t third = post(CM1E_COMMAND_MOVE_ADDITIVE, 4.0, 5.0, mcAborting); /* to 2 + 4 */
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ABORTED, bench_state_of(second));
+    override(0.5, 1.0, 1.0);
+    watch_cycles(4000);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(third));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 6.0, bench_info().set_position);
+}
+
+/* 3.18, note 4, figure 36. */
+static void test_factors_out_of_range_change_nothing(void)
+{
+    bench_move_to(20.0, 10.0);
+    watch_cycles(300);
+    const int64_t cycles = axis->profile_cycles;
+    static const double bad[][3] = {{1, 0, 1}, {1, 1, 0}, {-0.1, 1, 1}, {1.1, 1, 1}, {1, 1.1, 1}, {1, 1, -1},
+                                    {NAN, 1, 1}, {1, NAN, 1}, {1, 1, NAN}, {INFINITY, 1, 1}};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_OVERRIDE, cm1e_axis_set_override(axis, bad[i][0], bad[i][1], bad[i][2]));
+    override(1.0, 1.0, 1.0); /* no change: no new plan */
+    TEST_ASSERT_EQUAL_INT64(cycles, axis->profile_cycles);
+}
+
+/* Less deceleration in the middle of braking does not lead beyond the target (note 9 warns of it). */
+static void test_less_deceleration_never_passes_the_target(void)
+{
+    for (int wait = 0; wait < 1000; wait += 13) {
+        setUp();
+        const cm1e_command_id_t id = bench_move_to(5.0, 15.0);
+        watch_cycles(wait);
+        override(wait % 2 ? 1.0 : 0.2, 0.1, 0.2);
+        watch_cycles(8000);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
+        TEST_ASSERT_TRUE(watch.highest <= 5.0 + 1e-9);
+    }
+}
+
+static void test_stop_is_not_slowed(void)
+{
+    bench_move_velocity(10.0);
+    watch_cycles(500);
+    override(1.0, 0.1, 0.1);
+    const cm1e_command_id_t stop = post(CM1E_COMMAND_STOP, 0.0, 0.0, mcAborting);
+    const int took = bench_wait(stop, 3000);
+    TEST_ASSERT_TRUE(took < 200); /* 10 / 80 + 80 / 2000 s */
+}
+
+/* Any change at any time, over chains with and without blending: limits hold, and each end is reached exactly. */
+static void test_random_changes_over_random_chains(void)
+{
+    for (unsigned run = 0; run < 150; run++) {
+        setUp();
+        seed = 0x9E3779B97F4A7C15u * (run + 1);
+        char name[32];
+        snprintf(name, sizeof name, "of run %u", run);
+        watch.run = name;
+        cm1e_command_id_t id = 0;
+        double end = 0.0;
+        for (int i = 0; i < 6; i++) {
+            end = draw(-20.0, 20.0);
+            id = bench_start_command(&(cm1e_axis_command_t){
+                .kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = end, .velocity = draw(1.0, 20.0),
+                .acceleration = draw(20.0, 100.0), .deceleration = draw(20.0, 80.0), .jerk = draw(300.0, 2000.0),
+                .buffer_mode = i ? (MC_BUFFER_MODE)draw(mcBuffered, mcBlendingHigh + 0.99) : mcAborting});
+        }
+        for (int i = 0; i < 5000; i++) {
+            if (draw(0.0, 1.0) < 0.01)
+                override(draw(0.0, 1.0) < 0.3 ? 0.0 : draw(0.01, 1.0), draw(0.05, 1.0), draw(0.05, 1.0));
+            watch_cycles(1);
+            WATCH(fabs(bench_info().set_position) <= 50.0 + 1e-9, "outside at %g", bench_info().set_position);
+            TEST_ASSERT_NOT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
+        }
+        override(1.0, 1.0, 1.0);
+        watch_cycles(80000 / (1 + (int)run % 3));
+        if (run % 3 == 0) {
+            TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, end, bench_info().set_position);
+        }
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_velocity_factor_acts_on_the_motion_and_on_the_next);
+    RUN_TEST(test_acceleration_and_jerk_factors_bound_what_follows);
+    RUN_TEST(test_velocity_0_stands_without_standstill_and_goes_on);
+    RUN_TEST(test_commands_given_while_velocity_is_0_begin_when_it_is_not);
+    RUN_TEST(test_factors_out_of_range_change_nothing);
+    RUN_TEST(test_less_deceleration_never_passes_the_target);
+    RUN_TEST(test_stop_is_not_slowed);
+    RUN_TEST(test_random_changes_over_random_chains);
+    return UNITY_END();
+}
