@@ -9,6 +9,7 @@ import os
 import pty
 import re
 import select
+import signal
 import subprocess
 import sys
 import time
@@ -77,15 +78,15 @@ def check_buffer_modes():
 
 
 def check_touch_probe():
-    printed, trace, _ = run("07_touch_probe")
+    printed, trace, _ = run("05_touch_probe")
     rows = re.findall(r"^ *(\d+) +([\d.]+) +([\d.]+) +([\d.]+) +([\d.]+) +-?\d+ us$", printed, re.MULTILINE)
-    expect([row[0] for row in rows] == ["1", "3", "9"], f"07_touch_probe: {printed}")
+    expect([row[0] for row in rows] == ["1", "3", "9"], f"05_touch_probe: {printed}")
     for velocity, on, off, uncertainty, between in (map(float, row) for row in rows):
         half = velocity * 0.001 / 2  # of a cycle; the simulated switch is at 3 u, whichever way it is passed
-        expect(abs(uncertainty - half) < 1e-4, f"07_touch_probe: +-{uncertainty} u at {velocity} u/s")
+        expect(abs(uncertainty - half) < 1e-4, f"05_touch_probe: +-{uncertainty} u at {velocity} u/s")
         for what, position, within in (("on", on, half), ("off", off, half), ("between", between, half)):
-            expect(abs(position - 3) <= within + 1e-4, f"07_touch_probe: {what} at {position} u, {velocity} u/s")
-    expect(len(crossings(trace, 3)) == 6, "07_touch_probe: the switch is not passed six times")
+            expect(abs(position - 3) <= within + 1e-4, f"05_touch_probe: {what} at {position} u, {velocity} u/s")
+    expect(len(crossings(trace, 3)) == 6, "05_touch_probe: the switch is not passed six times")
 
 
 # What each line does to the axis: key, milliseconds, where it is afterwards. Limits at +-4 u, 1 u/s and 8 u/s.
@@ -96,8 +97,8 @@ KEYS = (("e", 300, 0), ("l", 1000, 1), ("-", 500, 1), ("2", 100, 1), ("l", 2000,
 
 
 def check_jog_panel():
-    printed, trace, _ = run("08_jog_panel", "".join(f"{key} {ms}\n" for key, ms, _ in KEYS))
-    expect("-3.500 u" in printed, f"08_jog_panel: {printed}")
+    printed, trace, _ = run("06_jog_panel", "".join(f"{key} {ms}\n" for key, ms, _ in KEYS))
+    expect("-3.500 u" in printed, f"06_jog_panel: {printed}")
     position_at = {round(sample["time"] * 1000): sample["set_position"] for sample in trace}
     end_ms, ends = 0, []
     for key, ms, position in KEYS:
@@ -105,17 +106,17 @@ def check_jog_panel():
         ends.append(position_at[end_ms - 1])
         if position is not None:
             expect(abs(ends[-1] - position) < 0.05,
-                   f"08_jog_panel: {key} for {ms} ms ends at {ends[-1]}, not {position}")
+                   f"06_jog_panel: {key} for {ms} ms ends at {ends[-1]}, not {position}")
     both = [key for key, _, _ in KEYS].index("b")
-    expect(abs(ends[both + 1] - ends[both]) < 1e-9, "08_jog_panel: the button that is left of two moves the axis")
-    expect(all(abs(sample["set_position"]) <= 4 + 1e-9 for sample in trace), "08_jog_panel: a limit is overrun")
-    expect(not any(sample["state"] == "ErrorStop" for sample in trace), "08_jog_panel: ErrorStop")
+    expect(abs(ends[both + 1] - ends[both]) < 1e-9, "06_jog_panel: the button that is left of two moves the axis")
+    expect(all(abs(sample["set_position"]) <= 4 + 1e-9 for sample in trace), "06_jog_panel: a limit is overrun")
+    expect(not any(sample["state"] == "ErrorStop" for sample in trace), "06_jog_panel: ErrorStop")
 
 
 def check_jog_panel_on_a_terminal():
     """Keys that repeat move the axis; when they come no more it stops by itself; q ends the program."""
     terminal, other_end = pty.openpty()
-    panel = subprocess.Popen([os.path.join(BIN, "08_jog_panel")], stdin=other_end, stdout=other_end, stderr=other_end)
+    panel = subprocess.Popen([os.path.join(BIN, "06_jog_panel")], stdin=other_end, stdout=other_end, stderr=other_end)
     os.close(other_end)
     shown = ""
 
@@ -143,11 +144,38 @@ def check_jog_panel_on_a_terminal():
     type_in(b"", 1.2)
     stopped = position()
     type_in(b"", 0.4)
-    expect(held is not None and held > 0.5, f"08_jog_panel: a key that repeats leads to {held} u: {shown[-300:]}")
-    expect(stopped == position(), f"08_jog_panel: released, and it goes on from {stopped} to {position()}")
+    expect(held is not None and held > 0.5, f"06_jog_panel: a key that repeats leads to {held} u: {shown[-300:]}")
+    expect(stopped == position(), f"06_jog_panel: released, and it goes on from {stopped} to {position()}")
     type_in(b"q", 0.5)
-    expect(panel.wait(timeout=20) == 0, "08_jog_panel: exit status")
+    expect(panel.wait(timeout=20) == 0, "06_jog_panel: exit status")
     os.close(terminal)
+
+
+def check_jog_panel_whose_terminal_goes():
+    """A terminal that is closed while a key is held ends the program in order: the trace ends at rest."""
+    table = os.path.join(OUTPUT, "06_jog_panel_terminal.csv")
+    terminal, other_end = pty.openpty()
+    panel = subprocess.Popen([os.path.join(BIN, "06_jog_panel"), "--csv", table], stdin=other_end,
+                             stdout=subprocess.DEVNULL)
+    os.close(other_end)
+    time.sleep(1)
+    for text in (b"2", b"e"):
+        os.write(terminal, text)
+        time.sleep(0.5)
+    os.write(terminal, b"\033[C")
+    time.sleep(0.4)
+    panel.send_signal(signal.SIGHUP)
+    os.close(terminal)
+    try:
+        expect(panel.wait(timeout=20) == 0, f"06_jog_panel: exit status {panel.returncode} without its terminal")
+    except subprocess.TimeoutExpired:
+        panel.kill()
+        expect(False, "06_jog_panel: goes on without its terminal")
+        return
+    with open(table, newline="", encoding="utf-8") as file:
+        velocities = [float(row[4]) for row in list(csv.reader(file))[1:]]
+    expect(max(velocities) > 1 and abs(velocities[-1]) < 0.05,
+           f"06_jog_panel: {max(velocities)} u/s, and {velocities[-1]} u/s when its terminal is gone")
 
 
 def main():
@@ -155,6 +183,7 @@ def main():
     check_touch_probe()
     check_jog_panel()
     check_jog_panel_on_a_terminal()
+    check_jog_panel_whose_terminal_goes()
     print("\n".join(faults) or "the examples: their traces show what they are about")
     return 1 if faults else 0
 

@@ -1,7 +1,7 @@
 /*
  * A jog panel in the terminal: MC_Jog behind keys, MC_Power and MC_Reset beside it, software limits at +-4 revolutions.
  *
- *     08_jog_panel -i sim
+ *     06_jog_panel -i sim
  *
  *     l or right arrow   forward, as long as the key repeats        e   power on, off
  *     h or left arrow    backwards                                  r   reset
@@ -17,6 +17,7 @@
  */
 #include <poll.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <string.h>
 #include <termios.h>
@@ -197,6 +198,7 @@ static cm1e_error_t run_with_terminal(cm1e_diag_t *why)
 {
     struct termios before, raw;
     pthread_t thread;
+    signal(SIGHUP, SIG_IGN); /* a terminal that is closed reads as its end, which ends the run in order */
     tcgetattr(STDIN_FILENO, &before);
     raw = before;
     raw.c_lflag &= ~(tcflag_t)(ICANON | ECHO); /* Ctrl-C stays what it is */

@@ -5,7 +5,7 @@
  * switch itself, known to half a cycle as well: it shows as soon as it is longer. On the simulator the switch is at
  * input 2, three revolutions from where the motor stands.
  *
- *     07_touch_probe -i sim --svg probe.svg
+ *     05_touch_probe -i sim --svg probe.svg
  *
  * On a wire: a switch at IN2 that goes on between 2 and 4 revolutions in positive direction and stays on there.
  */
