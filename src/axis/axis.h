@@ -20,7 +20,9 @@ typedef enum cm1e_command_kind {
     CM1E_COMMAND_MOVE_VELOCITY,
     CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE,
     CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE,
-    CM1E_COMMAND_PROFILE,           /**< a table of the application: position, velocity or acceleration over time */
+    CM1E_COMMAND_POSITION_PROFILE,  /**< a table of the application: see `table` */
+    CM1E_COMMAND_VELOCITY_PROFILE,
+    CM1E_COMMAND_ACCELERATION_PROFILE,
     CM1E_COMMAND_HALT,
     CM1E_COMMAND_STOP,
     CM1E_COMMAND_HOME,              /**< the drive's own routine */
@@ -53,7 +55,16 @@ typedef struct cm1e_homing_step {
     int64_t detection_ns;           /**< BLOCK: for so long; 0: 50 ms */
 } cm1e_homing_step_t;
 
-typedef struct cm1e_axis_table cm1e_axis_table_t;
+/** A table of values over time, read pair by pair while the command is taken. */
+typedef struct cm1e_axis_table {
+    void (*read)(const void *reference, int index, TIME *delta_ns, LREAL *value);
+    const void *reference;
+    int count;
+    bool absolute;                  /**< FALSE: values count from those of the set-point at the start */
+    double time_scale, scale;       /**< factors; 0 acts as 1 */
+    double offset;                  /**< added to all values */
+} cm1e_axis_table_t;
+
 
 /** A motion command as a function block posts it. Zero acceleration, deceleration or jerk: the axis's maximum. */
 typedef struct cm1e_axis_command {

@@ -130,7 +130,7 @@ static cm1e_error_t check(const cm1e_axis_t *axis, move_t *move, const position_
     const from_t from = {end ? *end : axis->set, 0.0, 0.0};
     const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
     cm1e_motion_limits_t limits;
-    if (is_homing(kind))
+    if (is_homing(kind) || is_table(kind))
         return CM1E_OK;
     cm1e_error_t error = cm1e_axis_limits_of(axis, &from, move, &limits);
     move->origin = from.position;
@@ -179,7 +179,7 @@ cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move)
         return error;
     move->id = cm1e_axis_next_id(axis);
     *waiting_move(axis, axis->waiting.count++) = *move;
-    if (axis->reached) { /* the signal that it waits for is there already (table 4) */
+    if (axis->reached && is_endless(axis->kind)) { /* the signal that it waits for is there already (table 4) */
         const from_t from = from_set(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
     } else if (is_discrete_move(axis->kind)) {
@@ -237,9 +237,11 @@ bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offse
         if (!error)
             error = move.kind == CM1E_COMMAND_HOME          ? cm1e_axis_begin_homing(axis, &move)
                     : move.kind == CM1E_COMMAND_HOMING_STEP ? cm1e_axis_begin_step(axis, &move)
-                                                            : begin_move(axis, &move, from, offset_s);
+                    : is_table((cm1e_command_kind_t)move.kind) ? cm1e_axis_table_begin(axis, &move, from, offset_s)
+                                                               : begin_move(axis, &move, from, offset_s);
         if (!error) {
-            axis->state = rule->next;
+            if (move.kind != CM1E_COMMAND_HOMING_STEP) /* MC_HomeDirect may be over already */
+                axis->state = rule->next;
             return true;
         }
         cm1e_axis_record(axis, move.id, CM1E_COMMAND_ERROR, error);
@@ -275,7 +277,7 @@ cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *as)
 cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis)
 {
     if (!axis->active || axis->activity != ACTIVITY_PROFILE || axis->kind == CM1E_COMMAND_STOP ||
-        axis->kind == CM1E_COMMAND_HOMING_STEP)
+        axis->kind == CM1E_COMMAND_HOMING_STEP || is_table(axis->kind))
         return CM1E_OK;
     move_t move = axis->move;
     cm1e_profile_t profile;

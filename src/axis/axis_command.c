@@ -236,6 +236,8 @@ static cm1e_error_t buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command
 {
     if (command->kind == CM1E_COMMAND_HOMING_STEP)
         return buffer_step(axis, command, id);
+    if (is_table(command->kind))
+        return cm1e_axis_table_buffer(axis, command, id);
     move_t move = cm1e_axis_move_of(command);
     cm1e_error_t error = command->kind == CM1E_COMMAND_HOME ? keep_homing(axis, command) : CM1E_OK;
     if (!error)
@@ -259,6 +261,8 @@ static cm1e_error_t start_now(cm1e_axis_t *axis, const cm1e_axis_command_t *comm
         return start_homing(axis, command, id);
     if (command->kind == CM1E_COMMAND_HOMING_STEP)
         return start_step(axis, command, id);
+    if (is_table(command->kind))
+        return cm1e_axis_table_start(axis, command, id);
     return axis->activity == ACTIVITY_HOMING ? stop_homing(axis, command, id) : start_move(axis, command, id);
 }
 
@@ -274,14 +278,14 @@ static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command,
     if (axis->state == CM1E_AXIS_STOPPING && axis->stop_held)
         return CM1E_ERROR_AXIS_STOPPING;
     if (command->kind != CM1E_COMMAND_HOME && command->kind != CM1E_COMMAND_HOMING_STEP &&
-        !cm1e_axis_can_plan(command->kind))
+        !is_table(command->kind) && !cm1e_axis_can_plan(command->kind))
         return CM1E_ERROR_UNSUPPORTED;
     if (command->kind != CM1E_COMMAND_STOP && (unsigned)command->buffer_mode > mcBlendingHigh)
         return CM1E_ERROR_AXIS_BUFFER_MODE;
     if (waits)
         return buffer(axis, command, id);
     const cm1e_error_t error = start_now(axis, command, id);
-    if (!error)
+    if (!error && command->kind != CM1E_COMMAND_HOMING_STEP) /* MC_HomeDirect may be over already */
         axis->state = rule->next;
     return error;
 }
@@ -291,6 +295,8 @@ cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *comma
     axis->refusal = start(axis, command, id);
     if (axis->refusal)
         axis->refused = *command;
+    if (axis->refusal && is_table(command->kind))
+        cm1e_axis_table_needs(axis, command, &axis->refused);
     return axis->refusal;
 }
 

@@ -290,6 +290,8 @@ void cm1e_axis_step_begin(cm1e_axis_t *axis, const stepping_t *next, const cm1e_
     if (searches(next->step.kind))
         axis->homed = false;
     run(axis, profile);
+    if (next->step.kind == CM1E_STEP_DIRECT && profile->duration_s == 0.0)
+        (void)cm1e_axis_step_profile_ended(axis); /* it stands: done at once */
 }
 
 /* ---- search ------------------------------------------------------------------------------------------------------ */

@@ -158,7 +158,7 @@ bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity)
 }
 
 /* An axis that stands outside, pushed there without torque, may come back but go no farther. */
-static bool contains(const cm1e_axis_t *axis, position_t from, double lowest, double highest)
+bool cm1e_axis_limits_contain_way(const cm1e_axis_t *axis, position_t from, double lowest, double highest)
 {
     if (!axis->software_limits)
         return true;
@@ -169,7 +169,7 @@ static bool contains(const cm1e_axis_t *axis, position_t from, double lowest, do
 bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, position_t from, position_t target)
 {
     const double way = cm1e_position_minus(target, from) / axis->scale;
-    return contains(axis, from, fmin(way, 0.0), fmax(way, 0.0));
+    return cm1e_axis_limits_contain_way(axis, from, fmin(way, 0.0), fmax(way, 0.0));
 }
 
 static bool inside(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
@@ -178,7 +178,7 @@ static bool inside(const cm1e_axis_t *axis, const from_t *from, const cm1e_profi
         return true;
     double lowest, highest;
     cm1e_profile_extent(profile, &lowest, &highest);
-    return contains(axis, from->position, lowest, highest);
+    return cm1e_axis_limits_contain_way(axis, from->position, lowest, highest);
 }
 
 /* In a homing in steps positions mean nothing until the move that ends it. */

@@ -1,5 +1,6 @@
 /* The set-point of every cycle: planned once at the command, sampled here. */
 #include <math.h>
+#include <stddef.h>
 
 #include "axis/axis_private.h"
 
@@ -11,10 +12,11 @@ static const double same_moment = 1e-6;
 
 static const cm1e_profile_stretch_t no_stretch = {.from_s = INFINITY};
 
-void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile, position_t target,
-                   double offset_s)
+_Static_assert(offsetof(cm1e_profile_t, duration_s) == offsetof(cm1e_table_profile_t, duration_s) &&
+               offsetof(cm1e_profile_t, end) == offsetof(cm1e_table_profile_t, end), "they share their place");
+
+static void begin_run(cm1e_axis_t *axis, const from_t *from, position_t target, double offset_s)
 {
-    axis->profile = *profile;
     axis->stretch = no_stretch;
     axis->base = from->position;
     axis->base_units = cm1e_axis_units(axis, axis->base);
@@ -24,6 +26,22 @@ void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *
     axis->reached = false;
     axis->paused = false;
     axis->activity = ACTIVITY_PROFILE;
+}
+
+void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile, position_t target,
+                   double offset_s)
+{
+    axis->profile = *profile;
+    axis->along_table = false;
+    begin_run(axis, from, target, offset_s);
+}
+
+void cm1e_axis_run_table(cm1e_axis_t *axis, const from_t *from, const cm1e_table_profile_t *table, position_t target,
+                         double offset_s)
+{
+    axis->table = *table;
+    axis->along_table = true;
+    begin_run(axis, from, target, offset_s);
 }
 
 static void ramp_down_from(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *limits, double offset_s)
@@ -57,6 +75,8 @@ static bool goes(const cm1e_axis_t *axis, double sign)
     const double now_s = (double)axis->profile_cycles * axis->cycle_s + axis->profile_offset_s;
     if (axis->set_velocity * sign > 0.0 || profile->end.velocity * sign > 0.0)
         return true;
+    if (axis->along_table)
+        return cm1e_axis_table_goes(axis, now_s, sign);
     for (int i = 0; i < profile->segment_count; i++)
         if (profile->segments[i].start_s > now_s && profile->segments[i].start.velocity * sign > 0.0)
             return true;
@@ -131,10 +151,18 @@ static double next_time(cm1e_axis_t *axis)
     return axis->profile_offset_s + (double)++axis->profile_cycles * axis->cycle_s;
 }
 
+static void find_stretch(cm1e_axis_t *axis, double time_s)
+{
+    if (axis->along_table)
+        cm1e_table_profile_stretch_at(&axis->table, time_s, &axis->stretch);
+    else
+        cm1e_profile_stretch_at(&axis->profile, time_s, &axis->stretch);
+}
+
 static cm1e_motion_state_t sample(cm1e_axis_t *axis, double time_s)
 {
     if (!(time_s >= axis->stretch.from_s && time_s < axis->stretch.until_s))
-        cm1e_profile_stretch_at(&axis->profile, time_s, &axis->stretch);
+        find_stretch(axis, time_s);
     return cm1e_profile_stretch_state(&axis->stretch, time_s);
 }
 

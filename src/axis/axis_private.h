@@ -10,6 +10,7 @@
 #include "axis/axis.h"
 #include "device/unit.h"
 #include "motion/profile.h"
+#include "motion/table_profile.h"
 
 #define MS_IN_NS INT64_C(1000000)
 
@@ -80,6 +81,18 @@ typedef struct waiting_homing {
     cm1e_homing_config_t config;
     bool configured;    /**< that of the axis instead */
 } waiting_homing_t;
+
+/** The points of a table profile as the axis keeps them until the motion begins. */
+typedef struct table_points {
+    int count;
+    bool absolute;
+    cm1e_table_point_t points[CM1E_TABLE_POINTS_MAX];
+} table_points_t;
+
+typedef struct waiting_table {
+    cm1e_command_id_t id;
+    table_points_t points;
+} waiting_table_t;
 
 enum { STEPS_WAITING = 3 };
 
@@ -253,7 +266,11 @@ struct cm1e_axis {
     double set_velocity, set_acceleration; /**< u/s, u/s2 */
     double loop_velocity;           /**< counts/s that the position loop adds in CSV */
     double base_units;              /**< u; where base is */
-    cm1e_profile_t profile;         /**< relative to base, in u */
+    union {                         /* both begin with the same members: count, duration, end */
+        cm1e_profile_t profile;     /**< relative to base, in u */
+        cm1e_table_profile_t table; /**< the same, instead of it while along_table */
+    };
+    bool along_table;
     cm1e_profile_stretch_t stretch; /**< of it, the one that the set-point is in */
     int64_t profile_cycles;         /**< since it began ... */
     double profile_offset_s;        /**< ... so long before the first of them */
@@ -268,6 +285,7 @@ struct cm1e_axis {
     buffer_t waiting;
     waiting_homing_t waiting_homing;
     waiting_step_t waiting_steps[STEPS_WAITING];
+    waiting_table_t *waiting_table; /**< NULL: profiles do not wait here (cm1e_axis_config_t.buffered_profiles) */
     bool reached, positive_before;
     cm1e_error_t refusal;           /**< why the last command was refused, for the text; CM1E_OK: it was not */
     cm1e_axis_command_t refused;    /**< what it asked for */
@@ -357,6 +375,8 @@ cm1e_error_t cm1e_axis_limits_with(const cm1e_axis_t *axis, const from_t *from, 
                                    const override_t *override, cm1e_motion_limits_t *limits);
 /** A target inside the software limits, or not farther outside than where the way there begins. */
 bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, position_t from, position_t target);
+/** The same for a way between two positions, counted from there in u. */
+bool cm1e_axis_limits_contain_way(const cm1e_axis_t *axis, position_t from, double lowest, double highest);
 /** Whether a profile that begins there stays inside the software limits. */
 bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
 /** The same, and no disabled direction in it. */
@@ -396,15 +416,20 @@ static inline from_t from_set(const cm1e_axis_t *axis)
 {
     return (from_t){axis->set, axis->set_velocity, axis->set_acceleration};
 }
-/** MOVE_VELOCITY, MOVE_CONTINUOUS_*: goes on when it has reached what it was to reach. */
-static inline bool is_endless(cm1e_command_kind_t kind)
-{
-    return kind == CM1E_COMMAND_MOVE_VELOCITY || kind == CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE ||
-           kind == CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE;
-}
 static inline bool is_continuous_move(cm1e_command_kind_t kind)
 {
-    return is_endless(kind) && kind != CM1E_COMMAND_MOVE_VELOCITY;
+    return kind == CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE || kind == CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE;
+}
+/** Goes on when it has reached what it was to reach. */
+static inline bool is_endless(cm1e_command_kind_t kind)
+{
+    return is_continuous_move(kind) || kind == CM1E_COMMAND_MOVE_VELOCITY ||
+           kind == CM1E_COMMAND_VELOCITY_PROFILE || kind == CM1E_COMMAND_ACCELERATION_PROFILE;
+}
+static inline bool is_table(cm1e_command_kind_t kind)
+{
+    return kind == CM1E_COMMAND_POSITION_PROFILE || kind == CM1E_COMMAND_VELOCITY_PROFILE ||
+           kind == CM1E_COMMAND_ACCELERATION_PROFILE;
 }
 /** The other moves to a position. */
 static inline bool is_discrete_move(cm1e_command_kind_t kind)
@@ -434,6 +459,8 @@ cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const from_t *from, co
 /** A profile takes over that began at `from`, `offset_s` before the present set-point. */
 void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile, position_t target,
                    double offset_s);
+void cm1e_axis_run_table(cm1e_axis_t *axis, const from_t *from, const cm1e_table_profile_t *table, position_t target,
+                         double offset_s);
 void cm1e_axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits);
 /** Motion in the direction of `sign` is no longer enabled (MC_Power, 3.1): a command that goes there fails, the next
  *  one begins, or the axis stops. */
@@ -508,6 +535,16 @@ void cm1e_axis_probe_step(cm1e_axis_t *axis); /* with fresh inputs, while probes
 /** What was not renewed goes off or halts, before the set-point of the cycle. Called while there is something. */
 void cm1e_axis_signals_step(cm1e_axis_t *axis);
 void cm1e_axis_outputs_off(cm1e_axis_t *axis);
+
+/* axis_table.c */
+cm1e_error_t cm1e_axis_table_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */
+cm1e_error_t cm1e_axis_table_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+cm1e_error_t cm1e_axis_table_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+cm1e_error_t cm1e_axis_table_begin(cm1e_axis_t *axis, const move_t *move, const from_t *from, double offset_s);
+/** What a table that was refused would have needed, for the text. */
+void cm1e_axis_table_needs(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_axis_command_t *needs);
+/** Whether the running one still goes in that direction after `from_s`. */
+bool cm1e_axis_table_goes(const cm1e_axis_t *axis, double from_s, double sign);
 
 /* axis_homing_steps.c */
 /** What is wrong with a step whatever the state of the axis. */

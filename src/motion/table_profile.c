@@ -297,3 +297,17 @@ void cm1e_table_profile_sample(cm1e_table_profile_t *profile, double time_s, cm1
     }
     *state = after(&profile->knots[profile->at], &profile->here, time_s - profile->knots[profile->at].time_s);
 }
+
+void cm1e_table_profile_stretch_at(cm1e_table_profile_t *profile, double time_s, cm1e_profile_stretch_t *stretch)
+{
+    if (!(time_s < profile->duration_s)) {
+        *stretch = (cm1e_profile_stretch_t){profile->duration_s, INFINITY, profile->duration_s, profile->end, 0.0};
+        return;
+    }
+    cm1e_motion_state_t unused;
+    cm1e_table_profile_sample(profile, fmax(time_s, 1e-300), &unused); /* also at 0 it finds its place */
+    const cm1e_table_knot_t *knot = &profile->knots[profile->at];
+    *stretch = (cm1e_profile_stretch_t){knot[0].time_s, knot[1].time_s, knot[0].time_s, profile->here,
+                                        piece_jerk(knot)};
+    stretch->origin.acceleration = knot[0].acceleration;
+}

@@ -34,12 +34,14 @@ typedef struct cm1e_table_extremes {
     double velocity, acceleration, deceleration, jerk;     /**< absolute values; a step: infinite jerk */
 } cm1e_table_extremes_t;
 
+/** Begins with the same three members as cm1e_profile_t, so that the two may share their place. */
 typedef struct cm1e_table_profile {
     int knot_count;
+    double duration_s;
+    cm1e_motion_state_t end;        /**< goes on at constant velocity */
+    cm1e_motion_state_t start;
     int at;                         /**< the knot before the last sample */
     cm1e_motion_state_t here;       /**< the state there, private */
-    cm1e_motion_state_t start, end; /**< the end state goes on at constant velocity */
-    double duration_s;
     cm1e_table_knot_t knots[CM1E_TABLE_POINTS_MAX + 3];
 } cm1e_table_profile_t;
 
@@ -53,5 +55,7 @@ cm1e_error_t cm1e_table_profile(cm1e_table_profile_t *profile, cm1e_table_kind_t
                                 cm1e_table_extremes_t *extremes);
 /** State at time_s (before the start: the start, after the end: constant end velocity). Cheapest when times grow. */
 void cm1e_table_profile_sample(cm1e_table_profile_t *profile, double time_s, cm1e_motion_state_t *state);
+/** The stretch at time_s >= 0; the last one has no end. */
+void cm1e_table_profile_stretch_at(cm1e_table_profile_t *profile, double time_s, cm1e_profile_stretch_t *stretch);
 
 #endif

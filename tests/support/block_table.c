@@ -1314,14 +1314,19 @@ static const block_member_t members_of_MC_PositionProfile[] = {
 };
 static void call_MC_PositionProfile(void *fb) { MC_PositionProfile(fb); }
 static const cm1e_error_t errors_of_MC_PositionProfile[] = {
+    CM1E_ERROR_AXIS_TABLE,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_BUFFER_MODE,
     CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
     CM1E_ERROR_AXIS_HOMING,
     CM1E_ERROR_AXIS_STOPPING,
     CM1E_ERROR_AXIS_ERROR_STOP,
     CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_UNSUPPORTED,
     CM1E_ERROR_FULL,
     CM1E_OK,
 };
@@ -1343,14 +1348,19 @@ static const block_member_t members_of_MC_VelocityProfile[] = {
 };
 static void call_MC_VelocityProfile(void *fb) { MC_VelocityProfile(fb); }
 static const cm1e_error_t errors_of_MC_VelocityProfile[] = {
+    CM1E_ERROR_AXIS_TABLE,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_BUFFER_MODE,
     CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
     CM1E_ERROR_AXIS_HOMING,
     CM1E_ERROR_AXIS_STOPPING,
     CM1E_ERROR_AXIS_ERROR_STOP,
     CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_UNSUPPORTED,
     CM1E_ERROR_FULL,
     CM1E_OK,
 };
@@ -1372,14 +1382,19 @@ static const block_member_t members_of_MC_AccelerationProfile[] = {
 };
 static void call_MC_AccelerationProfile(void *fb) { MC_AccelerationProfile(fb); }
 static const cm1e_error_t errors_of_MC_AccelerationProfile[] = {
+    CM1E_ERROR_AXIS_TABLE,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_BUFFER_MODE,
     CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
     CM1E_ERROR_AXIS_HOMING,
     CM1E_ERROR_AXIS_STOPPING,
     CM1E_ERROR_AXIS_ERROR_STOP,
     CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_UNSUPPORTED,
     CM1E_ERROR_FULL,
     CM1E_OK,
 };

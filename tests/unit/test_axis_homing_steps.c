@@ -700,7 +700,7 @@ static void test_homing_takes_no_move_between_its_steps(void)
     begin_at(-20000);
     find_left_flank(0.0);
     for (int kind = CM1E_COMMAND_MOVE_ABSOLUTE; kind <= CM1E_COMMAND_HOME; kind++) {
-        if (kind == CM1E_COMMAND_STOP || kind == CM1E_COMMAND_PROFILE)
+        if (kind == CM1E_COMMAND_STOP)
             continue;
         cm1e_command_id_t id;
         const cm1e_axis_command_t move = {.kind = (cm1e_command_kind_t)kind, .velocity = 1.0, .position = 1.0};

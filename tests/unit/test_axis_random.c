@@ -162,7 +162,10 @@ static void check_axis(void)
         TEST_ASSERT_EQUAL_DOUBLE(0.0, info.set_velocity);
     const bool ours = axis->activity == ACTIVITY_HOLD || axis->activity == ACTIVITY_PROFILE;
     const bool was_ours = activity_before == ACTIVITY_HOLD || activity_before == ACTIVITY_PROFILE;
-    if (ours && was_ours) /* peak speed: 2500 counts a cycle */
+    /* A ramp of ErrorStop whose set-points were not heard begins anew where the motor is. */
+    const bool anew = axis->state == CM1E_AXIS_ERROR_STOP &&
+                      fabs(cm1e_position_minus(axis->set, axis_actual(axis))) < 2501.0;
+    if (ours && was_ours && !anew) /* peak speed: 2500 counts a cycle */
         TEST_ASSERT_TRUE(fabs(cm1e_position_minus(axis->set, set_before)) < 2501.0);
     if (axis->activity == ACTIVITY_FREE) {
         TEST_ASSERT_EQUAL_DOUBLE(0.0, cm1e_position_minus(axis->set, axis_actual(axis)));

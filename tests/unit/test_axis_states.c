@@ -6,11 +6,20 @@ void tearDown(void) { bench_end(); }
 
 static const cm1e_homing_config_t hard_stop = {.method = -1};
 
+static void one_pair(const void *reference, int index, TIME *delta_ns, LREAL *value)
+{
+    (void)reference;
+    (void)index;
+    *delta_ns = 2000000000;
+    *value = 1.0;
+}
+
 static cm1e_axis_command_t command_of(cm1e_command_kind_t kind)
 {
-    static const cm1e_homing_step_t direct = {.kind = CM1E_STEP_DIRECT};
+    static const cm1e_homing_step_t block = {.kind = CM1E_STEP_BLOCK};
+    static const cm1e_axis_table_t table = {.read = one_pair, .count = 1};
     return (cm1e_axis_command_t){.kind = kind, .position = 2.0, .velocity = 1.0, .homing = &hard_stop,
-                                 .step = &direct};
+                                 .step = &block, .table = &table};
 }
 
 static void raise_error(void)
@@ -59,22 +68,21 @@ static void into(cm1e_axis_state_t state)
 /* The matrix once more, by hand from the standard, so that a slip in the table shows. M: DiscreteMotion, V:
  * ContinuousMotion, S: Stopping, H: Homing; lower case: refused. */
 static const char *const expected[CM1E_AXIS_STATE_COUNT] = {
-    /* abs rel add vel cabs crel profile halt stop home step superimposed haltsuperimposed; K: as it was */
-    [CM1E_AXIS_DISABLED] = "ppppppppppppp",
-    [CM1E_AXIS_STANDSTILL] = "MMMVVVMMSHHMK",
-    [CM1E_AXIS_HOMING] = "hhhhhhhhShhhh", /* that of the drive; between steps: test_axis_homing_steps */
-    [CM1E_AXIS_DISCRETE_MOTION] = "MMMVVVMMSxxKK",
-    [CM1E_AXIS_CONTINUOUS_MOTION] = "MMMVVVMMSxxKK",
-    [CM1E_AXIS_SYNCHRONIZED_MOTION] = "MMMVVVMMSxxKK",
-    [CM1E_AXIS_STOPPING] = "sssssssssssss",
-    [CM1E_AXIS_ERROR_STOP] = "eeeeeeeeeeeee",
+    /* abs rel add vel cabs crel pprofile vprofile aprofile halt stop home step superimposed haltsuperimposed; K: as it was */
+    [CM1E_AXIS_DISABLED] = "ppppppppppppppp",
+    [CM1E_AXIS_STANDSTILL] = "MMMVVVMVVMSHHMK",
+    [CM1E_AXIS_HOMING] = "hhhhhhhhhhShhhh", /* that of the drive; between steps: test_axis_homing_steps */
+    [CM1E_AXIS_DISCRETE_MOTION] = "MMMVVVMVVMSxxKK",
+    [CM1E_AXIS_CONTINUOUS_MOTION] = "MMMVVVMVVMSxxKK",
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = "MMMVVVMVVMSxxKK",
+    [CM1E_AXIS_STOPPING] = "sssssssssssssss",
+    [CM1E_AXIS_ERROR_STOP] = "eeeeeeeeeeeeeee",
 };
 
 /* Kinds that wait for their planner. */
 static bool planned(cm1e_command_kind_t kind)
 {
-    return kind != CM1E_COMMAND_PROFILE &&
-           kind != CM1E_COMMAND_MOVE_SUPERIMPOSED && kind != CM1E_COMMAND_HALT_SUPERIMPOSED;
+    return kind != CM1E_COMMAND_MOVE_SUPERIMPOSED && kind != CM1E_COMMAND_HALT_SUPERIMPOSED;
 }
 
 static cm1e_axis_state_t accepted_state(char code, cm1e_axis_state_t state)

@@ -1,0 +1,34 @@
+#include "edge.h"
+
+static void pair(const void *reference, int index, TIME *delta_ns, LREAL *value)
+{
+    const MC_TP *pair = &((const MC_TP_REF *)reference)->MC_TP_Array[index];
+    *delta_ns = pair->DeltaTime;
+    *value = pair->Position;
+}
+
+void MC_PositionProfile(MC_PositionProfile_t *fb)
+{
+    if (FB_STANDS(fb))
+        return;
+    const MC_TP_REF *reference = fb->TimePosition;
+    const cm1e_axis_table_t table = {
+        .read = reference ? pair : NULL,
+        .reference = reference,
+        .count = reference ? reference->NumberOfPairs : 0,
+        .absolute = reference && reference->IsAbsolute,
+        .time_scale = fb->TimeScale,
+        .scale = fb->PositionScale,
+        .offset = fb->Offset,
+    };
+    const cm1e_axis_command_t command = {
+        .kind = CM1E_COMMAND_POSITION_PROFILE,
+        .buffer_mode = fb->BufferMode,
+        .table = &table,
+    };
+    /* A motion that is locked to time has nothing that could be changed on the way. */
+    const cm1e_error_t refusal = fb->ContinuousUpdate ? CM1E_ERROR_UNSUPPORTED : CM1E_OK;
+    const fb_outputs_t out = fb_motion_unless(refusal, &fb->Private, fb->Axis, fb->Execute, FALSE, &command);
+    fb->Done = out.done;
+    FB_SHOW_ACTIVE(fb, out);
+}

@@ -1,0 +1,222 @@
+/*
+ * Motions along a table of positions, velocities or accelerations over time (3.14 ... 3.16). The table is copied when
+ * the command is taken, as points of the axis, and becomes a chain of pieces that starts with the axis's own motion;
+ * the whole of it is checked against the limits of the axis before it begins. It is locked to time: an override does
+ * not act on it, and there is no ContinuousUpdate.
+ *
+ * A table of positions ends at rest; tables of velocities and accelerations go on with their last velocity.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "axis/axis_private.h"
+
+static const double relative_tolerance = 1e-9;
+
+static cm1e_table_kind_t table_kind(cm1e_command_kind_t kind)
+{
+    return kind == CM1E_COMMAND_POSITION_PROFILE   ? CM1E_TABLE_POSITION
+           : kind == CM1E_COMMAND_VELOCITY_PROFILE ? CM1E_TABLE_VELOCITY : CM1E_TABLE_ACCELERATION;
+}
+
+cm1e_error_t cm1e_axis_table_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
+{
+    if (!axis->config->buffered_profiles)
+        return CM1E_OK;
+    axis->waiting_table = calloc(1, sizeof *axis->waiting_table);
+    return axis->waiting_table ? CM1E_OK
+                               : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the profiles of an axis.");
+}
+
+/* ---- the points -------------------------------------------------------------------------------------------------- */
+
+static bool factor(double given, double *value)
+{
+    *value = given == 0.0 ? 1.0 : given; /* an input that nobody set */
+    return isfinite(given);
+}
+
+static cm1e_error_t read_points(const cm1e_axis_table_t *table, table_points_t *points)
+{
+    double time_scale, scale;
+    if (!table || !table->read || table->count < 1 || table->count > CM1E_TABLE_POINTS_MAX ||
+        !factor(table->time_scale, &time_scale) || !(time_scale > 0.0) || !factor(table->scale, &scale) ||
+        !isfinite(table->offset))
+        return CM1E_ERROR_AXIS_TABLE;
+    double time_s = 0.0;
+    points->count = table->count;
+    points->absolute = table->absolute;
+    for (int i = 0; i < table->count; i++) {
+        TIME delta_ns;
+        double value;
+        table->read(table->reference, i, &delta_ns, &value);
+        if (delta_ns < 0 || (delta_ns == 0 && i > 0))
+            return CM1E_ERROR_AXIS_TABLE;
+        time_s += (double)delta_ns * 1e-9 * time_scale;
+        points->points[i] = (cm1e_table_point_t){time_s, value * scale + table->offset};
+    }
+    return CM1E_OK;
+}
+
+/* The kernel counts positions from the start, velocities and accelerations from zero. */
+static double shift(const cm1e_axis_t *axis, const from_t *from, cm1e_command_kind_t kind, bool absolute)
+{
+    if (kind == CM1E_COMMAND_POSITION_PROFILE)
+        return absolute ? -cm1e_axis_units(axis, from->position) : 0.0;
+    return absolute ? 0.0 : kind == CM1E_COMMAND_VELOCITY_PROFILE ? from->velocity : from->acceleration;
+}
+
+/* ---- the check --------------------------------------------------------------------------------------------------- */
+
+/* Whether a motion along the table still goes that way after `from_s`. The velocity is extreme where pieces meet, and
+ * inside a piece where the acceleration goes through zero. The table's own place in it is moved, and nothing else. */
+static bool goes_after(cm1e_table_profile_t *table, double from_s, double sign)
+{
+    const double rounding = relative_tolerance * (1.0 + fabs(table->end.velocity));
+    cm1e_motion_state_t state;
+    for (int i = 0; i < table->knot_count; i++) {
+        const cm1e_table_knot_t *knot = &table->knots[i];
+        const double a = knot[0].acceleration, b = i + 1 < table->knot_count ? knot[1].acceleration : a;
+        const double turn_s = a * b < 0.0 ? knot->time_s + (knot[1].time_s - knot->time_s) * a / (a - b) : knot->time_s;
+        for (int at_turn = 0; at_turn <= 1; at_turn++) {
+            const double time_s = at_turn ? turn_s : knot->time_s;
+            cm1e_table_profile_sample(table, time_s, &state);
+            if (time_s >= from_s && state.velocity * sign > rounding)
+                return true;
+        }
+    }
+    return table->end.velocity * sign > rounding;
+}
+
+bool cm1e_axis_table_goes(const cm1e_axis_t *axis, double from_s, double sign)
+{
+    cm1e_table_profile_t table = axis->table;
+    return goes_after(&table, from_s, sign);
+}
+
+static bool above(double needed, double allowed) { return !(needed <= allowed * (1.0 + relative_tolerance)); }
+
+static cm1e_error_t check(const cm1e_axis_t *axis, const from_t *from, cm1e_table_profile_t *table,
+                          const cm1e_table_extremes_t *needed)
+{
+    const cm1e_motion_limits_t *most = &axis->maximum;
+    if (above(needed->velocity, most->velocity))
+        return CM1E_ERROR_AXIS_VELOCITY_RANGE;
+    if (above(needed->acceleration, most->acceleration) || above(needed->deceleration, most->deceleration) ||
+        above(needed->jerk, most->jerk))
+        return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
+    if (!cm1e_position_in_range(cm1e_position_plus(from->position, needed->lowest * axis->scale)) ||
+        !cm1e_position_in_range(cm1e_position_plus(from->position, needed->highest * axis->scale)) ||
+        !cm1e_axis_limits_contain_way(axis, from->position, needed->lowest, needed->highest))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    if ((!axis->enable_positive && goes_after(table, 0.0, 1.0)) ||
+        (!axis->enable_negative && goes_after(table, 0.0, -1.0)))
+        return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
+    return cm1e_axis_limits_can_stop(axis, cm1e_axis_units(axis, from->position), table->end)
+               ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+}
+
+static cm1e_error_t prepare(const cm1e_axis_t *axis, const from_t *from, cm1e_command_kind_t kind,
+                            const table_points_t *points, cm1e_table_profile_t *table, cm1e_table_extremes_t *needed)
+{
+    const cm1e_motion_state_t start = {0.0, from->velocity, from->acceleration};
+    const double more = shift(axis, from, kind, points->absolute);
+    cm1e_table_point_t shifted[CM1E_TABLE_POINTS_MAX];
+    for (int i = 0; i < points->count; i++)
+        shifted[i] = (cm1e_table_point_t){points->points[i].time_s, points->points[i].value + more};
+    if (cm1e_table_profile(table, table_kind(kind), &start, shifted, points->count, axis->maximum.jerk, needed))
+        return CM1E_ERROR_AXIS_TABLE;
+    return check(axis, from, table, needed);
+}
+
+/* ---- the command ------------------------------------------------------------------------------------------------- */
+
+/* Exactly the last position, where it is one of the axis. */
+static position_t end_of(const cm1e_axis_t *axis, const from_t *from, cm1e_command_kind_t kind,
+                         const table_points_t *points, const cm1e_table_profile_t *table)
+{
+    position_t end;
+    if (kind == CM1E_COMMAND_POSITION_PROFILE && points->absolute && !(axis->modulo_range > 0.0) &&
+        cm1e_axis_position_from_units(axis, points->points[points->count - 1].value, &end))
+        return end;
+    return cm1e_position_plus(from->position, table->end.position * axis->scale);
+}
+
+static void take(cm1e_axis_t *axis, const move_t *move, const from_t *from, const table_points_t *points,
+                 const cm1e_table_profile_t *table, double offset_s)
+{
+    const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
+    cm1e_axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+    axis->active = move->id;
+    axis->kind = kind;
+    axis->move = *move;
+    axis->move.target = end_of(axis, from, kind, points, table);
+    cm1e_axis_run_table(axis, from, table, axis->move.target, offset_s);
+}
+
+cm1e_error_t cm1e_axis_table_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+{
+    const from_t from = from_set(axis);
+    table_points_t points;
+    cm1e_table_profile_t table;
+    cm1e_table_extremes_t needed;
+    cm1e_error_t error = read_points(command->table, &points);
+    if (!error)
+        error = prepare(axis, &from, command->kind, &points, &table, &needed);
+    if (error)
+        return error;
+    cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+    *id = cm1e_axis_next_id(axis);
+    take(axis, &(move_t){.id = *id, .kind = (uint8_t)command->kind, .origin = from.position}, &from, &points, &table,
+         0.0);
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_axis_table_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+{
+    waiting_table_t *waiting = axis->waiting_table;
+    if (!waiting || command->buffer_mode != mcBuffered)
+        return CM1E_ERROR_AXIS_BUFFER_MODE;
+    if (cm1e_axis_find_waiting(axis, waiting->id))
+        return CM1E_ERROR_FULL;
+    table_points_t points;
+    move_t move = {.kind = (uint8_t)command->kind, .buffer_mode = mcBuffered};
+    cm1e_error_t error = read_points(command->table, &points);
+    if (!error)
+        error = cm1e_axis_buffer(axis, &move);
+    if (error)
+        return error;
+    *id = move.id;
+    *waiting = (waiting_table_t){.id = move.id, .points = points};
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_axis_table_begin(cm1e_axis_t *axis, const move_t *move, const from_t *from, double offset_s)
+{
+    const waiting_table_t *waiting = axis->waiting_table;
+    cm1e_table_profile_t table;
+    cm1e_table_extremes_t needed;
+    if (!waiting || waiting->id != move->id)
+        return CM1E_ERROR_AXIS_STATE;
+    const cm1e_error_t error = prepare(axis, from, (cm1e_command_kind_t)move->kind, &waiting->points, &table, &needed);
+    if (!error)
+        take(axis, move, from, &waiting->points, &table, offset_s);
+    return error;
+}
+
+void cm1e_axis_table_needs(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_axis_command_t *needs)
+{
+    const from_t from = from_set(axis);
+    table_points_t points;
+    cm1e_table_profile_t table;
+    cm1e_table_extremes_t needed;
+    needs->table = NULL;
+    if (read_points(command->table, &points) ||
+        prepare(axis, &from, command->kind, &points, &table, &needed) == CM1E_ERROR_AXIS_TABLE)
+        return;
+    needs->velocity = needed.velocity;
+    needs->acceleration = needed.acceleration;
+    needs->deceleration = needed.deceleration;
+    needs->jerk = needed.jerk;
+    needs->position = needed.highest > -needed.lowest ? needed.highest : needed.lowest;
+}
