@@ -50,6 +50,10 @@ static void device(void)
         bus.watch = (cm1e_slave_watch_t){.al_state = draw(2) ? CM1E_AL_OP : (uint16_t)draw(32), .lost = draw(4) == 0};
     else if (draw(80) == 0)
         bus.watch = (cm1e_slave_watch_t){.al_state = CM1E_AL_OP};
+    if (draw(150) == 0)
+        bus.digital_inputs = (uint16_t)draw(16);
+    if (draw(100) == 0)
+        bus.torque = (int16_t)((int)draw(2500) - 1250);
     bus.mode_status = (uint16_t)(draw(8) << 10 & 0x3400);
     bus.sdo_abort_index = draw(30) ? 0 : 0x6099;
     bus.sdo_full = draw(10) == 0;
@@ -67,8 +71,31 @@ enum { IDS = 16 };
 static cm1e_command_id_t ids[IDS];
 static cm1e_command_state_t states[IDS];
 
+static void wild_pair(const void *reference, int index, TIME *delta_ns, LREAL *value)
+{
+    (void)reference;
+    (void)index;
+    *delta_ns = draw(30) ? (TIME)draw(500000000) : (TIME)draw(3) - 1;
+    *value = wild(10.0);
+}
+
+static cm1e_homing_step_t wild_step(void)
+{
+    return (cm1e_homing_step_t){
+        .kind = (cm1e_homing_step_kind_t)draw(6), .direction = (MC_HOME_DIRECTION)draw(9),
+        .mode = (MC_SWITCH_MODE)draw(7), .input = draw(8) ? (int)draw(5) : (int)draw(9) - 3,
+        .torque_limit = draw(2) ? 0.0 : wild(60.0), .distance_limit = draw(2) ? 0.0 : wild(20.0),
+        .time_limit_ns = draw(10) ? (int64_t)draw(1000000000) : -1, .detection_velocity = positive(2.0),
+        .detection_ns = (int64_t)draw(50000000),
+    };
+}
+
 static void post(void)
 {
+    const cm1e_homing_step_t step = wild_step();
+    const cm1e_axis_table_t table = {.read = wild_pair, .count = draw(10) ? (int)draw(12) : (int)draw(70),
+                                     .absolute = draw(2), .time_scale = positive(5.0), .scale = positive(2.0),
+                                     .offset = draw(2) ? 0.0 : wild(2.0)};
     const cm1e_homing_config_t homing = {.method = (int8_t)((int)draw(9) - 7), .velocity = positive(2.0),
                                          .torque = positive(90.0), .timeout_s = 0.3};
     const cm1e_axis_command_t command = {
@@ -76,6 +103,7 @@ static void post(void)
         .end_velocity = wild(20.0), .velocity = draw(4) ? positive(40.0) : wild(60.0), .acceleration = positive(90.0),
         .deceleration = positive(90.0), .jerk = positive(1900.0), .direction = (MC_DIRECTION)draw(6),
         .buffer_mode = draw(3) ? mcAborting : (MC_BUFFER_MODE)draw(7), .homing = draw(2) ? &homing : NULL,
+        .step = draw(50) ? &step : NULL, .table = draw(50) ? &table : NULL,
     };
     cm1e_command_id_t id;
     const cm1e_error_t error = cm1e_axis_start(axis, &command, &id);
@@ -185,6 +213,10 @@ static void run(void)
     fake_bus_init(&bus, draw(2) ? CM1E_MAPPING_DYNAMIC : CM1E_MAPPING_CSP, (cm1e_pdo_order_t)draw(2),
                   (cm1e_firmware_t)draw(CM1E_FIRMWARE_COUNT));
     bus.config.axes[0].invert = draw(2);
+    bus.config.axes[0].inputs = (cm1e_input_config_t){.limit_positive = (uint8_t)draw(2), .limit_negative = 2,
+                                                      .home = 3, .limits_normally_closed = draw(2),
+                                                      .home_normally_closed = draw(2)};
+    bus.config.axes[0].buffered_profiles = draw(2);
     bus.config.axes[0].homing.method = -1;
     if (draw(3) == 0) {
         bus.config.axes[0].backlash = draw(2) ? 0.01 : 0.2;
@@ -216,7 +248,7 @@ static void run(void)
 
 static void test_anything_keeps_states_commands_and_set_points_legal(void)
 {
-    for (number = 0; number < 150; number++)
+    for (number = 0; number < 400; number++)
         run();
     TEST_ASSERT_GREATER_THAN_UINT(20000, moving_cycles); /* else it was too wild to test anything */
 }
