@@ -219,13 +219,13 @@ enum { MS = 1000000 };
 static void position_profile(void)
 {
     static const MC_TP_REF points = {.NumberOfPairs = 4, .IsAbsolute = TRUE,
-                                     .MC_TP_Array = {{200 * MS, 1}, {200 * MS, 1.5}, {200 * MS, 3}, {200 * MS, 2}}};
+                                     .MC_TP_Array = {{300 * MS, 1}, {300 * MS, 2}, {300 * MS, 2.5}, {300 * MS, 2}}};
     MC_PositionProfile_t profile = {AXIS, .TimePosition = &points};
-    trace_begin("MC_PositionProfile", "Every 200 ms a point: 1 u, 1.5 u, 3 u, 2 u.");
+    trace_begin("MC_PositionProfile", "Every 300 ms a point: 1, 2, 2.5, 2 u.");
     trace_block("MC_PositionProfile", "", &profile);
     trace_curves(true, true);
-    UNTIL(1000) {
-        profile.Execute = during(20, 950);
+    UNTIL(1400) {
+        profile.Execute = during(20, 1350);
         MC_PositionProfile(&profile);
     }
     trace_end();
