@@ -73,10 +73,11 @@ static bool make_leg(cm1e_axis_t *axis, move_t *move, position_t *end, double si
     return leg->distance != 0.0;
 }
 
-/* How fast a leg may be entered when the command before it has this velocity and direction. With a limit of jerk the way
- * down to a stop can be shorter than the way down to a low velocity, so a leg that could be left fast can still be
- * entered as if it were to be left at rest: a command more in the buffer never makes one before it slower. */
-static double entry_velocity(const leg_t *leg, double velocity_before, double sign)
+/* How fast a leg may be entered when the command before it has this velocity and direction. With a limit of jerk the
+ * way down to a stop can be shorter than the way down to a low velocity. To enter as if to stop costs the junction
+ * behind its velocity, so only an axis that is already too fast does so: a command more in the buffer, which lets this
+ * leg be left faster, must not ask it for a slower entry than it was planned for. */
+static double entry_velocity(const leg_t *leg, double velocity_before, double sign, bool as_if_to_stop)
 {
     const double velocity = junction_velocity(leg->mode, velocity_before, leg->limits.velocity);
     if (leg->distance * sign <= 0.0)
@@ -84,8 +85,19 @@ static double entry_velocity(const leg_t *leg, double velocity_before, double si
     if (leg->open)
         return velocity;
     const double distance = fabs(leg->distance);
-    return fmax(cm1e_profile_entry_velocity(distance, velocity, leg->exit_velocity, &leg->limits),
-                cm1e_profile_entry_velocity(distance, velocity, 0.0, &leg->limits));
+    const double entry = cm1e_profile_entry_velocity(distance, velocity, leg->exit_velocity, &leg->limits);
+    return as_if_to_stop ? fmax(entry, cm1e_profile_entry_velocity(distance, velocity, 0.0, &leg->limits)) : entry;
+}
+
+/* From the last leg backwards: how fast the first one is to be entered by a command of this velocity. */
+static double look_ahead(leg_t *legs, int count, double velocity, bool as_if_to_stop)
+{
+    for (int i = count - 1; i > 0; i--)
+        legs[i - 1].exit_velocity = entry_velocity(&legs[i], legs[i - 1].limits.velocity,
+                                                   copysign(1.0, legs[i - 1].distance), as_if_to_stop);
+    /* From which side the command gets to its target is for the profile to know. */
+    const double sign = copysign(1.0, legs[0].distance);
+    return sign * entry_velocity(&legs[0], velocity, sign, as_if_to_stop);
 }
 
 double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t *move)
@@ -110,16 +122,14 @@ double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move
         }
         count++;
     }
-    for (int i = count - 1; i > 0; i--)
-        legs[i - 1].exit_velocity = entry_velocity(&legs[i], legs[i - 1].limits.velocity,
-                                                   copysign(1.0, legs[i - 1].distance));
     if (count == 0)
         return 0.0;
-    /* From which side the first one gets to its target is for the profile to know. */
-    sign = copysign(1.0, legs[0].distance);
-    const double wanted = sign * entry_velocity(&legs[0], limits.velocity, sign);
     const cm1e_motion_state_t start = {0.0, from->velocity, from->acceleration};
-    return cm1e_profile_passing_velocity(&start, distance, wanted, &limits);
+    const double wanted = look_ahead(legs, count, limits.velocity, false);
+    const double velocity = cm1e_profile_passing_velocity(&start, distance, wanted, &limits);
+    if (velocity == wanted)
+        return velocity;
+    return cm1e_profile_passing_velocity(&start, distance, look_ahead(legs, count, limits.velocity, true), &limits);
 }
 
 /* ---- taking in --------------------------------------------------------------------------------------------------- */
