@@ -293,6 +293,49 @@ START_TEST(test_inching_modulo_goes_to_multiples_of_the_step)
 }
 END_TEST
 
+/* A table of 360 u: over its end and back, by steps and by holding. */
+START_TEST(test_a_modulo_axis_is_jogged_over_its_end)
+{
+    begin(0, 0);
+    close_segment();
+    config.axes[0].units_per_revolution = config.axes[0].modulo_range = 360.0;
+    config.axes[0].max_velocity = 3600.0;
+    config.axes[0].max_acceleration = 36000.0;
+    open_segment();
+    reference = cm1e_axis_reference(axis);
+    enable();
+    jog.Mode = MC_JOGMODE_INCHING_MODULO;
+    jog.Velocity = 900.0;
+    jog.Acceleration = jog.Deceleration = 0.0;
+    jog.Position = 90.0;
+    const double from = at();
+    static const double ahead[] = {90.0, 180.0, 270.0, 0.0, 90.0}, back[] = {0.0, 270.0, 180.0};
+    for (int i = 0; i < 8; i++) {
+        press(i < 5, i >= 5);
+        scans(800);
+        ck_assert(jog.Done);
+        const double to = i < 5 ? ahead[i] : back[i - 5];
+        ck_assert_msg(fabs(remainder(at() - to, 360.0)) < 1e-6, "step %d from %g: at %g, not %g", i, from, at(), to);
+        press(FALSE, FALSE);
+        scan();
+    }
+    jog.Mode = MC_JOGMODE_INCHING; /* two turns and a bit */
+    jog.Position = 730.0;
+    press(TRUE, FALSE);
+    scans(3000);
+    ck_assert(jog.Done);
+    ck_assert_double_eq_tol(at(), 190.0, 1e-6);
+    press(FALSE, FALSE);
+    scan();
+    jog.Mode = MC_JOGMODE_STANDARD_FAST; /* a quarter of 3600 */
+    press(FALSE, TRUE);
+    scans(2000);
+    ck_assert_double_eq_tol(speed(), -900.0, 1e-6);
+    ck_assert(at() >= 0.0 && at() < 360.0);
+    close_segment();
+}
+END_TEST
+
 /* ---- what else may happen ---------------------------------------------------------------------------------------- */
 
 START_TEST(test_another_command_takes_over_and_the_button_no_longer_counts)
@@ -490,6 +533,7 @@ int main(void)
     tcase_add_test(tcase, test_a_limit_on_one_side_leaves_the_other_open);
     tcase_add_test(tcase, test_inching_is_one_step_whatever_becomes_of_the_button);
     tcase_add_test(tcase, test_inching_modulo_goes_to_multiples_of_the_step);
+    tcase_add_test(tcase, test_a_modulo_axis_is_jogged_over_its_end);
     tcase_add_test(tcase, test_another_command_takes_over_and_the_button_no_longer_counts);
     tcase_add_test(tcase, test_a_block_that_is_no_longer_called_stops_its_axis);
     tcase_add_test(tcase, test_a_step_ends_also_when_the_block_is_not_called);

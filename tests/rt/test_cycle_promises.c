@@ -9,6 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "cm1e/iec.h"
 #include "machine.h"
 
 #define MS INT64_C(1000000)
@@ -204,14 +205,93 @@ static void busy_program(void *context)
     b->resets += b->reset.Done;
 }
 
+/* What moves nothing but reads, waits and switches; and a jog in what is left of the second. */
+typedef struct signals {
+    MC_Jog_t jog;
+    MC_TouchProbe_t probe;
+    MC_AbortTrigger_t abort;
+    MC_DigitalCamSwitch_t cams;
+    MC_ReadDigitalInput_t input;
+    MC_ReadDigitalOutput_t output;
+    MC_WriteDigitalOutput_t write;
+    MC_ReadActualTorque_t torque;
+    MC_ReadMotionState_t motion;
+    MC_ReadAxisInfo_t information;
+    MC_TRIGGER_REF trigger;
+    MC_INPUT_REF input_ref;
+    MC_OUTPUT_REF output_ref, cam_output;
+    MC_CAMSWITCH_REF switches;
+    TON_t on;
+    TP_t pulse;
+    CTU_t counter;
+    unsigned jogged, recorded, written, switched;
+} signals_t;
+
+static signals_t signals[AXES];
+
+static void make_signals(signals_t *s, AXIS_REF_t *axis)
+{
+    *s = (signals_t){
+        .jog = {.Axis = axis},
+        .probe = {.Axis = axis, .TriggerInput = &s->trigger},
+        .abort = {.Axis = axis, .TriggerInput = &s->trigger},
+        .cams = {.Axis = axis, .Switches = &s->switches, .Outputs = &s->cam_output, .Enable = TRUE, .EnableMask = 1,
+                 .ValueSource = mcActualValue},
+        .input = {.Input = &s->input_ref, .Enable = TRUE},
+        .output = {.Output = &s->output_ref, .Enable = TRUE},
+        .write = {.Output = &s->output_ref},
+        .torque = {.Axis = axis, .Enable = TRUE},
+        .motion = {.Axis = axis, .Enable = TRUE, .Source = mcActualValue},
+        .information = {.Axis = axis, .Enable = TRUE},
+        .trigger = {.InputNumber = 4},
+        .input_ref = {.Axis = *axis, .Number = 4},
+        .output_ref = {.Axis = *axis, .Number = 1},
+        .switches = {.NumberOfSwitches = 1,
+                     .Switches = {{.TrackNumber = 1, .FirstOnPosition = -100, .LastOnPosition = 6.01}}},
+        .on = {.PT = 3 * MS},
+        .pulse = {.PT = 5 * MS},
+    };
+}
+
+static void signal_program(void *context)
+{
+    signals_t *s = context;
+    const int64_t phase = cycle_number % 1000;
+    s->jog.JogBackwards = phase >= 955 && phase < 990;
+    s->probe.Execute = phase % 100 < 90;
+    s->abort.Execute = phase % 300 == 77;
+    s->write.Execute = phase % 10 < 5;
+    s->write.Value = phase % 20 < 10;
+    MC_Jog(&s->jog);
+    MC_TouchProbe(&s->probe);
+    MC_AbortTrigger(&s->abort);
+    MC_DigitalCamSwitch(&s->cams);
+    MC_ReadDigitalInput(&s->input);
+    MC_ReadDigitalOutput(&s->output);
+    MC_WriteDigitalOutput(&s->write);
+    MC_ReadActualTorque(&s->torque);
+    MC_ReadMotionState(&s->motion);
+    MC_ReadAxisInfo(&s->information);
+    s->on.IN = s->motion.ConstantVelocity;
+    TON(&s->on);
+    s->pulse.IN = s->on.Q;
+    TP(&s->pulse);
+    s->counter.CU = s->pulse.Q;
+    CTU(&s->counter);
+    s->jogged += s->jog.Active;
+    s->recorded += s->probe.Done;
+    s->written += s->write.Done;
+    s->switched += s->cam_output.Values;
+}
+
 static const struct {
     int64_t cycle;
     const char *line;
 } acts[] = {
-    {20, "lose 1"},           {8000, "power 1 off"},   {8300, "power 1 on"},     {9050, "over-torque 2"},
-    {10100, "lose 2"},        {11300, "lose 40"},      {12500, "corrupt 20"},    {13600, "delay 30 800"},
-    {15000, "unplug 2"},      {15500, "replug 2"},     {18000, "power-cycle 3"}, {21000, "error 1 7500"},
-    {21500, "error 1 clear"}, {23000, "error 2 4310"}, {23400, "error 2 clear"},
+    {20, "lose 1"}, {7050, "sensor 1 4 on"}, {7060, "sensor 2 4 on"}, {7070, "sensor 3 4 on"}, {8000, "power 1 off"},
+    {8300, "power 1 on"}, {9050, "over-torque 2"}, {10100, "lose 2"}, {11300, "lose 40"}, {12500, "corrupt 20"},
+    {13600, "delay 30 800"}, {15000, "unplug 2"}, {15500, "replug 2"}, {18000, "power-cycle 3"},
+    {21000, "error 1 7500"}, {21500, "error 1 clear"}, {23000, "error 2 4310"}, {23400, "error 2 clear"},
 };
 
 static void acting_program(void *context)
@@ -231,7 +311,9 @@ START_TEST(test_cycle_calls_nothing_that_allocates_locks_formats_or_sleeps)
     machine_open(&machine);
     for (int i = 0; i < AXES; i++) {
         make_blocks(&axes[i], &machine.axis[i]);
+        make_signals(&signals[i], &machine.axis[i]);
         machine_add(&machine, "", 0, 1, busy_program, &axes[i]);
+        machine_add(&machine, "", 0, 1, signal_program, &signals[i]);
     }
     machine_add(&machine, "", 0, 2, acting_program, NULL);
     cycle_number = 0;
@@ -246,6 +328,11 @@ START_TEST(test_cycle_calls_nothing_that_allocates_locks_formats_or_sleeps)
         ck_assert_uint_ge(axes[i].aborted, 5);
         ck_assert_uint_ge(axes[i].resets, 1);
         errors += axes[i].errors > 0;
+        ck_assert_uint_ge(signals[i].jogged, 200);
+        ck_assert_uint_ge(signals[i].recorded, 1);
+        ck_assert_uint_ge(signals[i].written, 1000);
+        ck_assert_uint_ge(signals[i].switched, 1000);
+        ck_assert_int_ge(signals[i].counter.CV, 10);
     }
     ck_assert_uint_eq(errors, AXES);
     machine_close(&machine);
