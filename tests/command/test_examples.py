@@ -45,11 +45,11 @@ def crossings(trace, position):
             if (before["set_position"] < position) != (now["set_position"] < position)]
 
 
-def check_follows(name, trace):
+def check_follows(name, trace, acceleration=80):
     """No step of the set velocity is beyond the acceleration, and the motor is where it should be."""
     for before, now in zip(trace, trace[1:]):
         change = abs(now["set_velocity"] - before["set_velocity"])
-        expect(change <= 80 * 0.001 * (1 + 1e-6), f"{name}: the set velocity steps by {change} at {now['time']} s")
+        expect(change <= acceleration * 0.001 * (1 + 1e-6), f"{name}: the set velocity steps by {change} at {now['time']} s")
     worst = max(abs(sample["set_position"] - sample["actual_position"]) for sample in trace)
     expect(worst < 0.1, f"{name}: the motor is {worst} u away from its set position")
 
@@ -178,9 +178,21 @@ def check_jog_panel_whose_terminal_goes():
            f"06_jog_panel: {max(velocities)} u/s, and {velocities[-1]} u/s when its terminal is gone")
 
 
+def check_homing_steps():
+    printed, trace, _ = run("07_homing_steps")
+    check_follows("07_homing_steps", trace, 100)
+    changes = [float(change) for change in re.findall(r"change by (-?[\d.]+) u$", printed, re.MULTILINE)]
+    # 0.1 u/s: half a cycle's way is 0.00005 u, for the homing before as well; the simulated switch is at 3 u.
+    expect(len(changes) == 3 and all(abs(change) <= 1.2e-4 for change in changes), f"07_homing_steps: {printed}")
+    homings = [before for before, now in zip(trace, trace[1:]) if before["state"] != "Homing" == now["state"]]
+    expect(len(homings) == 3, f"07_homing_steps: {len(homings)} homings")
+    expect(abs(trace[-1]["set_position"] - 2.5) < 0.01, f"07_homing_steps: ends at {trace[-1]['set_position']}")
+
+
 def main():
     check_buffer_modes()
     check_touch_probe()
+    check_homing_steps()
     check_jog_panel()
     check_jog_panel_on_a_terminal()
     check_jog_panel_whose_terminal_goes()
