@@ -126,6 +126,8 @@ double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move
         return 0.0;
     const cm1e_motion_state_t start = {0.0, from->velocity, from->acceleration};
     const double wanted = look_ahead(legs, count, limits.velocity, false);
+    if (!cm1e_axis_direction_enabled(axis, wanted)) /* braking is all that may still go that way */
+        return 0.0;
     const double velocity = cm1e_profile_passing_velocity(&start, distance, wanted, &limits);
     if (velocity == wanted)
         return velocity;
