@@ -40,7 +40,7 @@ static cm1e_error_t move_anew(cm1e_axis_t *axis)
 {
     if (!axis->active || axis->kind == CM1E_COMMAND_STOP)
         return stop_anew(axis);
-    return axis->kind == CM1E_COMMAND_HOMING_STEP ? step_anew(axis) : cm1e_axis_replan(axis);
+    return axis->kind == CM1E_COMMAND_HOMING_STEP ? step_anew(axis) : cm1e_axis_replan_as(axis, &axis->move);
 }
 
 void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
