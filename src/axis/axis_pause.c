@@ -36,8 +36,21 @@ static cm1e_error_t step_anew(cm1e_axis_t *axis)
     return CM1E_OK;
 }
 
+/* Its times have passed. The next command begins (2.2.2, case 2), or the axis stops. */
+static cm1e_error_t end_table(cm1e_axis_t *axis)
+{
+    const from_t from = from_set(axis);
+    cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_TABLE_LATE);
+    axis->state = CM1E_AXIS_DISCRETE_MOTION;
+    if (!cm1e_axis_begin_waiting(axis, &from, 0.0))
+        cm1e_axis_ramp_down(axis, &axis->maximum);
+    return CM1E_OK;
+}
+
 static cm1e_error_t move_anew(cm1e_axis_t *axis)
 {
+    if (axis->active && is_table(axis->kind))
+        return end_table(axis);
     if (!axis->active || axis->kind == CM1E_COMMAND_STOP)
         return stop_anew(axis);
     return axis->kind == CM1E_COMMAND_HOMING_STEP ? step_anew(axis) : cm1e_axis_replan_as(axis, &axis->move);
