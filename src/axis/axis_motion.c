@@ -10,6 +10,10 @@ static const double csv_position_gain = 20.0;
 /* A profile that ends so shortly after a set-point has ended with it; in cycles. */
 static const double same_moment = 1e-6;
 
+/* Counts that a set-point may be away from where its profile began, before it counts from where it is: a double still
+ * tells apart a millionth of a count there. */
+static const double farthest_from_base = 0x1p32;
+
 static const cm1e_profile_stretch_t no_stretch = {.from_s = INFINITY};
 
 _Static_assert(offsetof(cm1e_profile_t, duration_s) == offsetof(cm1e_table_profile_t, duration_s) &&
@@ -166,6 +170,28 @@ static cm1e_motion_state_t sample(cm1e_axis_t *axis, double time_s)
     return cm1e_profile_stretch_state(&axis->stretch, time_s);
 }
 
+/* A velocity that goes on for weeks: from here on a profile that has ended already. At most once in 20 minutes; in long
+ * double, as what is lost here would add up. */
+static void count_anew(cm1e_axis_t *axis)
+{
+    const cm1e_motion_state_t end = axis->profile.end;
+    const long double time_s = (long double)axis->profile_offset_s +
+                               (long double)axis->profile_cycles * (long double)axis->cycle_s;
+    const long double after_s = time_s - (long double)axis->profile.duration_s;
+    const long double counts = (end.position + end.velocity * after_s) * (long double)axis->scale;
+    const int64_t whole = (int64_t)counts;
+    axis->base.counts += whole;
+    axis->base = axis->set = cm1e_position_plus(axis->base, (double)(counts - (long double)whole));
+    axis->base_units = cm1e_axis_units(axis, axis->base);
+    axis->along_table = false;
+    axis->profile.segment_count = 0;
+    axis->profile.duration_s = 0.0;
+    axis->profile.end.position = 0.0;
+    axis->profile_cycles = 0;
+    axis->profile_offset_s = 0.0;
+    axis->stretch = no_stretch;
+}
+
 static void profile_step(cm1e_axis_t *axis)
 {
     double time_s = next_time(axis);
@@ -182,7 +208,10 @@ static void profile_step(cm1e_axis_t *axis)
             return;
         next = sample(axis, next_time(axis));
     }
-    axis->set = cm1e_position_plus(axis->base, next.position * axis->scale);
+    const double counts = next.position * axis->scale;
+    axis->set = cm1e_position_plus(axis->base, counts);
+    if (axis->reached && fabs(counts) > farthest_from_base)
+        count_anew(axis);
     axis->set_velocity = next.velocity;
     axis->set_acceleration = next.acceleration;
     if (next.velocity != 0.0)
