@@ -71,7 +71,7 @@ const cm1e_axis_t *fb_enable(cm1e_fb_private_t *fb, const AXIS_REF_t *reference,
 /** The same for blocks that read: TRUE and a copy of the axis's data when it can be read. */
 BOOL fb_read(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, cm1e_axis_info_t *info);
 
-/** What a block that reads shows: a `passing` error keeps Busy TRUE, and Valid comes back by itself (2.2.3, figure 5). */
+/** What a block that reads shows: a `passing` error keeps Busy TRUE, Valid comes back by itself (2.2.3, figure 5). */
 typedef struct fb_reading {
     BOOL valid, busy, error;
     WORD error_id;

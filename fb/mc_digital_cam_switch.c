@@ -112,7 +112,7 @@ static bool wanted_by_time(const look_t *look, const MC_CAMSWITCH *cam, const MC
     if (point->held && fabs(way_between(look, position, cam->FirstOnPosition)) > track->Hysteresis)
         point->held = 0;
     if (!point->held && fits && crossed(look, position, way, cam->FirstOnPosition)) {
-        state->wanted_until = look->now + cam->Duration;
+        state->wanted_until = cam->Duration < INT64_MAX - look->now ? look->now + cam->Duration : INT64_MAX;
         point->held = track->Hysteresis > 0.0;
     }
     return look->now < state->wanted_until;
@@ -120,8 +120,8 @@ static bool wanted_by_time(const look_t *look, const MC_CAMSWITCH *cam, const MC
 
 static TIME delay(TIME compensation) { return compensation > 0 ? compensation : 0; }
 
-/** On from when it is wanted until it is no longer, each later by its delay. What is on of the time before lasts as long
- *  as it has to; one that has not begun yet and the next one become one. */
+/** On from when it is wanted until it is no longer, each later by its delay. What is on of the time before lasts as
+ *  long as it has to; one that has not begun yet and the next one become one. */
 static bool delayed(const look_t *look, const MC_TRACK *track, bool wanted, TIME off_delay, cm1e_cam_switch_t *state)
 {
     if (wanted && !state->wanted) {

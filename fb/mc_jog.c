@@ -50,34 +50,28 @@ static double step(const MC_Jog_t *fb, double position, double sign)
     return sign * ((floor(steps + 0.001) + 1.0) * fb->Position) - position;
 }
 
-/** What the axis is to do; FALSE: nothing, it stands at the limit that the button leads to. */
-static bool command_of(const MC_Jog_t *fb, const jog_t *jog, const cm1e_axis_measures_t *measures, double position,
-                       cm1e_axis_command_t *command)
+/** What the axis is to do over a way of `distance` (not used while a button is held), where `room` is left to the limit
+ *  that lies ahead; infinite: there is none. */
+static cm1e_axis_command_t command_of(const MC_Jog_t *fb, const jog_t *jog, double limit, double room, double distance)
 {
-    const double sign = fb->Private.backwards ? -1.0 : 1.0;
-    const double limit = fb->Private.backwards ? measures->lower : measures->upper;
-    const double room = sign * (limit - position), distance = jog->held ? INFINITY : sign * step(fb, position, sign);
-    *command = (cm1e_axis_command_t){.velocity = jog->velocity, .acceleration = jog->acceleration,
-                                     .deceleration = jog->deceleration, .jerk = jog->jerk};
-    if (room <= measures->resolution)
-        return false;
-    if (isinf(distance) && isinf(room)) {
-        command->kind = CM1E_COMMAND_MOVE_VELOCITY;
-        command->direction = fb->Private.backwards ? mcNegativeDirection : mcPositiveDirection;
-    } else if (distance < room) {
-        command->kind = CM1E_COMMAND_MOVE_RELATIVE;
-        command->position = sign * distance;
+    cm1e_axis_command_t command = {.velocity = jog->velocity, .acceleration = jog->acceleration,
+                                   .deceleration = jog->deceleration, .jerk = jog->jerk};
+    if (!jog->held && distance < room) {
+        command.kind = CM1E_COMMAND_MOVE_RELATIVE;
+        command.position = fb->Private.backwards ? -distance : distance;
+    } else if (isfinite(room)) {
+        command.kind = CM1E_COMMAND_MOVE_ABSOLUTE;
+        command.position = limit;
     } else {
-        command->kind = CM1E_COMMAND_MOVE_ABSOLUTE;
-        command->position = limit;
+        command.kind = CM1E_COMMAND_MOVE_VELOCITY;
+        command.direction = fb->Private.backwards ? mcNegativeDirection : mcPositiveDirection;
     }
-    return true;
+    return command;
 }
 
 static cm1e_error_t start(MC_Jog_t *fb, cm1e_axis_t *axis)
 {
     const cm1e_axis_measures_t measures = cm1e_axis_measures(axis);
-    cm1e_axis_command_t command;
     cm1e_axis_info_t info;
     jog_t jog;
     const cm1e_error_t error = choose(fb, &measures, &jog);
@@ -85,14 +79,19 @@ static cm1e_error_t start(MC_Jog_t *fb, cm1e_axis_t *axis)
     fb->Private.stopping = FALSE;
     if (error)
         return error;
+    cm1e_axis_get(axis, &info);
+    const double sign = fb->Private.backwards ? -1.0 : 1.0;
+    const double limit = fb->Private.backwards ? measures.lower : measures.upper;
+    const double room = sign * (limit - info.set_position);
+    const double distance = jog.held ? 0.0 : sign * step(fb, info.set_position, sign);
+    if (!jog.held && !(distance > 0.0 && isfinite(distance))) /* a multiple that numbers cannot tell from where it is */
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
     fb->Private.held = jog.held;
     fb->Private.deceleration = jog.deceleration;
     fb->Private.jerk = jog.jerk;
-    cm1e_axis_get(axis, &info);
-    if (command_of(fb, &jog, &measures, info.set_position, &command))
-        return cm1e_axis_start(axis, &command, &fb->Private.common.command);
     /* At the limit: what moves the axis ends there all the same, and an axis that may not move says so. */
-    command = (cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT};
+    const cm1e_axis_command_t command = room > measures.resolution ? command_of(fb, &jog, limit, room, distance)
+                                                                   : (cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT};
     return cm1e_axis_start(axis, &command, &fb->Private.common.command);
 }
 

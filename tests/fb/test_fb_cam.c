@@ -297,6 +297,22 @@ START_TEST(test_a_time_switch_can_be_ahead_and_late)
 }
 END_TEST
 
+START_TEST(test_a_duration_without_end_has_none)
+{
+    fresh(0.0);
+    MC_CAMSWITCH *cam = add(1, 10.0, 0.0);
+    cam->CamSwitchMode = 1;
+    cam->Duration = INT64_MAX;
+    at(9.0, 1000.0);
+    for (int n = 0; n < 1000; n++)
+        ck_assert_uint_eq(step(), 1);
+    cam->Duration = 0; /* from the next passing on: nothing */
+    at(10.5, -1000.0);
+    at(9.5, -1000.0);
+    ck_assert_uint_eq(outputs.Values, 0);
+}
+END_TEST
+
 /* ---- hysteresis -------------------------------------------------------------------------------------------------- */
 
 START_TEST(test_hysteresis_switches_once_until_it_is_left)
@@ -595,6 +611,7 @@ int main(void)
     tcase_add_test(tcase, test_a_delay_goes_on_when_the_axis_stops);
     tcase_add_test(tcase, test_what_was_switched_ahead_is_right_when_the_axis_stops_before);
     tcase_add_test(tcase, test_a_time_switch_can_be_ahead_and_late);
+    tcase_add_test(tcase, test_a_duration_without_end_has_none);
     tcase_add_test(tcase, test_hysteresis_switches_once_until_it_is_left);
     tcase_add_test(tcase, test_the_mask_takes_tracks_away_and_gives_them_back_at_once);
     tcase_add_test(tcase, test_enable_that_falls_switches_everything_off_and_forgets);

@@ -293,6 +293,26 @@ START_TEST(test_inching_modulo_goes_to_multiples_of_the_step)
 }
 END_TEST
 
+START_TEST(test_a_step_that_numbers_cannot_tell_from_none_moves_nothing)
+{
+    static const double tiny[] = {5e-324, 1e-300, 1e-20, 1e-12};
+    begin(0, 0);
+    move_to(3.0, 10.0);
+    for (int i = 0; i < 16; i++) {
+        jog.Mode = i & 1 ? MC_JOGMODE_INCHING_MODULO : MC_JOGMODE_INCHING;
+        jog.Position = tiny[i / 4];
+        press(i & 2, !(i & 2));
+        scans(300);
+        ck_assert(jog.Done || jog.ErrorID == cm1e_error_id(CM1E_ERROR_AXIS_POSITION_RANGE));
+        expect_standing();
+        ck_assert_double_eq_tol(at(), 3.0, 1e-9);
+        press(FALSE, FALSE);
+        scan();
+    }
+    close_segment();
+}
+END_TEST
+
 /* A table of 360 u: over its end and back, by steps and by holding. */
 START_TEST(test_a_modulo_axis_is_jogged_over_its_end)
 {
@@ -447,6 +467,9 @@ START_TEST(test_what_cannot_be_is_refused_and_moves_nothing)
         jog.Position = no_step[i];
         expect_refused(CM1E_ERROR_AXIS_POSITION_RANGE);
     }
+    jog.Mode = MC_JOGMODE_INCHING;
+    jog.Position = 1e300;
+    expect_refused(CM1E_ERROR_AXIS_POSITION_RANGE);
     jog.Mode = (E_JogMode)7;
     expect_refused(CM1E_ERROR_INVALID_ARGUMENT);
     jog.Mode = (E_JogMode)-1;
@@ -533,6 +556,7 @@ int main(void)
     tcase_add_test(tcase, test_a_limit_on_one_side_leaves_the_other_open);
     tcase_add_test(tcase, test_inching_is_one_step_whatever_becomes_of_the_button);
     tcase_add_test(tcase, test_inching_modulo_goes_to_multiples_of_the_step);
+    tcase_add_test(tcase, test_a_step_that_numbers_cannot_tell_from_none_moves_nothing);
     tcase_add_test(tcase, test_a_modulo_axis_is_jogged_over_its_end);
     tcase_add_test(tcase, test_another_command_takes_over_and_the_button_no_longer_counts);
     tcase_add_test(tcase, test_a_block_that_is_no_longer_called_stops_its_axis);

@@ -357,7 +357,8 @@ START_TEST(test_random_sequences)
         fresh();
         events = 0;
         const int size = (int)(next_random() % 56);
-        TIME now = (TIME)(next_random() >> (1 + next_random() % 40)) - INT64_MAX / 2, pt = (TIME)(next_random() >> 10) % 50;
+        TIME now = (TIME)(next_random() >> (1 + next_random() % 40)) - INT64_MAX / 2;
+        TIME pt = (TIME)(next_random() >> 10) % 50;
         BOOL in = FALSE;
         while (events < HISTORY) {
             if (next_random() % 4 == 0)
