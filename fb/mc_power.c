@@ -1,3 +1,4 @@
+#include "core/rare.h"
 #include "edge.h"
 
 /**
@@ -54,12 +55,10 @@ static bool stands(const MC_Power_t *fb)
            cm1e_axis_power_stands(*fb->Axis, fb, fb->EnablePositive, fb->EnableNegative);
 }
 
-void MC_Power(MC_Power_t *fb)
+CM1E_RARE static void work(MC_Power_t *fb)
 {
     cm1e_fb_private_t *private = &fb->Private;
     cm1e_error_t passing = CM1E_OK;
-    if (stands(fb))
-        return;
     if (fb->Enable && !private->trigger_before)
         take(private, fb->Axis);
     private->trigger_before = fb->Enable ? TRUE : FALSE;
@@ -75,4 +74,10 @@ void MC_Power(MC_Power_t *fb)
     fb->Error = fb->Enable && (failed || passing);
     fb->Valid = fb->Enable && !fb->Error;
     fb->ErrorID = fb->Error ? (failed ? private->error_id : cm1e_error_id(passing)) : 0;
+}
+
+void MC_Power(MC_Power_t *fb)
+{
+    if (!stands(fb))
+        work(fb);
 }

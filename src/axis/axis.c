@@ -131,14 +131,16 @@ void cm1e_axis_advance(cm1e_axis_t *axis)
 {
     if (axis->kept != 0 || axis->drive.command.digital_outputs != 0)
         cm1e_axis_signals_step(axis);
-    if (!moves_on(axis))
+    const bool undisturbed = moves_on(axis);
+    if (!undisturbed)
         cm1e_axis_power_step(axis);
     cm1e_axis_motion_step(axis);
     if (axis->backlash.gap > 0.0)
         cm1e_axis_backlash_step(axis);
     if (axis->objects.head != axis->objects.next)
         cm1e_axis_objects_step(axis);
-    cm1e_axis_enable_step(axis);
+    if (!undisturbed || axis->activity != ACTIVITY_PROFILE)
+        cm1e_axis_enable_step(axis);
 }
 
 void cm1e_axis_outputs(cm1e_axis_t *axis)

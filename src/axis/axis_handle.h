@@ -21,7 +21,7 @@ extern _Atomic(cm1e_axis_t *) cm1e_axis_table[CM1E_AXIS_HANDLES];
 static inline cm1e_axis_t *cm1e_axis_from_handle(uint16_t handle)
 {
     cm1e_axis_t *axis = atomic_load_explicit(&cm1e_axis_table[handle & 0xFF], memory_order_acquire);
-    return axis && handle != 0 && axis->handle == handle ? axis : NULL;
+    return axis && axis->handle == handle && handle != 0 ? axis : NULL;
 }
 
 /** FALSE: the table is full. @rt init */

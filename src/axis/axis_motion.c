@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "axis/axis_private.h"
+#include "core/rare.h"
 
 /* CSV only (a mapping without target position): the position loop is ours then. 1/s. */
 static const double csv_position_gain = 20.0;
@@ -27,6 +28,7 @@ static void begin_run(cm1e_axis_t *axis, const from_t *from, position_t target, 
     axis->target = target;
     axis->profile_cycles = 0;
     axis->profile_offset_s = offset_s;
+    axis->profile_next_s = offset_s + axis->cycle_s;
     axis->reached = false;
     axis->paused = false;
     axis->activity = ACTIVITY_PROFILE;
@@ -138,24 +140,24 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
     return axis->activity == ACTIVITY_PROFILE;
 }
 
-/* The motion of a command goes on only while it could still be stopped before a software limit. FALSE: a ramp has
- * replaced the profile. Moves to a position were checked as a whole when they were planned; velocities, and whatever
- * changes on the way, meet a limit here. */
-static bool may_go_on(cm1e_axis_t *axis, cm1e_motion_state_t next)
+/* The motion of a command goes on only while it could still be stopped before a software limit. Moves to a position were
+ * checked as a whole when they were planned; velocities, and whatever changes on the way, meet a limit here. */
+static bool may_go_on(const cm1e_axis_t *axis, cm1e_motion_state_t next)
 {
-    if (!axis->software_limits || !commanded_motion(axis) || cm1e_axis_limits_can_stop(axis, axis->base_units, next))
-        return true;
-    cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->set),
-                   next.velocity > 0.0 ? axis->upper : axis->lower);
-    return false;
+    return !axis->software_limits || !commanded_motion(axis) ||
+           cm1e_axis_limits_can_stop(axis, axis->base_units, next);
 }
 
+/* Reckoned a cycle ahead, since the set-point of a cycle waits for it. */
 static double next_time(cm1e_axis_t *axis)
 {
-    return axis->profile_offset_s + (double)++axis->profile_cycles * axis->cycle_s;
+    const double time_s = axis->profile_next_s;
+    axis->profile_cycles++;
+    axis->profile_next_s = axis->profile_offset_s + (double)(axis->profile_cycles + 1) * axis->cycle_s;
+    return time_s;
 }
 
-static void find_stretch(cm1e_axis_t *axis, double time_s)
+CM1E_RARE static void find_stretch(cm1e_axis_t *axis, double time_s)
 {
     if (axis->along_table)
         cm1e_table_profile_stretch_at(&axis->table, time_s, &axis->stretch);
@@ -163,16 +165,9 @@ static void find_stretch(cm1e_axis_t *axis, double time_s)
         cm1e_profile_stretch_at(&axis->profile, time_s, &axis->stretch);
 }
 
-static cm1e_motion_state_t sample(cm1e_axis_t *axis, double time_s)
-{
-    if (!(time_s >= axis->stretch.from_s && time_s < axis->stretch.until_s))
-        find_stretch(axis, time_s);
-    return cm1e_profile_stretch_state(&axis->stretch, time_s);
-}
-
 /* A velocity that goes on for weeks: from here on a profile that has ended already. At most once in 20 minutes; in long
  * double, as what is lost here would add up. */
-static void count_anew(cm1e_axis_t *axis)
+CM1E_RARE static void count_anew(cm1e_axis_t *axis)
 {
     const cm1e_motion_state_t end = axis->profile.end;
     const long double time_s = (long double)axis->profile_offset_s +
@@ -189,24 +184,21 @@ static void count_anew(cm1e_axis_t *axis)
     axis->profile.end.position = 0.0;
     axis->profile_cycles = 0;
     axis->profile_offset_s = 0.0;
+    axis->profile_next_s = axis->cycle_s;
     axis->stretch = no_stretch;
 }
 
-static void profile_step(cm1e_axis_t *axis)
+CM1E_RARE static void meet_limit(cm1e_axis_t *axis, double velocity);
+
+/* The set-point at a time of the profile. */
+static inline void follow(cm1e_axis_t *axis, double time_s)
 {
-    double time_s = next_time(axis);
-    while (!axis->reached && !axis->paused &&
-           time_s >= axis->profile.duration_s - same_moment * axis->cycle_s) {
-        if (!profile_ended(axis, fmax(time_s - axis->profile.duration_s, 0.0)))
-            return;
-        if (!axis->reached)
-            time_s = axis->profile_offset_s;
-    }
-    cm1e_motion_state_t next = sample(axis, time_s);
+    if (!(time_s >= axis->stretch.from_s && time_s < axis->stretch.until_s))
+        find_stretch(axis, time_s);
+    const cm1e_motion_state_t next = cm1e_profile_stretch_state(&axis->stretch, time_s);
     if (!may_go_on(axis, next)) {
-        if (axis->activity != ACTIVITY_PROFILE)
-            return;
-        next = sample(axis, next_time(axis));
+        meet_limit(axis, next.velocity);
+        return;
     }
     const double counts = next.position * axis->scale;
     axis->set = cm1e_position_plus(axis->base, counts);
@@ -221,9 +213,45 @@ static void profile_step(cm1e_axis_t *axis)
                        cm1e_axis_farthest(axis));
 }
 
+/* A ramp, which is no command's, replaces the profile. */
+static void meet_limit(cm1e_axis_t *axis, double velocity)
+{
+    cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->set),
+                   velocity > 0.0 ? axis->upper : axis->lower);
+    if (axis->activity == ACTIVITY_PROFILE)
+        follow(axis, next_time(axis));
+}
+
+static bool at_end(const cm1e_axis_t *axis, double time_s)
+{
+    return time_s >= axis->profile.duration_s - same_moment * axis->cycle_s && !axis->reached && !axis->paused;
+}
+
+/* Over the end of the profile, and of as many as end within this cycle. */
+CM1E_RARE static void follow_over_end(cm1e_axis_t *axis, double time_s)
+{
+    while (at_end(axis, time_s)) {
+        if (!profile_ended(axis, fmax(time_s - axis->profile.duration_s, 0.0)))
+            return;
+        if (!axis->reached)
+            time_s = axis->profile_offset_s;
+    }
+    follow(axis, time_s);
+}
+
+static void profile_step(cm1e_axis_t *axis)
+{
+    const double time_s = next_time(axis);
+    if (at_end(axis, time_s))
+        follow_over_end(axis, time_s);
+    else
+        follow(axis, time_s);
+}
+
 void cm1e_axis_motion_step(cm1e_axis_t *axis)
 {
-    cm1e_axis_step_cycle(axis);
+    if (axis_stepping(axis) || axis->stepping.after_stop)
+        cm1e_axis_step_cycle(axis);
     switch (axis->activity) {
     case ACTIVITY_FREE:
         cm1e_axis_set_to_actual(axis);

@@ -38,7 +38,7 @@ static inline double cm1e_position_minus(position_t a, position_t b)
 #define CM1E_FARTHEST_COUNTS (INT64_C(1) << 52)
 static inline bool cm1e_position_in_range(position_t position)
 {
-    return position.counts < CM1E_FARTHEST_COUNTS && position.counts > -CM1E_FARTHEST_COUNTS;
+    return (uint64_t)position.counts + CM1E_FARTHEST_COUNTS - 1 < 2 * (uint64_t)CM1E_FARTHEST_COUNTS - 1;
 }
 
 /** Where the set-point comes from. */
@@ -274,6 +274,7 @@ struct cm1e_axis {
     cm1e_profile_stretch_t stretch; /**< of it, the one that the set-point is in */
     int64_t profile_cycles;         /**< since it began ... */
     double profile_offset_s;        /**< ... so long before the first of them */
+    double profile_next_s;          /**< its time in the next cycle */
     bool paused;                    /**< its end is not that of its command, which waits (MC_SetOverride) */
     override_t override;
 

@@ -159,6 +159,7 @@ static void test_turning_for_ever_passes_the_range_of_the_device_many_times(void
     bench_cycles(4000); /* the range of 2^32 counts takes half an hour: everything is put forward by 30 days instead */
     const int64_t counts = INT64_C(86400) * 30 * 2500000;
     axis->profile_cycles += INT64_C(86400000) * 30;
+    axis->profile_next_s += 86400.0 * 30;
     axis->set.counts += counts;
     axis->actual_counts += counts;
     axis->raw = bus.position = (int32_t)((uint32_t)bus.position + (uint32_t)(uint64_t)counts);
