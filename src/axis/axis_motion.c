@@ -140,8 +140,8 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
     return axis->activity == ACTIVITY_PROFILE;
 }
 
-/* The motion of a command goes on only while it could still be stopped before a software limit. Moves to a position were
- * checked as a whole when they were planned; velocities, and whatever changes on the way, meet a limit here. */
+/* The motion of a command goes on only while it could still be stopped before a software limit. Moves to a position
+ * were checked as a whole when they were planned; velocities, and what changes on the way, meet a limit here. */
 static bool may_go_on(const cm1e_axis_t *axis, cm1e_motion_state_t next)
 {
     return !axis->software_limits || !commanded_motion(axis) ||
