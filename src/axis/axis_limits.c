@@ -92,14 +92,15 @@ static bool choose(double asked, double maximum, bool stopping, double *value)
 
 /* An acceleration under way takes time to end, at a jerk that is smaller than it began with perhaps more than there is
  * left up to the maximum velocity. A larger one, at most that of the motion so far, keeps below it. */
-static void keep_below_maximum_velocity(const cm1e_axis_t *axis, const from_t *from, cm1e_motion_limits_t *limits)
+void cm1e_axis_keep_below_maximum(const cm1e_axis_t *axis, const from_t *from, cm1e_motion_limits_t *limits)
 {
     const double a = from->acceleration;
     if (a == 0.0)
         return;
     const double most = axis->maximum.velocity, room = most - (a > 0.0 ? from->velocity : -from->velocity);
     limits->jerk = fmax(limits->jerk, fmin(a * a / (2.0 * fmax(room, 0.0)), axis->maximum.jerk));
-    if (a * a / (2.0 * axis->maximum.jerk) > room + relative_tolerance * most) /* a ramp without limit of jerk left it */
+    /* What a ramp without limit of jerk has left needs more. */
+    if (a * a / (2.0 * axis->maximum.jerk) > room + relative_tolerance * most)
         limits->jerk = a * a / (2.0 * fmax(room, relative_tolerance * most));
 }
 
@@ -142,7 +143,7 @@ cm1e_error_t cm1e_axis_limits_with(const cm1e_axis_t *axis, const from_t *from, 
         limits->jerk *= override->jerk;
     }
     if (!error)
-        keep_below_maximum_velocity(axis, from, limits);
+        cm1e_axis_keep_below_maximum(axis, from, limits);
     return error;
 }
 

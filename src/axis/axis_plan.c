@@ -169,7 +169,9 @@ cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const from_t *from, co
                                  cm1e_profile_t *profile)
 {
     const cm1e_motion_state_t start = start_of(from);
-    const cm1e_error_t error = cm1e_profile_to_velocity(profile, &start, 0.0, limits);
+    cm1e_motion_limits_t enough = *limits;
+    cm1e_axis_keep_below_maximum(axis, from, &enough);
+    const cm1e_error_t error = cm1e_profile_to_velocity(profile, &start, 0.0, &enough);
     if (error || cm1e_axis_limits_contain(axis, from, profile))
         return error;
     return cm1e_profile_to_velocity(profile, &start, 0.0, &axis->emergency);

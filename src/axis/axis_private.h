@@ -374,6 +374,8 @@ cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const from_t *from, co
 /** The same with these factors instead of the axis's override. */
 cm1e_error_t cm1e_axis_limits_with(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                                    const override_t *override, cm1e_motion_limits_t *limits);
+/** More jerk, where what is left of another motion's acceleration would else overshoot the maximum velocity. */
+void cm1e_axis_keep_below_maximum(const cm1e_axis_t *axis, const from_t *from, cm1e_motion_limits_t *limits);
 /** A target inside the software limits, or not farther outside than where the way there begins. */
 bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, position_t from, position_t target);
 /** The same for a way between two positions, counted from there in u. */

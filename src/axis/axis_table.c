@@ -182,13 +182,13 @@ cm1e_error_t cm1e_axis_table_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t
     table_points_t points;
     move_t move = {.kind = (uint8_t)command->kind, .buffer_mode = mcBuffered};
     cm1e_error_t error = read_points(command->table, &points);
-    if (!error)
-        error = cm1e_axis_buffer(axis, &move);
     if (error)
         return error;
-    *id = move.id;
-    *waiting = (waiting_table_t){.id = move.id, .points = points};
-    return CM1E_OK;
+    /* Before it waits: what it waits for may be there already, and it begins at once. */
+    *waiting = (waiting_table_t){.id = axis->last_id + 1 ? axis->last_id + 1 : 1, .points = points};
+    error = cm1e_axis_buffer(axis, &move);
+    waiting->id = *id = error ? 0 : move.id;
+    return error;
 }
 
 cm1e_error_t cm1e_axis_table_begin(cm1e_axis_t *axis, const move_t *move, const from_t *from, double offset_s)
