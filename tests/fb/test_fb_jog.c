@@ -543,6 +543,49 @@ START_TEST(test_random_buttons)
 }
 END_TEST
 
+/* The same with faults, resets and power that goes: nothing moves that no button moves. */
+START_TEST(test_random_buttons_and_faults)
+{
+    static const char *const faults[] = {"lose 1", "lose 2", "lose 30", "power 1 off", "error 1 2310", "error 1 7500",
+                                         "corrupt 3", "delay 2 400"};
+    const char *given = getenv("CM1E_TEST_SEED");
+    const unsigned seed = given ? (unsigned)strtoul(given, NULL, 10) : 99171u;
+    printf("seed %u\n", seed);
+    srand(seed);
+    begin(-3.0, 3.0);
+    jog.Mode = MC_JOGMODE_STANDARD_FAST;
+    int idle = 0, nothing = 0, stopped = 0, started = 0;
+    for (int n = 0; n < 60000; n++) {
+        if (rand() % 80 == 0)
+            press(rand() % 2, rand() % 3 == 0);
+        if (rand() % 1500 == 0)
+            simulate(faults[rand() % 8]);
+        if (rand() % 2000 == 0)
+            power(rand() % 2);
+        if (rand() % 700 == 0) {
+            simulate("power 1 on");
+            simulate("error 1 clear");
+            power(true);
+            cm1e_axis_reset(axis);
+        }
+        const bool busy_before = jog.Busy;
+        scan();
+        const cm1e_axis_info_t now = info();
+        stopped += now.state == CM1E_AXIS_ERROR_STOP;
+        started += jog.Busy && !busy_before;
+        idle = jog.Busy ? 0 : idle + 1;
+        if (idle > 500 && now.set_velocity != 0.0 && now.powered)
+            ck_abort_msg("seed %u, scan %d: nobody wants this motion, %s", seed, n, cm1e_axis_state_name(now.state));
+        nothing = jog.Busy && !forward && !backwards && now.state == CM1E_AXIS_STANDSTILL ? nothing + 1 : 0;
+        if (nothing > 1) /* the call after shows that it has ended */
+            ck_abort_msg("seed %u, scan %d: busy with nothing", seed, n);
+    }
+    ck_assert_int_gt(stopped, 1000);
+    ck_assert_int_gt(started, 50);
+    close_segment();
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("MC_Jog");
@@ -564,6 +607,7 @@ int main(void)
     tcase_add_test(tcase, test_what_cannot_be_is_refused_and_moves_nothing);
     tcase_add_test(tcase, test_an_error_of_the_axis_shows_and_a_button_held_over_the_reset_does_nothing);
     tcase_add_test(tcase, test_random_buttons);
+    tcase_add_test(tcase, test_random_buttons_and_faults);
     suite_add_tcase(suite, tcase);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);
