@@ -261,7 +261,7 @@ static cm1e_error_t operate(MC_DigitalCamSwitch_t *fb, const cm1e_axis_t *axis, 
 {
     look_t look;
     DWORD tracks;
-    if (!fb->Outputs || (unsigned)fb->ValueSource > mcCommandedValue)
+    if (!fb->Outputs || (fb->ValueSource != mcSetValue && fb->ValueSource != mcActualValue))
         return CM1E_ERROR_INVALID_ARGUMENT;
     if (!look_at(fb, axis, &look)) {
         if (fb->Private.running && look.now - fb->Private.seen <= unseen_ns)

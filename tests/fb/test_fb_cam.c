@@ -476,6 +476,9 @@ START_TEST(test_switches_and_tracks_that_cannot_be)
         at(5.0, 0.0);
         ck_assert(fb.InOperation && outputs.Values == 2);
     }
+    fb.ValueSource = mcCommandedValue;
+    at(5.0, 0.0);
+    expect_error(CM1E_ERROR_INVALID_ARGUMENT);
     fb.ValueSource = (MC_SOURCE)7;
     at(5.0, 0.0);
     expect_error(CM1E_ERROR_INVALID_ARGUMENT);

@@ -178,6 +178,31 @@ START_TEST(test_random_counting)
 }
 END_TEST
 
+/* ---- names ------------------------------------------------------------------------------------------------------- */
+
+/* An application may have symbols as short as these: the linker knows ours by another name. */
+#define OWN(NAME, NUMBER)                                                                                              \
+    int own_##NAME(void) __asm__(#NAME);                                                                               \
+    int own_##NAME(void) { return NUMBER; }
+OWN(TON, 1) OWN(TOF, 2) OWN(TP, 3) OWN(R_TRIG, 4) OWN(F_TRIG, 5)
+OWN(SR, 6) OWN(RS, 7) OWN(CTU, 8) OWN(CTD, 9) OWN(CTUD, 10)
+
+START_TEST(test_names_do_not_collide_with_an_application_s_own)
+{
+    ck_assert_int_eq(own_TON() + own_TOF() + own_TP() + own_R_TRIG() + own_F_TRIG(), 15);
+    ck_assert_int_eq(own_SR() + own_RS() + own_CTU() + own_CTD() + own_CTUD(), 40);
+    TON_t on = {.IN = TRUE};
+    TOF_t off = {.IN = TRUE};
+    TP_t pulse = {.IN = TRUE, .PT = 1};
+    SR_t set = {.S1 = TRUE};
+    TON(&on);
+    TOF(&off);
+    TP(&pulse);
+    SR(&set);
+    ck_assert(on.Q && off.Q && pulse.Q && set.Q1);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("IEC blocks");
@@ -189,6 +214,7 @@ int main(void)
     tcase_add_test(tcase, test_reset_and_load_go_first_and_use_the_edge_up);
     tcase_add_test(tcase, test_counters_over_all_states_and_inputs);
     tcase_add_test(tcase, test_random_counting);
+    tcase_add_test(tcase, test_names_do_not_collide_with_an_application_s_own);
     suite_add_tcase(suite, tcase);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);
