@@ -35,6 +35,12 @@ typedef enum cm1e_mapping {
     CM1E_MAPPING_PROFILE,     /**< 0x1603/0x1A03 */
 } cm1e_mapping_t;
 
+/** Who makes the way of a motion. */
+typedef enum cm1e_motion_backend {
+    CM1E_MOTION_HOST = 0, /**< this library, a set-point every cycle: everything that the blocks offer; the default */
+    CM1E_MOTION_DRIVE,    /**< the drive, in profile position and profile velocity mode: single moves from standstill */
+} cm1e_motion_backend_t;
+
 /** Order of the objects in the four mappings: the manual gives two (UG 4.4 and UG 7.2). Simulator only; the driver
  *  reads the order from the device. */
 typedef enum cm1e_pdo_order {
@@ -85,6 +91,7 @@ typedef struct cm1e_axis_config {
     char motor[20];                  /**< "CM1-E-17S30D", -17L30D, -23S30D or -23L20D; "": CM1-E-17S30D */
     char firmware[12];               /**< expected, or played by the simulator: "1.2.0" ... "1.3.5"; "": any, 1.3.5 */
     cm1e_mapping_t mapping;
+    cm1e_motion_backend_t motion;
     double counts_per_unit;          /**< encoder counts (50,000 a revolution) per unit u; 0: by the three below */
     uint32_t gear_numerator;         /**< revolutions of the motor ... 1 ... 1,000,000; 0: 1 */
     uint32_t gear_denominator;       /**< ... in so many revolutions of the load; 1 ... 1,000,000; 0: 1 */

@@ -111,7 +111,7 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
         return;
     if (health && depends_on_bus(axis))
         cm1e_drive_fail(drive, health);
-    else if (powered_state(axis->state) && axis->activity != ACTIVITY_HOMING && !drive->feedback.enabled)
+    else if (powered_state(axis->state) && !drive_moves(axis) && !drive->feedback.enabled)
         cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_ENABLE_LOST); /* an earlier and better reason stays */
     if (drive->fault.error) {
         cm1e_axis_fail(axis, drive->fault.error, 0.0, 0.0);

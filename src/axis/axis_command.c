@@ -153,6 +153,41 @@ static cm1e_error_t start_step(cm1e_axis_t *axis, const cm1e_axis_command_t *com
     return CM1E_OK;
 }
 
+/* The drive's own motions begin at standstill, one at a time; MC_Halt and MC_Stop end them. */
+static cm1e_error_t start_drive(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+{
+    const from_t from = from_set(axis);
+    move_t move = cm1e_axis_move_of(command);
+    const bool stopping = command->kind == CM1E_COMMAND_HALT || command->kind == CM1E_COMMAND_STOP;
+    cm1e_motion_limits_t unused;
+    driving_t driving;
+    if (axis->activity == ACTIVITY_DRIVE && !stopping)
+        return CM1E_ERROR_AXIS_STATE;
+    move.origin = from.position;
+    const cm1e_error_t error = stopping ? cm1e_axis_limits_of(axis, &from, &move, &unused)
+                                        : cm1e_axis_drive_prepare(axis, &from, &move, &driving);
+    if (error)
+        return error;
+    cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+    *id = axis->active = move.id = cm1e_axis_next_id(axis);
+    axis->kind = command->kind;
+    axis->move = move;
+    if (command->kind == CM1E_COMMAND_STOP)
+        hold_stop(axis, *id);
+    if (stopping)
+        cm1e_axis_drive_abort(axis, HOME_GOAL_HOLD);
+    else
+        cm1e_axis_drive_begin(axis, &driving);
+    return CM1E_OK;
+}
+
+/* A stop at standstill needs no drive. */
+static bool by_drive(const cm1e_axis_t *axis, cm1e_command_kind_t kind)
+{
+    const bool stopping = kind == CM1E_COMMAND_HALT || kind == CM1E_COMMAND_STOP;
+    return axis->activity == ACTIVITY_DRIVE || (drive_profiles(axis) && axis->activity == ACTIVITY_HOLD && !stopping);
+}
+
 /* ---- buffered ---------------------------------------------------------------------------------------------------- */
 
 cm1e_error_t cm1e_axis_begin_homing(cm1e_axis_t *axis, const move_t *move)
@@ -263,6 +298,8 @@ static cm1e_error_t start_now(cm1e_axis_t *axis, const cm1e_axis_command_t *comm
         return start_step(axis, command, id);
     if (is_table(command->kind))
         return cm1e_axis_table_start(axis, command, id);
+    if (by_drive(axis, command->kind))
+        return start_drive(axis, command, id);
     return axis->activity == ACTIVITY_HOMING ? stop_homing(axis, command, id) : start_move(axis, command, id);
 }
 
@@ -271,6 +308,8 @@ static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command,
     *id = 0;
     if ((unsigned)command->kind >= CM1E_COMMAND_KIND_COUNT)
         return CM1E_ERROR_INVALID_ARGUMENT;
+    if (drive_profiles(axis) && !cm1e_axis_drive_takes(command->kind))
+        return CM1E_ERROR_UNSUPPORTED;
     const bool waits = has_to_wait(axis, command);
     const state_rule_t *rule = cm1e_axis_state_rule(axis->state, command->kind);
     if (rule->refusal && !waits)
@@ -281,6 +320,8 @@ static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command,
         !is_table(command->kind) && !cm1e_axis_can_plan(command->kind))
         return CM1E_ERROR_UNSUPPORTED;
     if (command->kind != CM1E_COMMAND_STOP && (unsigned)command->buffer_mode > mcBlendingHigh)
+        return CM1E_ERROR_AXIS_BUFFER_MODE;
+    if (waits && drive_profiles(axis))
         return CM1E_ERROR_AXIS_BUFFER_MODE;
     if (waits)
         return buffer(axis, command, id);

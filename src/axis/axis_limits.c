@@ -97,10 +97,14 @@ void cm1e_axis_keep_below_maximum(const cm1e_axis_t *axis, const from_t *from, c
     const double a = from->acceleration;
     if (a == 0.0)
         return;
-    const double most = axis->maximum.velocity, room = most - (a > 0.0 ? from->velocity : -from->velocity);
+    const double most = axis->system.velocity, needed = a * a / (2.0 * axis->maximum.jerk);
+    const double velocity = a > 0.0 ? from->velocity : -from->velocity;
+    double room = axis->maximum.velocity - velocity;
+    if (needed > room + relative_tolerance * most) /* the application's maximum has just been made smaller */
+        room = most - velocity;
     limits->jerk = fmax(limits->jerk, fmin(a * a / (2.0 * fmax(room, 0.0)), axis->maximum.jerk));
     /* What a ramp without limit of jerk has left needs more. */
-    if (a * a / (2.0 * axis->maximum.jerk) > room + relative_tolerance * most)
+    if (needed > room + relative_tolerance * most)
         limits->jerk = a * a / (2.0 * fmax(room, relative_tolerance * most));
 }
 
@@ -214,6 +218,8 @@ cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from,
 /* What runs is judged as a whole, from where it began, so that a limit may be refused that lies behind the axis. */
 bool cm1e_axis_limits_hold(const cm1e_axis_t *axis, double lower, double upper)
 {
+    if (axis->activity == ACTIVITY_DRIVE) /* of its way only the end is known */
+        return isinf(lower) && isinf(upper);
     if (axis->activity != ACTIVITY_PROFILE)
         return true;
     const double base = axis->base_units, now = cm1e_axis_units(axis, axis->set), v = axis->set_velocity;

@@ -91,6 +91,10 @@ static bool goes(const cm1e_axis_t *axis, double sign)
 
 void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign)
 {
+    if (axis->activity == ACTIVITY_DRIVE) {
+        cm1e_axis_drive_direction_disabled(axis, sign);
+        return;
+    }
     if (!commanded_motion(axis) || !goes(axis, sign))
         return;
     const from_t from = from_set(axis);
@@ -264,6 +268,9 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
     case ACTIVITY_HOMING:
         cm1e_axis_home_step(axis);
         break;
+    case ACTIVITY_DRIVE:
+        cm1e_axis_drive_step(axis);
+        break;
     }
     /* Note 6: MC_Stop done and its Execute FALSE. */
     if (axis->state == CM1E_AXIS_STOPPING && axis->activity == ACTIVITY_HOLD && !axis->stop_held)
@@ -300,4 +307,6 @@ void cm1e_axis_write_set_point(cm1e_axis_t *axis)
     command->target_position = (int32_t)(uint32_t)(uint64_t)cm1e_axis_motor_target(axis);
     if (axis->mode == CM1E_MODE_CSV)
         command->target_velocity = target_velocity(axis);
+    else if (axis->activity == ACTIVITY_DRIVE)
+        cm1e_axis_drive_write(axis);
 }

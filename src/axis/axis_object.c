@@ -60,6 +60,16 @@ static const cm1e_entry_t *entry_of(int number)
     return NULL;
 }
 
+int cm1e_axis_number_of_object(uint16_t index, uint8_t subindex)
+{
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+        const int number = table[i].first + subindex - table[i].subindex;
+        if (table[i].index == index && number >= table[i].first && number <= table[i].last)
+            return number;
+    }
+    return 0;
+}
+
 static object_request_t *request_of(cm1e_axis_t *axis, uint16_t sequence)
 {
     return &axis->objects.requests[sequence % OBJECT_REQUESTS];

@@ -24,6 +24,8 @@ cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double a
         return CM1E_ERROR_AXIS_OVERRIDE;
     if (velocity == before.velocity && acceleration == before.acceleration && jerk == before.jerk)
         return CM1E_OK;
+    if (drive_profiles(axis)) /* they would have to be written to the drive, and it take them in motion */
+        return CM1E_ERROR_UNSUPPORTED;
     axis->override = (override_t){velocity, acceleration, jerk};
     const bool paused = axis->paused;
     const cm1e_error_t error = cm1e_axis_replan(axis);

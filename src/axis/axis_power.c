@@ -31,10 +31,12 @@ void cm1e_axis_become_free(cm1e_axis_t *axis)
 /* Whatever moves is stopped, by a ramp of ours or by the drive in its homing; without torque nothing is to stop. */
 static void wind_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp)
 {
-    if (!axis->drive.feedback.enabled && axis->activity != ACTIVITY_HOMING)
+    if (!axis->drive.feedback.enabled && !drive_moves(axis))
         cm1e_axis_become_free(axis);
     else if (axis->activity == ACTIVITY_HOMING)
         cm1e_axis_home_abort(axis, HOME_GOAL_OFF);
+    else if (axis->activity == ACTIVITY_DRIVE)
+        cm1e_axis_drive_abort(axis, HOME_GOAL_OFF);
     else if (axis->activity == ACTIVITY_PROFILE || axis->activity == ACTIVITY_HOLD)
         cm1e_axis_ramp_down(axis, ramp);
 }
@@ -140,7 +142,7 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
     else if (axis->activity == ACTIVITY_HOLD && !wanted && axis->now_ns >= axis->brake_until_ns &&
              cm1e_axis_backlash_at_rest(axis))
         cm1e_axis_become_free(axis); /* a ramp has ended, and its last set-point is out */
-    else if (axis->activity != ACTIVITY_FREE && axis->activity != ACTIVITY_HOMING && !acting)
+    else if (axis->activity != ACTIVITY_FREE && !drive_moves(axis) && !acting)
         cm1e_axis_become_free(axis); /* the torque went in the middle of a ramp */
 }
 

@@ -47,6 +47,7 @@ typedef enum activity {
     ACTIVITY_HOLD,     /**< it stands */
     ACTIVITY_PROFILE,  /**< a profile, of a command or of a stopping ramp */
     ACTIVITY_HOMING,   /**< the drive's own homing (axis_home.c) */
+    ACTIVITY_DRIVE,    /**< the drive's own profile (axis_drive_profile.c) */
 } activity_t;
 
 enum { COMMANDS_REMEMBERED = 64, HOMING_PARAMETERS = 5 };
@@ -158,6 +159,35 @@ typedef struct probe_sample {
     position_t position;            /**< of the load */
     uint16_t inputs;
 } probe_sample_t;
+
+typedef enum drive_step {
+    DRIVE_WRITE = 0, /**< parameters; the axis still holds its position */
+    DRIVE_SWITCH,    /**< to the mode of the motion */
+    DRIVE_GO,        /**< the set-point is announced */
+    DRIVE_MOVE,
+    DRIVE_HALT,      /**< halt bit set, until the motor stands */
+    DRIVE_RETURN,    /**< back to the axis's own mode */
+} drive_step_t;
+
+enum { DRIVE_PARAMETERS = 2 };
+
+/** A motion that the drive does by itself. */
+typedef struct driving {
+    drive_step_t step;
+    home_goal_t goal;
+    bool velocity_mode;      /**< profile velocity instead of profile position */
+    double way;              /**< sign of its direction, in u */
+    int32_t target;          /**< counts of the drive */
+    int32_t target_velocity; /**< counts/s */
+    double speed, braking;   /**< counts/s, counts/s2 */
+    uint32_t raw[DRIVE_PARAMETERS];
+    uint8_t next;            /**< parameter to write next */
+    bool submitted;
+    uint8_t data[4];
+    cm1e_sdo_t sdo;
+    int64_t step_ns, quiet_ns; /**< when the step began; since when the motor stands */
+    int32_t quiet_position;
+} driving_t;
 
 enum { OBJECT_REQUESTS = 8 };
 
@@ -304,6 +334,7 @@ struct cm1e_axis {
     cm1e_error_t reset_error;
     bool reset_sent;
 
+    driving_t driving;
     objects_t objects;
     not_set_t not_set;
     homing_t home;
@@ -404,6 +435,7 @@ bool cm1e_axis_limits_hold(const cm1e_axis_t *axis, double lower, double upper);
 void cm1e_axis_apply_software_limits(cm1e_axis_t *axis);
 void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_axis_object_text(const cm1e_axis_t *axis, char *text, size_t size);
+int cm1e_axis_number_of_object(uint16_t index, uint8_t subindex);
 /** While one waits or is under way. */
 void cm1e_axis_objects_step(cm1e_axis_t *axis);
 
@@ -564,6 +596,23 @@ bool cm1e_axis_step_profile_ended(cm1e_axis_t *axis);
 static inline bool axis_stepping(const cm1e_axis_t *axis)
 {
     return axis->active != 0 && axis->kind == CM1E_COMMAND_HOMING_STEP;
+}
+
+/* axis_drive_profile.c */
+/** The axis's motions are the drive's: `motion: drive`. */
+static inline bool drive_profiles(const cm1e_axis_t *axis) { return axis->config->motion == CM1E_MOTION_DRIVE; }
+bool cm1e_axis_drive_takes(cm1e_command_kind_t kind);
+/** Checks a command that begins at standstill; nothing has changed then. */
+cm1e_error_t cm1e_axis_drive_prepare(cm1e_axis_t *axis, const from_t *from, move_t *move, driving_t *d);
+void cm1e_axis_drive_begin(cm1e_axis_t *axis, const driving_t *d);
+void cm1e_axis_drive_abort(cm1e_axis_t *axis, home_goal_t goal);
+void cm1e_axis_drive_direction_disabled(cm1e_axis_t *axis, double sign);
+void cm1e_axis_drive_step(cm1e_axis_t *axis);
+void cm1e_axis_drive_write(cm1e_axis_t *axis);
+/** The drive moves, or is about to, by itself. */
+static inline bool drive_moves(const cm1e_axis_t *axis)
+{
+    return axis->activity == ACTIVITY_HOMING || axis->activity == ACTIVITY_DRIVE;
 }
 
 #endif

@@ -106,7 +106,7 @@ static bool position_unknown(const cm1e_axis_t *axis, const probe_sample_t *befo
 {
     const double cycles = (double)(now->time_ns - before->time_ns) / (axis->cycle_s * 1e9);
     const uint32_t limit = cm1e_bus_configuration(axis->drive.bus)->lost_cycles_limit;
-    return cycles > (limit ? limit : 3) + 0.5 || axis->activity == ACTIVITY_HOMING;
+    return cycles > (limit ? limit : 3) + 0.5 || drive_moves(axis);
 }
 
 static void triggered(cm1e_axis_t *axis, probe_t *probe, const probe_sample_t *before, const probe_sample_t *now)

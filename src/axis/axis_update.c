@@ -44,6 +44,10 @@ static move_t merged(const move_t *old, const move_t *inputs)
 
 static cm1e_error_t update_active(cm1e_axis_t *axis, const move_t *inputs)
 {
+    if (axis->activity == ACTIVITY_DRIVE && !same_inputs(&axis->move, inputs))
+        return CM1E_ERROR_UNSUPPORTED;
+    if (axis->activity == ACTIVITY_DRIVE)
+        return CM1E_OK;
     if (axis->activity != ACTIVITY_PROFILE || inputs->kind != axis->kind)
         return CM1E_ERROR_INVALID_ARGUMENT;
     if (same_inputs(&axis->move, inputs))

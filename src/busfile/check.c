@@ -419,6 +419,22 @@ static bool check_sim(const check_t *check)
     return true;
 }
 
+static bool check_motion(const check_t *check)
+{
+    const cm1e_axis_config_t *axis = check->axis;
+    if (axis->motion == CM1E_MOTION_HOST)
+        return true;
+    if (axis->motion != CM1E_MOTION_DRIVE)
+        return axis_wrong(check, "motion", "is %d; expected one of the enumeration", (int)axis->motion);
+    if (axis->mapping != CM1E_MAPPING_DYNAMIC && axis->mapping != CM1E_MAPPING_PROFILE)
+        return axis_wrong(check, "motion", "is drive, and the mapping has no profile modes; expected the mapping "
+                          "dynamic or profile");
+    if (axis->backlash != 0)
+        return axis_wrong(check, "motion", "is drive, and backlash is given, which the drive does not compensate; "
+                          "expected one of them");
+    return true;
+}
+
 static bool check_axis(check_t *check)
 {
     if (!check_name(check) || !check_address(check) || !check_motor(check) || !check_firmware(check) ||
@@ -426,8 +442,8 @@ static bool check_axis(check_t *check)
         return false;
     if ((unsigned)check->axis->mapping > CM1E_MAPPING_PROFILE)
         return axis_wrong(check, "mapping", "is %d; expected one of the enumeration", (int)check->axis->mapping);
-    return check_velocity(check) && check_numbers(check) && check_software_limits(check) && check_modulo(check) &&
-           check_homing(check) && check_inputs(check) && check_jog(check) && check_sim(check);
+    return check_motion(check) && check_velocity(check) && check_numbers(check) && check_software_limits(check) &&
+           check_modulo(check) && check_homing(check) && check_inputs(check) && check_jog(check) && check_sim(check);
 }
 
 bool cm1e_busfile_check(const cm1e_bus_config_t *config, cm1e_busfile_problem_t *problem)

@@ -24,6 +24,10 @@ static const cyaml_strval_t mappings[] = {
     {"csv", CM1E_MAPPING_CSV},
     {"profile", CM1E_MAPPING_PROFILE},
 };
+static const cyaml_strval_t motions[] = {
+    {"host", CM1E_MOTION_HOST},
+    {"drive", CM1E_MOTION_DRIVE},
+};
 static const cyaml_strval_t pdo_orders[] = {
     {"ug_4_4", CM1E_PDO_ORDER_UG_4_4},
     {"ug_7_2", CM1E_PDO_ORDER_UG_7_2},
@@ -127,6 +131,7 @@ static const cyaml_schema_field_t axis_fields[] = {
     AXIS_STRING("firmware", firmware),
     ENUM_OF("mapping", cm1e_busfile_axis_t, axis.mapping, mappings),
     AXIS_BOOL("buffered_profiles", buffered_profiles),
+    ENUM_OF("motion", cm1e_busfile_axis_t, axis.motion, motions),
     AXIS_GROUP("unit", unit_fields),
     AXIS_GROUP("limits", limit_fields),
     AXIS_GROUP("software_limits", software_limit_fields),

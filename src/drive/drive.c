@@ -198,7 +198,8 @@ static uint16_t mode_bits(cm1e_drive_t *drive, bool pass)
     if (shown == CM1E_MODE_PP && pass) { /* UG 6.2.2: edge and acknowledge announce a set-point */
         if (drive->set_point_bit && drive->feedback.bit12) {
             drive->set_point_bit = false;
-        } else if (!drive->set_point_bit && !drive->feedback.bit12 && command->target_position != drive->set_point) {
+        } else if (!drive->set_point_bit && !drive->feedback.bit12 && !command->halt &&
+                   command->target_position != drive->set_point) {
             drive->set_point_bit = true;
             drive->set_point = command->target_position;
         }

@@ -228,6 +228,8 @@ static void run(void)
         bus.config.axes[0].software_limit_negative = -20.0;
         bus.config.axes[0].software_limit_positive = 20.0;
     }
+    if (bus.config.axes[0].mapping == CM1E_MAPPING_DYNAMIC && bus.config.axes[0].backlash == 0.0 && draw(3) == 0)
+        bus.config.axes[0].motion = CM1E_MOTION_DRIVE;
     memset(ids, 0, sizeof ids);
     bench_create();
     bench_power(true);
@@ -240,7 +242,7 @@ static void run(void)
         bench_outputs();
         check_commands();
         check_axis();
-        moving_cycles += axis->activity == ACTIVITY_PROFILE;
+        moving_cycles += axis->activity == ACTIVITY_PROFILE || axis->activity == ACTIVITY_DRIVE;
         if (i % 100 == 0)
             cm1e_axis_error_text(cm1e_axis_reference(axis), text, sizeof text);
     }

@@ -112,6 +112,13 @@ static void test_enumerations_out_of_range_are_refused(void)
     config.axes[0].mapping = (cm1e_mapping_t)-1;
     expect_wrong("mapping");
     setUp();
+    config.axes[0].motion = (cm1e_motion_backend_t)2;
+    expect_wrong("motion is 2");
+    config.axes[0].motion = CM1E_MOTION_DRIVE;
+    expect_good();
+    config.axes[0].mapping = CM1E_MAPPING_CSV;
+    expect_wrong("motion is drive");
+    setUp();
     config.axes[0].address_kind = (cm1e_address_kind_t)3;
     expect_wrong("position");
     config.axes[0].address_kind = (cm1e_address_kind_t)-1;

@@ -129,6 +129,8 @@ static void test_documented_example_fills_the_other_addresses_and_units(void)
     TEST_ASSERT_EQUAL(CM1E_ADDRESS_ALIAS, config.axes[1].address_kind);
     TEST_ASSERT_EQUAL(1001, config.axes[1].address);
     TEST_ASSERT_EQUAL(CM1E_MAPPING_CSP, config.axes[1].mapping);
+    TEST_ASSERT_EQUAL(CM1E_MOTION_HOST, config.axes[1].motion);
+    TEST_ASSERT_EQUAL(CM1E_MOTION_DRIVE, config.axes[2].motion);
     TEST_ASSERT_TRUE(config.axes[1].velocity_unit_stated);
     TEST_ASSERT_TRUE(config.axes[1].velocity_in_counts_per_ms);
     TEST_ASSERT_FALSE(config.axes[1].acceleration_in_kpulses);

@@ -1,0 +1,386 @@
+/*
+ * Motions that the drive does by itself (`motion: drive`): MC_MoveAbsolute, MC_MoveRelative and MC_MoveAdditive in
+ * profile position mode (UG 6.2.2), MC_MoveVelocity in profile velocity mode (UG 6.2.3). The steps are those of the
+ * drive's homing: parameters while the axis holds its position in its own mode, the mode, the motion, and back. So a
+ * motion begins at standstill, and ends there; MC_Halt and MC_Stop end it with the halt bit, which stays until the mode
+ * is left, because its end would let the drive go on. The set-point of the axis is its actual position meanwhile.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "axis/axis_private.h"
+#include "core/bytes.h"
+
+static const int64_t parameter_timeout_ns = 5000 * MS_IN_NS;
+static const int64_t acknowledge_timeout_ns = 500 * MS_IN_NS;
+static const int64_t longest_halt_ns = 10000 * MS_IN_NS;
+static const int64_t standing_ns = 50 * MS_IN_NS;
+static const int32_t standing_counts = 10;
+static const int32_t there_counts = 50;
+/* Between the cycle that sees the motor and the drive that brakes it; s. */
+static const double halt_latency_s = 0.005;
+
+/* What is written before a motion, by mode. */
+static const uint16_t parameters[2][DRIVE_PARAMETERS] = {
+    [false] = {OBJ_6081_PROFILE_VELOCITY, OBJ_6083_PROFILE_ACCELERATION},
+    [true] = {OBJ_6083_PROFILE_ACCELERATION, OBJ_6084_PROFILE_DECELERATION},
+};
+
+static cm1e_mode_t mode_of(const driving_t *d) { return d->velocity_mode ? CM1E_MODE_PV : CM1E_MODE_PP; }
+
+/* ---- start ------------------------------------------------------------------------------------------------------- */
+
+/* As the device keeps it, or FALSE: out of its range. */
+static bool parameter(const cm1e_axis_t *axis, uint16_t index, double counts, uint32_t *raw)
+{
+    const cm1e_entry_t *entry = cm1e_device_entry(index, 0);
+    const int64_t rounded = cm1e_entry_round(entry, llround(counts));
+    if (rounded < entry->minimum || rounded > entry->maximum)
+        return false;
+    const bool kilo = axis->config->acceleration_in_kpulses && index != OBJ_6081_PROFILE_VELOCITY;
+    *raw = (uint32_t)(kilo ? rounded / 1000 : rounded);
+    return true;
+}
+
+bool cm1e_axis_drive_takes(cm1e_command_kind_t kind)
+{
+    return is_discrete_move(kind) || kind == CM1E_COMMAND_MOVE_VELOCITY || kind == CM1E_COMMAND_HALT ||
+           kind == CM1E_COMMAND_STOP || kind == CM1E_COMMAND_HOME || kind == CM1E_COMMAND_HOMING_STEP;
+}
+
+/* In the drive's 32 bits, without its wrap: it takes targets as absolute and would turn the other way round. */
+static cm1e_error_t aim_position(const cm1e_axis_t *axis, const move_t *move, driving_t *d)
+{
+    const position_t target = move->target;
+    const int64_t counts = target.counts + (target.fraction >= 0.5), raw = axis->raw + counts - axis->actual_counts;
+    if (raw > INT32_MAX || raw < INT32_MIN || !cm1e_axis_limits_contain_target(axis, axis->set, target))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    d->target = (int32_t)raw;
+    d->way = raw > axis->raw ? 1.0 : raw < axis->raw ? -1.0 : 0.0;
+    if (axis->scale < 0.0)
+        d->way = -d->way;
+    return CM1E_OK;
+}
+
+static cm1e_error_t aim_velocity(const cm1e_axis_t *axis, const from_t *from, const move_t *move, driving_t *d)
+{
+    double velocity;
+    const cm1e_error_t error = cm1e_axis_signed_velocity(axis, from, move, &velocity);
+    const double now = cm1e_axis_units(axis, axis->set);
+    if (error)
+        return error;
+    if (velocity > 0.0 ? now >= axis->upper : now <= axis->lower)
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    d->target_velocity = (int32_t)round(velocity * axis->scale);
+    d->way = velocity > 0.0 ? 1.0 : -1.0;
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_axis_drive_prepare(cm1e_axis_t *axis, const from_t *from, move_t *move, driving_t *d)
+{
+    cm1e_motion_limits_t limits;
+    *d = (driving_t){.velocity_mode = move->kind == CM1E_COMMAND_MOVE_VELOCITY};
+    if (move->jerk != 0.0)
+        return CM1E_ERROR_UNSUPPORTED;
+    if (!d->velocity_mode && move->deceleration != 0.0 && move->deceleration != move->acceleration)
+        return CM1E_ERROR_UNSUPPORTED; /* UG 6.2.2: the deceleration is the acceleration */
+    cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
+    if (!error)
+        error = cm1e_axis_resolve(axis, from, move);
+    if (!error)
+        error = d->velocity_mode ? aim_velocity(axis, from, move, d) : aim_position(axis, move, d);
+    if (error)
+        return error;
+    if (!cm1e_axis_direction_enabled(axis, d->way))
+        return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
+    const double scale = fabs(axis->scale), acceleration = limits.acceleration * scale;
+    const double braking = fmin(limits.deceleration * scale, d->velocity_mode ? INFINITY : acceleration);
+    if (axis->driving.submitted && cm1e_sdo_state(&axis->driving.sdo) == CM1E_SDO_BUSY)
+        return CM1E_ERROR_BUSY; /* of a motion that was stopped */
+    d->speed = limits.velocity * scale;
+    d->braking = braking;
+    const double values[2][DRIVE_PARAMETERS] = {{d->speed, braking}, {acceleration, braking}};
+    for (int i = 0; i < DRIVE_PARAMETERS; i++)
+        if (!parameter(axis, parameters[d->velocity_mode][i], values[d->velocity_mode][i], &d->raw[i]))
+            return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
+    return CM1E_OK;
+}
+
+static void enter(cm1e_axis_t *axis, drive_step_t step)
+{
+    axis->driving.step = step;
+    axis->driving.step_ns = axis->driving.quiet_ns = axis->now_ns;
+    axis->driving.quiet_position = axis->raw;
+}
+
+void cm1e_axis_drive_begin(cm1e_axis_t *axis, const driving_t *d)
+{
+    axis->driving = *d;
+    axis->reached = false;
+    axis->activity = ACTIVITY_DRIVE;
+    enter(axis, DRIVE_WRITE);
+}
+
+/* The motion is over, in the axis's own mode. */
+static void leave(cm1e_axis_t *axis)
+{
+    axis->activity = ACTIVITY_HOLD;
+    if (axis->active)
+        cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK); /* of the move, or of what ended it */
+    if (axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION)
+        axis->state = CM1E_AXIS_STANDSTILL;
+}
+
+/* To the axis's own mode, which takes the target that it finds: so that is the set-point, a cycle before. */
+static void back(cm1e_axis_t *axis) { enter(axis, DRIVE_RETURN); }
+
+/* Without torque there is nothing to stop and no mode to wait for. */
+static bool off(cm1e_axis_t *axis)
+{
+    if (axis->driving.goal != HOME_GOAL_OFF)
+        return false;
+    axis->drive.command.halt = false;
+    axis->drive.command.mode = axis->mode;
+    cm1e_axis_become_free(axis);
+    return true;
+}
+
+/* ---- the steps --------------------------------------------------------------------------------------------------- */
+
+/* Nothing has moved: no reason for ErrorStop. */
+static void refuse(cm1e_axis_t *axis, cm1e_error_t error)
+{
+    const driving_t *d = &axis->driving;
+    axis->not_set = (not_set_t){.error = error, .number = cm1e_axis_number_of_object(d->sdo.index, d->sdo.subindex),
+                                .value = d->raw[d->next], .abort_code = d->sdo.abort_code};
+    cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, error);
+    leave(axis);
+}
+
+/* Where the mapping has it, the process data carry it from now on. */
+static bool by_process_data(cm1e_axis_t *axis, uint16_t index, uint32_t raw)
+{
+    cm1e_drive_t *drive = &axis->drive;
+    if (index == OBJ_6081_PROFILE_VELOCITY && drive->out_profile_velocity.bytes)
+        drive->profile_velocity = raw;
+    else if (index == OBJ_6083_PROFILE_ACCELERATION && drive->out_profile_acceleration.bytes)
+        drive->profile_acceleration = raw;
+    else
+        return false;
+    return true;
+}
+
+static void submit(cm1e_axis_t *axis)
+{
+    driving_t *d = &axis->driving;
+    const uint16_t index = parameters[d->velocity_mode][d->next];
+    cm1e_put_uint(d->data, sizeof d->data, d->raw[d->next]);
+    d->sdo = (cm1e_sdo_t){.position = axis->drive.position, .index = index, .write = true, .data = d->data,
+                          .size = sizeof d->data};
+    const cm1e_error_t error = cm1e_sdo_submit(axis->drive.bus, &d->sdo);
+    if (error == CM1E_OK)
+        d->submitted = true;
+    else if (error != CM1E_ERROR_FULL) /* full: again in the next cycle */
+        refuse(axis, error);
+}
+
+static void step_write(cm1e_axis_t *axis)
+{
+    driving_t *d = &axis->driving;
+    if (d->goal != HOME_GOAL_DONE) {
+        leave(axis); /* a transfer under way ends by itself */
+        return;
+    }
+    if (d->submitted) {
+        const cm1e_sdo_state_t state = cm1e_sdo_state(&d->sdo);
+        if (state == CM1E_SDO_ERROR) {
+            d->submitted = false;
+            refuse(axis, d->sdo.error);
+            return;
+        }
+        if (state == CM1E_SDO_DONE) {
+            d->submitted = false;
+            d->next++;
+        } else if (axis->now_ns - d->step_ns >= parameter_timeout_ns) {
+            refuse(axis, CM1E_ERROR_TIMEOUT); /* the transfer ends by itself */
+            return;
+        }
+    }
+    while (d->next < DRIVE_PARAMETERS &&
+           by_process_data(axis, parameters[d->velocity_mode][d->next], d->raw[d->next]))
+        d->next++;
+    if (d->next < DRIVE_PARAMETERS) {
+        if (!d->submitted)
+            submit(axis);
+        return;
+    }
+    if (!d->velocity_mode && d->target == axis->raw) {
+        leave(axis); /* it is there, and no set-point would be acknowledged */
+        return;
+    }
+    axis->drive.command.halt = false;
+    axis->drive.command.mode = mode_of(d);
+    enter(axis, DRIVE_SWITCH);
+}
+
+static bool acting_in(const cm1e_axis_t *axis, cm1e_mode_t mode)
+{
+    return axis->drive.feedback.enabled && axis->drive.feedback.mode == (int8_t)mode;
+}
+
+static void step_switch(cm1e_axis_t *axis)
+{
+    const driving_t *d = &axis->driving;
+    cm1e_axis_set_to_actual(axis);
+    if (!acting_in(axis, mode_of(d))) /* the drive's mode timeout bounds this */
+        return;
+    if (d->goal == HOME_GOAL_DONE)
+        enter(axis, d->velocity_mode ? DRIVE_MOVE : DRIVE_GO);
+    else
+        back(axis);
+}
+
+static bool there(const cm1e_axis_t *axis)
+{
+    return llabs((int64_t)axis->raw - axis->driving.target) <= there_counts;
+}
+
+static void arrived(cm1e_axis_t *axis)
+{
+    axis->set = axis->move.target;
+    back(axis);
+}
+
+/* UG 6.2.2, the handshake: bit 4 announces the set-point, bit 12 acknowledges it (cm1e_drive_write()). */
+static void step_go(cm1e_axis_t *axis)
+{
+    const driving_t *d = &axis->driving;
+    cm1e_axis_set_to_actual(axis);
+    if (axis->drive.feedback.bit12 && axis->drive.set_point == d->target)
+        enter(axis, DRIVE_MOVE);
+    else if (axis->now_ns - d->step_ns < acknowledge_timeout_ns)
+        return;
+    else if (there(axis))
+        arrived(axis);
+    else
+        cm1e_axis_fail(axis, CM1E_ERROR_TIMEOUT, 0.0, 0.0);
+}
+
+/* Whether the halt, given now, would end inside the software limits. */
+static bool can_halt(const cm1e_axis_t *axis)
+{
+    if (!axis->software_limits)
+        return true;
+    const double v = axis->drive.feedback.velocity / axis->scale, now = cm1e_axis_units(axis, axis->set);
+    const double end = now + v * halt_latency_s + v * fabs(v) * fabs(axis->scale) / (2.0 * axis->driving.braking);
+    return v > 0.0 ? end <= axis->upper : v < 0.0 ? end >= axis->lower : true;
+}
+
+static void step_move(cm1e_axis_t *axis)
+{
+    const cm1e_drive_feedback_t *f = &axis->drive.feedback;
+    const driving_t *d = &axis->driving;
+    cm1e_axis_set_to_actual(axis);
+    if (!f->online)
+        return;
+    if (d->velocity_mode) {
+        axis->reached = f->target_reached;
+        if (!can_halt(axis))
+            cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->set),
+                           f->velocity / axis->scale > 0.0 ? axis->upper : axis->lower);
+    } else if (f->bit13) {
+        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, ((double)d->target - axis->raw) / axis->scale, axis->max_lag);
+    } else if (f->target_reached && there(axis)) {
+        arrived(axis);
+    }
+}
+
+/* As the halt of a homing (axis_home.c): who does not see the motor waits for the braking and takes the torque away. */
+static int64_t halt_bound_ns(const cm1e_axis_t *axis)
+{
+    const int64_t braking_ns = (int64_t)(1e9 * axis->driving.speed / axis->driving.braking);
+    const bool blind = axis->drive.fault.error != CM1E_OK;
+    const int64_t bound_ns = blind ? braking_ns + standing_ns : 2 * braking_ns + 1000 * MS_IN_NS;
+    return bound_ns < longest_halt_ns ? bound_ns : longest_halt_ns;
+}
+
+static void step_halt(cm1e_axis_t *axis)
+{
+    driving_t *d = &axis->driving;
+    cm1e_axis_set_to_actual(axis);
+    const int32_t moved = (int32_t)((uint32_t)axis->raw - (uint32_t)d->quiet_position);
+    if (!axis->drive.feedback.online || abs(moved) > standing_counts) {
+        d->quiet_ns = axis->now_ns;
+        d->quiet_position = axis->raw;
+    }
+    const bool expired = axis->now_ns - d->step_ns >= halt_bound_ns(axis);
+    if (!expired && axis->now_ns - d->quiet_ns < standing_ns)
+        return;
+    if (off(axis))
+        return;
+    if (expired)
+        cm1e_axis_fail(axis, CM1E_ERROR_TIMEOUT, 0.0, 0.0);
+    else
+        back(axis);
+}
+
+static void step_return(cm1e_axis_t *axis)
+{
+    axis->drive.command.mode = axis->mode;
+    if (!acting_in(axis, axis->mode))
+        return;
+    axis->drive.command.halt = false;
+    leave(axis);
+}
+
+void cm1e_axis_drive_step(cm1e_axis_t *axis)
+{
+    static void (*const steps[])(cm1e_axis_t *) = {
+        [DRIVE_WRITE] = step_write, [DRIVE_SWITCH] = step_switch, [DRIVE_GO] = step_go,
+        [DRIVE_MOVE] = step_move, [DRIVE_HALT] = step_halt, [DRIVE_RETURN] = step_return,
+    };
+    if (!axis->drive.feedback.enabled && axis->driving.goal == HOME_GOAL_OFF && axis->drive.fault.error) {
+        (void)off(axis);
+        return;
+    }
+    steps[axis->driving.step](axis);
+}
+
+void cm1e_axis_drive_abort(cm1e_axis_t *axis, home_goal_t goal)
+{
+    axis->driving.goal = goal;
+    switch (axis->driving.step) {
+    case DRIVE_WRITE: /* still in the axis's own mode, holding */
+    case DRIVE_SWITCH:
+    case DRIVE_RETURN: /* standing; HOLD has to wait for the mode that is under way */
+        (void)off(axis);
+        break;
+    case DRIVE_GO:
+    case DRIVE_MOVE:
+        axis->drive.command.halt = true;
+        enter(axis, DRIVE_HALT);
+        break;
+    case DRIVE_HALT:
+        break;
+    }
+}
+
+void cm1e_axis_drive_direction_disabled(cm1e_axis_t *axis, double sign)
+{
+    const bool going = axis->driving.goal == HOME_GOAL_DONE && axis->driving.way * sign > 0.0;
+    if (!going || !axis->active)
+        return;
+    cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
+    axis->state = CM1E_AXIS_DISCRETE_MOTION;
+    cm1e_axis_drive_abort(axis, HOME_GOAL_HOLD);
+}
+
+/* What the motor is to do while it moves by itself; in the other steps the axis's own targets hold. */
+void cm1e_axis_drive_write(cm1e_axis_t *axis)
+{
+    const driving_t *d = &axis->driving;
+    const bool under_way = d->step == DRIVE_GO || d->step == DRIVE_MOVE || d->step == DRIVE_HALT;
+    if (under_way && !d->velocity_mode)
+        axis->drive.command.target_position = d->target;
+    axis->drive.command.target_velocity = under_way && d->velocity_mode ? d->target_velocity : 0;
+}
