@@ -295,7 +295,8 @@ cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis)
     cm1e_profile_t profile;
     const from_t from = from_set(axis);
     const cm1e_error_t error = plan_again(axis, &from, &move, &profile);
-    const bool too_late = !axis->paused && is_discrete_move(axis->kind) && axis->move.exit_velocity != 0.0 &&
+    const bool too_late = !error && !axis->paused && is_discrete_move(axis->kind) &&
+                          axis->move.exit_velocity != 0.0 &&
                           cm1e_axis_profile_passes(axis, &from, &move, &profile);
     if (!error && !too_late)
         go_on_as(axis, &from, &move, &profile);
