@@ -79,10 +79,10 @@ typedef struct fb_reading {
 /** `axis`: what fb_enable() gave. */
 fb_reading_t fb_reading(const cm1e_fb_private_t *fb, const cm1e_axis_t *axis, cm1e_error_t passing);
 
-/** mcQueued: no block that moves nothing waits among the commands yet. */
-static inline cm1e_error_t fb_refuse_queued(MC_EXECUTION_MODE mode)
+/** Nothing is queued in this version (2.4.2 for blocks that move nothing). */
+static inline cm1e_error_t fb_refuse_execution_mode(MC_EXECUTION_MODE mode)
 {
-    return mode == mcImmediately ? CM1E_OK : CM1E_ERROR_AXIS_BUFFER_MODE;
+    return mode == mcImmediately ? CM1E_OK : CM1E_ERROR_UNSUPPORTED;
 }
 
 #endif

@@ -4,7 +4,7 @@
 static cm1e_error_t write_output(const MC_WriteDigitalOutput_t *fb, cm1e_axis_t *axis)
 {
     const int number = fb->OutputNumber ? fb->OutputNumber : fb->Output->Number;
-    const cm1e_error_t error = fb_refuse_queued(fb->ExecutionMode);
+    const cm1e_error_t error = fb_refuse_execution_mode(fb->ExecutionMode);
     return error ? error : cm1e_axis_write_output(axis, number, fb->Value != FALSE);
 }
 

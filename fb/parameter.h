@@ -23,10 +23,4 @@ void fb_read_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL 
 fb_outputs_t fb_write_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, INT number,
                                 bool boolean, LREAL value, MC_EXECUTION_MODE mode);
 
-/** Nothing is queued in this version (2.4.2 for blocks that move nothing). */
-static inline cm1e_error_t fb_refuse_execution_mode(MC_EXECUTION_MODE mode)
-{
-    return mode == mcImmediately ? CM1E_OK : CM1E_ERROR_UNSUPPORTED;
-}
-
 #endif

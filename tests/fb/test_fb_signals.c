@@ -108,9 +108,9 @@ START_TEST(test_write_and_read_digital_output)
     write_output(&write, FALSE, CM1E_ERROR_AXIS_SIGNAL);
     write.OutputNumber = 1;
     write.ExecutionMode = mcQueued;
-    write_output(&write, FALSE, CM1E_ERROR_AXIS_BUFFER_MODE);
+    write_output(&write, FALSE, CM1E_ERROR_UNSUPPORTED);
     write.ExecutionMode = (MC_EXECUTION_MODE)9;
-    write_output(&write, FALSE, CM1E_ERROR_AXIS_BUFFER_MODE);
+    write_output(&write, FALSE, CM1E_ERROR_UNSUPPORTED);
     output.Axis = nothing;
     write_output(&write, FALSE, CM1E_ERROR_FB_AXIS_REF);
     ck_assert_uint_eq(probe().digital_outputs, 1);

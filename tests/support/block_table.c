@@ -1605,8 +1605,8 @@ static const cm1e_error_t errors_of_MC_WriteDigitalOutput[] = {
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_SIGNAL,
     CM1E_ERROR_AXIS_OFFLINE,
-    CM1E_ERROR_AXIS_BUFFER_MODE,
     CM1E_ERROR_PDO_MAPPING,
+    CM1E_ERROR_UNSUPPORTED,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_ReadActualPosition[] = {
