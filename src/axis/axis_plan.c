@@ -35,10 +35,10 @@ static cm1e_error_t resolve_relative(const cm1e_axis_t *axis, const from_t *from
 {
     (void)from;
     const double counts = move->position * axis->scale;
-    if (!isfinite(counts) || fabs(counts) > 4.5e15)
+    if (!cm1e_position_reaches(move->origin, counts))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     move->target = cm1e_position_plus(move->origin, counts);
-    return cm1e_position_in_range(move->target) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+    return CM1E_OK;
 }
 
 static cm1e_error_t resolve_none(const cm1e_axis_t *axis, const from_t *from, move_t *move)

@@ -41,6 +41,12 @@ static inline bool cm1e_position_in_range(position_t position)
     return (uint64_t)position.counts + CM1E_FARTHEST_COUNTS - 1 < 2 * (uint64_t)CM1E_FARTHEST_COUNTS - 1;
 }
 
+/** Whether the place so many counts away is one: a way of any size, also none that can be counted. */
+static inline bool cm1e_position_reaches(position_t from, double counts)
+{
+    return fabs(counts) < (double)CM1E_FARTHEST_COUNTS && cm1e_position_in_range(cm1e_position_plus(from, counts));
+}
+
 /** Where the set-point comes from. */
 typedef enum activity {
     ACTIVITY_FREE = 0, /**< nowhere: no torque, the set-point is the actual position */

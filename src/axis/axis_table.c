@@ -105,8 +105,8 @@ static cm1e_error_t check(const cm1e_axis_t *axis, const from_t *from, cm1e_tabl
     if (above(needed->acceleration, most->acceleration) || above(needed->deceleration, most->deceleration) ||
         above(needed->jerk, most->jerk))
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
-    if (!cm1e_position_in_range(cm1e_position_plus(from->position, needed->lowest * axis->scale)) ||
-        !cm1e_position_in_range(cm1e_position_plus(from->position, needed->highest * axis->scale)) ||
+    if (!cm1e_position_reaches(from->position, needed->lowest * axis->scale) ||
+        !cm1e_position_reaches(from->position, needed->highest * axis->scale) ||
         !cm1e_axis_limits_contain_way(axis, from->position, needed->lowest, needed->highest))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     if ((!axis->enable_positive && goes_after(table, 0.0, 1.0)) ||
