@@ -135,7 +135,9 @@ static reach_t any_reach(const push_t *push, double time)
     } else if (change.count > 0) {
         const double end = a + change.piece[0].jerk * change.piece[0].duration_s; /* -m or m */
         const double turn = change.piece[0].jerk < 0 ? 1 : -1, from = v + turn * a * (a * per_jerk) / 2;
-        reach.slope = (1 + turn * push->piece.jerk * per_jerk) * (1 - a / end) * (from - turn * a * end * per_jerk / 2);
+        if (turn * end < 0) /* not lost in the rounding of a: then there is no slope, and the bracket is halved */
+            reach.slope = (1 + turn * push->piece.jerk * per_jerk) * (1 - a / end) *
+                          (from - turn * a * end * per_jerk / 2);
     }
     return reach;
 }

@@ -44,7 +44,7 @@ typedef struct cm1e_profile {
  *  but too short for an eased one, is the pause not the very shortest.) Fails only (with CM1E_ERROR_INVALID_ARGUMENT,
  *  and then the profile is of no use) for input that is not finite, for limits that are not positive, and for numbers
  *  so large, so small or so far apart that doubles cannot hold the motion; never while all are zero or within 15
- *  decades of 1. */
+ *  decades of 1, with a target velocity within 6. */
 cm1e_error_t cm1e_profile_to_state(cm1e_profile_t *profile, const cm1e_motion_state_t *start, double target_position,
                                    double target_velocity, const cm1e_motion_limits_t *limits);
 /** The same with target velocity 0. */

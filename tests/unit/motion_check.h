@@ -160,7 +160,8 @@ static inline void check_continuity(const cm1e_profile_t *profile, const problem
     /* Besides the scale of the motion, what the rounding of the time can make. */
     const double a_most = fmax(fabs(problem->start.acceleration),
                                fmax(problem->limits.acceleration, problem->limits.deceleration));
-    const double v_most = highest_speed(problem), p_most = fmax(fabs(low), fabs(high)) + (high - low);
+    const double v_most = fmax(highest_speed(problem), fabs(profile->end.velocity));
+    const double p_most = fmax(fabs(low), fabs(high)) + (high - low);
     const double jerk = isinf(problem->limits.jerk) ? 0 : problem->limits.jerk;
     const double tick = 4 * DBL_EPSILON * profile->duration_s;
     const double a_slack = 1e-9 * a_most + jerk * tick, v_slack = 1e-9 * v_most + a_most * tick;

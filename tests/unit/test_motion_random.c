@@ -71,12 +71,17 @@ static void test_numbers_of_any_size_give_a_profile_or_a_refusal(void)
                        random_decade(pow(10, -size), pow(10, size)), jerk},
         };
         cm1e_profile_t profile;
-        if (cm1e_profile_to_position(&profile, &problem.start, problem.target, &problem.limits) != CM1E_OK) {
-            CHECK(size > 15, &problem);
+        const double velocity = one_in(2) ? 0 : any_number(size);
+        const double passing =
+            cm1e_profile_passing_velocity(&problem.start, problem.target, velocity, &problem.limits);
+        CHECK(passing * velocity >= 0 && fabs(passing) <= fabs(velocity), &problem);
+        const double there = one_in(2) ? passing : velocity;
+        if (cm1e_profile_to_state(&profile, &problem.start, problem.target, there, &problem.limits) != CM1E_OK) {
+            CHECK(size > (there == 0 ? 15 : 6), &problem);
             continue;
         }
         CHECK(isfinite(profile.duration_s) && profile.end.position == problem.target, &problem);
-        if (size <= 15)
+        if (size <= (there == 0 ? 15 : 6))
             check_continuity(&profile, &problem);
         for (int k = 0; k <= SAMPLES; k++) {
             cm1e_motion_state_t state;
