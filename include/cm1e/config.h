@@ -111,7 +111,7 @@ typedef struct cm1e_axis_config {
     bool velocity_unit_stated;       /**< TRUE: the field above is used instead of the firmware version */
     bool acceleration_in_kpulses;    /**< TRUE: 0x6083/0x6084 take kpulses/s2 on the wire (UG 7.3.17/6.2.3) */
     double jog_slow, jog_fast;       /**< u/s, MC_Jog's own velocities; 0: 5 % and 25 % of the maximum velocity */
-    bool buffered_profiles;          /**< TRUE: a table profile can wait in the buffer, for 1 kB of memory */
+    bool table_profiles;             /**< TRUE: MC_PositionProfile and its like have their 2 kB of memory */
     cm1e_input_config_t inputs;
     cm1e_homing_config_t homing;
     cm1e_sim_axis_config_t sim;

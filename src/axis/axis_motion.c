@@ -1,6 +1,5 @@
 /* The set-point of every cycle: planned once at the command, sampled here. */
 #include <math.h>
-#include <stddef.h>
 
 #include "axis/axis_private.h"
 #include "core/rare.h"
@@ -16,9 +15,6 @@ static const double same_moment = 1e-6;
 static const double farthest_from_base = 0x1p32;
 
 static const cm1e_profile_stretch_t no_stretch = {.from_s = INFINITY};
-
-_Static_assert(offsetof(cm1e_profile_t, duration_s) == offsetof(cm1e_table_profile_t, duration_s) &&
-               offsetof(cm1e_profile_t, end) == offsetof(cm1e_table_profile_t, end), "they share their place");
 
 static void begin_run(cm1e_axis_t *axis, const from_t *from, position_t target, double offset_s)
 {
@@ -45,7 +41,10 @@ void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *
 void cm1e_axis_run_table(cm1e_axis_t *axis, const from_t *from, const cm1e_table_profile_t *table, position_t target,
                          double offset_s)
 {
-    axis->table = *table;
+    axis->tables->running = *table;
+    axis->profile.duration_s = table->duration_s;
+    axis->profile.end = table->end;
+    axis->profile.segment_count = 0;
     axis->along_table = true;
     begin_run(axis, from, target, offset_s);
 }
@@ -75,7 +74,7 @@ static bool commanded_motion(const cm1e_axis_t *axis)
 
 /* Whether the running profile still goes that way: now, at its end, or in between, where each stretch of one direction
  * that begins and ends at rest has a border of two segments in it. */
-static bool goes(const cm1e_axis_t *axis, double sign)
+static bool goes(cm1e_axis_t *axis, double sign)
 {
     const cm1e_profile_t *profile = &axis->profile;
     const double now_s = (double)axis->profile_cycles * axis->cycle_s + axis->profile_offset_s;
@@ -164,7 +163,7 @@ static double next_time(cm1e_axis_t *axis)
 CM1E_RARE static void find_stretch(cm1e_axis_t *axis, double time_s)
 {
     if (axis->along_table)
-        cm1e_table_profile_stretch_at(&axis->table, time_s, &axis->stretch);
+        cm1e_table_profile_stretch_at(&axis->tables->running, time_s, &axis->stretch);
     else
         cm1e_profile_stretch_at(&axis->profile, time_s, &axis->stretch);
 }

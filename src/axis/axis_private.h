@@ -96,10 +96,12 @@ typedef struct table_points {
     cm1e_table_point_t points[CM1E_TABLE_POINTS_MAX];
 } table_points_t;
 
-typedef struct waiting_table {
-    cm1e_command_id_t id;
-    table_points_t points;
-} waiting_table_t;
+/** Room for table profiles, made with the axis. */
+typedef struct tables {
+    cm1e_table_profile_t running;
+    cm1e_command_id_t waiting_id;
+    table_points_t waiting;
+} tables_t;
 
 enum { STEPS_WAITING = 3 };
 
@@ -302,11 +304,8 @@ struct cm1e_axis {
     double set_velocity, set_acceleration; /**< u/s, u/s2 */
     double loop_velocity;           /**< counts/s that the position loop adds in CSV */
     double base_units;              /**< u; where base is */
-    union {                         /* both begin with the same members: count, duration, end */
-        cm1e_profile_t profile;     /**< relative to base, in u */
-        cm1e_table_profile_t table; /**< the same, instead of it while along_table */
-    };
-    bool along_table;
+    cm1e_profile_t profile;         /**< relative to base, in u; along a table only its duration and end */
+    bool along_table;               /**< tables->running is what moves it */
     cm1e_profile_stretch_t stretch; /**< of it, the one that the set-point is in */
     int64_t profile_cycles;         /**< since it began ... */
     double profile_offset_s;        /**< ... so long before the first of them */
@@ -322,7 +321,7 @@ struct cm1e_axis {
     buffer_t waiting;
     waiting_homing_t waiting_homing;
     waiting_step_t waiting_steps[STEPS_WAITING];
-    waiting_table_t *waiting_table; /**< NULL: profiles do not wait here (cm1e_axis_config_t.buffered_profiles) */
+    tables_t *tables;               /**< NULL: none (cm1e_axis_config_t.table_profiles) */
     bool reached, positive_before;
     cm1e_error_t refusal;           /**< why the last command was refused, for the text; CM1E_OK: it was not */
     cm1e_axis_command_t refused;    /**< what it asked for */
@@ -585,7 +584,7 @@ cm1e_error_t cm1e_axis_table_begin(cm1e_axis_t *axis, const move_t *move, const 
 /** What a table that was refused would have needed, for the text. */
 void cm1e_axis_table_needs(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_axis_command_t *needs);
 /** Whether the running one still goes in that direction after `from_s`. */
-bool cm1e_axis_table_goes(const cm1e_axis_t *axis, double from_s, double sign);
+bool cm1e_axis_table_goes(cm1e_axis_t *axis, double from_s, double sign);
 
 /* axis_homing_steps.c */
 /** What is wrong with a step whatever the state of the axis. */

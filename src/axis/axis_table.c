@@ -21,11 +21,11 @@ static cm1e_table_kind_t table_kind(cm1e_command_kind_t kind)
 
 cm1e_error_t cm1e_axis_table_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {
-    if (!axis->config->buffered_profiles)
+    if (!axis->config->table_profiles)
         return CM1E_OK;
-    axis->waiting_table = calloc(1, sizeof *axis->waiting_table);
-    return axis->waiting_table ? CM1E_OK
-                               : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the profiles of an axis.");
+    axis->tables = calloc(1, sizeof *axis->tables);
+    return axis->tables ? CM1E_OK
+                        : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the profiles of an axis.");
 }
 
 /* ---- the points -------------------------------------------------------------------------------------------------- */
@@ -88,10 +88,9 @@ static bool goes_after(cm1e_table_profile_t *table, double from_s, double sign)
     return table->end.velocity * sign > rounding;
 }
 
-bool cm1e_axis_table_goes(const cm1e_axis_t *axis, double from_s, double sign)
+bool cm1e_axis_table_goes(cm1e_axis_t *axis, double from_s, double sign)
 {
-    cm1e_table_profile_t table = axis->table;
-    return goes_after(&table, from_s, sign);
+    return goes_after(&axis->tables->running, from_s, sign);
 }
 
 static bool above(double needed, double allowed) { return !(needed <= allowed * (1.0 + relative_tolerance)); }
@@ -160,7 +159,7 @@ cm1e_error_t cm1e_axis_table_start(cm1e_axis_t *axis, const cm1e_axis_command_t 
     table_points_t points;
     cm1e_table_profile_t table;
     cm1e_table_extremes_t needed;
-    cm1e_error_t error = read_points(command->table, &points);
+    cm1e_error_t error = axis->tables ? read_points(command->table, &points) : CM1E_ERROR_AXIS_NO_TABLES;
     if (!error)
         error = prepare(axis, &from, command->kind, &points, &table, &needed);
     if (error)
@@ -174,10 +173,11 @@ cm1e_error_t cm1e_axis_table_start(cm1e_axis_t *axis, const cm1e_axis_command_t 
 
 cm1e_error_t cm1e_axis_table_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
-    waiting_table_t *waiting = axis->waiting_table;
-    if (!waiting || command->buffer_mode != mcBuffered)
+    if (!axis->tables)
+        return CM1E_ERROR_AXIS_NO_TABLES;
+    if (command->buffer_mode != mcBuffered)
         return CM1E_ERROR_AXIS_BUFFER_MODE;
-    if (cm1e_axis_find_waiting(axis, waiting->id))
+    if (cm1e_axis_find_waiting(axis, axis->tables->waiting_id))
         return CM1E_ERROR_FULL;
     table_points_t points;
     move_t move = {.kind = (uint8_t)command->kind, .buffer_mode = mcBuffered};
@@ -185,22 +185,23 @@ cm1e_error_t cm1e_axis_table_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t
     if (error)
         return error;
     /* Before it waits: what it waits for may be there already, and it begins at once. */
-    *waiting = (waiting_table_t){.id = axis->last_id + 1 ? axis->last_id + 1 : 1, .points = points};
+    axis->tables->waiting_id = axis->last_id + 1 ? axis->last_id + 1 : 1;
+    axis->tables->waiting = points;
     error = cm1e_axis_buffer(axis, &move);
-    waiting->id = *id = error ? 0 : move.id;
+    axis->tables->waiting_id = *id = error ? 0 : move.id;
     return error;
 }
 
 cm1e_error_t cm1e_axis_table_begin(cm1e_axis_t *axis, const move_t *move, const from_t *from, double offset_s)
 {
-    const waiting_table_t *waiting = axis->waiting_table;
     cm1e_table_profile_t table;
     cm1e_table_extremes_t needed;
-    if (!waiting || waiting->id != move->id)
+    if (!axis->tables || axis->tables->waiting_id != move->id)
         return CM1E_ERROR_AXIS_STATE;
-    const cm1e_error_t error = prepare(axis, from, (cm1e_command_kind_t)move->kind, &waiting->points, &table, &needed);
+    const table_points_t *points = &axis->tables->waiting;
+    const cm1e_error_t error = prepare(axis, from, (cm1e_command_kind_t)move->kind, points, &table, &needed);
     if (!error)
-        take(axis, move, from, &waiting->points, &table, offset_s);
+        take(axis, move, from, points, &table, offset_s);
     return error;
 }
 

@@ -130,7 +130,7 @@ static const cyaml_schema_field_t axis_fields[] = {
     AXIS_STRING("motor", motor),
     AXIS_STRING("firmware", firmware),
     ENUM_OF("mapping", cm1e_busfile_axis_t, axis.mapping, mappings),
-    AXIS_BOOL("buffered_profiles", buffered_profiles),
+    AXIS_BOOL("table_profiles", table_profiles),
     ENUM_OF("motion", cm1e_busfile_axis_t, axis.motion, motions),
     AXIS_GROUP("unit", unit_fields),
     AXIS_GROUP("limits", limit_fields),

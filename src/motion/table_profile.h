@@ -34,7 +34,6 @@ typedef struct cm1e_table_extremes {
     double velocity, acceleration, deceleration, jerk;     /**< absolute values; a step: infinite jerk */
 } cm1e_table_extremes_t;
 
-/** Begins with the same three members as cm1e_profile_t, so that the two may share their place. */
 typedef struct cm1e_table_profile {
     int knot_count;
     double duration_s;

@@ -19,11 +19,11 @@ enum { DEVICES = sizeof devices / sizeof devices[0] };
 static AXIS_REF_t reference;
 static double worst_lag;
 
-static void begin(int device, bool buffered)
+static void begin(int device)
 {
     describe(devices[device].firmware, devices[device].mapping, devices[device].order, 1000000);
     config.axes[0].sim.no_stops = true;
-    config.axes[0].buffered_profiles = buffered;
+    config.axes[0].table_profiles = true;
     open_segment();
     reference = cm1e_axis_reference(axis);
     enable();
@@ -47,7 +47,7 @@ static MC_TP_REF lift(void)
 
 START_TEST(test_position_profile_is_done_where_the_table_ends)
 {
-    begin(_i, false);
+    begin(_i);
     const MC_TP_REF table = lift();
     MC_PositionProfile_t fb = {.Axis = &reference, .TimePosition = &table, .Execute = TRUE, .Offset = 0.25,
                                .PositionScale = -1.0, .TimeScale = 0.5};
@@ -77,7 +77,7 @@ END_TEST
 
 START_TEST(test_velocity_profile_stays_busy_with_its_last_velocity)
 {
-    begin(_i, false);
+    begin(_i);
     const MC_TV_REF table = {.NumberOfPairs = 2, .MC_TV_Array = {{half_second, 3.0}, {half_second, 2.0}}};
     MC_VelocityProfile_t fb = {.Axis = &reference, .TimeVelocity = &table, .Execute = TRUE};
     for (int n = 0; n < 2000; n++) {
@@ -100,7 +100,7 @@ END_TEST
 
 START_TEST(test_acceleration_profile)
 {
-    begin(_i, false);
+    begin(_i);
     const MC_TA_REF table = {.NumberOfPairs = 3, .MC_TA_Array = {{half_second, 4.0}, {half_second, 4.0},
                                                                 {half_second, 0.0}}};
     MC_AccelerationProfile_t fb = {.Axis = &reference, .TimeAcceleration = &table, .Execute = TRUE,
@@ -115,7 +115,7 @@ END_TEST
 
 START_TEST(test_a_profile_that_waits_is_busy_and_not_active)
 {
-    begin(0, true);
+    begin(0);
     MC_TP_REF table = lift();
     MC_MoveAbsolute_t move = {.Axis = &reference, .Execute = TRUE, .Position = 1.0, .Velocity = 2.0};
     MC_PositionProfile_t fb = {.Axis = &reference, .TimePosition = &table, .BufferMode = mcBuffered};
@@ -139,7 +139,7 @@ END_TEST
 
 START_TEST(test_refusals)
 {
-    begin(0, false);
+    begin(0);
     MC_TP_REF table = lift();
     const struct {
         MC_PositionProfile_t fb;

@@ -88,6 +88,7 @@ static inline void bench_create(void)
 static inline void bench_start(void)
 {
     fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+    bus.config.axes[0].table_profiles = true;
     bench_create();
 }
 

@@ -1314,6 +1314,7 @@ static const block_member_t members_of_MC_PositionProfile[] = {
 };
 static void call_MC_PositionProfile(void *fb) { MC_PositionProfile(fb); }
 static const cm1e_error_t errors_of_MC_PositionProfile[] = {
+    CM1E_ERROR_AXIS_NO_TABLES,
     CM1E_ERROR_AXIS_TABLE_LATE,
     CM1E_ERROR_AXIS_TABLE,
     CM1E_ERROR_FB_AXIS_CHANGED,
@@ -1349,6 +1350,7 @@ static const block_member_t members_of_MC_VelocityProfile[] = {
 };
 static void call_MC_VelocityProfile(void *fb) { MC_VelocityProfile(fb); }
 static const cm1e_error_t errors_of_MC_VelocityProfile[] = {
+    CM1E_ERROR_AXIS_NO_TABLES,
     CM1E_ERROR_AXIS_TABLE_LATE,
     CM1E_ERROR_AXIS_TABLE,
     CM1E_ERROR_FB_AXIS_CHANGED,
@@ -1384,6 +1386,7 @@ static const block_member_t members_of_MC_AccelerationProfile[] = {
 };
 static void call_MC_AccelerationProfile(void *fb) { MC_AccelerationProfile(fb); }
 static const cm1e_error_t errors_of_MC_AccelerationProfile[] = {
+    CM1E_ERROR_AXIS_NO_TABLES,
     CM1E_ERROR_AXIS_TABLE_LATE,
     CM1E_ERROR_AXIS_TABLE,
     CM1E_ERROR_FB_AXIS_CHANGED,

@@ -216,7 +216,7 @@ static void run(void)
     bus.config.axes[0].inputs = (cm1e_input_config_t){.limit_positive = (uint8_t)draw(2), .limit_negative = 2,
                                                       .home = 3, .limits_normally_closed = draw(2),
                                                       .home_normally_closed = draw(2)};
-    bus.config.axes[0].buffered_profiles = draw(2);
+    bus.config.axes[0].table_profiles = draw(2);
     bus.config.axes[0].homing.method = -1;
     if (draw(3) == 0) {
         bus.config.axes[0].backlash = draw(2) ? 0.01 : 0.2;

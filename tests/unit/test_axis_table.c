@@ -68,7 +68,7 @@ static const pair_t accelerations[] = {{500000000, 4.0}, {1000000000, 4.0}, {100
 void setUp(void)
 {
     fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
-    bus.config.axes[0].buffered_profiles = true;
+    bus.config.axes[0].table_profiles = true;
     bench_create();
     bench_enable();
     bench_forget_steps();
@@ -410,11 +410,13 @@ static void test_what_cannot_wait_is_refused(void)
     command.buffer_mode = mcBuffered;
     expect_refused(CM1E_ERROR_FULL, &command); /* one at a time */
     bench_end();
-    bus.config.axes[0].buffered_profiles = false;
+    bus.config.axes[0].table_profiles = false;
     bench_create();
     bench_enable();
     bench_move_to(50.0, 1.0);
-    expect_refused(CM1E_ERROR_AXIS_BUFFER_MODE, &command);
+    expect_refused(CM1E_ERROR_AXIS_NO_TABLES, &command);
+    command.buffer_mode = mcAborting;
+    expect_refused(CM1E_ERROR_AXIS_NO_TABLES, &command);
 }
 
 /* Limits that the axis does not keep at the moment of the start show then. */

@@ -99,7 +99,7 @@ static void test_documented_example_fills_every_field_of_an_axis(void)
     ASSERT_DOUBLE(400, axis->homing.acceleration);
     ASSERT_DOUBLE(35, axis->homing.torque);
     ASSERT_DOUBLE(30, axis->homing.timeout_s);
-    TEST_ASSERT_TRUE(axis->buffered_profiles);
+    TEST_ASSERT_TRUE(axis->table_profiles);
     ASSERT_DOUBLE(5.5, axis->jog_slow);
     ASSERT_DOUBLE(60, axis->jog_fast);
     TEST_ASSERT_EQUAL(2, axis->inputs.limit_positive);
