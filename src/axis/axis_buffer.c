@@ -46,10 +46,23 @@ static double junction_velocity(MC_BUFFER_MODE mode, double first, double second
     }
 }
 
+static bool shared(const cm1e_axis_t *axis) { return axis->superimposed.moving && !axis->superimposed.alone; }
+
+/* A superimposed motion that ends before such a command begins will have moved it nearer. */
+static double nearer(const cm1e_axis_t *axis, const move_t *move, double distance)
+{
+    const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
+    if (!axis->superimposed.id || (kind != CM1E_COMMAND_MOVE_ABSOLUTE && kind != CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE))
+        return distance;
+    const double left = distance > 0.0 ? distance - fmax(axis->superimposed.highest, 0.0)
+                                       : distance - fmin(axis->superimposed.lowest, 0.0);
+    return left * distance > 0.0 ? left : 0.0;
+}
+
 /* FALSE: the command before it has to stop. `end` is where that one ends, `sign` the way it goes; both are moved on. */
 static bool make_leg(cm1e_axis_t *axis, move_t *move, position_t *end, double sign, leg_t *leg)
 {
-    const from_t from = {*end, sign * DBL_MIN, 0.0}; /* only the direction is known yet */
+    const from_t from = {*end, sign * DBL_MIN, 0.0, shared(axis)}; /* only the direction is known yet */
     move->origin = *end;
     if (move->buffer_mode <= mcBuffered || !cm1e_axis_can_plan((cm1e_command_kind_t)move->kind) ||
         cm1e_axis_limits_of(axis, &from, move, &leg->limits) || cm1e_axis_resolve(axis, &from, move))
@@ -57,7 +70,7 @@ static bool make_leg(cm1e_axis_t *axis, move_t *move, position_t *end, double si
     leg->mode = (MC_BUFFER_MODE)move->buffer_mode;
     leg->open = false;
     leg->exit_velocity = 0.0;
-    leg->distance = cm1e_position_minus(move->target, *end) / axis->scale;
+    leg->distance = nearer(axis, move, cm1e_position_minus(move->target, *end) / axis->scale);
     if (move->kind == CM1E_COMMAND_MOVE_VELOCITY) {
         leg->open = true;
         (void)cm1e_axis_signed_velocity(axis, &from, move, &leg->distance);
@@ -139,7 +152,7 @@ double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move
 /* What can be known beforehand. `end`: of the command before, NULL where nobody knows that. */
 static cm1e_error_t check(const cm1e_axis_t *axis, move_t *move, const position_t *end)
 {
-    const from_t from = {end ? *end : axis->set, 0.0, 0.0};
+    const from_t from = {end ? *end : axis->set, 0.0, 0.0, shared(axis)};
     const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
     cm1e_motion_limits_t limits;
     if (is_homing(kind) || is_table(kind))
@@ -155,7 +168,7 @@ static cm1e_error_t check(const cm1e_axis_t *axis, move_t *move, const position_
         return error;
     const bool from_known = end || kind == CM1E_COMMAND_MOVE_ABSOLUTE ||
                             kind == CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE;
-    if (from_known && !cm1e_axis_limits_contain_target(axis, from.position, move->target))
+    if (from_known && !cm1e_axis_limits_contain_target(axis, &from, move->target))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     const bool direction_known = end || kind == CM1E_COMMAND_MOVE_VELOCITY ||
                                  kind == CM1E_COMMAND_MOVE_RELATIVE || kind == CM1E_COMMAND_MOVE_ADDITIVE ||
@@ -192,7 +205,7 @@ cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move)
     move->id = cm1e_axis_next_id(axis);
     *waiting_move(axis, axis->waiting.count++) = *move;
     if (axis->reached && is_endless(axis->kind)) { /* the signal that it waits for is there already (table 4) */
-        const from_t from = from_set(axis);
+        const from_t from = from_base(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
     } else if (is_discrete_move(axis->kind)) {
         (void)cm1e_axis_replan(axis);
@@ -243,6 +256,9 @@ static cm1e_error_t begin_move(cm1e_axis_t *axis, move_t *move, const from_t *fr
 bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offset_s)
 {
     while (axis->waiting.count > 0) {
+        const cm1e_command_kind_t kind = (cm1e_command_kind_t)waiting_move(axis, 0)->kind;
+        if (axis->superimposed.id && (is_homing(kind) || is_table(kind)))
+            return false; /* nothing goes on top of these: they wait for its end */
         move_t move = take_first(axis);
         const state_rule_t *rule = cm1e_axis_state_rule(axis->state, (cm1e_command_kind_t)move.kind);
         cm1e_error_t error = rule->refusal;
@@ -278,9 +294,29 @@ cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *as)
 {
     move_t move = *as;
     cm1e_profile_t profile;
-    const from_t from = from_set(axis);
+    const from_t from = from_base(axis);
     const cm1e_error_t error = plan_again(axis, &from, &move, &profile);
     if (!error)
+        go_on_as(axis, &from, &move, &profile);
+    return error;
+}
+
+static bool can_replan(const cm1e_axis_t *axis)
+{
+    return axis->active && axis->activity == ACTIVITY_PROFILE && axis->kind != CM1E_COMMAND_STOP &&
+           axis->kind != CM1E_COMMAND_HOMING_STEP && !is_table(axis->kind);
+}
+
+/* `careful`: not when it would then run over its target. */
+static cm1e_error_t replan(cm1e_axis_t *axis, bool careful, bool *done)
+{
+    move_t move = axis->move;
+    cm1e_profile_t profile;
+    const from_t from = from_base(axis);
+    const cm1e_error_t error = plan_again(axis, &from, &move, &profile);
+    *done = !error && !(careful && !axis->paused && is_discrete_move(axis->kind) &&
+                        cm1e_axis_profile_passes(axis, &from, &move, &profile));
+    if (*done)
         go_on_as(axis, &from, &move, &profile);
     return error;
 }
@@ -288,17 +324,12 @@ cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *as)
 /* A profile that is to pass its target with a velocity cannot always be slowed down any more: then it stays. */
 cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis)
 {
-    if (!axis->active || axis->activity != ACTIVITY_PROFILE || axis->kind == CM1E_COMMAND_STOP ||
-        axis->kind == CM1E_COMMAND_HOMING_STEP || is_table(axis->kind))
-        return CM1E_OK;
-    move_t move = axis->move;
-    cm1e_profile_t profile;
-    const from_t from = from_set(axis);
-    const cm1e_error_t error = plan_again(axis, &from, &move, &profile);
-    const bool too_late = !error && !axis->paused && is_discrete_move(axis->kind) &&
-                          axis->move.exit_velocity != 0.0 &&
-                          cm1e_axis_profile_passes(axis, &from, &move, &profile);
-    if (!error && !too_late)
-        go_on_as(axis, &from, &move, &profile);
-    return error;
+    bool done;
+    return can_replan(axis) ? replan(axis, axis->move.exit_velocity != 0.0, &done) : CM1E_OK;
+}
+
+bool cm1e_axis_replan_if(cm1e_axis_t *axis)
+{
+    bool done = false;
+    return can_replan(axis) && replan(axis, true, &done) == CM1E_OK && done;
 }

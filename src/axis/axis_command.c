@@ -30,6 +30,7 @@ void cm1e_axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_e
 void cm1e_axis_commands_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
 {
     cm1e_axis_command_end(axis, state, error);
+    cm1e_axis_superimposed_end(axis, state, state == CM1E_COMMAND_ERROR ? CM1E_ERROR_AXIS_ERROR_STOP : CM1E_OK);
     for (int i = 0; i < axis->waiting.count; i++)
         cm1e_axis_record(axis, waiting_move(axis, i)->id, state,
                          state == CM1E_COMMAND_ERROR ? CM1E_ERROR_AXIS_ERROR_STOP : CM1E_OK);
@@ -43,11 +44,15 @@ cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_com
     for (int i = 0; i < axis->waiting.count; i++)
         if (axis->waiting.moves[(axis->waiting.first + i) % CM1E_AXIS_BUFFER_DEPTH].id == id)
             return (cm1e_command_status_t){.state = CM1E_COMMAND_BUFFERED};
+    const superimposed_t *on_top = &axis->superimposed;
+    if (id != 0 && id == on_top->id)
+        return (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE, .covered = on_top->now.position};
     const command_record_t *record = &axis->records[id % COMMANDS_REMEMBERED];
     if (id == 0 || record->id != id)
         return (cm1e_command_status_t){.state = CM1E_COMMAND_UNKNOWN};
     return (cm1e_command_status_t){.state = (cm1e_command_state_t)record->state,
-                                   .error = (cm1e_error_t)record->error};
+                                   .error = (cm1e_error_t)record->error,
+                                   .covered = id == on_top->ended ? on_top->covered : 0.0};
 }
 
 bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id)
@@ -75,7 +80,9 @@ static position_t commanded_position(const cm1e_axis_t *axis)
 {
     if (axis->activity != ACTIVITY_PROFILE || axis->state != CM1E_AXIS_DISCRETE_MOTION)
         return axis->set;
-    return axis->active && is_discrete_move(axis->kind) ? axis->move.target : axis->target;
+    const position_t base = axis->active && is_discrete_move(axis->kind) ? axis->move.target : axis->target;
+    const double on_top = axis->superimposed.id ? axis->superimposed.profile.end.position : 0.0;
+    return cm1e_position_plus(base, on_top * axis->scale);
 }
 
 static void hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id)
@@ -308,24 +315,26 @@ static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command,
     *id = 0;
     if ((unsigned)command->kind >= CM1E_COMMAND_KIND_COUNT)
         return CM1E_ERROR_INVALID_ARGUMENT;
+    const bool on_top = command->kind == CM1E_COMMAND_MOVE_SUPERIMPOSED ||
+                        command->kind == CM1E_COMMAND_HALT_SUPERIMPOSED;
     if (drive_profiles(axis) && !cm1e_axis_drive_takes(command->kind))
         return CM1E_ERROR_UNSUPPORTED;
-    const bool waits = has_to_wait(axis, command);
+    const bool waits = !on_top && has_to_wait(axis, command);
     const state_rule_t *rule = cm1e_axis_state_rule(axis->state, command->kind);
     if (rule->refusal && !waits)
         return rule->refusal;
     if (axis->state == CM1E_AXIS_STOPPING && axis->stop_held)
         return CM1E_ERROR_AXIS_STOPPING;
-    if (command->kind != CM1E_COMMAND_HOME && command->kind != CM1E_COMMAND_HOMING_STEP &&
+    if (command->kind != CM1E_COMMAND_HOME && command->kind != CM1E_COMMAND_HOMING_STEP && !on_top &&
         !is_table(command->kind) && !cm1e_axis_can_plan(command->kind))
         return CM1E_ERROR_UNSUPPORTED;
-    if (command->kind != CM1E_COMMAND_STOP && (unsigned)command->buffer_mode > mcBlendingHigh)
+    if (command->kind != CM1E_COMMAND_STOP && !on_top && (unsigned)command->buffer_mode > mcBlendingHigh)
         return CM1E_ERROR_AXIS_BUFFER_MODE;
     if (waits && drive_profiles(axis))
         return CM1E_ERROR_AXIS_BUFFER_MODE;
     if (waits)
         return buffer(axis, command, id);
-    const cm1e_error_t error = start_now(axis, command, id);
+    const cm1e_error_t error = on_top ? cm1e_axis_superimpose(axis, command, id) : start_now(axis, command, id);
     if (!error && command->kind != CM1E_COMMAND_HOMING_STEP) /* MC_HomeDirect may be over already */
         axis->state = rule->next;
     return error;

@@ -53,7 +53,8 @@ static cm1e_error_t aim_position(const cm1e_axis_t *axis, const move_t *move, dr
 {
     const position_t target = move->target;
     const int64_t counts = target.counts + (target.fraction >= 0.5), raw = axis->raw + counts - axis->actual_counts;
-    if (raw > INT32_MAX || raw < INT32_MIN || !cm1e_axis_limits_contain_target(axis, axis->set, target))
+    const from_t from = from_set(axis);
+    if (raw > INT32_MAX || raw < INT32_MIN || !cm1e_axis_limits_contain_target(axis, &from, target))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     d->target = (int32_t)raw;
     d->way = raw > axis->raw ? 1.0 : raw < axis->raw ? -1.0 : 0.0;

@@ -92,27 +92,33 @@ static bool choose(double asked, double maximum, bool stopping, double *value)
 
 /* An acceleration under way takes time to end, at a jerk that is smaller than it began with perhaps more than there is
  * left up to the maximum velocity. A larger one, at most that of the motion so far, keeps below it. */
-void cm1e_axis_keep_below_maximum(const cm1e_axis_t *axis, const from_t *from, cm1e_motion_limits_t *limits)
+static void keep_below_maximum_velocity(const from_t *from, double most, double system, double most_jerk,
+                                        cm1e_motion_limits_t *limits)
 {
     const double a = from->acceleration;
     if (a == 0.0)
         return;
-    const double most = axis->system.velocity, needed = a * a / (2.0 * axis->maximum.jerk);
-    const double velocity = a > 0.0 ? from->velocity : -from->velocity;
-    double room = axis->maximum.velocity - velocity;
-    if (needed > room + relative_tolerance * most) /* the application's maximum has just been made smaller */
-        room = most - velocity;
-    limits->jerk = fmax(limits->jerk, fmin(a * a / (2.0 * fmax(room, 0.0)), axis->maximum.jerk));
+    const double needed = a * a / (2.0 * most_jerk), velocity = a > 0.0 ? from->velocity : -from->velocity;
+    double room = most - velocity;
+    if (needed > room + relative_tolerance * system) /* the application's maximum has just been made smaller */
+        room = system - velocity;
+    limits->jerk = fmax(limits->jerk, fmin(a * a / (2.0 * fmax(room, 0.0)), most_jerk));
     /* What a ramp without limit of jerk has left needs more. */
-    if (needed > room + relative_tolerance * most)
-        limits->jerk = a * a / (2.0 * fmax(room, relative_tolerance * most));
+    if (needed > room + relative_tolerance * system)
+        limits->jerk = a * a / (2.0 * fmax(room, relative_tolerance * system));
+}
+
+void cm1e_axis_keep_below_maximum(const cm1e_axis_t *axis, const from_t *from, cm1e_motion_limits_t *limits)
+{
+    keep_below_maximum_velocity(from, axis->maximum.velocity, axis->system.velocity, axis->maximum.jerk, limits);
 }
 
 /* What a command asks for, checked against the axis's maxima. */
 static cm1e_error_t asked_limits(const cm1e_axis_t *axis, const move_t *move, cm1e_motion_limits_t *limits)
 {
     const cm1e_motion_limits_t *most = &axis->maximum;
-    const bool stopping = move->kind == CM1E_COMMAND_HALT || move->kind == CM1E_COMMAND_STOP;
+    const bool stopping = move->kind == CM1E_COMMAND_HALT || move->kind == CM1E_COMMAND_STOP ||
+                          move->kind == CM1E_COMMAND_HALT_SUPERIMPOSED;
     const double acceleration = stopping ? 0.0 : move->acceleration;
     if (!choose(acceleration, most->acceleration, stopping, &limits->acceleration) ||
         !choose(move->deceleration, most->deceleration, stopping, &limits->deceleration) ||
@@ -136,6 +142,20 @@ static bool has_override(cm1e_command_kind_t kind)
     return kind != CM1E_COMMAND_STOP && kind != CM1E_COMMAND_HOMING_STEP && kind != CM1E_COMMAND_HOME;
 }
 
+/* What a superimposed motion leaves: the sums stay within the maxima, in whatever direction each of them goes. An
+ * acceleration above the rest comes down as fast as that of the other can come up. */
+static void share_with_superimposed(const cm1e_axis_t *axis, const from_t *from, cm1e_motion_limits_t *limits)
+{
+    const cm1e_motion_limits_t *most = &axis->maximum, *share = &axis->superimposed.share;
+    const double rest = fmin(most->acceleration, most->deceleration) - share->acceleration;
+    limits->velocity = fmin(limits->velocity, most->velocity - share->velocity);
+    limits->acceleration = fmin(limits->acceleration, rest);
+    limits->deceleration = fmin(limits->deceleration, rest);
+    limits->jerk = fmin(limits->jerk, most->jerk - share->jerk);
+    if (fabs(from->acceleration) > rest)
+        limits->jerk = fmax(limits->jerk, share->jerk);
+}
+
 cm1e_error_t cm1e_axis_limits_with(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                                    const override_t *override, cm1e_motion_limits_t *limits)
 {
@@ -146,9 +166,14 @@ cm1e_error_t cm1e_axis_limits_with(const cm1e_axis_t *axis, const from_t *from, 
         limits->deceleration *= override->acceleration;
         limits->jerk *= override->jerk;
     }
-    if (!error)
-        cm1e_axis_keep_below_maximum(axis, from, limits);
-    return error;
+    if (error)
+        return error;
+    if (from->shared)
+        share_with_superimposed(axis, from, limits);
+    const cm1e_motion_limits_t nothing = {0}, *share = from->shared ? &axis->superimposed.share : &nothing;
+    keep_below_maximum_velocity(from, axis->maximum.velocity - share->velocity, axis->system.velocity - share->velocity,
+                                axis->maximum.jerk - share->jerk, limits);
+    return CM1E_OK;
 }
 
 cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
@@ -157,23 +182,42 @@ cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const from_t *from, co
     return cm1e_axis_limits_with(axis, from, move, &axis->override, limits);
 }
 
+cm1e_error_t cm1e_axis_limits_on_top(const cm1e_axis_t *axis, const superimposed_t *on_top,
+                                     cm1e_motion_limits_t *limits)
+{
+    const from_t rest = {axis->set, 0.0, 0.0, false};
+    const from_t from = {axis->set, on_top->now.velocity, on_top->now.acceleration, false};
+    const cm1e_motion_limits_t *share = &on_top->share;
+    const cm1e_error_t error = cm1e_axis_limits_of(axis, &rest, &on_top->move, limits);
+    limits->velocity = fmin(limits->velocity, share->velocity);
+    limits->acceleration = fmin(limits->acceleration, share->acceleration);
+    limits->deceleration = fmin(limits->deceleration, share->deceleration);
+    limits->jerk = fmin(limits->jerk, share->jerk);
+    keep_below_maximum_velocity(&from, share->velocity, share->velocity, share->jerk, limits);
+    return error;
+}
+
 bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity)
 {
     return velocity > 0.0 ? axis->enable_positive : velocity < 0.0 ? axis->enable_negative : true;
 }
 
 /* An axis that stands outside, pushed there without torque, may come back but go no farther. */
-bool cm1e_axis_limits_contain_way(const cm1e_axis_t *axis, position_t from, double lowest, double highest)
+bool cm1e_axis_limits_contain_way(const cm1e_axis_t *axis, const from_t *from, double lowest, double highest)
 {
     if (!axis->software_limits)
         return true;
-    const double tolerance = axis->tolerance, now = cm1e_axis_units(axis, from);
+    const double tolerance = axis->tolerance, now = cm1e_axis_units(axis, from->position);
+    if (from->shared) {
+        lowest += axis->superimposed.lowest;
+        highest += axis->superimposed.highest;
+    }
     return now + highest <= fmax(axis->upper, now) + tolerance && now + lowest >= fmin(axis->lower, now) - tolerance;
 }
 
-bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, position_t from, position_t target)
+bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, const from_t *from, position_t target)
 {
-    const double way = cm1e_position_minus(target, from) / axis->scale;
+    const double way = cm1e_position_minus(target, from->position) / axis->scale;
     return cm1e_axis_limits_contain_way(axis, from, fmin(way, 0.0), fmax(way, 0.0));
 }
 
@@ -183,7 +227,7 @@ static bool inside(const cm1e_axis_t *axis, const from_t *from, const cm1e_profi
         return true;
     double lowest, highest;
     cm1e_profile_extent(profile, &lowest, &highest);
-    return cm1e_axis_limits_contain_way(axis, from->position, lowest, highest);
+    return cm1e_axis_limits_contain_way(axis, from, lowest, highest);
 }
 
 /* In a homing in steps positions mean nothing until the move that ends it. */

@@ -27,6 +27,7 @@ static void begin_run(cm1e_axis_t *axis, const from_t *from, position_t target, 
     axis->profile_next_s = offset_s + axis->cycle_s;
     axis->reached = false;
     axis->paused = false;
+    axis->stands = false;
     axis->activity = ACTIVITY_PROFILE;
 }
 
@@ -69,7 +70,7 @@ void cm1e_axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits)
 static bool commanded_motion(const cm1e_axis_t *axis)
 {
     const bool moving = axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION;
-    return moving && axis->active && axis->kind != CM1E_COMMAND_HALT;
+    return moving && ((axis->active && axis->kind != CM1E_COMMAND_HALT) || axis->superimposed.id);
 }
 
 /* Whether the running profile still goes that way: now, at its end, or in between, where each stretch of one direction
@@ -77,8 +78,9 @@ static bool commanded_motion(const cm1e_axis_t *axis)
 static bool goes(cm1e_axis_t *axis, double sign)
 {
     const cm1e_profile_t *profile = &axis->profile;
+    const double velocity = axis->set_velocity - axis->superimposed.now.velocity;
     const double now_s = (double)axis->profile_cycles * axis->cycle_s + axis->profile_offset_s;
-    if (axis->set_velocity * sign > 0.0 || profile->end.velocity * sign > 0.0)
+    if (velocity * sign > 0.0 || profile->end.velocity * sign > 0.0)
         return true;
     if (axis->along_table)
         return cm1e_axis_table_goes(axis, now_s, sign);
@@ -94,10 +96,18 @@ void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign)
         cm1e_axis_drive_direction_disabled(axis, sign);
         return;
     }
-    if (!commanded_motion(axis) || !goes(axis, sign))
+    const cm1e_error_t error = CM1E_ERROR_AXIS_DIRECTION_DISABLED;
+    const bool halts = axis->stands || (axis->active && axis->kind == CM1E_COMMAND_HALT);
+    const bool on_top_goes = cm1e_axis_superimposed_goes(axis, sign), base_goes = !halts && goes(axis, sign);
+    if (!commanded_motion(axis) || !(base_goes || on_top_goes))
+        return;
+    cm1e_axis_superimposed_end(axis, on_top_goes ? CM1E_COMMAND_ERROR : CM1E_COMMAND_ABORTED,
+                               on_top_goes ? error : CM1E_OK);
+    const move_t move = axis->move;
+    if (!base_goes && axis->active && cm1e_axis_replan_as(axis, &move) == CM1E_OK)
         return;
     const from_t from = from_set(axis);
-    cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
+    cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, error);
     axis->state = CM1E_AXIS_DISCRETE_MOTION;
     if (!cm1e_axis_begin_waiting(axis, &from, 0.0)) /* 2.2.2, case 2 */
         cm1e_axis_ramp_down(axis, &axis->maximum);
@@ -111,15 +121,28 @@ void cm1e_axis_stand(cm1e_axis_t *axis)
     axis->set_velocity = 0.0;
     axis->set_acceleration = 0.0;
     axis->activity = ACTIVITY_HOLD;
+    axis->stands = false;
     if (axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION)
         axis->state = CM1E_AXIS_STANDSTILL;
+}
+
+static void brake_after(cm1e_axis_t *axis, const from_t *end, double late_s)
+{
+    const from_t from = from_set(axis);
+    const bool on_top = axis->superimposed.id != 0;
+    cm1e_axis_superimposed_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+    if (on_top) /* from the last set-point, which has both in it */
+        ramp_down_from(axis, &from, &axis->maximum, axis->cycle_s);
+    else
+        ramp_down_from(axis, end, &axis->maximum, late_s);
 }
 
 /* The profile ended `late_s` ago, inside the present cycle. Where its command ends with it, the next one has begun at
  * that very moment. TRUE: there is a profile to go on with. */
 static bool profile_ended(cm1e_axis_t *axis, double late_s)
 {
-    const from_t end = {axis->target, axis->profile.end.velocity, 0.0};
+    const bool shared = axis->superimposed.moving && !axis->superimposed.alone;
+    const from_t end = {axis->target, axis->profile.end.velocity, 0.0, shared};
     const bool goes_on = end.velocity != 0.0;
     if (cm1e_axis_step_profile_ended(axis))
         return axis->activity == ACTIVITY_PROFILE;
@@ -132,13 +155,15 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
     }
     if (axis->active)
         cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
-    if (!goes_on)
+    if (!goes_on && axis->superimposed.id)
+        axis->stands = true; /* 3.8, figure 23: what is superimposed goes on */
+    else if (!goes_on)
         cm1e_axis_stand(axis);
     if (axis->state == CM1E_AXIS_STANDSTILL || axis->state == CM1E_AXIS_DISCRETE_MOTION) {
         if (cm1e_axis_begin_waiting(axis, &end, late_s))
             return axis->activity == ACTIVITY_PROFILE;
         if (goes_on) /* for a command that could not begin after all */
-            ramp_down_from(axis, &end, &axis->maximum, late_s);
+            brake_after(axis, &end, late_s);
     }
     return axis->activity == ACTIVITY_PROFILE;
 }
@@ -198,19 +223,24 @@ static inline void follow(cm1e_axis_t *axis, double time_s)
 {
     if (!(time_s >= axis->stretch.from_s && time_s < axis->stretch.until_s))
         find_stretch(axis, time_s);
-    const cm1e_motion_state_t next = cm1e_profile_stretch_state(&axis->stretch, time_s);
+    cm1e_motion_state_t next = cm1e_profile_stretch_state(&axis->stretch, time_s);
+    const bool on_top = axis->superimposed.id != 0;
+    if (on_top)
+        cm1e_axis_superimposed_step(axis, &next);
     if (!may_go_on(axis, next)) {
         meet_limit(axis, next.velocity);
         return;
     }
     const double counts = next.position * axis->scale;
     axis->set = cm1e_position_plus(axis->base, counts);
-    if (axis->reached && fabs(counts) > farthest_from_base)
+    if (axis->reached && !on_top && fabs(counts) > farthest_from_base)
         count_anew(axis);
     axis->set_velocity = next.velocity;
     axis->set_acceleration = next.acceleration;
     if (next.velocity != 0.0)
         axis->positive_before = next.velocity > 0.0;
+    if (on_top && axis->superimposed.id)
+        cm1e_axis_superimposed_after(axis);
     if (!cm1e_position_in_range(axis->set))
         cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->set),
                        cm1e_axis_farthest(axis));
@@ -227,7 +257,8 @@ static void meet_limit(cm1e_axis_t *axis, double velocity)
 
 static bool at_end(const cm1e_axis_t *axis, double time_s)
 {
-    return time_s >= axis->profile.duration_s - same_moment * axis->cycle_s && !axis->reached && !axis->paused;
+    return time_s >= axis->profile.duration_s - same_moment * axis->cycle_s && !axis->reached && !axis->paused &&
+           !axis->stands;
 }
 
 /* Over the end of the profile, and of as many as end within this cycle. */
@@ -236,7 +267,7 @@ CM1E_RARE static void follow_over_end(cm1e_axis_t *axis, double time_s)
     while (at_end(axis, time_s)) {
         if (!profile_ended(axis, fmax(time_s - axis->profile.duration_s, 0.0)))
             return;
-        if (!axis->reached)
+        if (!axis->reached && !axis->stands)
             time_s = axis->profile_offset_s;
     }
     follow(axis, time_s);

@@ -10,7 +10,7 @@ static bool is_factor(double value) { return value > 0.0 && value <= 1.0; }
 /* What cannot go on after a pause ends with that error, as if it began now (2.2.2, case 2: the next one does). */
 static void resume_failed(cm1e_axis_t *axis, cm1e_error_t error)
 {
-    const from_t from = from_set(axis);
+    const from_t from = from_base(axis);
     cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, error);
     axis->state = CM1E_AXIS_DISCRETE_MOTION;
     if (!cm1e_axis_begin_waiting(axis, &from, 0.0))
@@ -28,6 +28,7 @@ cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double a
         return CM1E_ERROR_UNSUPPORTED;
     axis->override = (override_t){velocity, acceleration, jerk};
     const bool paused = axis->paused;
+    cm1e_axis_superimposed_replan(axis);
     const cm1e_error_t error = cm1e_axis_replan(axis);
     if (error && paused && velocity > 0.0)
         resume_failed(axis, error);

@@ -53,7 +53,8 @@ static cm1e_error_t move_anew(cm1e_axis_t *axis)
         return end_table(axis);
     if (!axis->active || axis->kind == CM1E_COMMAND_STOP)
         return stop_anew(axis);
-    return axis->kind == CM1E_COMMAND_HOMING_STEP ? step_anew(axis) : cm1e_axis_replan_as(axis, &axis->move);
+    const move_t move = axis->move;
+    return axis->kind == CM1E_COMMAND_HOMING_STEP ? step_anew(axis) : cm1e_axis_replan_as(axis, &move);
 }
 
 void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
@@ -68,6 +69,7 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
     else
         axis->set_velocity = 0.0;
     axis->set_acceleration = 0.0;
+    cm1e_axis_superimposed_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK); /* what is left of it belongs to the base now */
     const cm1e_error_t error = move_anew(axis);
     if (error)
         cm1e_axis_fail(axis, error, cm1e_axis_units(axis, axis->set),

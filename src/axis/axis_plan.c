@@ -75,7 +75,7 @@ static cm1e_error_t to_target(const cm1e_axis_t *axis, const from_t *from, const
                ? CM1E_ERROR_AXIS_POSITION_RANGE : CM1E_OK;
 }
 
-/* An override that takes away deceleration on the way does so only as far as the target is not passed (3.18, note 9). */
+/* An override that takes away deceleration does so only as far as the target is not passed (3.18, note 9). */
 static cm1e_error_t plan_to_target(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
 {
     const double distance = cm1e_position_minus(move->target, from->position) / axis->scale;

@@ -120,7 +120,24 @@ typedef struct override {
 typedef struct from {
     position_t position;
     double velocity, acceleration; /**< u/s, u/s2 */
+    bool shared;                   /**< a superimposed motion goes on above it and needs its part of the limits */
 } from_t;
+
+/** A motion on top of the commanded one (3.8), which is called the base of it. */
+typedef struct superimposed {
+    cm1e_command_id_t id;          /**< MC_MoveSuperimposed, or MC_HaltSuperimposed; 0: none */
+    bool moving;                   /**< FALSE: it waits until the base has room for it */
+    bool paused;                   /**< an override of velocity 0 */
+    bool alone;                    /**< began in Standstill: there is no base to share with */
+    cm1e_motion_limits_t share;    /**< what of the axis's maxima is its own; acceleration = deceleration */
+    cm1e_profile_t profile;        /**< from where the command began, in u */
+    int64_t cycles;
+    cm1e_motion_state_t now;       /**< its part of the present set-point */
+    double lowest, highest;        /**< u; of all its way */
+    cm1e_command_id_t ended;       /**< the last one, and what it had covered, u */
+    double covered;
+    move_t move;
+} superimposed_t;
 
 typedef enum home_step {
     HOME_WRITE = 0, /**< parameters over SDO; the axis still holds its position */
@@ -312,6 +329,8 @@ struct cm1e_axis {
     double profile_next_s;          /**< its time in the next cycle */
     bool paused;                    /**< its end is not that of its command, which waits (MC_SetOverride) */
     override_t override;
+    bool stands;                    /**< the base has come to its end, only a superimposed motion goes on */
+    superimposed_t superimposed;
 
     command_record_t records[COMMANDS_REMEMBERED];
     cm1e_command_id_t last_id;
@@ -412,10 +431,14 @@ cm1e_error_t cm1e_axis_limits_with(const cm1e_axis_t *axis, const from_t *from, 
                                    const override_t *override, cm1e_motion_limits_t *limits);
 /** More jerk, where what is left of another motion's acceleration would else overshoot the maximum velocity. */
 void cm1e_axis_keep_below_maximum(const cm1e_axis_t *axis, const from_t *from, cm1e_motion_limits_t *limits);
-/** A target inside the software limits, or not farther outside than where the way there begins. */
-bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, position_t from, position_t target);
+/** Those of a superimposed motion: what it asks for, cut to its share. */
+cm1e_error_t cm1e_axis_limits_on_top(const cm1e_axis_t *axis, const superimposed_t *on_top,
+                                     cm1e_motion_limits_t *limits);
+/** A target inside the software limits, or not farther outside than where the way there begins; with a superimposed
+ *  motion on top where `from` has one. */
+bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, const from_t *from, position_t target);
 /** The same for a way between two positions, counted from there in u. */
-bool cm1e_axis_limits_contain_way(const cm1e_axis_t *axis, position_t from, double lowest, double highest);
+bool cm1e_axis_limits_contain_way(const cm1e_axis_t *axis, const from_t *from, double lowest, double highest);
 /** Whether a profile that begins there stays inside the software limits. */
 bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
 /** The same, and no disabled direction in it. */
@@ -452,9 +475,20 @@ typedef struct state_rule {
 const state_rule_t *cm1e_axis_state_rule(cm1e_axis_state_t state, cm1e_command_kind_t kind);
 
 /* axis_plan.c */
+/** The set-point, all that moves taken together. */
 static inline from_t from_set(const cm1e_axis_t *axis)
 {
-    return (from_t){axis->set, axis->set_velocity, axis->set_acceleration};
+    return (from_t){axis->set, axis->set_velocity, axis->set_acceleration, false};
+}
+/** Without what is superimposed. */
+static inline from_t from_base(const cm1e_axis_t *axis)
+{
+    const cm1e_motion_state_t *on_top = &axis->superimposed.now;
+    if (!axis->superimposed.id)
+        return from_set(axis);
+    return (from_t){cm1e_position_plus(axis->set, -on_top->position * axis->scale),
+                    axis->set_velocity - on_top->velocity, axis->set_acceleration - on_top->acceleration,
+                    axis->superimposed.moving && !axis->superimposed.alone};
 }
 static inline bool is_continuous_move(cm1e_command_kind_t kind)
 {
@@ -541,10 +575,26 @@ bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offse
 /** Something that the active command's profile depends on has changed: it is planned anew from the present set-point.
  *  Where that is refused, it goes on as it was. */
 cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis);
+/** The same; FALSE, and nothing has changed: refused, or it would run over its target. */
+bool cm1e_axis_replan_if(cm1e_axis_t *axis);
 /** The same with other inputs, which are in force when it is not refused. */
 cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *move);
 
+/* axis_superimpose.c */
+cm1e_error_t cm1e_axis_superimpose(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+cm1e_error_t cm1e_axis_superimpose_update(cm1e_axis_t *axis, const move_t *inputs);
+/** Adds its part to the base's of this cycle. */
+void cm1e_axis_superimposed_step(cm1e_axis_t *axis, cm1e_motion_state_t *next);
+/** After the set-point: where it has come to its end, the base has all the limits again. */
+void cm1e_axis_superimposed_after(cm1e_axis_t *axis);
+/** What is superimposed becomes part of the one motion that is then planned from the set-point. */
+void cm1e_axis_superimposed_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
+void cm1e_axis_superimposed_replan(cm1e_axis_t *axis);
+/** Whether it goes that way, now or later. */
+bool cm1e_axis_superimposed_goes(const cm1e_axis_t *axis, double sign);
+
 /* axis_update.c */
+bool cm1e_axis_same_inputs(const move_t *a, const move_t *b);
 move_t cm1e_axis_move_of(const cm1e_axis_command_t *command);
 
 /* axis_power.c */

@@ -106,7 +106,7 @@ static cm1e_error_t check(const cm1e_axis_t *axis, const from_t *from, cm1e_tabl
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
     if (!cm1e_position_reaches(from->position, needed->lowest * axis->scale) ||
         !cm1e_position_reaches(from->position, needed->highest * axis->scale) ||
-        !cm1e_axis_limits_contain_way(axis, from->position, needed->lowest, needed->highest))
+        !cm1e_axis_limits_contain_way(axis, from, needed->lowest, needed->highest))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     if ((!axis->enable_positive && goes_after(table, 0.0, 1.0)) ||
         (!axis->enable_negative && goes_after(table, 0.0, -1.0)))

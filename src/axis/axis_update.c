@@ -24,7 +24,7 @@ static bool same_way(const move_t *a, const move_t *b)
     return a->position == b->position && a->direction == b->direction;
 }
 
-static bool same_inputs(const move_t *a, const move_t *b)
+bool cm1e_axis_same_inputs(const move_t *a, const move_t *b)
 {
     return same_way(a, b) && a->velocity == b->velocity && a->end_velocity == b->end_velocity &&
            a->acceleration == b->acceleration && a->deceleration == b->deceleration && a->jerk == b->jerk;
@@ -44,17 +44,17 @@ static move_t merged(const move_t *old, const move_t *inputs)
 
 static cm1e_error_t update_active(cm1e_axis_t *axis, const move_t *inputs)
 {
-    if (axis->activity == ACTIVITY_DRIVE && !same_inputs(&axis->move, inputs))
+    if (axis->activity == ACTIVITY_DRIVE && !cm1e_axis_same_inputs(&axis->move, inputs))
         return CM1E_ERROR_UNSUPPORTED;
     if (axis->activity == ACTIVITY_DRIVE)
         return CM1E_OK;
     if (axis->activity != ACTIVITY_PROFILE || inputs->kind != axis->kind)
         return CM1E_ERROR_INVALID_ARGUMENT;
-    if (same_inputs(&axis->move, inputs))
+    if (cm1e_axis_same_inputs(&axis->move, inputs))
         return CM1E_OK;
     move_t move = merged(&axis->move, inputs);
     if (!same_way(&axis->move, inputs)) {
-        const from_t from = from_set(axis);
+        const from_t from = from_base(axis);
         const cm1e_error_t error = cm1e_axis_resolve(axis, &from, &move);
         if (error)
             return error;
@@ -64,15 +64,19 @@ static cm1e_error_t update_active(cm1e_axis_t *axis, const move_t *inputs)
 
 cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
 {
-    if (id == 0 || !cm1e_axis_can_plan(command->kind))
+    const bool on_top = command->kind == CM1E_COMMAND_MOVE_SUPERIMPOSED;
+    if (id == 0 || (unsigned)command->kind >= CM1E_COMMAND_KIND_COUNT ||
+        (!on_top && !cm1e_axis_can_plan(command->kind)))
         return CM1E_ERROR_INVALID_ARGUMENT;
     const move_t inputs = cm1e_axis_move_of(command);
+    if (on_top)
+        return id == axis->superimposed.id ? cm1e_axis_superimpose_update(axis, &inputs) : CM1E_OK;
     if (id == axis->active)
         return update_active(axis, &inputs);
     const move_t *waiting = cm1e_axis_find_waiting(axis, id);
     if (waiting && waiting->kind != inputs.kind)
         return CM1E_ERROR_INVALID_ARGUMENT;
-    if (waiting && !same_inputs(waiting, &inputs)) {
+    if (waiting && !cm1e_axis_same_inputs(waiting, &inputs)) {
         const move_t move = merged(waiting, &inputs);
         return cm1e_axis_update_waiting(axis, &move);
     }

@@ -41,6 +41,8 @@ BLOCK_FUNCTIONS(MC_MoveAdditive, fb->Done, fb->Active, fb->CommandAborted)
 BLOCK_FUNCTIONS(MC_MoveVelocity, fb->InVelocity, fb->Active, fb->CommandAborted)
 BLOCK_FUNCTIONS(MC_MoveContinuousAbsolute, fb->InEndVelocity, fb->Active, fb->CommandAborted)
 BLOCK_FUNCTIONS(MC_MoveContinuousRelative, fb->InEndVelocity, fb->Active, fb->CommandAborted)
+BLOCK_FUNCTIONS(MC_MoveSuperimposed, fb->Done, FALSE, fb->CommandAborted)
+BLOCK_FUNCTIONS(MC_HaltSuperimposed, fb->Done, fb->Active, fb->CommandAborted)
 BLOCK_FUNCTIONS(MC_Halt, fb->Done, fb->Active, fb->CommandAborted)
 BLOCK_FUNCTIONS(MC_Stop, fb->Done, fb->Active, fb->CommandAborted)
 BLOCK_FUNCTIONS(MC_Home, fb->Done, fb->Active, fb->CommandAborted)
@@ -60,6 +62,8 @@ static const block_t blocks[] = {
     BLOCK(MC_MoveAdditive, CM1E_COMMAND_MOVE_ADDITIVE, true, true, false),
     BLOCK(MC_MoveContinuousAbsolute, CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE, true, true, true),
     BLOCK(MC_MoveContinuousRelative, CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE, true, true, true),
+    BLOCK(MC_MoveSuperimposed, CM1E_COMMAND_MOVE_SUPERIMPOSED, false, true, false),
+    BLOCK(MC_HaltSuperimposed, CM1E_COMMAND_HALT_SUPERIMPOSED, true, true, false),
 };
 enum { BLOCKS = sizeof blocks / sizeof blocks[0] };
 
@@ -503,6 +507,30 @@ START_TEST(test_refused_update_is_an_error_and_ends_the_updates)
 }
 END_TEST
 
+START_TEST(test_covered_distance_is_shown_while_busy_and_kept)
+{
+    fake_reset();
+    MC_MoveSuperimposed_t fb = {.Axis = &x, .Execute = TRUE, .Distance = 5.0, .VelocityDiff = 2.0};
+    MC_MoveSuperimposed(&fb);
+    ck_assert(fb.Busy && fb.CoveredDistance == 0.0);
+    axis_x->status[axis_x->id % FAKE_COMMANDS].covered = 3.0;
+    MC_MoveSuperimposed(&fb);
+    ck_assert_double_eq(fb.CoveredDistance, 3.0);
+    fake_finish(axis_x, CM1E_COMMAND_DONE, CM1E_OK);
+    axis_x->status[axis_x->id % FAKE_COMMANDS].covered = 5.0;
+    for (int i = 0; i < 3; i++) {
+        MC_MoveSuperimposed(&fb);
+        ck_assert(fb.Done && fb.CoveredDistance == 5.0);
+    }
+    fb.Execute = FALSE;
+    MC_MoveSuperimposed(&fb);
+    ck_assert(!fb.Done && fb.CoveredDistance == 5.0);
+    fb.Execute = TRUE;
+    MC_MoveSuperimposed(&fb);
+    ck_assert(fb.Busy && fb.CoveredDistance == 0.0);
+}
+END_TEST
+
 static void expect_command(cm1e_axis_command_t expected, int line)
 {
     const cm1e_axis_command_t *got = &axis_x->command;
@@ -584,6 +612,18 @@ START_TEST(test_inputs_reach_the_axis_at_the_edge_and_not_later)
     expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE, .position = 1,
                                          .end_velocity = 9, .velocity = 2, .acceleration = 3, .deceleration = 4,
                                          .jerk = 5, .buffer_mode = mcBuffered},
+                   __LINE__);
+
+    MC_MoveSuperimposed_t more = {.Axis = &x, .Execute = TRUE, .Distance = -1, .VelocityDiff = 2, .Acceleration = 3,
+                                  .Deceleration = 4, .Jerk = 5};
+    MC_MoveSuperimposed(&more);
+    expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = -1, .velocity = 2,
+                                         .acceleration = 3, .deceleration = 4, .jerk = 5},
+                   __LINE__);
+
+    MC_HaltSuperimposed_t no_more = {.Axis = &x, .Execute = TRUE, .Deceleration = 4, .Jerk = 5};
+    MC_HaltSuperimposed(&no_more);
+    expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT_SUPERIMPOSED, .deceleration = 4, .jerk = 5},
                    __LINE__);
 
     MC_Home_t home = {.Axis = &x, .Execute = TRUE, .Position = 8, .BufferMode = mcBuffered, .Parameters = &homing};
@@ -689,6 +729,7 @@ int main(void)
         test_continuous_update_hands_on_inputs_while_it_stays_true,
         test_continuous_update_later_than_the_edge_has_no_effect,
         test_refused_update_is_an_error_and_ends_the_updates,
+        test_covered_distance_is_shown_while_busy_and_kept,
         test_inputs_reach_the_axis_at_the_edge_and_not_later,
     };
     for (size_t i = 0; i < sizeof every / sizeof every[0]; i++)

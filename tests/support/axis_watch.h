@@ -30,9 +30,9 @@ static inline void watch_begin(void)
 #define WATCH(condition, ...)                                                                                        \
     do                                                                                                               \
         if (!(condition)) {                                                                                          \
-            char what[200], text[400];                                                                               \
-            snprintf(what, sizeof what, __VA_ARGS__);                                                                \
-            snprintf(text, sizeof text, "cycle %u %s: %s (%s)", watch.cycles, watch.run, what,                       \
+            char said[200], text[400];                                                                               \
+            snprintf(said, sizeof said, __VA_ARGS__);                                                                \
+            snprintf(text, sizeof text, "cycle %u %s: %s (%s)", watch.cycles, watch.run, said,                       \
                      cm1e_axis_state_name(axis->state));                                                             \
             TEST_FAIL_MESSAGE(text);                                                                                 \
         }                                                                                                            \

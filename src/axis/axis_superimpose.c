@@ -1,0 +1,302 @@
+/*
+ * MC_MoveSuperimposed and MC_HaltSuperimposed (3.8, 3.9): a second motion on top of the commanded one, its base. The
+ * set-point is the sum of both.
+ *
+ * So that the sum never exceeds what the axis may do, the limits are shared: the superimposed motion takes at most half
+ * of the axis's acceleration and jerk, and the base is planned anew with what is left; a base that needs no more than
+ * that keeps its time (3.8). Both change over at the same jerk, so that the sum stays inside on the way there too. A
+ * base that is about to arrive and needs its whole deceleration for that gets it: the superimposed motion then begins
+ * when it can. On an axis in Standstill there is nothing to share with.
+ *
+ * While it goes on, the base counts its positions without it. At its end the base, and where that goes, are moved by
+ * what has been covered.
+ */
+#include <math.h>
+
+#include "axis/axis_private.h"
+
+static const double same_moment = 1e-6; /* cycles */
+
+/* ---- planning ---------------------------------------------------------------------------------------------------- */
+
+static bool plan(const cm1e_axis_t *axis, superimposed_t *on_top)
+{
+    cm1e_motion_limits_t limits;
+    if (cm1e_axis_limits_on_top(axis, on_top, &limits))
+        return false;
+    on_top->paused = axis->override.velocity == 0.0 && on_top->move.kind == CM1E_COMMAND_MOVE_SUPERIMPOSED;
+    on_top->cycles = 0;
+    const bool stops = on_top->paused || on_top->move.kind == CM1E_COMMAND_HALT_SUPERIMPOSED;
+    const cm1e_error_t error =
+        stops ? cm1e_profile_to_velocity(&on_top->profile, &on_top->now, 0.0, &limits)
+              : cm1e_profile_to_position(&on_top->profile, &on_top->now, on_top->move.position, &limits);
+    cm1e_profile_extent(&on_top->profile, &on_top->lowest, &on_top->highest);
+    return error == CM1E_OK;
+}
+
+/* u/s; the fastest that the base goes, or is commanded to go now or next. */
+static double base_velocity(cm1e_axis_t *axis)
+{
+    const from_t from = from_base(axis);
+    double fastest = fabs(from.velocity);
+    if (axis->active)
+        fastest = fmax(fastest, fmax(fabs(axis->move.velocity), fabs(axis->move.end_velocity)));
+    for (int i = 0; i < axis->waiting.count; i++) {
+        const move_t *move = waiting_move(axis, i);
+        fastest = fmax(fastest, fmax(fabs(move->velocity), fabs(move->end_velocity)));
+    }
+    return fastest;
+}
+
+/* What the acceleration of the base still makes of its velocity while it ends. */
+static double base_peak(const cm1e_axis_t *axis)
+{
+    const from_t from = from_base(axis);
+    const double a = from.acceleration, jerk = axis->maximum.jerk / 2.0;
+    return a * from.velocity > 0.0 ? fabs(from.velocity) + a * a / (2.0 * jerk) : fabs(from.velocity);
+}
+
+static cm1e_motion_limits_t share_of(const cm1e_axis_t *axis, const cm1e_motion_limits_t *asked)
+{
+    const cm1e_motion_limits_t *most = &axis->maximum;
+    const double half = fmin(most->acceleration, most->deceleration) / 2.0;
+    const double acceleration = fmin(fmax(asked->acceleration, asked->deceleration), half);
+    return (cm1e_motion_limits_t){asked->velocity, acceleration, acceleration, fmin(asked->jerk, most->jerk / 2.0)};
+}
+
+/* The base makes room; FALSE: it cannot now. */
+static bool base_gives_way(cm1e_axis_t *axis)
+{
+    if (axis->stands)
+        return true;
+    if (!axis->active || base_peak(axis) + axis->superimposed.share.velocity > axis->maximum.velocity)
+        return false;
+    return axis->reached || cm1e_axis_replan_if(axis); /* a constant velocity stays, and InVelocity (3.10) */
+}
+
+static bool begin(cm1e_axis_t *axis)
+{
+    superimposed_t *on_top = &axis->superimposed;
+    on_top->moving = true;
+    if (base_gives_way(axis) && plan(axis, on_top))
+        return true;
+    on_top->moving = false;
+    return false;
+}
+
+/* ---- its place in the base --------------------------------------------------------------------------------------- */
+
+/* What it has covered so far becomes the base's. */
+static void give_to_base(cm1e_axis_t *axis)
+{
+    const double covered = axis->superimposed.now.position, counts = covered * axis->scale;
+    axis->base = cm1e_position_plus(axis->base, counts);
+    axis->base_units = cm1e_axis_units(axis, axis->base);
+    axis->target = cm1e_position_plus(axis->target, counts);
+    if (axis->active) {
+        axis->move.origin = cm1e_position_plus(axis->move.origin, counts);
+        axis->move.target = cm1e_position_plus(axis->move.target, counts);
+    }
+    axis->superimposed.now.position = 0.0;
+}
+
+static void record(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
+{
+    superimposed_t *on_top = &axis->superimposed;
+    cm1e_axis_record(axis, on_top->id, state, error);
+    on_top->ended = on_top->id;
+    on_top->covered = on_top->now.position;
+    on_top->id = 0;
+}
+
+void cm1e_axis_superimposed_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
+{
+    if (!axis->superimposed.id)
+        return;
+    record(axis, state, error);
+    axis->superimposed.moving = false;
+    axis->superimposed.now = (cm1e_motion_state_t){0};
+    axis->stands = false;
+}
+
+static void finish(cm1e_axis_t *axis)
+{
+    superimposed_t *on_top = &axis->superimposed;
+    on_top->now.position = on_top->moving ? on_top->profile.end.position : on_top->now.position;
+    record(axis, CM1E_COMMAND_DONE, CM1E_OK);
+    give_to_base(axis);
+    on_top->now = (cm1e_motion_state_t){0};
+    on_top->moving = false;
+    if (axis->stands)
+        cm1e_axis_stand(axis);
+    else if (!axis->reached)
+        (void)cm1e_axis_replan(axis);
+    if (axis->reached && axis->waiting.count > 0) { /* for this */
+        const from_t from = from_set(axis);
+        (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
+    }
+}
+
+/* ---- commands ---------------------------------------------------------------------------------------------------- */
+
+/* With it on top, no position that the base is at or goes to may lie outside the software limits. */
+static bool inside(cm1e_axis_t *axis, double distance)
+{
+    const position_t base = from_base(axis).position;
+    const bool rests = axis->stands || axis->activity == ACTIVITY_HOLD;
+    position_t ends[CM1E_AXIS_BUFFER_DEPTH + 2] = {base, rests ? base : axis->target};
+    int count = axis->active && is_endless(axis->kind) ? 1 : 2;
+    for (int i = 0; i < axis->waiting.count; i++)
+        if (is_discrete_move((cm1e_command_kind_t)waiting_move(axis, i)->kind))
+            ends[count++] = waiting_move(axis, i)->target;
+    for (int i = 0; i < count; i++) {
+        const from_t from = {ends[i], 0.0, 0.0, false};
+        if (!cm1e_axis_limits_contain_target(axis, &from, cm1e_position_plus(ends[i], distance * axis->scale)))
+            return false;
+    }
+    return true;
+}
+
+static cm1e_error_t check(cm1e_axis_t *axis, const move_t *move, bool alone, cm1e_motion_limits_t *limits)
+{
+    static const override_t none = {1.0, 1.0, 1.0};
+    const from_t rest = {axis->set, 0.0, 0.0, false};
+    const cm1e_error_t error = axis->active && is_table(axis->kind)
+                                   ? CM1E_ERROR_AXIS_STATE /* its times and limits are its own */
+                                   : cm1e_axis_limits_with(axis, &rest, move, &none, limits);
+    const double counts = move->position * axis->scale;
+    if (error)
+        return error;
+    if (!isfinite(counts) || fabs(counts) > 4.5e15 || !inside(axis, move->position))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    if (!cm1e_axis_direction_enabled(axis, move->position))
+        return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
+    const double most = axis->maximum.velocity * (1.0 + 1e-9);
+    return !alone && move->velocity + base_velocity(axis) > most ? CM1E_ERROR_AXIS_VELOCITY_RANGE : CM1E_OK;
+}
+
+/* The base that an axis in Standstill has: it stays where it is. */
+static void stand_as_base(cm1e_axis_t *axis)
+{
+    const from_t from = from_set(axis);
+    const cm1e_motion_state_t rest = {0};
+    cm1e_profile_t profile;
+    (void)cm1e_profile_to_velocity(&profile, &rest, 0.0, &axis->maximum);
+    cm1e_axis_run(axis, &from, &profile, axis->set, 0.0);
+    axis->stands = true;
+}
+
+static cm1e_error_t superimpose(cm1e_axis_t *axis, const move_t *move, cm1e_command_id_t *id)
+{
+    superimposed_t *on_top = &axis->superimposed;
+    const bool replaces = on_top->id && on_top->moving, alone = axis->activity == ACTIVITY_HOLD ||
+                                                                (replaces && on_top->alone);
+    cm1e_motion_limits_t limits;
+    const cm1e_error_t error = check(axis, move, alone, &limits);
+    if (error)
+        return error;
+    if (axis->activity == ACTIVITY_HOLD)
+        stand_as_base(axis);
+    if (on_top->id)
+        record(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+    give_to_base(axis);
+    *id = on_top->id = cm1e_axis_next_id(axis);
+    on_top->move = *move;
+    on_top->alone = alone;
+    if (!replaces) /* one that replaces another keeps to what the base has left for that */
+        on_top->share = alone ? axis->maximum : share_of(axis, &limits);
+    on_top->lowest = fmin(move->position, 0.0);
+    on_top->highest = fmax(move->position, 0.0);
+    if (!replaces)
+        (void)begin(axis);
+    else if (!plan(axis, on_top))
+        finish(axis);
+    return CM1E_OK;
+}
+
+static cm1e_error_t halt(cm1e_axis_t *axis, const move_t *move, cm1e_command_id_t *id)
+{
+    superimposed_t *on_top = &axis->superimposed;
+    const from_t rest = {axis->set, 0.0, 0.0, false};
+    cm1e_motion_limits_t limits;
+    const cm1e_error_t error = cm1e_axis_limits_of(axis, &rest, move, &limits);
+    if (error)
+        return error;
+    *id = cm1e_axis_next_id(axis);
+    if (!on_top->id) {
+        cm1e_axis_record(axis, *id, CM1E_COMMAND_DONE, CM1E_OK); /* nothing is superimposed */
+        return CM1E_OK;
+    }
+    record(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+    give_to_base(axis);
+    on_top->id = *id;
+    on_top->move = *move;
+    if (!on_top->moving || !plan(axis, on_top))
+        finish(axis);
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_axis_superimpose(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+{
+    const move_t move = cm1e_axis_move_of(command);
+    return command->kind == CM1E_COMMAND_HALT_SUPERIMPOSED ? halt(axis, &move, id) : superimpose(axis, &move, id);
+}
+
+/* New inputs act within the share that it began with. */
+cm1e_error_t cm1e_axis_superimpose_update(cm1e_axis_t *axis, const move_t *inputs)
+{
+    superimposed_t *on_top = &axis->superimposed;
+    if (inputs->kind != on_top->move.kind)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    if (cm1e_axis_same_inputs(&on_top->move, inputs))
+        return CM1E_OK;
+    cm1e_motion_limits_t limits;
+    const cm1e_error_t error = check(axis, inputs, true, &limits);
+    if (error)
+        return error;
+    superimposed_t next = *on_top;
+    next.move = *inputs;
+    if (next.moving && !plan(axis, &next))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    *on_top = next;
+    return CM1E_OK;
+}
+
+void cm1e_axis_superimposed_replan(cm1e_axis_t *axis)
+{
+    superimposed_t next = axis->superimposed;
+    if (next.id && next.moving && plan(axis, &next))
+        axis->superimposed = next;
+}
+
+bool cm1e_axis_superimposed_goes(const cm1e_axis_t *axis, double sign)
+{
+    const superimposed_t *on_top = &axis->superimposed;
+    return on_top->id && (on_top->now.velocity * sign > 0.0 ||
+                          (on_top->move.position - on_top->now.position) * sign > axis->tolerance);
+}
+
+/* ---- the cycle --------------------------------------------------------------------------------------------------- */
+
+void cm1e_axis_superimposed_step(cm1e_axis_t *axis, cm1e_motion_state_t *next)
+{
+    superimposed_t *on_top = &axis->superimposed;
+    if (!on_top->moving)
+        return;
+    cm1e_profile_sample(&on_top->profile, (double)++on_top->cycles * axis->cycle_s, &on_top->now);
+    next->position += on_top->now.position;
+    next->velocity += on_top->now.velocity;
+    next->acceleration += on_top->now.acceleration;
+}
+
+void cm1e_axis_superimposed_after(cm1e_axis_t *axis)
+{
+    superimposed_t *on_top = &axis->superimposed;
+    if (!on_top->moving) {
+        (void)begin(axis);
+        return;
+    }
+    const double time_s = (double)on_top->cycles * axis->cycle_s;
+    if (!on_top->paused && time_s >= on_top->profile.duration_s - same_moment * axis->cycle_s)
+        finish(axis);
+}
