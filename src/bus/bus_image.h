@@ -11,8 +11,8 @@
 
 /** Where an object lies in the process image. `bytes` 0: it is not mapped. */
 typedef struct cm1e_image_slot {
-    uint32_t offset; /**< from cm1e_bus_outputs() or cm1e_bus_inputs() */
-    uint8_t bytes;   /**< 1 ... 4 */
+    uint32_t offset : 24; /**< from cm1e_bus_outputs() or cm1e_bus_inputs() */
+    uint32_t bytes : 8;   /**< 1 ... 4 */
 } cm1e_image_slot_t;
 
 /** Finds an object in the mapping read from slave `position`; bytes 0 where it is not mapped. @rt init */

@@ -64,41 +64,45 @@ typedef struct cm1e_drive_fault {
     bool slave_deaf;                /**< it took no part in the cycle, then or later */
 } cm1e_drive_fault_t;
 
+/** In the order of use: first what every cycle looks at. */
 typedef struct cm1e_drive {
     cm1e_bus_t *bus;
-    uint32_t axis;                  /**< index in the configuration */
+    int64_t now_ns;
     uint16_t position;              /**< slave */
-    const cm1e_axis_config_t *config;
-    const cm1e_motor_t *motor;
-    const cm1e_firmware_info_t *firmware;
+    cm1e_slave_watch_t watch;
     cm1e_drive_command_t command;
     cm1e_drive_feedback_t feedback;
     cm1e_drive_fault_t fault;       /**< latched; cleared by a successful reset */
     /* private: drive_io.c, drive.c, drive_mode.c, drive_reset.c */
-    cm1e_image_slot_t out_controlword, out_position, out_velocity, out_mode, out_digital, out_profile_velocity,
-        out_profile_acceleration;
     cm1e_image_slot_t in_statusword, in_error, in_position, in_velocity, in_torque, in_digital, in_temperature, in_dc,
         in_mode;
+    cm1e_image_slot_t out_controlword, out_position, out_velocity, out_mode, out_digital, out_profile_velocity,
+        out_profile_acceleration;
     int32_t velocity_unit;          /**< counts/s per unit of 0x60FF and 0x606C */
     int32_t velocity_most;          /**< of 0x60FF, in that unit */
-    bool velocity_quarter;          /**< 0x606C is wrong in HM and PP */
     uint32_t profile_velocity, profile_acceleration; /**< what 0x6081 and 0x6083 carry where they are mapped */
-    cm1e_slave_watch_t watch;
-    int64_t now_ns, read_ns, enable_deadline_ns, mode_deadline_ns, torque_from_ns;
+    int64_t read_ns;
     int32_t target_position;        /**< last one written */
-    bool target_holds;              /**< it was the caller's, and the drive is still seen holding a position */
+    int32_t set_point;              /**< PP: the target position that bit 4 announced */
     cm1e_mode_t mode;               /**< commanded on the wire; follows `command.mode` once the last switch is shown */
+    bool velocity_quarter;          /**< 0x606C is wrong in HM and PP */
+    bool target_holds;              /**< it was the caller's, and the drive is still seen holding a position */
     bool seen;                      /**< inputs were valid at least once */
     bool torque;                    /**< the last write asked for torque */
     bool was_enabled;               /**< Operation enabled was seen since torque is asked for */
     bool mode_confirmed;
     bool set_point_bit;             /**< PP: controlword bit 4 */
-    int32_t set_point;              /**< PP: the target position that bit 4 announced */
     bool reset_before;
     uint8_t reset_phase, mode_phase;
+    int8_t mode_data, mode_shown;
+
+    int64_t enable_deadline_ns, mode_deadline_ns, torque_from_ns;
     int64_t reset_until_ns, reset_deadline_ns, reset_settle_ns, recovery_ns, mode_retry_ns;
     cm1e_sdo_t mode_sdo;            /**< 0x6060 and 0x6061 where the mapping lacks them */
-    int8_t mode_data, mode_shown;
+    uint32_t axis;                  /**< index in the configuration */
+    const cm1e_axis_config_t *config;
+    const cm1e_motor_t *motor;
+    const cm1e_firmware_info_t *firmware;
 } cm1e_drive_t;
 
 /** Resolves the objects of the mapping. A mapping that lacks an object the configured use needs is
