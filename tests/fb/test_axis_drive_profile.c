@@ -204,6 +204,24 @@ START_TEST(ends_by_force_leave_a_motor_that_stands)
 }
 END_TEST
 
+/* The cable: nobody can brake it, and from firmware 1.3.0 on the watchdog takes the torque away. */
+START_TEST(drive_that_hears_nothing_is_left_to_its_watchdog)
+{
+    for (int variant = 0; variant < 8; variant += 2) {
+        begin(variant);
+        turn(100);
+        cycles(400);
+        simulate("unplug 1");
+        cycles(1500);
+        ck_assert_int_eq(info().state, CM1E_AXIS_ERROR_STOP);
+        ck_assert_int_eq(info().error, CM1E_ERROR_BUS_LOST);
+        ck_assert(!info().powered);
+        ck_assert_double_lt(fabs(probe().velocity_counts_per_s), 50e3); /* it runs out */
+        close_segment();
+    }
+}
+END_TEST
+
 START_TEST(software_limits_hold)
 {
     for (int variant = 0; variant < 8; variant++) {
@@ -255,6 +273,7 @@ int main(void)
     tcase_add_test(tests, what_the_drive_does_not_do_is_refused);
     tcase_add_test(tests, halt_at_any_cycle_ends_in_standstill);
     tcase_add_test(tests, ends_by_force_leave_a_motor_that_stands);
+    tcase_add_test(tests, drive_that_hears_nothing_is_left_to_its_watchdog);
     tcase_add_test(tests, software_limits_hold);
     tcase_add_test(tests, direction_taken_away_ends_the_motion);
     suite_add_tcase(suite, tests);
