@@ -24,7 +24,7 @@ enum { SOLVER_STEPS_MAX = 120, HILL_STEPS = 30 };
  *  in which that piece is entered. */
 typedef struct {
     const cm1e_motion_limits_t *limits;
-    double start_velocity, target, target_velocity;
+    double start_velocity, start_acceleration, target, target_velocity;
     double per_jerk, per_deceleration; /**< 1 / the limit */
     bool simple; /**< the change of velocity needs no look at standstill, nor more than limits->velocity */
     cm1e_piece_t piece;
@@ -266,22 +266,27 @@ static void append_change(cm1e_pieces_t *pieces, const push_t *push, double time
     const cm1e_piece_t *piece = &push->piece;
     const double w = push->target_velocity;
     const double overlooked = OVERLOOKED * (fabs(push->target) + fabs(push->start_velocity) * time);
-    for (double step = DBL_EPSILON;; step *= 4) {
+    double left;
+    for (double step = DBL_EPSILON; time >= 0; step *= 4) {
         const cm1e_motion_state_t state = cm1e_piece_state(piece, push->position, push->velocity, time);
         cm1e_pieces_append(pieces, piece->jerk, piece->acceleration, time);
         cm1e_pieces_append_velocity_change(pieces, state.velocity, state.acceleration, w, push->limits);
         if (!(w > 0))
             return;
-        const double left = push->target - cm1e_pieces_displacement(pieces, push->start_velocity);
+        left = push->target - cm1e_pieces_displacement(pieces, push->start_velocity);
         if (left > overlooked)
             cm1e_pieces_append(pieces, 0, 0, left / w);
-        if (left >= -overlooked || !(time > 0))
+        if (left >= -overlooked)
             return;
-        time = fmax(0, time - step * time);
         pieces->count = count;
         if (count > 0)
             pieces->piece[count - 1] = last;
+        time = time > 0 ? fmax(0, time - step * time) : -1;
     }
+    pieces->count = 0; /* a step that begins in a piece before: without any push */
+    cm1e_pieces_append_velocity_change(pieces, push->start_velocity, push->start_acceleration, w, push->limits);
+    left = push->target - cm1e_pieces_displacement(pieces, push->start_velocity);
+    cm1e_pieces_append(pieces, 0, 0, left / w);
 }
 
 /** All mirrored so that the target lies beyond the end of the soonest change of velocity, `direct`. */
@@ -293,7 +298,8 @@ static void append_push_and_change(cm1e_pieces_t *pieces, double velocity, doubl
     whole.count = 0;
     cm1e_pieces_append_velocity_change(&whole, velocity, acceleration, limits->velocity, limits);
     push_t push = {
-        .limits = limits, .start_velocity = velocity, .target = target, .target_velocity = w,
+        .limits = limits, .start_velocity = velocity, .start_acceleration = acceleration,
+        .target = target, .target_velocity = w,
         .per_jerk = 1 / limits->jerk, .per_deceleration = 1 / limits->deceleration,
         .velocity = velocity, .reached = direct,
         .simple = fabs(w) <= limits->velocity && (w >= 0 || limits->acceleration == limits->deceleration),

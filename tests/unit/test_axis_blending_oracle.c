@@ -8,7 +8,7 @@
 #include "../support/axis_bench.h"
 #include "../support/axis_watch.h"
 
-enum { MOVES_MAX = 3, PAIRS = 500, TRIPLES = 1000, GRID = 80 };
+enum { MOVES_MAX = 3, PAIRS = 500, TRIPLES = 600, GRID = 80 };
 
 /** u/s2, u/s3; of the axis */
 static const double steepest = 200.0, most_jerk = 9000.0;
