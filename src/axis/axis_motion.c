@@ -225,8 +225,11 @@ static inline void follow(cm1e_axis_t *axis, double time_s)
         find_stretch(axis, time_s);
     cm1e_motion_state_t next = cm1e_profile_stretch_state(&axis->stretch, time_s);
     const bool on_top = axis->superimposed.id != 0;
-    if (on_top)
-        cm1e_axis_superimposed_step(axis, &next);
+    if (on_top) {
+        cm1e_motion_state_t sum = next; /* `next` keeps out of memory where there is none */
+        cm1e_axis_superimposed_step(axis, &sum);
+        next = sum;
+    }
     if (!may_go_on(axis, next)) {
         meet_limit(axis, next.velocity);
         return;
@@ -284,7 +287,7 @@ static void profile_step(cm1e_axis_t *axis)
 
 void cm1e_axis_motion_step(cm1e_axis_t *axis)
 {
-    if (axis_stepping(axis) || axis->stepping.after_stop)
+    if (axis_stepping(axis) || (axis->state == CM1E_AXIS_STOPPING && axis->stepping.after_stop))
         cm1e_axis_step_cycle(axis);
     switch (axis->activity) {
     case ACTIVITY_FREE:
@@ -305,7 +308,7 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
     /* Note 6: MC_Stop done and its Execute FALSE. */
     if (axis->state == CM1E_AXIS_STOPPING && axis->activity == ACTIVITY_HOLD && !axis->stop_held)
         axis->state = CM1E_AXIS_STANDSTILL;
-    if (axis->waiting.count > 0 && !axis->active && axis->activity == ACTIVITY_HOLD) { /* behind a homing */
+    if (axis->activity == ACTIVITY_HOLD && !axis->active && axis->waiting.count > 0) { /* behind a homing */
         const from_t from = from_set(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
     }

@@ -226,9 +226,9 @@ typedef struct object_request {
 } object_request_t;
 
 typedef struct objects {
-    object_request_t requests[OBJECT_REQUESTS]; /**< by sequence */
     uint16_t head, next;                        /**< sequence of the one under way, and of the next to be asked for */
     bool submitted;
+    object_request_t requests[OBJECT_REQUESTS]; /**< by sequence */
     uint8_t data[8];
     cm1e_sdo_t sdo;
 } objects_t;
@@ -279,95 +279,98 @@ typedef struct stepping {
 } stepping_t;
 
 struct cm1e_axis {
+    /* what every cycle of a motion looks at */
     cm1e_drive_t drive;
-    const cm1e_axis_config_t *config;
-    uint16_t handle;
-    double cycle_s;
+    activity_t activity;
+    cm1e_axis_state_t state;
+    cm1e_command_id_t active;       /**< 0: none */
+    cm1e_command_kind_t kind;       /**< of the active one */
     cm1e_mode_t mode;               /**< of the set-points: CSP, or CSV where the mapping has no target position */
-
+    uint16_t handle;
+    bool reached, positive_before;
+    bool paused;                    /**< its end is not that of its command, which waits (MC_SetOverride) */
+    bool stands;                    /**< the base has come to its end, only a superimposed motion goes on */
+    bool along_table;               /**< tables->running is what moves it */
+    bool software_limits;           /**< one of them at least; those in force are ... */
+    bool lag_monitoring;
+    bool blind;                     /**< they are not, and the set-point goes on */
+    bool power_enable, enable_positive, enable_negative;
+    bool energized;                 /**< the axis has taken over the enabled drive */
+    bool shutting_down;
+    bool position_known, homed;
+    bool stop_held;
+    const void *power_owner;
+    double cycle_s;
+    int64_t profile_cycles;         /**< since it began ... */
+    double profile_offset_s;        /**< ... so long before the first of them */
+    double profile_next_s;          /**< its time in the next cycle */
+    cm1e_profile_stretch_t stretch; /**< of it, the one that the set-point is in */
+    position_t set, base, target;   /**< base: where the profile began; target: where it ends, exactly */
+    double base_units;              /**< u; where base is */
+    double set_velocity, set_acceleration; /**< u/s, u/s2 */
     double scale;                   /**< counts per u; negative: inverted */
+    double lower, upper;            /**< u; infinite: none on that side */
+    double tolerance;               /**< u; which they are kept with */
+    double emergency_way;           /**< s2/u; times the square of a velocity: that it goes */
+    double max_lag;                 /**< u */
+    double lag_seen;                /**< counts; amount, when the inputs were fresh last */
+    int64_t now_ns;
+    int64_t actual_counts;          /**< the same without wrap-around */
+    int32_t raw;                    /**< counts of the drive, last seen */
+    cm1e_command_state_t reset_state;
+    uint32_t probes_armed, probe_count;
+    cm1e_command_id_t kept;         /**< a command that halts unless it is renewed; 0: none */
+    backlash_t backlash;
+    superimposed_t superimposed;
+    objects_t objects;
+    cm1e_profile_t profile;         /**< relative to base, in u; along a table only its duration and end */
+
+    /* the rest */
+    const cm1e_axis_config_t *config;
+
     cm1e_unit_t unit;               /**< its amount, exactly */
     double modulo_range;            /**< u; 0: a linear axis */
     cm1e_fraction_t turn;           /**< counts of it */
     cm1e_motion_limits_t system;    /**< u; of motor and configuration */
     cm1e_motion_limits_t maximum;   /**< u; what the application allows of it: the bounds of commands */
     cm1e_motion_limits_t emergency; /**< u; the ramp of an error: that of `system` without a limit of jerk */
-    double emergency_way;           /**< s2/u; times the square of a velocity: that it goes */
     double limit_positive, limit_negative; /**< u */
     bool limit_positive_enabled, limit_negative_enabled;
-    bool software_limits;           /**< one of them at least; those in force are ... */
-    double lower, upper;            /**< u; infinite: none on that side */
-    double tolerance;               /**< u; which they are kept with */
-    bool lag_monitoring;
-    double max_lag;                 /**< u */
-    double lag_seen;                /**< counts; amount, when the inputs were fresh last */
-    bool blind;                     /**< they are not, and the set-point goes on */
 
-    cm1e_axis_state_t state;
     cm1e_error_t error;
     uint16_t device_error;
     double error_value, error_bound; /**< numbers for the text */
-    int64_t now_ns;
 
-    bool position_known, homed;
-    int32_t raw;                    /**< counts of the drive, last seen */
-    int64_t actual_counts;          /**< the same without wrap-around */
-    backlash_t backlash;
     position_t origin;              /**< position origin_units is there; modulo: 0 */
     double origin_units;
 
-    activity_t activity;
-    position_t set, base, target;   /**< base: where the profile began; target: where it ends, exactly */
-    double set_velocity, set_acceleration; /**< u/s, u/s2 */
     double loop_velocity;           /**< counts/s that the position loop adds in CSV */
-    double base_units;              /**< u; where base is */
-    cm1e_profile_t profile;         /**< relative to base, in u; along a table only its duration and end */
-    bool along_table;               /**< tables->running is what moves it */
-    cm1e_profile_stretch_t stretch; /**< of it, the one that the set-point is in */
-    int64_t profile_cycles;         /**< since it began ... */
-    double profile_offset_s;        /**< ... so long before the first of them */
-    double profile_next_s;          /**< its time in the next cycle */
-    bool paused;                    /**< its end is not that of its command, which waits (MC_SetOverride) */
     override_t override;
-    bool stands;                    /**< the base has come to its end, only a superimposed motion goes on */
-    superimposed_t superimposed;
 
     command_record_t records[COMMANDS_REMEMBERED];
     cm1e_command_id_t last_id;
-    cm1e_command_id_t active;       /**< 0: none */
-    cm1e_command_kind_t kind;       /**< of the active one */
     move_t move;                    /**< the active one, unless it is a homing */
     buffer_t waiting;
     waiting_homing_t waiting_homing;
     waiting_step_t waiting_steps[STEPS_WAITING];
     tables_t *tables;               /**< NULL: none (cm1e_axis_config_t.table_profiles) */
-    bool reached, positive_before;
     cm1e_error_t refusal;           /**< why the last command was refused, for the text; CM1E_OK: it was not */
     cm1e_axis_command_t refused;    /**< what it asked for */
     cm1e_command_id_t stop;         /**< whose MC_Stop holds the axis in Stopping */
-    bool stop_held;
 
-    const void *power_owner;
-    bool power_enable, enable_positive, enable_negative;
-    bool energized;                 /**< the axis has taken over the enabled drive */
-    bool shutting_down;
     int64_t free_ns;                /**< since when no torque is asked for */
     int64_t brake_until_ns;         /**< so long at least the torque stays to brake */
 
-    cm1e_command_state_t reset_state;
     cm1e_error_t reset_error;
     bool reset_sent;
 
     driving_t driving;
-    objects_t objects;
     not_set_t not_set;
     homing_t home;
 
     probe_t probes[PROBES];
     probe_sample_t probe_sample;    /**< the last one, while probes are armed */
-    uint32_t probes_armed, probe_count;
     int64_t output_until_ns;        /**< the digital output goes off then unless it is written again */
-    cm1e_command_id_t kept;         /**< a command that halts unless it is renewed; 0: none */
     int64_t kept_until_ns;
     cm1e_axis_command_t kept_halt;
 
