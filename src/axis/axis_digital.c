@@ -131,7 +131,8 @@ void cm1e_axis_keep(cm1e_axis_t *axis, cm1e_command_id_t id, int64_t keep_ns, do
 {
     axis->kept = id;
     axis->kept_until_ns = axis->now_ns + keep_ns;
-    axis->kept_halt = (cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT, .deceleration = deceleration, .jerk = jerk};
+    axis->kept_deceleration = deceleration;
+    axis->kept_jerk = jerk;
 }
 
 void cm1e_axis_signals_step(cm1e_axis_t *axis)
@@ -147,7 +148,9 @@ void cm1e_axis_signals_step(cm1e_axis_t *axis)
     if (!moves)
         return;
     /* Values that a person typed in and that the axis refuses are no reason to go on. */
-    if (cm1e_axis_start(axis, &axis->kept_halt, &halt))
+    const cm1e_axis_command_t kept = {.kind = CM1E_COMMAND_HALT, .deceleration = axis->kept_deceleration,
+                                      .jerk = axis->kept_jerk};
+    if (cm1e_axis_start(axis, &kept, &halt))
         cm1e_axis_start(axis, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT}, &halt);
 }
 

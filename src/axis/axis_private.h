@@ -56,7 +56,7 @@ typedef enum activity {
     ACTIVITY_DRIVE,    /**< the drive's own profile (axis_drive_profile.c) */
 } activity_t;
 
-enum { COMMANDS_REMEMBERED = 64, HOMING_PARAMETERS = 5 };
+enum { COMMANDS_REMEMBERED = 32, HOMING_PARAMETERS = 5 };
 
 /** How a command ended. */
 typedef struct command_record {
@@ -172,11 +172,13 @@ enum { PROBES = 2 * 4 }; /* every input, both edges */
 /** A touch probe: what it waits for stands in its place in the list. */
 typedef struct probe {
     uint32_t id;
-    cm1e_command_state_t state;
-    cm1e_error_t error;
+    int16_t error;      /**< cm1e_error_t */
+    uint8_t state;      /**< cm1e_command_state_t */
     bool window;
-    double first, last;             /**< u */
-    double position, uncertainty;   /**< u */
+    union {
+        struct { double first, last; };           /**< u; the window, while it waits */
+        struct { double position, uncertainty; }; /**< u; when it is done */
+    };
 } probe_t;
 
 typedef struct probe_sample {
@@ -372,7 +374,7 @@ struct cm1e_axis {
     probe_sample_t probe_sample;    /**< the last one, while probes are armed */
     int64_t output_until_ns;        /**< the digital output goes off then unless it is written again */
     int64_t kept_until_ns;
-    cm1e_axis_command_t kept_halt;
+    double kept_deceleration, kept_jerk; /**< of that halt */
 
     stepping_t stepping;
 };

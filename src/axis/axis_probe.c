@@ -32,8 +32,8 @@ static probe_sample_t sample(const cm1e_axis_t *axis)
 
 static void end(cm1e_axis_t *axis, probe_t *probe, cm1e_command_state_t state, cm1e_error_t error)
 {
-    probe->state = state;
-    probe->error = error;
+    probe->state = (uint8_t)state;
+    probe->error = (int16_t)error;
     axis->probes_armed--;
 }
 
@@ -87,8 +87,12 @@ cm1e_probe_status_t cm1e_axis_probe_status(const cm1e_axis_t *axis, uint32_t id)
     const probe_t *probe = &axis->probes[id % PROBES];
     if (id == 0 || probe->id != id)
         return (cm1e_probe_status_t){.state = CM1E_COMMAND_UNKNOWN};
-    return (cm1e_probe_status_t){.state = probe->state, .error = probe->error, .position = probe->position,
-                                 .uncertainty = probe->uncertainty};
+    cm1e_probe_status_t status = {.state = (cm1e_command_state_t)probe->state, .error = (cm1e_error_t)probe->error};
+    if (status.state == CM1E_COMMAND_DONE) {
+        status.position = probe->position;
+        status.uncertainty = probe->uncertainty;
+    }
+    return status;
 }
 
 cm1e_error_t cm1e_axis_probe_abort(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger)
