@@ -164,7 +164,8 @@ def index(files, tables):
     text += wrap("One page a block: what it is for, its declaration, inputs and outputs with units, the states in "
                  "which it may be called, its errors, a timing diagram that a real run on the simulated motor has "
                  "drawn. What holds for all of them is in [the function blocks](../FUNCTION-BLOCKS.md), their types "
-                 "are in [the types](TYPES.md). The pages are generated from `fb/interface/`.") + "\n\n"
+                 "are in [the types](TYPES.md). The pages are generated from `fb/interface/`, the diagrams by "
+                 "`tests/traces/`.") + "\n\n"
     for file in files:
         if not file.blocks():
             continue

@@ -268,7 +268,7 @@ static void go_there_and_back(void)
     }
 READS(ReadActualPosition, Position, "u", "There and back by 2 u.")
 READS(ReadActualVelocity, Velocity, "u/s", "There and back by 2 u.")
-READS(ReadActualTorque, Torque, "% of rated", "There and back by 2 u: torque to accelerate, to first, to brake.")
+READS(ReadActualTorque, Torque, "% of rated", "There and back by 2 u: friction both ways, as the load is light.")
 
 static void read_status(void)
 {
