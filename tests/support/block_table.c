@@ -1142,6 +1142,7 @@ static const cm1e_error_t errors_of_MC_MoveSuperimposed[] = {
     CM1E_ERROR_AXIS_STOPPING,
     CM1E_ERROR_AXIS_ERROR_STOP,
     CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_AXIS_STATE,
     CM1E_OK,
 };
 static const block_member_t members_of_MC_HaltSuperimposed[] = {
