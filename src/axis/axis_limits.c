@@ -270,7 +270,10 @@ bool cm1e_axis_limits_hold(const cm1e_axis_t *axis, double lower, double upper)
     const double end = axis->profile.end.velocity, brake = axis->emergency_way;
     double lowest, highest;
     cm1e_profile_extent(&axis->profile, &lowest, &highest);
-    const double stops[] = {base + lowest, base + highest, now + v * fabs(v) * brake,
+    const superimposed_t *on_top = &axis->superimposed;
+    const double below = on_top->id ? fmin(on_top->lowest, 0.0) : 0.0;
+    const double above = on_top->id ? fmax(on_top->highest, 0.0) : 0.0;
+    const double stops[] = {base + lowest + below, base + highest + above, now + v * fabs(v) * brake,
                             base + axis->profile.end.position + end * fabs(end) * brake};
     for (int i = 0; i < 4; i++)
         if (stops[i] > upper + axis->tolerance || stops[i] < lower - axis->tolerance)

@@ -1,4 +1,6 @@
 /* MC_MoveSuperimposed, MC_HaltSuperimposed (3.8, 3.9): a motion on top of another one. */
+#include "axis/axis_parameters.h"
+
 #include "../support/axis_bench.h"
 #include "../support/axis_watch.h"
 
@@ -251,6 +253,23 @@ static void test_refusals(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 20.0, bench_info().set_position);
 }
 
+/* A limit that only the sum would overrun is refused like one that the base would. */
+static void test_a_limit_has_to_leave_room_for_both(void)
+{
+    (void)bench_move_to(20.0, 10.0);
+    watch_cycles(100);
+    (void)superimpose(5.0, 5.0);
+    watch_cycles(100);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis, CM1E_PARAMETER_SW_LIMIT_POS, 24.0));
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE,
+                          cm1e_axis_write_parameter(axis, CM1E_PARAMETER_ENABLE_LIMIT_POS, 1.0));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis, CM1E_PARAMETER_SW_LIMIT_POS, 25.0));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis, CM1E_PARAMETER_ENABLE_LIMIT_POS, 1.0));
+    watch_cycles(4000);
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 25.0, bench_info().set_position);
+}
+
 static void test_continuous_update_and_override(void)
 {
     bench_move_velocity(5.0);
@@ -325,6 +344,7 @@ int main(void)
     RUN_TEST(test_errors_and_power_end_it);
     RUN_TEST(test_a_disabled_direction_ends_what_goes_there);
     RUN_TEST(test_refusals);
+    RUN_TEST(test_a_limit_has_to_leave_room_for_both);
     RUN_TEST(test_continuous_update_and_override);
     RUN_TEST(test_random_programs_keep_all_limits);
     return UNITY_END();
