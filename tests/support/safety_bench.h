@@ -204,8 +204,8 @@ static bool at_shown_position(const bench_t *bench, const witness_t *w, bool ena
            (w->in_mode < 0 && enabling_before && fabs(off) < 50);
 }
 
-/** Where a motor did not follow, braking or holding may begin anew where it is: such a target pulls at nothing. Nor does
- *  one that stands. A load may turn the shaft faster than the axis may go, and what is shown is a cycle old. */
+/** Where a motor did not follow, braking or holding may begin anew where it is: such a target pulls at nothing. Nor
+ *  does one that stands. A load may turn the shaft faster than the axis may go, and what is shown is a cycle old. */
 static bool began_anew(const bench_t *bench, uint32_t n, const witness_t *w, double step)
 {
     cm1e_axis_info_t info = {0};
@@ -240,7 +240,7 @@ static void judge_step(const bench_t *bench, uint32_t n, witness_t *w, double st
     w->step = step;
 }
 
-/** Without an error a motor is brought to rest first: nobody takes its torque away at speed, unless it does not follow. */
+/** Without an error a motor is brought to rest first: nobody takes its torque away at speed, if it follows. */
 static void judge_end_of_torque(const bench_t *bench, uint32_t n, const witness_t *w)
 {
     cm1e_axis_info_t info = {0};
@@ -267,8 +267,8 @@ static void witness_sent_axis(bench_t *bench, uint32_t n, const uint8_t *data)
     w->velocity = w->out_velocity < 0 ? 0 : long_at(data, w->out_velocity) * w->velocity_unit;
     w->holding = w->enabling && (w->statusword & 0x6F) == 0x27 && w->mode_shown == w->mode;
     const double most = w->max_step * 1e9 / (double)bench->config.cycle_time_ns;
-    MUST(bench, fabs(w->velocity) <= most + w->velocity_unit, "axis %u: target velocity %.0f, limit %.0f", n, w->velocity,
-         most);
+    MUST(bench, fabs(w->velocity) <= most + w->velocity_unit, "axis %u: target velocity %.0f, limit %.0f", n,
+         w->velocity, most);
     if (!w->enabling)
         return;
     if (!enabling_before)

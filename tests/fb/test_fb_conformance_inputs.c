@@ -1,0 +1,251 @@
+/**
+ * When inputs of a block act (PLCopen Part 1 v2.0, 2.4.1, 2.4.6): at the edge alone, or, with ContinuousUpdate, while
+ * it is TRUE; nonsense in a running command changes nothing; and one instance may serve one axis after the other.
+ */
+#include "block_bench.h"
+
+enum { RECORDED = 1500 };
+
+static instance_t mover, subject;
+
+#define FOR_EACH_BLOCK(type)                                                                                         \
+    for (const block_t *type = block_table; type < block_table + block_count; type++)
+
+/** Set-points of a run. */
+typedef struct record {
+    int64_t counts[RECORDED];
+    double velocity[RECORDED];
+} record_t;
+static record_t undisturbed, disturbed;
+
+static bool is_command(const block_t *type)
+{
+    return type->rules && member_of(type, "Execute") && !type->rules->unchanged &&
+           type->rules[CM1E_AXIS_CONTINUOUS_MOTION].refusal == CM1E_OK;
+}
+
+/** Every input but the trigger and BufferMode gets another value that makes sense. */
+static void change_inputs(instance_t *fb, double factor)
+{
+    const block_t *type = fb->view->type;
+    for (size_t i = 0; i < type->member_count; i++) {
+        const block_member_t *m = &type->members[i];
+        if (m->section == BLOCK_INPUT && m->type == BLOCK_LREAL)
+            put(fb, m->name, real_of(fb, m->name) * factor);
+        if (m->section == BLOCK_INPUT && strcmp(m->name, "Direction") == 0)
+            put(fb, m->name, mcNegativeDirection);
+    }
+}
+
+/** Starts the block into an axis that moves already, lets the caller disturb it, and writes down what comes out. */
+static void run(const block_t *type, bool updates, void (*disturb)(int cycle), record_t *record)
+{
+    into(CM1E_AXIS_CONTINUOUS_MOTION, &mover);
+    make(&subject, type->name);
+    put(&subject, "ContinuousUpdate", updates);
+    trigger(&subject, true);
+    for (int n = 0; n < RECORDED; n++) {
+        cycle();
+        record->counts[n] = judged.axis->set.counts;
+        record->velocity[n] = judged.axis->set_velocity;
+        if (disturb)
+            disturb(n);
+    }
+}
+
+static int first_difference(void)
+{
+    for (int n = 0; n < RECORDED; n++)
+        if (undisturbed.counts[n] != disturbed.counts[n] || undisturbed.velocity[n] != disturbed.velocity[n])
+            return n;
+    return RECORDED;
+}
+
+/* ---- the edge ---------------------------------------------------------------------------------------------------- */
+
+static void change_at_once(int n)
+{
+    if (n == 0)
+        change_inputs(&subject, 0.5);
+}
+
+static void change_and_ask_for_updates(int n)
+{
+    if (n == 0)
+        put(&subject, "ContinuousUpdate", 1);
+    if (n == 1)
+        change_inputs(&subject, 0.5);
+}
+
+START_TEST(test_inputs_act_at_the_edge_alone)
+{
+    int checked = 0;
+    FOR_EACH_BLOCK(type) {
+        if (!is_command(type))
+            continue;
+        snprintf(judged.scene, sizeof judged.scene, "%s: inputs change after the edge", type->name);
+        run(type, false, NULL, &undisturbed);
+        MUST(first_difference() == RECORDED || checked > 0 || undisturbed.velocity[0] != 0, "nothing moves");
+        run(type, false, change_at_once, &disturbed);
+        MUST(first_difference() == RECORDED, "they act in cycle %d", first_difference());
+        run(type, false, change_and_ask_for_updates, &disturbed); /* 2.4.6: to be TRUE at the edge */
+        MUST(first_difference() == RECORDED, "they act in cycle %d, by a ContinuousUpdate that came late",
+             first_difference());
+        checked++;
+    }
+    ck_assert_int_ge(checked, 4);
+}
+END_TEST
+
+/* ---- ContinuousUpdate -------------------------------------------------------------------------------------------- */
+
+static void change_later(int n)
+{
+    if (n == 20)
+        change_inputs(&subject, 0.9);
+}
+
+static void end_updates_then_change(int n)
+{
+    if (n == 10)
+        put(&subject, "ContinuousUpdate", 0);
+    if (n == 15)
+        put(&subject, "ContinuousUpdate", 1); /* once gone it does not come back */
+    change_later(n);
+}
+
+START_TEST(test_continuous_update_acts_while_it_is_true)
+{
+    FOR_EACH_BLOCK(type) {
+        if (!is_command(type) || !member_of(type, "ContinuousUpdate"))
+            continue;
+        snprintf(judged.scene, sizeof judged.scene, "%s: ContinuousUpdate", type->name);
+        run(type, true, NULL, &undisturbed);
+        if (subject.now.error_id == cm1e_error_id(CM1E_ERROR_UNSUPPORTED))
+            continue; /* said so, and nothing moved by it */
+        MUST(!subject.now.error, "Error 0x%04X", subject.now.error_id);
+        run(type, true, change_later, &disturbed);
+        MUST(first_difference() >= 20 && first_difference() < 80, "the inputs act in cycle %d", first_difference());
+        MUST(!subject.now.error, "Error 0x%04X", subject.now.error_id);
+        run(type, true, end_updates_then_change, &disturbed);
+        MUST(first_difference() == RECORDED, "the inputs act in cycle %d, without ContinuousUpdate",
+             first_difference());
+    }
+}
+END_TEST
+
+static const char *nonsense_input;
+static double nonsense_value;
+
+static void put_nonsense(int n)
+{
+    if (n == 20)
+        put(&subject, nonsense_input, nonsense_value);
+}
+
+START_TEST(test_nonsense_under_continuous_update_changes_nothing)
+{
+    static const double values[] = {NAN, INFINITY, -INFINITY, 1e300, -1e300};
+    FOR_EACH_BLOCK(type) {
+        if (!is_command(type) || !member_of(type, "ContinuousUpdate"))
+            continue;
+        run(type, true, NULL, &undisturbed);
+        for (size_t i = 0; i < type->member_count; i++) {
+            if (type->members[i].section != BLOCK_INPUT || type->members[i].type != BLOCK_LREAL)
+                continue;
+            for (size_t v = 0; v < sizeof values / sizeof values[0]; v++) {
+                nonsense_input = type->members[i].name;
+                nonsense_value = values[v];
+                snprintf(judged.scene, sizeof judged.scene, "%s.%s becomes %g", type->name, nonsense_input,
+                         nonsense_value);
+                run(type, true, put_nonsense, &disturbed);
+                MUST(first_difference() == RECORDED, "it acts in cycle %d", first_difference());
+            }
+        }
+    }
+}
+END_TEST
+
+/* ---- one instance, two axes -------------------------------------------------------------------------------------- */
+
+static struct cm1e_bus other_bus;
+static cm1e_axis_t *other_axis;
+
+/** Which axis the block is to have changed the state of; the other one is not to know of it. */
+static void call_for(cm1e_axis_t *axis)
+{
+    cm1e_axis_t *const first = judged.axis;
+    judged.axis = axis;
+    judged.state = axis->state;
+    call(&subject);
+    judged.axis = first;
+    judged.state = first->state;
+}
+
+static void cycles_of_both(int n, cm1e_axis_t *on)
+{
+    while (n-- > 0) {
+        fake_bus_cycle(&other_bus, judged.cycle_ns);
+        cm1e_axis_inputs(other_axis, CM1E_OK, CM1E_OK, other_bus.clock.virtual_now_ns);
+        cm1e_axis_power(other_axis, &other_bus, true, true, true);
+        cycle_begin();
+        if (on)
+            call_for(on);
+        cycle_end();
+        cm1e_axis_outputs(other_axis);
+    }
+}
+
+START_TEST(test_instance_serves_one_axis_after_the_other)
+{
+    cm1e_diag_t diag;
+    FOR_EACH_BLOCK(type) {
+        if (!is_command(type) || strcmp(type->name, "MC_HaltSuperimposed") == 0)
+            continue;
+        snprintf(judged.scene, sizeof judged.scene, "%s on another axis", type->name);
+        into(CM1E_AXIS_STANDSTILL, &mover);
+        fake_bus_init(&other_bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        other_bus.config.axes[0].table_profiles = true;
+        MUST(cm1e_axis_create(&other_axis, &other_bus, 0, &diag) == CM1E_OK, "%s", diag.text);
+        AXIS_REF_t other = cm1e_axis_reference(other_axis);
+        fake_bus_show(&other_bus);
+        cycles_of_both(30, NULL);
+        make(&subject, type->name);
+        trigger(&subject, true);
+        cycles_of_both(300, judged.axis);
+        MUST(other_axis->set_velocity == 0.0 && other_axis->state == CM1E_AXIS_STANDSTILL, "the other axis moves");
+        bench.power.Enable = FALSE; /* which ends the first command */
+        cycles_of_both(900, judged.axis);
+        trigger(&subject, false);
+        cycles_of_both(1, judged.axis);
+        MUST(!subject.now.busy, "still Busy");
+        point_at(&subject, "Axis", &other);
+        trigger(&subject, true);
+        cycles_of_both(3, other_axis);
+        MUST(!subject.now.error && other_axis->state != CM1E_AXIS_DISABLED, "Error 0x%04X", subject.now.error_id);
+        const double at_first = bench.info.set_position;
+        cycles_of_both(50, other_axis);
+        MUST(bench.info.set_position == at_first && judged.axis->state == CM1E_AXIS_DISABLED, "the first axis moves");
+        const bool stands = strstr(type->name, "Halt") || strstr(type->name, "Stop");
+        MUST(stands || other_axis->set_velocity != 0.0 || subject.now.done, "the other axis does not move");
+        cm1e_axis_destroy(other_axis);
+    }
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("conformance: inputs");
+    TCase *all = tcase_create("all");
+    tcase_set_timeout(all, 60);
+    tcase_add_test(all, test_inputs_act_at_the_edge_alone);
+    tcase_add_test(all, test_continuous_update_acts_while_it_is_true);
+    tcase_add_test(all, test_nonsense_under_continuous_update_changes_nothing);
+    tcase_add_test(all, test_instance_serves_one_axis_after_the_other);
+    suite_add_tcase(suite, all);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_ENV);
+    const int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}

@@ -1,0 +1,472 @@
+/**
+ * @file block_judge.h
+ * Any block of the block table on one axis, and what every call of it is judged by: what PLCopen Part 1 v2.0, 2.4.1
+ * says of its outputs, and the block's rules of states. Include it once in a test program, best by a bench.
+ */
+#ifndef CM1E_TESTS_BLOCK_JUDGE_H
+#define CM1E_TESTS_BLOCK_JUDGE_H
+
+#include <check.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "axis/axis.h"
+#include "axis/axis_private.h"
+#include "block_table.h"
+
+enum { BLOCK_BYTES = 4096, BLOCKS_MOST = 96 };
+
+/** Where the members are that many blocks have; NOWHERE: this one has not. */
+enum { NOWHERE = 0xFFFF };
+typedef struct block_view {
+    const block_t *type;
+    uint16_t execute, enable, done, reached, busy, active, aborted, error, error_id, valid, axis, buffer_mode;
+} block_view_t;
+
+/** What a block shows after a call. */
+typedef struct shown {
+    bool trigger, done, reached, busy, active, aborted, error, valid;
+    WORD error_id;
+} shown_t;
+
+/** One block that a program calls. */
+typedef struct instance {
+    const block_view_t *view;
+    shown_t now, before;
+    bool refused;             /**< the last edge was refused */
+    _Alignas(16) unsigned char memory[BLOCK_BYTES];
+} instance_t;
+
+/** The axis that is judged. */
+static struct judged {
+    cm1e_axis_t *axis;
+    AXIS_REF_t reference;
+    cm1e_axis_state_t state;        /**< last judged */
+    bool reset_asked;               /**< since ErrorStop */
+    long long number;               /**< of the cycle */
+    int64_t cycle_ns;
+    char scene[200];                /**< which run this is, for messages */
+} judged;
+
+static instance_t *called[BLOCKS_MOST];
+static int called_count;
+
+__attribute__((format(printf, 1, 2), noreturn)) static void bench_fail(const char *format, ...)
+{
+    char words[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(words, sizeof words, format, arguments);
+    va_end(arguments);
+    ck_abort_msg("%s, cycle %lld: %s", judged.scene, judged.number, words);
+    abort();
+}
+
+/** An assertion of Check that holds costs a system call; this one does not. */
+#define MUST(condition, ...)                                                                                         \
+    do {                                                                                                             \
+        if (!(condition))                                                                                            \
+            bench_fail(__VA_ARGS__);                                                                                 \
+    } while (0)
+
+/* ---- members ----------------------------------------------------------------------------------------------------- */
+
+static const block_member_t *member_of(const block_t *type, const char *name)
+{
+    for (size_t i = 0; i < type->member_count; i++)
+        if (strcmp(type->members[i].name, name) == 0)
+            return &type->members[i];
+    return NULL;
+}
+
+static uint16_t place_of(const block_t *type, const char *name)
+{
+    const block_member_t *member = member_of(type, name);
+    return member ? (uint16_t)member->offset : NOWHERE;
+}
+
+static uint16_t first_place(const block_t *type, const char *const *names)
+{
+    uint16_t place = NOWHERE;
+    for (; *names && place == NOWHERE; names++)
+        place = place_of(type, *names);
+    return place;
+}
+
+static const block_view_t *view_of(const char *name)
+{
+    static block_view_t views[BLOCKS_MOST];
+    static const char *const reached[] = {"InVelocity", "InEndVelocity", "InTorque", "ProfileCompleted", NULL};
+    static const char *const valid[] = {"Valid", "Enabled", "InOperation", NULL};
+    for (size_t i = 0; i < block_count; i++) {
+        const block_t *type = &block_table[i];
+        if (strcmp(type->name, name) != 0)
+            continue;
+        MUST(i < BLOCKS_MOST && type->size <= BLOCK_BYTES, "%s: make the bench larger", name);
+        views[i] = (block_view_t){
+            .type = type, .execute = place_of(type, "Execute"), .enable = place_of(type, "Enable"),
+            .done = place_of(type, "Done"), .reached = first_place(type, reached), .busy = place_of(type, "Busy"),
+            .active = place_of(type, "Active"), .aborted = place_of(type, "CommandAborted"),
+            .error = place_of(type, "Error"), .error_id = place_of(type, "ErrorID"), .valid = first_place(type, valid),
+            .axis = place_of(type, "Axis"), .buffer_mode = place_of(type, "BufferMode"),
+        };
+        return &views[i];
+    }
+    bench_fail("there is no block %s", name);
+}
+
+static bool flag(const instance_t *fb, uint16_t place) { return place != NOWHERE && fb->memory[place]; }
+
+static const char *name_of(const instance_t *fb) { return fb->view->type->name; }
+
+/** Sets an input whatever its type; a block without it is left alone. */
+static void put(instance_t *fb, const char *name, double value)
+{
+    const block_member_t *m = member_of(fb->view->type, name);
+    if (!m)
+        return;
+    void *place = fb->memory + m->offset;
+    const LREAL real = value;
+    const TIME time = (TIME)value;
+    const INT number = (INT)value;
+    const int choice = (int)value;
+    switch (m->type) {
+    case BLOCK_BOOL: *(BOOL *)place = value != 0; break;
+    case BLOCK_INT:
+    case BLOCK_UINT:
+    case BLOCK_WORD: memcpy(place, &number, sizeof number); break;
+    case BLOCK_LREAL: memcpy(place, &real, sizeof real); break;
+    case BLOCK_TIME: memcpy(place, &time, sizeof time); break;
+    case BLOCK_DWORD:
+    case BLOCK_ENUM: memcpy(place, &choice, sizeof choice); break;
+    case BLOCK_STRUCT:
+    case BLOCK_POINTER: bench_fail("%s.%s cannot be put", name_of(fb), name);
+    }
+}
+
+static inline double real_of(const instance_t *fb, const char *name)
+{
+    const block_member_t *m = member_of(fb->view->type, name);
+    LREAL value;
+    MUST(m && m->type == BLOCK_LREAL, "%s.%s is no LREAL", name_of(fb), name);
+    memcpy(&value, fb->memory + m->offset, sizeof value);
+    return value;
+}
+
+static void point_at(instance_t *fb, const char *name, const void *what)
+{
+    const block_member_t *m = member_of(fb->view->type, name);
+    if (m)
+        memcpy(fb->memory + m->offset, &what, sizeof what);
+}
+
+/* ---- judging one call -------------------------------------------------------------------------------------------- */
+
+static shown_t look(const instance_t *fb)
+{
+    const block_view_t *v = fb->view;
+    shown_t now = {.trigger = flag(fb, v->execute) || flag(fb, v->enable), .done = flag(fb, v->done),
+                   .reached = flag(fb, v->reached), .busy = flag(fb, v->busy), .active = flag(fb, v->active),
+                   .aborted = flag(fb, v->aborted), .error = flag(fb, v->error), .valid = flag(fb, v->valid)};
+    if (v->error_id != NOWHERE)
+        memcpy(&now.error_id, fb->memory + v->error_id, sizeof now.error_id);
+    return now;
+}
+
+#define RULE(condition, rule)                                                                                        \
+    MUST(condition, "%s: %s (trigger %d, Done %d, Busy %d, Active %d, CommandAborted %d, Error %d 0x%04X, "          \
+         "reached %d, Valid %d)", name_of(fb), rule, now->trigger, now->done, now->busy, now->active, now->aborted,  \
+         now->error, now->error_id, now->reached, now->valid)
+
+/** 2.4.1 for blocks with Execute: rules E6 ... E10, E14. */
+static void judge_execute(const instance_t *fb)
+{
+    const shown_t *now = &fb->now, *before = &fb->before;
+    const bool edge = now->trigger && !before->trigger;
+    const int results = now->done + now->aborted + now->error;
+    const bool stop = strcmp(name_of(fb), "MC_Stop") == 0;
+    RULE(results + now->busy <= 1, "outputs exclude each other");
+    RULE(!now->trigger || results + now->busy == 1, "Execute and no output");
+    RULE(!now->active || (!now->aborted && !now->error && (!now->done || stop)), "Active with a result");
+    RULE(!now->active || now->busy || stop, "Active without Busy");
+    RULE(!now->reached || (now->busy && now->active), "the set value is reached by a block that is not Active");
+    RULE(!now->busy || before->busy || edge, "Busy without an edge");
+    RULE(!before->busy || now->busy || results || edge, "Busy fell and nothing rose");
+    RULE(now->trigger || !results || before->busy, "a result outlives Execute");
+    RULE(edge || !before->trigger || !now->trigger || before->busy || now->busy == before->busy, "it woke up again");
+}
+
+/** 2.4.1 and 2.2.3 for blocks with Enable: N1 ... N4. */
+static void judge_enable(const instance_t *fb)
+{
+    const shown_t *now = &fb->now;
+    RULE(!(now->valid && now->error), "Valid and Error");
+    RULE(now->trigger || (!now->valid && !now->busy && !now->error), "an output without Enable");
+    RULE(!now->valid || now->busy, "Valid without Busy");
+    RULE(!now->trigger || now->busy || now->error, "Enable and neither Busy nor Error");
+}
+
+/** What a call may do to the state of the axis: nothing but what the block's rules say, and that at an edge only. */
+static void judge_state(instance_t *fb, cm1e_axis_state_t before, bool may_wait)
+{
+    const block_t *type = fb->view->type;
+    const shown_t *now = &fb->now;
+    const cm1e_axis_state_t after = judged.axis->state;
+    const bool edge = now->trigger && !fb->before.trigger;
+    const bool free_to_change = edge && !now->error && type->rules && !type->rules[before].unchanged;
+    /* MC_Reset, MC_Jog, the ends of a homing: tested where they are. A command that cannot go on under another override
+     * ends with that error, and the next one begins (2.2.2, case 2). */
+    const bool in_words = !type->rules || strcmp(type->name, "MC_SetOverride") == 0;
+    if (edge)
+        fb->refused = now->error;
+    if (strcmp(type->name, "MC_Reset") == 0 && edge && !now->error)
+        judged.reset_asked = true;
+    /* Standstill again: it ends in this very cycle, and is in its own state until then. */
+    const bool ends_homing = strcmp(type->name, "MC_HomeDirect") == 0 && before == CM1E_AXIS_HOMING &&
+                             after == CM1E_AXIS_STANDSTILL;
+    const bool ends_at_once = ends_homing || (type->rules && type->rules[before].next == CM1E_AXIS_STANDSTILL);
+    if (after != before && !in_words)
+        MUST(free_to_change && type->rules[before].refusal == CM1E_OK &&
+                 (type->rules[before].next == after || ends_at_once),
+             "%s: from %s to %s (edge %d, Error 0x%04X)", type->name, cm1e_axis_state_name(before),
+             cm1e_axis_state_name(after), edge, now->error_id);
+    const bool stop_again = strcmp(type->name, "MC_Stop") == 0 && before == CM1E_AXIS_STOPPING; /* may brake anew */
+    const bool refuses = type->rules && !type->rules[before].unchanged && type->rules[before].refusal;
+    if (edge && !may_wait && !stop_again && refuses)
+        MUST(now->error, "%s is taken in %s", type->name, cm1e_axis_state_name(before));
+    judged.state = after;
+}
+
+static void call(instance_t *fb)
+{
+    const block_view_t *v = fb->view;
+    const cm1e_axis_state_t state = judged.axis->state;
+    const bool may_wait = judged.axis->active && v->buffer_mode != NOWHERE && fb->memory[v->buffer_mode] != mcAborting;
+    MUST(state == judged.state, "the state changed from %s to %s between two calls", cm1e_axis_state_name(judged.state),
+         cm1e_axis_state_name(state));
+    fb->before = fb->now;
+    v->type->call(fb->memory);
+    fb->now = look(fb);
+    const shown_t *now = &fb->now;
+    if (v->error_id != NOWHERE)
+        RULE(now->error == (now->error_id != 0) && (!now->error || cm1e_error_from_id(now->error_id) < 0),
+             "Error and ErrorID");
+    if (v->execute != NOWHERE)
+        judge_execute(fb);
+    else if (v->valid != NOWHERE && v->busy != NOWHERE)
+        judge_enable(fb);
+    judge_state(fb, state, may_wait);
+}
+
+/* ---- watching the set-point -------------------------------------------------------------------------------------- */
+
+static struct watch {
+    bool ours;                 /**< the set-point was the axis's own */
+    position_t set;
+    double velocity, acceleration;
+    bool searched;             /**< a homing, or the stop that ended it */
+    bool hard;                 /**< it had no limit of jerk */
+    bool resting;
+    cm1e_motion_limits_t maximum, most; /**< of the axis; largest since it was at rest */
+    bool lost;                 /**< the motor did not follow it */
+    double units;              /**< u; what its position was called */
+    double lower, upper;       /**< u; software limits */
+    double lowest, highest;    /**< u; where it may be */
+    unsigned long long moving; /**< cycles */
+} watch;
+
+static bool set_point_is_ours(void)
+{
+    return judged.axis->activity == ACTIVITY_HOLD || judged.axis->activity == ACTIVITY_PROFILE;
+}
+
+/** An axis that stands outside its software limits may come back but go no farther; nor farther than it brakes when the
+ *  limits or its coordinates are changed under way. */
+static void watch_limits(void)
+{
+    const cm1e_axis_t *axis = judged.axis;
+    const double now = cm1e_axis_units(axis, axis->set), tolerance = 0.02 / fabs(axis->scale);
+    const double way = axis->set_velocity * axis->set_velocity / (2.0 * axis->maximum.deceleration) +
+                       2.0 * fabs(axis->set_velocity) * (double)judged.cycle_ns * 1e-9;
+    const bool changed = axis->lower != watch.lower || axis->upper != watch.upper ||
+                         cm1e_axis_units(axis, watch.set) != watch.units;
+    /* Where the limits are is not known before a homing; what follows it begins wherever it was. */
+    const bool searches = axis->state == CM1E_AXIS_HOMING || (watch.searched && axis->state == CM1E_AXIS_STOPPING);
+    watch.searched = searches;
+    if (!axis->software_limits || !watch.ours || axis->set_velocity == 0.0 || changed || searches) {
+        watch.lowest = fmin(axis->lower, now - way) - tolerance;
+        watch.highest = fmax(axis->upper, now + way) + tolerance;
+    }
+    watch.lower = axis->lower;
+    watch.upper = axis->upper;
+    if (axis->software_limits)
+        MUST(now >= watch.lowest && now <= watch.highest, "the set position %.9g is outside %.9g ... %.9g", now,
+             watch.lowest, watch.highest);
+}
+
+/** The master was late by so much: the motor stands, or in CSV has gone on. */
+static inline void pause_of_master(int64_t pause_ns)
+{
+    cm1e_axis_after_pause(judged.axis, pause_ns);
+    watch.ours = watch.ours && judged.axis->mode == CM1E_MODE_CSP;
+    watch.velocity = watch.acceleration = 0;
+    judged.state = judged.axis->state; /* a table over time ends by it */
+}
+
+/** No limit of the axis is exceeded, nothing jumps: position, velocity and acceleration of two cycles fit together. A
+ *  ramp of ErrorStop has no limit of jerk, and may begin anew where the motor is; nor has a stop that would else run
+ *  over a software limit. A set-point that the motor has lost may be found again where the motor is. */
+/** Parameters may be changed under way: what was planned before keeps to what they were. */
+static const cm1e_motion_limits_t *limits_in_force(void)
+{
+    const cm1e_motion_limits_t *now = &judged.axis->maximum;
+    if (!watch.ours || watch.resting)
+        watch.most = watch.maximum;
+    watch.resting = judged.axis->activity == ACTIVITY_HOLD;
+    watch.maximum = *now;
+    watch.most.velocity = fmax(watch.most.velocity, now->velocity);
+    watch.most.acceleration = fmax(watch.most.acceleration, now->acceleration);
+    watch.most.deceleration = fmax(watch.most.deceleration, now->deceleration);
+    watch.most.jerk = fmax(watch.most.jerk, now->jerk);
+    return &watch.most;
+}
+
+/** Where a ramp without limit of jerk is left for a motion, more than the axis's is needed to keep its velocity. */
+static double jerk_to_stay_below(const cm1e_motion_limits_t *most)
+{
+    const double a = watch.acceleration, room = most->velocity - (a > 0 ? watch.velocity : -watch.velocity);
+    return a * a / (2.0 * fmax(room, 1e-9 * most->velocity));
+}
+
+#define KEEPS(condition, format, ...)                                                                                \
+    MUST(condition, "%s, command kind %d: " format, cm1e_axis_state_name(judged.axis->state), (int)judged.axis->kind,  \
+         __VA_ARGS__)
+
+static void watch_set_point(void)
+{
+    const cm1e_axis_t *axis = judged.axis;
+    watch_limits();
+    const cm1e_motion_limits_t *most = limits_in_force();
+    const double t = (double)judged.cycle_ns * 1e-9, v = axis->set_velocity, a = axis->set_acceleration;
+    const bool stop = !axis->active || axis->kind == CM1E_COMMAND_HALT || axis->kind == CM1E_COMMAND_STOP ||
+                      axis->paused;
+    const bool ours = set_point_is_ours(), stepping = watch.searched; /* lets go of what it pushes at */
+    const bool is_hard = axis->state == CM1E_AXIS_ERROR_STOP || stepping || (stop && axis->software_limits);
+    const bool hard = is_hard || watch.hard;
+    const double largest = fmax(most->acceleration, most->deceleration), slack = 1.0 + 1e-6;
+    if (ours && watch.ours && !hard && !watch.lost) {
+        const double way = cm1e_position_minus(axis->set, watch.set) / axis->scale;
+        const double jerk = fabs(a - watch.acceleration) / t, gain = fabs(v - watch.velocity);
+        const double far = cm1e_position_minus(axis->target, axis->set) / axis->scale;
+        const double rounding = 1e-3 / fabs(axis->scale) + 4e-16 * fabs(far);
+        const double off = fabs(way - (v + watch.velocity) * t / 2.0);
+        KEEPS(fabs(v) <= most->velocity * slack, "velocity %.12g, limit %.12g", v, most->velocity);
+        KEEPS(fabs(a) <= largest * slack, "acceleration %.12g, limit %.12g", a, largest);
+        KEEPS(gain <= largest * t * slack + 1e-12, "velocity from %.9g to %.9g in a cycle", watch.velocity, v);
+        KEEPS(jerk <= fmax(most->jerk, jerk_to_stay_below(most)) * slack + 1e-9,
+              "jerk %.9g, limit %.9g (acceleration from %.9g to %.9g, velocity %.9g)", jerk, most->jerk,
+             watch.acceleration, a, v);
+        KEEPS(off <= most->jerk * t * t * t / 6.0 * slack + rounding,
+             "the position moves by %.9g, the velocities are %.9g and %.9g", way, watch.velocity, v);
+    }
+    watch.hard = is_hard;
+    watch.moving += ours && v != 0.0;
+    watch.ours = ours;
+    watch.set = axis->set;
+    watch.units = cm1e_axis_units(axis, axis->set);
+    watch.velocity = v;
+    watch.acceleration = a;
+    watch.lost = fabs(cm1e_position_minus(axis->set, axis_actual(axis)) / axis->scale) > 0.9 * axis->max_lag;
+}
+
+/* ---- the cycle --------------------------------------------------------------------------------------------------- */
+
+/** The transitions of figure 2 that happen between calls; a command that waited may begin there too. */
+static void judge_cycle(void)
+{
+    static const unsigned to[CM1E_AXIS_STATE_COUNT] = {
+        [CM1E_AXIS_DISABLED] = 1u << CM1E_AXIS_STANDSTILL,
+        [CM1E_AXIS_DISCRETE_MOTION] = 1u << CM1E_AXIS_STANDSTILL,
+        [CM1E_AXIS_HOMING] = 1u << CM1E_AXIS_STANDSTILL,
+        [CM1E_AXIS_STOPPING] = 1u << CM1E_AXIS_STANDSTILL,
+        [CM1E_AXIS_ERROR_STOP] = 1u << CM1E_AXIS_DISABLED | 1u << CM1E_AXIS_STANDSTILL,
+    };
+    const unsigned begins = 1u << CM1E_AXIS_DISCRETE_MOTION | 1u << CM1E_AXIS_CONTINUOUS_MOTION |
+                            1u << CM1E_AXIS_HOMING | 1u << CM1E_AXIS_STANDSTILL; /* a halt that ends at once */
+    const cm1e_axis_state_t before = judged.state, after = judged.axis->state;
+    if (after == before)
+        return;
+    bool waits = false;
+    for (int i = 0; i < called_count; i++)
+        waits = waits || (called[i]->before.busy && !called[i]->before.active) ||
+                (called[i]->now.busy && !called[i]->now.active);
+    const unsigned allowed = to[before] | 1u << CM1E_AXIS_ERROR_STOP | (waits ? begins : 0);
+    MUST(allowed >> after & 1u, "from %s to %s in the cycle, a command waits: %d", cm1e_axis_state_name(before),
+         cm1e_axis_state_name(after), waits);
+    MUST(before != CM1E_AXIS_ERROR_STOP || judged.reset_asked, "ErrorStop was left without MC_Reset");
+    judged.reset_asked = false;
+    judged.state = after;
+}
+
+/* ---- making blocks ----------------------------------------------------------------------------------------------- */
+
+static const MC_TP_REF table_of_positions = {
+    .NumberOfPairs = 3, .MC_TP_Array = {{500000000, 0.2}, {500000000, 0.5}, {500000000, 0.7}}};
+static const MC_TV_REF table_of_velocities = {
+    .NumberOfPairs = 2, .MC_TV_Array = {{200000000, 1}, {200000000, 2}}};
+static const MC_TA_REF table_of_accelerations = {.NumberOfPairs = 2, .IsAbsolute = TRUE,
+                                                 .MC_TA_Array = {{100000000, 20}, {100000000, 10}}};
+static MC_OUTPUT_REF output_of_axis;
+static MC_INPUT_REF input_of_axis;
+static MC_TRIGGER_REF trigger_of_axis;
+static const MC_CAMSWITCH_REF cam_switches = {
+    .NumberOfSwitches = 1, .Switches = {{.TrackNumber = 1, .FirstOnPosition = 1, .LastOnPosition = 2}}};
+
+/** No blocks yet, all to come on judged.reference. */
+static void begin_blocks(void)
+{
+    called_count = 0;
+    output_of_axis.Axis = input_of_axis.Axis = trigger_of_axis.Axis = judged.reference;
+}
+
+/** A block with inputs that make sense, zeroed beside; it is called in every cycle from now on. */
+static void make(instance_t *fb, const char *name)
+{
+    static const struct {
+        const char *name;
+        double value;
+    } good[] = {{"Position", 5}, {"Distance", 3}, {"Velocity", 10}, {"EndVelocity", 4}, {"VelocityDiff", 5},
+                {"Acceleration", 80}, {"Deceleration", 80}, {"VelFactor", 1}, {"AccFactor", 1}, {"JerkFactor", 1},
+                {"ParameterNumber", 9}, {"InputNumber", 1}, {"OutputNumber", 1}, {"EnableMask", 1}, {"Torque", 10}};
+    memset(fb, 0, sizeof *fb);
+    fb->view = view_of(name);
+    point_at(fb, "Axis", &judged.reference);
+    point_at(fb, "TimePosition", &table_of_positions);
+    point_at(fb, "TimeVelocity", &table_of_velocities);
+    point_at(fb, "TimeAcceleration", &table_of_accelerations);
+    point_at(fb, "Output", &output_of_axis);
+    point_at(fb, "Outputs", &output_of_axis);
+    point_at(fb, "Input", &input_of_axis);
+    point_at(fb, "TriggerInput", &trigger_of_axis);
+    point_at(fb, "Switches", &cam_switches);
+    for (size_t i = 0; i < sizeof good / sizeof good[0]; i++)
+        put(fb, good[i].name, good[i].value);
+    if (strstr(name, "MC_Write") && strstr(name, "Parameter"))
+        put(fb, "ParameterNumber", strstr(name, "Bool") ? 6 : 7);
+    if (strstr(name, "BoolParameter"))
+        put(fb, "ParameterNumber", 4);
+    MUST(called_count < BLOCKS_MOST, "too many blocks");
+    called[called_count++] = fb;
+}
+
+static void trigger(instance_t *fb, bool on)
+{
+    const uint16_t place = fb->view->execute != NOWHERE ? fb->view->execute : fb->view->enable;
+    if (place != NOWHERE)
+        fb->memory[place] = on;
+}
+
+#endif
