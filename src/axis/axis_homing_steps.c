@@ -20,6 +20,7 @@ static const double few_counts = 20.0;
 /* Of a set-point that goes back from a stop, and of one that comes nearer to it again; counts/s. */
 static const double relief_velocity_counts = 5000.0;
 static const double creep_velocity_counts = 250.0;
+static const double pressing_time_s = 0.01;
 static const double farthest_relief_counts = 5000.0;
 /* Part of the allowed lag that shows a stop where no torque is given. */
 static const double pressing_lag = 0.25;
@@ -143,8 +144,16 @@ static void go_within(cm1e_axis_t *axis, double velocity, const cm1e_motion_limi
 
 static void go(cm1e_axis_t *axis, double velocity) { go_within(axis, velocity, &axis->stepping.limits); }
 
-/* While the motor stands at something there is no reason to be gentle with the set-point. */
-static void press_on(cm1e_axis_t *axis, double velocity) { go_within(axis, velocity, &axis->emergency); }
+/* While the motor stands at something the set-point needs no limit of jerk; but no more acceleration than it takes to
+ * change soon, for whatever follows has to take that back by jerk alone. */
+static void press_on(cm1e_axis_t *axis, double velocity)
+{
+    cm1e_motion_limits_t limits = axis->emergency;
+    const double soon = fmax(fabs(axis->set_velocity), fabs(velocity)) / pressing_time_s;
+    if (soon > 0.0)
+        limits.acceleration = limits.deceleration = fmin(axis->emergency.deceleration, soon);
+    go_within(axis, velocity, &limits);
+}
 
 static void turn_to(cm1e_axis_t *axis, double way)
 {
@@ -180,7 +189,8 @@ static void relieve_cycle(cm1e_axis_t *axis)
     stepping_t *s = &axis->stepping;
     s->travel += fabs(axis->set_velocity) * axis->cycle_s;
     const double push = -s->way, lag = lag_counts(axis) / axis->scale;
-    const bool pushes = lag * push > 0.0 || torque_percent(axis) * push > 0.0;
+    /* Whole counts, whole per cent: what is less is rounding. */
+    const bool pushes = lag * fabs(axis->scale) * push > 1.0 || torque_percent(axis) * push > 1.0;
     const bool enough = s->travel * fabs(axis->scale) >= farthest_relief_counts;
     if ((pushes && !enough) || !axis->drive.feedback.fresh)
         return;
@@ -518,6 +528,7 @@ static double pushed_way(const cm1e_axis_t *axis)
 static bool stop_ended(cm1e_axis_t *axis)
 {
     stepping_t *s = &axis->stepping;
+    s->after_stop = false;
     if (axis->state != CM1E_AXIS_STOPPING || !s->pushing)
         return false;
     s->pushing = false;

@@ -23,7 +23,7 @@ void cm1e_axis_become_free(cm1e_axis_t *axis)
 {
     axis->activity = ACTIVITY_FREE;
     axis->energized = false;
-    axis->stepping.pushing = false;
+    axis->stepping.pushing = axis->stepping.after_stop = false;
     axis->free_ns = axis->now_ns;
     cm1e_axis_set_to_actual(axis);
 }
