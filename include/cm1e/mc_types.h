@@ -51,7 +51,7 @@ typedef enum MC_SWITCH_MODE {
 /** When an administrative block acts. */
 typedef enum MC_EXECUTION_MODE {
     mcImmediately = 0, /**< at once, also in motion; the state does not change */
-    mcQueued = 1,      /**< as a buffered command: after those before it */
+    mcQueued = 1,      /**< in turn with the commands that wait; refused in this version */
 } MC_EXECUTION_MODE;
 
 /** Which value of the axis is meant. */
