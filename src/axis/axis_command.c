@@ -340,11 +340,18 @@ static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command,
     return error;
 }
 
+void cm1e_axis_remember_refusal(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_error_t error)
+{
+    axis->refusal = error;
+    if (!error)
+        return;
+    axis->refused = *command;
+    axis->not_set.error = CM1E_OK;
+}
+
 cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
-    axis->refusal = start(axis, command, id);
-    if (axis->refusal)
-        axis->refused = *command;
+    cm1e_axis_remember_refusal(axis, command, start(axis, command, id));
     if (axis->refusal && is_table(command->kind))
         cm1e_axis_table_needs(axis, command, &axis->refused);
     return axis->refusal;

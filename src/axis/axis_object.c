@@ -105,7 +105,7 @@ cm1e_error_t cm1e_axis_object_start(cm1e_axis_t *axis, int number, bool write, d
     const cm1e_error_t error = check(axis, entry_of(number), write, value);
     if (error) {
         if (error != CM1E_ERROR_FULL)
-            axis->not_set = (not_set_t){.error = error, .number = number, .value = value};
+            cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .number = number, .value = value});
         return error;
     }
     const uint16_t sequence = axis->objects.next++;
@@ -140,8 +140,8 @@ static void finish(cm1e_axis_t *axis, object_request_t *request, cm1e_error_t er
     objects->submitted = false;
     objects->head++;
     if (error)
-        axis->not_set = (not_set_t){.error = error, .number = cm1e_axis_object_number(request->ticket),
-                                    .value = request->value, .abort_code = objects->sdo.abort_code};
+        cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .number = cm1e_axis_object_number(request->ticket),
+                                                     .value = request->value, .abort_code = objects->sdo.abort_code});
 }
 
 static void submit(cm1e_axis_t *axis, object_request_t *request, const cm1e_entry_t *entry)

@@ -152,10 +152,17 @@ static cm1e_error_t write(cm1e_axis_t *axis, int number, double value)
     return CM1E_ERROR_AXIS_PARAMETER_READ_ONLY;
 }
 
+void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what)
+{
+    axis->not_set = what;
+    if (what.error)
+        axis->refusal = CM1E_OK;
+}
+
 cm1e_error_t cm1e_axis_write_parameter(cm1e_axis_t *axis, int number, double value)
 {
     const cm1e_error_t error = write(axis, number, value);
-    axis->not_set = (not_set_t){.error = error, .number = number, .value = value};
+    cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .number = number, .value = value});
     return error;
 }
 

@@ -466,6 +466,8 @@ bool cm1e_axis_limits_hold(const cm1e_axis_t *axis, double lower, double upper);
 
 /* axis_parameter.c, axis_object.c */
 void cm1e_axis_apply_software_limits(cm1e_axis_t *axis);
+/** For the text: what was refused last is told. */
+void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what);
 void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_axis_object_text(const cm1e_axis_t *axis, char *text, size_t size);
 int cm1e_axis_number_of_object(uint16_t index, uint8_t subindex);
@@ -550,6 +552,8 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis);
 void cm1e_axis_write_set_point(cm1e_axis_t *axis);
 
 /* axis_command.c */
+/** Of a command or an update, for the text: what was refused last is told. CM1E_OK: it was accepted. */
+void cm1e_axis_remember_refusal(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_error_t error);
 /** The active command ends; those that wait are for cm1e_axis_begin_waiting(). */
 void cm1e_axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
 /** All end, the waiting ones with CM1E_ERROR_AXIS_ERROR_STOP where `state` is an error. */

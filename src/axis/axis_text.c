@@ -56,8 +56,19 @@ static void refused_homing_text(const cm1e_axis_t *axis, char *text, size_t size
 
 static void refused_velocity_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    snprintf(text, size, "Axis \"%s\": velocity %.6g was asked for; above 0, up to %.6g u/s is right.",
-             axis->config->name, axis->refused.velocity, axis->maximum.velocity);
+    const cm1e_axis_command_t *refused = &axis->refused;
+    const double most = axis->maximum.velocity;
+    const char *name = axis->config->name;
+    const bool fits = refused->velocity > 0.0 && refused->velocity <= most;
+    if (refused->kind == CM1E_COMMAND_MOVE_SUPERIMPOSED && fits)
+        snprintf(text, size, "Axis \"%s\": velocity %.6g was asked for, on top of the motion under way and those that "
+                 "wait; together up to %.6g u/s is right.", name, refused->velocity, most);
+    else if (refused->end_velocity != 0.0 && fits)
+        snprintf(text, size, "Axis \"%s\": end velocity %.6g was asked for; -%.6g ... %.6g u/s is right.", name,
+                 refused->end_velocity, most, most);
+    else
+        snprintf(text, size, "Axis \"%s\": velocity %.6g was asked for; above 0, up to %.6g u/s is right.", name,
+                 refused->velocity, most);
 }
 
 static void refused_dynamics_text(const cm1e_axis_t *axis, char *text, size_t size)

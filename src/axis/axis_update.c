@@ -62,7 +62,7 @@ static cm1e_error_t update_active(cm1e_axis_t *axis, const move_t *inputs)
     return cm1e_axis_replan_as(axis, &move);
 }
 
-cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
+static cm1e_error_t update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
 {
     const bool on_top = command->kind == CM1E_COMMAND_MOVE_SUPERIMPOSED;
     if (id == 0 || (unsigned)command->kind >= CM1E_COMMAND_KIND_COUNT ||
@@ -81,4 +81,12 @@ cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1
         return cm1e_axis_update_waiting(axis, &move);
     }
     return CM1E_OK; /* nothing new, or it has ended */
+}
+
+cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
+{
+    const cm1e_error_t error = update(axis, id, command);
+    if (error) /* a good one, at every call of a block, says nothing about what was refused before */
+        cm1e_axis_remember_refusal(axis, command, error);
+    return error;
 }

@@ -1,4 +1,6 @@
 /* MC_MoveSuperimposed, MC_HaltSuperimposed (3.8, 3.9): a motion on top of another one. */
+#include <string.h>
+
 #include "axis/axis_parameters.h"
 
 #include "../support/axis_bench.h"
@@ -243,6 +245,9 @@ static void test_refusals(void)
     bench_move_to(20.0, 10.0);
     watch_cycles(100);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VELOCITY_RANGE, refusal(1.0, 20.1, 0.0)); /* 10 + 20.1 > 30 */
+    char text[300];
+    cm1e_axis_error_text(cm1e_axis_reference(axis), text, sizeof text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "together up to 30 u/s"), text);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VELOCITY_RANGE, refusal(1.0, 0.0, 0.0));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, refusal(5.1, 5.0, 0.0));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, refusal(NAN, 5.0, 0.0));
