@@ -15,6 +15,7 @@ static const int64_t parameter_timeout_ns = 5000 * MS_IN_NS;
 static const int64_t acknowledge_timeout_ns = 500 * MS_IN_NS;
 static const int64_t longest_halt_ns = 10000 * MS_IN_NS;
 static const int64_t standing_ns = 50 * MS_IN_NS;
+static const int64_t stale_ns = 10 * MS_IN_NS; /* "target reached" may so long be of the velocity before, which was 0 */
 static const int32_t standing_counts = 10;
 static const int32_t there_counts = 50;
 /* Between the cycle that sees the motor and the drive that brakes it; s. */
@@ -286,7 +287,7 @@ static void step_move(cm1e_axis_t *axis)
     if (!f->online)
         return;
     if (d->velocity_mode) {
-        axis->reached = f->target_reached;
+        axis->reached = f->target_reached && axis->now_ns - d->step_ns >= stale_ns;
         if (!can_halt(axis))
             cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->set),
                            f->velocity / axis->scale > 0.0 ? axis->upper : axis->lower);

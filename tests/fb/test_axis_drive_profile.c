@@ -101,6 +101,7 @@ START_TEST(velocities_turn_in_profile_velocity_mode_until_they_are_ended)
             for (int n = 0; n < 3000 && !status(id).reached; n++)
                 cycles(1);
             ck_assert_msg(status(id).reached, "variant %d: %s", variant, text());
+            ck_assert_double_eq_tol(probe().velocity_counts_per_s, velocity * 1000, 3000); /* not before */
             ck_assert_int_eq(info().state, CM1E_AXIS_CONTINUOUS_MOTION);
             ck_assert_int_eq(info().mode, CM1E_MODE_PV);
             cycles(100);
