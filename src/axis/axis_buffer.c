@@ -273,6 +273,7 @@ bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offse
             return true;
         }
         cm1e_axis_record(axis, move.id, CM1E_COMMAND_ERROR, error);
+        cm1e_axis_remember_end(axis, (cm1e_command_kind_t)move.kind, error);
     }
     return false;
 }

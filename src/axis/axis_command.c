@@ -23,8 +23,15 @@ void cm1e_axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_e
     if (!axis->active)
         return;
     cm1e_axis_record(axis, axis->active, state, error);
+    cm1e_axis_remember_end(axis, axis->kind, error);
     axis->active = 0;
     axis->reached = false;
+}
+
+void cm1e_axis_remember_end(cm1e_axis_t *axis, cm1e_command_kind_t kind, cm1e_error_t error)
+{
+    if (error && error != CM1E_ERROR_AXIS_ERROR_STOP)
+        cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_FINISHED, .number = (int)kind});
 }
 
 void cm1e_axis_commands_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
@@ -351,6 +358,8 @@ void cm1e_axis_remember_refusal(cm1e_axis_t *axis, const cm1e_axis_command_t *co
 
 cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
+    if (axis->not_set.what == NOT_FINISHED) /* one that is taken now may end at once, and be told */
+        axis->not_set.error = CM1E_OK;
     cm1e_axis_remember_refusal(axis, command, start(axis, command, id));
     if (axis->refusal && is_table(command->kind))
         cm1e_axis_table_needs(axis, command, &axis->refused);

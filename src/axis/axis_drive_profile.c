@@ -154,9 +154,9 @@ static void refuse(cm1e_axis_t *axis, cm1e_error_t error)
 {
     const driving_t *d = &axis->driving;
     const int number = cm1e_axis_number_of_object(d->sdo.index, d->sdo.subindex);
+    cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, error);
     cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .number = number, .value = d->raw[d->next],
                                                  .abort_code = d->sdo.abort_code});
-    cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, error);
     leave(axis);
 }
 

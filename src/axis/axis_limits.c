@@ -67,7 +67,7 @@ cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
     axis->maximum.jerk = or_default(c->max_jerk, default_jerk_counts / counts);
     axis->system = axis->maximum;
     axis->emergency = axis->system;
-    axis->override = (override_t){1.0, 1.0, 1.0};
+    axis->override = axis->override_refused = (override_t){1.0, 1.0, 1.0};
     axis->emergency.jerk = INFINITY;
     axis->emergency_way = 0.5 / axis->emergency.deceleration;
     axis->tolerance = tolerance_counts / fabs(axis->scale);

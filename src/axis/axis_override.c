@@ -3,6 +3,8 @@
  * once, from the present set-point. A velocity of 0 brakes the command to a standstill in which it stays active, in its
  * state of the diagram, and from which it goes on when the factor is larger again.
  */
+#include <string.h>
+
 #include "axis/axis_private.h"
 
 static bool is_factor(double value) { return value > 0.0 && value <= 1.0; }
@@ -17,20 +19,32 @@ static void resume_failed(cm1e_axis_t *axis, cm1e_error_t error)
         cm1e_axis_ramp_down(axis, &axis->maximum);
 }
 
-cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double acceleration, double jerk)
+static cm1e_error_t set_override(cm1e_axis_t *axis, const override_t *asked)
 {
     const override_t before = axis->override;
-    if (!(velocity >= 0.0 && velocity <= 1.0) || !is_factor(acceleration) || !is_factor(jerk))
+    const double velocity = asked->velocity;
+    if (!(velocity >= 0.0 && velocity <= 1.0) || !is_factor(asked->acceleration) || !is_factor(asked->jerk))
         return CM1E_ERROR_AXIS_OVERRIDE;
-    if (velocity == before.velocity && acceleration == before.acceleration && jerk == before.jerk)
+    if (velocity == before.velocity && asked->acceleration == before.acceleration && asked->jerk == before.jerk)
         return CM1E_OK;
     if (drive_profiles(axis)) /* they would have to be written to the drive, and it take them in motion */
         return CM1E_ERROR_UNSUPPORTED;
-    axis->override = (override_t){velocity, acceleration, jerk};
+    axis->override = *asked;
     const bool paused = axis->paused;
     cm1e_axis_superimposed_replan(axis);
     const cm1e_error_t error = cm1e_axis_replan(axis);
     if (error && paused && velocity > 0.0)
         resume_failed(axis, error);
     return CM1E_OK;
+}
+
+/* The same factors come in every cycle: once refused, they shall not hide the text of what is refused after them. */
+cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double acceleration, double jerk)
+{
+    const override_t asked = {velocity, acceleration, jerk};
+    const cm1e_error_t error = set_override(axis, &asked);
+    if (!error || memcmp(&asked, &axis->override_refused, sizeof asked) != 0)
+        cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_OVERRIDE});
+    axis->override_refused = error ? asked : axis->override;
+    return error;
 }

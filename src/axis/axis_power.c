@@ -49,6 +49,7 @@ void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double 
                               (error == CM1E_ERROR_AXIS_HOMING_FAILED || error == CM1E_ERROR_AXIS_HOMING_TIMEOUT);
     /* 2.2.2: the blocks that lose the axis show an error, not CommandAborted. */
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ERROR, homing_broke ? error : CM1E_ERROR_AXIS_ERROR_STOP);
+    axis->refusal = axis->not_set.error = CM1E_OK; /* old by the time of the reset */
     axis->error = error;
     axis->device_error = axis->drive.fault.device_code;
     axis->error_value = value;

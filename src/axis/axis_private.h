@@ -235,11 +235,18 @@ typedef struct objects {
     cm1e_sdo_t sdo;
 } objects_t;
 
-/** The parameter or position that was last to be set, for the text of a refusal. */
+typedef enum not_set_what {
+    NOT_SET_PARAMETER = 0, /**< `number` */
+    NOT_SET_POSITION,      /**< MC_SetPosition */
+    NOT_SET_OVERRIDE,      /**< MC_SetOverride; see override_refused */
+    NOT_FINISHED,          /**< a command, of the kind `number`, that was taken and ended with the error */
+} not_set_what_t;
+
+/** What else than a command at its start was refused last, for the text. */
 typedef struct not_set {
-    cm1e_error_t error; /**< CM1E_OK: it was */
-    bool position;      /**< MC_SetPosition; else ... */
-    int number;         /**< ... this parameter */
+    cm1e_error_t error; /**< CM1E_OK: it was set */
+    not_set_what_t what;
+    int number;
     double value;
     uint32_t abort_code;
 } not_set_t;
@@ -347,7 +354,7 @@ struct cm1e_axis {
     double origin_units;
 
     double loop_velocity;           /**< counts/s that the position loop adds in CSV */
-    override_t override;
+    override_t override, override_refused; /**< the latter for the text; one that is good: none was */
 
     command_record_t records[COMMANDS_REMEMBERED];
     cm1e_command_id_t last_id;
@@ -466,9 +473,10 @@ bool cm1e_axis_limits_hold(const cm1e_axis_t *axis, double lower, double upper);
 
 /* axis_parameter.c, axis_object.c */
 void cm1e_axis_apply_software_limits(cm1e_axis_t *axis);
-/** For the text: what was refused last is told. */
+/** For the text: what was refused last is told. A success takes back only what was told of the same. */
 void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what);
 void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size);
+void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size); /* axis_text.c */
 void cm1e_axis_object_text(const cm1e_axis_t *axis, char *text, size_t size);
 int cm1e_axis_number_of_object(uint16_t index, uint8_t subindex);
 /** While one waits or is under way. */
@@ -558,6 +566,8 @@ void cm1e_axis_remember_refusal(cm1e_axis_t *axis, const cm1e_axis_command_t *co
 void cm1e_axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
 /** All end, the waiting ones with CM1E_ERROR_AXIS_ERROR_STOP where `state` is an error. */
 void cm1e_axis_commands_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
+/** For the text: one that was taken ended with this error. That of ErrorStop is told by the axis's own. */
+void cm1e_axis_remember_end(cm1e_axis_t *axis, cm1e_command_kind_t kind, cm1e_error_t error);
 void cm1e_axis_record(cm1e_axis_t *axis, cm1e_command_id_t id, cm1e_command_state_t state, cm1e_error_t error);
 cm1e_command_id_t cm1e_axis_next_id(cm1e_axis_t *axis);
 /** A command that has been planned becomes the active one; the one before, if any, is aborted. */

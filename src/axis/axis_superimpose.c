@@ -104,6 +104,7 @@ static void record(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t e
 {
     superimposed_t *on_top = &axis->superimposed;
     cm1e_axis_record(axis, on_top->id, state, error);
+    cm1e_axis_remember_end(axis, (cm1e_command_kind_t)on_top->move.kind, error);
     on_top->ended = on_top->id;
     on_top->covered = on_top->now.position;
     on_top->id = 0;

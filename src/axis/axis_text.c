@@ -54,6 +54,34 @@ static void refused_homing_text(const cm1e_axis_t *axis, char *text, size_t size
                  axis->config->name, sdo->index, sdo->subindex, cm1e_strerror(axis->home.refused));
 }
 
+static const char *const kind_names[CM1E_COMMAND_KIND_COUNT] = {
+    [CM1E_COMMAND_MOVE_ABSOLUTE] = "MC_MoveAbsolute",
+    [CM1E_COMMAND_MOVE_RELATIVE] = "MC_MoveRelative",
+    [CM1E_COMMAND_MOVE_ADDITIVE] = "MC_MoveAdditive",
+    [CM1E_COMMAND_MOVE_VELOCITY] = "MC_MoveVelocity",
+    [CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE] = "MC_MoveContinuousAbsolute",
+    [CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE] = "MC_MoveContinuousRelative",
+    [CM1E_COMMAND_POSITION_PROFILE] = "MC_PositionProfile",
+    [CM1E_COMMAND_VELOCITY_PROFILE] = "MC_VelocityProfile",
+    [CM1E_COMMAND_ACCELERATION_PROFILE] = "MC_AccelerationProfile",
+    [CM1E_COMMAND_HALT] = "MC_Halt",
+    [CM1E_COMMAND_STOP] = "MC_Stop",
+    [CM1E_COMMAND_HOME] = "MC_Home",
+    [CM1E_COMMAND_HOMING_STEP] = "a step of a homing",
+    [CM1E_COMMAND_MOVE_SUPERIMPOSED] = "MC_MoveSuperimposed",
+    [CM1E_COMMAND_HALT_SUPERIMPOSED] = "MC_HaltSuperimposed",
+};
+
+void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const not_set_t *ended = &axis->not_set;
+    if (ended->number == CM1E_COMMAND_HOME && ended->error == axis->home.refused)
+        refused_homing_text(axis, text, size);
+    else
+        snprintf(text, size, "Axis \"%s\": %s, running or waiting, was ended: %s.", axis->config->name,
+                 kind_names[ended->number], cm1e_strerror(ended->error));
+}
+
 static void refused_velocity_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const cm1e_axis_command_t *refused = &axis->refused;
@@ -140,8 +168,6 @@ void cm1e_axis_error_text(AXIS_REF_t reference, char *text, size_t size)
             refused_text(axis, text, size);
         else if (axis->not_set.error)
             cm1e_axis_not_set_text(axis, text, size);
-        else if (axis->home.refused)
-            refused_homing_text(axis, text, size);
         return;
     }
     if (axis->error == axis->drive.fault.error) {

@@ -5,6 +5,8 @@
 #ifndef CM1E_TESTS_AXIS_BENCH_H
 #define CM1E_TESTS_AXIS_BENCH_H
 
+#include <string.h>
+
 #include "axis/axis.h"
 #include "axis/axis_private.h"
 #include "unity.h"
@@ -97,6 +99,14 @@ static inline cm1e_axis_info_t bench_info(void)
     cm1e_axis_info_t info;
     cm1e_axis_get(axis, &info);
     return info;
+}
+
+/** These words are in the axis's text. */
+static inline void bench_told(const char *words)
+{
+    char text[CM1E_AXIS_ERROR_TEXT_BYTES];
+    cm1e_axis_error_text(cm1e_axis_reference(axis), text, sizeof text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, words), text);
 }
 
 static inline void bench_power(bool enable)

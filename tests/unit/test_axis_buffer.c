@@ -177,6 +177,7 @@ static void test_when_the_active_one_fails_the_next_begins_at_once(void)
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, bench_state_of(first));
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, bench_state_of(second));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DIRECTION_DISABLED, cm1e_axis_command_status(axis, second).error);
+    bench_told("MC_MoveAbsolute, running or waiting, was ended: motion in this direction is disabled");
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(third));
     watch_cycles(3000);
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(third));

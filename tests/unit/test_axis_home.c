@@ -89,13 +89,6 @@ static cm1e_command_id_t home(double position, const cm1e_homing_config_t *confi
                                                       .homing = config});
 }
 
-static void assert_text_has(const char *part)
-{
-    char text[512];
-    cm1e_axis_error_text(cm1e_axis_reference(axis), text, sizeof text);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, part), text);
-}
-
 static void cycles_until_step(home_step_t step)
 {
     for (int i = 0; i < 3000; i++) {
@@ -204,7 +197,7 @@ static void test_parameters_that_find_no_way_to_the_device_time_out(void)
         TEST_ASSERT_INT_WITHIN(10, 200, n);
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_TIMEOUT, cm1e_axis_command_status(axis, id).error);
         TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
-        assert_text_has("0x607C");
+        bench_told("0x607C");
         cm1e_command_id_t again; /* the buffer of a transfer under way is not touched */
         const cm1e_homing_config_t config = {.method = -1};
         TEST_ASSERT_EQUAL_INT(stuck_transfer ? CM1E_ERROR_BUSY : CM1E_OK,
@@ -321,8 +314,8 @@ static void test_sdo_abort_of_each_parameter_refuses_without_moving(void)
         TEST_ASSERT_EQUAL_INT(CM1E_OK, bench_info().error);
         char object[8];
         snprintf(object, sizeof object, "0x%04X", objects[i]);
-        assert_text_has(object);
-        assert_text_has("0x06090030");
+        bench_told(object);
+        bench_told("0x06090030");
         TEST_ASSERT_EQUAL_INT64(0, shaft);
     }
 }
@@ -355,7 +348,7 @@ static void test_homing_that_never_begins(void)
         show(0, completed, 1);
         const cm1e_command_id_t id = home(0.0, &(cm1e_homing_config_t){.method = -1});
         bench_wait(id, 1000);
-        assert_text_has("homing began");
+        bench_told("homing began");
         assert_homing_error(id, CM1E_ERROR_AXIS_HOMING_FAILED);
     }
 }
@@ -366,7 +359,7 @@ static void test_homing_without_end_times_out(void)
     const cm1e_command_id_t id = home(0.0, &(cm1e_homing_config_t){.method = -3, .timeout_s = 1.5});
     const int n = bench_wait(id, 5000);
     TEST_ASSERT_INT_WITHIN(50, 1500, n);
-    assert_text_has("sensor");
+    bench_told("sensor");
     assert_homing_error(id, CM1E_ERROR_AXIS_HOMING_TIMEOUT);
 }
 
@@ -395,7 +388,7 @@ static void test_every_pattern_of_the_bits_while_running(void)
             TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
             break;
         default:
-            assert_text_has("drive reports");
+            bench_told("drive reports");
             assert_homing_error(id, CM1E_ERROR_AXIS_HOMING_FAILED);
             break;
         }

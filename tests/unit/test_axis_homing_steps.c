@@ -261,6 +261,8 @@ static void test_switch_that_is_not_there_ends_at_the_second_limit_switch(void)
         const cm1e_command_id_t id = start(1.0, 0.0);
         bench_wait(id, 20000);
         expect(id, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_STEP_LIMIT_SWITCH);
+        bench_told("a step of a homing, running or waiting, was ended: ");
+        bench_told(cm1e_strerror(CM1E_ERROR_AXIS_STEP_LIMIT_SWITCH));
         TEST_ASSERT_EQUAL_INT(CM1E_AXIS_HOMING, bench_info().state);
         TEST_ASSERT_FALSE(bench_info().homed);
         expect_smooth(1.0);

@@ -417,6 +417,7 @@ static void test_direction_disabled_while_running_stops_the_motion(void)
     const cm1e_command_status_t status = cm1e_axis_command_status(axis, id);
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, status.state);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DIRECTION_DISABLED, status.error);
+    bench_told("MC_MoveVelocity, running or waiting, was ended: motion in this direction is disabled");
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_DISCRETE_MOTION, bench_info().state);
     bench_cycles(20);
     const cm1e_command_id_t back = move_by(-3.0, 10.0); /* while it still brakes */

@@ -140,7 +140,18 @@ static void test_factors_out_of_range_change_nothing(void)
                                     {NAN, 1, 1}, {1, NAN, 1}, {1, 1, NAN}, {INFINITY, 1, 1}};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_OVERRIDE, cm1e_axis_set_override(axis, bad[i][0], bad[i][1], bad[i][2]));
+    bench_told("MC_SetOverride to VelFactor inf, AccFactor 1, JerkFactor 1: ");
+    bench_told("VelFactor 0 ... 1, AccFactor and JerkFactor above 0, up to 1 are right");
+    /* The block asks again in every cycle; what is refused later is told all the same. */
+    TEST_ASSERT_NOT_EQUAL_INT(CM1E_OK, cm1e_axis_set_position(axis, NAN, false));
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_OVERRIDE, cm1e_axis_set_override(axis, INFINITY, 1, 1));
+    bench_told("MC_SetPosition");
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_OVERRIDE, cm1e_axis_set_override(axis, 2, 1, 1));
+    bench_told("MC_SetOverride to VelFactor 2,");
     override(1.0, 1.0, 1.0); /* no change: no new plan */
+    char text[CM1E_AXIS_ERROR_TEXT_BYTES];
+    cm1e_axis_error_text(cm1e_axis_reference(axis), text, sizeof text);
+    TEST_ASSERT_EQUAL_STRING("", text);
     TEST_ASSERT_EQUAL_INT64(cycles, axis->profile_cycles);
 }
 

@@ -403,13 +403,6 @@ static void test_set_position_is_refused_where_it_makes_no_sense(void)
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_OFFLINE, cm1e_axis_set_position(axis, 0, false));
 }
 
-static void assert_told(const char *words)
-{
-    char text[300];
-    cm1e_axis_error_text(cm1e_axis_reference(axis), text, sizeof text);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, words), text);
-}
-
 static void test_the_text_is_of_what_was_refused_last(void)
 {
     bench_enable();
@@ -417,16 +410,16 @@ static void test_the_text_is_of_what_was_refused_last(void)
     const cm1e_axis_command_t move = {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .velocity = 1e9};
     for (int i = 0; i < 2; i++) {
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VELOCITY_RANGE, cm1e_axis_start(axis, &move, &id));
-        assert_told("velocity 1e+09 was asked for");
+        bench_told("velocity 1e+09 was asked for");
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_set_position(axis, NAN, false));
-        assert_told("MC_SetPosition to nan");
+        bench_told("MC_SetPosition to nan");
         TEST_ASSERT_NOT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis, 99, 5.0));
-        assert_told("parameter 99");
+        bench_told("parameter 99");
     }
     const cm1e_axis_command_t fast = {.kind = CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE, .position = 1.0, .velocity = 1.0,
                                       .end_velocity = -1e9};
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VELOCITY_RANGE, cm1e_axis_start(axis, &fast, &id));
-    assert_told("end velocity -1e+09 was asked for");
+    bench_told("end velocity -1e+09 was asked for");
 }
 
 static void test_modulo_position_is_set_within_a_turn(void)

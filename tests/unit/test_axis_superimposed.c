@@ -226,6 +226,7 @@ static void test_a_disabled_direction_ends_what_goes_there(void)
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_power(axis, &owner, true, true, false));
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, bench_state_of(id));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DIRECTION_DISABLED, cm1e_axis_command_status(axis, id).error);
+    bench_told("MC_MoveSuperimposed, running or waiting, was ended");
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(base));
     wait_for(base, CM1E_COMMAND_DONE);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 20.0, bench_info().set_position);
