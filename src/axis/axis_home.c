@@ -4,6 +4,7 @@
  * motor stands. The drive calls the end position 0; the axis calls it MC_Home.Position.
  */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "axis/axis_private.h"
@@ -20,7 +21,9 @@ typedef struct homing_object {
     uint8_t subindex;
 } homing_object_t;
 
-enum { OFFSET = 0, METHOD, SPEED, ACCELERATION, TORQUE };
+enum { OFFSET = 0, METHOD, SPEED, ACCELERATION, TORQUE, TIMEOUT };
+enum { FIRST_METHOD = -6, LAST_METHOD = -1 };
+static const double longest_timeout_s = 1e6;
 static const homing_object_t homing_objects[HOMING_PARAMETERS] = {
     [OFFSET] = {OBJ_607C_HOME_OFFSET, 0},
     [METHOD] = {OBJ_6098_HOMING_METHOD, 0},
@@ -41,17 +44,45 @@ static uint8_t bits(const cm1e_axis_t *axis)
 }
 
 /* Checked against the device's range and rounded as the device rounds, before anything reaches the wire. */
-static cm1e_error_t parameter(homing_t *home, int which, double value)
+static bool parameter(homing_t *home, int which, double value)
 {
     const homing_object_t *object = &homing_objects[which];
     const cm1e_entry_t *entry = cm1e_device_entry(object->index, object->subindex);
     if (!entry || !isfinite(value) || fabs(value) > INT32_MAX)
-        return CM1E_ERROR_AXIS_HOMING_PARAMETER;
+        return false;
     const int64_t rounded = cm1e_entry_round(entry, llround(value));
     if (rounded < entry->minimum || rounded > entry->maximum)
-        return CM1E_ERROR_AXIS_HOMING_PARAMETER;
+        return false;
     home->raw[which] = (int32_t)rounded;
-    return CM1E_OK;
+    return true;
+}
+
+static cm1e_error_t wrong(homing_t *home, int which, double value)
+{
+    home->wrong = (uint8_t)which;
+    home->wrong_value = value;
+    return which == METHOD ? CM1E_ERROR_AXIS_HOMING_METHOD : CM1E_ERROR_AXIS_HOMING_PARAMETER;
+}
+
+void cm1e_axis_home_wrong_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    static const char *const names[] = {"offset", "method", "velocity", "acceleration", "torque", "timeout_s"};
+    static const char *const units[] = {" u", "", " u/s", " u/s2", " %", " s"};
+    const int which = axis->home.wrong;
+    double least = FIRST_METHOD, most = LAST_METHOD;
+    if (which == TIMEOUT) {
+        least = 0.0;
+        most = longest_timeout_s;
+    } else if (which != METHOD) {
+        const cm1e_entry_t *entry = cm1e_device_entry(homing_objects[which].index, homing_objects[which].subindex);
+        const double counts = which == TORQUE ? 1.0 : fabs(axis->scale);
+        least = (double)entry->minimum / counts;
+        most = (double)entry->maximum / counts;
+    }
+    const bool has_default = which == SPEED || which == ACCELERATION || which == TORQUE || which == TIMEOUT;
+    snprintf(text, size, "Axis \"%s\": homing was not started: homing.%s is %.6g%s; %.6g ... %.6g%s is right%s.",
+             axis->config->name, names[which], axis->home.wrong_value, units[which], least, most, units[which],
+             has_default ? ", or 0 for the default" : "");
 }
 
 cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *command)
@@ -63,12 +94,12 @@ cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     if (!(axis->enable_positive && axis->enable_negative))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED; /* every method moves both ways */
-    if (c->method > -1 || c->method < -6) /* 0 is "no home routine selected": it would never end */
-        return CM1E_ERROR_AXIS_HOMING_METHOD;
+    if (c->method > LAST_METHOD || c->method < FIRST_METHOD) /* 0 is "no home routine selected": it would never end */
+        return wrong(home, METHOD, c->method);
     if (home->submitted && cm1e_sdo_state(&home->sdo) == CM1E_SDO_BUSY)
         return CM1E_ERROR_BUSY; /* a transfer of a homing that was stopped */
-    if (!isfinite(c->timeout_s) || c->timeout_s < 0.0 || c->timeout_s > 1e6)
-        return CM1E_ERROR_AXIS_HOMING_PARAMETER;
+    if (!isfinite(c->timeout_s) || c->timeout_s < 0.0 || c->timeout_s > longest_timeout_s)
+        return wrong(home, TIMEOUT, c->timeout_s);
     const double scale = fabs(axis->scale);
     const double values[HOMING_PARAMETERS] = {
         [OFFSET] = c->offset * axis->scale,
@@ -77,9 +108,10 @@ cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t
         [ACCELERATION] = c->acceleration == 0.0 ? 100000.0 : c->acceleration * scale,
         [TORQUE] = c->torque == 0.0 ? 30.0 : c->torque,
     };
+    const double asked[HOMING_PARAMETERS] = {c->offset, c->method, c->velocity, c->acceleration, c->torque};
     for (int i = 0; i < HOMING_PARAMETERS; i++)
-        if (parameter(home, i, values[i]))
-            return CM1E_ERROR_AXIS_HOMING_PARAMETER;
+        if (!parameter(home, i, values[i]))
+            return wrong(home, i, asked[i]);
     home->position = command->position;
     home->timeout_ns = (int64_t)((c->timeout_s == 0.0 ? 60.0 : c->timeout_s) * 1e9);
     return CM1E_OK;

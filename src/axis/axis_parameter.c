@@ -196,8 +196,9 @@ static void range_text(const cm1e_axis_t *axis, const parameter_t *parameter, ch
 static void override_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const override_t *asked = &axis->override_refused;
-    snprintf(text, size, "Axis \"%s\": MC_SetOverride to VelFactor %.6g, AccFactor %.6g, JerkFactor %.6g: %s; VelFactor "
-             "0 ... 1, AccFactor and JerkFactor above 0, up to 1 are right.", axis->config->name, asked->velocity,
+    snprintf(text, size,
+             "Axis \"%s\": MC_SetOverride to VelFactor %.6g, AccFactor %.6g, JerkFactor %.6g: %s; VelFactor 0 ... 1, "
+             "AccFactor and JerkFactor above 0, up to 1 are right.", axis->config->name, asked->velocity,
              asked->acceleration, asked->jerk, cm1e_strerror(axis->not_set.error));
 }
 

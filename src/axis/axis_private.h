@@ -165,6 +165,8 @@ typedef struct homing {
     int32_t quiet_position;
     uint8_t bits_before;   /**< statusword bits 13, 12, 10 before the start */
     cm1e_error_t refused;  /**< why the last homing could not start, for the text; with the numbers in `sdo` */
+    uint8_t wrong;         /**< for the text: the last parameter that was out of its range, and its value */
+    double wrong_value;
 } homing_t;
 
 enum { PROBES = 2 * 4 }; /* every input, both edges */
@@ -633,6 +635,8 @@ void cm1e_axis_reset_step(cm1e_axis_t *axis); /* while a reset is under way */
 
 /* axis_home.c */
 cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *command);
+/** In words: what cm1e_axis_home_prepare() refused for its method or another parameter. */
+void cm1e_axis_home_wrong_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_axis_home_begin(cm1e_axis_t *axis);
 void cm1e_axis_home_abort(cm1e_axis_t *axis, home_goal_t goal);
 void cm1e_axis_home_step(cm1e_axis_t *axis);

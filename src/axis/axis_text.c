@@ -132,6 +132,8 @@ static const struct {
     {CM1E_ERROR_AXIS_VELOCITY_RANGE, refused_velocity_text},
     {CM1E_ERROR_AXIS_DYNAMICS_RANGE, refused_dynamics_text},
     {CM1E_ERROR_AXIS_POSITION_RANGE, refused_position_text},
+    {CM1E_ERROR_AXIS_HOMING_METHOD, cm1e_axis_home_wrong_text},
+    {CM1E_ERROR_AXIS_HOMING_PARAMETER, cm1e_axis_home_wrong_text},
 };
 
 static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)

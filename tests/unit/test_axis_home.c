@@ -242,31 +242,52 @@ static void test_parameters_outside_the_device_are_refused_before_the_wire(void)
     static const struct {
         cm1e_homing_config_t config;
         cm1e_error_t error;
+        const char *words;
     } rows[] = {
-        {{.method = 0}, CM1E_ERROR_AXIS_HOMING_METHOD},
-        {{.method = 1}, CM1E_ERROR_AXIS_HOMING_METHOD},
-        {{.method = -7}, CM1E_ERROR_AXIS_HOMING_METHOD},
-        {{.method = 35}, CM1E_ERROR_AXIS_HOMING_METHOD},
-        {{.method = -1, .offset = 3276800 / 50000.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER},
-        {{.method = -1, .offset = -3276800 / 50000.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER},
-        {{.method = -1, .offset = NAN}, CM1E_ERROR_AXIS_HOMING_PARAMETER},
-        {{.method = -1, .velocity = 900 / 50000.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER},
-        {{.method = -1, .velocity = 500100 / 50000.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER},
-        {{.method = -1, .velocity = -1.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER},
-        {{.method = -1, .velocity = INFINITY}, CM1E_ERROR_AXIS_HOMING_PARAMETER},
-        {{.method = -1, .acceleration = 400 / 50000.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER},
-        {{.method = -1, .acceleration = 5001000 / 50000.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER},
-        {{.method = -1, .torque = 9.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER},
-        {{.method = -1, .torque = 101.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER},
-        {{.method = -1, .torque = NAN}, CM1E_ERROR_AXIS_HOMING_PARAMETER},
-        {{.method = -1, .timeout_s = -1.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER},
-        {{.method = -1, .timeout_s = NAN}, CM1E_ERROR_AXIS_HOMING_PARAMETER},
-        {{.method = -1, .timeout_s = 1e300}, CM1E_ERROR_AXIS_HOMING_PARAMETER},
+        {{.method = 0}, CM1E_ERROR_AXIS_HOMING_METHOD,
+         "homing.method is 0; -6 ... -1 is right"},
+        {{.method = 1}, CM1E_ERROR_AXIS_HOMING_METHOD,
+         "homing.method is 1;"},
+        {{.method = -7}, CM1E_ERROR_AXIS_HOMING_METHOD,
+         "homing.method is -7;"},
+        {{.method = 35}, CM1E_ERROR_AXIS_HOMING_METHOD,
+         "homing.method is 35;"},
+        {{.method = -1, .offset = 3276800 / 50000.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+         "homing.offset is 65.536 u; -65.534 ... 65.534 u is right"},
+        {{.method = -1, .offset = -3276800 / 50000.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+         "homing.offset is -65.536 u;"},
+        {{.method = -1, .offset = NAN}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+         "homing.offset is nan"},
+        {{.method = -1, .velocity = 900 / 50000.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+         "homing.velocity is 0.018 u/s; 0.02 ... 10 u/s is right, or 0"},
+        {{.method = -1, .velocity = 500100 / 50000.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+         "homing.velocity is 10.002 u/s;"},
+        {{.method = -1, .velocity = -1.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+         "homing.velocity is -1 u/s;"},
+        {{.method = -1, .velocity = INFINITY}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+         "homing.velocity is inf"},
+        {{.method = -1, .acceleration = 400 / 50000.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+         "homing.acceleration is 0.008 u/s2; 0.02 ... 100 u/s2"},
+        {{.method = -1, .acceleration = 5001000 / 50000.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+         "homing.acceleration is 100.02 u/s2;"},
+        {{.method = -1, .torque = 9.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+         "homing.torque is 9 %; 10 ... 100 % is right"},
+        {{.method = -1, .torque = 101.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+         "homing.torque is 101 %;"},
+        {{.method = -1, .torque = NAN}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+         "homing.torque is nan"},
+        {{.method = -1, .timeout_s = -1.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+         "homing.timeout_s is -1 s; 0 ... 1e+06 s"},
+        {{.method = -1, .timeout_s = NAN}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+         "homing.timeout_s is nan"},
+        {{.method = -1, .timeout_s = 1e300}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+         "homing.timeout_s is 1e+300 s;"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         cm1e_command_id_t id;
         const cm1e_axis_command_t command = {.kind = CM1E_COMMAND_HOME, .homing = &rows[i].config};
         TEST_ASSERT_EQUAL_INT(rows[i].error, cm1e_axis_start(axis, &command, &id));
+        bench_told(rows[i].words);
         TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
     }
     cm1e_command_id_t id;
