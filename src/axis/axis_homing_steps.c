@@ -24,6 +24,8 @@ static const double pressing_time_s = 0.01;
 static const double farthest_relief_counts = 5000.0;
 /* Part of the allowed lag that shows a stop where no torque is given. */
 static const double pressing_lag = 0.25;
+/* A free motor that friction has caught short of its set-point has come to it by then. */
+static const int64_t settling_ns = 50 * MS_IN_NS;
 
 /* ---- signals ----------------------------------------------------------------------------------------------------- */
 
@@ -196,6 +198,53 @@ static void relieve_cycle(cm1e_axis_t *axis)
         return;
     s->phase = STEPPING_RELIEVED;
     press_on(axis, 0.0);
+}
+
+static bool presses_by_torque(const cm1e_axis_t *axis)
+{
+    const double limit = axis->stepping.step.torque_limit;
+    return limit > 0.0 && fabs(torque_percent(axis)) > 0.5 * limit;
+}
+
+/* Without a doubt: no motor that is free is so far from a set-point that stands. */
+static bool presses(const cm1e_axis_t *axis)
+{
+    return presses_by_torque(axis) || fabs(lag_counts(axis) / axis->scale) >= pressing_lag * axis->max_lag;
+}
+
+static bool held_up(const cm1e_axis_t *axis)
+{
+    return axis->drive.feedback.fresh && (fabs(lag_counts(axis)) > few_counts || presses_by_torque(axis));
+}
+
+static double pushed_way(const cm1e_axis_t *axis)
+{
+    const double lag = lag_counts(axis) / axis->scale;
+    const double way = fabs(lag * axis->scale) > few_counts ? lag : torque_percent(axis);
+    return way > 0.0 ? 1.0 : -1.0;
+}
+
+/* The set-point stands and the motor is not there. A free one is on its way, or friction holds it until its controller
+ * has summed up enough: it is waited for. One that is held up does not come, and is relieved. */
+static void settle(cm1e_axis_t *axis)
+{
+    axis->stepping.phase = STEPPING_SETTLE;
+    axis->stepping.settled_ns = axis->now_ns + settling_ns;
+    if (presses(axis))
+        relieve(axis, pushed_way(axis));
+}
+
+static void settle_cycle(cm1e_axis_t *axis)
+{
+    stepping_t *s = &axis->stepping;
+    if (!axis->drive.feedback.fresh)
+        return;
+    if (!held_up(axis)) {
+        s->phase = STEPPING_RELIEVED;
+        press_on(axis, 0.0); /* it stands: over at once */
+    } else if (presses(axis) || axis->now_ns >= s->settled_ns) {
+        relieve(axis, pushed_way(axis));
+    }
 }
 
 static void decide(cm1e_axis_t *axis, cm1e_error_t outcome)
@@ -480,6 +529,8 @@ void cm1e_axis_step_cycle(cm1e_axis_t *axis)
         return;
     if (axis->stepping.phase == STEPPING_RELIEVE)
         relieve_cycle(axis);
+    else if (axis->stepping.phase == STEPPING_SETTLE)
+        settle_cycle(axis);
     else if (stepping && axis->stepping.phase == STEPPING_SEARCH)
         search(axis);
     else if (stepping && axis->stepping.finishing && axis->stepping.outcome == CM1E_OK &&
@@ -510,20 +561,6 @@ static void complete(cm1e_axis_t *axis)
     cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
 }
 
-static bool held_up(const cm1e_axis_t *axis)
-{
-    const double limit = axis->stepping.step.torque_limit;
-    return axis->drive.feedback.fresh && (fabs(lag_counts(axis)) > few_counts ||
-                                          (limit > 0.0 && fabs(torque_percent(axis)) > 0.5 * limit));
-}
-
-static double pushed_way(const cm1e_axis_t *axis)
-{
-    const double lag = lag_counts(axis) / axis->scale;
-    const double way = fabs(lag * axis->scale) > few_counts ? lag : torque_percent(axis);
-    return way > 0.0 ? 1.0 : -1.0;
-}
-
 /* The set-point of MC_Stop stands, or has been taken back. */
 static bool stop_ended(cm1e_axis_t *axis)
 {
@@ -536,7 +573,7 @@ static bool stop_ended(cm1e_axis_t *axis)
         return false;
     cm1e_axis_stand(axis);
     s->after_stop = true;
-    relieve(axis, pushed_way(axis));
+    settle(axis);
     return true;
 }
 
@@ -554,7 +591,7 @@ bool cm1e_axis_step_profile_ended(cm1e_axis_t *axis)
     if (s->phase == STEPPING_SEARCH)
         return true; /* it presses, and waits */
     if (s->phase == STEPPING_STOP && s->outcome != CM1E_OK && held_up(axis))
-        relieve(axis, pushed_way(axis));
+        settle(axis);
     else
         complete(axis);
     return true;

@@ -306,7 +306,8 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
         break;
     }
     /* Note 6: MC_Stop done and its Execute FALSE. */
-    if (axis->state == CM1E_AXIS_STOPPING && axis->activity == ACTIVITY_HOLD && !axis->stop_held)
+    if (axis->state == CM1E_AXIS_STOPPING && axis->activity == ACTIVITY_HOLD && !axis->stop_held &&
+        !axis->stepping.after_stop)
         axis->state = CM1E_AXIS_STANDSTILL;
     if (axis->activity == ACTIVITY_HOLD && !axis->active && axis->waiting.count > 0) { /* behind a homing */
         const from_t from = from_set(axis);

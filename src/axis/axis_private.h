@@ -264,6 +264,7 @@ typedef struct backlash {
 typedef enum stepping_phase {
     STEPPING_SEARCH = 0, /**< it moves, or presses against a stop */
     STEPPING_STOP,       /**< decided; it brakes, or makes the move of MC_FinishHoming */
+    STEPPING_SETTLE,     /**< the set-point stands: the motor comes to it, or is held up */
     STEPPING_RELIEVE,    /**< the set-point goes back from where the motor was held up */
     STEPPING_RELIEVED,
 } stepping_phase_t;
@@ -280,6 +281,7 @@ typedef struct stepping {
     double travel;                  /**< u */
     double pace;                    /**< u/s, of the set-point while the motor is pressed */
     int64_t deadline_ns, pressed_ns;
+    int64_t settled_ns;             /**< a motor that is not at its set-point by then is held up */
     position_t actual_before;       /**< at the last look */
     bool level, seen_on, pressed;
     bool turned_positive, turned_negative; /**< at a limit switch */

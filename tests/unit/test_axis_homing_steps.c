@@ -399,6 +399,78 @@ static void test_block_ends_at_a_limit_switch(void)
     expect(id, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_STEP_LIMIT_SWITCH);
 }
 
+static int still_cycles;
+
+/* Nothing is in the way of the motor. Friction catches it 30 counts short of a set-point that has come to rest, until
+ * its controller has summed up enough to go there. */
+static void sticky_world(cm1e_bus_t *b)
+{
+    static int32_t target_before_this;
+    enum { SHORT = 30, CAUGHT_CYCLES = 12, PACE = 2 };
+    const int32_t target = b->target_position, missing = target - before;
+    still_cycles = target == target_before_this ? still_cycles + 1 : 0;
+    target_before_this = target;
+    if (still_cycles < CAUGHT_CYCLES)
+        b->position = missing > SHORT ? target - SHORT : before;
+    else
+        b->position = missing > PACE ? before + PACE : target;
+    world(b);
+}
+
+/* Cycles until the command has ended; the set-point never goes back. */
+static void wait_for_the_motor(cm1e_command_id_t id)
+{
+    int32_t farthest = bus.target_position;
+    for (int i = 0; i < 20000 && bench_state_of(id) == CM1E_COMMAND_ACTIVE; i++) {
+        bench_cycles(1);
+        TEST_ASSERT_GREATER_OR_EQUAL_INT32(farthest, bus.target_position);
+        farthest = bus.target_position;
+    }
+    TEST_ASSERT_INT32_WITHIN(20, bus.target_position, bus.position);
+    expect_smooth(0.5);
+}
+
+/* A motor that comes late is not held up: a step that gives up, and MC_Stop, wait for it instead of going back. */
+static void test_free_motor_that_comes_late_is_waited_for_and_not_relieved(void)
+{
+    stops_there = false;
+    step = block(1, 30.0);
+    begin_at(0);
+    bus.world = sticky_world;
+    const cm1e_command_id_t id = start(0.5, 0.0);
+    wait_for_the_motor(id);
+    expect(id, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_STEP_LIMIT_SWITCH);
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_HOMING, bench_info().state);
+
+    begin_at(0);
+    bus.world = sticky_world;
+    start(0.5, 0.0);
+    bench_cycles(500);
+    const cm1e_command_id_t stop = bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_STOP});
+    cm1e_axis_hold_stop(axis, stop, false);
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STOPPING, bench_info().state);
+    wait_for_the_motor(stop);
+    expect(stop, CM1E_COMMAND_DONE, CM1E_OK);
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+}
+
+/* No torque limit, and a lag so small that a free motor could have it: that the motor does not come shows the stop. */
+static void test_motor_held_up_with_a_small_lag_is_relieved(void)
+{
+    switch_there = limits_there = false;
+    step = (cm1e_homing_step_t){.mode = mcRisingEdge, .distance_limit = 0.022};
+    begin_at(59000);
+    const cm1e_command_id_t id = start(0.2, 0.0);
+    int32_t most = 0;
+    while (bench_state_of(id) == CM1E_COMMAND_ACTIVE) {
+        bench_cycles(1);
+        most = bus.target_position > most ? bus.target_position : most;
+    }
+    expect(id, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_STEP_DISTANCE);
+    TEST_ASSERT_INT32_WITHIN(100, STOP + 120, most);
+    expect_standing();
+}
+
 /* ---- limits of a step -------------------------------------------------------------------------------------------- */
 
 static void expect_limit(cm1e_error_t error, double velocity)
@@ -938,6 +1010,8 @@ int main(void)
     RUN_TEST(test_block_presses_no_harder_than_the_torque_limit_and_the_ramp_need);
     RUN_TEST(test_block_goes_on_when_the_motor_comes_free);
     RUN_TEST(test_block_ends_at_a_limit_switch);
+    RUN_TEST(test_free_motor_that_comes_late_is_waited_for_and_not_relieved);
+    RUN_TEST(test_motor_held_up_with_a_small_lag_is_relieved);
     RUN_TEST(test_limits_of_time_distance_and_torque);
     RUN_TEST(test_distance_counts_both_ways_together);
     RUN_TEST(test_wrong_inputs_are_refused_and_change_nothing);
