@@ -1,117 +1,13 @@
 /**
  * Blocks of the Execute type on axes without anything behind them: their outputs, call by call, by the rules of PLCopen
- * Part 1 v2.0, 2.4.1. One table of blocks, every rule on each of them.
+ * Part 1 v2.0, 2.4.1. One table of blocks, every rule on each of them. What one block has of its own:
+ * test_fb_execute_own.
  */
-#include <check.h>
-#include <stdio.h>
 #include <stdlib.h>
 
-#include "fake_axis.h"
+#include "execute_blocks.h"
 
-/* ---- the blocks behind one face -------------------------------------------------------------------------------- */
-
-typedef struct outputs {
-    BOOL done, busy, active, aborted, error;
-    WORD error_id;
-} outputs_t;
-
-typedef struct block {
-    const char *name;
-    cm1e_command_kind_t kind;
-    bool has_active, has_aborted, done_is_in_velocity;
-    outputs_t (*call)(AXIS_REF_t *axis, BOOL execute);
-    void (*clear)(void);
-} block_t;
-
-#define BLOCK_FUNCTIONS(TYPE, DONE, ACTIVE, ABORTED)                                                                   \
-    static TYPE##_t instance_##TYPE;                                                                                   \
-    static outputs_t call_##TYPE(AXIS_REF_t *axis, BOOL execute)                                                       \
-    {                                                                                                                  \
-        TYPE##_t *fb = &instance_##TYPE;                                                                               \
-        fb->Axis = axis;                                                                                               \
-        fb->Execute = execute;                                                                                         \
-        TYPE(fb);                                                                                                      \
-        return (outputs_t){DONE, fb->Busy, ACTIVE, ABORTED, fb->Error, fb->ErrorID};                                   \
-    }                                                                                                                  \
-    static void clear_##TYPE(void) { instance_##TYPE = (TYPE##_t){0}; }
-
-BLOCK_FUNCTIONS(MC_MoveAbsolute, fb->Done, fb->Active, fb->CommandAborted)
-BLOCK_FUNCTIONS(MC_MoveRelative, fb->Done, fb->Active, fb->CommandAborted)
-BLOCK_FUNCTIONS(MC_MoveAdditive, fb->Done, fb->Active, fb->CommandAborted)
-BLOCK_FUNCTIONS(MC_MoveVelocity, fb->InVelocity, fb->Active, fb->CommandAborted)
-BLOCK_FUNCTIONS(MC_MoveContinuousAbsolute, fb->InEndVelocity, fb->Active, fb->CommandAborted)
-BLOCK_FUNCTIONS(MC_MoveContinuousRelative, fb->InEndVelocity, fb->Active, fb->CommandAborted)
-BLOCK_FUNCTIONS(MC_MoveSuperimposed, fb->Done, FALSE, fb->CommandAborted)
-BLOCK_FUNCTIONS(MC_HaltSuperimposed, fb->Done, fb->Active, fb->CommandAborted)
-BLOCK_FUNCTIONS(MC_Halt, fb->Done, fb->Active, fb->CommandAborted)
-BLOCK_FUNCTIONS(MC_Stop, fb->Done, fb->Active, fb->CommandAborted)
-BLOCK_FUNCTIONS(MC_Home, fb->Done, fb->Active, fb->CommandAborted)
-BLOCK_FUNCTIONS(MC_Reset, fb->Done, FALSE, FALSE)
-
-#define BLOCK(TYPE, KIND, ACTIVE, ABORTED, VELOCITY)                                                                   \
-    {#TYPE, KIND, ACTIVE, ABORTED, VELOCITY, call_##TYPE, clear_##TYPE}
-
-static const block_t blocks[] = {
-    BLOCK(MC_MoveAbsolute, CM1E_COMMAND_MOVE_ABSOLUTE, true, true, false),
-    BLOCK(MC_MoveRelative, CM1E_COMMAND_MOVE_RELATIVE, true, true, false),
-    BLOCK(MC_MoveVelocity, CM1E_COMMAND_MOVE_VELOCITY, true, true, true),
-    BLOCK(MC_Halt, CM1E_COMMAND_HALT, true, true, false),
-    BLOCK(MC_Stop, CM1E_COMMAND_STOP, true, true, false),
-    BLOCK(MC_Home, CM1E_COMMAND_HOME, true, true, false),
-    BLOCK(MC_Reset, CM1E_COMMAND_KIND_COUNT, false, false, false),
-    BLOCK(MC_MoveAdditive, CM1E_COMMAND_MOVE_ADDITIVE, true, true, false),
-    BLOCK(MC_MoveContinuousAbsolute, CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE, true, true, true),
-    BLOCK(MC_MoveContinuousRelative, CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE, true, true, true),
-    BLOCK(MC_MoveSuperimposed, CM1E_COMMAND_MOVE_SUPERIMPOSED, false, true, false),
-    BLOCK(MC_HaltSuperimposed, CM1E_COMMAND_HALT_SUPERIMPOSED, true, true, false),
-};
-enum { BLOCKS = sizeof blocks / sizeof blocks[0] };
-
-static AXIS_REF_t x = {1}, y = {2}, nothing = {0}, stranger = {99};
-static cm1e_axis_t *const axis_x = &fake_axes[0], *const axis_y = &fake_axes[1];
-
-/** What becomes of the last command of an axis. */
-static void fake_finish(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
-{
-    axis->status[axis->id % FAKE_COMMANDS] = (cm1e_command_status_t){.state = state, .error = error};
-    axis->reset_state = state;
-    axis->reset_error = error;
-}
-
-static const block_t *fresh(int n)
-{
-    fake_reset();
-    blocks[n].clear();
-    return &blocks[n];
-}
-
-/** The outputs as letters: D B A C E, a dot for FALSE. */
-static const char *letters(outputs_t out)
-{
-    static char text[8];
-    snprintf(text, sizeof text, "%c%c%c%c%c", out.done ? 'D' : '.', out.busy ? 'B' : '.', out.active ? 'A' : '.',
-             out.aborted ? 'C' : '.', out.error ? 'E' : '.');
-    return text;
-}
-
-static void expect(const block_t *block, outputs_t out, const char *expected, cm1e_error_t error, int line)
-{
-    char wanted[8];
-    snprintf(wanted, sizeof wanted, "%s", expected);
-    if (!block->has_active)
-        wanted[2] = '.';
-    ck_assert_msg(strcmp(letters(out), wanted) == 0, "%s, line %d: outputs %s, expected %s", block->name, line,
-                  letters(out), wanted);
-    ck_assert_msg(out.error_id == cm1e_error_id(error), "%s, line %d: ErrorID %#x, expected %#x", block->name, line,
-                  out.error_id, cm1e_error_id(error));
-}
-#define EXPECT(out, expected) expect(block, out, expected, CM1E_OK, __LINE__)
-#define EXPECT_ERROR(out, error) expect(block, out, "....E", error, __LINE__)
-
-#define BUSY ".BA.."
-#define DONE "D...."
-#define ABORTED "...C."
-#define NONE "....."
+static AXIS_REF_t nothing = {0}, stranger = {99};
 
 /* ---- one command from its edge to its end ---------------------------------------------------------------------- */
 
@@ -236,6 +132,23 @@ START_TEST(test_refused_pulse_shows_the_error_for_one_call)
 }
 END_TEST
 
+START_TEST(test_buffered_is_busy_but_not_active)
+{
+    const block_t *block = fresh(_i);
+    if (!block->has_active || block->kind == CM1E_COMMAND_STOP)
+        return;
+    EXPECT(block->call(&x, TRUE), BUSY);
+    axis_x->status[axis_x->id % FAKE_COMMANDS].state = CM1E_COMMAND_BUFFERED;
+    for (int i = 0; i < 3; i++)
+        EXPECT(block->call(&x, TRUE), ".B...");
+    EXPECT(block->call(&x, FALSE), ".B...");
+    axis_x->status[axis_x->id % FAKE_COMMANDS] = (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE};
+    EXPECT(block->call(&x, FALSE), BUSY);
+    axis_x->status[axis_x->id % FAKE_COMMANDS].state = CM1E_COMMAND_ABORTED;
+    EXPECT(block->call(&x, FALSE), ABORTED);
+}
+END_TEST
+
 /* ---- edges ----------------------------------------------------------------------------------------------------- */
 
 START_TEST(test_any_non_zero_execute_is_true_and_no_second_edge)
@@ -356,284 +269,6 @@ START_TEST(test_instance_is_used_again_on_another_axis)
 }
 END_TEST
 
-/* ---- what one block has of its own ----------------------------------------------------------------------------- */
-
-START_TEST(test_in_velocity_follows_the_set_point_and_leaves_busy_and_active)
-{
-    const block_t *block = fresh(2);
-    static const BOOL in_velocity[] = {FALSE, TRUE, TRUE, FALSE, TRUE, FALSE};
-    EXPECT(block->call(&x, TRUE), BUSY);
-    for (int execute = TRUE; execute >= FALSE; execute--)
-        for (size_t i = 0; i < sizeof in_velocity; i++) {
-            axis_x->status[axis_x->id % FAKE_COMMANDS].reached = in_velocity[i];
-            EXPECT(block->call(&x, (BOOL)execute), in_velocity[i] ? "DBA.." : BUSY);
-        }
-    axis_x->status[axis_x->id % FAKE_COMMANDS] =
-        (cm1e_command_status_t){.state = CM1E_COMMAND_ABORTED, .reached = true};
-    EXPECT(block->call(&x, FALSE), ABORTED);
-    EXPECT(block->call(&x, FALSE), NONE);
-}
-END_TEST
-
-START_TEST(test_stop_holds_the_axis_while_execute)
-{
-    const block_t *block = fresh(4);
-    EXPECT(block->call(&x, TRUE), BUSY);
-    ck_assert(axis_x->hold && axis_x->hold_id == axis_x->id);
-    axis_x->info.state = CM1E_AXIS_STOPPING;
-    EXPECT(block->call(&x, TRUE), BUSY);
-    fake_finish(axis_x, CM1E_COMMAND_DONE, CM1E_OK);
-    for (int i = 0; i < 3; i++) {
-        EXPECT(block->call(&x, TRUE), "D.A..");
-        ck_assert(axis_x->hold);
-    }
-    axis_x->info.state = CM1E_AXIS_DISABLED; /* power was taken away: Done stays true, control is gone */
-    EXPECT(block->call(&x, TRUE), DONE);
-    axis_x->info.state = CM1E_AXIS_STOPPING;
-    EXPECT(block->call(&x, FALSE), NONE);
-    ck_assert(!axis_x->hold);
-}
-END_TEST
-
-START_TEST(test_stop_whose_execute_fell_does_not_hold)
-{
-    const block_t *block = fresh(4);
-    EXPECT(block->call(&x, TRUE), BUSY);
-    axis_x->info.state = CM1E_AXIS_STOPPING;
-    EXPECT(block->call(&x, FALSE), BUSY);
-    ck_assert(!axis_x->hold);
-    fake_finish(axis_x, CM1E_COMMAND_DONE, CM1E_OK);
-    EXPECT(block->call(&x, FALSE), DONE);
-    ck_assert(!axis_x->hold);
-}
-END_TEST
-
-START_TEST(test_stop_whose_axis_was_changed_still_holds_and_releases_its_axis)
-{
-    const block_t *block = fresh(4);
-    EXPECT(block->call(&x, TRUE), BUSY);
-    EXPECT_ERROR(block->call(&y, TRUE), CM1E_ERROR_FB_AXIS_CHANGED);
-    ck_assert(axis_x->hold && !axis_y->hold);
-    EXPECT(block->call(&y, FALSE), NONE);
-    ck_assert(!axis_x->hold);
-}
-END_TEST
-
-START_TEST(test_buffered_is_busy_but_not_active)
-{
-    const block_t *block = fresh(_i);
-    if (!block->has_active || block->kind == CM1E_COMMAND_STOP)
-        return;
-    EXPECT(block->call(&x, TRUE), BUSY);
-    axis_x->status[axis_x->id % FAKE_COMMANDS].state = CM1E_COMMAND_BUFFERED;
-    for (int i = 0; i < 3; i++)
-        EXPECT(block->call(&x, TRUE), ".B...");
-    EXPECT(block->call(&x, FALSE), ".B...");
-    axis_x->status[axis_x->id % FAKE_COMMANDS] = (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE};
-    EXPECT(block->call(&x, FALSE), BUSY);
-    axis_x->status[axis_x->id % FAKE_COMMANDS].state = CM1E_COMMAND_ABORTED;
-    EXPECT(block->call(&x, FALSE), ABORTED);
-}
-END_TEST
-
-START_TEST(test_continuous_update_hands_on_inputs_while_it_stays_true)
-{
-    fake_reset();
-    MC_MoveAbsolute_t fb = {.Axis = &x, .Execute = TRUE, .ContinuousUpdate = 3, .Position = 1.0, .Velocity = 2.0};
-    MC_MoveAbsolute(&fb);
-    ck_assert_uint_eq(axis_x->updates, 0); /* the edge has them already */
-    fb.Position = 5.0;
-    MC_MoveAbsolute(&fb);
-    ck_assert_uint_eq(axis_x->updates, 1);
-    ck_assert_uint_eq(axis_x->updated, axis_x->id);
-    ck_assert_double_eq(axis_x->command.position, 5.0);
-    fb.Execute = FALSE; /* does not influence the execution */
-    fb.Velocity = 4.0;
-    MC_MoveAbsolute(&fb);
-    ck_assert_double_eq(axis_x->command.velocity, 4.0);
-    fb.ContinuousUpdate = FALSE;
-    MC_MoveAbsolute(&fb);
-    const unsigned updates = axis_x->updates;
-    fb.ContinuousUpdate = TRUE; /* too late */
-    fb.Position = 6.0;
-    MC_MoveAbsolute(&fb);
-    ck_assert_uint_eq(axis_x->updates, updates);
-    ck_assert_double_eq(axis_x->command.position, 5.0);
-    ck_assert(fb.Busy && fb.Active);
-    fb.Execute = TRUE; /* a new edge takes the new inputs, and updates again */
-    MC_MoveAbsolute(&fb);
-    MC_MoveAbsolute(&fb);
-    ck_assert_uint_eq(axis_x->updates, updates + 1);
-    ck_assert_double_eq(axis_x->command.position, 6.0);
-    fake_finish(axis_x, CM1E_COMMAND_DONE, CM1E_OK);
-    MC_MoveAbsolute(&fb);
-    ck_assert(fb.Done);
-    MC_MoveAbsolute(&fb);
-    ck_assert_uint_le(axis_x->updates, updates + 2); /* ended with Busy */
-    ck_assert_uint_eq(axis_x->starts, 2);
-}
-END_TEST
-
-START_TEST(test_continuous_update_later_than_the_edge_has_no_effect)
-{
-    fake_reset();
-    MC_MoveVelocity_t fb = {.Axis = &x, .Execute = TRUE, .Velocity = 2.0};
-    MC_MoveVelocity(&fb);
-    fb.ContinuousUpdate = TRUE;
-    fb.Velocity = 3.0;
-    for (int i = 0; i < 3; i++)
-        MC_MoveVelocity(&fb);
-    ck_assert_uint_eq(axis_x->updates, 0);
-    ck_assert_double_eq(axis_x->command.velocity, 2.0);
-}
-END_TEST
-
-START_TEST(test_refused_update_is_an_error_and_ends_the_updates)
-{
-    fake_reset();
-    MC_MoveRelative_t fb = {.Axis = &x, .Execute = TRUE, .ContinuousUpdate = TRUE, .Distance = 1.0, .Velocity = 2.0};
-    MC_MoveRelative(&fb);
-    axis_x->update_error = CM1E_ERROR_AXIS_VELOCITY_RANGE;
-    fb.Velocity = -1.0;
-    for (int i = 0; i < 3; i++) {
-        MC_MoveRelative(&fb);
-        ck_assert(fb.Error && !fb.Busy && !fb.Active && !fb.Done);
-        ck_assert_uint_eq(fb.ErrorID, cm1e_error_id(CM1E_ERROR_AXIS_VELOCITY_RANGE));
-    }
-    ck_assert_uint_eq(axis_x->updates, 1);
-    fb.Execute = FALSE;
-    MC_MoveRelative(&fb);
-    ck_assert(!fb.Error && !fb.Busy && fb.ErrorID == 0);
-}
-END_TEST
-
-START_TEST(test_covered_distance_is_shown_while_busy_and_kept)
-{
-    fake_reset();
-    MC_MoveSuperimposed_t fb = {.Axis = &x, .Execute = TRUE, .Distance = 5.0, .VelocityDiff = 2.0};
-    MC_MoveSuperimposed(&fb);
-    ck_assert(fb.Busy && fb.CoveredDistance == 0.0);
-    axis_x->status[axis_x->id % FAKE_COMMANDS].covered = 3.0;
-    MC_MoveSuperimposed(&fb);
-    ck_assert_double_eq(fb.CoveredDistance, 3.0);
-    fake_finish(axis_x, CM1E_COMMAND_DONE, CM1E_OK);
-    axis_x->status[axis_x->id % FAKE_COMMANDS].covered = 5.0;
-    for (int i = 0; i < 3; i++) {
-        MC_MoveSuperimposed(&fb);
-        ck_assert(fb.Done && fb.CoveredDistance == 5.0);
-    }
-    fb.Execute = FALSE;
-    MC_MoveSuperimposed(&fb);
-    ck_assert(!fb.Done && fb.CoveredDistance == 5.0);
-    fb.Execute = TRUE;
-    MC_MoveSuperimposed(&fb);
-    ck_assert(fb.Busy && fb.CoveredDistance == 0.0);
-}
-END_TEST
-
-static void expect_command(cm1e_axis_command_t expected, int line)
-{
-    const cm1e_axis_command_t *got = &axis_x->command;
-    ck_assert_msg(got->kind == expected.kind && got->position == expected.position
-                      && got->velocity == expected.velocity && got->acceleration == expected.acceleration
-                      && got->deceleration == expected.deceleration && got->jerk == expected.jerk
-                      && got->end_velocity == expected.end_velocity && got->direction == expected.direction && got->buffer_mode == expected.buffer_mode
-                      && got->homing == expected.homing,
-                  "line %d: the command is not what the inputs say", line);
-}
-
-START_TEST(test_inputs_reach_the_axis_at_the_edge_and_not_later)
-{
-    fresh(0);
-    static const cm1e_homing_config_t homing = {.method = -1};
-    MC_MoveAbsolute_t absolute = {.Axis = &x, .Execute = TRUE, .Position = 1, .Velocity = 2, .Acceleration = 3,
-                                  .Deceleration = 4, .Jerk = 5, .Direction = mcNegativeDirection,
-                                  .BufferMode = mcBlendingNext};
-    const cm1e_axis_command_t expected = {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 1, .velocity = 2,
-                                          .acceleration = 3, .deceleration = 4, .jerk = 5,
-                                          .direction = mcNegativeDirection, .buffer_mode = mcBlendingNext};
-    MC_MoveAbsolute(&absolute);
-    expect_command(expected, __LINE__);
-    absolute.Position = 100;
-    absolute.Velocity = 200;
-    MC_MoveAbsolute(&absolute);
-    expect_command(expected, __LINE__);
-    ck_assert_uint_eq(axis_x->starts, 1);
-
-    MC_MoveRelative_t relative = {.Axis = &x, .Execute = TRUE, .Distance = -1, .Velocity = 2, .Acceleration = 3,
-                                  .Deceleration = 4, .Jerk = 5, .BufferMode = mcBuffered};
-    MC_MoveRelative(&relative);
-    expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = -1, .velocity = 2,
-                                         .acceleration = 3, .deceleration = 4, .jerk = 5, .buffer_mode = mcBuffered},
-                   __LINE__);
-
-    MC_MoveVelocity_t velocity = {.Axis = &x, .Execute = TRUE, .Velocity = -2, .Acceleration = 3, .Deceleration = 4,
-                                  .Jerk = 5, .Direction = mcCurrentDirection, .BufferMode = mcBlendingHigh};
-    MC_MoveVelocity(&velocity);
-    expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = -2, .acceleration = 3,
-                                         .deceleration = 4, .jerk = 5, .direction = mcCurrentDirection,
-                                         .buffer_mode = mcBlendingHigh},
-                   __LINE__);
-
-    MC_MoveVelocity_t plain = {.Axis = &x, .Execute = TRUE, .Velocity = 7};
-    MC_MoveVelocity(&plain);
-    ck_assert_int_eq(axis_x->command.direction, mcPositiveDirection);
-
-    MC_Halt_t halt = {.Axis = &x, .Execute = TRUE, .Deceleration = 4, .Jerk = 5, .BufferMode = mcBlendingLow};
-    MC_Halt(&halt);
-    expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT, .deceleration = 4, .jerk = 5,
-                                         .buffer_mode = mcBlendingLow},
-                   __LINE__);
-
-    MC_Stop_t stop = {.Axis = &x, .Execute = TRUE, .Deceleration = 6, .Jerk = 7};
-    MC_Stop(&stop);
-    expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_STOP, .deceleration = 6, .jerk = 7}, __LINE__);
-
-    MC_MoveAdditive_t additive = {.Axis = &x, .Execute = TRUE, .Distance = -1, .Velocity = 2, .Acceleration = 3,
-                                  .Deceleration = 4, .Jerk = 5, .BufferMode = mcBlendingPrevious};
-    MC_MoveAdditive(&additive);
-    expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_ADDITIVE, .position = -1, .velocity = 2,
-                                         .acceleration = 3, .deceleration = 4, .jerk = 5,
-                                         .buffer_mode = mcBlendingPrevious},
-                   __LINE__);
-
-    MC_MoveContinuousAbsolute_t through = {.Axis = &x, .Execute = TRUE, .Position = 1, .EndVelocity = -9, .Velocity = 2,
-                                           .Acceleration = 3, .Deceleration = 4, .Jerk = 5,
-                                           .Direction = mcNegativeDirection, .BufferMode = mcBlendingLow};
-    MC_MoveContinuousAbsolute(&through);
-    expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE, .position = 1,
-                                         .end_velocity = -9, .velocity = 2, .acceleration = 3, .deceleration = 4,
-                                         .jerk = 5, .direction = mcNegativeDirection, .buffer_mode = mcBlendingLow},
-                   __LINE__);
-
-    MC_MoveContinuousRelative_t onward = {.Axis = &x, .Execute = TRUE, .Distance = 1, .EndVelocity = 9, .Velocity = 2,
-                                          .Acceleration = 3, .Deceleration = 4, .Jerk = 5, .BufferMode = mcBuffered};
-    MC_MoveContinuousRelative(&onward);
-    expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE, .position = 1,
-                                         .end_velocity = 9, .velocity = 2, .acceleration = 3, .deceleration = 4,
-                                         .jerk = 5, .buffer_mode = mcBuffered},
-                   __LINE__);
-
-    MC_MoveSuperimposed_t more = {.Axis = &x, .Execute = TRUE, .Distance = -1, .VelocityDiff = 2, .Acceleration = 3,
-                                  .Deceleration = 4, .Jerk = 5};
-    MC_MoveSuperimposed(&more);
-    expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = -1, .velocity = 2,
-                                         .acceleration = 3, .deceleration = 4, .jerk = 5},
-                   __LINE__);
-
-    MC_HaltSuperimposed_t no_more = {.Axis = &x, .Execute = TRUE, .Deceleration = 4, .Jerk = 5};
-    MC_HaltSuperimposed(&no_more);
-    expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT_SUPERIMPOSED, .deceleration = 4, .jerk = 5},
-                   __LINE__);
-
-    MC_Home_t home = {.Axis = &x, .Execute = TRUE, .Position = 8, .BufferMode = mcBuffered, .Parameters = &homing};
-    MC_Home(&home);
-    expect_command((cm1e_axis_command_t){.kind = CM1E_COMMAND_HOME, .position = 8, .buffer_mode = mcBuffered,
-                                         .homing = &homing},
-                   __LINE__);
-}
-END_TEST
-
 /* ---- random sequences against the rules ------------------------------------------------------------------------ */
 
 static unsigned random_state;
@@ -700,7 +335,7 @@ END_TEST
 int main(void)
 {
     Suite *suite = suite_create("Execute");
-    TCase *all = tcase_create("every block"), *own = tcase_create("one block");
+    TCase *all = tcase_create("every block");
     const TTest *const every[] = {
         test_never_executed_shows_nothing,
         test_done_with_execute_held_stays_until_it_falls,
@@ -721,23 +356,9 @@ int main(void)
         test_buffered_is_busy_but_not_active,
         test_random_calls_keep_the_rules,
     };
-    const TTest *const single[] = {
-        test_in_velocity_follows_the_set_point_and_leaves_busy_and_active,
-        test_stop_holds_the_axis_while_execute,
-        test_stop_whose_execute_fell_does_not_hold,
-        test_stop_whose_axis_was_changed_still_holds_and_releases_its_axis,
-        test_continuous_update_hands_on_inputs_while_it_stays_true,
-        test_continuous_update_later_than_the_edge_has_no_effect,
-        test_refused_update_is_an_error_and_ends_the_updates,
-        test_covered_distance_is_shown_while_busy_and_kept,
-        test_inputs_reach_the_axis_at_the_edge_and_not_later,
-    };
     for (size_t i = 0; i < sizeof every / sizeof every[0]; i++)
         tcase_add_loop_test(all, every[i], 0, BLOCKS);
-    for (size_t i = 0; i < sizeof single / sizeof single[0]; i++)
-        tcase_add_test(own, single[i]);
     suite_add_tcase(suite, all);
-    suite_add_tcase(suite, own);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);
     const int failed = srunner_ntests_failed(runner);
