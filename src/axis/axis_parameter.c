@@ -183,8 +183,11 @@ static void range_text(const cm1e_axis_t *axis, const parameter_t *parameter, ch
                  CM1E_LARGEST_LAG_COUNTS / scale);
         break;
     case SWITCH:
-        snprintf(text, size, "%.6g was to be written; 0 or 1 is right, and SWLimitNeg, %.6g u, has to be below "
-                 "SWLimitPos, %.6g u.", value, axis->limit_negative, axis->limit_positive);
+        if (value != 0.0 && value != 1.0)
+            snprintf(text, size, "%.6g was to be written; 0 or 1 is right.", value);
+        else
+            snprintf(text, size, "%.6g was to be written; SWLimitNeg, %.6g u, has to be below SWLimitPos, %.6g u.",
+                     value, axis->limit_negative, axis->limit_positive);
         break;
     default:
         snprintf(text, size, "%.6g was to be written; a finite value is right, SWLimitNeg (%.6g u) below SWLimitPos "

@@ -217,6 +217,8 @@ static cm1e_error_t set_position(cm1e_axis_t *axis, double position, bool relati
     double value;
     if (!new_position(axis, now, position, relative, &value))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
+    if (axis->software_limits && axis->activity == ACTIVITY_DRIVE)
+        return CM1E_ERROR_AXIS_STATE; /* of the drive's way only the end is known */
     if (axis->software_limits) {
         const double shift = value - now, set = cm1e_axis_units(axis, axis->set) + shift;
         if (!(set >= axis->lower && set <= axis->upper) ||

@@ -1,4 +1,5 @@
 /* What happened to an axis, in sentences. */
+#include <math.h>
 #include <stdio.h>
 
 #include "axis/axis_private.h"
@@ -88,7 +89,10 @@ static void refused_velocity_text(const cm1e_axis_t *axis, char *text, size_t si
     const double most = axis->maximum.velocity;
     const char *name = axis->config->name;
     const bool fits = refused->velocity > 0.0 && refused->velocity <= most;
-    if (refused->kind == CM1E_COMMAND_MOVE_SUPERIMPOSED && fits)
+    if (refused->kind == CM1E_COMMAND_MOVE_VELOCITY)
+        snprintf(text, size, "Axis \"%s\": velocity %.6g was asked for; -%.6g ... %.6g u/s is right, but not 0.", name,
+                 refused->velocity, most, most);
+    else if (refused->kind == CM1E_COMMAND_MOVE_SUPERIMPOSED && fits)
         snprintf(text, size, "Axis \"%s\": velocity %.6g was asked for, on top of the motion under way and those that "
                  "wait; together up to %.6g u/s is right.", name, refused->velocity, most);
     else if (refused->end_velocity != 0.0 && fits)
@@ -108,12 +112,47 @@ static void refused_dynamics_text(const cm1e_axis_t *axis, char *text, size_t si
              axis->maximum.acceleration, axis->maximum.deceleration, axis->maximum.jerk);
 }
 
+/* Nobody means so slow a motion; such numbers are what profiles cannot be computed with. */
+static bool too_small(const cm1e_axis_t *axis, const cm1e_axis_command_t *command)
+{
+    static const double least_counts = 1e-6;
+    const double numbers[] = {command->velocity, command->acceleration, command->deceleration, command->jerk};
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+        if (numbers[i] != 0.0 && fabs(numbers[i] * axis->scale) < least_counts)
+            return true;
+    return false;
+}
+
+static void refused_small_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const cm1e_axis_command_t *refused = &axis->refused;
+    snprintf(text, size,
+             "Axis \"%s\": velocity %.6g, acceleration %.6g, deceleration %.6g, jerk %.6g were asked for; one of them "
+             "is too small to compute with.", axis->config->name, refused->velocity, refused->acceleration,
+             refused->deceleration, refused->jerk);
+}
+
+/* Where the base is, and where it goes as far as that is known. */
+static void refused_on_top_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const from_t base = from_base(axis);
+    const bool goes = axis->activity == ACTIVITY_PROFILE && !axis->stands && axis->active && !is_endless(axis->kind);
+    snprintf(text, size,
+             "Axis \"%s\": a distance of %.6g on top of a motion that is at %.6g and ends at %.6g%s would leave the "
+             "software limits %.6g ... %.6g u.",
+             axis->config->name, axis->refused.position, cm1e_axis_units(axis, base.position),
+             cm1e_axis_units(axis, goes ? axis->target : base.position),
+             axis->waiting.count > 0 ? ", and of those that wait," : "", axis->lower, axis->upper);
+}
+
 static void refused_position_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const double position = cm1e_axis_units(axis, axis->set);
     if (axis->modulo_range > 0.0)
         snprintf(text, size, "Axis \"%s\": position or distance %.6g was asked for; positions of this modulo axis are "
                  "0 ... below %.6g u.", axis->config->name, axis->refused.position, axis->modulo_range);
+    else if (axis->software_limits && axis->refused.kind == CM1E_COMMAND_MOVE_SUPERIMPOSED)
+        refused_on_top_text(axis, text, size);
     else if (axis->software_limits)
         snprintf(text, size,
                  "Axis \"%s\": a motion from %.6g with target, distance or stopping way %.6g would leave the software "
@@ -138,6 +177,13 @@ static const struct {
 
 static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
+    const bool by_numbers = axis->refusal == CM1E_ERROR_AXIS_VELOCITY_RANGE ||
+                            axis->refusal == CM1E_ERROR_AXIS_DYNAMICS_RANGE ||
+                            axis->refusal == CM1E_ERROR_AXIS_POSITION_RANGE;
+    if (by_numbers && !is_table(axis->refused.kind) && too_small(axis, &axis->refused)) {
+        refused_small_text(axis, text, size);
+        return;
+    }
     for (size_t i = 0; i < sizeof refusal_texts / sizeof refusal_texts[0]; i++)
         if (refusal_texts[i].error == axis->refusal) {
             refusal_texts[i].text(axis, text, size);

@@ -234,6 +234,7 @@ START_TEST(software_limits_hold)
         ck_assert_int_eq(refusal((cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 40.1}),
                          CM1E_ERROR_AXIS_POSITION_RANGE);
         turn(variant & 1 ? -150 : 150);
+        ck_assert_int_eq(cm1e_axis_set_position(axis, 0, false), CM1E_ERROR_AXIS_STATE);
         cycles(3000);
         ck_assert_int_eq(info().state, CM1E_AXIS_ERROR_STOP);
         ck_assert_int_eq(info().error, CM1E_ERROR_AXIS_POSITION_RANGE);

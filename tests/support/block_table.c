@@ -1452,6 +1452,7 @@ static const cm1e_error_t errors_of_MC_SetPosition[] = {
     CM1E_ERROR_AXIS_OFFLINE,
     CM1E_ERROR_AXIS_POSITION_RANGE,
     CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STATE,
     CM1E_ERROR_UNSUPPORTED,
     CM1E_OK,
 };

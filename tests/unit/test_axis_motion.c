@@ -408,6 +408,26 @@ static void test_motion_in_a_disabled_direction_is_refused(void)
     }
 }
 
+static void test_refused_numbers_are_told_as_they_are_judged(void)
+{
+    bench_enable();
+    cm1e_command_id_t id;
+    const cm1e_axis_command_t fast = {.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = -1e9};
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VELOCITY_RANGE, cm1e_axis_start(axis, &fast, &id));
+    bench_told("velocity -1e+09 was asked for; -");
+    bench_told("u/s is right, but not 0");
+    static const cm1e_axis_command_t small[] = {
+        {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 1.0, .velocity = 1e-300},
+        {.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 1.0, .velocity = 1.0, .acceleration = 1e-300},
+        {.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = 1.0, .velocity = 1.0, .jerk = 1e-300},
+        {.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 1.0, .acceleration = 1e-300},
+    };
+    for (size_t i = 0; i < sizeof small / sizeof small[0]; i++) {
+        TEST_ASSERT_NOT_EQUAL_INT(CM1E_OK, cm1e_axis_start(axis, &small[i], &id));
+        bench_told("too small to compute with");
+    }
+}
+
 static void test_direction_disabled_while_running_stops_the_motion(void)
 {
     bench_enable();
@@ -683,6 +703,7 @@ int main(void)
     RUN_TEST(test_velocity_into_a_limit_is_braked_before_it);
     RUN_TEST(test_an_axis_outside_its_limits_may_only_come_back);
     RUN_TEST(test_motion_in_a_disabled_direction_is_refused);
+    RUN_TEST(test_refused_numbers_are_told_as_they_are_judged);
     RUN_TEST(test_direction_disabled_while_running_stops_the_motion);
     RUN_TEST(test_a_reversal_into_a_direction_disabled_meanwhile_is_stopped);
     RUN_TEST(test_a_direction_that_a_motion_does_not_need_may_be_disabled);

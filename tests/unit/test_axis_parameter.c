@@ -131,6 +131,7 @@ static void test_values_out_of_range_are_refused(void)
         refused(number, 0.5, CM1E_ERROR_AXIS_PARAMETER_RANGE);
         refused(number, NAN, CM1E_ERROR_AXIS_PARAMETER_RANGE);
         refused(number, 2, CM1E_ERROR_AXIS_PARAMETER_RANGE);
+        bench_told(": 2 was to be written; 0 or 1 is right.");
     }
 }
 
@@ -198,6 +199,7 @@ static void test_limits_in_the_wrong_order_are_refused(void)
     set(3, 1);
     set(4, 1);
     refused(5, 1, CM1E_ERROR_AXIS_PARAMETER_RANGE);
+    bench_told("has to be below SWLimitPos");
     set(3, -2);
     set(5, 1);
     refused(3, -1, CM1E_ERROR_AXIS_PARAMETER_RANGE);
