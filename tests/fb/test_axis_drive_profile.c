@@ -146,6 +146,10 @@ START_TEST(what_the_drive_does_not_do_is_refused)
     await(id, 5);
     ck_assert_int_eq(status(id).state, CM1E_COMMAND_DONE);
     ck_assert_double_eq_tol(info().actual_position, from + 100, 0.06);
+    const cm1e_command_id_t next = command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = 1,
+                                                                  .velocity = 10, .buffer_mode = mcBuffered});
+    await(next, 5); /* nothing to wait for: it begins at once */
+    ck_assert_int_eq(status(next).state, CM1E_COMMAND_DONE);
     close_segment();
 }
 END_TEST
