@@ -148,6 +148,14 @@ fb_outputs_t fb_motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, const
     return out;
 }
 
+fb_outputs_t fb_table_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, BOOL continuous_update,
+                             cm1e_command_kind_t kind, MC_BUFFER_MODE buffer_mode, const cm1e_axis_table_t *table)
+{
+    const cm1e_axis_command_t command = {.kind = kind, .buffer_mode = buffer_mode, .table = table};
+    const cm1e_error_t refusal = continuous_update ? CM1E_ERROR_UNSUPPORTED : CM1E_OK;
+    return fb_motion_unless(refusal, fb, reference, execute, FALSE, &command);
+}
+
 /* ---- Enable ---------------------------------------------------------------------------------------------------- */
 
 const cm1e_axis_t *fb_enable(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable)

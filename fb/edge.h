@@ -44,6 +44,10 @@ fb_outputs_t fb_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL 
 /** The same for a block that has a reason of its own not to start: `refusal` is an error at the edge. */
 fb_outputs_t fb_motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute,
                               BOOL continuous_update, const cm1e_axis_command_t *command);
+/** The same for a motion along a table, which is locked to time: nothing could be changed on the way, so TRUE for
+ *  ContinuousUpdate is refused. */
+fb_outputs_t fb_table_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, BOOL continuous_update,
+                             cm1e_command_kind_t kind, MC_BUFFER_MODE buffer_mode, const cm1e_axis_table_t *table);
 /** TRUE: no edge, the same axis, no inputs to hand on, and its command still is the active one, so that the outputs
  *  stand as they are. Most calls of a block are such; they cost little that way. */
 static inline bool fb_stands(const cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute)
@@ -56,6 +60,9 @@ static inline bool fb_stands(const cm1e_fb_private_t *fb, const AXIS_REF_t *refe
 #define FB_STANDS(fb) fb_stands(&(fb)->Private, (fb)->Axis, (fb)->Execute)
 #define FB_DYNAMICS(fb)                                                                                              \
     .acceleration = (fb)->Acceleration, .deceleration = (fb)->Deceleration, .jerk = (fb)->Jerk
+#define FB_TABLE(table, pair)                                                                                        \
+    .read = (table) ? (pair) : NULL, .reference = (table), .count = (table) ? (table)->NumberOfPairs : 0,            \
+    .absolute = (table) && (table)->IsAbsolute
 #define FB_SHOW(fb, out)                                                                                             \
     ((fb)->Busy = (out).busy, (fb)->CommandAborted = (out).aborted, (fb)->Error = (out).error,                       \
      (fb)->ErrorID = (out).error_id)

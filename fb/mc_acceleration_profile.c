@@ -9,24 +9,14 @@ static void pair(const void *reference, int index, TIME *delta_ns, LREAL *value)
 
 void MC_AccelerationProfile(MC_AccelerationProfile_t *fb)
 {
-    const MC_TA_REF *reference = fb->TimeAcceleration;
     const cm1e_axis_table_t table = {
-        .read = reference ? pair : NULL,
-        .reference = reference,
-        .count = reference ? reference->NumberOfPairs : 0,
-        .absolute = reference && reference->IsAbsolute,
+        FB_TABLE(fb->TimeAcceleration, pair),
         .time_scale = fb->TimeScale,
         .scale = fb->AccelerationScale,
         .offset = fb->Offset,
     };
-    const cm1e_axis_command_t command = {
-        .kind = CM1E_COMMAND_ACCELERATION_PROFILE,
-        .buffer_mode = fb->BufferMode,
-        .table = &table,
-    };
-    /* A motion that is locked to time has nothing that could be changed on the way. */
-    const cm1e_error_t refusal = fb->ContinuousUpdate ? CM1E_ERROR_UNSUPPORTED : CM1E_OK;
-    const fb_outputs_t out = fb_motion_unless(refusal, &fb->Private, fb->Axis, fb->Execute, FALSE, &command);
+    const fb_outputs_t out = fb_table_motion(&fb->Private, fb->Axis, fb->Execute, fb->ContinuousUpdate,
+                                             CM1E_COMMAND_ACCELERATION_PROFILE, fb->BufferMode, &table);
     fb->ProfileCompleted = out.reached;
     FB_SHOW_ACTIVE(fb, out);
 }

@@ -11,24 +11,14 @@ void MC_PositionProfile(MC_PositionProfile_t *fb)
 {
     if (FB_STANDS(fb))
         return;
-    const MC_TP_REF *reference = fb->TimePosition;
     const cm1e_axis_table_t table = {
-        .read = reference ? pair : NULL,
-        .reference = reference,
-        .count = reference ? reference->NumberOfPairs : 0,
-        .absolute = reference && reference->IsAbsolute,
+        FB_TABLE(fb->TimePosition, pair),
         .time_scale = fb->TimeScale,
         .scale = fb->PositionScale,
         .offset = fb->Offset,
     };
-    const cm1e_axis_command_t command = {
-        .kind = CM1E_COMMAND_POSITION_PROFILE,
-        .buffer_mode = fb->BufferMode,
-        .table = &table,
-    };
-    /* A motion that is locked to time has nothing that could be changed on the way. */
-    const cm1e_error_t refusal = fb->ContinuousUpdate ? CM1E_ERROR_UNSUPPORTED : CM1E_OK;
-    const fb_outputs_t out = fb_motion_unless(refusal, &fb->Private, fb->Axis, fb->Execute, FALSE, &command);
+    const fb_outputs_t out = fb_table_motion(&fb->Private, fb->Axis, fb->Execute, fb->ContinuousUpdate,
+                                             CM1E_COMMAND_POSITION_PROFILE, fb->BufferMode, &table);
     fb->Done = out.done;
     FB_SHOW_ACTIVE(fb, out);
 }
