@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "command.h"
-#include "generate/sii.h"
+#include "description/sii.h"
 
 enum { KEY_FIRMWARE = 0x400, KEY_ORDER, KEY_ALIAS };
 

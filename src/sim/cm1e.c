@@ -1,7 +1,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "generate/sii.h"
+#include "description/sii.h"
 #include "sim/cm1e_app.h"
 
 enum {

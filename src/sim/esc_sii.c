@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/bytes.h"
-#include "generate/sii.h"
+#include "description/sii.h"
 
 /* SII control/status 0x0502. */
 enum {

@@ -1,7 +1,7 @@
 #include <stdlib.h>
 
 #include "cm1e/bus.h"
-#include "generate/sii.h"
+#include "description/sii.h"
 #include "sim/esc.h"
 
 /* A plain module with eight outputs and eight inputs, each input wired to the output of its number. */

@@ -9,7 +9,7 @@
 
 #include "cm1e/bus.h"
 #include "core/bytes.h"
-#include "generate/sii.h"
+#include "description/sii.h"
 #include "sim/segment.h"
 #include "sim/slave.h"
 #include "unity.h"

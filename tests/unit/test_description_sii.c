@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "core/bytes.h"
-#include "generate/sii.h"
+#include "description/sii.h"
 #include "unity.h"
 
 static uint8_t image[CM1E_SII_SIZE];

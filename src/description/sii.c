@@ -1,4 +1,4 @@
-#include "generate/sii.h"
+#include "description/sii.h"
 
 #include <string.h>
 
@@ -338,4 +338,18 @@ size_t cm1e_generate_sii_io_module(uint8_t *image, size_t room)
     category_end(&w, start);
     put_u16(&w, CATEGORY_END);
     return CM1E_SII_SIZE;
+}
+
+size_t cm1e_sii_write(uint8_t *image, size_t room, const cm1e_description_t *device, cm1e_diag_t *diag)
+{
+    (void)image, (void)room, (void)device;
+    cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "not there yet");
+    return 0;
+}
+
+cm1e_error_t cm1e_sii_read(cm1e_description_file_t *file, const uint8_t *image, size_t size, cm1e_findings_t *findings,
+                           cm1e_diag_t *diag)
+{
+    (void)file, (void)image, (void)size, (void)findings;
+    return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "not there yet");
 }

@@ -1,0 +1,48 @@
+/**
+ * @file check.h
+ * The cross-checker: what a schema does not see. A rule has a name, a row in CM1E_RULES and, by test_check_*, a file
+ * that is broken in exactly that way. docs/CHECK-RULES.md explains them to users.
+ */
+#ifndef CM1E_DESCRIPTION_CHECK_H
+#define CM1E_DESCRIPTION_CHECK_H
+
+#include "cm1e/generate.h"
+#include "description/description.h"
+
+/** The one list of rules: X(enumerator, name, is an error). */
+#define CM1E_RULES(X)                                                                                               \
+    /* ESI, SII, ENI: a device */                                                                                   \
+    X(PDO_ENTRY_NOT_IN_DICTIONARY, "pdo-entry-not-in-dictionary", true)                                             \
+    X(PDO_ENTRY_SIZE, "pdo-entry-size", true)                                                                       \
+    X(SYNC_MANAGERS_OVERLAP, "sync-managers-overlap", true)                                                         \
+    X(MAILBOX_SIZE, "mailbox-size", true)                                                                           \
+    /* a live device beside a file */                                                                               \
+    X(DIFFERS, "differs", true)
+
+typedef enum cm1e_rule {
+#define CM1E_RULE_ENUMERATOR(enumerator, name, is_error) CM1E_RULE_##enumerator,
+    CM1E_RULES(CM1E_RULE_ENUMERATOR)
+#undef CM1E_RULE_ENUMERATOR
+    CM1E_RULE_COUNT,
+} cm1e_rule_t;
+
+/** Beyond so many findings nobody reads them: the last one then says that there are more. */
+#define CM1E_FINDINGS_MAX 1000
+
+struct cm1e_findings {
+    cm1e_arena_t arena;
+    CM1E_LIST(cm1e_finding_t) list;
+};
+
+/** Empty; NULL: no memory. Freed with cm1e_findings_free(). */
+cm1e_findings_t *cm1e_findings_create(void);
+/** The same rule at the same place with the same text counts once. */
+void cm1e_findings_add(cm1e_findings_t *findings, cm1e_rule_t rule, cm1e_place_t place, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+/** Sorts by line; call it when all are in. */
+void cm1e_findings_sort(cm1e_findings_t *findings);
+
+/** Every rule about devices, for every device of a file; MDP devices also with their slots expanded. */
+void cm1e_check_description(cm1e_findings_t *findings, const cm1e_description_file_t *file);
+
+#endif

@@ -1,0 +1,16 @@
+/**
+ * @file compare.h
+ * Two descriptions of one device beside each other: what a file says, and what the device says of itself.
+ */
+#ifndef CM1E_DESCRIPTION_COMPARE_H
+#define CM1E_DESCRIPTION_COMPARE_H
+
+#include "description/check.h"
+#include "description/description.h"
+
+/** Findings with the places of `file`, about everything that both sides speak of: identity, sync managers, mailbox,
+ *  PDO mapping and assignment, dictionary (objects and sub-indexes on one side only, type, size, access, names). What one
+ *  side does not state is no difference. */
+void cm1e_compare(cm1e_findings_t *findings, const cm1e_description_t *file, const cm1e_description_t *device);
+
+#endif

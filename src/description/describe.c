@@ -1,0 +1,141 @@
+#include "description/describe.h"
+
+#include <string.h>
+
+static const char *type_name(cm1e_arena_t *arena, const cm1e_entry_t *entry)
+{
+    return cm1e_type_name(arena, (uint16_t)entry->type, entry->bits);
+}
+
+/* A range is worth stating where a value can be written and the type alone would allow more. */
+static bool range_matters(const cm1e_entry_t *entry)
+{
+    const bool is_signed = entry->type == CM1E_TYPE_SINT || entry->type == CM1E_TYPE_INT || entry->type == CM1E_TYPE_DINT;
+    const int64_t least = is_signed ? -((int64_t)1 << (entry->bits - 1)) : 0;
+    const int64_t most = ((int64_t)1 << (is_signed ? entry->bits - 1 : entry->bits)) - 1;
+    return (entry->access & CM1E_ACCESS_WRITE) && (entry->minimum > least || entry->maximum < most);
+}
+
+static void describe_entry(cm1e_arena_t *arena, cm1e_described_entry_t *described, const cm1e_entry_t *entry)
+{
+    const size_t bytes = (entry->bits + 7u) / 8;
+    described->subindex = entry->subindex;
+    described->name = entry->name;
+    described->type = type_name(arena, entry);
+    described->bits = entry->bits;
+    described->access = entry->access;
+    described->unit = entry->unit;
+    if (entry->default_string) {
+        described->default_data =
+            (cm1e_bytes_t){cm1e_arena_bytes(arena, entry->default_string, bytes), bytes};
+        return;
+    }
+    described->default_data = cm1e_bytes_of(arena, entry->default_value, bytes);
+    if (range_matters(entry)) {
+        described->minimum = cm1e_bytes_of(arena, entry->minimum, bytes);
+        described->maximum = cm1e_bytes_of(arena, entry->maximum, bytes);
+    }
+}
+
+void cm1e_describe_object(cm1e_arena_t *arena, cm1e_object_list_t *list, const cm1e_object_t *object,
+                          cm1e_firmware_t firmware)
+{
+    if (object->since > firmware)
+        return;
+    cm1e_described_object_t *described = CM1E_APPEND(arena, list);
+    described->index = object->index;
+    described->code = object->object_code;
+    described->name = object->name;
+    described->type = "";
+    for (unsigned i = 0; i < object->entry_count; i++)
+        if (object->entries[i].since <= firmware)
+            describe_entry(arena, CM1E_APPEND(arena, &described->entries), &object->entries[i]);
+}
+
+static const cm1e_described_entry_t *find_entry(const cm1e_object_list_t *objects, const cm1e_pdo_entry_t *mapped)
+{
+    for (size_t i = 0; i < objects->count; i++)
+        if (objects->at[i].index == mapped->index)
+            for (size_t j = 0; j < objects->at[i].entries.count; j++)
+                if (objects->at[i].entries.at[j].subindex == mapped->subindex)
+                    return &objects->at[i].entries.at[j];
+    return NULL;
+}
+
+/* The type on the wire: that of the dictionary, unless the mapping has another length (0x6079: UG 7.2). */
+static const char *mapped_type(cm1e_arena_t *arena, const cm1e_described_entry_t *entry, unsigned bits)
+{
+    if (entry && entry->bits == bits)
+        return entry->type;
+    const bool is_signed = entry && (strcmp(entry->type, "DINT") == 0 || strcmp(entry->type, "INT") == 0);
+    const cm1e_data_type_t type = bits == 8    ? is_signed ? CM1E_TYPE_SINT : CM1E_TYPE_USINT
+                                  : bits == 16 ? is_signed ? CM1E_TYPE_INT : CM1E_TYPE_UINT
+                                               : is_signed ? CM1E_TYPE_DINT : CM1E_TYPE_UDINT;
+    return cm1e_type_name(arena, (uint16_t)type, bits);
+}
+
+cm1e_described_pdo_t *cm1e_describe_pdo(cm1e_arena_t *arena, cm1e_pdo_list_t *list, const cm1e_object_list_t *objects,
+                                        const cm1e_pdo_t *pdo, bool transmit, int sync_manager)
+{
+    cm1e_described_pdo_t *described = CM1E_APPEND(arena, list);
+    described->transmit = transmit;
+    described->index = pdo->index;
+    described->name = cm1e_arena_text(arena, pdo->name);
+    described->sync_manager = sync_manager;
+    described->fixed = true;
+    for (unsigned i = 0; i < pdo->entry_count; i++) {
+        const cm1e_pdo_entry_t *mapped = &pdo->entries[i];
+        const cm1e_described_entry_t *entry = mapped->index ? find_entry(objects, mapped) : NULL;
+        cm1e_described_pdo_entry_t *into = CM1E_APPEND(arena, &described->entries);
+        into->index = mapped->index;
+        into->subindex = mapped->subindex;
+        into->bits = mapped->bits;
+        into->name = entry ? entry->name : NULL;
+        into->type = mapped->index ? mapped_type(arena, entry, mapped->bits) : "";
+    }
+    return described;
+}
+
+void cm1e_describe_sync_managers(cm1e_arena_t *arena, cm1e_description_t *device,
+                                 const cm1e_sync_manager_t managers[4], const cm1e_pdo_list_t *assigned)
+{
+    for (int n = 0; n < 4; n++) {
+        cm1e_described_sync_manager_t *manager = CM1E_APPEND(arena, &device->sync_managers);
+        uint32_t bits = 0;
+        for (size_t i = 0; i < assigned->count; i++)
+            if (assigned->at[i].sync_manager == n)
+                bits += cm1e_pdo_bits(&assigned->at[i]);
+        manager->use = (cm1e_sync_manager_use_t)managers[n].type;
+        manager->start = managers[n].start;
+        manager->length = n < 2 ? managers[n].length : (uint16_t)((bits + 7) / 8);
+        manager->length_given = true;
+        manager->control = managers[n].control;
+        manager->enable = managers[n].enable;
+    }
+}
+
+static cm1e_error_t wrong(cm1e_diag_t *diag, const char *what)
+{
+    return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "%s", what);
+}
+
+static cm1e_error_t check_common(const cm1e_device_options_t *options, cm1e_diag_t *diag)
+{
+    if ((unsigned)options->model > CM1E_DEVICE_EB12)
+        return wrong(diag, "there is no such device model; there are CM1-E, EB01, EB02 and EB12");
+    if (options->config_data_size != 0 && options->config_data_size != sizeof options->config_data)
+        return wrong(diag, "the configuration words of the EEPROM are words 0 to 6, 14 bytes");
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_describe(cm1e_description_file_t *file, const cm1e_device_options_t *options,
+                           cm1e_esi_layout_t layout, cm1e_diag_t *diag)
+{
+    cm1e_error_t error = check_common(options, diag);
+    if (error == CM1E_OK)
+        error = options->model == CM1E_DEVICE_CM1E ? cm1e_describe_cm1e(file, options, layout, diag)
+                                                   : cm1e_describe_bridge(file, options, layout, diag);
+    if (error == CM1E_OK && file->arena.failed)
+        error = cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
+    return error;
+}

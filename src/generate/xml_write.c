@@ -1,0 +1,147 @@
+#include "generate/xml_write.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void note(cm1e_xml_writer_t *writer, int result)
+{
+    if (result < 0)
+        writer->failed = true;
+}
+
+void cm1e_xml_begin(cm1e_xml_writer_t *writer)
+{
+    *writer = (cm1e_xml_writer_t){.buffer = xmlBufferCreate()};
+    writer->writer = writer->buffer ? xmlNewTextWriterMemory(writer->buffer, 0) : NULL;
+    writer->failed = !writer->writer;
+    if (writer->failed)
+        return;
+    note(writer, xmlTextWriterSetIndent(writer->writer, 1));
+    note(writer, xmlTextWriterSetIndentString(writer->writer, BAD_CAST "  "));
+    note(writer, xmlTextWriterStartDocument(writer->writer, "1.0", "UTF-8", NULL));
+}
+
+cm1e_error_t cm1e_xml_finish(cm1e_xml_writer_t *writer, cm1e_file_t *file, cm1e_diag_t *diag)
+{
+    if (!writer->failed)
+        note(writer, xmlTextWriterEndDocument(writer->writer));
+    if (writer->writer)
+        xmlFreeTextWriter(writer->writer);
+    const size_t size = writer->buffer ? (size_t)xmlBufferLength(writer->buffer) : 0;
+    uint8_t *bytes = writer->failed ? NULL : malloc(size + 1);
+    if (bytes) {
+        memcpy(bytes, xmlBufferContent(writer->buffer), size);
+        bytes[size] = 0;
+        file->bytes = bytes;
+        file->size = size;
+    }
+    if (writer->buffer)
+        xmlBufferFree(writer->buffer);
+    *writer = (cm1e_xml_writer_t){0};
+    return bytes ? CM1E_OK : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
+}
+
+void cm1e_xml_open(cm1e_xml_writer_t *writer, const char *name)
+{
+    if (!writer->failed)
+        note(writer, xmlTextWriterStartElement(writer->writer, BAD_CAST name));
+}
+
+void cm1e_xml_close(cm1e_xml_writer_t *writer)
+{
+    if (!writer->failed)
+        note(writer, xmlTextWriterEndElement(writer->writer));
+}
+
+static bool can_be_written(unsigned char c)
+{
+    return c >= 0x20 || c == '\t' || c == '\n' || c == '\r';
+}
+
+/* A text that XML can hold: UTF-8 without control characters. Freed by the caller; NULL: no memory. */
+static xmlChar *clean(const char *format, va_list arguments)
+{
+    char *text = NULL;
+    if (vasprintf(&text, format, arguments) < 0)
+        return NULL;
+    const bool is_utf8 = xmlCheckUTF8(BAD_CAST text) == 1;
+    unsigned char *cleaned = xmlMalloc(2 * strlen(text) + 1), *to = cleaned;
+    for (const unsigned char *from = (unsigned char *)text; cleaned && *from; from++) {
+        if (!can_be_written(*from))
+            continue;
+        if (is_utf8 || *from < 0x80) {
+            *to++ = *from;
+            continue;
+        }
+        *to++ = (unsigned char)(0xC0 | *from >> 6);
+        *to++ = (unsigned char)(0x80 | (*from & 0x3F));
+    }
+    if (cleaned)
+        *to = '\0';
+    free(text);
+    return cleaned;
+}
+
+/* `put` is how libxml2 writes the cleaned text. */
+#define PUT(writer, format, put)                                                                                    \
+    do {                                                                                                            \
+        va_list arguments;                                                                                          \
+        va_start(arguments, format);                                                                                \
+        xmlChar *cleaned = (writer)->failed ? NULL : clean(format, arguments);                                      \
+        va_end(arguments);                                                                                          \
+        note(writer, cleaned ? (put) : -1);                                                                         \
+        xmlFree(cleaned);                                                                                           \
+    } while (0)
+
+void cm1e_xml_put_attribute(cm1e_xml_writer_t *writer, const char *name, const char *format, ...)
+{
+    PUT(writer, format, xmlTextWriterWriteAttribute(writer->writer, BAD_CAST name, cleaned));
+}
+
+void cm1e_xml_put_text(cm1e_xml_writer_t *writer, const char *format, ...)
+{
+    PUT(writer, format, xmlTextWriterWriteString(writer->writer, cleaned));
+}
+
+void cm1e_xml_put(cm1e_xml_writer_t *writer, const char *name, const char *format, ...)
+{
+    PUT(writer, format, xmlTextWriterWriteElement(writer->writer, BAD_CAST name, cleaned));
+}
+
+void cm1e_xml_put_hex(cm1e_xml_writer_t *writer, const char *name, cm1e_bytes_t bytes)
+{
+    if (!bytes.data || bytes.size == 0)
+        return;
+    char *digits = malloc(2 * bytes.size + 1);
+    for (size_t i = 0; digits && i < bytes.size; i++)
+        snprintf(digits + 2 * i, 3, "%02X", bytes.data[i]);
+    if (digits)
+        cm1e_xml_put(writer, name, "%s", digits);
+    else
+        writer->failed = true;
+    free(digits);
+}
+
+static void put_comment(cm1e_xml_writer_t *writer, const char *format, ...)
+{
+    PUT(writer, format, xmlTextWriterWriteComment(writer->writer, cleaned));
+}
+
+void cm1e_xml_put_comment(cm1e_xml_writer_t *writer, const char *text)
+{
+    char *spaced = malloc(2 * strlen(text) + 1), *to = spaced;
+    for (; spaced && *text; text++) {
+        if (*text == '-' && to > spaced && to[-1] == '-')
+            *to++ = ' ';
+        *to++ = *text;
+    }
+    if (spaced) {
+        *to = '\0';
+        put_comment(writer, " %s ", spaced);
+    } else {
+        writer->failed = true;
+    }
+    free(spaced);
+}
