@@ -5,9 +5,3 @@ cm1e_error_t cm1e_esi_read(cm1e_description_file_t *file, const void *bytes, siz
     (void)file, (void)bytes, (void)size;
     return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "not there yet");
 }
-
-cm1e_error_t cm1e_esi_write(cm1e_file_t *out, const cm1e_description_file_t *file, cm1e_diag_t *diag)
-{
-    (void)out, (void)file;
-    return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "not there yet");
-}
