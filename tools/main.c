@@ -15,6 +15,7 @@ static const struct {
     {"move", "move one axis", command_move},
     {"sim", "serve a simulated network on a network interface", command_sim},
     {"generate", "write files for other masters", command_generate},
+    {"check", "check a file for other masters, whoever wrote it", command_check},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 

@@ -1,0 +1,18 @@
+/**
+ * @file file.h
+ * What the public functions of this room share.
+ */
+#ifndef CM1E_GENERATE_FILE_H
+#define CM1E_GENERATE_FILE_H
+
+#include "cm1e/generate.h"
+#include "description/description.h"
+#include "generate/eni.h"
+
+/** The SII image of a device as a file. */
+cm1e_error_t cm1e_file_of_sii(cm1e_file_t *file, const cm1e_description_t *device, cm1e_diag_t *diag);
+/** The ENI of a network as a file. */
+cm1e_error_t cm1e_file_of_eni(cm1e_file_t *file, const cm1e_eni_slave_t *slaves, size_t count, int64_t cycle_time_ns,
+                              cm1e_diag_t *diag);
+
+#endif

@@ -1,0 +1,170 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cm1e/generate.h"
+#include "description/describe.h"
+#include "description/sii.h"
+#include "generate/ec_extend.h"
+#include "generate/eni.h"
+#include "generate/esi.h"
+#include "generate/file.h"
+
+
+void cm1e_file_free(cm1e_file_t *file)
+{
+    free(file->bytes);
+    *file = (cm1e_file_t){0};
+}
+
+
+static const cm1e_device_options_t one_cm1e = {0};
+
+static void warn_of_eeprom(cm1e_file_t *file, const cm1e_description_file_t *described)
+{
+    for (size_t i = 0; i < described->devices.count; i++)
+        if (!described->devices.at[i].eeprom.config_known)
+            snprintf(file->warning, sizeof file->warning,
+                     "the configuration words of the %s's EEPROM are not public: do not write an EEPROM from this "
+                     "file. With the words of a real device (cm1e sii read, then --config-data) it can be",
+                     described->devices.at[i].type);
+}
+
+cm1e_error_t cm1e_file_of_sii(cm1e_file_t *file, const cm1e_description_t *device, cm1e_diag_t *diag)
+{
+    const size_t room = device->eeprom.byte_size > 0 ? device->eeprom.byte_size : CM1E_SII_SIZE;
+    uint8_t *image = calloc(1, room + 1);
+    if (!image)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
+    const size_t size = cm1e_sii_write(image, room, device, diag);
+    if (size == 0) {
+        free(image);
+        return diag ? diag->error : CM1E_ERROR_CONFIG;
+    }
+    file->bytes = image;
+    file->size = size;
+    return CM1E_OK;
+}
+
+static cm1e_error_t describe_all(cm1e_description_file_t *described, const cm1e_generate_options_t *options,
+                                 cm1e_diag_t *diag)
+{
+    const cm1e_device_options_t *devices = options->devices ? options->devices : &one_cm1e;
+    const size_t count = options->devices ? options->device_count : 1;
+    cm1e_error_t error = CM1E_OK;
+    for (size_t i = 0; i < count && error == CM1E_OK; i++)
+        error = cm1e_describe(described, &devices[i], options->layout, diag);
+    return error;
+}
+
+static cm1e_error_t generate_described(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag)
+{
+    cm1e_description_file_t described = {0};
+    cm1e_error_t error = describe_all(&described, options, diag);
+    if (error == CM1E_OK)
+        error = options->format == CM1E_FILE_ESI ? cm1e_esi_write(file, &described, diag)
+                                                 : cm1e_file_of_sii(file, &described.devices.at[0], diag);
+    if (error == CM1E_OK)
+        warn_of_eeprom(file, &described);
+    cm1e_description_file_free(&described);
+    return error;
+}
+
+static cm1e_error_t generate_ec_extend(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag)
+{
+    cm1e_ec_extend_t document = {0};
+    cm1e_error_t error = cm1e_ec_extend_make(&document, options, diag);
+    if (error == CM1E_OK)
+        error = cm1e_ec_extend_write(file, &document, diag);
+    cm1e_ec_extend_free(&document);
+    return error;
+}
+
+/* ---- ENI of a configuration ------------------------------------------------------------------------------------- */
+
+/* Place on the wire (0 = first) of an axis; false: the configuration does not say. */
+static bool place_of(const cm1e_bus_config_t *network, uint32_t axis, uint32_t *place)
+{
+    const cm1e_axis_config_t *config = &network->axes[axis];
+    if (config->address_kind == CM1E_ADDRESS_EXPLICIT_ID)
+        return false;
+    *place = config->address_kind == CM1E_ADDRESS_POSITION && config->address > 0 ? config->address - 1u : axis;
+    return *place < network->axis_count;
+}
+
+static cm1e_error_t describe_axis(cm1e_description_file_t *described, const cm1e_bus_config_t *network, uint32_t axis,
+                                  cm1e_diag_t *diag)
+{
+    const cm1e_axis_config_t *config = &network->axes[axis];
+    cm1e_device_options_t options = {.mapping = config->mapping, .order = network->sim_pdo_order};
+    snprintf(options.firmware, sizeof options.firmware, "%s", config->firmware);
+    return cm1e_describe(described, &options, CM1E_ESI_FLAT, diag);
+}
+
+/* The slaves in the order of the wire; devices of `described` are in the order of the axes. */
+static cm1e_error_t order_slaves(cm1e_eni_slave_t *slaves, const cm1e_description_file_t *described,
+                                 const cm1e_bus_config_t *network, cm1e_diag_t *diag)
+{
+    for (uint32_t axis = 0; axis < network->axis_count; axis++) {
+        const cm1e_axis_config_t *config = &network->axes[axis];
+        uint32_t place;
+        if (!place_of(network, axis, &place) || slaves[place].device)
+            return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
+                                 "axis %u (%s): where it stands on the wire does not follow from the configuration, "
+                                 "or another device stands between the axes; make the ENI from a scan of the network",
+                                 axis + 1, config->name);
+        slaves[place] = (cm1e_eni_slave_t){.device = &described->devices.at[axis], .name = config->name,
+                                           .alias = config->address_kind == CM1E_ADDRESS_ALIAS ? config->address : 0};
+    }
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_file_of_eni(cm1e_file_t *file, const cm1e_eni_slave_t *slaves, size_t count, int64_t cycle_time_ns,
+                              cm1e_diag_t *diag)
+{
+    cm1e_eni_t document = {0};
+    cm1e_error_t error = cm1e_eni_make(&document, slaves, count, cycle_time_ns, diag);
+    if (error == CM1E_OK)
+        error = cm1e_eni_write(file, &document, diag);
+    cm1e_eni_free(&document);
+    return error;
+}
+
+static cm1e_error_t generate_eni(cm1e_file_t *file, const cm1e_bus_config_t *network, cm1e_diag_t *diag)
+{
+    if (!network || network->axis_count == 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "an ENI describes a network: which axes are there?");
+    cm1e_error_t error = cm1e_bus_config_check(network, diag);
+    cm1e_eni_slave_t *slaves = calloc(network->axis_count, sizeof *slaves);
+    cm1e_description_file_t described = {0};
+    if (!slaves)
+        error = cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
+    for (uint32_t axis = 0; error == CM1E_OK && axis < network->axis_count; axis++)
+        error = describe_axis(&described, network, axis, diag);
+    if (error == CM1E_OK)
+        error = order_slaves(slaves, &described, network, diag);
+    if (error == CM1E_OK)
+        error = cm1e_file_of_eni(file, slaves, network->axis_count,
+                          network->cycle_time_ns > 0 ? network->cycle_time_ns : 1000000, diag);
+    cm1e_description_file_free(&described);
+    free(slaves);
+    return error;
+}
+
+cm1e_error_t cm1e_generate(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag)
+{
+    *file = (cm1e_file_t){0};
+    if (options->devices && options->device_count == 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "no device is given");
+    switch (options->format) {
+    case CM1E_FILE_SII:
+        if (options->devices && options->device_count > 1)
+            return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "an SII image describes one device, not %zu",
+                                 options->device_count);
+        return generate_described(file, options, diag);
+    case CM1E_FILE_ESI: return generate_described(file, options, diag);
+    case CM1E_FILE_EC_EXTEND: return generate_ec_extend(file, options, diag);
+    case CM1E_FILE_ENI: return generate_eni(file, options->network, diag);
+    default: return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "there is no such file format");
+    }
+}

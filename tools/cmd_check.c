@@ -1,0 +1,57 @@
+/** cm1e check: the cross-checker, for files of any of the formats. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "cm1e/generate.h"
+#include "command.h"
+#include "files.h"
+
+typedef struct check_options {
+    const char *file;
+    bool json;
+} check_options_t;
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    check_options_t *options = state->input;
+    switch (key) {
+    case 'j': options->json = true; return 0;
+    case ARGP_KEY_ARG:
+        if (options->file)
+            argp_error(state, "one file at a time; \"%s\" is too many", arg);
+        options->file = arg;
+        return 0;
+    case ARGP_KEY_END:
+        if (!options->file)
+            argp_error(state, "which file?");
+        return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+int command_check(int argc, char **argv)
+{
+    static const struct argp_option table[] = {{"json", 'j', NULL, 0, "Write JSON", 0}, {0}};
+    static const struct argp argp = {table, parse, "FILE",
+                                     "Checks an ESI, EC_EXTEND, SII or ENI file, whoever wrote it, for what a schema "
+                                     "does not see (docs/CHECK-RULES.md). Exit status 0: nothing to say, or warnings "
+                                     "only; 1: errors, or the file cannot be read.", NULL, NULL, NULL};
+    check_options_t options = {0};
+    if (argp_parse(&argp, argc, argv, 0, NULL, &options))
+        return EXIT_WRONG_USE;
+    input_t input;
+    if (!read_input(options.file, &input))
+        return EXIT_FAILED;
+    cm1e_findings_t *findings = NULL;
+    cm1e_diag_t diag = {0};
+    const cm1e_file_format_t format = cm1e_file_recognise(input.bytes, input.size);
+    const cm1e_error_t error = cm1e_check_file(&findings, input.bytes, input.size, &diag);
+    free(input.bytes);
+    if (error != CM1E_OK) {
+        complain("%s: %s", options.file, diag.text);
+        return EXIT_FAILED;
+    }
+    const int status = print_findings(options.file, cm1e_file_format_name(format), findings, options.json);
+    cm1e_findings_free(findings);
+    return status;
+}
