@@ -5,6 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const xmlChar *xml(const char *text)
+{
+    return (const xmlChar *)text;
+}
+
 static void note(cm1e_xml_writer_t *writer, int result)
 {
     if (result < 0)
@@ -19,7 +24,7 @@ void cm1e_xml_begin(cm1e_xml_writer_t *writer)
     if (writer->failed)
         return;
     note(writer, xmlTextWriterSetIndent(writer->writer, 1));
-    note(writer, xmlTextWriterSetIndentString(writer->writer, BAD_CAST "  "));
+    note(writer, xmlTextWriterSetIndentString(writer->writer, xml("  ")));
     note(writer, xmlTextWriterStartDocument(writer->writer, "1.0", "UTF-8", NULL));
 }
 
@@ -46,7 +51,7 @@ cm1e_error_t cm1e_xml_finish(cm1e_xml_writer_t *writer, cm1e_file_t *file, cm1e_
 void cm1e_xml_open(cm1e_xml_writer_t *writer, const char *name)
 {
     if (!writer->failed)
-        note(writer, xmlTextWriterStartElement(writer->writer, BAD_CAST name));
+        note(writer, xmlTextWriterStartElement(writer->writer, xml(name)));
 }
 
 void cm1e_xml_close(cm1e_xml_writer_t *writer)
@@ -66,7 +71,7 @@ static xmlChar *clean(const char *format, va_list arguments)
     char *text = NULL;
     if (vasprintf(&text, format, arguments) < 0)
         return NULL;
-    const bool is_utf8 = xmlCheckUTF8(BAD_CAST text) == 1;
+    const bool is_utf8 = xmlCheckUTF8(xml(text)) == 1;
     unsigned char *cleaned = xmlMalloc(2 * strlen(text) + 1), *to = cleaned;
     for (const unsigned char *from = (unsigned char *)text; cleaned && *from; from++) {
         if (!can_be_written(*from))
@@ -97,7 +102,7 @@ static xmlChar *clean(const char *format, va_list arguments)
 
 void cm1e_xml_put_attribute(cm1e_xml_writer_t *writer, const char *name, const char *format, ...)
 {
-    PUT(writer, format, xmlTextWriterWriteAttribute(writer->writer, BAD_CAST name, cleaned));
+    PUT(writer, format, xmlTextWriterWriteAttribute(writer->writer, xml(name), cleaned));
 }
 
 void cm1e_xml_put_text(cm1e_xml_writer_t *writer, const char *format, ...)
@@ -107,7 +112,7 @@ void cm1e_xml_put_text(cm1e_xml_writer_t *writer, const char *format, ...)
 
 void cm1e_xml_put(cm1e_xml_writer_t *writer, const char *name, const char *format, ...)
 {
-    PUT(writer, format, xmlTextWriterWriteElement(writer->writer, BAD_CAST name, cleaned));
+    PUT(writer, format, xmlTextWriterWriteElement(writer->writer, xml(name), cleaned));
 }
 
 void cm1e_xml_put_hex(cm1e_xml_writer_t *writer, const char *name, cm1e_bytes_t bytes)

@@ -1,0 +1,76 @@
+#include "fuzz.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *seed_folder;
+
+int LLVMFuzzerInitialize(int *argc, char ***argv);
+
+/* fuzz_<format> --seeds FOLDER writes the seeds and ends. */
+int LLVMFuzzerInitialize(int *argc, char ***argv)
+{
+    if (*argc == 3 && strcmp((*argv)[1], "--seeds") == 0) {
+        seed_folder = (*argv)[2];
+        fuzz_seeds();
+        exit(0);
+    }
+    return 0;
+}
+
+void fuzz_seed(const char *name, const void *bytes, size_t size)
+{
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s", seed_folder, name);
+    FILE *file = fopen(path, "wb");
+    if (!file || fwrite(bytes, 1, size, file) != size || fclose(file) != 0) {
+        fprintf(stderr, "cannot write %s\n", path);
+        exit(1);
+    }
+}
+
+const cm1e_device_options_t *fuzz_devices(size_t *count)
+{
+    static const cm1e_device_options_t devices[] = {
+        {.firmware = "1.2.0", .order = CM1E_PDO_ORDER_UG_7_2},
+        {.firmware = "1.3.3", .mapping = CM1E_MAPPING_CSV, .distributed_clocks = true},
+        {.mapping = CM1E_MAPPING_PROFILE, .complete_access = true, .config_data_size = 14, .serial_number = 4711},
+        {.model = CM1E_DEVICE_EB01, .axes = 2, .vendor_id = 0xAA77, .product_code = 0x01020304, .revision = 1},
+        {.model = CM1E_DEVICE_EB12, .vendor_id = 0xAA77, .product_code = 0x01020305, .revision = 0x10002},
+    };
+    *count = sizeof devices / sizeof devices[0];
+    return devices;
+}
+
+void fuzz_fail(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    fputs("FINDING: ", stderr);
+    vfprintf(stderr, format, arguments);
+    fputc('\n', stderr);
+    va_end(arguments);
+    abort();
+}
+
+void fuzz_expect_same(const cm1e_file_t *first, const cm1e_file_t *second)
+{
+    size_t at = 0;
+    while (at < first->size && at < second->size && first->bytes[at] == second->bytes[at])
+        at++;
+    if (at < first->size || at < second->size)
+        fuzz_fail("written, read and written again, the file differs from byte %zu on:\n%.200s\n---- before it was:\n%.200s",
+                  at, second->bytes + at, first->bytes + at);
+}
+
+void fuzz_use_findings(cm1e_findings_t *findings)
+{
+    for (size_t i = 0; i < cm1e_findings_count(findings); i++) {
+        const cm1e_finding_t *finding = cm1e_findings_at(findings, i);
+        if (strlen(finding->rule) == 0 || strlen(finding->text) == 0)
+            fuzz_fail("a finding in line %u says nothing", (unsigned)finding->line);
+    }
+    cm1e_findings_free(findings);
+}

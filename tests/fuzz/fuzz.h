@@ -1,0 +1,33 @@
+/**
+ * @file fuzz.h
+ * What the fuzz targets share. A target is one file fuzz_<format>.c with a libFuzzer entry point and its seeds; CMake
+ * finds it (preset `fuzz`), scripts/fuzz runs all of them. A target reads its input as the format, and what could be read
+ * goes through the checker and through write, read, write: the second time must give the same bytes.
+ */
+#ifndef CM1E_TESTS_FUZZ_H
+#define CM1E_TESTS_FUZZ_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cm1e/generate.h"
+#include "description/check.h"
+
+/** The target: returns 0, or does not return. */
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
+
+/** Every target's: hands its good files to fuzz_seed(), made by our own writers. */
+void fuzz_seeds(void);
+void fuzz_seed(const char *name, const void *bytes, size_t size);
+
+/** Device options that between them show everything that a description can hold: model, firmware, mapping ... */
+const cm1e_device_options_t *fuzz_devices(size_t *count);
+
+/** A finding: says what is wrong, and ends the program so that libFuzzer keeps the input. */
+_Noreturn void fuzz_fail(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/** Both must hold the same bytes. */
+void fuzz_expect_same(const cm1e_file_t *first, const cm1e_file_t *second);
+/** Reads every byte of every finding, and frees them. */
+void fuzz_use_findings(cm1e_findings_t *findings);
+
+#endif
