@@ -42,6 +42,9 @@ void cm1e_findings_add(cm1e_findings_t *findings, cm1e_rule_t rule, cm1e_place_t
 /** Sorts by line; call it when all are in. */
 void cm1e_findings_sort(cm1e_findings_t *findings);
 
+/** Sync managers of one device that lie on top of each other; those without a length or not enabled lie nowhere. */
+void cm1e_check_overlap(cm1e_findings_t *findings, const cm1e_described_sync_manager_t *managers, size_t count);
+
 /** Every rule about devices, for every device of a file; MDP devices also with their slots expanded. */
 void cm1e_check_description(cm1e_findings_t *findings, const cm1e_description_file_t *file);
 

@@ -74,6 +74,21 @@ static size_t skip_before_declaration(const char *text, size_t size, int *lines)
     return at;
 }
 
+/* The comments that were skipped stand before the root then, where XML allows them: nothing of a file is lost. */
+static void keep_comments(xmlDoc *doc, const char *text, size_t skipped)
+{
+    for (const char *at = text; (at = memmem(at, skipped - (size_t)(at - text), "<!--", 4)) != NULL;) {
+        const char *end = memmem(at, skipped - (size_t)(at - text), "-->", 3);
+        const int length = end > at + 4 ? (int)(end - at) - 4 : 0;
+        xmlChar *content = xmlStrndup((const xmlChar *)at + 4, length);
+        xmlNode *comment = content ? xmlNewDocComment(doc, content) : NULL;
+        if (comment)
+            xmlAddPrevSibling(xmlDocGetRootElement(doc), comment);
+        xmlFree(content);
+        at = end + 3;
+    }
+}
+
 static void report(cm1e_diag_t *diag, const guard_t *guard, const xmlError *error, int lines_before)
 {
     char text[256];
@@ -117,6 +132,8 @@ xmlDoc *cm1e_xml_parse(const void *bytes, size_t size, cm1e_diag_t *diag)
         xmlFreeDoc(doc);
         doc = NULL;
     }
+    if (doc)
+        keep_comments(doc, bytes, skipped);
     xmlFreeParserCtxt(context);
     return doc;
 }
