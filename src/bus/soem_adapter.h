@@ -45,6 +45,8 @@ void cm1e_soem_destroy(cm1e_soem_t *soem);
  *  SCAN_SII_UNREADABLE: its EEPROM does not answer, SCAN_SII_DAMAGED: its content cannot be walked through. */
 enum { SCAN_TOO_MANY = -1, SCAN_LOST = -2, SCAN_SII_UNREADABLE = -3, SCAN_SII_DAMAGED = -4 };
 int cm1e_soem_scan(cm1e_soem_t *soem, uint16_t *position);
+/** Gives one slave its station address without a scan, and takes all others theirs. 0: nobody answers there. */
+uint16_t cm1e_soem_address(cm1e_soem_t *soem, uint16_t position);
 /** Programs the mailboxes of the slaves and leaves the SII to them: what Init -> Pre-Operational needs. */
 void cm1e_soem_set_up_mailboxes(cm1e_soem_t *soem);
 void cm1e_soem_facts(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_facts_t *facts);

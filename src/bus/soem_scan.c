@@ -1,35 +1,10 @@
 #include <string.h>
 
+#include "bus/eeprom.h"
 #include "bus/soem_private.h"
 #include "core/bytes.h"
-#include "core/clock.h"
 
-/* EEPROM interface of a slave controller (ETG.1000.4 section 6.4). */
-enum {
-    REG_EEPROM_CONTROL = 0x0502, REG_EEPROM_DATA = 0x0508,
-    EEPROM_NOP = 0x0000, EEPROM_READ = 0x0100,
-    EEPROM_READS_8 = 0x0040, EEPROM_ERRORS = 0x7800, EEPROM_NACK = 0x2000, EEPROM_BUSY = 0x8000,
-    EEPROM_TRIES = 3, REGISTER_TRIES = 3,
-};
-#define EEPROM_TIMEOUT_NS INT64_C(20000000)
-#define EEPROM_PAUSE_NS INT64_C(200000)
-#define NACK_PAUSE_NS INT64_C(1000000)
-
-/** The SII of one slave, read in groups of 4 or 8 bytes. */
-typedef struct eeprom {
-    cm1e_soem_t *soem;
-    uint16_t station;
-    bool lost;              /**< the slave itself does not answer */
-    uint16_t group_word;    /**< what `group` holds */
-    unsigned group_bytes;   /**< 0: nothing */
-    uint8_t group[8];
-} eeprom_t;
-
-static void pause_for(int64_t time_ns)
-{
-    cm1e_clock_t *clock = cm1e_clock_current();
-    cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + time_ns);
-}
+enum { REGISTER_TRIES = 3 };
 
 /** One slave's register, with some patience for frames that were disturbed. */
 static bool read_of(cm1e_soem_t *soem, uint16_t station, uint16_t offset, uint8_t *data, uint16_t size)
@@ -40,76 +15,9 @@ static bool read_of(cm1e_soem_t *soem, uint16_t station, uint16_t offset, uint8_
     return answered == 1;
 }
 
-static bool read_register(eeprom_t *eeprom, uint16_t offset, uint8_t *data, uint16_t size)
-{
-    eeprom->lost = !read_of(eeprom->soem, eeprom->station, offset, data, size);
-    return !eeprom->lost;
-}
-
-/** Tried once: an interface at work takes no request, so one that was taken cannot simply be repeated. */
-static bool write_register(eeprom_t *eeprom, uint16_t offset, uint8_t *data, uint16_t size)
-{
-    eeprom->lost = ecx_FPWR(&eeprom->soem->port, eeprom->station, offset, size, data, EC_TIMEOUTRET3) != 1;
-    return !eeprom->lost;
-}
-
-/** Waits until the interface is idle. False: lost, or it stays busy. */
-static bool wait_idle(eeprom_t *eeprom, uint16_t *status)
-{
-    cm1e_clock_t *clock = cm1e_clock_current();
-    const int64_t deadline_ns = cm1e_clock_now(clock) + EEPROM_TIMEOUT_NS;
-    uint8_t bytes[2];
-    for (;;) {
-        if (!read_register(eeprom, REG_EEPROM_CONTROL, bytes, sizeof bytes))
-            return false;
-        *status = cm1e_get_u16(bytes);
-        if (!(*status & EEPROM_BUSY))
-            return true;
-        if (cm1e_clock_now(clock) >= deadline_ns)
-            return false;
-        pause_for(EEPROM_PAUSE_NS);
-    }
-}
-
-static bool read_group(eeprom_t *eeprom, uint16_t word)
-{
-    uint16_t status;
-    eeprom->group_bytes = 0;
-    for (int try = 0; try < EEPROM_TRIES; try++) {
-        uint8_t request[6] = {0};
-        if (!wait_idle(eeprom, &status))
-            return false;
-        if (status & EEPROM_ERRORS)
-            write_register(eeprom, REG_EEPROM_CONTROL, request, 2); /* NOP clears them */
-        cm1e_put_u16(request, EEPROM_READ);
-        cm1e_put_u16(request + 2, word);
-        if (!write_register(eeprom, REG_EEPROM_CONTROL, request, sizeof request))
-            continue;
-        if (!wait_idle(eeprom, &status))
-            return false;
-        if (status & EEPROM_NACK) {
-            pause_for(NACK_PAUSE_NS); /* the memory itself was busy */
-            continue;
-        }
-        const unsigned bytes = status & EEPROM_READS_8 ? 8 : 4;
-        if (!read_register(eeprom, REG_EEPROM_DATA, eeprom->group, (uint16_t)bytes))
-            return false;
-        eeprom->group_word = word;
-        eeprom->group_bytes = bytes;
-        return true;
-    }
-    return false;
-}
-
 static bool read_words(void *context, uint16_t word, uint8_t bytes[4])
 {
-    eeprom_t *eeprom = context;
-    const uint32_t place = 2u * (uint16_t)(word - eeprom->group_word);
-    const bool there = word >= eeprom->group_word && place + 4 <= eeprom->group_bytes;
-    if (!there && !read_group(eeprom, word))
-        return false;
-    memcpy(bytes, eeprom->group + (there ? place : 0), 4);
-    return true;
+    return cm1e_eeprom_read(context, word, bytes);
 }
 
 /* ---- slaves ---------------------------------------------------------------------------------------------------- */
@@ -163,6 +71,15 @@ static bool take_address(cm1e_soem_t *soem, uint16_t position)
     return false;
 }
 
+uint16_t cm1e_soem_address(cm1e_soem_t *soem, uint16_t position)
+{
+    static const uint8_t none[2];
+    if (position < 1 || position > CM1E_MAX_SLAVES)
+        return 0;
+    write_all(soem, ECT_REG_STADR, none, sizeof none); /* that of an earlier scan may be another slave's now */
+    return take_address(soem, position) ? soem->slaves[position].configadr : 0;
+}
+
 /** The categories are the same for the same product and revision: they are read once. */
 static const cm1e_sii_t *same_kind_before(const cm1e_soem_t *soem, uint16_t position)
 {
@@ -185,7 +102,7 @@ static void copy_categories(cm1e_sii_t *to, const cm1e_sii_t *from)
 
 static int read_sii(cm1e_soem_t *soem, uint16_t position)
 {
-    eeprom_t eeprom = {.soem = soem, .station = soem->slaves[position].configadr};
+    cm1e_eeprom_t eeprom = {.soem = soem, .station = soem->slaves[position].configadr};
     cm1e_sii_t *sii = &soem->siis[position];
     cm1e_sii_result_t result = cm1e_sii_read_header(sii, read_words, &eeprom);
     const cm1e_sii_t *known = result == SII_OK ? same_kind_before(soem, position) : NULL;

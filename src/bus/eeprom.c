@@ -1,0 +1,160 @@
+#include "bus/eeprom.h"
+
+#include <string.h>
+
+#include "core/bytes.h"
+#include "core/clock.h"
+
+/* Registers, commands and status (ETG.1000.4 section 6.4). */
+enum {
+    REG_EEPROM_CONTROL = 0x0502, REG_EEPROM_DATA = 0x0508,
+    EEPROM_NOP = 0x0000, EEPROM_READ = 0x0100, EEPROM_WRITE = 0x0201 /* with write enable, in the same frame */,
+    EEPROM_READS_8 = 0x0040, EEPROM_ERRORS = 0x7800, EEPROM_NACK = 0x2000, EEPROM_NOT_ENABLED = 0x4000,
+    EEPROM_BUSY = 0x8000,
+    CONFIG_MASTER = 0, CONFIG_OFFERED = 1, CONFIG_FORCE = 2,
+    EEPROM_TRIES = 3, REGISTER_TRIES = 3,
+};
+#define READ_TIMEOUT_NS INT64_C(20000000)
+/** A memory chip takes 10 ms at most; a processor that emulates one may have to erase a page of its flash. */
+#define WRITE_TIMEOUT_NS INT64_C(500000000)
+#define EEPROM_PAUSE_NS INT64_C(200000)
+#define NACK_PAUSE_NS INT64_C(1000000)
+
+static void pause_for(int64_t time_ns)
+{
+    cm1e_clock_t *clock = cm1e_clock_current();
+    cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + time_ns);
+}
+
+/** With some patience for frames that were disturbed. */
+static bool read_register(cm1e_eeprom_t *eeprom, uint16_t offset, uint8_t *data, uint16_t size)
+{
+    int answered = 0;
+    for (int try = 0; try < REGISTER_TRIES && answered != 1; try++)
+        answered = cm1e_soem_transfer(eeprom->soem, COMMAND_FPRD, eeprom->station, offset, data, size);
+    eeprom->lost = answered != 1;
+    return !eeprom->lost;
+}
+
+/** Tried once: an interface at work takes no request, so one that was taken cannot simply be repeated. */
+static bool write_register(cm1e_eeprom_t *eeprom, uint16_t offset, uint8_t *data, uint16_t size)
+{
+    eeprom->lost = cm1e_soem_transfer(eeprom->soem, COMMAND_FPWR, eeprom->station, offset, data, size) != 1;
+    return !eeprom->lost;
+}
+
+/** Waits until the interface is idle. False: lost, or it stays busy. */
+static bool wait_idle(cm1e_eeprom_t *eeprom, int64_t timeout_ns, uint16_t *status)
+{
+    cm1e_clock_t *clock = cm1e_clock_current();
+    const int64_t deadline_ns = cm1e_clock_now(clock) + timeout_ns;
+    uint8_t bytes[2];
+    for (;;) {
+        if (!read_register(eeprom, REG_EEPROM_CONTROL, bytes, sizeof bytes))
+            return false;
+        *status = cm1e_get_u16(bytes);
+        if (!(*status & EEPROM_BUSY))
+            return true;
+        if (cm1e_clock_now(clock) >= deadline_ns)
+            return false;
+        pause_for(EEPROM_PAUSE_NS);
+    }
+}
+
+/** Waits for an idle interface without errors of an earlier command. */
+static bool make_ready(cm1e_eeprom_t *eeprom, int64_t timeout_ns)
+{
+    uint16_t status;
+    uint8_t nop[2] = {EEPROM_NOP, 0};
+    eeprom->group_bytes = 0;
+    if (!wait_idle(eeprom, timeout_ns, &status))
+        return false;
+    if (status & EEPROM_ERRORS)
+        write_register(eeprom, REG_EEPROM_CONTROL, nop, sizeof nop);
+    return true;
+}
+
+static bool request(cm1e_eeprom_t *eeprom, uint16_t command, uint32_t word)
+{
+    uint8_t bytes[6];
+    cm1e_put_u16(bytes, command);
+    cm1e_put_u32(bytes + 2, word);
+    return write_register(eeprom, REG_EEPROM_CONTROL, bytes, sizeof bytes);
+}
+
+static bool read_group(cm1e_eeprom_t *eeprom, uint32_t word)
+{
+    uint16_t status;
+    for (int try = 0; try < EEPROM_TRIES; try++) {
+        if (!make_ready(eeprom, READ_TIMEOUT_NS))
+            return false;
+        if (!request(eeprom, EEPROM_READ, word))
+            continue;
+        if (!wait_idle(eeprom, READ_TIMEOUT_NS, &status))
+            return false;
+        if (status & EEPROM_NACK) {
+            pause_for(NACK_PAUSE_NS); /* the memory itself was busy */
+            continue;
+        }
+        const unsigned bytes = status & EEPROM_READS_8 ? 8 : 4;
+        if (!read_register(eeprom, REG_EEPROM_DATA, eeprom->group, (uint16_t)bytes))
+            return false;
+        eeprom->group_word = word;
+        eeprom->group_bytes = bytes;
+        return true;
+    }
+    return false;
+}
+
+bool cm1e_eeprom_read(cm1e_eeprom_t *eeprom, uint32_t word, uint8_t bytes[4])
+{
+    const bool behind = eeprom->group_bytes > 0 && word >= eeprom->group_word;
+    const bool there = behind && word - eeprom->group_word <= (eeprom->group_bytes - 4) / 2;
+    if (!there && !read_group(eeprom, word))
+        return false;
+    memcpy(bytes, eeprom->group + 2 * (word - eeprom->group_word), 4);
+    return true;
+}
+
+bool cm1e_eeprom_write(cm1e_eeprom_t *eeprom, uint32_t word, uint16_t value)
+{
+    uint16_t status;
+    uint8_t bytes[4];
+    for (int try = 0; try < EEPROM_TRIES; try++) {
+        if (!make_ready(eeprom, WRITE_TIMEOUT_NS))
+            return false;
+        cm1e_put_u16(bytes, value);
+        if (!write_register(eeprom, REG_EEPROM_DATA, bytes, sizeof value))
+            continue;
+        /* Whether a request whose answer is lost was taken, the memory tells. */
+        request(eeprom, EEPROM_WRITE, word);
+        if (!wait_idle(eeprom, WRITE_TIMEOUT_NS, &status))
+            return false;
+        if (status & (EEPROM_NACK | EEPROM_NOT_ENABLED)) {
+            pause_for(NACK_PAUSE_NS);
+            continue;
+        }
+        if (cm1e_eeprom_read(eeprom, word, bytes) && cm1e_get_u16(bytes) == value)
+            return true;
+    }
+    return false;
+}
+
+bool cm1e_eeprom_take(cm1e_eeprom_t *eeprom)
+{
+    uint8_t config;
+    if (!read_register(eeprom, REG_EEPROM_CONFIG, &config, sizeof config))
+        return false;
+    eeprom->was_offered = config & CONFIG_OFFERED;
+    config = CONFIG_FORCE; /* also out of an access that the processor never ended */
+    const bool forced = write_register(eeprom, REG_EEPROM_CONFIG, &config, sizeof config);
+    config = CONFIG_MASTER;
+    return forced && write_register(eeprom, REG_EEPROM_CONFIG, &config, sizeof config);
+}
+
+void cm1e_eeprom_give_back(cm1e_eeprom_t *eeprom)
+{
+    uint8_t config = CONFIG_OFFERED;
+    if (eeprom->was_offered)
+        write_register(eeprom, REG_EEPROM_CONFIG, &config, sizeof config);
+}
