@@ -1,0 +1,246 @@
+/** cm1e sii read|write|decode: the EEPROM that says who a slave is. */
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cm1e/sii.h"
+#include "command.h"
+#include "description/sii.h"
+#include "files.h"
+#include "sii_text.h"
+
+enum { KEY_BACKUP = 0x500, KEY_FORCE_CHECKSUM, KEY_FORCE_IDENTITY, KEY_FORCE_CONFIGURATION, KEY_OWN };
+
+typedef struct sii_options {
+    common_options_t common;
+    const char *words[3]; /* read|write, position, file; decode, file or position */
+    int word_count;
+    const char *backup;
+    cm1e_sii_write_options_t write;
+} sii_options_t;
+
+static bool is_verb(const sii_options_t *options, const char *verb, int words)
+{
+    return options->word_count == words && strcmp(options->words[0], verb) == 0;
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    sii_options_t *options = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case KEY_BACKUP: options->backup = arg; return 0;
+    case KEY_FORCE_CHECKSUM: options->write.force_checksum = true; return 0;
+    case KEY_FORCE_IDENTITY: options->write.force_identity = true; return 0;
+    case KEY_FORCE_CONFIGURATION: options->write.force_configuration = true; return 0;
+    case KEY_OWN: options->write.own_alias_and_serial = true; return 0;
+    case ARGP_KEY_ARG:
+        if (options->word_count >= 3)
+            argp_error(state, "too many arguments from \"%s\" on", arg);
+        options->words[options->word_count++] = arg;
+        return 0;
+    case ARGP_KEY_END:
+        if (!is_verb(options, "read", 3) && !is_verb(options, "write", 3) && !is_verb(options, "decode", 2))
+            argp_error(state, "expected: read POSITION FILE, write POSITION FILE, or decode FILE|POSITION");
+        if (is_verb(options, "write", 3) && !options->backup)
+            argp_error(state, "writing needs a backup of what is in the slave now: --backup FILE");
+        return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+/** The open bus that the options name; NULL and a complaint, with the exit status. No scan: a damaged SII stops it. */
+static cm1e_bus_t *open_bus(const sii_options_t *options, int *status)
+{
+    static cm1e_bus_config_t config;
+    cm1e_diag_t diag = {0};
+    cm1e_bus_t *bus = NULL;
+    *status = EXIT_WRONG_USE;
+    if (!load_configuration(&options->common, &config))
+        return NULL;
+    if (cm1e_bus_open(&bus, &config, &diag) != CM1E_OK)
+        *status = fail(&diag);
+    return bus;
+}
+
+static bool parse_position(const char *word, uint16_t *position)
+{
+    long long number;
+    const bool good = parse_number(word, "the position", 1, CM1E_MAX_SLAVES, &number);
+    *position = good ? (uint16_t)number : 0;
+    return good;
+}
+
+/** The SII of a live slave; the caller frees it. */
+static bool read_slave(cm1e_bus_t *bus, uint16_t position, input_t *image, cm1e_diag_t *diag)
+{
+    *image = (input_t){.bytes = malloc(CM1E_SII_IMAGE_MAX), .size = CM1E_SII_IMAGE_MAX};
+    if (image->bytes && cm1e_sii_read_device(bus, position, image->bytes, &image->size, diag) == CM1E_OK)
+        return true;
+    if (!image->bytes)
+        cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
+    free(image->bytes);
+    image->bytes = NULL;
+    return false;
+}
+
+/* ---- read ------------------------------------------------------------------------------------------------------- */
+
+static int run_read(cm1e_bus_t *bus, const sii_options_t *options, uint16_t position)
+{
+    cm1e_diag_t diag = {0};
+    input_t image;
+    if (!read_slave(bus, position, &image, &diag))
+        return fail(&diag);
+    const bool written = write_output(options->words[2], image.bytes, image.size);
+    if (written && options->common.json)
+        print_json(json_pack("{s:s, s:I}", "file", options->words[2], "bytes", (json_int_t)image.size));
+    else if (written && strcmp(options->words[2], "-") != 0)
+        printf("%s: %zu bytes, the SII of slave %u\n", options->words[2], image.size, position);
+    free(image.bytes);
+    return written ? EXIT_OK : EXIT_FAILED;
+}
+
+/* ---- write ------------------------------------------------------------------------------------------------------ */
+
+/** On the disk before anything is changed, and never in place of another one. */
+static bool write_backup(const char *path, const input_t *image)
+{
+    const int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    if (file < 0) {
+        complain("cannot write the backup %s: %s; nothing was written into the slave", path, strerror(errno));
+        return false;
+    }
+    const bool whole = write(file, image->bytes, image->size) == (ssize_t)image->size && fsync(file) == 0;
+    const int error = errno;
+    if (close(file) == 0 && whole)
+        return true;
+    complain("cannot write the backup %s: %s; nothing was written into the slave", path, strerror(error));
+    remove(path);
+    return false;
+}
+
+/** Refused before the first word: the backup holds nothing that is not in the slave. */
+static bool nothing_written(cm1e_error_t error)
+{
+    return error == CM1E_ERROR_FILE || error == CM1E_ERROR_STATE || error == CM1E_ERROR_CONFIG ||
+           error == CM1E_ERROR_BUS_IDENTITY || error == CM1E_ERROR_INVALID_ARGUMENT || error == CM1E_ERROR_NO_MEMORY;
+}
+
+static int write_with_backup(cm1e_bus_t *bus, const sii_options_t *options, uint16_t position, const input_t *image,
+                             const input_t *present)
+{
+    cm1e_diag_t diag = {0};
+    if (!write_backup(options->backup, present))
+        return EXIT_FAILED;
+    const cm1e_error_t error = cm1e_sii_write_device(bus, position, image->bytes, image->size, &options->write, &diag);
+    if (nothing_written(error))
+        remove(options->backup);
+    if (error != CM1E_OK) {
+        fail(&diag);
+        if (!nothing_written(error))
+            complain("the backup is %s", options->backup);
+        return EXIT_FAILED;
+    }
+    if (options->common.json)
+        print_json(json_pack("{s:b, s:s}", "written", true, "backup", options->backup));
+    else
+        printf("The SII of slave %u is written and reads back as it should; what it was before is in %s.\n"
+               "Switch the slave off and on: it takes over its SII then.\n", position, options->backup);
+    return EXIT_OK;
+}
+
+static int run_write(cm1e_bus_t *bus, const sii_options_t *options, uint16_t position)
+{
+    cm1e_diag_t diag = {0};
+    input_t image, present;
+    if (!read_input(options->words[2], &image))
+        return EXIT_FAILED;
+    int status = EXIT_FAILED;
+    if (read_slave(bus, position, &present, &diag)) {
+        status = write_with_backup(bus, options, position, &image, &present);
+        free(present.bytes);
+    } else {
+        fail(&diag);
+    }
+    free(image.bytes);
+    return status;
+}
+
+/* ---- decode ----------------------------------------------------------------------------------------------------- */
+
+static int decode(const input_t *image, bool json)
+{
+    cm1e_diag_t diag = {0};
+    cm1e_description_file_t file = {0};
+    cm1e_findings_t *findings = cm1e_findings_create();
+    cm1e_error_t error = findings ? cm1e_sii_read(&file, image->bytes, image->size, findings, &diag)
+                                  : cm1e_diag_set(&diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
+    if (error == CM1E_OK && json)
+        print_json(sii_as_json(&file.devices.at[0], image->size, findings));
+    else if (error == CM1E_OK)
+        print_sii(&file.devices.at[0], image->size, findings);
+    cm1e_description_file_free(&file);
+    cm1e_findings_free(findings);
+    return error == CM1E_OK ? EXIT_OK : fail(&diag);
+}
+
+static bool is_position(const char *word) { return word[0] && strspn(word, "0123456789") == strlen(word); }
+
+/* ---- the command ------------------------------------------------------------------------------------------------ */
+
+static int run_on_bus(const sii_options_t *options)
+{
+    uint16_t position;
+    int status;
+    if (!parse_position(options->words[1], &position))
+        return EXIT_WRONG_USE;
+    cm1e_bus_t *bus = open_bus(options, &status);
+    if (!bus)
+        return status;
+    if (is_verb(options, "read", 3)) {
+        status = run_read(bus, options, position);
+    } else if (is_verb(options, "write", 3)) {
+        status = run_write(bus, options, position);
+    } else {
+        cm1e_diag_t diag = {0};
+        input_t image;
+        status = read_slave(bus, position, &image, &diag) ? decode(&image, options->common.json) : fail(&diag);
+        free(image.bytes);
+    }
+    cm1e_bus_close(bus);
+    return status;
+}
+
+int command_sii(int argc, char **argv)
+{
+    static const struct argp_option table[] = {
+        {"backup", KEY_BACKUP, "FILE", 0, "write: where to put what is in the slave now; must not exist", 0},
+        {"force-checksum", KEY_FORCE_CHECKSUM, NULL, 0, "write: an image whose checksum is wrong", 0},
+        {"force-identity", KEY_FORCE_IDENTITY, NULL, 0,
+         "write: into a slave that is not a CM1-E, or not the image's product", 0},
+        {"force-configuration", KEY_FORCE_CONFIGURATION, NULL, 0,
+         "write: words 0-6 unlike the slave's own; a wrong one can make it unreachable", 0},
+        {"own-alias-and-serial", KEY_OWN, NULL, 0,
+         "write: alias and serial number of the image too; by default those of the slave stay", 0},
+        {0}};
+    static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+    static const struct argp argp = {
+        table, parse, "read POSITION FILE\nwrite POSITION FILE --backup FILE\ndecode FILE|POSITION",
+        "Reads, writes or shows the SII, the EEPROM that says who a slave is. Writing changes only the words that differ, "
+        "reads everything back, and names the word where it had to stop; `cm1e sii write` of the backup is the way back.",
+        children, NULL, NULL};
+    sii_options_t options = {0};
+    argp_parse(&argp, argc, argv, 0, NULL, &options);
+    if (!is_verb(&options, "decode", 2) || is_position(options.words[1]))
+        return run_on_bus(&options);
+    input_t image;
+    if (!read_input(options.words[1], &image))
+        return EXIT_FAILED;
+    const int status = decode(&image, options.common.json);
+    free(image.bytes);
+    return status;
+}

@@ -1,0 +1,17 @@
+/**
+ * @file sii_text.h
+ * An SII image in words and as JSON, for `cm1e sii decode`.
+ */
+#ifndef CM1E_TOOLS_SII_TEXT_H
+#define CM1E_TOOLS_SII_TEXT_H
+
+#include <jansson.h>
+
+#include "description/check.h"
+#include "description/description.h"
+
+/** `size`: bytes of the image; `findings`: what was wrong with it when it was read. */
+void print_sii(const cm1e_description_t *device, size_t size, const cm1e_findings_t *findings);
+json_t *sii_as_json(const cm1e_description_t *device, size_t size, const cm1e_findings_t *findings);
+
+#endif
