@@ -230,8 +230,9 @@ int command_sii(int argc, char **argv)
     static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
     static const struct argp argp = {
         table, parse, "read POSITION FILE\nwrite POSITION FILE --backup FILE\ndecode FILE|POSITION",
-        "Reads, writes or shows the SII, the EEPROM that says who a slave is. Writing changes only the words that differ, "
-        "reads everything back, and names the word where it had to stop; `cm1e sii write` of the backup is the way back.",
+        "Reads, writes or shows the SII, the EEPROM that says who a slave is. Writing changes only the words that "
+        "differ, reads everything back, and names the word where it had to stop; `cm1e sii write` of the backup is "
+        "the way back.",
         children, NULL, NULL};
     sii_options_t options = {0};
     argp_parse(&argp, argc, argv, 0, NULL, &options);

@@ -26,7 +26,8 @@ static void hex_words(cm1e_bytes_t bytes, char *text, size_t size)
 {
     text[0] = '\0';
     for (size_t i = 0; i + 1 < bytes.size && strlen(text) + 6 < size; i += 2)
-        snprintf(text + strlen(text), size - strlen(text), "%s%02X%02X", i ? " " : "", bytes.data[i + 1], bytes.data[i]);
+        snprintf(text + strlen(text), size - strlen(text), "%s%02X%02X", i ? " " : "", bytes.data[i + 1],
+                 bytes.data[i]);
 }
 
 static void protocol_names(uint16_t bits, char *text, size_t size)
@@ -83,8 +84,8 @@ static void print_channels(const cm1e_description_t *device)
 {
     for (size_t i = 0; i < device->sync_managers.count; i++) {
         const cm1e_described_sync_manager_t *manager = &device->sync_managers.at[i];
-        printf("sync manager %zu  %-11s 0x%04X, %u bytes, control 0x%02X, %s\n", i, TEXT_OF(sync_manager_uses, manager->use),
-               manager->start, manager->length, manager->control, manager->enable & 1 ? "enabled" : "not enabled");
+        printf("sync manager %zu  %-11s 0x%04X, %u bytes, control 0x%02X, %s\n", i,
+               TEXT_OF(sync_manager_uses, manager->use), manager->start, manager->length, manager->control, manager->enable & 1 ? "enabled" : "not enabled");
     }
     for (size_t i = 0; i < device->fmmus.count; i++)
         printf("FMMU %zu          %s\n", i, TEXT_OF(fmmu_uses, device->fmmus.at[i].use));
@@ -181,8 +182,8 @@ json_t *sii_as_json(const cm1e_description_t *device, size_t size, const cm1e_fi
         "{s:I, s:I, s:i, s:s, s:I, s:I, s:I, s:I, s:i, s:o, s:o, s:o, s:o}", "image_bytes", (json_int_t)size,
         "eeprom_bytes", (json_int_t)eeprom->byte_size, "version", eeprom->version, "configuration", words, "vendor_id",
         (json_int_t)device->vendor_id, "product_code", (json_int_t)device->product_code, "revision",
-        (json_int_t)device->revision, "serial_number", (json_int_t)eeprom->serial_number, "alias", eeprom->alias, "name",
-        text_as_json(device->name), "order_number", text_as_json(device->type), "group", text_as_json(device->group),
+        (json_int_t)device->revision, "serial_number", (json_int_t)eeprom->serial_number, "alias", eeprom->alias,
+        "name", text_as_json(device->name), "order_number", text_as_json(device->type), "group", text_as_json(device->group),
         "mailbox", mailbox_as_json(eeprom));
     json_t *channels = channels_as_json(device), *pdos = json_array(), *list = json_array();
     json_object_update(object, channels);
@@ -192,8 +193,8 @@ json_t *sii_as_json(const cm1e_description_t *device, size_t size, const cm1e_fi
     for (size_t i = 0; i < cm1e_findings_count(findings); i++) {
         const cm1e_finding_t *finding = cm1e_findings_at(findings, i);
         json_array_append_new(list, json_pack("{s:s, s:s, s:i, s:s}", "rule", finding->rule, "severity",
-                                              finding->is_error ? "error" : "warning", "byte", (int)finding->line, "text",
-                                              finding->text));
+                                              finding->is_error ? "error" : "warning", "byte", (int)finding->line,
+                                              "text", finding->text));
     }
     json_object_set_new(object, "pdos", pdos);
     json_object_set_new(object, "findings", list);

@@ -28,11 +28,11 @@ cm1e_error_t cm1e_sii_read_device(cm1e_bus_t *bus, uint16_t position, uint8_t *i
 
 /** What may be written that is refused otherwise. Zeroed: nothing. */
 typedef struct cm1e_sii_write_options {
-    bool force_checksum;      /**< an image whose word 7 is not the checksum of its words 0-6: the slave will not load it */
-    bool force_identity;      /**< into a slave that is not the image's product, or that is not a CM1-E */
-    bool force_configuration; /**< words 0-3, 5 and 6 unlike those of the slave: they say how its processor is connected */
-    bool own_alias_and_serial;/**< the alias (word 4) and serial number (words 0x0E, 0x0F) of the image in place of those
-                                   that the slave has; by default one slave's image does not make a twin of another */
+    bool force_checksum;       /**< an image whose word 7 is not the checksum of words 0-6: no slave loads it */
+    bool force_identity;       /**< into a slave that is not the image's product, or that is not a CM1-E */
+    bool force_configuration;  /**< words 0-3, 5, 6 unlike the slave's: they say how its processor is connected */
+    bool own_alias_and_serial; /**< alias (word 4) and serial number (words 0x0E, 0x0F) of the image, too; by default
+                                    those of the slave stay: one slave's image makes no twin of another */
 } cm1e_sii_write_options_t;
 
 /** Writes an image into the slave's EEPROM, only the words that differ: categories first, then the header, words 0-7

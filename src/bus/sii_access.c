@@ -99,8 +99,8 @@ static cm1e_error_t read_image(session_t *session, uint8_t *image, size_t *size,
     if (*size == 0)
         *size = CM1E_SII_SIZE;
     if (*size > room)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The SII of slave %u has %zu bytes, there is room for "
-                             "%zu.", session->position, *size, room);
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The SII of slave %u has %zu bytes, there is room "
+                             "for %zu.", session->position, *size, room);
     return read_words(session, image, *size, diag);
 }
 
@@ -108,7 +108,7 @@ cm1e_error_t cm1e_sii_read_device(cm1e_bus_t *bus, uint16_t position, uint8_t *i
 {
     session_t session;
     if (!size || (!image && *size > 0))
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_sii_read_device() needs a buffer and its size.");
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_sii_read_device() needs a buffer, its size.");
     cm1e_error_t error = begin(&session, bus, position, diag);
     if (error != CM1E_OK)
         return error;
@@ -151,12 +151,12 @@ static cm1e_error_t check_image(const uint8_t *image, size_t size, const cm1e_si
     view_t view = {image, size};
     if (cm1e_sii_read_header(&sii, read_from_image, &view) != SII_OK ||
         cm1e_sii_read_categories(&sii, read_from_image, &view) != SII_OK)
-        return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "The SII image is not whole: its categories do not end within its "
-                             "%zu bytes. No scan would get past a slave with it.", size);
+        return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "The SII image is not whole: its categories do not end within "
+                             "its %zu bytes. No scan would get past a slave with it.", size);
     if (!checksum_good(image) && !options->force_checksum)
         return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0,
-                             "The checksum of the SII image is wrong: word 7 holds 0x%02X, words 0-6 give 0x%02X. A slave "
-                             "does not load its configuration from such an SII.", word_at(image, WORD_CHECKSUM) % 256,
+                             "The checksum of the SII image is wrong: word 7 holds 0x%02X, words 0-6 give 0x%02X. A "
+                             "slave does not load its configuration from such an SII.", word_at(image, WORD_CHECKSUM) % 256,
                              cm1e_sii_crc8(image, 2 * WORD_CHECKSUM));
     return CM1E_OK;
 }
@@ -170,7 +170,7 @@ static cm1e_error_t check_state(session_t *session, cm1e_diag_t *diag)
         return diagnose_eeprom(session, "", 0, diag);
     const uint16_t state = status[0] & AL_STATE_MASK;
     if (state != CM1E_AL_INIT && state != CM1E_AL_PRE_OP)
-        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "%s is in %s: its SII is written in Init or Pre-Operational only.",
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "%s is in %s: its SII is written in Init or Pre-Operational.",
                              session->label, cm1e_al_state_text(cm1e_get_u16(status)));
     return CM1E_OK;
 }
@@ -187,8 +187,8 @@ static cm1e_error_t check_identity(const session_t *session, const uint8_t *imag
                              (unsigned)vendor, (unsigned)product);
     if (dword_at(image, WORD_VENDOR) != vendor || dword_at(image, WORD_PRODUCT) != product)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0,
-                             "The SII image is of another product: vendor 0x%08X, product 0x%08X; %s holds vendor 0x%08X, "
-                             "product 0x%08X.", (unsigned)dword_at(image, WORD_VENDOR),
+                             "The SII image is of another product: vendor 0x%08X, product 0x%08X; %s holds vendor "
+                             "0x%08X, product 0x%08X.", (unsigned)dword_at(image, WORD_VENDOR),
                              (unsigned)dword_at(image, WORD_PRODUCT), session->label, (unsigned)vendor,
                              (unsigned)product);
     return CM1E_OK;
@@ -202,8 +202,8 @@ static cm1e_error_t check_configuration(const session_t *session, const uint8_t 
         if (word == WORD_ALIAS || word_at(image, word) == word_at(present, word))
             continue;
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                             "%s: word %u of its configuration is 0x%04X, in the SII image 0x%04X. A wrong one can make a "
-                             "slave unreachable; an image for it begins with words 0-6 of its own SII.", session->label,
+                             "%s: word %u of its configuration is 0x%04X, in the SII image 0x%04X. A wrong one can make "
+                             "a slave unreachable; an image for it begins with words 0-6 of its own SII.", session->label,
                              (unsigned)word, word_at(present, word), word_at(image, word));
     }
     return CM1E_OK;
@@ -242,15 +242,15 @@ static cm1e_error_t diagnose_write(const session_t *session, uint32_t word, cons
                                    cm1e_diag_t *diag)
 {
     return cm1e_diag_set(diag, session->eeprom.lost ? CM1E_ERROR_BUS_LOST : CM1E_ERROR_TIMEOUT, 0,
-                         "%s: writing its SII stopped at word 0x%04X, which did not become 0x%04X: %s. %u words were written "
-                         "before, so its SII is now neither the old nor the new one. Write the backup back before the slave "
-                         "is switched off.", session->label, (unsigned)word, word_at(wanted, word),
+                         "%s: writing its SII stopped at word 0x%04X, which did not become 0x%04X: %s. %u words were "
+                         "written before, so its SII is now neither the old nor the new one. Write the backup back before the "
+                         "slave is switched off.", session->label, (unsigned)word, word_at(wanted, word),
                          session->eeprom.lost ? "the slave stopped answering" : "the EEPROM does not keep it (is it "
                          "protected against writing?)", written);
 }
 
-/** Categories, then the header, then what the controller itself loads: whatever stops it, the slave stays one that can be
- *  addressed and whose SII has a size. */
+/** Categories, then the header, then what the controller itself loads: whatever stops it, the slave stays one that
+ *  can be addressed and whose SII has a size. */
 static cm1e_error_t write_words(session_t *session, const uint8_t *wanted, const uint8_t *present, size_t size,
                                 cm1e_diag_t *diag)
 {
@@ -276,14 +276,14 @@ static cm1e_error_t verify(session_t *session, const uint8_t *wanted, uint8_t *a
     for (uint32_t word = 0; error == CM1E_OK && word < size / 2; word++)
         if (word_at(again, word) != word_at(wanted, word))
             return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0,
-                                 "%s: its SII was written, but read back word 0x%04X holds 0x%04X in place of 0x%04X. Write "
-                                 "the backup back before the slave is switched off.", session->label, (unsigned)word,
+                                 "%s: its SII was written, but read back word 0x%04X holds 0x%04X in place of 0x%04X. "
+                                 "Write the backup back before the slave is switched off.", session->label, (unsigned)word,
                                  word_at(again, word), word_at(wanted, word));
     return error;
 }
 
-static cm1e_error_t write_image(session_t *session, const uint8_t *image, uint8_t *wanted, uint8_t *present, size_t size,
-                                const cm1e_sii_write_options_t *options, cm1e_diag_t *diag)
+static cm1e_error_t write_image(session_t *session, const uint8_t *image, uint8_t *wanted, uint8_t *present,
+                                size_t size, const cm1e_sii_write_options_t *options, cm1e_diag_t *diag)
 {
     cm1e_error_t error = check_state(session, diag);
     if (error == CM1E_OK)

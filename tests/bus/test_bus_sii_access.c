@@ -1,5 +1,5 @@
-/* The SII of a live slave: read as a whole, written word by word; refused where it could do harm; a fault at every frame,
- * a slave that goes at every word, and the backup as the way back. */
+/* The SII of a live slave: read as a whole, written word by word; refused where it could do harm; a fault at every
+ * frame, a slave that goes at every word, and the backup as the way back. */
 #include "bus/datagram.h"
 #include "bus_support.h"
 #include "cm1e/sii.h"
@@ -319,7 +319,8 @@ typedef struct strike {
 static cm1e_tap_verdict_t strike(void *context, cm1e_tap_frame_t *frame)
 {
     strike_t *fault = context;
-    if (frame->direction != (fault->kind == LOSE_THERE ? CM1E_TAP_SENT : CM1E_TAP_RECEIVED) || fault->seen++ != fault->at)
+    const cm1e_tap_direction_t direction = fault->kind == LOSE_THERE ? CM1E_TAP_SENT : CM1E_TAP_RECEIVED;
+    if (frame->direction != direction || fault->seen++ != fault->at)
         return CM1E_TAP_PASS;
     if (fault->kind <= LOSE_BACK)
         return CM1E_TAP_DROP;

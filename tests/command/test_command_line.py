@@ -55,6 +55,29 @@ def check_good(folder):
     generate = run("cm1e", "generate", "sii", "-o", sii)
     expect(generate.returncode == 0 and os.path.getsize(sii) == 2048, "generate sii", generate)
 
+    check_sii(folder)
+
+
+def check_sii(folder):
+    image, backup = os.path.join(folder, "slave.sii"), os.path.join(folder, "backup.sii")
+    read = run("cm1e", "sii", "-i", "sim", "read", "1", image)
+    expect(read.returncode == 0 and os.path.getsize(image) == 2048, "sii read", read)
+    write = run("cm1e", "sii", "-i", "sim", "write", "1", image, "--backup", backup)
+    expect(write.returncode == 0 and "off and on" in write.stdout, "sii write", write)
+    with open(image, "rb") as old, open(backup, "rb") as new:
+        expect(old.read() == new.read(), "the backup of sii write", write)
+    again = run("cm1e", "sii", "-i", "sim", "write", "1", image, "--backup", backup)
+    expect(again.returncode == FAILED and "exists" in again.stderr, "sii write over a backup", again)
+    os.remove(backup)
+    with open(image, "r+b") as file:
+        file.seek(14)
+        file.write(b"\x00")
+    wrong = run("cm1e", "sii", "-i", "sim", "write", "1", image, "--backup", backup)
+    expect(wrong.returncode == FAILED and "checksum" in wrong.stderr and not os.path.exists(backup),
+           "sii write of a wrong checksum", wrong)
+    forced = run("cm1e", "sii", "-i", "sim", "write", "1", image, "--backup", backup, "--force-checksum", "--json")
+    expect(forced.returncode == 0 and json.loads(forced.stdout)["backup"] == backup, "sii write, forced", forced)
+
 
 def check_examples(folder):
     for words in (["01_scan"], ["02_move_one_axis"],
@@ -98,6 +121,15 @@ WRONG = [
     (["sim", "-i", "no-such-interface"], FAILED, "no-such-interface"),
     (["sim", "-i", "lo", "--pdo-order", "up"], WRONG_USE, "ug-4.4"),
     (["generate", "esi", "-o", "x"], WRONG_USE, "sii"),
+    (["sii", "-i", "sim"], WRONG_USE, "read POSITION FILE"),
+    (["sii", "-i", "sim", "read", "0", "x"], WRONG_USE, "position"),
+    (["sii", "-i", "sim", "read", "2", "x"], FAILED, "no slave 2"),
+    (["sii", "-i", "sim", "read", "1", "/no/such/folder/x"], FAILED, "/no/such/folder"),
+    (["sii", "-i", "sim", "write", "1", "x"], WRONG_USE, "--backup"),
+    (["sii", "-i", "sim", "write", "1", f"{SOURCE}/README.md", "--backup", "/no/such/folder/x"], FAILED, "backup"),
+    (["sii", "read", "1", "x"], WRONG_USE, "-i"),
+    (["sii", "decode", "no-such-file"], FAILED, "no-such-file"),
+    (["sii", "decode", f"{SOURCE}/README.md"], FAILED, ""),
     (["generate", "sii"], WRONG_USE, "-o"),
     (["generate", "sii", "-o", "/no/such/folder/x"], FAILED, "/no/such/folder"),
     (["generate", "sii", "-o", "x", "--firmware", "9.9"], WRONG_USE, "1.3.5"),

@@ -1,0 +1,46 @@
+#!/usr/bin/env python3
+"""The SII of a slave over a veth pair, process by process: read, written, read again, the backup back.
+
+test_sii.py CM1E
+"""
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import wire  # noqa: E402
+
+
+def read(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def main(cm1e):
+    with wire.segment(cm1e) as segment:
+        def sii(*words):
+            result = segment.run([cm1e, "sii", "-i", wire.MASTER_INTERFACE, *words])
+            wire.check(result.returncode == 0, f"cm1e sii {' '.join(words)}: {result.stdout}{result.stderr}")
+            return result.stdout
+
+        first, changed, backup, again, last = (os.path.join(segment.folder, name)
+                                               for name in ("first", "changed", "backup", "again", "last"))
+        sii("read", "1", first)
+        image = bytearray(read(first))
+        image[2 * 0x0C] ^= 0x5A  # revision
+        image[2 * 0x300] ^= 0xFF
+        with open(changed, "wb") as file:
+            file.write(image)
+        sii("write", "1", changed, "--backup", backup)
+        wire.check(read(backup) == read(first), "the backup is not what was in the slave")
+        sii("read", "1", again)
+        wire.check(read(again) == bytes(image), "the slave does not hold what was written")
+        sii("write", "1", backup, "--backup", os.path.join(segment.folder, "another"))
+        sii("read", "1", last)
+        wire.check(read(last) == read(first), "the backup is not back")
+        scan = segment.run([cm1e, "scan", "-i", wire.MASTER_INTERFACE])
+        wire.check(scan.returncode == 0 and "CM1-E" in scan.stdout, f"scan: {scan.stdout}{scan.stderr}")
+    print("SII read, written, read back, and the backup written back")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
