@@ -1,0 +1,268 @@
+/* ENI: what is made for our networks, written, read and written again. */
+#include <stdio.h>
+#include <string.h>
+
+#include "cm1e/config.h"
+#include "core/bytes.h"
+#include "description/describe.h"
+#include "eni_networks.h"
+#include "generate/eni.h"
+#include "golden.h"
+#include "unity.h"
+
+static cm1e_diag_t diag;
+static cm1e_description_file_t described;
+static cm1e_eni_t document, again;
+static cm1e_file_t file, second;
+
+void setUp(void) { diag = (cm1e_diag_t){0}; }
+
+void tearDown(void)
+{
+    cm1e_eni_free(&document);
+    cm1e_eni_free(&again);
+    cm1e_file_free(&file);
+    cm1e_file_free(&second);
+    cm1e_description_file_free(&described);
+}
+
+static void make(const eni_network_t *network)
+{
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, eni_network_make(&document, &described, network, &diag), diag.text);
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_eni_write(&file, &document, &diag), diag.text);
+}
+
+static void test_networks_match_their_golden_files(void)
+{
+    for (size_t i = 0; i < ENI_NETWORKS; i++) {
+        make(&eni_networks[i]);
+        golden_compare(eni_networks[i].file, file.bytes, file.size);
+        tearDown();
+    }
+}
+
+static void test_what_was_written_comes_back_as_it_was(void)
+{
+    for (size_t i = 0; i < ENI_NETWORKS; i++) {
+        make(&eni_networks[i]);
+        TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_eni_read(&again, file.bytes, file.size, &diag), diag.text);
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_eni_write(&second, &again, &diag));
+        TEST_ASSERT_EQUAL(file.size, second.size);
+        TEST_ASSERT_EQUAL_STRING(file.bytes, second.bytes);
+        tearDown();
+    }
+}
+
+static void test_a_bus_file_gives_the_network_of_its_axes(void)
+{
+    static cm1e_bus_config_t config;
+    const char *path = CM1E_SOURCE_DIR "/examples/three_axes.yaml";
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_bus_config_load(&config, path, &diag), diag.text);
+    const cm1e_generate_options_t options = {.format = CM1E_FILE_ENI, .network = &config};
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_generate(&file, &options, &diag), diag.text);
+    golden_compare(eni_networks[ENI_THREE].file, file.bytes, file.size);
+}
+
+/* ---- what is in it ---------------------------------------------------------------------------------------------- */
+
+static const cm1e_eni_command_t *find_command(const cm1e_eni_device_t *device, const char *comment, uint16_t transition)
+{
+    for (size_t i = 0; i < device->commands.count; i++)
+        if (strcmp(device->commands.at[i].comment, comment) == 0 && device->commands.at[i].transitions & transition)
+            return &device->commands.at[i];
+    TEST_FAIL_MESSAGE(comment);
+    return NULL;
+}
+
+static void test_slaves_are_addressed_in_the_order_of_the_wire(void)
+{
+    make(&eni_networks[ENI_MIXED]);
+    for (size_t i = 0; i < document.devices.count; i++) {
+        const cm1e_eni_device_t *device = &document.devices.at[i];
+        TEST_ASSERT_EQUAL_HEX16(0x1001 + i, device->station);
+        TEST_ASSERT_EQUAL_HEX16(0x10000 - i, i == 0 ? 0x10000 : device->position);
+        TEST_ASSERT_EQUAL(i > 0, device->previous.count);
+        const cm1e_eni_command_t *address = find_command(device, "set physical address", CM1E_ENI_IP);
+        TEST_ASSERT_EQUAL_HEX16(device->position, address->adp);
+        TEST_ASSERT_EQUAL_HEX16(device->station, cm1e_get_u16(address->data.data));
+    }
+}
+
+/* Sync manager 2 of the CM1-E: 0x1100, 13 bytes (0x1600), control 0x64; its FMMU writes there (UG 11.2). */
+static void test_registers_of_a_cm1e(void)
+{
+    static const uint8_t sm2[] = {0x00, 0x11, 13, 0, 0x64, 0, 1, 0}, sm3[] = {0x00, 0x14, 21, 0, 0x20, 0, 1, 0};
+    static const uint8_t fmmu0[] = {0, 0, 0, 1, 13, 0, 0, 7, 0x00, 0x11, 0, 2, 1, 0, 0, 0};
+    static const uint8_t fmmu1[] = {0, 0, 0, 1, 21, 0, 0, 7, 0x00, 0x14, 0, 1, 1, 0, 0, 0};
+    static const struct {
+        const char *comment;
+        uint16_t reg;
+        const uint8_t *bytes;
+        size_t size;
+    } rows[] = {{"set sm 2 (outputs)", 0x0810, sm2, sizeof sm2},
+                {"set sm 3 (inputs)", 0x0818, sm3, sizeof sm3},
+                {"set fmmu 0 (outputs)", 0x0600, fmmu0, sizeof fmmu0},
+                {"set fmmu 1 (inputs)", 0x0610, fmmu1, sizeof fmmu1}};
+    make(&eni_networks[ENI_ONE]);
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const cm1e_eni_command_t *command = find_command(&document.devices.at[0], rows[i].comment, CM1E_ENI_PS);
+        TEST_ASSERT_EQUAL_HEX16(rows[i].reg, command->ado);
+        TEST_ASSERT_EQUAL(rows[i].size, command->data.size);
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(rows[i].bytes, command->data.data, rows[i].size);
+    }
+}
+
+static void test_start_up_commands_of_the_description_go_through_the_mailbox(void)
+{
+    make(&eni_networks[ENI_ONE]);
+    const cm1e_eni_mailbox_t *mailbox = &document.devices.at[0].mailbox;
+    TEST_ASSERT_TRUE(mailbox->coe && mailbox->foe && mailbox->has_bootstrap);
+    TEST_ASSERT_EQUAL(described.devices.at[0].init_commands.count, mailbox->sdos.count);
+    for (size_t i = 0; i < mailbox->sdos.count; i++) {
+        const cm1e_eni_sdo_t *sdo = &mailbox->sdos.at[i];
+        TEST_ASSERT_EQUAL_HEX16(CM1E_ENI_PS, sdo->transitions);
+        TEST_ASSERT_EQUAL(1, sdo->specifier);
+        TEST_ASSERT_TRUE(sdo->timeout_ms > 0 && sdo->data.size > 0);
+    }
+    const cm1e_eni_sdo_t *mode = &mailbox->sdos.at[mailbox->sdos.count - 1];
+    TEST_ASSERT_EQUAL_HEX16(0x6060, mode->index);
+    TEST_ASSERT_EQUAL(8, mode->data.data[0]);
+}
+
+static void test_an_io_module_has_no_mailbox_and_no_sdo(void)
+{
+    make(&eni_networks[ENI_MIXED]);
+    const cm1e_eni_device_t *io = &document.devices.at[1];
+    TEST_ASSERT_FALSE(io->mailbox.present);
+    TEST_ASSERT_EQUAL(0, io->sync_managers.at[0].number);
+    find_command(io, "set sm 0 (outputs)", CM1E_ENI_PS);
+    find_command(io, "set sm 1 (inputs)", CM1E_ENI_PS);
+}
+
+static void test_variables_lie_where_their_slaves_data_do(void)
+{
+    make(&eni_networks[ENI_MIXED]);
+    const cm1e_eni_image_t *images[] = {&document.outputs, &document.inputs};
+    for (int n = 0; n < 2; n++)
+        for (size_t i = 0; i < images[n]->variables.count; i++) {
+            const cm1e_eni_variable_t *variable = &images[n]->variables.at[i];
+            const cm1e_eni_device_t *device = NULL;
+            for (size_t d = 0; d < document.devices.count; d++)
+                if (strncmp(variable->name, document.devices.at[d].name, strlen(document.devices.at[d].name)) == 0)
+                    device = &document.devices.at[d];
+            TEST_ASSERT_NOT_NULL(device);
+            const cm1e_eni_range_t *range = n == 0 ? &device->send : &device->receive;
+            TEST_ASSERT_TRUE(variable->offset >= range->start);
+            TEST_ASSERT_TRUE(variable->offset + variable->bits <= range->start + range->length);
+            for (size_t j = 0; j < i; j++)
+                TEST_ASSERT_TRUE(strcmp(variable->name, images[n]->variables.at[j].name) != 0);
+        }
+}
+
+static void test_the_alias_is_asked_for(void)
+{
+    static const eni_network_t network = {.slaves = {ENI_CM1E}, .count = 1, .alias = 7};
+    make(&network);
+    const cm1e_eni_command_t *check = find_command(&document.devices.at[0], "check station alias", CM1E_ENI_IP);
+    TEST_ASSERT_EQUAL_HEX16(0x0012, check->ado);
+    TEST_ASSERT_TRUE(check->validates);
+    TEST_ASSERT_EQUAL(7, cm1e_get_u16(check->expected.data));
+}
+
+/* 1498 bytes of datagrams a frame: 70 axes of 21 bytes are 1470 and an LRW, and leave 16 for 14 of the BRD; the 71st is
+ * in the second frame. */
+static void test_more_than_a_frame_holds_goes_into_the_next(void)
+{
+    static const struct {
+        size_t axes, frames, commands_of_last;
+    } rows[] = {{1, 1, 2}, {70, 1, 2}, {71, 2, 2}, {128, 2, 2}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        eni_network_t network = {.count = rows[i].axes};
+        make(&network);
+        const cm1e_eni_cyclic_t *cyclic = &document.cyclics.at[0];
+        TEST_ASSERT_EQUAL(rows[i].frames, cyclic->frames.count);
+        int32_t counted = 0;
+        for (size_t f = 0; f < cyclic->frames.count; f++) {
+            const cm1e_eni_frame_t *frame = &cyclic->frames.at[f];
+            uint32_t bytes = 0;
+            for (size_t c = 0; c < frame->commands.count; c++) {
+                const cm1e_eni_command_t *command = &frame->commands.at[c];
+                TEST_ASSERT_EQUAL(f * 1536 + 16 + bytes, command->input_offset);
+                bytes += command->length + 12;
+                counted += command->code == CM1E_ENI_LRW ? command->count : 0;
+            }
+            TEST_ASSERT_TRUE(bytes <= 1498);
+        }
+        TEST_ASSERT_EQUAL(3 * rows[i].axes, counted);
+        const cm1e_eni_frame_t *last = &cyclic->frames.at[cyclic->frames.count - 1];
+        TEST_ASSERT_EQUAL(rows[i].commands_of_last, last->commands.count);
+        TEST_ASSERT_EQUAL(rows[i].axes, last->commands.at[last->commands.count - 1].count);
+        TEST_ASSERT_EQUAL(rows[i].frames * 1536, document.inputs.bytes);
+        tearDown();
+    }
+}
+
+/* ---- what cannot be made ---------------------------------------------------------------------------------------- */
+
+static void refused(const cm1e_eni_slave_t *slaves, size_t count, int64_t cycle_time_ns, const char *what)
+{
+    TEST_ASSERT_EQUAL(CM1E_ERROR_CONFIG, cm1e_eni_make(&document, slaves, count, cycle_time_ns, &diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, what), diag.text);
+}
+
+static void test_networks_that_no_file_can_describe_are_refused(void)
+{
+    TEST_ASSERT_EQUAL(CM1E_OK, eni_describe(&described, ENI_CM1E, &diag));
+    const cm1e_eni_slave_t twice[] = {{&described.devices.at[0], "x", 0}, {&described.devices.at[0], "x", 0}};
+    const cm1e_eni_slave_t nameless = {&described.devices.at[0], "", 0};
+    refused(twice, 0, 1000000, "1 to 128");
+    refused(twice, 2, 1000000, "twice");
+    refused(&nameless, 1, 1000000, "name");
+    refused(twice, 1, 1500, "microseconds");
+    refused(twice, 1, 0, "microseconds");
+    cm1e_description_t large = described.devices.at[0];
+    large.pdos = (cm1e_pdo_list_t){0};
+    cm1e_described_pdo_t *pdo = CM1E_APPEND(&described.arena, &large.pdos);
+    pdo->sync_manager = 2;
+    cm1e_described_pdo_entry_t *entry = CM1E_APPEND(&described.arena, &pdo->entries);
+    entry->index = 0x7000;
+    entry->bits = 1487 * 8;
+    const cm1e_eni_slave_t too_large = {&large, "x", 0};
+    refused(&too_large, 1, 1000000, "1486");
+}
+
+static void test_the_same_names_of_entries_get_numbers(void)
+{
+    TEST_ASSERT_EQUAL(CM1E_OK, eni_describe(&described, ENI_CM1E, &diag));
+    cm1e_description_t device = described.devices.at[0];
+    device.pdos = (cm1e_pdo_list_t){0};
+    cm1e_described_pdo_t *pdo = CM1E_APPEND(&described.arena, &device.pdos);
+    *pdo = (cm1e_described_pdo_t){.index = 0x1600, .sync_manager = 2, .name = ""};
+    for (int i = 0; i < 3; i++) {
+        cm1e_described_pdo_entry_t *entry = CM1E_APPEND(&described.arena, &pdo->entries);
+        *entry = (cm1e_described_pdo_entry_t){.index = 0x7000, .subindex = 1, .bits = 8, .type = ""};
+    }
+    const cm1e_eni_slave_t slave = {&device, "x", 0};
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_eni_make(&document, &slave, 1, 1000000, &diag));
+    TEST_ASSERT_EQUAL_STRING("x.0x1600.0x7000:01", document.outputs.variables.at[0].name);
+    TEST_ASSERT_EQUAL_STRING("x.0x1600.0x7000:01 (2)", document.outputs.variables.at[1].name);
+    TEST_ASSERT_EQUAL_STRING("x.0x1600.0x7000:01 (3)", document.outputs.variables.at[2].name);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_networks_match_their_golden_files);
+    RUN_TEST(test_what_was_written_comes_back_as_it_was);
+    RUN_TEST(test_a_bus_file_gives_the_network_of_its_axes);
+    RUN_TEST(test_slaves_are_addressed_in_the_order_of_the_wire);
+    RUN_TEST(test_registers_of_a_cm1e);
+    RUN_TEST(test_start_up_commands_of_the_description_go_through_the_mailbox);
+    RUN_TEST(test_an_io_module_has_no_mailbox_and_no_sdo);
+    RUN_TEST(test_variables_lie_where_their_slaves_data_do);
+    RUN_TEST(test_the_alias_is_asked_for);
+    RUN_TEST(test_more_than_a_frame_holds_goes_into_the_next);
+    RUN_TEST(test_networks_that_no_file_can_describe_are_refused);
+    RUN_TEST(test_the_same_names_of_entries_get_numbers);
+    return UNITY_END();
+}
