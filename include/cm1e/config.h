@@ -20,6 +20,14 @@ extern "C" {
 #define CM1E_MAX_AXES 128   /**< axes on one bus */
 #define CM1E_NAME_LENGTH 32 /**< longest axis name, with its final 0 */
 
+/** A device of which the library knows what it is. */
+typedef enum cm1e_device_model {
+    CM1E_DEVICE_CM1E = 0, /**< the motor, all four sizes: they have one product code */
+    CM1E_DEVICE_EB01,     /**< EtherCAT Cool MUSCLE Bridge, four CM1 */
+    CM1E_DEVICE_EB02,     /**< ... four CM2 */
+    CM1E_DEVICE_EB12,     /**< ... CM1 on axes 1 and 2, CM2 on axes 3 and 4 */
+} cm1e_device_model_t;
+
 /** How a slave is found (UG 4.2). */
 typedef enum cm1e_address_kind {
     CM1E_ADDRESS_POSITION = 0, /**< by its place on the wire, 1 = first */

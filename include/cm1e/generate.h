@@ -28,14 +28,6 @@ typedef enum cm1e_file_format {
     CM1E_FILE_ENI,       /**< EtherCAT network information, XML */
 } cm1e_file_format_t;
 
-/** A device of which the library knows what it is. */
-typedef enum cm1e_device_model {
-    CM1E_DEVICE_CM1E = 0, /**< the motor, all four sizes: they have one product code */
-    CM1E_DEVICE_EB01,     /**< EtherCAT Cool MUSCLE Bridge, four CM1 */
-    CM1E_DEVICE_EB02,     /**< ... four CM2 */
-    CM1E_DEVICE_EB12,     /**< ... CM1 on axes 1 and 2, CM2 on axes 3 and 4 */
-} cm1e_device_model_t;
-
 /** How an ESI shows the PDO mappings (facts: ETG.2000, ETG.5001). */
 typedef enum cm1e_esi_layout {
     CM1E_ESI_FLAT = 0, /**< all mappings in the device */

@@ -10,11 +10,18 @@ static const char *type_name(cm1e_arena_t *arena, const cm1e_entry_t *entry)
 /* A range is worth stating where a value can be written and the type alone would allow more. */
 static bool range_matters(const cm1e_entry_t *entry)
 {
-    const bool is_signed = entry->type == CM1E_TYPE_SINT || entry->type == CM1E_TYPE_INT || entry->type == CM1E_TYPE_DINT;
+    const bool is_signed =
+        entry->type == CM1E_TYPE_SINT || entry->type == CM1E_TYPE_INT || entry->type == CM1E_TYPE_DINT;
     const int64_t least = is_signed ? -((int64_t)1 << (entry->bits - 1)) : 0;
     const int64_t most = ((int64_t)1 << (is_signed ? entry->bits - 1 : entry->bits)) - 1;
     return (entry->access & CM1E_ACCESS_WRITE) && (entry->minimum > least || entry->maximum < most);
 }
+
+static const char *const availabilities[] = {
+    [CM1E_AVAILABLE] = NULL,
+    [CM1E_NOT_AVAILABLE] = "N/A: access is answered with an abort",
+    [CM1E_NO_PARAMETER] = "The motor has no such parameter: access is answered with an abort",
+};
 
 static void describe_entry(cm1e_arena_t *arena, cm1e_described_entry_t *described, const cm1e_entry_t *entry)
 {
@@ -25,9 +32,10 @@ static void describe_entry(cm1e_arena_t *arena, cm1e_described_entry_t *describe
     described->bits = entry->bits;
     described->access = entry->access;
     described->unit = entry->unit;
+    described->comment = availabilities[entry->availability];
     if (entry->default_string) {
-        described->default_data =
-            (cm1e_bytes_t){cm1e_arena_bytes(arena, entry->default_string, bytes), bytes};
+        const size_t length = entry->default_string[0] == '\0' ? 0 : bytes; /* "": not known */
+        described->default_data = (cm1e_bytes_t){cm1e_arena_bytes(arena, entry->default_string, length), length};
         return;
     }
     described->default_data = cm1e_bytes_of(arena, entry->default_value, bytes);
@@ -94,24 +102,6 @@ cm1e_described_pdo_t *cm1e_describe_pdo(cm1e_arena_t *arena, cm1e_pdo_list_t *li
         into->type = mapped->index ? mapped_type(arena, entry, mapped->bits) : "";
     }
     return described;
-}
-
-void cm1e_describe_sync_managers(cm1e_arena_t *arena, cm1e_description_t *device,
-                                 const cm1e_sync_manager_t managers[4], const cm1e_pdo_list_t *assigned)
-{
-    for (int n = 0; n < 4; n++) {
-        cm1e_described_sync_manager_t *manager = CM1E_APPEND(arena, &device->sync_managers);
-        uint32_t bits = 0;
-        for (size_t i = 0; i < assigned->count; i++)
-            if (assigned->at[i].sync_manager == n)
-                bits += cm1e_pdo_bits(&assigned->at[i]);
-        manager->use = (cm1e_sync_manager_use_t)managers[n].type;
-        manager->start = managers[n].start;
-        manager->length = n < 2 ? managers[n].length : (uint16_t)((bits + 7) / 8);
-        manager->length_given = true;
-        manager->control = managers[n].control;
-        manager->enable = managers[n].enable;
-    }
 }
 
 static cm1e_error_t wrong(cm1e_diag_t *diag, const char *what)

@@ -16,7 +16,9 @@ cm1e_error_t cm1e_describe(cm1e_description_file_t *file, const cm1e_device_opti
 /** Appends the plain I/O module of the simulator: no mailbox, 1 byte out and 1 byte in, vendor 0. */
 void cm1e_describe_io_module(cm1e_description_file_t *file);
 
-/* ---- private to this room: one model each, `options` already checked by cm1e_describe() --------------------------- */
+enum { CM1E_SM_NUMBER_OUTPUTS = 2, CM1E_SM_NUMBER_INPUTS = 3 };
+
+/* ---- private to this room: one model each, `options` already checked by cm1e_describe() ------------------------- */
 
 cm1e_error_t cm1e_describe_cm1e(cm1e_description_file_t *file, const cm1e_device_options_t *options,
                                 cm1e_esi_layout_t layout, cm1e_diag_t *diag);
@@ -29,6 +31,31 @@ void cm1e_describe_object(cm1e_arena_t *arena, cm1e_object_list_t *list, const c
 /** A PDO of the device tables; names and types come from the objects that are already in `device`. */
 cm1e_described_pdo_t *cm1e_describe_pdo(cm1e_arena_t *arena, cm1e_pdo_list_t *list, const cm1e_object_list_t *objects,
                                         const cm1e_pdo_t *pdo, bool transmit, int sync_manager);
+/** An object that an axis has, and a module in MDP layout; below are those of communication, above the device's own. */
+bool cm1e_describe_is_of_axis(uint16_t index);
+/** Those of `objects` that belong to no axis. */
+void cm1e_describe_own_objects(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_object_list_t *objects);
+/** An entry to adapt; NULL: there is none. */
+cm1e_described_entry_t *cm1e_describe_entry_of(const cm1e_object_list_t *objects, uint16_t index, uint8_t subindex);
+/** Puts another default in place of that of the tables; does nothing where there is no such entry. */
+void cm1e_describe_default(cm1e_arena_t *arena, const cm1e_object_list_t *objects, uint16_t index, uint8_t subindex,
+                           int64_t value);
+/** A start-up command from Pre-Operational to Safe-Operational. */
+cm1e_init_command_t *cm1e_describe_init_command(cm1e_arena_t *arena, cm1e_init_command_list_t *list, uint16_t index,
+                                                uint8_t subindex, int64_t value, size_t bytes, const char *comment);
+/** The PDOs that have a sync manager, as the dictionary's 0x1C12 and 0x1C13 have them and as start-up commands. */
+void cm1e_describe_assignment(cm1e_arena_t *arena, cm1e_init_command_list_t *list, const cm1e_object_list_t *objects,
+                              const cm1e_pdo_list_t *pdos);
+/** An axis by CiA 402: profile 402, a servo drive. */
+void cm1e_describe_channel(cm1e_arena_t *arena, cm1e_description_t *device);
+/** FMMUs, mailbox with CoE, ways to synchronise. */
+void cm1e_describe_communication(cm1e_arena_t *arena, cm1e_description_t *device,
+                                 const cm1e_device_options_t *options);
+/** What the EEPROM holds besides. `bootstrap`: it has a mailbox in the state Bootstrap. */
+void cm1e_describe_eeprom(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_device_options_t *options,
+                          bool bootstrap);
+/** A module of a drive; NULL: the file already has it. Modules with one ident have to have one content. */
+cm1e_module_t *cm1e_describe_module(cm1e_description_file_t *file, uint32_t ident, const char *name);
 /** Process data sync managers get the length of the PDOs that are assigned to them. */
 void cm1e_describe_sync_managers(cm1e_arena_t *arena, cm1e_description_t *device,
                                  const cm1e_sync_manager_t managers[4], const cm1e_pdo_list_t *assigned);

@@ -2,11 +2,7 @@
 
 #include <string.h>
 
-#include "core/bytes.h"
-
-enum { MAPPINGS = 4, SM_OUTPUTS = 2, SM_INPUTS = 3, PROFILE_402 = 402, TYPE_SERVO = 4, FIRST_DRIVE_OBJECT = 0x6000 };
-/* PDI control 0x05: SPI slave, as microcontrollers are connected. The value of the real device is not known. */
-enum { PDI_CONTROL_SPI = 0x0005, EEPROM_BYTES = 2048, CONFIG_BYTES = 14 };
+enum { MAPPINGS = 4 };
 
 /* Which mode a mapping starts in, and its module in MDP layout. The idents go on from those of the SSC sample code, of
  * which the device family descends; the guide names none. The dynamic mapping starts in CSP, as the EC_EXTEND of UG
@@ -32,29 +28,14 @@ static const cm1e_firmware_info_t *firmware_of(const cm1e_device_options_t *opti
     return NULL;
 }
 
-static cm1e_described_entry_t *entry_of(const cm1e_object_list_t *objects, uint16_t index, uint8_t subindex)
-{
-    for (size_t i = 0; i < objects->count; i++)
-        for (size_t j = 0; objects->at[i].index == index && j < objects->at[i].entries.count; j++)
-            if (objects->at[i].entries.at[j].subindex == subindex)
-                return &objects->at[i].entries.at[j];
-    return NULL;
-}
-
-static void set_default(cm1e_arena_t *arena, const cm1e_object_list_t *objects, uint16_t index, uint8_t subindex,
-                        int64_t value)
-{
-    cm1e_described_entry_t *entry = entry_of(objects, index, subindex);
-    if (entry)
-        entry->default_data = cm1e_bytes_of(arena, value, (entry->bits + 7) / 8);
-}
-
 /* The name of the row of a mapping object that maps `index`: the dictionary has them in one of the two orders. */
 static const char *row_name(const cm1e_described_object_t *object, uint16_t index)
 {
-    for (size_t i = 0; i < object->entries.count; i++)
-        if (object->entries.at[i].subindex > 0 && cm1e_bytes_unsigned(object->entries.at[i].default_data) >> 16 == index)
-            return object->entries.at[i].name;
+    for (size_t i = 0; i < object->entries.count; i++) {
+        const cm1e_described_entry_t *row = &object->entries.at[i];
+        if (row->subindex > 0 && cm1e_bytes_unsigned(row->default_data) >> 16 == index)
+            return row->name;
+    }
     return "";
 }
 
@@ -70,13 +51,13 @@ static void set_mapping_rows(cm1e_arena_t *arena, const cm1e_object_list_t *obje
         return;
     for (unsigned i = 0; i < pdo->entry_count; i++)
         names[i] = row_name(object, pdo->entries[i].index);
-    set_default(arena, objects, pdo->index, 0, pdo->entry_count);
+    cm1e_describe_default(arena, objects, pdo->index, 0, pdo->entry_count);
     for (unsigned i = 0; i < pdo->entry_count; i++) {
-        cm1e_described_entry_t *row = entry_of(objects, pdo->index, (uint8_t)(i + 1));
+        cm1e_described_entry_t *row = cm1e_describe_entry_of(objects, pdo->index, (uint8_t)(i + 1));
         if (!row)
             continue;
         row->name = names[i];
-        set_default(arena, objects, pdo->index, (uint8_t)(i + 1),
+        cm1e_describe_default(arena, objects, pdo->index, (uint8_t)(i + 1),
                     (int64_t)pdo->entries[i].index << 16 | pdo->entries[i].subindex << 8 | pdo->entries[i].bits);
     }
 }
@@ -85,17 +66,15 @@ static void set_mapping_rows(cm1e_arena_t *arena, const cm1e_object_list_t *obje
 static void adapt_objects(cm1e_arena_t *arena, const cm1e_object_list_t *objects, const cm1e_device_options_t *options,
                           const cm1e_firmware_info_t *firmware)
 {
-    set_default(arena, objects, OBJ_1018_IDENTITY, 3, firmware->revision);
-    set_default(arena, objects, OBJ_1018_IDENTITY, 4, options->serial_number);
-    set_default(arena, objects, OBJ_1C12_RXPDO_ASSIGN, 1, 0x1600 + (int)options->mapping);
-    set_default(arena, objects, OBJ_1C13_TXPDO_ASSIGN, 1, 0x1A00 + (int)options->mapping);
-    cm1e_described_entry_t *version = entry_of(objects, OBJ_100A_SOFTWARE_VERSION, 0);
+    cm1e_describe_default(arena, objects, OBJ_1018_IDENTITY, 3, firmware->revision);
+    cm1e_describe_default(arena, objects, OBJ_1018_IDENTITY, 4, options->serial_number);
+    cm1e_described_entry_t *version = cm1e_describe_entry_of(objects, OBJ_100A_SOFTWARE_VERSION, 0);
     if (version)
         version->default_data =
             (cm1e_bytes_t){cm1e_arena_bytes(arena, firmware->version, version->bits / 8), version->bits / 8};
     static const uint16_t velocities[] = {OBJ_606C_VELOCITY_ACTUAL_VALUE, OBJ_60FF_TARGET_VELOCITY};
     for (int i = 0; i < 2 && firmware->velocity_in_counts_per_ms; i++) {
-        cm1e_described_entry_t *entry = entry_of(objects, velocities[i], 0);
+        cm1e_described_entry_t *entry = cm1e_describe_entry_of(objects, velocities[i], 0);
         if (entry)
             entry->unit = "counts/ms";
     }
@@ -134,46 +113,26 @@ static void describe_pdos(cm1e_arena_t *arena, cm1e_pdo_list_t *list, const cm1e
 {
     for (int transmit = 0; transmit < 2; transmit++)
         for (int mapping = 0; mapping < MAPPINGS; mapping++) {
+            const int manager = transmit ? CM1E_SM_NUMBER_INPUTS : CM1E_SM_NUMBER_OUTPUTS;
             const bool chosen = mapping == (int)options->mapping;
             cm1e_pdo_t pdo;
             cm1e_device_pdo(&pdo, (cm1e_mapping_t)mapping, transmit, options->order, firmware->firmware);
             exclude_others(arena, cm1e_describe_pdo(arena, list, objects, &pdo, transmit,
-                                                    !chosen ? CM1E_NO_SYNC_MANAGER : transmit ? SM_INPUTS : SM_OUTPUTS));
+                                                    chosen ? manager : CM1E_NO_SYNC_MANAGER));
         }
 }
 
-static void init_command(cm1e_arena_t *arena, cm1e_init_command_list_t *list, uint16_t index, uint8_t subindex,
-                         int64_t value, size_t bytes, const char *comment)
+static cm1e_init_command_t *describe_start_mode(cm1e_arena_t *arena, cm1e_init_command_list_t *list,
+                                                cm1e_mapping_t mapping)
 {
-    cm1e_init_command_t *command = CM1E_APPEND(arena, list);
-    command->transitions = CM1E_TRANSITION_PS;
-    command->index = index;
-    command->subindex = subindex;
-    command->data = cm1e_bytes_of(arena, value, bytes);
-    command->adapts = index < FIRST_DRIVE_OBJECT;
-    command->comment = comment;
-}
-
-/* In the order of the initialization commands of UG 11.2.1. A master whose user chose another mapping adapts them. */
-static void describe_assignment(cm1e_arena_t *arena, cm1e_init_command_list_t *list, cm1e_mapping_t mapping)
-{
-    init_command(arena, list, OBJ_1C12_RXPDO_ASSIGN, 0, 0, 1, "No RxPDO assigned");
-    init_command(arena, list, OBJ_1C13_TXPDO_ASSIGN, 0, 0, 1, "No TxPDO assigned");
-    init_command(arena, list, OBJ_1C12_RXPDO_ASSIGN, 1, 0x1600 + (int)mapping, 2, "Assigned RxPDO");
-    init_command(arena, list, OBJ_1C12_RXPDO_ASSIGN, 0, 1, 1, "One RxPDO assigned");
-    init_command(arena, list, OBJ_1C13_TXPDO_ASSIGN, 1, 0x1A00 + (int)mapping, 2, "Assigned TxPDO");
-    init_command(arena, list, OBJ_1C13_TXPDO_ASSIGN, 0, 1, 1, "One TxPDO assigned");
-}
-
-static void describe_start_mode(cm1e_arena_t *arena, cm1e_init_command_list_t *list, cm1e_mapping_t mapping)
-{
-    init_command(arena, list, OBJ_6060_MODES_OF_OPERATION, 0, mappings[mapping].mode, 1, "Modes of operation");
+    return cm1e_describe_init_command(arena, list, OBJ_6060_MODES_OF_OPERATION, 0, mappings[mapping].mode, 1,
+                                      "Modes of operation");
 }
 
 static void describe_identity(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_firmware_info_t *firmware)
 {
     device->vendor_id = CM1E_VENDOR_ID;
-    device->vendor_name = "Myostat Motion Control Inc.";
+    device->vendor_name = CM1E_VENDOR_NAME;
     device->product_code = CM1E_PRODUCT_CODE;
     device->revision = firmware->revision;
     device->product_given = device->revision_given = true;
@@ -184,64 +143,43 @@ static void describe_identity(cm1e_arena_t *arena, cm1e_description_t *device, c
                                         cm1e_device_motors[3].name);
     device->group = "Servo motors";
     device->group_name = "Servo motors";
-    device->physics = "YY";
     device->identification_reg134 = device->identification_reg134_given = true; /* UG 4.2.2 */
-    cm1e_channel_t *channel = CM1E_APPEND(arena, &device->channels);
-    channel->profile_no = PROFILE_402;
-    channel->add_info = TYPE_SERVO;
+    cm1e_describe_channel(arena, device);
 }
 
-static void describe_communication(cm1e_arena_t *arena, cm1e_description_t *device,
-                                   const cm1e_device_options_t *options)
+/* What a module holds depends on these two besides the mapping, so that its ident tells them apart too: several devices
+ * can be in one file. */
+static uint32_t module_ident(int mapping, const cm1e_device_options_t *options, const cm1e_firmware_info_t *firmware)
 {
-    static const cm1e_fmmu_use_t fmmus[] = {CM1E_FMMU_OUTPUTS, CM1E_FMMU_INPUTS, CM1E_FMMU_MAILBOX_STATE};
-    for (unsigned i = 0; i < 3; i++) {
-        cm1e_described_fmmu_t *fmmu = CM1E_APPEND(arena, &device->fmmus);
-        fmmu->use = fmmus[i];
-    }
-    device->mailbox = (cm1e_mailbox_protocols_t){
-        .present = true, .coe = true, .sdo_info = true, .pdo_assign = true, .segmented_sdo = true,
-        .foe = true, /* update since V1.2.0 (UG 10.1), the oldest firmware of the tables */
-        .data_link_layer = true, .complete_access = options->complete_access};
-    cm1e_dc_mode_t *mode = CM1E_APPEND(arena, &device->dc_modes);
-    *mode = (cm1e_dc_mode_t){.name = "SM Synchronous", .text = "SM Synchronous"};
-    if (options->distributed_clocks) {
-        mode = CM1E_APPEND(arena, &device->dc_modes);
-        *mode = (cm1e_dc_mode_t){.name = "DC Synchronous", .text = "DC Synchronous", .assign_activate = 0x0300,
-                                 .sync0_given = true, .sync0_factor = 1};
-    }
+    return mappings[mapping].module_ident | ((uint32_t)firmware->firmware + 1) << 4 | (uint32_t)options->order;
 }
 
-static void describe_eeprom(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_device_options_t *options)
+static void describe_module(cm1e_arena_t *arena, cm1e_module_t *module, cm1e_mapping_t mapping,
+                            const cm1e_object_list_t *objects, const cm1e_pdo_list_t *pdos)
 {
-    const cm1e_sync_manager_t *managers = cm1e_device_sync_managers;
-    uint8_t config[CONFIG_BYTES] = {PDI_CONTROL_SPI}, bootstrap[8];
-    cm1e_described_eeprom_t *eeprom = &device->eeprom;
-    eeprom->config_known = options->config_data_size == CONFIG_BYTES;
-    if (eeprom->config_known)
-        memcpy(config, options->config_data, CONFIG_BYTES);
-    if (options->alias != 0 || !eeprom->config_known)
-        cm1e_put_u16(config + 8, options->alias);
-    eeprom->byte_size = EEPROM_BYTES;
-    eeprom->version = 1;
-    eeprom->alias = cm1e_get_u16(config + 8);
-    eeprom->serial_number = options->serial_number;
-    eeprom->config_data = (cm1e_bytes_t){cm1e_arena_bytes(arena, config, sizeof config), sizeof config};
-    cm1e_put_u16(bootstrap, managers[0].start);
-    cm1e_put_u16(bootstrap + 2, managers[0].length);
-    cm1e_put_u16(bootstrap + 4, managers[1].start);
-    cm1e_put_u16(bootstrap + 6, managers[1].length);
-    eeprom->bootstrap = (cm1e_bytes_t){cm1e_arena_bytes(arena, bootstrap, sizeof bootstrap), sizeof bootstrap};
-    eeprom->mailbox_out_start = managers[0].start;
-    eeprom->mailbox_out_length = managers[0].length;
-    eeprom->mailbox_in_start = managers[1].start;
-    eeprom->mailbox_in_length = managers[1].length;
+    for (size_t i = 0; i < objects->count; i++)
+        if (cm1e_describe_is_of_axis(objects->at[i].index)) {
+            cm1e_described_object_t *object = CM1E_APPEND(arena, &module->objects);
+            *object = objects->at[i];
+            object->depends_on_slot = true;
+        }
+    for (size_t i = 0; i < pdos->count; i++)
+        if ((pdos->at[i].index & 0xFF) == mapping) {
+            cm1e_described_pdo_t *pdo = CM1E_APPEND(arena, &module->pdos);
+            *pdo = pdos->at[i];
+            pdo->depends_on_slot = true;
+            pdo->sync_manager = pdo->transmit ? CM1E_SM_NUMBER_INPUTS : CM1E_SM_NUMBER_OUTPUTS;
+            pdo->excludes.count = 0;
+            for (size_t e = 0; e < pdo->entries.count; e++)
+                pdo->entries.at[e].depends_on_slot = cm1e_describe_is_of_axis(pdo->entries.at[e].index);
+        }
+    describe_start_mode(arena, &module->init_commands, mapping)->depends_on_slot = true;
 }
 
 /* One slot for the one axis; its modules are the mappings to choose from, each with the drive's objects. */
-static void describe_modules(cm1e_description_file_t *file, cm1e_description_t *device,
-                             const cm1e_device_options_t *options, const cm1e_object_list_t *objects,
-                             const cm1e_pdo_list_t *pdos)
+static void describe_slot(cm1e_description_file_t *file, cm1e_description_t *device,
+                          const cm1e_device_options_t *options, const cm1e_firmware_info_t *firmware,
+                          const cm1e_object_list_t *objects, const cm1e_pdo_list_t *pdos)
 {
     cm1e_arena_t *arena = &file->arena;
     device->slot_pdo_increment = 0x10;
@@ -251,30 +189,11 @@ static void describe_modules(cm1e_description_file_t *file, cm1e_description_t *
     slot->minimum_instances = slot->maximum_instances = 1;
     for (int m = 0; m < MAPPINGS; m++) {
         cm1e_slot_choice_t *choice = CM1E_APPEND(arena, &slot->choices);
-        choice->ident = mappings[m].module_ident;
+        choice->ident = module_ident(m, options, firmware);
         choice->is_default = m == (int)options->mapping;
-        cm1e_module_t *module = CM1E_APPEND(arena, &file->modules);
-        module->ident = mappings[m].module_ident;
-        module->type = module->name = mappings[m].module;
-        module->profile_no = PROFILE_402;
-        module->profile_info = TYPE_SERVO;
-        for (size_t i = 0; i < objects->count; i++)
-            if (objects->at[i].index >= FIRST_DRIVE_OBJECT && objects->at[i].index < 0xF000) {
-                cm1e_described_object_t *object = CM1E_APPEND(arena, &module->objects);
-                *object = objects->at[i];
-                object->depends_on_slot = true;
-            }
-        for (size_t i = 0; i < pdos->count; i++)
-            if ((pdos->at[i].index & 0xFF) == m) {
-                cm1e_described_pdo_t *pdo = CM1E_APPEND(arena, &module->pdos);
-                *pdo = pdos->at[i];
-                pdo->depends_on_slot = true;
-                pdo->sync_manager = pdo->transmit ? SM_INPUTS : SM_OUTPUTS;
-                pdo->excludes.count = 0;
-                for (size_t e = 0; e < pdo->entries.count; e++)
-                    pdo->entries.at[e].depends_on_slot = pdo->entries.at[e].index >= FIRST_DRIVE_OBJECT;
-            }
-        describe_start_mode(arena, &module->init_commands, (cm1e_mapping_t)m);
+        cm1e_module_t *module = cm1e_describe_module(file, choice->ident, mappings[m].module);
+        if (module)
+            describe_module(arena, module, (cm1e_mapping_t)m, objects, pdos);
     }
 }
 
@@ -300,15 +219,14 @@ cm1e_error_t cm1e_describe_cm1e(cm1e_description_file_t *file, const cm1e_device
     describe_identity(arena, device, firmware);
     describe_objects(arena, &objects, options, firmware);
     describe_pdos(arena, &pdos, &objects, options, firmware);
-    describe_communication(arena, device, options);
-    describe_eeprom(arena, device, options);
+    cm1e_describe_communication(arena, device, options);
+    device->mailbox.foe = true; /* update since V1.2.0 (UG 10.1), the oldest firmware of the tables */
+    cm1e_describe_eeprom(arena, device, options, true);
     cm1e_describe_sync_managers(arena, device, cm1e_device_sync_managers, &pdos);
-    describe_assignment(arena, &device->init_commands, options->mapping);
+    cm1e_describe_assignment(arena, &device->init_commands, &objects, &pdos);
     if (layout == CM1E_ESI_MDP) {
-        for (size_t i = 0; i < objects.count; i++)
-            if (objects.at[i].index < FIRST_DRIVE_OBJECT || objects.at[i].index >= 0xF000)
-                *(cm1e_described_object_t *)CM1E_APPEND(arena, &device->objects) = objects.at[i];
-        describe_modules(file, device, options, &objects, &pdos);
+        cm1e_describe_own_objects(arena, device, &objects);
+        describe_slot(file, device, options, firmware, &objects, &pdos);
         return CM1E_OK;
     }
     device->objects = objects;

@@ -95,6 +95,7 @@ const cm1e_firmware_info_t *cm1e_firmware_from_version(const char *version);
 
 /** CoE data types (ETG.1020): the numbers go over the wire in SDO information. */
 typedef enum cm1e_data_type {
+    CM1E_TYPE_BOOL = 0x01,
     CM1E_TYPE_SINT = 0x02, CM1E_TYPE_INT = 0x03, CM1E_TYPE_DINT = 0x04,
     CM1E_TYPE_USINT = 0x05, CM1E_TYPE_UINT = 0x06, CM1E_TYPE_UDINT = 0x07,
     CM1E_TYPE_STRING = 0x09,
@@ -108,6 +109,13 @@ enum cm1e_access_flags {
     CM1E_ACCESS_RXPDO = 0x08, CM1E_ACCESS_TXPDO = 0x10,
 };
 
+/** Whether an object does something. Everything of the CM1-E does; of the bridge see bridge.h. */
+typedef enum cm1e_availability {
+    CM1E_AVAILABLE = 0,
+    CM1E_NOT_AVAILABLE, /**< "N/A": in the dictionary, but access is answered with an abort */
+    CM1E_NO_PARAMETER,  /**< "-": the motor behind it has no such parameter; access is answered with an abort */
+} cm1e_availability_t;
+
 /** One sub-index. `round_to` > 1: the device keeps multiples of it (UG: "rounded to the closest"). */
 typedef struct cm1e_entry {
     uint16_t index;
@@ -115,12 +123,13 @@ typedef struct cm1e_entry {
     uint8_t access;        /**< cm1e_access_flags */
     cm1e_data_type_t type;
     uint16_t bits;
+    uint8_t availability;  /**< cm1e_availability_t */
     const char *name;
     const char *unit;      /**< "" where there is none */
     int64_t default_value, minimum, maximum;
     uint32_t round_to;
     int64_t kept_minimum;  /**< a smaller value is accepted and kept as this one (UG 6.2.2: 0x6083, 0x6084); 0: none */
-    const char *default_string; /**< CM1E_TYPE_STRING only */
+    const char *default_string; /**< CM1E_TYPE_STRING only; "": not known */
     cm1e_firmware_t since;
 } cm1e_entry_t;
 
@@ -139,6 +148,8 @@ typedef struct cm1e_object {
 const cm1e_object_t *cm1e_device_objects(size_t *count);
 /** NULL: no such object or sub-index in any firmware. */
 const cm1e_entry_t *cm1e_device_entry(uint16_t index, uint8_t subindex);
+/** NULL: it has no such sub-index. */
+const cm1e_entry_t *cm1e_object_entry(const cm1e_object_t *object, uint8_t subindex);
 
 /* ---- process data ------------------------------------------------------------------------------------------------ */
 
@@ -173,6 +184,7 @@ extern const cm1e_sync_manager_t cm1e_device_sync_managers[4];
 /* ---- identity, motors, errors ------------------------------------------------------------------------------------ */
 
 #define CM1E_VENDOR_ID 0x00004441u
+#define CM1E_VENDOR_NAME "Myostat Motion Control Inc."
 #define CM1E_PRODUCT_CODE 0x44412002u
 #define CM1E_COUNTS_PER_REVOLUTION 50000
 

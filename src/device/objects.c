@@ -172,8 +172,11 @@ static const cm1e_object_t *find_object(uint16_t index)
 const cm1e_entry_t *cm1e_device_entry(uint16_t index, uint8_t subindex)
 {
     const cm1e_object_t *object = find_object(index);
-    if (!object)
-        return NULL;
+    return object ? cm1e_object_entry(object, subindex) : NULL;
+}
+
+const cm1e_entry_t *cm1e_object_entry(const cm1e_object_t *object, uint8_t subindex)
+{
     for (uint16_t i = 0; i < object->entry_count; i++)
         if (object->entries[i].subindex == subindex)
             return &object->entries[i];

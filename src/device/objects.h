@@ -15,18 +15,21 @@ enum {
     RO_TXPDO = RO | CM1E_ACCESS_TXPDO,
 };
 
+#define BITS_BOOL 1
 #define BITS_SINT 8
 #define BITS_INT 16
 #define BITS_DINT 32
 #define BITS_USINT 8
 #define BITS_UINT 16
 #define BITS_UDINT 32
+#define MIN_BOOL 0
 #define MIN_SINT INT8_MIN
 #define MIN_INT INT16_MIN
 #define MIN_DINT INT32_MIN
 #define MIN_USINT 0
 #define MIN_UINT 0
 #define MIN_UDINT 0
+#define MAX_BOOL 1
 #define MAX_SINT INT8_MAX
 #define MAX_INT INT16_MAX
 #define MAX_DINT INT32_MAX
