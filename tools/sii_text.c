@@ -85,7 +85,8 @@ static void print_channels(const cm1e_description_t *device)
     for (size_t i = 0; i < device->sync_managers.count; i++) {
         const cm1e_described_sync_manager_t *manager = &device->sync_managers.at[i];
         printf("sync manager %zu  %-11s 0x%04X, %u bytes, control 0x%02X, %s\n", i,
-               TEXT_OF(sync_manager_uses, manager->use), manager->start, manager->length, manager->control, manager->enable & 1 ? "enabled" : "not enabled");
+               TEXT_OF(sync_manager_uses, manager->use), manager->start, manager->length, manager->control,
+               manager->enable & 1 ? "enabled" : "not enabled");
     }
     for (size_t i = 0; i < device->fmmus.count; i++)
         printf("FMMU %zu          %s\n", i, TEXT_OF(fmmu_uses, device->fmmus.at[i].use));
@@ -183,7 +184,8 @@ json_t *sii_as_json(const cm1e_description_t *device, size_t size, const cm1e_fi
         "eeprom_bytes", (json_int_t)eeprom->byte_size, "version", eeprom->version, "configuration", words, "vendor_id",
         (json_int_t)device->vendor_id, "product_code", (json_int_t)device->product_code, "revision",
         (json_int_t)device->revision, "serial_number", (json_int_t)eeprom->serial_number, "alias", eeprom->alias,
-        "name", text_as_json(device->name), "order_number", text_as_json(device->type), "group", text_as_json(device->group),
+        "name", text_as_json(device->name), "order_number", text_as_json(device->type), "group",
+        text_as_json(device->group),
         "mailbox", mailbox_as_json(eeprom));
     json_t *channels = channels_as_json(device), *pdos = json_array(), *list = json_array();
     json_object_update(object, channels);

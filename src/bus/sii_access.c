@@ -156,8 +156,8 @@ static cm1e_error_t check_image(const uint8_t *image, size_t size, const cm1e_si
     if (!checksum_good(image) && !options->force_checksum)
         return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0,
                              "The checksum of the SII image is wrong: word 7 holds 0x%02X, words 0-6 give 0x%02X. A "
-                             "slave does not load its configuration from such an SII.", word_at(image, WORD_CHECKSUM) % 256,
-                             cm1e_sii_crc8(image, 2 * WORD_CHECKSUM));
+                             "slave does not load its configuration from such an SII.",
+                             word_at(image, WORD_CHECKSUM) % 256, cm1e_sii_crc8(image, 2 * WORD_CHECKSUM));
     return CM1E_OK;
 }
 
@@ -202,9 +202,9 @@ static cm1e_error_t check_configuration(const session_t *session, const uint8_t 
         if (word == WORD_ALIAS || word_at(image, word) == word_at(present, word))
             continue;
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                             "%s: word %u of its configuration is 0x%04X, in the SII image 0x%04X. A wrong one can make "
-                             "a slave unreachable; an image for it begins with words 0-6 of its own SII.", session->label,
-                             (unsigned)word, word_at(present, word), word_at(image, word));
+                             "%s: word %u of its configuration is 0x%04X, in the SII image 0x%04X. A wrong one can "
+                             "make a slave unreachable; an image for it begins with words 0-6 of its own SII.",
+                             session->label, (unsigned)word, word_at(present, word), word_at(image, word));
     }
     return CM1E_OK;
 }
@@ -243,8 +243,8 @@ static cm1e_error_t diagnose_write(const session_t *session, uint32_t word, cons
 {
     return cm1e_diag_set(diag, session->eeprom.lost ? CM1E_ERROR_BUS_LOST : CM1E_ERROR_TIMEOUT, 0,
                          "%s: writing its SII stopped at word 0x%04X, which did not become 0x%04X: %s. %u words were "
-                         "written before, so its SII is now neither the old nor the new one. Write the backup back before the "
-                         "slave is switched off.", session->label, (unsigned)word, word_at(wanted, word),
+                         "written before, so its SII is now neither the old nor the new one. Write the backup back "
+                         "before the slave is switched off.", session->label, (unsigned)word, word_at(wanted, word),
                          session->eeprom.lost ? "the slave stopped answering" : "the EEPROM does not keep it (is it "
                          "protected against writing?)", written);
 }
@@ -277,8 +277,8 @@ static cm1e_error_t verify(session_t *session, const uint8_t *wanted, uint8_t *a
         if (word_at(again, word) != word_at(wanted, word))
             return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0,
                                  "%s: its SII was written, but read back word 0x%04X holds 0x%04X in place of 0x%04X. "
-                                 "Write the backup back before the slave is switched off.", session->label, (unsigned)word,
-                                 word_at(again, word), word_at(wanted, word));
+                                 "Write the backup back before the slave is switched off.", session->label,
+                                 (unsigned)word, word_at(again, word), word_at(wanted, word));
     return error;
 }
 
