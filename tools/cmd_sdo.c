@@ -1,4 +1,5 @@
-/** cm1e sdo read|write: one object of one slave, by its type in the device tables where the slave is a CM1-E. */
+/** cm1e sdo read|write|list: one object of one slave, by its type in the device tables where the slave is a CM1-E; or
+ *  the dictionary that the slave tells of itself. */
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -8,8 +9,9 @@
 #include "command.h"
 #include "core/bytes.h"
 #include "device/device.h"
+#include "sdo_list.h"
 
-enum { KEY_TYPE = 0x200, MAX_SDO_BYTES = 4096, MAX_WORDS = 32 };
+enum { KEY_TYPE = 0x200, KEY_VALUES, MAX_SDO_BYTES = 4096, MAX_WORDS = 32 };
 
 static const struct {
     const char *name;
@@ -26,7 +28,8 @@ enum { TYPE_COUNT = sizeof types / sizeof types[0] };
 typedef struct sdo_options {
     common_options_t common;
     const char *type_name;
-    const char *words[4]; /**< read|write, position, index[:sub], value */
+    bool values;
+    const char *words[4]; /**< read|write|list, position, index[:sub], value */
     int word_count;
 } sdo_options_t;
 
@@ -36,6 +39,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
     case KEY_TYPE: options->type_name = arg; return 0;
+    case KEY_VALUES: options->values = true; return 0;
     case ARGP_KEY_ARG:
         if (options->word_count >= 4)
             argp_error(state, "too many arguments from \"%s\" on", arg);
@@ -44,8 +48,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_END: {
         const bool read = options->word_count == 3 && strcmp(options->words[0], "read") == 0;
         const bool write = options->word_count == 4 && strcmp(options->words[0], "write") == 0;
-        if (!read && !write)
-            argp_error(state, "expected: read POSITION INDEX[:SUB], or write POSITION INDEX[:SUB] VALUE");
+        const bool list = options->word_count == 2 && strcmp(options->words[0], "list") == 0;
+        if (!read && !write && !list)
+            argp_error(state, "expected: read POSITION INDEX[:SUB], write POSITION INDEX[:SUB] VALUE, or list "
+                              "POSITION");
         return 0;
     }
     default: return ARGP_ERR_UNKNOWN;
@@ -146,14 +152,17 @@ static int transfer(cm1e_bus_t *bus, const sdo_options_t *options, cm1e_diag_t *
     long long position;
     uint16_t index;
     uint8_t subindex;
+    const bool list = options->word_count == 2;
     if (!parse_number(options->words[1], "the position", 1, CM1E_MAX_SLAVES, &position)
-        || !parse_object(options->words[2], &index, &subindex))
+        || (!list && !parse_object(options->words[2], &index, &subindex)))
         return EXIT_WRONG_USE;
     const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, (uint32_t)position);
     if (!slave) {
         complain("there is no slave %lld; the network has %u", position, cm1e_bus_slave_count(bus));
         return EXIT_FAILED;
     }
+    if (list)
+        return list_dictionary(bus, (uint16_t)position, options->values, options->common.json);
     const int type = find_type(options->type_name, slave, index, subindex);
     if (type == -2)
         return EXIT_WRONG_USE;
@@ -198,11 +207,15 @@ static int shelter_negative_value(int argc, char **argv, char **sheltered)
 int command_sdo(int argc, char **argv)
 {
     static const struct argp_option table[] = {
-        {"type", KEY_TYPE, "TYPE", 0, "SINT INT DINT USINT UINT UDINT STRING; default: as the device tables say", 0}, {0}};
+        {"type", KEY_TYPE, "TYPE", 0, "SINT INT DINT USINT UINT UDINT STRING; default: as the device tables say", 0},
+        {"values", KEY_VALUES, NULL, 0, "list: what the objects hold now, too", 0},
+        {0}};
     static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
-    static const struct argp argp = {table, parse, "read POSITION INDEX[:SUB]\nwrite POSITION INDEX[:SUB] VALUE",
-                                     "Reads or writes an object, e.g. `cm1e sdo read -i eth1 1 0x1018:2`.", children,
-                                     NULL, NULL};
+    static const struct argp argp = {
+        table, parse, "read POSITION INDEX[:SUB]\nwrite POSITION INDEX[:SUB] VALUE\nlist POSITION",
+        "Reads or writes an object, e.g. `cm1e sdo read -i eth1 1 0x1018:2`; or lists the dictionary that the slave "
+        "tells of itself: type, bits, access (p: in Pre-Operational alone), whether it can be mapped, name.",
+        children, NULL, NULL};
     sdo_options_t options = {0};
     char *words[MAX_WORDS + 2];
     if (argc >= MAX_WORDS) {

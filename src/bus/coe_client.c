@@ -5,11 +5,13 @@
 #include "core/bytes.h"
 
 enum { DEFAULT_TIMEOUT_NS = 1000000000 };
+/** For all fragments of an answer together. */
+#define INFO_TIMEOUT_NS INT64_C(3000000000)
 /** A slave that talks about other things for so long is given up. */
 enum { DISCARD_LIMIT = 64 };
 
 /* CoE services and SDO command specifiers (ETG.1000.6 sections 5.6.1 and 5.6.2). */
-enum { SERVICE_EMERGENCY = 1, SERVICE_SDO_REQUEST = 2, SERVICE_SDO_RESPONSE = 3 };
+enum { SERVICE_EMERGENCY = 1, SERVICE_SDO_REQUEST = 2, SERVICE_SDO_RESPONSE = 3, SERVICE_SDO_INFORMATION = 8 };
 enum {
     REQUEST_DOWNLOAD_SEGMENT = 0x00, REQUEST_DOWNLOAD = 0x20, REQUEST_UPLOAD = 0x40, REQUEST_UPLOAD_SEGMENT = 0x60,
     RESPONSE_UPLOAD_SEGMENT = 0x00, RESPONSE_DOWNLOAD_SEGMENT = 0x20, RESPONSE_UPLOAD = 0x40, RESPONSE_DOWNLOAD = 0x60,
@@ -18,6 +20,8 @@ enum {
 };
 /** CoE header, command byte, index, sub-index, four bytes of data: the shortest SDO message. */
 enum { COE_HEADER = 2, SDO_BYTES = 10, SEGMENT_HEADER = 3, SEGMENT_MIN_DATA = 7 };
+/** SDO information: CoE header, opcode, reserved, fragments left (ETG.1000.6 section 5.6.3). */
+enum { INFO_HEADER = 6, INFO_ERROR = 7, INFO_OPCODE = 0x7F, INFO_INCOMPLETE = 0x80 };
 
 cm1e_sdo_state_t cm1e_sdo_state(const cm1e_sdo_t *sdo)
 {
@@ -34,23 +38,32 @@ void cm1e_sdo_finish(cm1e_sdo_t *sdo, cm1e_error_t error, uint32_t abort_code)
 static void finish(cm1e_coe_client_t *client, cm1e_error_t error, uint32_t abort_code)
 {
     cm1e_sdo_t *sdo = client->sdo;
+    cm1e_info_request_t *info = client->info;
     client->sdo = NULL;
+    client->info = NULL;
     client->phase = COE_IDLE;
     cm1e_mailbox_stop(&client->mailbox);
-    cm1e_sdo_finish(sdo, error, abort_code);
+    if (sdo) {
+        cm1e_sdo_finish(sdo, error, abort_code);
+        return;
+    }
+    info->size = error == CM1E_OK ? info->taken : 0;
+    info->error = error;
+    info->abort_code = abort_code;
+    info->done = true;
 }
 
 /** Ends the transfer from our side; what the slave still sends for it must not be taken for the next one's answer. */
 static void give_up(cm1e_coe_client_t *client, cm1e_error_t error)
 {
     client->doubtful = true;
-    client->last_index = client->sdo->index;
+    client->last_index = client->sdo ? client->sdo->index : 0;
     finish(client, error, 0);
 }
 
 void cm1e_coe_reset(cm1e_coe_client_t *client, cm1e_error_t error)
 {
-    if (client->sdo)
+    if (!cm1e_coe_idle(client))
         finish(client, error, 0);
     client->phase = COE_IDLE;
     client->doubtful = false; /* the transition empties the slave's mailbox */
@@ -59,7 +72,7 @@ void cm1e_coe_reset(cm1e_coe_client_t *client, cm1e_error_t error)
 
 void cm1e_coe_cancel(cm1e_coe_client_t *client, cm1e_error_t error)
 {
-    if (client->sdo)
+    if (!cm1e_coe_idle(client))
         give_up(client, error);
 }
 
@@ -160,18 +173,31 @@ static void request_download_segment(cm1e_coe_client_t *client)
     send_message(client, SEGMENT_HEADER + bytes + unused);
 }
 
+static void request_information(cm1e_coe_client_t *client)
+{
+    const cm1e_info_request_t *info = client->info;
+    client->phase = COE_INFORMATION;
+    uint8_t *body = start_message(client);
+    cm1e_put_u16(body, SERVICE_SDO_INFORMATION << 12);
+    body[2] = (uint8_t)info->kind;
+    cm1e_put_u16(body + INFO_HEADER, info->index);
+    body[INFO_HEADER + 2] = info->subindex;
+    body[INFO_HEADER + 3] = info->values;
+    send_message(client, INFO_HEADER + (info->kind == INFO_ENTRY ? 4u : 2u));
+}
+
 static void start_transfer(cm1e_coe_client_t *client)
 {
-    if (client->sdo->write)
+    if (client->info)
+        request_information(client);
+    else if (client->sdo->write)
         request_download(client);
     else
         request_upload(client);
 }
 
-void cm1e_coe_begin(cm1e_coe_client_t *client, cm1e_sdo_t *sdo, int64_t now_ns)
+static void begin(cm1e_coe_client_t *client, int64_t timeout_ns, int64_t now_ns)
 {
-    const int64_t timeout_ns = sdo->timeout_ns > 0 ? sdo->timeout_ns : DEFAULT_TIMEOUT_NS;
-    client->sdo = sdo;
     client->deadline_ns = timeout_ns < INT64_MAX - now_ns ? now_ns + timeout_ns : INT64_MAX;
     client->done = client->total = 0;
     client->toggle = false;
@@ -185,6 +211,21 @@ void cm1e_coe_begin(cm1e_coe_client_t *client, cm1e_sdo_t *sdo, int64_t now_ns)
         request_fence(client);
     else
         start_transfer(client);
+}
+
+void cm1e_coe_begin(cm1e_coe_client_t *client, cm1e_sdo_t *sdo, int64_t now_ns)
+{
+    client->sdo = sdo;
+    begin(client, sdo->timeout_ns > 0 ? sdo->timeout_ns : DEFAULT_TIMEOUT_NS, now_ns);
+}
+
+void cm1e_coe_begin_info(cm1e_coe_client_t *client, cm1e_info_request_t *info, int64_t now_ns)
+{
+    info->taken = 0;
+    info->fragments_left = 0;
+    info->done = false;
+    client->info = info;
+    begin(client, INFO_TIMEOUT_NS, now_ns);
 }
 
 /* ---- answers --------------------------------------------------------------------------------------------------- */
@@ -327,6 +368,7 @@ static void on_sdo(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
     }
     switch (client->phase) {
     case COE_IDLE:
+    case COE_INFORMATION:
         break;
     case COE_FENCE:
         client->doubtful = false;
@@ -347,12 +389,61 @@ static void on_sdo(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
     }
 }
 
+/** The first fragment says what it is about: the list, the object, the object with its sub-index. */
+static bool is_answer(const cm1e_info_request_t *info, const uint8_t *data, size_t size)
+{
+    return size >= (info->kind == INFO_ENTRY ? 3u : 2u) && cm1e_get_u16(data) == info->index &&
+           (info->kind != INFO_ENTRY || data[2] == info->subindex);
+}
+
+/** How many fragments follow is what the slave's count says; not all slaves set the bit that says it, too. */
+static void on_fragment(cm1e_coe_client_t *client, const uint8_t *data, size_t size, uint16_t left, bool incomplete)
+{
+    cm1e_info_request_t *info = client->info;
+    const bool first = info->taken == 0;
+    if (first && !is_answer(info, data, size)) {
+        discard(client);
+    } else if ((!first && left + 1 != info->fragments_left) || (left == 0 && incomplete) || size == 0) {
+        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+    } else if (size > info->size - info->taken) {
+        give_up(client, CM1E_ERROR_INVALID_ARGUMENT); /* more than there is room for */
+    } else {
+        memcpy(info->answer + info->taken, data, size);
+        info->taken += size;
+        info->fragments_left = left;
+        if (left == 0)
+            finish(client, CM1E_OK, 0);
+    }
+}
+
+static void on_information(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
+{
+    if (size < INFO_HEADER) {
+        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+        return;
+    }
+    const unsigned opcode = body[2] & INFO_OPCODE;
+    if (opcode == client->info->kind + 1u)
+        on_fragment(client, body + INFO_HEADER, size - INFO_HEADER, cm1e_get_u16(body + 4), body[2] & INFO_INCOMPLETE);
+    else if (opcode != INFO_ERROR)
+        discard(client);
+    else if (size < INFO_HEADER + 4)
+        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+    else
+        finish(client, CM1E_ERROR_SDO_ABORT, cm1e_get_u32(body + INFO_HEADER));
+}
+
 static void on_coe(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
 {
     const unsigned service = size >= COE_HEADER ? cm1e_get_u16(body) >> 12 : 0;
     if (service == SERVICE_EMERGENCY) {
         on_emergency(client, body, size);
         discard(client);
+    } else if (client->phase == COE_INFORMATION) {
+        if (service == SERVICE_SDO_INFORMATION)
+            on_information(client, body, size);
+        else
+            discard(client); /* of an earlier transfer */
     } else if (service != SERVICE_SDO_REQUEST && service != SERVICE_SDO_RESPONSE) {
         discard(client);
     } else if (size < SDO_BYTES) {
@@ -387,7 +478,7 @@ static void on_message(cm1e_coe_client_t *client, const uint8_t *message)
 
 bool cm1e_coe_next(cm1e_coe_client_t *client, cm1e_datagram_t *datagram, int64_t now_ns)
 {
-    if (!client->sdo)
+    if (cm1e_coe_idle(client))
         return false;
     if (now_ns >= client->deadline_ns) {
         give_up(client, CM1E_ERROR_TIMEOUT);
@@ -400,10 +491,10 @@ void cm1e_coe_result(cm1e_coe_client_t *client, const cm1e_datagram_t *datagram,
 {
     if (datagram->working_counter == DATAGRAM_LOST)
         client->lost_frames++;
-    if (!client->sdo)
+    if (cm1e_coe_idle(client))
         return; /* ended while the datagram was on its way */
     if (cm1e_mailbox_result(&client->mailbox, datagram))
         on_message(client, datagram->data);
-    if (client->sdo && now_ns >= client->deadline_ns)
+    if (!cm1e_coe_idle(client) && now_ns >= client->deadline_ns)
         give_up(client, CM1E_ERROR_TIMEOUT);
 }

@@ -1,8 +1,9 @@
 /**
  * @file coe_client.h
  * The CoE client of one slave (ETG.1000.6 section 5.6): one SDO transfer at a time, expedited, normal or segmented,
- * with or without complete access; one datagram at a time; no clock inside, no waiting. Nothing a slave sends is
- * trusted: type, service, command, index, sub-index, toggle and every length are checked before a byte is taken.
+ * with or without complete access, or one request of SDO information; one datagram at a time; no clock inside, no
+ * waiting. Nothing a slave sends is trusted: type, service, command, index, sub-index, toggle, fragments and every
+ * length are checked before a byte is taken.
  */
 #ifndef CM1E_BUS_COE_CLIENT_H
 #define CM1E_BUS_COE_CLIENT_H
@@ -17,7 +18,25 @@ typedef enum cm1e_coe_phase {
     COE_UPLOAD_SEGMENT,
     COE_DOWNLOAD,
     COE_DOWNLOAD_SEGMENT,
+    COE_INFORMATION,
 } cm1e_coe_phase_t;
+
+/** What SDO information is asked for (ETG.1000.6 table 43); the answer has the next number. */
+typedef enum cm1e_info_kind { INFO_LIST = 1, INFO_OBJECT = 3, INFO_ENTRY = 5 } cm1e_info_kind_t;
+
+/** One request of SDO information. The answer is what stands behind its header, of all fragments in a row. */
+typedef struct cm1e_info_request {
+    cm1e_info_kind_t kind;
+    uint16_t index;          /**< of the object; INFO_LIST: which list */
+    uint8_t subindex, values;/**< INFO_ENTRY: values asked for beside what every answer has */
+    uint8_t *answer;
+    size_t size;             /**< room, then bytes */
+    size_t taken;
+    uint16_t fragments_left; /**< as the last fragment said */
+    bool done;
+    cm1e_error_t error;      /**< valid when done */
+    uint32_t abort_code;     /**< valid with CM1E_ERROR_SDO_ABORT */
+} cm1e_info_request_t;
 
 /** Emergencies (ETG.1000.6 section 5.6.4) received so far. */
 typedef struct cm1e_emergency {
@@ -30,6 +49,7 @@ typedef struct cm1e_emergency {
 typedef struct cm1e_coe_client {
     cm1e_mailbox_t mailbox;
     cm1e_sdo_t *sdo;              /**< in work; NULL: none */
+    cm1e_info_request_t *info;    /**< in work in place of `sdo`; NULL: none */
     cm1e_coe_phase_t phase;
     int64_t deadline_ns;
     size_t done, total;           /**< bytes */
@@ -49,9 +69,11 @@ typedef struct cm1e_coe_client {
 void cm1e_coe_reset(cm1e_coe_client_t *client, cm1e_error_t error);
 /** Gives up the transfer in work, if there is one. */
 void cm1e_coe_cancel(cm1e_coe_client_t *client, cm1e_error_t error);
-static inline bool cm1e_coe_idle(const cm1e_coe_client_t *client) { return client->sdo == NULL; }
+static inline bool cm1e_coe_idle(const cm1e_coe_client_t *client) { return !client->sdo && !client->info; }
 /** Starts a transfer; the client must be idle. */
 void cm1e_coe_begin(cm1e_coe_client_t *client, cm1e_sdo_t *sdo, int64_t now_ns);
+/** Starts a request of SDO information; the client must be idle. */
+void cm1e_coe_begin_info(cm1e_coe_client_t *client, cm1e_info_request_t *info, int64_t now_ns);
 /** Fills the datagram to be sent next; false: none. Ends a transfer whose time is over. */
 bool cm1e_coe_next(cm1e_coe_client_t *client, cm1e_datagram_t *datagram, int64_t now_ns);
 /** Takes a datagram that is back or lost. */

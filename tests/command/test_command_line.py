@@ -55,7 +55,19 @@ def check_good(folder):
     generate = run("cm1e", "generate", "sii", "-o", sii)
     expect(generate.returncode == 0 and os.path.getsize(sii) == 2048, "generate sii", generate)
 
+    check_dictionary()
     check_sii(folder)
+
+
+def check_dictionary():
+    told = run("cm1e", "sdo", "-i", "sim", "list", "1", "--values", "--json")
+    objects = {entry["index"]: entry for entry in json.loads(told.stdout)}
+    expect(len(objects) > 40 and objects[0x1018]["entries"][2]["value"] == 0x44412002, "sdo list --json", told)
+    control = objects[0x6040]["entries"][0]
+    expect(control["type"] == "UINT" and control["write"] and control["rxpdo"] and not control["txpdo"],
+           "0x6040 in sdo list", told)
+    text = run("cm1e", "sdo", "-i", "sim", "list", "1")
+    expect(text.returncode == 0 and "0x6064  VAR" in text.stdout and " = " not in text.stdout, "sdo list", text)
 
 
 def check_sii(folder):
@@ -98,6 +110,8 @@ WRONG = [
     (["scan", "-i", "x" * 100], WRONG_USE, "too long"),
     (["scan", "-i", "sim:no-such-file.yaml"], FAILED, "no-such-file.yaml"),
     (["sdo", "-i", "sim", "read"], WRONG_USE, "read POSITION"),
+    (["sdo", "-i", "sim", "list"], WRONG_USE, "read POSITION"),
+    (["sdo", "-i", "sim", "list", "2"], FAILED, "no slave 2"),
     (["sdo", "-i", "sim", "read", "1", "0x99999"], WRONG_USE, "index"),
     (["sdo", "-i", "sim", "read", "2", "0x1008"], FAILED, "no slave 2"),
     (["sdo", "-i", "sim", "read", "1", "0x5555"], FAILED, "does not exist"),

@@ -34,6 +34,8 @@ struct slave {
     lie_fn lie;
     unsigned lies, lie_from; /* answers seen by `lie`; from which one on it lies */
     unsigned emergency_before; /* an emergency goes out before that answer */
+    void (*serve_information)(slave_t *slave, const uint8_t *request, uint16_t length); /* NULL: it has none */
+    void (*send_more)(slave_t *slave); /* when SM1 is empty: what else there is to send */
 };
 
 /* ---- the server ------------------------------------------------------------------------------------------------ */
@@ -165,7 +167,8 @@ static void serve(slave_t *s)
     const uint8_t counter = request[5] >> 4;
     s->out_full = false;
     TEST_ASSERT_TRUE(length <= MAILBOX - 6);
-    TEST_ASSERT_TRUE(length >= 10);
+    const bool information = cm1e_get_u16(request + 6) == 8 << 12;
+    TEST_ASSERT_TRUE(length >= (information ? 8 : 10));
     TEST_ASSERT_EQUAL_HEX8(3, request[5] & 0x0F);
     TEST_ASSERT_TRUE(counter >= 1 && counter <= 7);
     if (counter == s->seen_counter)
@@ -174,6 +177,11 @@ static void serve(slave_t *s)
     s->requests++;
     if (s->emergency_before && s->requests >= s->emergency_before)
         send_emergency(s);
+    if (information) {
+        if (s->serve_information)
+            s->serve_information(s, request + 6, length);
+        return;
+    }
     const unsigned specifier = request[8] >> 5;
     const bool initiates = specifier == 1 || specifier == 2;
     if (initiates && index != 0x2000 && index != 0x1000 && index != 0x1018)
@@ -226,6 +234,8 @@ static void handle(slave_t *s, cm1e_datagram_t *d)
         memcpy(s->in, s->queued, MAILBOX);
         s->in_full = true;
         s->queued_valid = false;
+    } else if (!s->in_full && s->send_more) {
+        s->send_more(s);
     }
     if (d->command == COMMAND_FPWR && d->offset == OUT) {
         TEST_ASSERT_EQUAL_UINT16(MAILBOX, d->length);

@@ -1,0 +1,171 @@
+/* SDO information of the simulated CM1-E over the bus: the dictionary that it tells is that of the device tables. */
+#include "bus_support.h"
+#include "cm1e/sdo_info.h"
+
+enum { OBJECTS_MAX = 512 };
+
+static uint16_t indexes[OBJECTS_MAX];
+
+static cm1e_bus_t *scanned_bus(uint32_t axes)
+{
+    sim_config(axes);
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    return bus;
+}
+
+static cm1e_firmware_t firmware(void) { return cm1e_firmware_from_version(tested_firmware())->firmware; }
+
+START_TEST(the_list_holds_every_object_of_the_firmware)
+{
+    cm1e_bus_t *bus = scanned_bus(2);
+    size_t count, told = OBJECTS_MAX, n = 0;
+    const cm1e_object_t *objects = cm1e_device_objects(&count);
+    ck_assert_msg(cm1e_sdo_info_list(bus, 2, CM1E_OBJECTS_ALL, indexes, &told, &diag) == CM1E_OK, "%s", diag.text);
+    for (size_t i = 0; i < count; i++)
+        if (objects[i].since <= firmware())
+            ck_assert_uint_eq(indexes[n++], objects[i].index);
+    ck_assert_uint_eq(n, told);
+    size_t room = told - 1;
+    ck_assert_int_eq(cm1e_sdo_info_list(bus, 2, CM1E_OBJECTS_ALL, indexes, &room, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_ptr_nonnull(strstr(diag.text, "room for"));
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(the_lists_of_mappable_objects_are_shorter)
+{
+    cm1e_bus_t *bus = scanned_bus(1);
+    size_t sizes[6];
+    for (int list = CM1E_OBJECTS_ALL; list <= CM1E_OBJECTS_SETTINGS; list++) {
+        sizes[list] = OBJECTS_MAX;
+        ck_assert_int_eq(cm1e_sdo_info_list(bus, 1, (cm1e_info_list_t)list, indexes, &sizes[list], &diag), CM1E_OK);
+    }
+    ck_assert(sizes[CM1E_OBJECTS_RXPDO] > 3 && sizes[CM1E_OBJECTS_TXPDO] > 3);
+    ck_assert(sizes[CM1E_OBJECTS_RXPDO] < sizes[CM1E_OBJECTS_ALL] && sizes[CM1E_OBJECTS_BACKUP] == 0);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+static void check_entry(cm1e_bus_t *bus, const cm1e_entry_t *entry)
+{
+    cm1e_entry_info_t info;
+    const cm1e_error_t error = cm1e_sdo_info_entry(bus, 1, entry->index, entry->subindex, &info, &diag);
+    if (error == CM1E_ERROR_SDO_ABORT) { /* what the firmware does not have (UG 10.1) */
+        ck_assert(entry->since > firmware() || entry->index == 0x1603 || entry->index == 0x1A03);
+        return;
+    }
+    ck_assert_msg(error == CM1E_OK, "%s", diag.text);
+    ck_assert(info.index == entry->index && info.subindex == entry->subindex);
+    ck_assert_uint_eq(info.data_type, entry->type);
+    ck_assert_uint_eq(info.bits, entry->bits);
+    ck_assert_int_eq((info.access & CM1E_INFO_READ_OP) != 0, (entry->access & CM1E_ACCESS_READ) != 0);
+    ck_assert_int_eq((info.access & CM1E_INFO_WRITE_PREOP) != 0, (entry->access & CM1E_ACCESS_WRITE) != 0);
+    ck_assert_int_eq((info.access & CM1E_INFO_RXPDO) != 0, (entry->access & CM1E_ACCESS_RXPDO) != 0);
+    ck_assert_int_eq((info.access & CM1E_INFO_TXPDO) != 0, (entry->access & CM1E_ACCESS_TXPDO) != 0);
+    if (entry->type != CM1E_TYPE_STRING) {
+        ck_assert_uint_eq(info.maximum.size, entry->bits / 8);
+        ck_assert(cm1e_get_uint(info.maximum.bytes, 8) ==
+                  ((uint64_t)entry->maximum & (UINT64_MAX >> (64 - entry->bits))));
+    }
+}
+
+START_TEST(every_object_and_entry_is_described_as_in_the_tables)
+{
+    cm1e_bus_t *bus = scanned_bus(1);
+    size_t count;
+    const cm1e_object_t *objects = cm1e_device_objects(&count);
+    for (size_t i = 0; i < count; i++) {
+        cm1e_object_info_t info;
+        if (objects[i].since > firmware())
+            continue;
+        ck_assert_int_eq(cm1e_sdo_info_object(bus, 1, objects[i].index, &info, &diag), CM1E_OK);
+        ck_assert_uint_eq(info.index, objects[i].index);
+        ck_assert_uint_eq(info.code, objects[i].object_code);
+        ck_assert_uint_eq(info.highest_subindex, objects[i].highest_subindex);
+        ck_assert_str_eq(info.name, objects[i].name);
+        for (unsigned n = 0; n < objects[i].entry_count; n++)
+            check_entry(bus, &objects[i].entries[n]);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(what_is_not_there_is_named)
+{
+    cm1e_object_info_t object;
+    cm1e_entry_info_t entry;
+    size_t room = OBJECTS_MAX;
+    cm1e_bus_t *bus = scanned_bus(1);
+    ck_assert_int_eq(cm1e_sdo_info_object(bus, 1, 0x5FFF, &object, &diag), CM1E_ERROR_SDO_ABORT);
+    ck_assert_msg(strstr(diag.text, "0x5FFF") && strstr(diag.text, "does not exist"), "%s", diag.text);
+    ck_assert_int_eq(cm1e_sdo_info_entry(bus, 1, 0x1018, 9, &entry, &diag), CM1E_ERROR_SDO_ABORT);
+    ck_assert_msg(strstr(diag.text, "0x1018:09") != NULL, "%s", diag.text);
+    ck_assert_int_eq(cm1e_sdo_info_object(bus, 2, 0x1000, &object, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_sdo_info_list(bus, 1, CM1E_OBJECTS_ALL, NULL, &room, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_sdo_info_list(bus, 1, (cm1e_info_list_t)0, indexes, &room, &diag),
+                     CM1E_ERROR_INVALID_ARGUMENT);
+    cm1e_bus_close(bus);
+    bus = open_bus();
+    ck_assert_int_eq(cm1e_sdo_info_list(bus, 1, CM1E_OBJECTS_ALL, indexes, &room, &diag), CM1E_ERROR_STATE);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** One frame lost, whichever: the answers are the same. */
+static unsigned lost, seen;
+static cm1e_tap_verdict_t lose_one(void *context, cm1e_tap_frame_t *frame)
+{
+    (void)context;
+    return frame->direction == CM1E_TAP_RECEIVED && seen++ == lost ? CM1E_TAP_DROP : CM1E_TAP_PASS;
+}
+
+START_TEST(a_lost_frame_changes_no_answer)
+{
+    static uint16_t again[OBJECTS_MAX];
+    cm1e_bus_t *bus = scanned_bus(1);
+    size_t count = OBJECTS_MAX;
+    ck_assert_int_eq(cm1e_sdo_info_list(bus, 1, CM1E_OBJECTS_ALL, indexes, &count, &diag), CM1E_OK);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), lose_one, NULL);
+    for (lost = 0, seen = 1; seen > lost; lost++) {
+        size_t n = OBJECTS_MAX;
+        seen = 0;
+        ck_assert_msg(cm1e_sdo_info_list(bus, 1, CM1E_OBJECTS_ALL, again, &n, &diag) == CM1E_OK, "%s", diag.text);
+        ck_assert_uint_eq(n, count);
+        ck_assert_mem_eq(again, indexes, 2 * n);
+    }
+    ck_assert_uint_gt(lost, 3);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** In operation, too, while nobody else runs the cycle. */
+START_TEST(transfers_and_descriptions_take_turns)
+{
+    sim_config(1);
+    cm1e_bus_t *bus = start_bus();
+    uint8_t value[4];
+    cm1e_sdo_t sdo = {.position = 1, .index = 0x1000, .data = value, .size = sizeof value};
+    ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
+    size_t count = OBJECTS_MAX;
+    ck_assert_msg(cm1e_sdo_info_list(bus, 1, CM1E_OBJECTS_ALL, indexes, &count, &diag) == CM1E_OK, "%s", diag.text);
+    finish_sdo(bus, &sdo);
+    ck_assert_int_eq(cm1e_sdo_state(&sdo), CM1E_SDO_DONE);
+    ck_assert_uint_eq(cm1e_bus_counters(bus)->working_counter_errors, 0);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("bus_dictionary");
+    TCase *cases = tcase_create("information");
+    tcase_add_test(cases, the_list_holds_every_object_of_the_firmware);
+    tcase_add_test(cases, the_lists_of_mappable_objects_are_shorter);
+    tcase_add_test(cases, every_object_and_entry_is_described_as_in_the_tables);
+    tcase_add_test(cases, what_is_not_there_is_named);
+    tcase_add_test(cases, a_lost_frame_changes_no_answer);
+    tcase_add_test(cases, transfers_and_descriptions_take_turns);
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}
