@@ -23,6 +23,16 @@ static const struct {
     {"BIT1", 0x30, 1, 0}, {"BIT2", 0x31, 2, 0}, {"BIT3", 0x32, 3, 0}, {"BIT4", 0x33, 4, 0}, {"BIT5", 0x34, 5, 0},
     {"BIT6", 0x35, 6, 0}, {"BIT7", 0x36, 7, 0}, {"BIT8", 0x37, 8, 0},
 };
+/* "ARRAY [0..n] OF ..." of them, which are one value too. */
+static const struct {
+    const char *element;
+    uint16_t code;
+    uint32_t bits;
+} array_types[] = {
+    {"BYTE", 0x0A, 8}, {"UINT", 0x0B, 16}, {"INT", 0x0260, 16}, {"SINT", 0x0261, 8}, {"DINT", 0x0262, 32},
+    {"UDINT", 0x0263, 32},
+};
+enum { ARRAY_TYPES = sizeof array_types / sizeof array_types[0] };
 enum { BASE_TYPES = sizeof base_types / sizeof base_types[0], LONGEST_STRING = 65535 };
 
 void cm1e_description_file_free(cm1e_description_file_t *file)
@@ -104,16 +114,39 @@ static int base_type(const char *name, uint32_t *length)
     return -1;
 }
 
+/* Row of "ARRAY [0..3] OF BYTE" with its number of elements; -1: no such name. */
+static int array_type(const char *name, uint32_t *elements)
+{
+    static const char begin[] = "ARRAY [", end[] = "] OF ";
+    if (strncmp(name, begin, sizeof begin - 1) != 0)
+        return -1;
+    char *at;
+    const long first = strtol(name + sizeof begin - 1, &at, 10);
+    if (strncmp(at, "..", 2) != 0)
+        return -1;
+    const long last = strtol(at + 2, &at, 10);
+    if (strncmp(at, end, sizeof end - 1) != 0 || first < 0 || last > LONGEST_STRING)
+        return -1;
+    *elements = last < first ? 0 : (uint32_t)(last - first + 1);
+    for (int i = 0; i < ARRAY_TYPES; i++)
+        if (strcmp(array_types[i].element, at + sizeof end - 1) == 0)
+            return i;
+    return -1;
+}
+
 uint16_t cm1e_type_code(const char *name)
 {
     uint32_t length;
-    const int row = base_type(name, &length);
-    return row < 0 ? 0 : base_types[row].code;
+    const int row = base_type(name, &length), array = array_type(name, &length);
+    return row >= 0 ? base_types[row].code : array >= 0 ? array_types[array].code : 0;
 }
 
 uint32_t cm1e_type_bits(const char *name)
 {
     uint32_t length;
+    const int array = array_type(name, &length);
+    if (array >= 0)
+        return length * array_types[array].bits;
     const int row = base_type(name, &length);
     return row < 0 ? 0 : base_types[row].element_bits ? length * base_types[row].element_bits : base_types[row].bits;
 }

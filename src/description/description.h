@@ -290,7 +290,8 @@ uint32_t cm1e_description_process_bytes(const cm1e_description_t *device, unsign
 /** The CoE data type of a name ("UINT": 6, "STRING(5)": 9; ETG.1020 table 64 "Base data types"); 0: not a base type.
  *  @rt any */
 uint16_t cm1e_type_code(const char *name);
-/** Bits of a base type by name ("UINT": 16, "BIT3": 3, "STRING(5)": 40); 0: not a base type. @rt any */
+/** Bits of a base type by name ("UINT": 16, "BIT3": 3, "STRING(5)": 40, "ARRAY [0..3] OF BYTE": 32); 0: not a base
+ *  type. @rt any */
 uint32_t cm1e_type_bits(const char *name);
 /** The name of a CoE data type of `bits` bits; NULL: not known. Lives in the arena or for ever. @rt init */
 const char *cm1e_type_name(cm1e_arena_t *arena, uint16_t code, uint32_t bits);

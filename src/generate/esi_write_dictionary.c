@@ -104,9 +104,9 @@ static void add_base_type(types_t *types, const char *name, uint32_t bits)
     *(base_type_t *)CM1E_APPEND(types->arena, &types->base) = (base_type_t){name, known_bits ? known_bits : bits};
 }
 
-static bool same_shape(const cm1e_described_object_t *a, const cm1e_described_object_t *b)
+static bool same_shape(cm1e_arena_t *arena, const cm1e_described_object_t *a, const cm1e_described_object_t *b)
 {
-    if (a->entries.count != b->entries.count || a->code != b->code)
+    if (a->entries.count != b->entries.count || is_array(arena, a) != is_array(arena, b))
         return false;
     for (size_t i = 0; i < a->entries.count; i++) {
         const cm1e_described_entry_t *x = &a->entries.at[i], *y = &b->entries.at[i];
@@ -155,7 +155,7 @@ static bool type_is_taken(const types_t *types, const char *name)
 static int64_t define(types_t *types, const cm1e_described_object_t *object)
 {
     for (size_t i = 0; i < types->definitions.count; i++)
-        if (same_shape(types->definitions.at[i].object, object))
+        if (same_shape(types->arena, types->definitions.at[i].object, object))
             return (int64_t)i;
     /* The same index twice in a file with different content is wrong, but not for us to hide. */
     const char *name = cm1e_arena_format(types->arena, "DT%04X", object->index);

@@ -1,21 +1,26 @@
 #include "generate/xml_read.h"
 
 #include <ctype.h>
-#include <errno.h>
 #include <libxml/SAX2.h>
 #include <libxml/parser.h>
 #include <libxml/parserInternals.h>
+#include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+static const char bom[] = "\xEF\xBB\xBF";
+enum { MAX_DEPTH = 100, MAX_TAG_BYTES = 65536, LONGEST_NUMBER = 64 };
+
 /* What stops the parser from outside XML's own rules. */
 typedef struct guard {
-    unsigned elements;
+    size_t parts;        /* elements, attributes, comments so far */
     const char *refused; /* why, NULL: not refused */
     int line;
 } guard_t;
+
+static pthread_once_t once = PTHREAD_ONCE_INIT;
 
 static void refuse(xmlParserCtxt *context, const char *why)
 {
@@ -27,6 +32,17 @@ static void refuse(xmlParserCtxt *context, const char *why)
     xmlStopParser(context);
 }
 
+/* False: there are too many by now. */
+static bool count_parts(xmlParserCtxt *context, size_t parts)
+{
+    guard_t *guard = context->_private;
+    guard->parts += parts;
+    if (guard->parts <= CM1E_XML_MAX_PARTS)
+        return true;
+    refuse(context, "more elements than any such file has");
+    return false;
+}
+
 /* A DTD is where entities come from, and external files; none of the formats has one. */
 static void on_dtd(void *context, const xmlChar *name, const xmlChar *external, const xmlChar *system)
 {
@@ -34,15 +50,37 @@ static void on_dtd(void *context, const xmlChar *name, const xmlChar *external, 
     refuse(context, "a DTD (<!DOCTYPE ...>) is not allowed here");
 }
 
-static void on_element(void *context, const xmlChar *name, const xmlChar *prefix, const xmlChar *uri, int namespaces,
+/* Keeps the line with the node: libxml2's own count ends at 65535. */
+static void on_element(void *data, const xmlChar *name, const xmlChar *prefix, const xmlChar *uri, int namespaces,
                        const xmlChar **namespace_list, int attributes, int defaulted, const xmlChar **attribute_list)
 {
-    guard_t *guard = ((xmlParserCtxt *)context)->_private;
-    if (++guard->elements > CM1E_XML_MAX_ELEMENTS)
-        refuse(context, "more elements than any such file has");
-    else
+    xmlParserCtxt *context = data;
+    if (context->nodeNr >= MAX_DEPTH)
+        refuse(context, "elements within elements deeper than any such file has");
+    else if (count_parts(context, 1 + (size_t)namespaces + (size_t)attributes)) {
         xmlSAX2StartElementNs(context, name, prefix, uri, namespaces, namespace_list, attributes, defaulted,
                               attribute_list);
+        if (context->node && context->input)
+            context->node->_private = (void *)(intptr_t)context->input->line;
+    }
+}
+
+static void on_comment(void *context, const xmlChar *text)
+{
+    if (count_parts(context, 1))
+        xmlSAX2Comment(context, text);
+}
+
+static void on_instruction(void *context, const xmlChar *target, const xmlChar *text)
+{
+    (void)target, (void)text;
+    count_parts(context, 1);
+}
+
+/* libxml2 reports some errors of encodings to nobody in particular, which would print them. */
+static void on_error(void *context, xmlError *error)
+{
+    (void)context, (void)error;
 }
 
 static const char *find(const char *text, size_t size, const char *what)
@@ -50,91 +88,109 @@ static const char *find(const char *text, size_t size, const char *what)
     return memmem(text, size, what, strlen(what));
 }
 
-/* Files of Trio's tools have comments before the XML declaration, where XML allows nothing. Returns where the document
- * begins; `*lines` is how many lines stand before it. */
-static size_t skip_before_declaration(const char *text, size_t size, int *lines)
+static int lines_in(const char *text, size_t size)
 {
-    static const char bom[] = "\xEF\xBB\xBF";
-    size_t at = size >= 3 && memcmp(text, bom, 3) == 0 ? 3 : 0;
-    *lines = 0;
+    int lines = 0;
+    for (size_t i = 0; i < size; i++)
+        lines += text[i] == '\n';
+    return lines;
+}
+
+/* Files of Trio's tools have comments before the XML declaration, where XML allows nothing. Returns where the document
+ * begins. */
+static size_t skip_before_declaration(const char *text, size_t size, bool is_utf8)
+{
+    size_t at = is_utf8 ? sizeof bom - 1 : 0;
     for (;;) {
         while (at < size && isspace((unsigned char)text[at]))
             at++;
         if (size - at < 4 || memcmp(text + at, "<!--", 4) != 0)
             break;
-        const char *end = find(text + at, size - at, "-->");
+        const char *end = find(text + at + 4, size - at - 4, "-->");
         if (!end)
             break;
         at = (size_t)(end - text) + 3;
     }
-    if (size - at < 5 || memcmp(text + at, "<?xml", 5) != 0)
-        return 0; /* no declaration behind them: they are where XML allows them */
-    for (size_t i = 0; i < at; i++)
-        *lines += text[i] == '\n';
-    return at;
+    const bool declared = size - at >= 5 && memcmp(text + at, "<?xml", 5) == 0;
+    return declared ? at : 0; /* no declaration behind them: they are where XML allows them */
 }
 
-/* The comments that were skipped stand before the root then, where XML allows them: nothing of a file is lost. */
-static void keep_comments(xmlDoc *doc, const char *text, size_t skipped)
+/* Where a tag is longer than any: libxml2 compares each attribute with each. `size`: nowhere. */
+static size_t endless_tag(const char *text, size_t size)
 {
-    for (const char *at = text; (at = memmem(at, skipped - (size_t)(at - text), "<!--", 4)) != NULL;) {
-        const char *end = memmem(at, skipped - (size_t)(at - text), "-->", 3);
-        const int length = end > at + 4 ? (int)(end - at) - 4 : 0;
-        xmlChar *content = xmlStrndup((const xmlChar *)at + 4, length);
-        xmlNode *comment = content ? xmlNewDocComment(doc, content) : NULL;
-        if (comment)
-            xmlAddPrevSibling(xmlDocGetRootElement(doc), comment);
-        xmlFree(content);
-        at = end + 3;
+    for (const char *at = text, *const end = text + size; (at = memchr(at, '<', (size_t)(end - at))) != NULL; at++) {
+        const char *next = at + 1;
+        while (next < end && *next == '\0') /* UTF-16 */
+            next++;
+        if (next < end && *next != '!' && *next != '?' && (size_t)(end - at) > MAX_TAG_BYTES &&
+            !memchr(at, '>', MAX_TAG_BYTES))
+            return (size_t)(at - text);
     }
+    return size;
 }
 
-static void report(cm1e_diag_t *diag, const guard_t *guard, const xmlError *error, int lines_before)
+static void report(cm1e_diag_t *diag, const guard_t *guard, const xmlError *error)
 {
     char text[256];
     if (guard->refused) {
         cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "line %d: %s", guard->line, guard->refused);
         return;
     }
-    (void)lines_before;
     snprintf(text, sizeof text, "%s", error && error->message ? error->message : "no XML document");
     text[strcspn(text, "\n")] = '\0';
-    cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "line %d: %s", error ? error->line : 1, text);
+    cm1e_diag_set(diag, error && error->code == XML_ERR_NO_MEMORY ? CM1E_ERROR_NO_MEMORY : CM1E_ERROR_FILE, 0,
+                  "line %d: %s", error && error->line > 0 ? error->line : 1, text);
 }
 
-xmlDoc *cm1e_xml_parse(const void *bytes, size_t size, cm1e_diag_t *diag)
+/* A parser of its own for every document; `line` is the number of its first. */
+static xmlDoc *parse(const char *text, size_t size, int line, bool is_utf8, cm1e_diag_t *diag)
 {
-    if (size > CM1E_XML_MAX_BYTES) {
-        cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "the file has %zu bytes; more than %zu are not read", size,
-                      CM1E_XML_MAX_BYTES);
-        return NULL;
-    }
-    int lines = 0;
-    const size_t skipped = skip_before_declaration(bytes, size, &lines);
-    xmlParserCtxt *context = size > skipped ? xmlCreateMemoryParserCtxt((const char *)bytes + skipped,
-                                                                        (int)(size - skipped))
-                                            : NULL;
+    xmlParserCtxt *context = xmlCreateMemoryParserCtxt(text, (int)size);
     if (!context) {
-        cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, size > 0 ? "out of memory" : "the file is empty");
+        cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
         return NULL;
     }
     guard_t guard = {0};
     context->_private = &guard;
     context->sax->internalSubset = on_dtd;
     context->sax->startElementNs = on_element;
-    context->input->line += lines;
+    context->sax->comment = on_comment;
+    context->sax->processingInstruction = on_instruction;
+    context->input->line = line;
     xmlCtxtUseOptions(context, XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING | XML_PARSE_NOCDATA |
-                                   XML_PARSE_BIG_LINES);
+                                   XML_PARSE_NOBLANKS | XML_PARSE_COMPACT | (is_utf8 ? XML_PARSE_IGNORE_ENC : 0));
     xmlParseDocument(context);
     xmlDoc *doc = context->myDoc;
     if (!context->wellFormed || guard.refused || !doc || !xmlDocGetRootElement(doc)) {
-        report(diag, &guard, xmlCtxtGetLastError(context), lines);
+        report(diag, &guard, xmlCtxtGetLastError(context));
         xmlFreeDoc(doc);
         doc = NULL;
     }
-    if (doc)
-        keep_comments(doc, bytes, skipped);
     xmlFreeParserCtxt(context);
+    return doc;
+}
+
+xmlDoc *cm1e_xml_parse(const void *bytes, size_t size, cm1e_diag_t *diag)
+{
+    const char *text = bytes;
+    if (size == 0 || size > CM1E_XML_MAX_BYTES) {
+        cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "the file has %zu bytes; files of 1 to %zu are read", size,
+                      CM1E_XML_MAX_BYTES);
+        return NULL;
+    }
+    const size_t endless = endless_tag(text, size);
+    if (endless < size) {
+        cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "line %d: a tag without an end", 1 + lines_in(text, endless));
+        return NULL;
+    }
+    const bool is_utf8 = size >= sizeof bom - 1 && memcmp(text, bom, sizeof bom - 1) == 0;
+    const size_t skipped = skip_before_declaration(text, size, is_utf8);
+    pthread_once(&once, xmlInitParser);
+    const xmlStructuredErrorFunc handler = xmlStructuredError;
+    void *handler_context = xmlStructuredErrorContext;
+    xmlSetStructuredErrorFunc(NULL, on_error);
+    xmlDoc *doc = parse(text + skipped, size - skipped, 1 + lines_in(text, skipped), is_utf8, diag);
+    xmlSetStructuredErrorFunc(handler_context, handler);
     return doc;
 }
 
@@ -153,8 +209,7 @@ void cm1e_xml_fail(cm1e_xml_reader_t *reader, const xmlNode *node, const char *f
 
 cm1e_place_t cm1e_xml_line(const xmlNode *node)
 {
-    const long line = node ? xmlGetLineNo((xmlNode *)(uintptr_t)node) : 0;
-    return line > 0 ? (cm1e_place_t)line : 0;
+    return node && node->type == XML_ELEMENT_NODE ? (cm1e_place_t)(uintptr_t)node->_private : 0;
 }
 
 bool cm1e_xml_is(const xmlNode *node, const char *name)
@@ -187,14 +242,23 @@ const xmlNode *cm1e_xml_need(cm1e_xml_reader_t *reader, const xmlNode *parent, c
     return child;
 }
 
-static const char *trimmed(cm1e_xml_reader_t *reader, xmlChar *content)
+/* The text of an element, or of an attribute, without white space around it, freed by the caller with `*content`. */
+static const char *trimmed(xmlChar *content, size_t *length)
 {
     const char *begin = content ? (const char *)content : "";
     while (isspace((unsigned char)*begin))
         begin++;
-    size_t length = strlen(begin);
-    while (length > 0 && isspace((unsigned char)begin[length - 1]))
-        length--;
+    *length = strlen(begin);
+    while (*length > 0 && isspace((unsigned char)begin[*length - 1]))
+        --*length;
+    return begin;
+}
+
+/* Takes the content over. */
+static const char *kept(cm1e_xml_reader_t *reader, xmlChar *content)
+{
+    size_t length;
+    const char *begin = trimmed(content, &length);
     char *copy = cm1e_arena_take(reader->arena, length + 1);
     const bool copied = !reader->arena->failed;
     if (copied)
@@ -203,9 +267,27 @@ static const char *trimmed(cm1e_xml_reader_t *reader, xmlChar *content)
     return copied ? copy : "";
 }
 
+/* Takes the content over; what is too long for a number is cut so that it is none. */
+static const char *word(char text[LONGEST_NUMBER], xmlChar *content)
+{
+    size_t length;
+    const char *begin = trimmed(content, &length);
+    if (length < LONGEST_NUMBER)
+        snprintf(text, LONGEST_NUMBER, "%.*s", (int)length, begin);
+    else
+        snprintf(text, LONGEST_NUMBER, "%.40s...", begin);
+    xmlFree(content);
+    return text;
+}
+
+static xmlChar *attribute(const xmlNode *node, const char *name)
+{
+    return node ? xmlGetNoNsProp(node, (const xmlChar *)name) : NULL;
+}
+
 const char *cm1e_xml_text(cm1e_xml_reader_t *reader, const xmlNode *node)
 {
-    return node ? trimmed(reader, xmlNodeGetContent(node)) : NULL;
+    return node ? kept(reader, xmlNodeGetContent(node)) : NULL;
 }
 
 const char *cm1e_xml_child_text(cm1e_xml_reader_t *reader, const xmlNode *parent, const char *name,
@@ -217,10 +299,11 @@ const char *cm1e_xml_child_text(cm1e_xml_reader_t *reader, const xmlNode *parent
 
 const char *cm1e_xml_attribute(cm1e_xml_reader_t *reader, const xmlNode *node, const char *name)
 {
-    xmlChar *value = node ? xmlGetNoNsProp(node, (const xmlChar *)name) : NULL;
-    return value ? trimmed(reader, value) : NULL;
+    xmlChar *value = attribute(node, name);
+    return value ? kept(reader, value) : NULL;
 }
 
+/* A number beyond 64 bits is the nearest within. */
 static bool parse_number(const char *text, int64_t *value)
 {
     const bool hexadecimal = (text[0] == '#' || text[0] == '0') && (text[1] == 'x' || text[1] == 'X');
@@ -228,9 +311,8 @@ static bool parse_number(const char *text, int64_t *value)
     char *end;
     if (!(hexadecimal ? isxdigit((unsigned char)*digits) : isdigit((unsigned char)*digits)))
         return false;
-    errno = 0;
-    *value = hexadecimal ? (int64_t)strtoull(digits, &end, 16) : strtoll(text, &end, 10);
-    return errno == 0 && *end == '\0';
+    *value = strtoll(hexadecimal ? digits : text, &end, hexadecimal ? 16 : 10);
+    return *end == '\0';
 }
 
 static int64_t checked_number(cm1e_xml_reader_t *reader, const xmlNode *node, const char *name, const char *text,
@@ -250,10 +332,11 @@ static int64_t checked_number(cm1e_xml_reader_t *reader, const xmlNode *node, co
 int64_t cm1e_xml_number(cm1e_xml_reader_t *reader, const xmlNode *node, int64_t minimum, int64_t maximum,
                         int64_t fallback)
 {
+    char text[LONGEST_NUMBER];
     if (!node)
         return fallback;
-    return checked_number(reader, node, (const char *)node->name, cm1e_xml_text(reader, node), minimum, maximum,
-                          fallback);
+    return checked_number(reader, node, (const char *)node->name, word(text, xmlNodeGetContent(node)), minimum,
+                          maximum, fallback);
 }
 
 int64_t cm1e_xml_child_number(cm1e_xml_reader_t *reader, const xmlNode *parent, const char *name, int64_t minimum,
@@ -265,8 +348,9 @@ int64_t cm1e_xml_child_number(cm1e_xml_reader_t *reader, const xmlNode *parent, 
 int64_t cm1e_xml_attribute_number(cm1e_xml_reader_t *reader, const xmlNode *node, const char *name, int64_t minimum,
                                   int64_t maximum, int64_t fallback)
 {
-    const char *text = cm1e_xml_attribute(reader, node, name);
-    return text ? checked_number(reader, node, name, text, minimum, maximum, fallback) : fallback;
+    char text[LONGEST_NUMBER];
+    xmlChar *value = attribute(node, name);
+    return value ? checked_number(reader, node, name, word(text, value), minimum, maximum, fallback) : fallback;
 }
 
 static bool parse_flag(cm1e_xml_reader_t *reader, const xmlNode *node, const char *name, const char *text,
@@ -282,14 +366,16 @@ static bool parse_flag(cm1e_xml_reader_t *reader, const xmlNode *node, const cha
 
 bool cm1e_xml_attribute_flag(cm1e_xml_reader_t *reader, const xmlNode *node, const char *name, bool fallback)
 {
-    const char *text = cm1e_xml_attribute(reader, node, name);
-    return text ? parse_flag(reader, node, name, text, fallback) : fallback;
+    char text[LONGEST_NUMBER];
+    xmlChar *value = attribute(node, name);
+    return value ? parse_flag(reader, node, name, word(text, value), fallback) : fallback;
 }
 
 bool cm1e_xml_child_flag(cm1e_xml_reader_t *reader, const xmlNode *parent, const char *name, bool fallback)
 {
+    char text[LONGEST_NUMBER];
     const xmlNode *child = cm1e_xml_child(parent, name);
-    return child ? parse_flag(reader, child, name, cm1e_xml_text(reader, child), fallback) : fallback;
+    return child ? parse_flag(reader, child, name, word(text, xmlNodeGetContent(child)), fallback) : fallback;
 }
 
 static int hex_digit(char c)
