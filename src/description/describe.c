@@ -1,6 +1,9 @@
 #include "description/describe.h"
 
+#include <inttypes.h>
 #include <string.h>
+
+enum { FIRST_PARAMETER = 0x2000 };
 
 static const char *type_name(cm1e_arena_t *arena, const cm1e_entry_t *entry)
 {
@@ -15,6 +18,24 @@ static bool range_matters(const cm1e_entry_t *entry)
     const int64_t least = is_signed ? -((int64_t)1 << (entry->bits - 1)) : 0;
     const int64_t most = ((int64_t)1 << (is_signed ? entry->bits - 1 : entry->bits)) - 1;
     return (entry->access & CM1E_ACCESS_WRITE) && (entry->minimum > least || entry->maximum < most);
+}
+
+void cm1e_describe_range(cm1e_arena_t *arena, cm1e_described_entry_t *described, int64_t minimum, int64_t maximum)
+{
+    const size_t bytes = (described->bits + 7u) / 8;
+    described->minimum = cm1e_bytes_of(arena, minimum, bytes);
+    described->maximum = cm1e_bytes_of(arena, maximum, bytes);
+    described->comment = cm1e_arena_format(arena, "%" PRId64 " ... %" PRId64, minimum, maximum);
+}
+
+/* What a person should know who writes a value: its range, and what the device makes of it. */
+static void describe_range(cm1e_arena_t *arena, cm1e_described_entry_t *described, const cm1e_entry_t *entry)
+{
+    cm1e_describe_range(arena, described, entry->minimum, entry->maximum);
+    if (entry->index < FIRST_PARAMETER)
+        described->comment = NULL; /* PDO assignment: set by masters */
+    else if (entry->round_to > 1)
+        described->comment = cm1e_arena_format(arena, "%s, rounded to %" PRIu32, described->comment, entry->round_to);
 }
 
 static const char *const availabilities[] = {
@@ -39,10 +60,8 @@ static void describe_entry(cm1e_arena_t *arena, cm1e_described_entry_t *describe
         return;
     }
     described->default_data = cm1e_bytes_of(arena, entry->default_value, bytes);
-    if (range_matters(entry)) {
-        described->minimum = cm1e_bytes_of(arena, entry->minimum, bytes);
-        described->maximum = cm1e_bytes_of(arena, entry->maximum, bytes);
-    }
+    if (range_matters(entry))
+        describe_range(arena, described, entry);
 }
 
 void cm1e_describe_object(cm1e_arena_t *arena, cm1e_object_list_t *list, const cm1e_object_t *object,
@@ -99,6 +118,7 @@ cm1e_described_pdo_t *cm1e_describe_pdo(cm1e_arena_t *arena, cm1e_pdo_list_t *li
         into->subindex = mapped->subindex;
         into->bits = mapped->bits;
         into->name = entry ? entry->name : NULL;
+        into->comment = entry && entry->unit[0] != '\0' ? entry->unit : NULL;
         into->type = mapped->index ? mapped_type(arena, entry, mapped->bits) : "";
     }
     return described;

@@ -28,6 +28,8 @@ cm1e_error_t cm1e_describe_bridge(cm1e_description_file_t *file, const cm1e_devi
 /** An object of the device tables as a description has it; entries that the firmware does not have are left out. */
 void cm1e_describe_object(cm1e_arena_t *arena, cm1e_object_list_t *list, const cm1e_object_t *object,
                           cm1e_firmware_t firmware);
+/** The range of an entry's values, also in its comment. */
+void cm1e_describe_range(cm1e_arena_t *arena, cm1e_described_entry_t *described, int64_t minimum, int64_t maximum);
 /** A PDO of the device tables; names and types come from the objects that are already in `device`. */
 cm1e_described_pdo_t *cm1e_describe_pdo(cm1e_arena_t *arena, cm1e_pdo_list_t *list, const cm1e_object_list_t *objects,
                                         const cm1e_pdo_t *pdo, bool transmit, int sync_manager);

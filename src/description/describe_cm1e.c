@@ -62,6 +62,17 @@ static void set_mapping_rows(cm1e_arena_t *arena, const cm1e_object_list_t *obje
     }
 }
 
+/* Parameters of the motor itself: the guide gives no values, except where it gives a range (K47, UG 6.2.4). */
+static void leave_out_defaults(const cm1e_object_list_t *objects, uint16_t index)
+{
+    for (size_t i = 0; i < objects->count; i++)
+        for (size_t j = 0; objects->at[i].index == index && j < objects->at[i].entries.count; j++) {
+            cm1e_described_entry_t *entry = &objects->at[i].entries.at[j];
+            if (entry->subindex > 0 && !entry->minimum.data)
+                entry->default_data = (cm1e_bytes_t){0};
+        }
+}
+
 /* What the tables have by the newest firmware, as this one has it (UG 10.1). */
 static void adapt_objects(cm1e_arena_t *arena, const cm1e_object_list_t *objects, const cm1e_device_options_t *options,
                           const cm1e_firmware_info_t *firmware)
@@ -75,9 +86,15 @@ static void adapt_objects(cm1e_arena_t *arena, const cm1e_object_list_t *objects
     static const uint16_t velocities[] = {OBJ_606C_VELOCITY_ACTUAL_VALUE, OBJ_60FF_TARGET_VELOCITY};
     for (int i = 0; i < 2 && firmware->velocity_in_counts_per_ms; i++) {
         cm1e_described_entry_t *entry = cm1e_describe_entry_of(objects, velocities[i], 0);
-        if (entry)
-            entry->unit = "counts/ms";
+        if (!entry)
+            continue;
+        entry->unit = "counts/ms";
+        if (entry->minimum.data)
+            cm1e_describe_range(arena, entry, cm1e_bytes_signed(entry->minimum) / 1000,
+                                cm1e_bytes_signed(entry->maximum) / 1000);
     }
+    leave_out_defaults(objects, OBJ_60F6_K_PARAMETERS);
+    leave_out_defaults(objects, OBJ_60FB_H_PARAMETERS);
     for (int mapping = 0; mapping < MAPPINGS; mapping++)
         for (int transmit = 0; transmit < 2; transmit++) {
             cm1e_pdo_t pdo;
@@ -154,11 +171,17 @@ static uint32_t module_ident(int mapping, const cm1e_device_options_t *options, 
     return mappings[mapping].module_ident | ((uint32_t)firmware->firmware + 1) << 4 | (uint32_t)options->order;
 }
 
+/* The drive's objects come with the module, except the parameters of the motor itself, which no mode changes. */
+static bool is_of_module(uint16_t index)
+{
+    return cm1e_describe_is_of_axis(index) && index != OBJ_60F6_K_PARAMETERS && index != OBJ_60FB_H_PARAMETERS;
+}
+
 static void describe_module(cm1e_arena_t *arena, cm1e_module_t *module, cm1e_mapping_t mapping,
                             const cm1e_object_list_t *objects, const cm1e_pdo_list_t *pdos)
 {
     for (size_t i = 0; i < objects->count; i++)
-        if (cm1e_describe_is_of_axis(objects->at[i].index)) {
+        if (is_of_module(objects->at[i].index)) {
             cm1e_described_object_t *object = CM1E_APPEND(arena, &module->objects);
             *object = objects->at[i];
             object->depends_on_slot = true;
@@ -225,7 +248,9 @@ cm1e_error_t cm1e_describe_cm1e(cm1e_description_file_t *file, const cm1e_device
     cm1e_describe_sync_managers(arena, device, cm1e_device_sync_managers, &pdos);
     cm1e_describe_assignment(arena, &device->init_commands, &objects, &pdos);
     if (layout == CM1E_ESI_MDP) {
-        cm1e_describe_own_objects(arena, device, &objects);
+        for (size_t i = 0; i < objects.count; i++)
+            if (!is_of_module(objects.at[i].index))
+                *(cm1e_described_object_t *)CM1E_APPEND(arena, &device->objects) = objects.at[i];
         describe_slot(file, device, options, firmware, &objects, &pdos);
         return CM1E_OK;
     }

@@ -254,14 +254,24 @@ static void put_slots(cm1e_xml_writer_t *xml, const cm1e_description_t *device)
  * are written only where they are those of a real device. Without them there is no Eeprom at all, which the schema
  * allows (its ConfigData is not optional): a tool then has nothing that it could put into a device, and masters take
  * what they need of it, such as the bootstrap mailbox, from the device itself. */
-static void put_eeprom(cm1e_xml_writer_t *xml, const cm1e_described_eeprom_t *eeprom)
+static bool has_eeprom(const cm1e_description_t *device)
 {
-    if (!eeprom->config_known || !eeprom->config_data.data) {
-        cm1e_xml_put_comment(xml, "No Eeprom: the configuration words of this device's EEPROM are not known. Do not "
-                                  "write an EEPROM from this file: with wrong words a device cannot be reached any "
-                                  "more.");
+    return device->eeprom.config_known && device->eeprom.config_data.data;
+}
+
+static void put_warning_of_eeprom(cm1e_xml_writer_t *xml, const cm1e_description_t *device)
+{
+    if (!has_eeprom(device))
+        cm1e_xml_put_comment(xml, "WARNING: no Eeprom in this description, because the configuration words of the "
+                                  "device's EEPROM are not known. Do not write an EEPROM from this file: with wrong "
+                                  "words a device cannot be reached any more.");
+}
+
+static void put_eeprom(cm1e_xml_writer_t *xml, const cm1e_description_t *device)
+{
+    const cm1e_described_eeprom_t *eeprom = &device->eeprom;
+    if (!has_eeprom(device))
         return;
-    }
     cm1e_xml_open(xml, "Eeprom");
     cm1e_xml_put(xml, "ByteSize", "%" PRIu32, eeprom->byte_size);
     cm1e_xml_put_hex(xml, "ConfigData", eeprom->config_data);
@@ -350,6 +360,7 @@ static void put_device(cm1e_xml_writer_t *xml, cm1e_arena_t *scratch, const cm1e
 {
     cm1e_xml_open(xml, "Device");
     cm1e_xml_put_attribute(xml, "Physics", "%s", device->physics ? device->physics : "");
+    put_warning_of_eeprom(xml, device);
     put_type(xml, device);
     put_text(xml, "Name", device->name);
     put_text(xml, "Comment", device->comment);
@@ -365,7 +376,7 @@ static void put_device(cm1e_xml_writer_t *xml, cm1e_arena_t *scratch, const cm1e
     put_mailbox(xml, device);
     put_dc(xml, device);
     put_slots(xml, device);
-    put_eeprom(xml, &device->eeprom);
+    put_eeprom(xml, device);
     cm1e_xml_close(xml);
 }
 

@@ -324,7 +324,7 @@ static void put_values(cm1e_xml_writer_t *xml, const cm1e_described_entry_t *ent
     cm1e_xml_close(xml);
 }
 
-/* All sub-indexes or none: so they are found by name and by number. */
+/* Found by their names, so those without values are not listed. */
 static void put_values_of_items(cm1e_xml_writer_t *xml, const cm1e_described_object_t *object,
                                 const definition_t *definition)
 {
@@ -335,6 +335,8 @@ static void put_values_of_items(cm1e_xml_writer_t *xml, const cm1e_described_obj
         return;
     cm1e_xml_open(xml, "Info");
     for (size_t i = 0; i < object->entries.count; i++) {
+        if (!has_values(&object->entries.at[i]))
+            continue;
         cm1e_xml_open(xml, "SubItem");
         cm1e_xml_put(xml, "Name", "%s", definition->item_names[i]);
         put_values(xml, &object->entries.at[i]);

@@ -29,20 +29,20 @@ static inline void golden_compare(const char *name, const void *bytes, size_t si
     char path[512], message[640];
     snprintf(path, sizeof path, CM1E_SOURCE_DIR "/tests/golden/%s", name);
     const char *update = getenv("CM1E_GOLDEN_UPDATE");
-    FILE *file = fopen(path, update ? "wb" : "rb");
+    FILE *stream = fopen(path, update ? "wb" : "rb");
     snprintf(message, sizeof message, "%s cannot be opened; CM1E_GOLDEN_UPDATE=1 and this test write it", path);
-    TEST_ASSERT_NOT_NULL_MESSAGE(file, message);
+    TEST_ASSERT_NOT_NULL_MESSAGE(stream, message);
     if (update) {
-        TEST_ASSERT_EQUAL(size, fwrite(bytes, 1, size, file));
-        fclose(file);
+        TEST_ASSERT_EQUAL(size, fwrite(bytes, 1, size, stream));
+        fclose(stream);
         return;
     }
-    fseek(file, 0, SEEK_END);
-    const size_t golden_size = (size_t)ftell(file);
-    rewind(file);
+    fseek(stream, 0, SEEK_END);
+    const size_t golden_size = (size_t)ftell(stream);
+    rewind(stream);
     char *golden = malloc(golden_size + 1);
-    TEST_ASSERT_EQUAL(golden_size, fread(golden, 1, golden_size, file));
-    fclose(file);
+    TEST_ASSERT_EQUAL(golden_size, fread(golden, 1, golden_size, stream));
+    fclose(stream);
     const unsigned line = golden_differing_line(bytes, size, golden, golden_size);
     free(golden);
     snprintf(message, sizeof message, "%s is not the same from line %u on; if that is right, CM1E_GOLDEN_UPDATE=1 and "
