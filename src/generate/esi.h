@@ -5,15 +5,15 @@
  *
  * Where an ESI has no place of its own for what a description holds:
  * - file->comment is the comment before the root element; comments inside of it are the writer's own and not read.
- * - Comment of a sub-index, and of an object that has no sub-indexes, is "[unit] comment", "[unit]" or "comment", of the
- *   entry; of any other object it is the object's.
+ * - Comment of a sub-index, and of an object that has no sub-indexes, is "[unit] comment", "[unit]" or "comment", of
+ *   the entry; of any other object it is the object's.
  * - Names of sub-indexes are unique in a type (the schema's key). A name that comes again is the DisplayName, and Name
  *   is "SubIndex 003", as it is where there is no name.
- * - Elements of an array type have no names but those. So an ARRAY whose elements have names, units or comments of their
- *   own is written as sub-indexes one by one, as a RECORD is: TwinCAT shows them then.
+ * - Elements of an array type have no names but those. So an ARRAY whose elements have names, units or comments of
+ *   their own is written as sub-indexes one by one, as a RECORD is: TwinCAT shows them then.
  * - Data types follow from the objects; what a file called them, its sizes and offsets, are not written again.
- * - No Eeprom where its configuration is not known (config_known): there is nothing then that a tool could write into a
- *   device. A file with ConfigData is taken to know it.
+ * - No Eeprom where its configuration is not known (config_known): there is nothing then that a tool could write into
+ *   a device. A file with ConfigData is taken to know it.
  */
 #ifndef CM1E_GENERATE_ESI_H
 #define CM1E_GENERATE_ESI_H

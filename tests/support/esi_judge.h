@@ -127,12 +127,6 @@ static void free_schema(void)
     xmlCleanupParser();
 }
 
-static void need_schema(void)
-{
-    if (!schema)
-        TEST_IGNORE_MESSAGE("no ETG schemas: set CM1E_ESI_SCHEMAS to the folder with EtherCATInfo.xsd");
-}
-
 /* "": valid; otherwise the last error. */
 static const char *schema_error(void)
 {

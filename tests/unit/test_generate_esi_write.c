@@ -17,6 +17,12 @@ static cm1e_device_options_t cm1e_of(int firmware, cm1e_mapping_t mapping)
     return options;
 }
 
+static void need_schema(void)
+{
+    if (!schema)
+        TEST_IGNORE_MESSAGE("no ETG schemas: set CM1E_ESI_SCHEMAS to the folder with EtherCATInfo.xsd");
+}
+
 static void check_every_choice(cm1e_device_options_t options, cm1e_esi_layout_t layout)
 {
     for (int choice = 0; choice < 4; choice++) {
