@@ -53,17 +53,9 @@ static cm1e_device_options_t bridge(cm1e_device_model_t model, uint32_t axes)
                                    .revision = 1};
 }
 
-static void need_bridge(void)
-{
-    const cm1e_device_options_t options = bridge(CM1E_DEVICE_EB01, 1);
-    if (cm1e_describe(&description, &options, CM1E_ESI_FLAT, &diag) == CM1E_ERROR_UNSUPPORTED)
-        TEST_IGNORE_MESSAGE(diag.text);
-}
-
 static void test_every_bridge_is_valid_by_the_schema(void)
 {
     need_schema();
-    need_bridge();
     for (int model = CM1E_DEVICE_EB01; model <= CM1E_DEVICE_EB12; model++)
         for (uint32_t axes = 1; axes <= 4; axes++)
             for (int layout = 0; layout < 2; layout++)
@@ -113,6 +105,12 @@ static void test_a_file_with_everything_else_is_the_golden_one(void)
         .mapping = CM1E_MAPPING_CSP, .order = CM1E_PDO_ORDER_UG_7_2, .complete_access = true,
         .distributed_clocks = true, .config_data = {0x05, 0x0E, 0x03, 0x44}, .config_data_size = 14};
     compare_golden("esi-cm1e-csp-dc-eeprom.xml", &options, CM1E_ESI_FLAT);
+}
+
+static void test_a_file_of_the_bridge_is_the_golden_one(void)
+{
+    const cm1e_device_options_t options = bridge(CM1E_DEVICE_EB12, 4);
+    compare_golden("esi-eb12-mdp.xml", &options, CM1E_ESI_MDP);
 }
 
 static void test_the_same_device_gives_the_same_bytes(void)
@@ -471,6 +469,7 @@ int main(void)
     RUN_TEST(test_the_schema_sees_what_is_wrong);
     RUN_TEST(test_files_are_the_golden_ones);
     RUN_TEST(test_a_file_with_everything_else_is_the_golden_one);
+    RUN_TEST(test_a_file_of_the_bridge_is_the_golden_one);
     RUN_TEST(test_the_same_device_gives_the_same_bytes);
     RUN_TEST(test_identity_is_that_of_the_firmware);
     RUN_TEST(test_dictionary_is_that_of_the_tables);
