@@ -4,33 +4,22 @@
 #include <string.h>
 
 #include "command.h"
-#include "description/sii.h"
+#include "cm1e/generate.h"
 
 enum { KEY_FIRMWARE = 0x400, KEY_ORDER, KEY_ALIAS };
 
 typedef struct generate_options {
     const char *format, *file;
-    cm1e_sii_options_t sii;
+    cm1e_device_options_t device;
 } generate_options_t;
 
-static error_t parse_firmware(const char *word, cm1e_sii_options_t *sii)
-{
-    for (cm1e_firmware_t f = CM1E_FIRMWARE_1_2_0; f < CM1E_FIRMWARE_COUNT; f++)
-        if (strcmp(cm1e_firmware_info(f)->version, word) == 0) {
-            sii->firmware = f;
-            return 0;
-        }
-    complain("there is no firmware \"%s\"; there are 1.2.0 1.3.0 1.3.2 1.3.3 1.3.4 1.3.5", word);
-    return EINVAL;
-}
-
-static error_t parse_order(const char *word, cm1e_sii_options_t *sii)
+static error_t parse_order(const char *word, cm1e_device_options_t *device)
 {
     if (strcmp(word, "ug-4.4") != 0 && strcmp(word, "ug-7.2") != 0) {
         complain("there is no PDO order \"%s\"; there are ug-4.4 and ug-7.2", word);
         return EINVAL;
     }
-    sii->order = strcmp(word, "ug-7.2") == 0 ? CM1E_PDO_ORDER_UG_7_2 : CM1E_PDO_ORDER_UG_4_4;
+    device->order = strcmp(word, "ug-7.2") == 0 ? CM1E_PDO_ORDER_UG_7_2 : CM1E_PDO_ORDER_UG_4_4;
     return 0;
 }
 
@@ -40,12 +29,14 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     long long number;
     switch (key) {
     case 'o': options->file = arg; return 0;
-    case KEY_FIRMWARE: return parse_firmware(arg, &options->sii);
-    case KEY_ORDER: return parse_order(arg, &options->sii);
+    case KEY_FIRMWARE:
+        snprintf(options->device.firmware, sizeof options->device.firmware, "%s", arg);
+        return 0;
+    case KEY_ORDER: return parse_order(arg, &options->device);
     case KEY_ALIAS:
         if (!parse_number(arg, "the alias", 0, 0xFFFF, &number))
             return EINVAL;
-        options->sii.alias = (uint16_t)number;
+        options->device.alias = (uint16_t)number;
         return 0;
     case ARGP_KEY_ARG:
         if (options->format)
@@ -92,10 +83,20 @@ int command_generate(int argc, char **argv)
                                      "Writes the SII image of a CM1-E from the device tables, the one that the "
                                      "simulator boots from. Not for writing into a real device: its configuration "
                                      "area is not known.", NULL, NULL, NULL};
-    generate_options_t options = {.sii = {.firmware = CM1E_FIRMWARE_1_3_5}};
+    generate_options_t options = {0};
     if (argp_parse(&argp, argc, argv, 0, NULL, &options))
         return EXIT_WRONG_USE;
-    uint8_t image[CM1E_SII_SIZE];
-    const size_t size = cm1e_generate_sii(image, sizeof image, &options.sii);
-    return size > 0 && write_file(options.file, image, size) ? EXIT_OK : EXIT_FAILED;
+    const cm1e_generate_options_t what = {.format = CM1E_FILE_SII, .devices = &options.device, .device_count = 1};
+    cm1e_diag_t diag = {0};
+    cm1e_file_t file;
+    const cm1e_error_t error = cm1e_generate(&file, &what, &diag);
+    if (error == CM1E_ERROR_CONFIG) {
+        complain("%s", diag.text);
+        return EXIT_WRONG_USE;
+    }
+    if (error != CM1E_OK)
+        return fail(&diag);
+    const bool written = write_file(options.file, file.bytes, file.size);
+    cm1e_file_free(&file);
+    return written ? EXIT_OK : EXIT_FAILED;
 }

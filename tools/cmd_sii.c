@@ -241,7 +241,11 @@ int command_sii(int argc, char **argv)
     input_t image;
     if (!read_input(options.words[1], &image))
         return EXIT_FAILED;
-    const int status = decode(&image, options.common.json);
+    int status = EXIT_FAILED;
+    if (cm1e_file_recognise(image.bytes, image.size) == CM1E_FILE_SII)
+        status = decode(&image, options.common.json);
+    else
+        complain("%s is no image of an SII", options.words[1]);
     free(image.bytes);
     return status;
 }

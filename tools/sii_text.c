@@ -11,11 +11,7 @@ static const char *const fmmu_uses[] = {
     [CM1E_FMMU_UNUSED] = "not used", [CM1E_FMMU_OUTPUTS] = "outputs", [CM1E_FMMU_INPUTS] = "inputs",
     [CM1E_FMMU_MAILBOX_STATE] = "mailbox state",
 };
-static const struct {
-    uint16_t bit;
-    const char *name;
-} protocols[] = {{0x01, "AoE"}, {0x02, "EoE"}, {0x04, "CoE"}, {0x08, "FoE"}, {0x10, "SoE"}, {0x20, "VoE"}};
-enum { PROTOCOLS = sizeof protocols / sizeof protocols[0] };
+enum { PROTOCOLS = 6 };
 
 /** The n-th of `count` texts; a number that a damaged image can hold may have none. */
 #define TEXT_OF(texts, n) ((size_t)(n) < sizeof(texts) / sizeof(texts)[0] && (texts)[n] ? (texts)[n] : "?")
@@ -30,12 +26,25 @@ static void hex_words(cm1e_bytes_t bytes, char *text, size_t size)
                  bytes.data[i]);
 }
 
-static void protocol_names(uint16_t bits, char *text, size_t size)
+/* Those that a mailbox has; the others are NULL. */
+static void list_protocols(const cm1e_mailbox_protocols_t *mailbox, const char *names[PROTOCOLS])
 {
+    names[0] = mailbox->aoe ? "AoE" : NULL;
+    names[1] = mailbox->eoe ? "EoE" : NULL;
+    names[2] = mailbox->coe ? "CoE" : NULL;
+    names[3] = mailbox->foe ? "FoE" : NULL;
+    names[4] = mailbox->soe ? "SoE" : NULL;
+    names[5] = mailbox->voe ? "VoE" : NULL;
+}
+
+static void protocol_names(const cm1e_mailbox_protocols_t *mailbox, char *text, size_t size)
+{
+    const char *names[PROTOCOLS];
+    list_protocols(mailbox, names);
     text[0] = '\0';
     for (int i = 0; i < PROTOCOLS; i++)
-        if (bits & protocols[i].bit)
-            snprintf(text + strlen(text), size - strlen(text), "%s%s", text[0] ? " " : "", protocols[i].name);
+        if (names[i])
+            snprintf(text + strlen(text), size - strlen(text), "%s%s", text[0] ? " " : "", names[i]);
 }
 
 static void coe_details(const cm1e_mailbox_protocols_t *mailbox, char *text, size_t size)
@@ -59,7 +68,7 @@ static void print_header(const cm1e_description_t *device, size_t size)
     const cm1e_described_eeprom_t *eeprom = &device->eeprom;
     char words[64], names[64], details[128];
     hex_words(eeprom->config_data, words, sizeof words);
-    protocol_names(eeprom->mailbox_protocols, names, sizeof names);
+    protocol_names(&device->mailbox, names, sizeof names);
     coe_details(&device->mailbox, details, sizeof details);
     printf("image           %zu bytes; EEPROM of %u bytes, version %u\n", size, (unsigned)eeprom->byte_size,
            eeprom->version);
@@ -163,12 +172,15 @@ static json_t *channels_as_json(const cm1e_description_t *device)
     return json_pack("{s:o, s:o, s:o}", "sync_managers", managers, "fmmus", fmmus, "dc_modes", modes);
 }
 
-static json_t *mailbox_as_json(const cm1e_described_eeprom_t *eeprom)
+static json_t *mailbox_as_json(const cm1e_description_t *device)
 {
+    const cm1e_described_eeprom_t *eeprom = &device->eeprom;
+    const char *protocols[PROTOCOLS];
     json_t *names = json_array();
+    list_protocols(&device->mailbox, protocols);
     for (int i = 0; i < PROTOCOLS; i++)
-        if (eeprom->mailbox_protocols & protocols[i].bit)
-            json_array_append_new(names, json_string(protocols[i].name));
+        if (protocols[i])
+            json_array_append_new(names, json_string(protocols[i]));
     return json_pack("{s:i, s:i, s:i, s:i, s:o}", "out_start", eeprom->mailbox_out_start, "out_length",
                      eeprom->mailbox_out_length, "in_start", eeprom->mailbox_in_start, "in_length",
                      eeprom->mailbox_in_length, "protocols", names);
@@ -185,8 +197,7 @@ json_t *sii_as_json(const cm1e_description_t *device, size_t size, const cm1e_fi
         (json_int_t)device->vendor_id, "product_code", (json_int_t)device->product_code, "revision",
         (json_int_t)device->revision, "serial_number", (json_int_t)eeprom->serial_number, "alias", eeprom->alias,
         "name", text_as_json(device->name), "order_number", text_as_json(device->type), "group",
-        text_as_json(device->group),
-        "mailbox", mailbox_as_json(eeprom));
+        text_as_json(device->group), "mailbox", mailbox_as_json(device));
     json_t *channels = channels_as_json(device), *pdos = json_array(), *list = json_array();
     json_object_update(object, channels);
     json_decref(channels);

@@ -16,6 +16,18 @@
     X(PDO_ENTRY_SIZE, "pdo-entry-size", true)                                                                       \
     X(SYNC_MANAGERS_OVERLAP, "sync-managers-overlap", true)                                                         \
     X(MAILBOX_SIZE, "mailbox-size", true)                                                                           \
+    /* an SII image */                                                                                              \
+    X(SII_CHECKSUM, "sii-checksum", true)                                                                           \
+    X(SII_CATEGORY_LENGTH, "sii-category-length", true)                                                             \
+    X(SII_NO_END, "sii-no-end", true)                                                                               \
+    X(SII_SIZE, "sii-size", true)                                                                                   \
+    X(SII_INCOMPLETE, "sii-incomplete", true)                                                                       \
+    X(SII_CATEGORY_TWICE, "sii-category-twice", false)                                                              \
+    X(SII_STRING_MISSING, "sii-string-missing", true)                                                               \
+    X(SII_STRING_TEXT, "sii-string-text", false)                                                                    \
+    X(SII_DATA_TYPE, "sii-data-type", false)                                                                        \
+    X(SII_MAILBOX, "sii-mailbox", true)                                                                             \
+    X(SII_PROTOCOLS, "sii-protocols", false)                                                                        \
     /* a live device beside a file */                                                                               \
     X(DIFFERS, "differs", true)
 

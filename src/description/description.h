@@ -180,7 +180,6 @@ typedef struct cm1e_described_eeprom {
     bool config_known;       /**< false: config_data is a guess and must not be written into a device */
     cm1e_bytes_t bootstrap;  /**< words 0x14-0x17 (8 bytes) */
     uint16_t mailbox_out_start, mailbox_out_length, mailbox_in_start, mailbox_in_length; /**< words 0x18-0x1B; SII */
-    uint16_t mailbox_protocols; /**< word 0x1C; SII */
     uint16_t alias;          /**< word 4 */
     uint32_t serial_number;
     uint16_t version;        /**< word 0x3F */
@@ -239,6 +238,7 @@ typedef struct cm1e_description {
     const char *group_name;   /**< NULL: not stated */
     const char *physics;      /**< "YY": two MII ports; NULL: not stated */
     int32_t dpram_bytes, sync_managers_available, fmmus_available; /**< -1: not stated */
+    bool no_lrw;              /**< the device cannot do LRW (ESI: Type/@UseLrdLwr) */
     bool identification_reg134, identification_reg134_given; /**< explicit device ID (register 0x0134) */
     cm1e_described_timeouts_t timeouts;
 

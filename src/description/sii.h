@@ -1,7 +1,12 @@
 /**
  * @file sii.h
- * Writer of the SII image (ETG.1000.6 5.4, ETG.2010): what a slave's EEPROM holds and every master reads. Built from
- * the device tables; the simulator boots from it. Any thread.
+ * The SII image (ETG.1000.6 5.4, ETG.2010): what a slave's EEPROM holds and every master reads. Written from a
+ * description, whatever that was made of, and read into one; the simulator boots from it. Any thread.
+ *
+ * A description holds what masters use: identity, mailboxes, strings, General, FMMU, SyncM, TxPDO, RxPDO, DC. What
+ * else an image has (categories of the maker, pictures, current on the E-bus, strings nobody refers to) is skipped on
+ * reading, so an image of another maker's tool does not come back byte for byte; one that was written here does. To
+ * keep an image as it is, keep its bytes.
  */
 #ifndef CM1E_DESCRIPTION_SII_H
 #define CM1E_DESCRIPTION_SII_H
@@ -12,37 +17,36 @@
 
 #include "description/check.h"
 #include "description/description.h"
-#include "device/device.h"
 
-/** Bytes of an image: a 16 kbit EEPROM. */
-#define CM1E_SII_SIZE 2048
+enum {
+    CM1E_SII_SIZE = 2048,          /**< bytes where a description states none: a 16 kbit EEPROM */
+    CM1E_SII_SIZE_MAX = 8 << 20,   /**< the most that the size word can state */
+    CM1E_SII_HEADER_BYTES = 0x80,  /**< the fixed part; the categories follow */
+    CM1E_SII_CATEGORY_END = 0xFFFF,
+};
 
-/** A zeroed struct describes the oldest firmware with its default mapping, no alias. */
-typedef struct cm1e_sii_options {
-    cm1e_firmware_t firmware;
-    cm1e_pdo_order_t order;
-    cm1e_mapping_t mapping;    /**< the PDOs that sync managers 2 and 3 carry by default */
-    uint16_t alias;            /**< configured station alias, 0: none */
-    uint32_t serial_number;
-    bool complete_access;      /**< announce SDO complete access (not known of the device, so off by default) */
-    bool distributed_clocks;   /**< add the category of DC modes (the guide names none, so off by default) */
-} cm1e_sii_options_t;
-
-/** Writes the image of a CM1-E; returns CM1E_SII_SIZE, or 0 where `room` is smaller. The configuration area (words 0-3)
- *  of the real device is not known: do not write this image into a real device. @rt any */
-size_t cm1e_generate_sii(uint8_t *image, size_t room, const cm1e_sii_options_t *options);
-
-/** Writes the image of a plain I/O module without mailbox, 1 byte out and 1 byte in, vendor 0. Returns as above.
- *  @rt any */
-size_t cm1e_generate_sii_io_module(uint8_t *image, size_t room);
-
-/** Writes a device's description as an image of `eeprom.byte_size` bytes (0: 2048) into `image`. 0: it does not fit into
- *  `room`, or into the EEPROM; `diag` says why. @rt any */
+/** Writes a device's description as an image of `eeprom.byte_size` bytes (0: CM1E_SII_SIZE) into `image`. 0: it does
+ *  not fit into `room`, into the EEPROM or into the format, `diag` says why, and what is in `image` is of no use. A
+ *  mailbox that `eeprom` does not state is that of the sync managers; DC modes are written where one of them switches a
+ *  signal on. Texts become ISO 8859-1, a letter that it lacks "?". Of an MDP device only what is in the device itself:
+ *  expand its slots before. @rt any */
 size_t cm1e_sii_write(uint8_t *image, size_t room, const cm1e_description_t *device, cm1e_diag_t *diag);
-/** Appends the device of an image; places are byte addresses. What is merely wrong (checksum, lengths beyond the end) is
- *  kept for the checker in `findings` (NULL: not wanted); CM1E_ERROR_FILE: there is no way to read it. @rt any */
+
+/** Appends the device of an image, which may end behind its last category; places are byte addresses. What is merely
+ *  wrong is left to the checker in `findings` (NULL: not wanted) and read as far as it makes sense. CM1E_ERROR_FILE: no
+ *  image of an SII has this size. @rt init */
 cm1e_error_t cm1e_sii_read(cm1e_description_file_t *file, const uint8_t *image, size_t size, cm1e_findings_t *findings,
                            cm1e_diag_t *diag);
+
+typedef struct cm1e_sii_category {
+    uint16_t type;  /**< CM1E_SII_CATEGORY_END: this is the end mark */
+    size_t start;   /**< byte address of its content */
+    size_t bytes;   /**< as it states them, perhaps beyond the end of the image; the next one begins behind */
+} cm1e_sii_category_t;
+/** The category whose header begins at byte `at`. FALSE: the image ends before. @rt any */
+bool cm1e_sii_category_at(cm1e_sii_category_t *category, const uint8_t *image, size_t size, size_t at);
+/** Whether cm1e_sii_read() takes anything from categories of this type. @rt any */
+bool cm1e_sii_category_is_read(uint16_t type);
 
 /** The checksum of words 0-6 that word 7 holds: CRC-8, polynomial 0x07, start value 0xFF (ETG.1000.6 5.4). @rt any */
 uint8_t cm1e_sii_crc8(const uint8_t *bytes, size_t count);

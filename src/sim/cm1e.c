@@ -1,6 +1,8 @@
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
+#include "description/describe.h"
 #include "description/sii.h"
 #include "sim/cm1e_app.h"
 
@@ -173,6 +175,18 @@ cm1e_sim_cm1e_t *cm1e_sim_cm1e_create_app(const cm1e_axis_config_t *config, cm1e
     return drive;
 }
 
+static size_t write_sii(uint8_t *sii, size_t room, const cm1e_sim_cm1e_t *drive)
+{
+    cm1e_device_options_t options = {.order = drive->order, .alias = drive->alias};
+    cm1e_description_file_t file = {0};
+    snprintf(options.firmware, sizeof options.firmware, "%s", drive->firmware->version);
+    const size_t size = cm1e_describe(&file, &options, CM1E_ESI_FLAT, NULL) == CM1E_OK
+                            ? cm1e_sii_write(sii, room, &file.devices.at[0], NULL)
+                            : 0;
+    cm1e_description_file_free(&file);
+    return size;
+}
+
 cm1e_sim_slave_t *cm1e_sim_cm1e_create(const cm1e_axis_config_t *config, cm1e_pdo_order_t order, uint16_t alias,
                                        uint8_t rotary_switches)
 {
@@ -180,9 +194,8 @@ cm1e_sim_slave_t *cm1e_sim_cm1e_create(const cm1e_axis_config_t *config, cm1e_pd
     if (!drive)
         return NULL;
     uint8_t sii[CM1E_SII_SIZE];
-    const cm1e_sii_options_t options = {.firmware = drive->firmware->firmware, .order = order, .alias = alias};
-    const size_t size = cm1e_generate_sii(sii, sizeof sii, &options);
-    cm1e_sim_slave_t *slave = cm1e_sim_slave_create(sii, size, cm1e_sim_cm1e_ops(drive), drive);
+    const size_t size = write_sii(sii, sizeof sii, drive);
+    cm1e_sim_slave_t *slave = size > 0 ? cm1e_sim_slave_create(sii, size, cm1e_sim_cm1e_ops(drive), drive) : NULL;
     if (slave)
         drive->slave = slave;
     else

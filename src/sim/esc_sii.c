@@ -14,7 +14,7 @@ enum {
 };
 /* Times of an I2C EEPROM, roughly. */
 enum { READ_NS = 150000, WRITE_NS = 3000000, RELOAD_NS = 1000000 };
-enum { WORD_ALIAS = 4, WORD_CHECKSUM = 7, HEADER_BYTES = 0x80, CONFIG_OFFERED_TO_PDI = 0x01 };
+enum { WORD_ALIAS = 4, WORD_CHECKSUM = 7, CONFIG_OFFERED_TO_PDI = 0x01 };
 
 static uint16_t control(const cm1e_sim_slave_t *slave) { return cm1e_get_u16(slave->memory + ESC_SII_CONTROL); }
 static void set_control(cm1e_sim_slave_t *slave, unsigned set, unsigned clear)
@@ -24,7 +24,7 @@ static void set_control(cm1e_sim_slave_t *slave, unsigned set, unsigned clear)
 
 static bool checksum_valid(const cm1e_sim_slave_t *slave)
 {
-    return slave->sii_size >= HEADER_BYTES &&
+    return slave->sii_size >= CM1E_SII_HEADER_BYTES &&
            cm1e_sii_crc8(slave->sii, 2 * WORD_CHECKSUM) == slave->sii[2 * WORD_CHECKSUM];
 }
 
@@ -132,18 +132,16 @@ void cm1e_sim_esc_sii_due(cm1e_sim_slave_t *slave)
 
 size_t cm1e_sim_esc_sii_category(const cm1e_sim_slave_t *slave, uint16_t type, size_t *bytes)
 {
-    enum { CATEGORY_HEADER = 4, CATEGORY_END = 0xFFFF };
-    for (size_t at = HEADER_BYTES; at + CATEGORY_HEADER <= slave->sii_size;) {
-        const uint16_t found = cm1e_get_u16(slave->sii + at);
-        const size_t length = 2u * cm1e_get_u16(slave->sii + at + 2);
-        at += CATEGORY_HEADER;
-        if (found == CATEGORY_END || length > slave->sii_size - at)
+    cm1e_sii_category_t category;
+    for (size_t at = CM1E_SII_HEADER_BYTES; cm1e_sii_category_at(&category, slave->sii, slave->sii_size, at) &&
+                                            category.type != CM1E_SII_CATEGORY_END;
+         at = category.start + category.bytes) {
+        if (category.bytes > slave->sii_size - category.start)
             return 0;
-        if (found == type) {
-            *bytes = length;
-            return at;
+        if (category.type == type) {
+            *bytes = category.bytes;
+            return category.start;
         }
-        at += length;
     }
     return 0;
 }

@@ -1,6 +1,7 @@
 #include <stdlib.h>
 
 #include "cm1e/bus.h"
+#include "description/describe.h"
 #include "description/sii.h"
 #include "sim/esc.h"
 
@@ -57,11 +58,14 @@ static const cm1e_sim_app_ops_t ops = {
 cm1e_sim_slave_t *cm1e_sim_io_module_create(void)
 {
     uint8_t sii[CM1E_SII_SIZE];
-    io_module_t *module = calloc(1, sizeof *module);
+    cm1e_description_file_t file = {0};
+    cm1e_describe_io_module(&file);
+    const size_t size = file.arena.failed ? 0 : cm1e_sii_write(sii, sizeof sii, &file.devices.at[0], NULL);
+    cm1e_description_file_free(&file);
+    io_module_t *module = size > 0 ? calloc(1, sizeof *module) : NULL;
     if (!module)
         return NULL;
-    cm1e_sim_slave_t *slave =
-        cm1e_sim_slave_create(sii, cm1e_generate_sii_io_module(sii, sizeof sii), &ops, module);
+    cm1e_sim_slave_t *slave = cm1e_sim_slave_create(sii, size, &ops, module);
     if (!slave) {
         free(module);
         return NULL;

@@ -9,6 +9,7 @@
 
 #include "cm1e/bus.h"
 #include "core/bytes.h"
+#include "description/describe.h"
 #include "description/sii.h"
 #include "sim/segment.h"
 #include "sim/slave.h"
@@ -237,11 +238,21 @@ static inline void bench_open_with(bench_t *b, unsigned count, const uint8_t *si
     }
 }
 
+/* The image of a CM1-E of the newest firmware. */
+static inline void fake_sii(uint8_t image[CM1E_SII_SIZE], uint16_t alias, uint32_t serial_number)
+{
+    const cm1e_device_options_t options = {.alias = alias, .serial_number = serial_number};
+    cm1e_description_file_t file = {0};
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_describe(&file, &options, CM1E_ESI_FLAT, NULL));
+    TEST_ASSERT_EQUAL_size_t(CM1E_SII_SIZE, cm1e_sii_write(image, CM1E_SII_SIZE, &file.devices.at[0], NULL));
+    cm1e_description_file_free(&file);
+}
+
 static inline void bench_open(bench_t *b, unsigned count)
 {
     uint8_t sii[CM1E_SII_SIZE];
-    const cm1e_sii_options_t options = {.firmware = CM1E_FIRMWARE_1_3_5, .alias = 0x4711};
-    bench_open_with(b, count, sii, cm1e_generate_sii(sii, sizeof sii, &options));
+    fake_sii(sii, 0x4711, 0);
+    bench_open_with(b, count, sii, sizeof sii);
 }
 
 static inline void bench_close(bench_t *b)

@@ -11,8 +11,8 @@ static uint8_t image[CM1E_SII_SIZE];
 
 void setUp(void)
 {
-    const cm1e_sii_options_t options = {.firmware = CM1E_FIRMWARE_1_3_5};
-    bench_open_with(&b, SLAVES, image, cm1e_generate_sii(image, sizeof image, &options));
+    fake_sii(image, 0, 0);
+    bench_open_with(&b, SLAVES, image, sizeof image);
 }
 void tearDown(void) { bench_close(&b); }
 
