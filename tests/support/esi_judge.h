@@ -90,7 +90,7 @@ __attribute__((format(printf, 1, 2))) static const char *text(const char *format
     return into;
 }
 
-static int number(const char *said) { return said[0] == '#' ? (int)strtol(said + 2, NULL, 16) : atoi(said); }
+static inline int number(const char *said) { return said[0] == '#' ? (int)strtol(said + 2, NULL, 16) : atoi(said); }
 
 #define DEVICE "/EtherCATInfo/Descriptions/Devices/Device"
 #define MODULE "/EtherCATInfo/Descriptions/Modules/Module"
