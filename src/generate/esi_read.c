@@ -132,7 +132,7 @@ static void read_channel(cm1e_xml_reader_t *reader, const xmlNode *node, cm1e_de
 {
     cm1e_channel_t *channel = CM1E_APPEND(reader->arena, &device->channels);
     channel->place = cm1e_xml_line(node);
-    channel->profile_no = stated(reader, node, "ProfileNo");
+    channel->profile_no = (int32_t)cm1e_xml_child_number(reader, node, "ProfileNo", 0, INT32_MAX, 0); /* 0: none */
     channel->add_info = stated(reader, node, "AddInfo");
 }
 

@@ -3,6 +3,9 @@
 #include "description/describe.h"
 #include "fuzz.h"
 #include "generate/esi.h"
+#include "xml_mutator.h"
+
+enum { SEED_OBJECTS = 12, SEED_ENTRIES = 5, SEED_MODULES = 2 }; /* small seeds are run more often */
 
 static bool read_and_write(cm1e_file_t *written, const void *bytes, size_t size, bool must)
 {
@@ -39,6 +42,29 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     return 0;
 }
 
+static void shorten(cm1e_object_list_t *objects)
+{
+    if (objects->count > SEED_OBJECTS)
+        objects->count = SEED_OBJECTS;
+    for (size_t i = 0; i < objects->count; i++)
+        if (objects->at[i].entries.count > SEED_ENTRIES)
+            objects->at[i].entries.count = SEED_ENTRIES;
+}
+
+static void write_seed(const char *name, cm1e_description_file_t *file)
+{
+    cm1e_file_t written = {0};
+    for (size_t i = 0; i < file->devices.count; i++)
+        shorten(&file->devices.at[i].objects);
+    if (file->modules.count > SEED_MODULES)
+        file->modules.count = SEED_MODULES;
+    for (size_t i = 0; i < file->modules.count; i++)
+        shorten(&file->modules.at[i].objects);
+    if (cm1e_esi_write(&written, file, NULL) == CM1E_OK)
+        fuzz_seed(name, written.bytes, written.size);
+    cm1e_file_free(&written);
+}
+
 void fuzz_seeds(void)
 {
     size_t count;
@@ -46,13 +72,10 @@ void fuzz_seeds(void)
     for (size_t i = 0; i < count; i++)
         for (int layout = CM1E_ESI_FLAT; layout <= CM1E_ESI_MDP; layout++) {
             cm1e_description_file_t file = {0};
-            cm1e_file_t written = {0};
             char name[64];
             snprintf(name, sizeof name, "device_%zu_layout_%d.xml", i, layout);
-            if (cm1e_describe(&file, &devices[i], (cm1e_esi_layout_t)layout, NULL) == CM1E_OK &&
-                cm1e_esi_write(&written, &file, NULL) == CM1E_OK)
-                fuzz_seed(name, written.bytes, written.size);
-            cm1e_file_free(&written);
+            if (cm1e_describe(&file, &devices[i], (cm1e_esi_layout_t)layout, NULL) == CM1E_OK)
+                write_seed(name, &file);
             cm1e_description_file_free(&file);
         }
 }
