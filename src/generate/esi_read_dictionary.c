@@ -55,9 +55,11 @@ static uint8_t read_access(cm1e_xml_reader_t *reader, const xmlNode *node)
     return result;
 }
 
+/* A size, a place or a bound, which the checker may add up without fear. */
 static int64_t number_of(cm1e_xml_reader_t *reader, const xmlNode *node, const char *name)
 {
-    return cm1e_xml_child_number(reader, node, name, INT32_MIN, UINT32_MAX, 0);
+    const int64_t limit = (int64_t)SUBINDEXES << 33;
+    return cm1e_xml_child_number(reader, node, name, -limit, limit, 0);
 }
 
 static void read_item(cm1e_xml_reader_t *reader, const xmlNode *node, cm1e_type_definition_t *type)
