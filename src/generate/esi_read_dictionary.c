@@ -130,10 +130,8 @@ static const char *base_of(const dictionary_t *dictionary, const char *name)
         if (cm1e_type_code(name) != 0)
             return name;
         const cm1e_type_definition_t *type = type_of(dictionary, name);
-        if (!type)
+        if (!type || type->is_array)
             return "";
-        if (type->is_array) /* "ARRAY [0..3] OF BYTE" is the name itself */
-            return type->name;
         name = type->base_type;
     }
     return "";
