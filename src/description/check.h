@@ -28,6 +28,22 @@
     X(SII_DATA_TYPE, "sii-data-type", false)                                                                        \
     X(SII_MAILBOX, "sii-mailbox", true)                                                                             \
     X(SII_PROTOCOLS, "sii-protocols", false)                                                                        \
+    /* EC_EXTEND */                                                                                                 \
+    X(TRIO_INDEX, "trio-index", true)                                                                               \
+    X(TRIO_NAME, "trio-name", true)                                                                                 \
+    X(TRIO_REFERENCE, "trio-reference", true)                                                                       \
+    X(TRIO_VENDOR, "trio-vendor", true)                                                                             \
+    X(TRIO_PROFILE, "trio-profile", true)                                                                           \
+    X(TRIO_PDO_ENTRY, "trio-pdo-entry", true)                                                                       \
+    X(TRIO_PDO_SIZE, "trio-pdo-size", true)                                                                         \
+    X(TRIO_SYNC_MANAGER, "trio-sync-manager", true)                                                                 \
+    X(TRIO_INIT_COMMAND, "trio-init-command", true)                                                                 \
+    X(TRIO_ASSIGNMENT, "trio-assignment", true)                                                                     \
+    X(TRIO_MAILBOX, "trio-mailbox", true)                                                                           \
+    X(TRIO_AXES, "trio-axes", true)                                                                                 \
+    X(TRIO_DEVICE, "trio-device", true)                                                                             \
+    X(TRIO_REVISION, "trio-revision", false)                                                                        \
+    X(TRIO_UNKNOWN, "trio-unknown", false)                                                                          \
     /* a live device beside a file */                                                                               \
     X(DIFFERS, "differs", true)
 

@@ -2,7 +2,7 @@
 
 enum { MODE_MASK = 0x03, MODE_MAILBOX = 0x02, BUFFERS = 3 };
 
-/* Bytes of the chip's memory: process data has three buffers behind each other, a mailbox one (ETG.1000.4 6.8). */
+/* Bytes of the chip's memory: process data has three buffers behind each other, a mailbox one (ETG.1000.4 6.7). */
 static uint32_t memory_of(const cm1e_described_sync_manager_t *manager)
 {
     return (uint32_t)manager->length * ((manager->control & MODE_MASK) == MODE_MAILBOX ? 1 : BUFFERS);

@@ -54,6 +54,15 @@ const char *cm1e_ec_function(cm1e_sync_manager_use_t use)
     return functions[use];
 }
 
+cm1e_sync_manager_use_t cm1e_ec_use(const char *function, bool *bootstrap)
+{
+    *bootstrap = strncmp(function, "BOOT", 4) == 0;
+    for (int use = CM1E_SM_MAILBOX_OUT; use <= (*bootstrap ? CM1E_SM_MAILBOX_IN : CM1E_SM_INPUTS); use++)
+        if (strcmp(functions[use], function + (*bootstrap ? 4 : 0)) == 0)
+            return (cm1e_sync_manager_use_t)use;
+    return CM1E_SM_UNUSED;
+}
+
 void cm1e_ec_extend_free(cm1e_ec_extend_t *document)
 {
     xmlFreeDoc(document->doc);

@@ -151,10 +151,11 @@ const cm1e_ec_name_t *cm1e_ec_name(const char *name);
 const char *cm1e_ec_name_of(const cm1e_described_pdo_entry_t *entry, bool transmit);
 /** Function of a sync manager; "UNUSED" where it has none. */
 const char *cm1e_ec_function(cm1e_sync_manager_use_t use);
+/** What a function says of a sync manager; CM1E_SM_UNUSED where it is not known. `bootstrap`: of the other mailbox. */
+cm1e_sync_manager_use_t cm1e_ec_use(const char *function, bool *bootstrap);
 
-/** The process data, sync managers and start-up commands of a slave beside those of a description; CM1E_RULE_DIFFERS
- *  or, for a device that is known by its tables, the rule for that. Returns how many findings there were; `findings`
- *  NULL: counts only. */
+/** The process data, sync managers and start-up commands of a slave beside those of a description. Returns how many
+ *  findings there are; `findings` NULL: only that. */
 size_t cm1e_ec_extend_beside(cm1e_findings_t *findings, cm1e_rule_t rule, const cm1e_ec_extend_t *document,
                              const cm1e_ec_slave_t *slave, const cm1e_description_t *device);
 

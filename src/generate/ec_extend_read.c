@@ -4,7 +4,7 @@
 #include "generate/xml_read.h"
 
 /* Bounds of what a field can hold; beyond them a number is a slip. */
-enum { MAX_INDEX = 0xFFFF, MAX_ENTRY_BYTES = 4096, MAX_AXES = 256, MAX_SYNC_MANAGER = 15 };
+enum { MAX_INDEX = 0xFFFF, MAX_ENTRY_BYTES = 4096, MAX_AXES = 256, MAX_SYNC_MANAGER = 15, MAX_IN_LIST = 500 };
 #define MAX_U32 ((int64_t)UINT32_MAX)
 
 /* ---- what can be written back ----------------------------------------------------------------------------------- */
@@ -83,8 +83,18 @@ static cm1e_ec_reference_t reference(cm1e_xml_reader_t *reader, const xmlNode *n
     return (cm1e_ec_reference_t){.place = cm1e_xml_line(node), .text = cm1e_xml_text(reader, node)};
 }
 
+/* So that comparing all with all stays short. */
+static bool is_counted(cm1e_xml_reader_t *reader, const xmlNode *node, size_t *count)
+{
+    if (node && ++*count > MAX_IN_LIST)
+        cm1e_xml_fail(reader, node, "more than %d <%s> in one list", MAX_IN_LIST, (const char *)node->name);
+    return node && !reader->failed;
+}
+
 #define EACH(node, parent, name)                                                                                    \
-    (const xmlNode *node = cm1e_xml_child(parent, name); node && !reader->failed; node = cm1e_xml_next(node, name))
+    (size_t count_ = 0, once_ = 1; once_; once_ = 0)                                                                \
+        for (const xmlNode *node = cm1e_xml_child(parent, name); is_counted(reader, node, &count_);                 \
+             node = cm1e_xml_next(node, name))
 
 /* ---- the lists -------------------------------------------------------------------------------------------------- */
 
