@@ -61,7 +61,8 @@ static void compare_entries(beside_t *beside, const cm1e_ec_pdo_t *list, const c
               "%s, %u bytes: in PDO 0x%04X of the device entry %zu is 0x%04X:%02X %s, %u bytes, in a list %s. All that "
               "comes behind would be misread, too",
               entry->name, (unsigned)entry->length, pdo->index, n, mapped->index, mapped->subindex,
-              mapped->name ? mapped->name : "", (unsigned)(mapped->bits + 7) / 8, cm1e_ec_name_of(mapped, pdo->transmit));
+              mapped->name ? mapped->name : "", (unsigned)(mapped->bits + 7) / 8,
+              cm1e_ec_name_of(mapped, pdo->transmit));
         return;
     }
     if (n < pdo->entries.count)

@@ -97,8 +97,8 @@ static void check_sync_manager(cm1e_findings_t *findings, const cm1e_ec_sync_man
     const bool out = use == CM1E_SM_MAILBOX_OUT || use == CM1E_SM_OUTPUTS;
     if (use == CM1E_SM_UNUSED) {
         cm1e_findings_add(findings, CM1E_RULE_TRIO_UNKNOWN, manager->place,
-                          "\"" SHORT "\" is no function of a sync manager that is known here: MBOXOUT, MBOXIN, OUTPUTS, "
-                          "INPUTS, BOOTMBOXOUT, BOOTMBOXIN are", manager->function);
+                          "\"" SHORT "\" is no function of a sync manager that is known here: MBOXOUT, MBOXIN, "
+                          "OUTPUTS, INPUTS, BOOTMBOXOUT, BOOTMBOXIN are", manager->function);
         return;
     }
     if ((manager->control & DIRECTION_MASK) != (out ? WRITTEN_BY_MASTER : 0))
@@ -216,8 +216,8 @@ static void check_assignment(cm1e_findings_t *findings, const cm1e_ec_command_li
     }
     if (assignment.highest > 0 && assignment.count != assignment.highest)
         cm1e_findings_add(findings, CM1E_RULE_TRIO_ASSIGNMENT, assignment.last->place,
-                          "%u PDOs are written into 0x%04X, and its sub-index 0 ends as %lld", assignment.highest, object,
-                          (long long)assignment.count);
+                          "%u PDOs are written into 0x%04X, and its sub-index 0 ends as %lld", assignment.highest,
+                          object, (long long)assignment.count);
 }
 
 /* The commands take the assignment back and leave it so. */
@@ -429,7 +429,7 @@ static void check_elements(cm1e_findings_t *findings, const xmlNode *node)
             check_elements(findings, child);
         else
             cm1e_findings_add(findings, CM1E_RULE_TRIO_UNKNOWN, cm1e_xml_line(child),
-                              "<" SHORT "> in <" SHORT "> is not known here; the name of an element counts to the letter",
+                              "<" SHORT "> in <" SHORT "> is not known here; names of elements count to the letter",
                               (const char *)child->name, (const char *)node->name);
         if (child->properties)
             cm1e_findings_add(findings, CM1E_RULE_TRIO_UNKNOWN, cm1e_xml_line(child),

@@ -8,8 +8,8 @@ enum { DC_MODE = 0x0300, MAILBOX_RATE = 100, TRANSITION_PREOP_SAFEOP = 2 };
 /* Where the controller puts what has no name of its own, and takes it from; as in the file of Trio's. */
 enum { VR_OUTPUT = 300, VR_INPUT = 200 };
 
-/* What a Trio controller is told of a model beside its tables. CM1-E: the view "Slave Configurations" of UG 11.2. Digital
- * signals of a bridge are reached by SDO only (BR 6.4). */
+/* What a Trio controller is told of a model beside its tables. CM1-E: the view "Slave Configurations" of UG 11.2. What
+ * a bridge has of digital signals is reached by SDO only. */
 static const struct {
     unsigned din, dout, ain, aout;
 } signals[] = {
@@ -30,12 +30,15 @@ static const struct {
 };
 
 static const char profile_warning[] =
-    "the profile mapping leaves the motion to the motor: MOVE and its like of TrioBASIC do not work with it, a program "
-    "has to write DRIVE_CONTROLWORD itself. Profile velocity and acceleration come from VR(300) on. For motions of the "
-    "controller take --mapping dynamic or csp";
+    "the profile mapping leaves the motion to the motor: MOVE and its like do not work with it, a program has to write "
+    "DRIVE_CONTROLWORD; profile velocity and acceleration come from VR(300) on. For motions of the controller take the "
+    "mapping dynamic or csp. ";
 static const char csv_warning[] =
-    "in CSV the controller closes the position loop: its gains and the scale of its output have to be tuned before the "
-    "motor may turn, and nobody has tried that with this motor. Take --mapping dynamic or csp unless you need it";
+    "in CSV the controller closes the position loop: gains and the scale of its output have to be tuned before the motor "
+    "may turn. Take the mapping dynamic or csp unless you need it. ";
+static const char bridge_warning[] =
+    "the bridge's guide does not say where its sync managers lie; here they are the CM1-E's. Compare the file with the "
+    "bridge before use (cm1e diff). ";
 
 /* One device on its way into the document. */
 typedef struct plan {
@@ -198,6 +201,14 @@ static cm1e_ec_reference_t reference(const char *text)
     return (cm1e_ec_reference_t){.text = text};
 }
 
+/* Each warning once. */
+static void warn(plan_t *plan, const char *text)
+{
+    const char *before = plan->lists.warning ? plan->lists.warning : "";
+    if (!strstr(before, text))
+        plan->lists.warning = cm1e_arena_format(&plan->lists.arena, "%s%s", before, text);
+}
+
 static void plan_slave(plan_t *plan, size_t n)
 {
     cm1e_arena_t *arena = &plan->lists.arena;
@@ -216,10 +227,10 @@ static void plan_slave(plan_t *plan, size_t n)
     if (device->mailbox.foe)
         *(cm1e_ec_reference_t *)CM1E_APPEND(arena, &slave.protocols) = reference("FOE");
     *(cm1e_ec_slave_t *)CM1E_APPEND(arena, &plan->lists.slaves) = slave;
-    if (mapping == CM1E_MAPPING_PROFILE)
-        plan->lists.warning = profile_warning;
-    if (mapping == CM1E_MAPPING_CSV && !plan->lists.warning)
-        plan->lists.warning = csv_warning;
+    warn(plan, options->model != CM1E_DEVICE_CM1E ? bridge_warning
+               : mapping == CM1E_MAPPING_PROFILE  ? profile_warning
+               : mapping == CM1E_MAPPING_CSV      ? csv_warning
+                                                  : "");
 }
 
 static void plan_vendor(plan_t *plan, const cm1e_description_t *device)
@@ -232,8 +243,8 @@ static void plan_vendor(plan_t *plan, const cm1e_description_t *device)
     vendor->name = device->vendor_name ? device->vendor_name : "";
 }
 
-/* The controller goes by vendor, product and revision. What DRIVE_PROFILE might tell apart beside them is not documented,
- * so nothing here relies on it. */
+/* The controller goes by vendor, product and revision. What DRIVE_PROFILE might tell apart beside them is not
+ * documented, so nothing here relies on it. */
 static cm1e_error_t check_identities(const plan_t *plan, cm1e_diag_t *diag)
 {
     const cm1e_description_t *devices = plan->described.devices.at;
@@ -446,7 +457,7 @@ cm1e_error_t cm1e_ec_extend_make(cm1e_ec_extend_t *document, const cm1e_generate
         error = put_document(&file, &plan, diag);
     if (error == CM1E_OK)
         error = cm1e_ec_extend_read(document, file.bytes, file.size, diag);
-    document->warning = plan.lists.warning;
+    document->warning = cm1e_arena_text(&document->arena, plan.lists.warning);
     cm1e_file_free(&file);
     cm1e_description_file_free(&plan.described);
     cm1e_ec_extend_free(&plan.lists);

@@ -79,7 +79,7 @@ static void expect_row(const char *path, int n, const char *const columns[], con
     }
 }
 
-/* ---- UG 11.2: the five views of Motion Perfect; the revision there is that of firmware 1.2.0 ---------------------- */
+/* ---- UG 11.2: the five views of Motion Perfect; the revision there is that of firmware 1.2.0 -------------------- */
 
 static void test_view_1_vendors_and_profiles(void)
 {
@@ -173,10 +173,12 @@ static void test_view_5_pdo_definitions(void)
         expect_row("TxPdos/TxPdo/Entry", i + 1, columns, tx[i]);
 }
 
-/* ---- every mapping, firmware and order: UG 4.4, 7.2, 10.1 --------------------------------------------------------- */
+/* ---- every mapping, firmware and order: UG 4.4, 7.2, 10.1 ------------------------------------------------------- */
 
-#define TX_LONG_4_4 "STATUS_WORD2 ERR_STATUS2 ACTUAL_POS4 ACTUAL_SPEED4 ACTUAL_TORQUE2 DIN2 ACTUAL_VR_INT2 ACTUAL_VR_INT2 "
-#define TX_LONG_7_2 "STATUS_WORD2 ACTUAL_POS4 ACTUAL_SPEED4 ACTUAL_TORQUE2 DIN2 ERR_STATUS2 ACTUAL_VR_INT2 ACTUAL_VR_INT2 "
+#define TX_LONG_4_4                                                                                                 \
+    "STATUS_WORD2 ERR_STATUS2 ACTUAL_POS4 ACTUAL_SPEED4 ACTUAL_TORQUE2 DIN2 ACTUAL_VR_INT2 ACTUAL_VR_INT2 "
+#define TX_LONG_7_2                                                                                                 \
+    "STATUS_WORD2 ACTUAL_POS4 ACTUAL_SPEED4 ACTUAL_TORQUE2 DIN2 ERR_STATUS2 ACTUAL_VR_INT2 ACTUAL_VR_INT2 "
 #define TX_SHORT_4_4 "STATUS_WORD2 ERR_STATUS2 ACTUAL_POS4 ACTUAL_TORQUE2 ACTUAL_SPEED4 DIN2 NULL0 "
 #define TX_SHORT_7_2 "STATUS_WORD2 ACTUAL_POS4 ACTUAL_SPEED4 ACTUAL_TORQUE2 DIN2 ERR_STATUS2 NULL0 "
 #define RX_PROFILE "CTRL_WORD2 DOUT2 TARGET_POS4 TARGET_SPEED4 TARGET_VR_UINT4 TARGET_VR_UINT4 "
@@ -253,7 +255,8 @@ static void expect_clean(void)
 static void expect_round_trip(const void *bytes, size_t size)
 {
     cm1e_file_t again;
-    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_generate_from(&again, bytes, size, CM1E_FILE_EC_EXTEND, 0, &diag), diag.text);
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_generate_from(&again, bytes, size, CM1E_FILE_EC_EXTEND, 0, &diag),
+                              diag.text);
     TEST_ASSERT_EQUAL(size, again.size);
     TEST_ASSERT_EQUAL_MEMORY(bytes, again.bytes, size);
     cm1e_file_free(&again);
@@ -340,6 +343,43 @@ static void test_lists_that_differ_get_names_of_their_own(void)
     golden_compare("ec_extend_two_firmwares.txt", file.bytes, file.size);
 }
 
+/* One slave of several axes, as the two-axis device in Trio's file: lists of one axis, and the way to the next. */
+static void test_a_bridge_has_the_lists_of_one_axis(void)
+{
+    static const char *const modes[] = {"0x6060", "0x6860", "0x7060", "0x7860"};
+    for (uint32_t axes = 1; axes <= 4; axes++) {
+        const cm1e_device_options_t devices[] = {
+            {0}, {.model = CM1E_DEVICE_EB12, .axes = axes, .vendor_id = 0xAA77, .product_code = 0x1234, .revision = 7}};
+        char text[16];
+        generate_all(devices, 2);
+        snprintf(text, sizeof text, "%u", (unsigned)axes);
+        TEST_ASSERT_EQUAL_STRING("EB12", cell("Profiles/Profile[2]/Name"));
+        TEST_ASSERT_EQUAL_STRING("0x0000AA77", cell("Profiles/Profile[2]/Vid"));
+        TEST_ASSERT_EQUAL_STRING("0x00001234", cell("Profiles/Profile[2]/Pid"));
+        TEST_ASSERT_EQUAL_STRING("7", cell("Profiles/Profile[2]/Rev"));
+        TEST_ASSERT_EQUAL_INT(2, count("Vendors/Vendor"));
+        TEST_ASSERT_EQUAL_STRING(text, cell("SlvCfgs/SlvCfg[2]/Axes"));
+        TEST_ASSERT_EQUAL_STRING(axes > 1 ? "0x10" : "", cell("SlvCfgs/SlvCfg[2]/SlotPdoIncrement"));
+        TEST_ASSERT_EQUAL_INT(1, count("SlvCfgs/SlvCfg[2]/MbxProtocols"));
+        expect_list("RxPdos/RxPdo[2]", "CTRL_WORD2 TARGET_POS4 NULL0 ", false);
+        expect_list("TxPdos/TxPdo[2]", "STATUS_WORD2 ACTUAL_POS4 NULL0 ", false);
+        TEST_ASSERT_EQUAL_INT(6 + (int)axes, count("SdoInitCmds/SdoInitCmd[2]/Entry"));
+        TEST_ASSERT_EQUAL_STRING("0x1601", cell("SdoInitCmds/SdoInitCmd[2]/Entry[3]/Data"));
+        TEST_ASSERT_EQUAL_STRING("1", cell("SdoInitCmds/SdoInitCmd[2]/Entry[4]/Data"));
+        TEST_ASSERT_EQUAL_STRING("0x1A01", cell("SdoInitCmds/SdoInitCmd[2]/Entry[5]/Data"));
+        for (int axis = 0; axis < (int)axes; axis++) {
+            snprintf(text, sizeof text, "Entry[%d]", 7 + axis);
+            char path[64];
+            snprintf(path, sizeof path, "SdoInitCmds/SdoInitCmd[2]/%s/Index", text);
+            TEST_ASSERT_EQUAL_STRING(modes[axis], cell(path));
+        }
+        TEST_ASSERT_NOT_NULL(strstr(file.warning, "sync managers"));
+        expect_clean();
+        expect_round_trip(file.bytes, file.size);
+    }
+    golden_compare("ec_extend_with_bridge.txt", file.bytes, file.size);
+}
+
 static void expect_refused(const cm1e_device_options_t *devices, size_t number, const char *part)
 {
     const cm1e_generate_options_t options = {.format = CM1E_FILE_EC_EXTEND, .devices = devices, .device_count = number};
@@ -400,6 +440,7 @@ int main(void)
     RUN_TEST(test_what_the_manual_does_not_show_has_defaults_and_options);
     RUN_TEST(test_two_firmwares_share_what_they_have_in_common);
     RUN_TEST(test_lists_that_differ_get_names_of_their_own);
+    RUN_TEST(test_a_bridge_has_the_lists_of_one_axis);
     RUN_TEST(test_devices_that_the_controller_cannot_tell_apart_are_refused);
     RUN_TEST(test_options_that_do_not_fit_are_refused);
     RUN_TEST(test_golden_files);

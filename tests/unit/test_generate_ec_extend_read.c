@@ -31,7 +31,8 @@ static void generate(cm1e_mapping_t mapping)
 static void expect_round_trip(const void *bytes, size_t size)
 {
     cm1e_file_t again;
-    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_generate_from(&again, bytes, size, CM1E_FILE_EC_EXTEND, 0, &diag), diag.text);
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_generate_from(&again, bytes, size, CM1E_FILE_EC_EXTEND, 0, &diag),
+                              diag.text);
     TEST_ASSERT_EQUAL(size, again.size);
     TEST_ASSERT_EQUAL_MEMORY(bytes, again.bytes, size);
     cm1e_file_free(&again);
@@ -120,8 +121,8 @@ static const struct {
      "0x100000000"},
     {"<EtherCAT><EscCfgs><EscCfg><Index>0</Index><Sm>\n<Index>16</Index></Sm></EscCfg></EscCfgs></EtherCAT>", "line 2",
      "16"},
-    {"<EtherCAT><SdoInitCmds><SdoInitCmd><Index>0</Index><Name>A</Name><Entry><Index>0x1C12</Index><SubIndex>0</SubIndex>"
-     "<Length>1</Length>\n<Data>one</Data><Transition>2</Transition></Entry></SdoInitCmd></SdoInitCmds></EtherCAT>",
+    {"<EtherCAT><SdoInitCmds><SdoInitCmd><Index>0</Index><Name>A</Name><Entry><Index>0x1C12</Index>"
+     "<SubIndex>0</SubIndex><Length>1</Length>\n<Data>one</Data><Transition>2</Transition></Entry></SdoInitCmd></SdoInitCmds></EtherCAT>",
      "line 2", "one"},
 };
 
