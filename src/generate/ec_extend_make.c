@@ -34,8 +34,8 @@ static const char profile_warning[] =
     "DRIVE_CONTROLWORD; profile velocity and acceleration come from VR(300) on. For motions of the controller take the "
     "mapping dynamic or csp. ";
 static const char csv_warning[] =
-    "in CSV the controller closes the position loop: gains and the scale of its output have to be tuned before the motor "
-    "may turn. Take the mapping dynamic or csp unless you need it. ";
+    "in CSV the controller closes the position loop: gains and the scale of its output have to be tuned before the "
+    "motor may turn. Take the mapping dynamic or csp unless you need it. ";
 static const char bridge_warning[] =
     "the bridge's guide does not say where its sync managers lie; here they are the CM1-E's. Compare the file with the "
     "bridge before use (cm1e diff). ";

@@ -38,7 +38,8 @@ static void check_shape(cm1e_xml_reader_t *reader, const xmlNode *node)
         if (child->type == XML_ELEMENT_NODE)
             check_shape(reader, child);
         else if (child->type != XML_COMMENT_NODE)
-            cm1e_xml_fail(reader, child, "an EC_EXTEND has elements, texts and comments, nothing else");
+            cm1e_xml_fail(reader, node, "in <%s>: an EC_EXTEND has elements, texts and comments, nothing else",
+                          (const char *)node->name);
     }
     if (has_text && has_others)
         cm1e_xml_fail(reader, node, "<%s> has a text and elements or comments beside it; one of them is too much",
@@ -211,7 +212,8 @@ cm1e_error_t cm1e_ec_extend_read(cm1e_ec_extend_t *document, const void *bytes, 
                       (const char *)root->name);
     for (const xmlNode *node = doc->children; node; node = node->next)
         if (node->type != XML_ELEMENT_NODE && node->type != XML_COMMENT_NODE)
-            cm1e_xml_fail(&reader, node, "an EC_EXTEND has elements, texts and comments, nothing else");
+            cm1e_xml_fail(&reader, root,
+                          "beside <EtherCAT>: an EC_EXTEND has elements, texts and comments, nothing else");
     if (!reader.failed)
         check_shape(&reader, root);
     if (!reader.failed)

@@ -73,8 +73,8 @@ static void on_comment(void *context, const xmlChar *text)
 
 static void on_instruction(void *context, const xmlChar *target, const xmlChar *text)
 {
-    (void)target, (void)text;
-    count_parts(context, 1);
+    if (count_parts(context, 1))
+        xmlSAX2ProcessingInstruction(context, target, text);
 }
 
 /* libxml2 reports some errors of encodings to nobody in particular, which would print them. */
@@ -127,6 +127,21 @@ static size_t endless_tag(const char *text, size_t size)
             return (size_t)(at - text);
     }
     return size;
+}
+
+/* The comments that were skipped stand before the root then, where XML allows them: nothing of a file is lost. */
+static void keep_comments(xmlDoc *doc, const char *text, size_t skipped)
+{
+    const char *const behind = text + skipped;
+    for (const char *at = text; (at = find(at, (size_t)(behind - at), "<!--")) != NULL;) {
+        const char *end = find(at + 4, (size_t)(behind - at) - 4, "-->");
+        xmlChar *content = xmlStrndup((const xmlChar *)at + 4, (int)(end - at) - 4);
+        xmlNode *comment = content ? xmlNewDocComment(doc, content) : NULL;
+        if (comment)
+            xmlAddPrevSibling(xmlDocGetRootElement(doc), comment);
+        xmlFree(content);
+        at = end + 3;
+    }
 }
 
 static void report(cm1e_diag_t *diag, const guard_t *guard, const xmlError *error)
@@ -190,6 +205,8 @@ xmlDoc *cm1e_xml_parse(const void *bytes, size_t size, cm1e_diag_t *diag)
     void *handler_context = xmlStructuredErrorContext;
     xmlSetStructuredErrorFunc(NULL, on_error);
     xmlDoc *doc = parse(text + skipped, size - skipped, 1 + lines_in(text, skipped), is_utf8, diag);
+    if (doc)
+        keep_comments(doc, text, skipped);
     xmlSetStructuredErrorFunc(handler_context, handler);
     return doc;
 }

@@ -15,7 +15,8 @@
 #define CM1E_XML_MAX_BYTES ((size_t)32 << 20)
 #define CM1E_XML_MAX_PARTS 1500000 /**< elements, attributes and comments */
 
-/** A tree without white space between elements; only for the functions below. NULL: `diag` says what is wrong in which line. Free it with xmlFreeDoc(). */
+/** A tree without white space between elements; only for the functions below. NULL: `diag` says what is wrong in which
+ *  line. Free it with xmlFreeDoc(). */
 xmlDoc *cm1e_xml_parse(const void *bytes, size_t size, cm1e_diag_t *diag);
 
 typedef struct cm1e_xml_reader {

@@ -1,5 +1,5 @@
-/* Every rule about EC_EXTEND: a good file is broken in exactly that way, and exactly that is found, in its line. And the
- * comparison with a device. */
+/* Every rule about EC_EXTEND: a good file is broken in exactly that way, and exactly that is found, in its line. And
+ * the comparison with a device. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -123,14 +123,17 @@ static const struct {
      "<SlvCfgIndex>0</SlvCfgIndex></Profile>\n", "<Pid>1</Pid>", 0, "Profile 0 stands twice"},
     {"trio-name", "</TxPdo>\n", 1, "</TxPdo><TxPdo><Index>1</Index><Name>TXPDO_PROFILE</Name></TxPdo>\n",
      "<TxPdo><Index>1", 0, "TXPDO_PROFILE"},
-    {"trio-name", "</SdoInitCmd>\n", 1, "</SdoInitCmd><SdoInitCmd><Index>1</Index><Name>SDO_APP_CSP</Name></SdoInitCmd>\n",
-     "<SdoInitCmd><Index>1", 0, "SDO_APP_CSP"},
-    {"trio-reference", "<RxPdoIndex>RXPDO_PROFILE<", 1, "<RxPdoIndex>RXPDO_PROFIL<", "<RxPdoIndex>", 0, "RXPDO_PROFIL\""},
+    {"trio-name", "</SdoInitCmd>\n", 1,
+     "</SdoInitCmd><SdoInitCmd><Index>1</Index><Name>SDO_APP_CSP</Name></SdoInitCmd>\n", "<SdoInitCmd><Index>1", 0, "SDO_APP_CSP"},
+    {"trio-reference", "<RxPdoIndex>RXPDO_PROFILE<", 1, "<RxPdoIndex>RXPDO_PROFIL<", "<RxPdoIndex>", 0,
+     "RXPDO_PROFIL\""},
     {"trio-reference", "<TxPdoIndex>TXPDO_PROFILE<", 1, "<TxPdoIndex>7<", "<TxPdoIndex>", 0, "\"7\""},
-    {"trio-reference", "<SdoInitCmdIndex>SDO_APP_CSP<", 1, "<SdoInitCmdIndex>SDO_APP_CSV<", "<SdoInitCmdIndex>", 0, "CSV"},
+    {"trio-reference", "<SdoInitCmdIndex>SDO_APP_CSP<", 1, "<SdoInitCmdIndex>SDO_APP_CSV<", "<SdoInitCmdIndex>", 0,
+     "CSV"},
     {"trio-reference", "<EscCfgIndex>0<", 1, "<EscCfgIndex>1<", "<EscCfgIndex>", 0, "EscCfgIndex"},
     {"trio-reference", "<SlvCfgIndex>0<", 1, "<SlvCfgIndex>3<", "<SlvCfgIndex>", 0, "SlvCfgIndex"},
-    {"trio-vendor", "<Vendor>\n      <Vid>0x00004441", 1, "<Vendor>\n      <Vid>0x00004442", "<Profile>", 0, "0x00004441"},
+    {"trio-vendor", "<Vendor>\n      <Vid>0x00004441", 1, "<Vendor>\n      <Vid>0x00004442", "<Profile>", 0,
+     "0x00004441"},
     {"trio-vendor", VENDOR, 1, VENDOR "\n\n" VENDOR, "</Vendors>", -4, "twice"},
     {"trio-profile", "</Profile>\n", 1, "</Profile>\n<Profile><Index>1</Index><Vid>0x4441</Vid><Pid>0x44412003</Pid>"
      "<Rev>0x20020103</Rev><SlvCfgIndex>0</SlvCfgIndex></Profile>\n", "<Pid>0x44412003</Pid><Rev>", 0, "never used"},
@@ -251,7 +254,7 @@ static void test_the_mailbox_of_bootstrap_is_judged_by_itself(void)
     free(text);
 }
 
-/* ---- our own device: order and length of the process data, sync managers, objects --------------------------------- */
+/* ---- our own device: order and length of the process data, sync managers, objects ------------------------------- */
 
 static const struct {
     const char *what, *with, *where;
@@ -332,7 +335,8 @@ static const cm1e_finding_t *compare(const char *what, const char *with, const c
     return cm1e_findings_at(findings, 0);
 }
 
-static void expect_difference(const char *what, const char *with, const cm1e_device_options_t *options, const char *part)
+static void expect_difference(const char *what, const char *with, const cm1e_device_options_t *options,
+                              const char *part)
 {
     const cm1e_finding_t *finding = compare(what, with, options);
     TEST_ASSERT_NOT_NULL_MESSAGE(finding, part);
@@ -355,7 +359,8 @@ static void test_comparison_with_a_device(void)
 
 static void test_the_profile_of_the_right_revision_is_compared(void)
 {
-    const cm1e_device_options_t devices[] = {{.firmware = "1.3.5", .mapping = CM1E_MAPPING_PROFILE}, {.firmware = "1.2.0"}};
+    const cm1e_device_options_t devices[] = {{.firmware = "1.3.5", .mapping = CM1E_MAPPING_PROFILE},
+                                             {.firmware = "1.2.0"}};
     const cm1e_generate_options_t options = {.format = CM1E_FILE_EC_EXTEND, .devices = devices, .device_count = 2};
     cm1e_file_free(&file);
     TEST_ASSERT_EQUAL(CM1E_OK, cm1e_generate(&file, &options, &diag));

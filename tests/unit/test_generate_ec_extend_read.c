@@ -73,7 +73,8 @@ static void test_what_real_files_do_is_tolerated(void)
                      "</EtherCAT>\r\n", wanted);
     expect_rewritten("<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?><EtherCAT><N>M\xFCller</N></EtherCAT>",
                      HEAD "<EtherCAT>\n  <N>M\xC3\xBCller</N>\n</EtherCAT>\n");
-    expect_rewritten("<!--> <?xml version=\"1.0\"?><EtherCAT/>", HEAD "<!--  -->\n<EtherCAT/>\n");
+    expect_rewritten("<!----> <!--\xFC--b--><?xml version=\"1.0\"?><EtherCAT/>",
+                     HEAD "<!--  -->\n<!-- \xC3\xBC- -b -->\n<EtherCAT/>\n");
     expect_rewritten("<EtherCAT><N><![CDATA[a<b]]></N></EtherCAT>",
                      HEAD "<EtherCAT>\n  <N>a&lt;b</N>\n</EtherCAT>\n");
 }
@@ -96,7 +97,7 @@ static void test_line_numbers_are_those_of_the_file(void)
 static const struct {
     const char *text, *line, *part;
 } damaged[] = {
-    {"", "", "empty"},
+    {"", "", "0 bytes"},
     {"<EtherCAT>\n<Version>1</Version>\n", "line 3", ""},
     {"<EtherCAT>\n<Version>1</Versoin>\n</EtherCAT>", "line 2", "Versoin"},
     {"<EtherCATInfo/>", "line 1", "<EtherCATInfo>"},
@@ -106,8 +107,8 @@ static const struct {
     {"<EtherCAT>\n<a xml:space=\"preserve\"/></EtherCAT>", "line 2", "namespace"},
     {"<EtherCAT>\n<a>text<b/></a></EtherCAT>", "line 2", "beside"},
     {"<EtherCAT>\n<a>te<!-- c -->xt</a></EtherCAT>", "line 2", "beside"},
-    {"<EtherCAT>\n<?php x ?></EtherCAT>", "line 2", "nothing else"},
-    {"<?xml version=\"1.0\"?>\n<?php x ?>\n<EtherCAT/>", "line 2", "nothing else"},
+    {"<EtherCAT>\n<a><?php x ?></a></EtherCAT>", "line 2", "nothing else"},
+    {"<?xml version=\"1.0\"?>\n<?php x ?>\n<EtherCAT/>", "line 3", "nothing else"},
     {"<EtherCAT>\n<RxPdos>\n<RxPdo>\n<Name>A</Name></RxPdo></RxPdos></EtherCAT>", "line 3", "no <Index>"},
     {"<EtherCAT><TxPdos>\n<TxPdo><Index>0</Index></TxPdo></TxPdos></EtherCAT>", "line 2", "no <Name>"},
     {"<EtherCAT><TxPdos><TxPdo>\n<Index>-1</Index><Name>A</Name></TxPdo></TxPdos></EtherCAT>", "line 2", "-1"},
