@@ -61,7 +61,7 @@ static xmlXPathObject *ask(const char *format, va_list arguments)
 }
 
 /* How many nodes there are. */
-__attribute__((format(printf, 1, 2))) static int count(const char *format, ...)
+__attribute__((format(printf, 1, 2))) static inline int count(const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
@@ -73,7 +73,7 @@ __attribute__((format(printf, 1, 2))) static int count(const char *format, ...)
 }
 
 /* The text of the one node that is meant; "?" where there is none, "??" where there are several. */
-__attribute__((format(printf, 1, 2))) static const char *text(const char *format, ...)
+__attribute__((format(printf, 1, 2))) static inline const char *text(const char *format, ...)
 {
     static char texts[8][256];
     static unsigned turn;
