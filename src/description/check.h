@@ -44,6 +44,26 @@
     X(TRIO_DEVICE, "trio-device", true)                                                                             \
     X(TRIO_REVISION, "trio-revision", false)                                                                        \
     X(TRIO_UNKNOWN, "trio-unknown", false)                                                                          \
+    /* ENI: a network */                                                                                            \
+    X(ENI_STATION, "eni-station", true)                                                                             \
+    X(ENI_POSITION, "eni-position", true)                                                                           \
+    X(ENI_PREVIOUS_PORT, "eni-previous-port", true)                                                                 \
+    X(ENI_COMMAND_ADDRESS, "eni-command-address", true)                                                             \
+    X(ENI_VALIDATE, "eni-validate", true)                                                                           \
+    X(ENI_START, "eni-start", false)                                                                                \
+    X(ENI_SYNC_MANAGER, "eni-sync-manager", true)                                                                   \
+    X(ENI_PROCESS_DATA, "eni-process-data", true)                                                                   \
+    X(ENI_FMMU, "eni-fmmu", true)                                                                                   \
+    X(ENI_MAILBOX, "eni-mailbox", true)                                                                             \
+    X(ENI_IMAGE_PLACE, "eni-image-place", true)                                                                     \
+    X(ENI_IMAGE_RANGE, "eni-image-range", true)                                                                     \
+    X(ENI_IMAGE_OVERLAP, "eni-image-overlap", true)                                                                 \
+    X(ENI_VARIABLE_TWICE, "eni-variable-twice", false)                                                              \
+    X(ENI_WORKING_COUNTER, "eni-working-counter", true)                                                             \
+    X(ENI_FRAME, "eni-frame", true)                                                                                 \
+    X(ENI_CYCLE_TIME, "eni-cycle-time", true)                                                                       \
+    X(ENI_CM1E_REVISION, "eni-cm1e-revision", false)                                                                \
+    X(ENI_CM1E_PDO, "eni-cm1e-pdo", true)                                                                           \
     /* a live device beside a file */                                                                               \
     X(DIFFERS, "differs", true)
 

@@ -85,6 +85,8 @@ static void describe_sync_managers(cm1e_arena_t *arena, cm1e_description_t *into
     cm1e_described_sync_manager_t managers[SYNC_MANAGERS] = {{0}};
     size_t count = 0;
     if (device->mailbox.present) {
+        managers[0].control = 0x26; /* mailbox, written by the master, event to the slave; 0x22: read by it */
+        managers[1].control = 0x22;
         managers[0].use = CM1E_SM_MAILBOX_OUT;
         managers[0].start = device->mailbox.send.start;
         managers[0].length = device->mailbox.send.length;
@@ -153,9 +155,4 @@ void cm1e_eni_compare(cm1e_findings_t *findings, const cm1e_eni_t *document, uin
     if (!arena.failed)
         cm1e_compare(findings, &described, device);
     cm1e_arena_free(&arena);
-}
-
-void cm1e_eni_check(cm1e_findings_t *findings, const cm1e_eni_t *document)
-{
-    (void)findings, (void)document;
 }

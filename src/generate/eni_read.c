@@ -10,6 +10,17 @@ enum { U8 = 0xFF, U16 = 0xFFFF, DATAGRAM_BYTES = 1486, SYNC_MANAGERS = 16 };
 #define S32_LEAST ((int64_t)INT32_MIN)
 #define S32_MOST ((int64_t)INT32_MAX)
 
+/* More than any network or slave can have; the checks count on it. */
+enum { MAX_DEVICES = 65535, MAX_PDOS = 1024, MAX_ASSIGNED = 255, MAX_CYCLIC_COMMANDS = 4096 };
+
+/* Whether one more may be there. */
+static bool room(reader_t *r, const xmlNode *node, size_t count, size_t limit)
+{
+    if (count >= limit)
+        cm1e_xml_fail(r, node, "more than %zu <%s>", limit, (const char *)node->name);
+    return !r->failed;
+}
+
 /* The schema calls identities and addresses signed, so their top bit may be a sign: -1 is 65535. */
 static uint32_t pattern32(reader_t *r, const xmlNode *parent, const char *name)
 {
@@ -158,7 +169,8 @@ static void read_sync_manager(reader_t *r, const xmlNode *node, unsigned number,
     into->manager.start = (uint16_t)cm1e_xml_child_number(r, node, "StartAddress", 0, U16, 0);
     into->manager.control = (uint8_t)cm1e_xml_child_number(r, node, "ControlByte", 0, U8, 0);
     into->manager.enable = cm1e_xml_child_flag(r, node, "Enable", false);
-    for (const xmlNode *pdo = cm1e_xml_child(node, "Pdo"); pdo; pdo = cm1e_xml_next(pdo, "Pdo"))
+    const xmlNode *pdo = cm1e_xml_child(node, "Pdo");
+    for (; pdo && room(r, pdo, into->pdos.count, MAX_ASSIGNED); pdo = cm1e_xml_next(pdo, "Pdo"))
         *(uint16_t *)CM1E_APPEND(r->arena, &into->pdos) = (uint16_t)cm1e_xml_number(r, pdo, 0, U16, 0);
 }
 
@@ -175,7 +187,8 @@ static void read_entry(reader_t *r, const xmlNode *node, cm1e_described_pdo_entr
 static void read_pdos(reader_t *r, const xmlNode *parent, bool transmit, cm1e_pdo_list_t *list)
 {
     const char *name = transmit ? "TxPdo" : "RxPdo";
-    for (const xmlNode *node = cm1e_xml_child(parent, name); node; node = cm1e_xml_next(node, name)) {
+    const xmlNode *node = cm1e_xml_child(parent, name);
+    for (; node && room(r, node, list->count, MAX_PDOS); node = cm1e_xml_next(node, name)) {
         cm1e_described_pdo_t *pdo = CM1E_APPEND(r->arena, list);
         pdo->place = cm1e_xml_line(node);
         pdo->transmit = transmit;
@@ -313,10 +326,11 @@ static void read_master(reader_t *r, const xmlNode *node, cm1e_eni_t *document)
     read_init_commands(r, node, &document->commands);
 }
 
-static void read_frame(reader_t *r, const xmlNode *node, cm1e_eni_frame_t *frame)
+static void read_frame(reader_t *r, const xmlNode *node, cm1e_eni_frame_t *frame, size_t *commands)
 {
     frame->place = cm1e_xml_line(node);
-    for (const xmlNode *c = cm1e_xml_child(node, "Cmd"); c && !r->failed; c = cm1e_xml_next(c, "Cmd")) {
+    const xmlNode *c = cm1e_xml_child(node, "Cmd");
+    for (; c && room(r, c, (*commands)++, MAX_CYCLIC_COMMANDS); c = cm1e_xml_next(c, "Cmd")) {
         cm1e_eni_command_t *command = CM1E_APPEND(r->arena, &frame->commands);
         read_command(r, c, command);
         command->states = (uint8_t)read_names(r, c, "State", cm1e_eni_state_names, CM1E_ENI_STATE_COUNT);
@@ -325,15 +339,15 @@ static void read_frame(reader_t *r, const xmlNode *node, cm1e_eni_frame_t *frame
     }
 }
 
-static void read_cyclic(reader_t *r, const xmlNode *node, cm1e_eni_cyclic_t *cyclic)
+static void read_cyclic(reader_t *r, const xmlNode *node, cm1e_eni_cyclic_t *cyclic, size_t *commands)
 {
     cyclic->place = cm1e_xml_line(node);
     cyclic->comment = text_or_null(r, node, "Comment");
     cyclic->cycle_time_us = cm1e_xml_child_number(r, node, "CycleTime", 0, U32, CM1E_ENI_NOT_GIVEN);
     cyclic->priority = (int32_t)cm1e_xml_child_number(r, node, "Priority", 0, S32_MOST, CM1E_ENI_NOT_GIVEN);
     cyclic->task = text_or_null(r, node, "TaskId");
-    for (const xmlNode *f = cm1e_xml_child(node, "Frame"); f; f = cm1e_xml_next(f, "Frame"))
-        read_frame(r, f, CM1E_APPEND(r->arena, &cyclic->frames));
+    for (const xmlNode *f = cm1e_xml_child(node, "Frame"); f && !r->failed; f = cm1e_xml_next(f, "Frame"))
+        read_frame(r, f, CM1E_APPEND(r->arena, &cyclic->frames), commands);
 }
 
 static void read_image(reader_t *r, const xmlNode *node, cm1e_eni_image_t *image)
@@ -354,10 +368,12 @@ static void read_image(reader_t *r, const xmlNode *node, cm1e_eni_image_t *image
 static void read_config(reader_t *r, const xmlNode *config, cm1e_eni_t *document)
 {
     read_master(r, cm1e_xml_need(r, config, "Master"), document);
-    for (const xmlNode *n = cm1e_xml_child(config, "Slave"); n && !r->failed; n = cm1e_xml_next(n, "Slave"))
+    size_t commands = 0;
+    const xmlNode *n = cm1e_xml_child(config, "Slave");
+    for (; n && room(r, n, document->devices.count, MAX_DEVICES); n = cm1e_xml_next(n, "Slave"))
         read_slave(r, n, CM1E_APPEND(r->arena, &document->devices));
-    for (const xmlNode *n = cm1e_xml_child(config, "Cyclic"); n && !r->failed; n = cm1e_xml_next(n, "Cyclic"))
-        read_cyclic(r, n, CM1E_APPEND(r->arena, &document->cyclics));
+    for (n = cm1e_xml_child(config, "Cyclic"); n && !r->failed; n = cm1e_xml_next(n, "Cyclic"))
+        read_cyclic(r, n, CM1E_APPEND(r->arena, &document->cyclics), &commands);
     const xmlNode *image = cm1e_xml_child(config, "ProcessImage");
     document->has_image = image != NULL;
     read_image(r, cm1e_xml_child(image, "Inputs"), &document->inputs);
