@@ -19,11 +19,12 @@ typedef struct eni_network {
     uint16_t alias;         /* of the first */
 } eni_network_t;
 
-enum { ENI_ONE, ENI_THREE, ENI_MIXED, ENI_NETWORKS };
+enum { ENI_ONE, ENI_THREE, ENI_MIXED, ENI_BRIDGED, ENI_NETWORKS };
 static const eni_network_t eni_networks[ENI_NETWORKS] = {
     {.file = "eni_one_axis.xml", .slaves = {ENI_CM1E}, .count = 1},
     {.file = "eni_three_axes.xml", .slaves = {ENI_CM1E, ENI_CM1E, ENI_CM1E}, .count = 3},
     {.file = "eni_mixed.xml", .slaves = {ENI_CM1E, ENI_IO, ENI_CM1E}, .count = 3},
+    {.file = "eni_bridge.xml", .slaves = {ENI_CM1E, ENI_IO, ENI_BRIDGE}, .count = 3},
 };
 
 /* Appends one device. */

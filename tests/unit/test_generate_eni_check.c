@@ -39,7 +39,7 @@ static void test_what_we_make_has_no_findings(void)
 {
     const eni_network_t large = {.count = 128}, alias = {.count = 2, .alias = 5};
     const eni_network_t *networks[] = {&eni_networks[ENI_ONE], &eni_networks[ENI_THREE], &eni_networks[ENI_MIXED],
-                                       &large, &alias};
+                                       &eni_networks[ENI_BRIDGED], &large, &alias};
     for (size_t i = 0; i < sizeof networks / sizeof networks[0]; i++) {
         read_network(networks[i]);
         cm1e_eni_check(findings, &document);
