@@ -1,10 +1,12 @@
 /** cm1e sim: a simulated network on a network interface, for any master. */
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "command.h"
+#include "files.h"
 #include "nic/nic.h"
 #include "sim/segment.h"
 
@@ -16,8 +18,12 @@ static void request_stop(int signal_number)
     stop_requested = 1;
 }
 
+enum { KEY_SII = 0x400 };
+
 typedef struct sim_options {
     const char *interface_name, *bus_file, *order;
+    const char *sii[CM1E_MAX_SLAVES]; /* files, by place on the line */
+    uint32_t sii_count;
 } sim_options_t;
 
 static error_t parse(int key, char *arg, struct argp_state *state)
@@ -26,6 +32,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     switch (key) {
     case 'i': options->interface_name = arg; return 0;
     case 'o': options->order = arg; return 0;
+    case KEY_SII:
+        if (options->sii_count == CM1E_MAX_SLAVES)
+            argp_error(state, "a segment has %d slaves at most", CM1E_MAX_SLAVES);
+        options->sii[options->sii_count++] = arg;
+        return 0;
     case ARGP_KEY_ARG:
         if (options->bus_file)
             argp_error(state, "one bus file is enough; \"%s\" is too many", arg);
@@ -42,7 +53,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 static bool describe(const sim_options_t *options, cm1e_bus_config_t *config)
 {
     cm1e_diag_t diag = {0};
-    cm1e_bus_config_init(config, "sim", 1);
+    cm1e_bus_config_init(config, "sim", options->sii_count > 0 ? options->sii_count : 1);
     if (options->bus_file && cm1e_bus_config_load(config, options->bus_file, &diag) != CM1E_OK) {
         fail(&diag);
         return false;
@@ -56,15 +67,35 @@ static bool describe(const sim_options_t *options, cm1e_bus_config_t *config)
     return true;
 }
 
+/* The nth file is the SII of the nth slave. */
+static bool boot(cm1e_sim_segment_t *segment, const sim_options_t *options)
+{
+    bool good = true;
+    for (uint32_t i = 0; i < options->sii_count && good; i++) {
+        cm1e_diag_t diag = {0};
+        input_t image;
+        good = read_input(options->sii[i], &image);
+        if (good && cm1e_sim_segment_boot(segment, i + 1, image.bytes, image.size, &diag) != CM1E_OK) {
+            complain("%s: %s", options->sii[i], diag.text);
+            good = false;
+        }
+        free(image.bytes);
+    }
+    return good;
+}
+
 int command_sim(int argc, char **argv)
 {
     static const struct argp_option table[] = {
         {"interface", 'i', "INTERFACE", 0, "Network interface to answer on", 0},
         {"pdo-order", 'o', "ORDER", 0, "ug-4.4 (default) or ug-7.2: the order of objects in the PDO mappings", 0},
+        {"sii", KEY_SII, "FILE", 0, "A slave boots from this image of its SII instead of the tables; once for the "
+         "first slave, again for the second ...", 0},
         {0}};
     static const struct argp argp = {
         table, parse, "[BUS-FILE]",
-        "Serves a simulated network until SIGINT or SIGTERM; without a bus file one CM1-E-17S30D, firmware 1.3.5. "
+        "Serves a simulated network until SIGINT or SIGTERM; without a bus file one CM1-E-17S30D, firmware 1.3.5, or "
+        "as many as there are SII images. "
         "Lines on standard input act on it; `help` lists them.", NULL, NULL, NULL};
     sim_options_t options = {0};
     if (argp_parse(&argp, argc, argv, 0, NULL, &options))
@@ -77,6 +108,10 @@ int command_sim(int argc, char **argv)
     cm1e_sim_segment_t *segment = cm1e_sim_segment_create(&config, &diag);
     if (!segment)
         return fail(&diag);
+    if (!boot(segment, &options)) {
+        cm1e_sim_segment_destroy(segment);
+        return EXIT_FAILED;
+    }
     const struct sigaction action = {.sa_handler = request_stop};
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);

@@ -24,6 +24,13 @@ cm1e_sim_segment_t *cm1e_sim_segment_create_empty(void);
 cm1e_error_t cm1e_sim_segment_add(cm1e_sim_segment_t *segment, cm1e_sim_slave_t *slave);
 void cm1e_sim_segment_destroy(cm1e_sim_segment_t *segment);
 
+/** Before the first frame: slave `position` (1 = first) boots from an image of its SII, which may end behind its last
+ *  category, in place of the one made from the tables. It takes whatever the image says, alias included, as long as the
+ *  device can be that: the same identity, sync managers for the same uses, PDOs of the same content. CM1E_ERROR_FILE:
+ *  the image is damaged or of another device, nothing has changed. */
+cm1e_error_t cm1e_sim_segment_boot(cm1e_sim_segment_t *segment, uint32_t position, const uint8_t *image, size_t size,
+                                   cm1e_diag_t *diag);
+
 uint32_t cm1e_sim_segment_slave_count(const cm1e_sim_segment_t *segment);
 /** 1 = first; NULL: none. */
 cm1e_sim_slave_t *cm1e_sim_segment_slave(cm1e_sim_segment_t *segment, uint32_t position);

@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
-"""pysoem, a master that is not ours, against `cm1e sim` over a veth pair.
+"""pysoem, a master that is not ours, against `cm1e sim` over a veth pair: from the device tables, then booted from the
+SII image that `cm1e generate sii` writes. To the master both are the same device.
 
 test_pysoem.py CM1E PYTHON [sim arguments]: starts the segment and runs itself with --master in the master's namespace.
 """
+import json
 import os
 import struct
+import subprocess
 import sys
+import tempfile
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -77,6 +81,37 @@ def check_wrong_requests(pysoem, master, slave):
         wire.check(slave.state & 0x0F == start, f"{why}: the state became {slave.state:#x}")
 
 
+def read_eeprom(slave, words):
+    image = b""
+    while len(image) < 2 * words:
+        image += slave.eeprom_read(len(image) // 2)
+    return image
+
+
+def parse_sii(image):
+    """Names and PDOs of an SII image, by ETG.1000.6 alone."""
+    categories, at = {}, 0x80
+    while (kind := struct.unpack_from("<H", image, at)[0]) != 0xFFFF:
+        length = 2 * struct.unpack_from("<H", image, at + 2)[0]
+        categories.setdefault(kind, image[at + 4:at + 4 + length])
+        at += 4 + length
+    strings, raw = [""], categories[10][1:]
+    for _ in range(categories[10][0]):
+        strings.append(raw[1:1 + raw[0]].decode("latin-1"))
+        raw = raw[1 + raw[0]:]
+    facts = {"names": [strings[categories[30][n]] for n in (0, 2, 3)], "pdos": []}
+    for kind in (50, 51):
+        data, at = categories[kind], 0
+        while at < len(data):
+            index, count, manager, _, name, _ = struct.unpack_from("<HBBBBH", data, at)
+            entries = [struct.unpack_from("<HBBBBH", data, at + 8 + 8 * n) for n in range(count)]
+            facts["pdos"].append({"index": index, "name": strings[name], "sync_manager": manager,
+                                  "entries": [[e[0], e[1], e[4], strings[e[2]]] for e in entries],
+                                  "bits": sum(e[4] for e in entries)})
+            at += 8 + 8 * count
+    return facts
+
+
 def run_master():
     import pysoem
     master = pysoem.Master()
@@ -86,6 +121,8 @@ def run_master():
     wire.check((slave.man, slave.id) == (VENDOR, PRODUCT), f"identity {slave.man:08X} {slave.id:08X}")
     wire.check(slave.name == "CM1-E", f"name {slave.name!r}")
     wire.wait_for(lambda: (master.read_state(), slave.state == pysoem.PREOP_STATE)[1], 2.0, "Pre-Op not reached")
+    image = read_eeprom(slave, 1024)
+    facts = {"identity": [slave.man, slave.id, slave.rev], "name": slave.name, **parse_sii(image)}
     check_sdos(pysoem, slave)
     check_wrong_requests(pysoem, master, slave)
 
@@ -93,6 +130,9 @@ def run_master():
     master.config_map()
     wire.check(master.state_check(pysoem.SAFEOP_STATE, 1_000_000) == pysoem.SAFEOP_STATE, "Safe-Op not reached")
     wire.check((len(slave.output), len(slave.input)) == (13, 21), f"{len(slave.output)} + {len(slave.input)} bytes")
+    facts["bytes"] = [len(slave.output), len(slave.input)]
+    by_sii = {pdo["sync_manager"]: pdo["bits"] // 8 for pdo in facts["pdos"] if pdo["sync_manager"] != 0xFF}
+    wire.check([by_sii[2], by_sii[3]] == facts["bytes"], f"the SII has {by_sii} bytes, the device {facts['bytes']}")
     slave.output = bytes(12) + b"\x08"  # CSP, controlword 0
     master.send_processdata()
     master.receive_processdata(wire.PAUSE_US)
@@ -119,15 +159,48 @@ def run_master():
     master.state = pysoem.INIT_STATE
     master.write_state()
     master.close()
+    print(json.dumps({"facts": facts, "eeprom": image.hex()}))
     print("pysoem: identity, SDOs of every type, AL status codes, 13 + 21 bytes, Op, 1,000 good cycles")
+
+
+def scan(cm1e, python, arguments):
+    """What pysoem finds on a segment, and the bytes of the slave's EEPROM."""
+    with wire.segment(cm1e, *arguments) as segment:
+        result = segment.run([python, os.path.abspath(__file__), "--master"])
+    answer, _, words = result.stdout.partition("\n")
+    print((words if result.returncode == 0 else result.stdout) + result.stderr, end="")
+    wire.check(result.returncode == 0, f"the master ended with {result.returncode}")
+    answer = json.loads(answer)
+    return answer["facts"], bytes.fromhex(answer["eeprom"])
+
+
+def check_boot_from_file(cm1e, python, arguments, expected, eeprom):
+    """The alias tells the image from the one of the tables; all else is the same."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "sii.bin")
+        subprocess.run([cm1e, "generate", "sii", "-o", path, "--alias", "4660", *arguments], check=True)
+        with open(path, "rb") as file:
+            image = file.read()
+        facts, booted = scan(cm1e, python, ["--sii", path, *arguments])
+        wire.check(booted == image, "the simulator did not boot from the file")
+        wire.check(booted != eeprom, "the file is the image of the tables")
+        wire.check(facts == expected, f"from the file {facts}, from the tables {expected}")
+        # what does not fit is refused, and says why
+        with open(path, "wb") as file:
+            file.write(image[:300])
+        for name in (path, "/no/such/file"):
+            refused = subprocess.run([cm1e, "sim", "-i", "lo", "--sii", name], capture_output=True, text=True)
+            wire.check(refused.returncode == 1 and name in refused.stderr, f"{name}: {refused}")
+    print("booted from the file that `cm1e generate sii` wrote: the same device")
+
+
+def main(cm1e, python, *arguments):
+    facts, eeprom = scan(cm1e, python, arguments)
+    check_boot_from_file(cm1e, python, arguments, facts, eeprom)
 
 
 if __name__ == "__main__":
     if sys.argv[1] == "--master":
         run_master()
     else:
-        cm1e, python, arguments = sys.argv[1], sys.argv[2], sys.argv[3:]
-        with wire.segment(cm1e, *arguments) as segment:
-            result = segment.run([python, os.path.abspath(__file__), "--master"])
-            print(result.stdout + result.stderr, end="")
-            wire.check(result.returncode == 0, f"the master ended with {result.returncode}")
+        main(*sys.argv[1:])
