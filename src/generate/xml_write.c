@@ -1,5 +1,6 @@
 #include "generate/xml_write.h"
 
+#include <libxml/parserInternals.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -60,28 +61,27 @@ void cm1e_xml_close(cm1e_xml_writer_t *writer)
         note(writer, xmlTextWriterEndElement(writer->writer));
 }
 
-static bool can_be_written(unsigned char c)
+/* Bytes of the character at the beginning of a text, and which it is; what is no UTF-8 counts as ISO-8859-1. */
+static int first_character(const unsigned char *text, bool is_utf8, int *character)
 {
-    return c >= 0x20 || c == '\t' || c == '\n' || c == '\r';
+    int bytes = 4;
+    *character = is_utf8 ? xmlGetUTF8Char(text, &bytes) : *text;
+    return is_utf8 && *character >= 0 ? bytes : 1;
 }
 
-/* A text that XML can hold: UTF-8 without control characters. Freed by the caller; NULL: no memory. */
+/* A text that XML can hold: UTF-8 without control characters and the like. Freed by the caller; NULL: no memory. */
 static xmlChar *clean(const char *format, va_list arguments)
 {
     char *text = NULL;
     if (vasprintf(&text, format, arguments) < 0)
         return NULL;
     const bool is_utf8 = xmlCheckUTF8(xml(text)) == 1;
-    unsigned char *cleaned = xmlMalloc(2 * strlen(text) + 1), *to = cleaned;
-    for (const unsigned char *from = (unsigned char *)text; cleaned && *from; from++) {
-        if (!can_be_written(*from))
-            continue;
-        if (is_utf8 || *from < 0x80) {
-            *to++ = *from;
-            continue;
-        }
-        *to++ = (unsigned char)(0xC0 | *from >> 6);
-        *to++ = (unsigned char)(0x80 | (*from & 0x3F));
+    xmlChar *cleaned = xmlMalloc(2 * strlen(text) + 1), *to = cleaned;
+    for (const unsigned char *from = (unsigned char *)text; cleaned && *from;) {
+        int character;
+        from += first_character(from, is_utf8, &character);
+        if (character > 0 && IS_CHAR((unsigned)character))
+            to += xmlCopyChar(0, to, character);
     }
     if (cleaned)
         *to = '\0';
