@@ -65,7 +65,16 @@
     X(ENI_CM1E_REVISION, "eni-cm1e-revision", false)                                                                \
     X(ENI_CM1E_PDO, "eni-cm1e-pdo", true)                                                                           \
     /* a live device beside a file */                                                                               \
-    X(DIFFERS, "differs", true)
+    X(DIFFERS, "differs", true)                                                                                     \
+    X(DIFFERS_IDENTITY, "differs-identity", true)                                                                   \
+    X(DIFFERS_EEPROM, "differs-eeprom", true)                                                                       \
+    X(DIFFERS_MAILBOX, "differs-mailbox", true)                                                                     \
+    X(DIFFERS_SYNC_MANAGER, "differs-sync-manager", true)                                                           \
+    X(DIFFERS_PDO, "differs-pdo", true)                                                                             \
+    X(DIFFERS_ASSIGNMENT, "differs-assignment", false)                                                              \
+    X(DIFFERS_OBJECT, "differs-object", true)                                                                       \
+    X(DIFFERS_NAME, "differs-name", false)                                                                          \
+    X(NOT_COMPARED, "not-compared", false)
 
 typedef enum cm1e_rule {
 #define CM1E_RULE_ENUMERATOR(enumerator, name, is_error) CM1E_RULE_##enumerator,

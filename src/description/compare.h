@@ -8,9 +8,14 @@
 #include "description/check.h"
 #include "description/description.h"
 
-/** Findings with the places of `file`, about everything that both sides speak of: identity, sync managers, mailbox,
- *  PDO mapping and assignment, dictionary (objects and sub-indexes on one side only, type, size, access, names). What one
- *  side does not state is no difference. */
+/** Findings with the places of `file`, about everything that both sides speak of: identity, EEPROM, mailbox, sync
+ *  managers, PDO mapping and assignment, dictionary (objects and sub-indexes on one side only, type, size, access,
+ *  names). What one side does not state is no difference. */
 void cm1e_compare(cm1e_findings_t *findings, const cm1e_description_t *file, const cm1e_description_t *device);
+
+/** The same for a file that offers modules: `variants[0]` is the device with those that stand in its slots when nobody
+ *  chooses, the others with those that can stand there; the device has the objects and PDOs of all of them. */
+void cm1e_compare_variants(cm1e_findings_t *findings, const cm1e_description_t *variants, size_t count,
+                           const cm1e_description_t *device);
 
 #endif
