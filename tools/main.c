@@ -17,6 +17,7 @@ static const struct {
     {"sim", "serve a simulated network on a network interface", command_sim},
     {"generate", "write files for other masters", command_generate},
     {"check", "check a file for other masters, whoever wrote it", command_check},
+    {"diff", "compare a file with the live devices that it describes", command_diff},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 

@@ -78,7 +78,7 @@ static void compare_mailbox(const comparison_t *c)
         return;
     }
     /* An ENI names the protocols alone. */
-    const bool has_details = c->file->objects.count > 0 || c->file->eeprom.mailbox_protocols;
+    const bool has_details = file->sdo_info || file->pdo_assign || file->pdo_config || file->complete_access;
     for (size_t i = 0; file->present && i < sizeof abilities / sizeof abilities[0]; i++)
         if (abilities[i].file != abilities[i].device &&
             (!abilities[i].of_coe || (file->coe && device->coe && has_details)))
@@ -111,7 +111,8 @@ static void compare_sync_manager(const comparison_t *c, unsigned n)
                 device->control);
     if ((file->enable & 1) != (device->enable & 1))
         DIFFERS(c, DIFFERS_SYNC_MANAGER, file->place,
-                "Sync manager %u is %senabled in the file, %senabled in the device.", n, file->enable & 1 ? "" : "not ", device->enable & 1 ? "" : "not ");
+                "Sync manager %u is %senabled in the file, %senabled in the device.", n,
+                file->enable & 1 ? "" : "not ", device->enable & 1 ? "" : "not ");
     /* That of process data follows from the assignment. */
     if (of_mailbox && file->length_given && device->length_given && file->length != device->length)
         DIFFERS(c, DIFFERS_SYNC_MANAGER, file->place,
@@ -146,7 +147,8 @@ static void compare_mapping(const comparison_t *c, const cm1e_described_pdo_t *f
     }
     if (file->entries.count != device->entries.count)
         DIFFERS(c, DIFFERS_PDO, file->place,
-                "%s 0x%04X has %zu entries (%u bits) in the file, %zu (%u bits) in the device.", direction(file), file->index, file->entries.count, (unsigned)cm1e_pdo_bits(file), device->entries.count,
+                "%s 0x%04X has %zu entries (%u bits) in the file, %zu (%u bits) in the device.", direction(file),
+                file->index, file->entries.count, (unsigned)cm1e_pdo_bits(file), device->entries.count,
                 (unsigned)cm1e_pdo_bits(device));
 }
 

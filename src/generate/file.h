@@ -11,6 +11,8 @@
 
 /** The SII image of a device as a file. */
 cm1e_error_t cm1e_file_of_sii(cm1e_file_t *file, const cm1e_description_t *device, cm1e_diag_t *diag);
+/** What is said of bytes of no known format; CM1E_ERROR_FILE. */
+cm1e_error_t cm1e_file_not_recognised(cm1e_diag_t *diag);
 /** The ENI of a network as a file. */
 cm1e_error_t cm1e_file_of_eni(cm1e_file_t *file, const cm1e_eni_slave_t *slaves, size_t count, int64_t cycle_time_ns,
                               cm1e_diag_t *diag);

@@ -61,8 +61,10 @@ static uint8_t access_of(uint16_t told)
 
 static cm1e_bytes_t told_bytes(live_t *live, const cm1e_info_value_t *value)
 {
-    const cm1e_bytes_t none = {0};
-    return value->size == 0 ? none : (cm1e_bytes_t){cm1e_arena_bytes(live->arena, value->bytes, value->size), value->size};
+    cm1e_bytes_t bytes = {0};
+    if (value->size > 0)
+        bytes = (cm1e_bytes_t){cm1e_arena_bytes(live->arena, value->bytes, value->size), value->size};
+    return bytes;
 }
 
 static cm1e_error_t describe_entry(live_t *live, cm1e_described_object_t *object, uint8_t subindex)
@@ -129,7 +131,8 @@ static cm1e_error_t describe_dictionary(live_t *live)
 /* ---- process data ----------------------------------------------------------------------------------------------- */
 
 /** A number of the dictionary; false: refused, or of another size. */
-static bool read_number(live_t *live, uint16_t index, uint8_t subindex, size_t bytes, uint32_t *value, cm1e_error_t *error)
+static bool read_number(live_t *live, uint16_t index, uint8_t subindex, size_t bytes, uint32_t *value,
+                        cm1e_error_t *error)
 {
     uint8_t data[4] = {0};
     size_t size = sizeof data;

@@ -97,7 +97,7 @@ cm1e_file_format_t cm1e_file_recognise(const void *bytes, size_t size)
     return name ? format_of_root(name, size - (size_t)(name - (const char *)bytes)) : CM1E_FILE_UNKNOWN;
 }
 
-static cm1e_error_t not_recognised(cm1e_diag_t *diag)
+cm1e_error_t cm1e_file_not_recognised(cm1e_diag_t *diag)
 {
     return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0,
                          "this is no file of a known format: neither XML with the root element EtherCATInfo (ESI), "
@@ -143,7 +143,7 @@ cm1e_error_t cm1e_check_file(cm1e_findings_t **findings, const void *bytes, size
     const cm1e_file_format_t format = cm1e_file_recognise(bytes, size);
     *findings = NULL;
     if (format == CM1E_FILE_UNKNOWN)
-        return not_recognised(diag);
+        return cm1e_file_not_recognised(diag);
     cm1e_findings_t *found = cm1e_findings_create();
     if (!found)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
@@ -189,7 +189,7 @@ cm1e_error_t cm1e_generate_from(cm1e_file_t *file, const void *bytes, size_t siz
     const cm1e_file_format_t found = cm1e_file_recognise(bytes, size);
     *file = (cm1e_file_t){0};
     if (found == CM1E_FILE_UNKNOWN)
-        return not_recognised(diag);
+        return cm1e_file_not_recognised(diag);
     const bool described = (found == CM1E_FILE_ESI || found == CM1E_FILE_SII);
     if (found == format && found == CM1E_FILE_EC_EXTEND)
         return rewrite_ec_extend(file, bytes, size, diag);

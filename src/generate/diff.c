@@ -1,0 +1,143 @@
+#include <stdio.h>
+#include <string.h>
+
+#include "cm1e/generate.h"
+#include "description/compare.h"
+#include "description/sii.h"
+#include "generate/ec_extend.h"
+#include "generate/eni.h"
+#include "generate/esi.h"
+#include "generate/file.h"
+#include "generate/live.h"
+
+static bool is_product(const cm1e_description_t *described, const cm1e_description_t *live)
+{
+    return described->vendor_id == live->vendor_id && described->product_given &&
+           described->product_code == live->product_code;
+}
+
+static cm1e_error_t not_described(const cm1e_description_t *live, cm1e_diag_t *diag)
+{
+    return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "the file does not describe a device of vendor 0x%08X, product "
+                         "0x%08X", (unsigned)live->vendor_id, (unsigned)live->product_code);
+}
+
+/** The device of that revision; where the file has none, the newest one before it, or the first. NULL: no such
+ *  product. */
+static const cm1e_description_t *choose(const cm1e_description_file_t *file, const cm1e_description_t *live)
+{
+    const cm1e_description_t *best = NULL;
+    for (size_t i = 0; i < file->devices.count; i++) {
+        const cm1e_description_t *device = &file->devices.at[i];
+        if (!is_product(device, live))
+            continue;
+        if (device->revision == live->revision)
+            return device;
+        const bool older = device->revision < live->revision;
+        if (!best || (older && (best->revision > live->revision || device->revision > best->revision)))
+            best = device;
+    }
+    return best;
+}
+
+static void name_revisions(cm1e_findings_t *findings, const cm1e_description_file_t *file,
+                           const cm1e_description_t *live, const cm1e_description_t *chosen)
+{
+    char revisions[256] = "";
+    unsigned count = 0;
+    for (size_t i = 0; i < file->devices.count; i++) {
+        if (!is_product(&file->devices.at[i], live))
+            continue;
+        const size_t used = strlen(revisions);
+        snprintf(revisions + used, sizeof revisions - used, "%s0x%08X", count++ ? ", " : "",
+                 (unsigned)file->devices.at[i].revision);
+    }
+    if (count > 1 && chosen->revision != live->revision)
+        cm1e_findings_add(findings, CM1E_RULE_DIFFERS_IDENTITY, chosen->identity_place,
+                          "The file has no device of revision 0x%08X; it has %s. What follows is about 0x%08X.",
+                          (unsigned)live->revision, revisions, (unsigned)chosen->revision);
+}
+
+static cm1e_error_t diff_described(cm1e_findings_t *findings, cm1e_file_format_t format, const void *bytes, size_t size,
+                                   const cm1e_description_t *live, cm1e_diag_t *diag)
+{
+    cm1e_description_file_t file = {0};
+    cm1e_error_t error = format == CM1E_FILE_ESI ? cm1e_esi_read(&file, bytes, size, diag)
+                                                 : cm1e_sii_read(&file, bytes, size, NULL, diag);
+    const cm1e_description_t *device = error == CM1E_OK ? choose(&file, live) : NULL;
+    if (device) {
+        name_revisions(findings, &file, live, device);
+        cm1e_compare(findings, device, live);
+    } else if (error == CM1E_OK) {
+        error = not_described(live, diag);
+    }
+    cm1e_description_file_free(&file);
+    return error;
+}
+
+static cm1e_error_t diff_ec_extend(cm1e_findings_t *findings, const void *bytes, size_t size,
+                                   const cm1e_description_t *live, cm1e_diag_t *diag)
+{
+    cm1e_ec_extend_t document = {0};
+    cm1e_error_t error = cm1e_ec_extend_read(&document, bytes, size, diag);
+    bool found = false;
+    for (size_t i = 0; error == CM1E_OK && i < document.profiles.count && !found; i++)
+        found = document.profiles.at[i].vendor_id == live->vendor_id &&
+                document.profiles.at[i].product_code == live->product_code;
+    if (found)
+        cm1e_ec_extend_compare(findings, &document, live);
+    else if (error == CM1E_OK)
+        error = not_described(live, diag);
+    cm1e_ec_extend_free(&document);
+    return error;
+}
+
+static cm1e_error_t diff_eni(cm1e_findings_t *findings, const void *bytes, size_t size, uint16_t position,
+                             const cm1e_description_t *live, cm1e_diag_t *diag)
+{
+    cm1e_eni_t document = {0};
+    cm1e_error_t error = cm1e_eni_read(&document, bytes, size, diag);
+    if (error == CM1E_OK && position > document.devices.count)
+        error = cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "the file describes a network of %zu slaves, and none at "
+                              "position %u", document.devices.count, position);
+    else if (error == CM1E_OK)
+        cm1e_eni_compare(findings, &document, position, live);
+    cm1e_eni_free(&document);
+    return error;
+}
+
+static cm1e_error_t diff(cm1e_findings_t *findings, const void *bytes, size_t size, cm1e_bus_t *bus, uint16_t position,
+                         cm1e_diag_t *diag)
+{
+    const cm1e_file_format_t format = cm1e_file_recognise(bytes, size);
+    cm1e_description_file_t device = {0};
+    cm1e_error_t error = format == CM1E_FILE_UNKNOWN ? cm1e_file_not_recognised(diag)
+                                                     : cm1e_live_describe(&device, bus, position, findings, diag);
+    if (error == CM1E_OK) {
+        const cm1e_description_t *live = &device.devices.at[0];
+        error = format == CM1E_FILE_ENI         ? diff_eni(findings, bytes, size, position, live, diag)
+                : format == CM1E_FILE_EC_EXTEND ? diff_ec_extend(findings, bytes, size, live, diag)
+                                                : diff_described(findings, format, bytes, size, live, diag);
+    }
+    cm1e_description_file_free(&device);
+    return error;
+}
+
+cm1e_error_t cm1e_diff_file(cm1e_findings_t **findings, const void *bytes, size_t size, cm1e_bus_t *bus,
+                            uint16_t position, cm1e_diag_t *diag)
+{
+    *findings = NULL;
+    cm1e_findings_t *found = cm1e_findings_create();
+    if (!found)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
+    cm1e_error_t error = diff(found, bytes, size, bus, position, diag);
+    if (error == CM1E_OK && found->arena.failed)
+        error = cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
+    if (error != CM1E_OK) {
+        cm1e_findings_free(found);
+        return error;
+    }
+    cm1e_findings_sort(found);
+    *findings = found;
+    return CM1E_OK;
+}

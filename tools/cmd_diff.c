@@ -1,0 +1,109 @@
+/** cm1e diff: a file beside the live devices that it describes. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "cm1e/generate.h"
+#include "command.h"
+#include "files.h"
+
+typedef struct diff_options {
+    common_options_t common;
+    const char *file;
+    long long position; /* 0: every slave that the file describes */
+} diff_options_t;
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    diff_options_t *options = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case 'p': return parse_number(arg, "the position", 1, CM1E_MAX_SLAVES, &options->position) ? 0 : EINVAL;
+    case ARGP_KEY_ARG:
+        if (options->file)
+            argp_error(state, "one file at a time; \"%s\" is too many", arg);
+        options->file = arg;
+        return 0;
+    case ARGP_KEY_END:
+        if (!options->file)
+            argp_error(state, "which file?");
+        return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+/** Compares with one slave and prints it. EXIT_WRONG_USE: it could not be compared; `*described` says whether the file
+ *  is about it at all. */
+static int diff_slave(cm1e_bus_t *bus, const diff_options_t *options, const input_t *input, uint16_t position,
+                      bool *described, cm1e_diag_t *diag)
+{
+    char title[64];
+    cm1e_findings_t *findings = NULL;
+    const cm1e_error_t error = cm1e_diff_file(&findings, input->bytes, input->size, bus, position, diag);
+    *described = error != CM1E_ERROR_NOT_FOUND;
+    if (error != CM1E_OK)
+        return EXIT_WRONG_USE;
+    snprintf(title, sizeof title, "%s beside slave %u",
+             cm1e_file_format_name(cm1e_file_recognise(input->bytes, input->size)), position);
+    const int status = print_findings(options->file, title, findings, options->common.json);
+    cm1e_findings_free(findings);
+    return status;
+}
+
+static int run(cm1e_bus_t *bus, const diff_options_t *options, const input_t *input)
+{
+    cm1e_diag_t diag = {0};
+    const uint32_t count = cm1e_bus_slave_count(bus);
+    int status = EXIT_OK;
+    uint32_t compared = 0;
+    if (options->position > count) {
+        complain("there is no slave %lld; the network has %u", options->position, count);
+        return EXIT_WRONG_USE;
+    }
+    for (uint32_t position = 1; position <= count; position++) {
+        bool described;
+        if (options->position && position != options->position)
+            continue;
+        const int of_slave = diff_slave(bus, options, input, (uint16_t)position, &described, &diag);
+        if (of_slave == EXIT_WRONG_USE && (described || options->position)) {
+            complain("%s: slave %u: %s", options->file, position, diag.text);
+            return EXIT_WRONG_USE;
+        }
+        compared += described;
+        if (of_slave == EXIT_FAILED)
+            status = EXIT_FAILED;
+    }
+    if (compared > 0)
+        return status;
+    complain("%s describes none of the slaves of the network: %s", options->file, diag.text);
+    return EXIT_WRONG_USE;
+}
+
+int command_diff(int argc, char **argv)
+{
+    static const struct argp_option table[] = {
+        {"position", 'p', "POSITION", 0, "One slave; default: every one that the file describes", 0}, {0}};
+    static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+    static const struct argp argp = {
+        table, parse, "FILE",
+        "Compares an ESI, EC_EXTEND, SII or ENI file with live devices: identity, EEPROM, mailbox, sync managers, PDO "
+        "mapping and assignment, dictionary (docs/CHECK-RULES.md). Exit status 0: no difference, or warnings only; 1: "
+        "differences; 2: not compared.", children, NULL, NULL};
+    diff_options_t options = {0};
+    if (argp_parse(&argp, argc, argv, 0, NULL, &options))
+        return EXIT_WRONG_USE;
+    static cm1e_bus_config_t config;
+    input_t input;
+    if (!load_configuration(&options.common, &config) || !read_input(options.file, &input))
+        return EXIT_WRONG_USE;
+    cm1e_diag_t diag = {0};
+    cm1e_bus_t *bus = NULL;
+    int status = EXIT_WRONG_USE;
+    if (cm1e_bus_open(&bus, &config, &diag) == CM1E_OK && cm1e_bus_scan(bus, &diag) == CM1E_OK)
+        status = run(bus, &options, &input);
+    else
+        fail(&diag);
+    cm1e_bus_close(bus);
+    free(input.bytes);
+    return status;
+}
