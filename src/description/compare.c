@@ -160,7 +160,7 @@ static void compare_pdos(const comparison_t *c)
         if (!device)
             DIFFERS(c, DIFFERS_PDO, file->place, "The device has no %s 0x%04X.", direction(file), file->index);
         else if (device->transmit != file->transmit)
-            DIFFERS(c, DIFFERS_PDO, file->place, "0x%04X is an %s in the file, an %s in the device.", file->index,
+            DIFFERS(c, DIFFERS_PDO, file->place, "0x%04X is among the %ss in the file, the %ss in the device.", file->index,
                     direction(file), direction(device));
         else
             compare_mapping(c, file, device);
@@ -257,11 +257,6 @@ static void compare_entry(const comparison_t *c, const cm1e_described_object_t *
         compare_name(c, file->place, what, file->name, device->name);
 }
 
-static const char *code_name(uint8_t code)
-{
-    return code == CM1E_OBJECT_VAR ? "variable" : code == CM1E_OBJECT_ARRAY ? "array" : "record";
-}
-
 static void compare_object(const comparison_t *c, const cm1e_described_object_t *file)
 {
     const cm1e_described_object_t *device = cm1e_description_object(c->device, file->index);
@@ -272,9 +267,11 @@ static void compare_object(const comparison_t *c, const cm1e_described_object_t 
                 file->name ? file->name : "");
         return;
     }
-    if (file->code && device->code && file->code != device->code)
-        DIFFERS(c, DIFFERS_OBJECT, file->place, "Object %s is of kind %s in the file, %s in the device.", what,
-                code_name(file->code), code_name(device->code));
+    /* Arrays and records are the same thing in an ESI. */
+    if (file->code && device->code && (file->code == CM1E_OBJECT_VAR) != (device->code == CM1E_OBJECT_VAR))
+        DIFFERS(c, DIFFERS_OBJECT, file->place, "Object %s is a variable %s, and has sub-indexes %s.", what,
+                file->code == CM1E_OBJECT_VAR ? "in the file" : "in the device",
+                file->code == CM1E_OBJECT_VAR ? "in the device" : "in the file");
     compare_name(c, file->place, what, file->name, device->name);
     for (size_t i = 0; i < file->entries.count; i++)
         compare_entry(c, file, &file->entries.at[i]);

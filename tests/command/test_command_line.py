@@ -57,6 +57,28 @@ def check_good(folder):
 
     check_dictionary()
     check_sii(folder)
+    check_diff(folder)
+
+
+def check_diff(folder):
+    image = os.path.join(folder, "diff.sii")
+    run("cm1e", "sii", "-i", "sim", "read", "1", image)
+    same = run("cm1e", "diff", image, "-i", "sim")
+    expect(same.returncode == 0 and "beside slave 1, 0 errors" in same.stdout, "diff of the same", same)
+    three = run("cm1e", "diff", image, "-b", f"{SOURCE}/examples/three_axes.yaml", "-i", "sim")
+    expect(three.returncode == 0 and "beside slave 3" in three.stdout, "diff of three axes", three)
+    with open(image, "r+b") as file:
+        file.seek(2 * 0x0C)
+        file.write(b"\x99")
+    other = run("cm1e", "diff", image, "-i", "sim", "-p", "1", "--json")
+    expect(other.returncode == FAILED and "differs-identity" in [finding["rule"] for finding in
+                                                                  json.loads(other.stdout)["findings"]],
+           "diff of another revision", other)
+    with open(image, "r+b") as file:
+        file.seek(2 * 0x0A)
+        file.write(b"\x99")
+    none = run("cm1e", "diff", image, "-i", "sim")
+    expect(none.returncode == WRONG_USE and "describes none" in none.stderr, "diff of another product", none)
 
 
 def check_dictionary():
@@ -144,6 +166,11 @@ WRONG = [
     (["sii", "read", "1", "x"], WRONG_USE, "-i"),
     (["sii", "decode", "no-such-file"], FAILED, "no-such-file"),
     (["sii", "decode", f"{SOURCE}/README.md"], FAILED, ""),
+    (["diff", "-i", "sim"], WRONG_USE, "which file"),
+    (["diff", f"{SOURCE}/README.md"], WRONG_USE, "-i"),
+    (["diff", f"{SOURCE}/README.md", "-i", "sim"], WRONG_USE, "known format"),
+    (["diff", f"{SOURCE}/README.md", "-i", "sim", "-p", "2"], WRONG_USE, "no slave 2"),
+    (["diff", "no-such-file", "-i", "sim"], WRONG_USE, "no-such-file"),
     (["generate", "sii"], WRONG_USE, "-o"),
     (["generate", "sii", "-o", "/no/such/folder/x"], FAILED, "/no/such/folder"),
     (["generate", "sii", "-o", "x", "--firmware", "9.9"], WRONG_USE, "1.3.5"),

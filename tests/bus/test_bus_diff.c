@@ -1,0 +1,290 @@
+/* Files beside live devices: what the generator writes for a device differs in nothing from the simulated one, in every
+ * variant of it; and what is changed in a file, or in a device, is found. */
+#include "bus_support.h"
+#include "cm1e/generate.h"
+#include "cm1e/sii.h"
+#include "description/check.h"
+#include "generate/live.h"
+#include "sim/esc.h"
+
+static cm1e_findings_t *findings;
+
+static cm1e_bus_t *scanned_bus(uint32_t axes)
+{
+    sim_config(axes);
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    return bus;
+}
+
+static void generate(cm1e_file_t *file, cm1e_file_format_t format, const char *firmware)
+{
+    cm1e_device_options_t device = {.order = tested_order()};
+    snprintf(device.firmware, sizeof device.firmware, "%s", firmware);
+    const cm1e_generate_options_t options = {.format = format, .devices = &device, .device_count = 1,
+                                             .network = &config};
+    ck_assert_msg(cm1e_generate(file, &options, &diag) == CM1E_OK, "%s", diag.text);
+}
+
+static void compare(cm1e_bus_t *bus, uint16_t position, const void *bytes, size_t size)
+{
+    const cm1e_error_t error = cm1e_diff_file(&findings, bytes, size, bus, position, &diag);
+    ck_assert_msg(error == CM1E_OK, "%s: %s", cm1e_strerror(error), diag.text);
+}
+
+static const char *first_text(void)
+{
+    static char text[1200];
+    snprintf(text, sizeof text, "%zu findings", cm1e_findings_count(findings));
+    if (cm1e_findings_count(findings) > 0)
+        snprintf(text, sizeof text, "line %u: %s [%s]", cm1e_findings_at(findings, 0)->line,
+                 cm1e_findings_at(findings, 0)->text, cm1e_findings_at(findings, 0)->rule);
+    return text;
+}
+
+static void check_no_finding(void)
+{
+    ck_assert_msg(cm1e_findings_count(findings) == 0, "%s", first_text());
+    cm1e_findings_free(findings);
+}
+
+/* ---- no difference ---------------------------------------------------------------------------------------------- */
+
+static const cm1e_file_format_t formats[] = {CM1E_FILE_ESI, CM1E_FILE_SII, CM1E_FILE_EC_EXTEND, CM1E_FILE_ENI};
+
+START_TEST(a_file_of_every_format_that_is_made_for_the_device_differs_in_nothing)
+{
+    cm1e_bus_t *bus = scanned_bus(2);
+    cm1e_file_t file = {0};
+    generate(&file, formats[_i], tested_firmware());
+    compare(bus, 2, file.bytes, file.size);
+    check_no_finding();
+    cm1e_file_free(&file);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(the_sii_of_the_device_itself_differs_in_nothing)
+{
+    static uint8_t image[4096];
+    size_t size = sizeof image;
+    cm1e_bus_t *bus = scanned_bus(1);
+    ck_assert_int_eq(cm1e_sii_read_device(bus, 1, image, &size, &diag), CM1E_OK);
+    compare(bus, 1, image, size);
+    check_no_finding();
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/* ---- differences ------------------------------------------------------------------------------------------------ */
+
+static bool has(const char *rule, const char *words)
+{
+    for (size_t i = 0; i < cm1e_findings_count(findings); i++)
+        if (strcmp(cm1e_findings_at(findings, i)->rule, rule) == 0 &&
+            strstr(cm1e_findings_at(findings, i)->text, words))
+            return true;
+    return false;
+}
+
+/** Changes the ESI of the device at the first place where `old` stands, to a text of the same length. */
+static void compare_changed(cm1e_bus_t *bus, const char *old, const char *changed)
+{
+    cm1e_file_t file = {0};
+    generate(&file, CM1E_FILE_ESI, tested_firmware());
+    char *at = strstr((char *)file.bytes, old);
+    ck_assert_msg(at != NULL && strlen(old) == strlen(changed), "%s", old);
+    memcpy(at, changed, strlen(changed));
+    compare(bus, 1, file.bytes, file.size);
+    unsigned line = 1;
+    for (const char *c = (char *)file.bytes; c < at; c++)
+        line += *c == '\n';
+    bool there = false;
+    for (size_t i = 0; i < cm1e_findings_count(findings); i++)
+        there |= cm1e_findings_at(findings, i)->line + 12 > line && cm1e_findings_at(findings, i)->line <= line;
+    ck_assert_msg(there, "%s -> %s in line %u: %s", old, changed, line, first_text());
+    cm1e_file_free(&file);
+}
+
+static const struct {
+    const char *old, *changed, *rule, *words;
+} changes[] = {
+    {"StartAddress=\"#x1100\"", "StartAddress=\"#x1180\"", "differs-sync-manager", "0x1180"},
+    {"ControlByte=\"#x64\"", "ControlByte=\"#x24\"", "differs-sync-manager", "0x24"},
+    {"<Index>#x607A</Index>", "<Index>#x607F</Index>", "differs-", "0x607F"},
+};
+
+START_TEST(what_is_changed_in_a_file_is_found_in_its_line)
+{
+    cm1e_bus_t *bus = scanned_bus(1);
+    for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
+        compare_changed(bus, changes[i].old, changes[i].changed);
+        bool found = has(changes[i].rule, changes[i].words);
+        if (strcmp(changes[i].rule, "differs-") == 0)
+            found = has("differs-pdo", changes[i].words) || has("differs-object", changes[i].words);
+        ck_assert_msg(found, "%s: %s", changes[i].changed, first_text());
+        cm1e_findings_free(findings);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(a_file_for_another_firmware_differs_in_revision_and_dictionary)
+{
+    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_file_t file = {0};
+    const bool old = strcmp(tested_firmware(), "1.2.0") == 0;
+    generate(&file, CM1E_FILE_ESI, old ? "1.3.5" : "1.2.0");
+    compare(bus, 1, file.bytes, file.size);
+    ck_assert_msg(has("differs-identity", "revision"), "%s", first_text());
+    ck_assert_msg(has("differs-object", "0x2201"), "%s", first_text());
+    ck_assert_msg(has("differs-pdo", "0x1603"), "%s", first_text());
+    cm1e_findings_free(findings);
+    cm1e_file_free(&file);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(a_file_with_other_revisions_names_them)
+{
+    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_file_t file = {0};
+    const cm1e_device_options_t devices[2] = {{.firmware = "1.2.0", .order = tested_order()},
+                                              {.firmware = "1.3.5", .order = tested_order()}};
+    const cm1e_generate_options_t options = {.format = CM1E_FILE_ESI, .devices = devices, .device_count = 2};
+    ck_assert_msg(cm1e_generate(&file, &options, &diag) == CM1E_OK, "%s", diag.text);
+    compare(bus, 1, file.bytes, file.size); /* the right one is chosen */
+    check_no_finding();
+    cm1e_put_u32(cm1e_sim_segment_slave(segment_of(bus), 1)->sii + 0x18, 0x20029999);
+    compare(bus, 1, file.bytes, file.size);
+    ck_assert_msg(has("differs-identity", "it has 0x20020001, 0x20020103"), "%s", first_text());
+    ck_assert_msg(has("differs-identity", "The device contradicts itself: the revision is 0x20029999"), "%s",
+                  first_text());
+    cm1e_findings_free(findings);
+    cm1e_file_free(&file);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(the_other_order_of_the_mappings_is_found)
+{
+    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_file_t file = {0};
+    cm1e_device_options_t device = {.order = tested_order() == CM1E_PDO_ORDER_UG_4_4 ? CM1E_PDO_ORDER_UG_7_2
+                                                                                    : CM1E_PDO_ORDER_UG_4_4};
+    snprintf(device.firmware, sizeof device.firmware, "%s", tested_firmware());
+    const cm1e_generate_options_t options = {.format = CM1E_FILE_ESI, .devices = &device, .device_count = 1};
+    ck_assert_int_eq(cm1e_generate(&file, &options, &diag), CM1E_OK);
+    compare(bus, 1, file.bytes, file.size);
+    ck_assert_msg(has("differs-pdo", "RxPDO 0x1600"), "%s", first_text());
+    cm1e_findings_free(findings);
+    cm1e_file_free(&file);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(another_assignment_is_a_warning)
+{
+    static const uint8_t csp[] = {0x01, 0x16}, zero[] = {0}, one[] = {1};
+    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_file_t file = {0};
+    generate(&file, CM1E_FILE_ESI, tested_firmware());
+    ck_assert_int_eq(cm1e_sdo_write(bus, 1, 0x1C12, 0, zero, 1, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_sdo_write(bus, 1, 0x1C12, 1, csp, 2, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_sdo_write(bus, 1, 0x1C12, 0, one, 1, &diag), CM1E_OK);
+    compare(bus, 1, file.bytes, file.size);
+    ck_assert_uint_eq(cm1e_findings_count(findings), 2);
+    ck_assert(has("differs-assignment", "0x1600 is assigned by default") && has("differs-assignment", "0x1601"));
+    ck_assert(!cm1e_findings_at(findings, 0)->is_error);
+    cm1e_findings_free(findings);
+    cm1e_file_free(&file);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(a_file_about_something_else_is_not_compared)
+{
+    static const char text[] = "this is no file", other[] = "<EtherCATInfo><Vendor><Id>1</Id></Vendor></EtherCATInfo>";
+    cm1e_bus_t *bus = scanned_bus(1);
+    ck_assert_int_eq(cm1e_diff_file(&findings, text, sizeof text - 1, bus, 1, &diag), CM1E_ERROR_FILE);
+    ck_assert_ptr_null(findings);
+    ck_assert_int_ne(cm1e_diff_file(&findings, other, sizeof other - 1, bus, 1, &diag), CM1E_OK);
+    cm1e_file_t file = {0};
+    generate(&file, CM1E_FILE_ESI, tested_firmware());
+    ck_assert_int_ne(cm1e_diff_file(&findings, file.bytes, file.size, bus, 2, &diag), CM1E_OK);
+    ck_assert_ptr_nonnull(strstr(diag.text, "no slave 2"));
+    cm1e_sim_segment_slave(segment_of(bus), 1)->sii[0x14] ^= 1; /* another product */
+    ck_assert_int_eq(cm1e_diff_file(&findings, file.bytes, file.size, bus, 1, &diag), CM1E_ERROR_NOT_FOUND);
+    ck_assert_ptr_nonnull(strstr(diag.text, "does not describe"));
+    cm1e_file_free(&file);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/* ---- the device as a description --------------------------------------------------------------------------------- */
+
+START_TEST(the_live_device_is_described_by_what_it_tells)
+{
+    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_description_file_t file = {0};
+    findings = cm1e_findings_create();
+    ck_assert_msg(cm1e_live_describe(&file, bus, 1, findings, &diag) == CM1E_OK, "%s", diag.text);
+    check_no_finding();
+    const cm1e_description_t *device = &file.devices.at[0];
+    ck_assert_uint_eq(device->pdos.count, 8);
+    ck_assert_int_eq(cm1e_description_pdo(device, 0x1600)->sync_manager, 2);
+    ck_assert_int_eq(cm1e_description_pdo(device, 0x1A00)->sync_manager, 3);
+    ck_assert_int_eq(cm1e_description_pdo(device, 0x1A01)->sync_manager, CM1E_NO_SYNC_MANAGER);
+    const cm1e_described_entry_t *entry = cm1e_description_entry(device, 0x1C12, 1);
+    ck_assert_uint_eq(entry->access, CM1E_ACCESS_READ | CM1E_ACCESS_WRITE | CM1E_ACCESS_WRITE_PREOP_ONLY);
+    ck_assert_str_eq(cm1e_description_entry(device, 0x6060, 0)->type, "SINT");
+    cm1e_description_file_free(&file);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+static unsigned lost, seen;
+static cm1e_tap_verdict_t lose_one(void *context, cm1e_tap_frame_t *frame)
+{
+    (void)context;
+    return frame->direction == CM1E_TAP_RECEIVED && seen++ == lost ? CM1E_TAP_DROP : CM1E_TAP_PASS;
+}
+
+START_TEST(a_lost_frame_changes_no_finding)
+{
+    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_file_t file = {0};
+    generate(&file, CM1E_FILE_ESI, tested_firmware());
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), lose_one, NULL);
+    for (lost = 0, seen = 1; seen > lost; lost += 97) {
+        seen = 0;
+        compare(bus, 1, file.bytes, file.size);
+        check_no_finding();
+    }
+    cm1e_file_free(&file);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("bus_diff");
+    TCase *equal = tcase_create("equal");
+    tcase_add_loop_test(equal, a_file_of_every_format_that_is_made_for_the_device_differs_in_nothing, 0,
+                        sizeof formats / sizeof formats[0]);
+    tcase_add_test(equal, the_sii_of_the_device_itself_differs_in_nothing);
+    tcase_add_test(equal, a_lost_frame_changes_no_finding);
+    suite_add_tcase(suite, equal);
+    TCase *different = tcase_create("different");
+    tcase_add_test(different, what_is_changed_in_a_file_is_found_in_its_line);
+    tcase_add_test(different, a_file_for_another_firmware_differs_in_revision_and_dictionary);
+    tcase_add_test(different, a_file_with_other_revisions_names_them);
+    tcase_add_test(different, the_other_order_of_the_mappings_is_found);
+    tcase_add_test(different, another_assignment_is_a_warning);
+    tcase_add_test(different, a_file_about_something_else_is_not_compared);
+    suite_add_tcase(suite, different);
+    TCase *live = tcase_create("live");
+    tcase_add_test(live, the_live_device_is_described_by_what_it_tells);
+    suite_add_tcase(suite, live);
+    return run_suite(suite);
+}
