@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { FIRST_MAPPING_OBJECT = 0x1600, LAST_MAPPING_OBJECT = 0x1BFF };
+
 typedef struct comparison {
     cm1e_findings_t *findings;
     const cm1e_description_t *file, *device; /* the file's: one of its variants */
@@ -253,7 +255,9 @@ static void compare_entry(const comparison_t *c, const cm1e_described_object_t *
         DIFFERS(c, DIFFERS_OBJECT, file->place, "%s has %u bits in the file, %u in the device.", what,
                 (unsigned)file->bits, (unsigned)device->bits);
     compare_access(c, what, file, device);
-    if (object->code != CM1E_OBJECT_VAR) /* it has the name of its object */
+    /* A variable has the name of its object; rows of mappings are called after what they map, or not at all. */
+    const bool in_mapping = object->index >= FIRST_MAPPING_OBJECT && object->index <= LAST_MAPPING_OBJECT;
+    if (object->code != CM1E_OBJECT_VAR && !in_mapping)
         compare_name(c, file->place, what, file->name, device->name);
 }
 

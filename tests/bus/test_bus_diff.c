@@ -64,6 +64,25 @@ START_TEST(a_file_of_every_format_that_is_made_for_the_device_differs_in_nothing
 }
 END_TEST
 
+START_TEST(the_esi_of_every_firmware_differs_in_nothing)
+{
+    sim_config(CM1E_FIRMWARE_COUNT);
+    for (int f = 0; f < CM1E_FIRMWARE_COUNT; f++)
+        snprintf(config.axes[f].firmware, sizeof config.axes[f].firmware, "%s",
+                 cm1e_firmware_info((cm1e_firmware_t)f)->version);
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_int_eq(cm1e_bus_scan(bus, &diag), CM1E_OK);
+    for (int f = 0; f < CM1E_FIRMWARE_COUNT; f++) {
+        cm1e_file_t file = {0};
+        generate(&file, CM1E_FILE_ESI, config.axes[f].firmware);
+        compare(bus, (uint16_t)(f + 1), file.bytes, file.size);
+        check_no_finding();
+        cm1e_file_free(&file);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(the_sii_of_the_device_itself_differs_in_nothing)
 {
     static uint8_t image[4096];
@@ -272,6 +291,7 @@ int main(void)
     TCase *equal = tcase_create("equal");
     tcase_add_loop_test(equal, a_file_of_every_format_that_is_made_for_the_device_differs_in_nothing, 0,
                         sizeof formats / sizeof formats[0]);
+    tcase_add_test(equal, the_esi_of_every_firmware_differs_in_nothing);
     tcase_add_test(equal, the_sii_of_the_device_itself_differs_in_nothing);
     tcase_add_test(equal, a_lost_frame_changes_no_finding);
     suite_add_tcase(suite, equal);

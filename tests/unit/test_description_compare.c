@@ -234,6 +234,7 @@ static void test_names_that_a_device_leaves_out_or_cuts_do_not_count(void)
     object_of(device, 0x6064)->name = "";
     object_of(device, 0x6041)->name = "Status";
     object_of(device, 0x1018)->entries.at[1].name = "Vend";
+    object_of(device, 0x1600)->entries.at[1].name = "SubIndex 001";
     object_of(device, 0x1018)->code = CM1E_OBJECT_ARRAY; /* nor whether what has sub-indexes is an array */
     cm1e_compare(findings, file, device);
     TEST_ASSERT_EQUAL_size_t(0, cm1e_findings_count(findings));
