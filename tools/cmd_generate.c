@@ -1,102 +1,312 @@
-/** cm1e generate: files for other masters and tools, written from the device tables. */
-#include <errno.h>
+/** cm1e generate: files for other masters and tools, written from the device tables or from another file. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-#include "command.h"
 #include "cm1e/generate.h"
+#include "command.h"
+#include "files.h"
 
-enum { KEY_FIRMWARE = 0x400, KEY_ORDER, KEY_ALIAS };
+enum {
+    KEY_FIRMWARE = 0x400, KEY_ORDER, KEY_ALIAS, KEY_LAYOUT, KEY_MAPPING, KEY_DEVICE, KEY_VENDOR, KEY_PRODUCT,
+    KEY_REVISION, KEY_AXES, KEY_SERIAL, KEY_DC, KEY_COMPLETE, KEY_CONFIG, KEY_FROM, KEY_NUMBER, KEY_PROGRAM,
+    KEY_DC_MODE, KEY_MAILBOX_RATE,
+};
+enum { MAX_DEVICES = 16 };
 
 typedef struct generate_options {
-    const char *format, *file;
-    cm1e_device_options_t device;
+    common_options_t common;
+    cm1e_generate_options_t what;
+    cm1e_device_options_t devices[MAX_DEVICES];
+    const char *file, *from, *program;
+    size_t number;     /**< of the device in the file read, 0 = first */
+    bool mapping_given;
 } generate_options_t;
 
-static error_t parse_order(const char *word, cm1e_device_options_t *device)
+/* A word out of a few; EINVAL and a complaint that lists them. */
+typedef struct choice {
+    const char *word;
+    int value;
+} choice_t;
+static const choice_t formats[] = {{"esi", CM1E_FILE_ESI}, {"ec-extend", CM1E_FILE_EC_EXTEND}, {"sii", CM1E_FILE_SII},
+                                   {"eni", CM1E_FILE_ENI}, {0}};
+static const choice_t layouts[] = {{"flat", CM1E_ESI_FLAT}, {"mdp", CM1E_ESI_MDP}, {0}};
+static const choice_t mappings[] = {{"dynamic", CM1E_MAPPING_DYNAMIC}, {"csp", CM1E_MAPPING_CSP},
+                                    {"csv", CM1E_MAPPING_CSV}, {"profile", CM1E_MAPPING_PROFILE}, {0}};
+static const choice_t orders[] = {{"ug-4.4", CM1E_PDO_ORDER_UG_4_4}, {"ug-7.2", CM1E_PDO_ORDER_UG_7_2}, {0}};
+static const choice_t models[] = {{"cm1-e", CM1E_DEVICE_CM1E}, {"eb01", CM1E_DEVICE_EB01}, {"eb02", CM1E_DEVICE_EB02},
+                                  {"eb12", CM1E_DEVICE_EB12}, {0}};
+
+static bool choose(const char *what, const char *word, const choice_t *choices, int *value)
 {
-    if (strcmp(word, "ug-4.4") != 0 && strcmp(word, "ug-7.2") != 0) {
-        complain("there is no PDO order \"%s\"; there are ug-4.4 and ug-7.2", word);
-        return EINVAL;
+    char list[128] = "";
+    for (const choice_t *choice = choices; choice->word; choice++) {
+        if (strcasecmp(choice->word, word) == 0) {
+            *value = choice->value;
+            return true;
+        }
+        snprintf(list + strlen(list), sizeof list - strlen(list), " %s", choice->word);
     }
-    device->order = strcmp(word, "ug-7.2") == 0 ? CM1E_PDO_ORDER_UG_7_2 : CM1E_PDO_ORDER_UG_4_4;
+    complain("there is no %s \"%s\"; there are%s", what, word, list);
+    return false;
+}
+
+static cm1e_device_options_t *device_of(generate_options_t *options)
+{
+    return &options->devices[options->what.device_count - 1];
+}
+
+/* --device begins the next one; what follows is about it. The first one needs no --device. */
+static error_t begin_device(generate_options_t *options, const char *word)
+{
+    int model;
+    if (!choose("device", word, models, &model))
+        return EINVAL;
+    if (options->what.devices) {
+        if (options->what.device_count == MAX_DEVICES) {
+            complain("more than %d devices", MAX_DEVICES);
+            return EINVAL;
+        }
+        options->what.device_count++;
+    }
+    options->what.devices = options->devices;
+    device_of(options)->model = (cm1e_device_model_t)model;
     return 0;
 }
 
-static error_t parse(int key, char *arg, struct argp_state *state)
+static bool parse_config_data(const char *path, cm1e_device_options_t *device)
 {
-    generate_options_t *options = state->input;
-    long long number;
+    input_t input;
+    if (!read_input(path, &input))
+        return false;
+    const bool long_enough = input.size >= sizeof device->config_data;
+    if (long_enough) {
+        memcpy(device->config_data, input.bytes, sizeof device->config_data);
+        device->config_data_size = sizeof device->config_data;
+    } else {
+        complain("%s has %zu bytes; an image of an SII as `cm1e sii read` writes it has at least 128", path,
+                 input.size);
+    }
+    free(input.bytes);
+    return long_enough;
+}
+
+static error_t parse_device(int key, char *arg, generate_options_t *options)
+{
+    cm1e_device_options_t *device = device_of(options);
+    long long number = 0;
+    int value = 0;
     switch (key) {
-    case 'o': options->file = arg; return 0;
     case KEY_FIRMWARE:
-        snprintf(options->device.firmware, sizeof options->device.firmware, "%s", arg);
+        snprintf(device->firmware, sizeof device->firmware, "%s", arg[0] == 'V' || arg[0] == 'v' ? arg + 1 : arg);
         return 0;
-    case KEY_ORDER: return parse_order(arg, &options->device);
+    case KEY_MAPPING:
+        if (!choose("mapping", arg, mappings, &value))
+            return EINVAL;
+        device->mapping = (cm1e_mapping_t)value;
+        return 0;
+    case KEY_ORDER:
+        if (!choose("PDO order", arg, orders, &value))
+            return EINVAL;
+        device->order = (cm1e_pdo_order_t)value;
+        return 0;
+    case KEY_VENDOR: case KEY_PRODUCT: case KEY_REVISION: case KEY_SERIAL:
+        if (!parse_number(arg, "the number", 0, 0xFFFFFFFFLL, &number))
+            return EINVAL;
+        *(key == KEY_VENDOR ? &device->vendor_id : key == KEY_PRODUCT ? &device->product_code
+          : key == KEY_REVISION ? &device->revision : &device->serial_number) = (uint32_t)number;
+        return 0;
+    case KEY_AXES:
+        if (!parse_number(arg, "the number of axes", 1, 4, &number))
+            return EINVAL;
+        device->axes = (uint32_t)number;
+        return 0;
     case KEY_ALIAS:
         if (!parse_number(arg, "the alias", 0, 0xFFFF, &number))
             return EINVAL;
-        options->device.alias = (uint16_t)number;
+        device->alias = (uint16_t)number;
         return 0;
-    case ARGP_KEY_ARG:
-        if (options->format)
-            argp_error(state, "one format at a time; \"%s\" is too many", arg);
-        options->format = arg;
+    case KEY_DC: device->distributed_clocks = true; return 0;
+    case KEY_COMPLETE: device->complete_access = true; return 0;
+    case KEY_CONFIG: return parse_config_data(arg, device) ? 0 : EINVAL;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static error_t parse_file(int key, char *arg, generate_options_t *options)
+{
+    long long number = 0;
+    int value = 0;
+    switch (key) {
+    case 'o': options->file = arg; return 0;
+    case KEY_FROM: options->from = arg; return 0;
+    case KEY_PROGRAM: options->program = arg; return 0;
+    case KEY_DEVICE: return begin_device(options, arg);
+    case KEY_LAYOUT:
+        if (!choose("layout", arg, layouts, &value))
+            return EINVAL;
+        options->what.layout = (cm1e_esi_layout_t)value;
         return 0;
-    case ARGP_KEY_END:
-        if (!options->format || strcmp(options->format, "sii") != 0)
-            argp_error(state, "which format? This version writes: sii");
-        if (!options->file)
-            argp_error(state, "where to? -o FILE");
+    case KEY_NUMBER:
+        if (!parse_number(arg, "the number of the device", 1, 100000, &number))
+            return EINVAL;
+        options->number = (size_t)number - 1;
+        return 0;
+    case KEY_DC_MODE: case KEY_MAILBOX_RATE:
+        if (!parse_number(arg, key == KEY_DC_MODE ? "the DC mode" : "the mailbox rate", 1, 0xFFFF, &number))
+            return EINVAL;
+        *(key == KEY_DC_MODE ? &options->what.dc_mode : &options->what.mailbox_rate) = (uint16_t)number;
         return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
 }
 
-/** Writes to a temporary name beside the file, then renames: nobody sees half a file. */
-static bool write_file(const char *path, const uint8_t *bytes, size_t size)
+static void check_words(const generate_options_t *options, struct argp_state *state)
 {
-    char temporary[4096];
-    if ((size_t)snprintf(temporary, sizeof temporary, "%s.part", path) >= sizeof temporary) {
-        complain("the file name is too long");
-        return false;
+    const cm1e_file_format_t format = options->what.format;
+    if (format == CM1E_FILE_UNKNOWN)
+        argp_error(state, "which format? There are: esi, ec-extend, sii, eni");
+    if (!options->file)
+        argp_error(state, "where to? -o FILE, or -o - for standard output");
+    if (options->from && (options->what.devices || options->common.interface_name || options->common.bus_file))
+        argp_error(state, "--from takes everything from the file: no device and no network beside it");
+    if (options->program && format != CM1E_FILE_EC_EXTEND)
+        argp_error(state, "--program belongs to ec-extend: it is a TrioBASIC program");
+    const bool network = options->common.interface_name || options->common.bus_file;
+    if (format == CM1E_FILE_ENI && !network && !options->from)
+        argp_error(state, "an ENI describes a network: -b BUS-FILE for a configured one, -i INTERFACE to scan one");
+    if (format != CM1E_FILE_ENI && network)
+        argp_error(state, "only an ENI describes a network; leave out -i and -b");
+    if (format == CM1E_FILE_ENI && options->what.devices)
+        argp_error(state, "the devices of an ENI come from the network, not from --device");
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    generate_options_t *options = state->input;
+    int format;
+    switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case ARGP_KEY_ARG:
+        if (options->what.format != CM1E_FILE_UNKNOWN)
+            argp_error(state, "one format at a time; \"%s\" is too many", arg);
+        if (!choose("format", arg, formats, &format))
+            return EINVAL;
+        options->what.format = (cm1e_file_format_t)format;
+        return 0;
+    case ARGP_KEY_END: check_words(options, state); return 0;
+    default: break;
     }
-    FILE *file = fopen(temporary, "wb");
-    bool good = file && fwrite(bytes, 1, size, file) == size;
-    good = file && fclose(file) == 0 && good && rename(temporary, path) == 0;
-    if (!good) {
-        complain("cannot write %s: %s", path, strerror(errno));
-        remove(temporary);
+    const error_t result = parse_file(key, arg, options);
+    if (result != ARGP_ERR_UNKNOWN)
+        return result;
+    const error_t device = parse_device(key, arg, options);
+    if (device == 0 && !options->what.devices && key != KEY_MAPPING)
+        options->what.devices = options->devices;
+    if (key == KEY_MAPPING)
+        options->mapping_given = true;
+    return device;
+}
+
+static const struct argp_option table[] = {
+    {"output", 'o', "FILE", 0, "Where to write; - is standard output", 1},
+    {"from", KEY_FROM, "FILE", 0,
+     "Write what FILE holds instead: the same format anew, or ESI and SII out of each other", 1},
+    {"number", KEY_NUMBER, "N", 0, "Which device of the file of --from an SII is for; 1 = first", 1},
+    {"layout", KEY_LAYOUT, "LAYOUT", 0, "ESI: flat (default) or mdp", 2},
+    {"program", KEY_PROGRAM, "FILE", 0, "ec-extend: also write a TrioBASIC start program", 2},
+    {"dc-mode", KEY_DC_MODE, "NUMBER", 0, "ec-extend: Dc/Mode; default 0x0300", 2},
+    {"mailbox-rate", KEY_MAILBOX_RATE, "NUMBER", 0, "ec-extend: MbxRate; default 100", 2},
+    {"device", KEY_DEVICE, "DEVICE", 0,
+     "cm1-e (default), eb01, eb02, eb12; again for a further device in one file. The options below are for the device "
+     "before them", 3},
+    {"firmware", KEY_FIRMWARE, "VERSION", 0, "1.2.0 ... 1.3.5 (default)", 3},
+    {"mapping", KEY_MAPPING, "MAPPING", 0, "dynamic (default), csp, csv or profile: the PDOs that the file chooses", 3},
+    {"pdo-order", KEY_ORDER, "ORDER", 0, "ug-4.4 (default) or ug-7.2", 3},
+    {"vendor", KEY_VENDOR, "NUMBER", 0, "Bridge: vendor ID, needed; its guide does not state it", 3},
+    {"product", KEY_PRODUCT, "NUMBER", 0, "Bridge: product code, needed", 3},
+    {"revision", KEY_REVISION, "NUMBER", 0, "Bridge: revision, needed", 3},
+    {"axes", KEY_AXES, "N", 0, "Bridge: 1 ... 4 (default)", 3},
+    {"serial", KEY_SERIAL, "NUMBER", 0, "SII: serial number", 3},
+    {"alias", KEY_ALIAS, "NUMBER", 0, "SII: configured station alias", 3},
+    {"config-data", KEY_CONFIG, "FILE", 0, "Take the configuration words from this image of a real device's SII", 3},
+    {"dc", KEY_DC, NULL, 0, "Also offer DC Synchronous, which the guide does not mention", 3},
+    {"complete-access", KEY_COMPLETE, NULL, 0, "Announce SDO complete access, which the guide does not mention", 3},
+    {0}};
+
+/* ---- what to do ------------------------------------------------------------------------------------------------- */
+
+static cm1e_error_t generate_from_file(cm1e_file_t *file, const generate_options_t *options, cm1e_diag_t *diag)
+{
+    input_t input;
+    if (!read_input(options->from, &input))
+        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "%s", "");
+    const cm1e_error_t error =
+        cm1e_generate_from(file, input.bytes, input.size, options->what.format, options->number, diag);
+    free(input.bytes);
+    return error;
+}
+
+/* A network that is there is scanned; one that is only described is taken from its bus file. */
+static cm1e_error_t generate_network(cm1e_file_t *file, generate_options_t *options, cm1e_diag_t *diag)
+{
+    static cm1e_bus_config_t config;
+    if (!load_configuration(&options->common, &config))
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "%s", "");
+    if (!options->common.interface_name) {
+        options->what.network = &config;
+        return cm1e_generate(file, &options->what, diag);
     }
-    return good;
+    cm1e_bus_t *bus = NULL;
+    cm1e_error_t error = cm1e_bus_open(&bus, &config, diag);
+    if (error == CM1E_OK)
+        error = cm1e_bus_scan(bus, diag);
+    if (error == CM1E_OK)
+        error = cm1e_generate_eni_of_bus(file, bus, options->devices[0].mapping, diag);
+    cm1e_bus_close(bus);
+    return error;
+}
+
+static int write_program(const generate_options_t *options)
+{
+    cm1e_file_t program;
+    cm1e_diag_t diag = {0};
+    if (!options->program)
+        return EXIT_OK;
+    if (cm1e_generate_trio_program(&program, &options->what, &diag) != CM1E_OK)
+        return fail(&diag);
+    const bool written = write_output(options->program, program.bytes, program.size);
+    cm1e_file_free(&program);
+    return written ? EXIT_OK : EXIT_FAILED;
 }
 
 int command_generate(int argc, char **argv)
 {
-    static const struct argp_option table[] = {
-        {"output", 'o', "FILE", 0, "Where to write", 0},
-        {"firmware", KEY_FIRMWARE, "VERSION", 0, "1.2.0 ... 1.3.5 (default)", 0},
-        {"pdo-order", KEY_ORDER, "ORDER", 0, "ug-4.4 (default) or ug-7.2", 0},
-        {"alias", KEY_ALIAS, "NUMBER", 0, "Configured station alias; default 0", 0},
-        {0}};
-    static const struct argp argp = {table, parse, "sii",
-                                     "Writes the SII image of a CM1-E from the device tables, the one that the "
-                                     "simulator boots from. Not for writing into a real device: its configuration "
-                                     "area is not known.", NULL, NULL, NULL};
-    generate_options_t options = {0};
+    static const struct argp_child children[] = {{&common_argp, 0, NULL, 4}, {0}};
+    static const struct argp argp = {
+        table, parse, "esi|ec-extend|sii|eni",
+        "Writes a file for other masters: ESI for TwinCAT and its like, EC_EXTEND.txt for Trio controllers, an SII "
+        "image, or an ENI of a network (-b BUS-FILE for a configured one, -i INTERFACE to scan one).", children, NULL,
+        NULL};
+    static generate_options_t options;
+    options.what.device_count = 1;
     if (argp_parse(&argp, argc, argv, 0, NULL, &options))
         return EXIT_WRONG_USE;
-    const cm1e_generate_options_t what = {.format = CM1E_FILE_SII, .devices = &options.device, .device_count = 1};
+    cm1e_file_t file = {0};
     cm1e_diag_t diag = {0};
-    cm1e_file_t file;
-    const cm1e_error_t error = cm1e_generate(&file, &what, &diag);
-    if (error == CM1E_ERROR_CONFIG) {
-        complain("%s", diag.text);
-        return EXIT_WRONG_USE;
+    if (options.mapping_given && !options.what.devices && options.what.format != CM1E_FILE_ENI)
+        options.what.devices = options.devices;
+    const cm1e_error_t error = options.from                              ? generate_from_file(&file, &options, &diag)
+                               : options.what.format == CM1E_FILE_ENI ? generate_network(&file, &options, &diag)
+                                                                      : cm1e_generate(&file, &options.what, &diag);
+    if (error != CM1E_OK) {
+        if (diag.text[0])
+            fail(&diag);
+        return error == CM1E_ERROR_CONFIG ? EXIT_WRONG_USE : EXIT_FAILED;
     }
-    if (error != CM1E_OK)
-        return fail(&diag);
-    const bool written = write_file(options.file, file.bytes, file.size);
+    if (file.warning[0])
+        complain("%s", file.warning);
+    const bool written = write_output(options.file, file.bytes, file.size);
     cm1e_file_free(&file);
-    return written ? EXIT_OK : EXIT_FAILED;
+    return written ? write_program(&options) : EXIT_FAILED;
 }

@@ -153,11 +153,10 @@ static void describe_identity(cm1e_arena_t *arena, cm1e_description_t *device, c
     device->product_code = CM1E_PRODUCT_CODE;
     device->revision = firmware->revision;
     device->product_given = device->revision_given = true;
-    device->type = "CM1-E";
-    device->name = cm1e_arena_format(arena, "CM1-E (firmware %s)", firmware->version);
-    device->comment = cm1e_arena_format(arena, "Motors %s, %s, %s, %s", cm1e_device_motors[0].name,
-                                        cm1e_device_motors[1].name, cm1e_device_motors[2].name,
-                                        cm1e_device_motors[3].name);
+    device->type = device->name = "CM1-E";
+    device->comment = cm1e_arena_format(arena, "Firmware %s. Motors %s, %s, %s, %s", firmware->version,
+                                        cm1e_device_motors[0].name, cm1e_device_motors[1].name,
+                                        cm1e_device_motors[2].name, cm1e_device_motors[3].name);
     device->group = "Servo motors";
     device->group_name = "Servo motors";
     device->identification_reg134 = device->identification_reg134_given = true; /* UG 4.2.2 */

@@ -54,6 +54,32 @@ def check_good(folder):
     sii = os.path.join(folder, "cm1e.sii")
     generate = run("cm1e", "generate", "sii", "-o", sii)
     expect(generate.returncode == 0 and os.path.getsize(sii) == 2048, "generate sii", generate)
+    check_files(folder)
+
+
+def check_files(folder):
+    """Each format is written, found without fault, and comes back from its reader as it was."""
+    bridge = ["--device", "eb12", "--vendor", "0xAA77", "--product", "1", "--revision", "2"]
+    for name, words in (("flat", ["esi"]), ("mdp", ["esi", "--layout", "mdp", "--mapping", "csp", "--dc"]),
+                        ("old", ["esi", "--firmware", "V1.2.0", "--device", "cm1-e", *bridge]),
+                        ("trio", ["ec-extend", *bridge, "--axes", "2", "--device", "cm1-e", "--mapping", "csp"]),
+                        ("sii", ["sii", "--alias", "7", "--serial", "0x12"]),
+                        ("eni", ["eni", "-b", f"{SOURCE}/examples/three_axes.yaml"])):
+        path, again = os.path.join(folder, name), os.path.join(folder, f"{name}-again")
+        written = run("cm1e", "generate", *words, "-o", path)
+        expect(written.returncode == 0, f"generate {' '.join(words)}", written)
+        checked = run("cm1e", "check", "--json", path)
+        expect(checked.returncode == 0 and json.loads(checked.stdout)["findings"] == [], f"check of {name}", checked)
+        anew = run("cm1e", "generate", words[0], "--from", path, "-o", again)
+        expect(anew.returncode == 0, f"generate --from of {name}", anew)
+        with open(path, "rb") as first, open(again, "rb") as second:
+            expect(first.read() == second.read(), f"{name} comes back as it was", anew)
+    image = run("cm1e", "generate", "sii", "--from", os.path.join(folder, "old"), "--number", "2", "-o",
+                os.path.join(folder, "bridge.sii"))
+    expect(image.returncode == 0, "SII of the second device of an ESI", image)
+    shown = run("cm1e", "generate", "esi", "-o", "-")
+    expect(shown.returncode == 0 and shown.stdout.startswith("<?xml"), "generate to standard output", shown)
+    expect("EEPROM" in shown.stderr, "generate esi warns of the EEPROM", shown)
 
     check_dictionary()
     check_sii(folder)

@@ -383,7 +383,7 @@ static void shorten(uint16_t type, size_t bytes)
     memmove(image + at + 4 + length - bytes, image + at + 4 + length, sizeof image - (at + 4 + length));
     cm1e_put_u16(image + at + 2, (uint16_t)((length - bytes) / 2));
 }
-static void short_strings(void) { image[place_of(10, 0) + 4]++; }
+static void short_strings(void) { image[place_of(10, 0) + 4] += 2; } /* one could be the padding */
 static void short_last_string(void)
 {
     begin_image();

@@ -141,7 +141,7 @@ static void test_general_tells_what_the_mailbox_can(void)
     TEST_ASSERT_EQUAL_UINT(32, bytes);
     TEST_ASSERT_EQUAL_STRING("Servo motors", string(general[0]));
     TEST_ASSERT_EQUAL_STRING("CM1-E", string(general[2]));
-    TEST_ASSERT_EQUAL_STRING("CM1-E (firmware 1.3.5)", string(general[3]));
+    TEST_ASSERT_EQUAL_STRING("CM1-E", string(general[3]));
     TEST_ASSERT_EQUAL_HEX8(0x07, general[5]); /* SDO, SDO information, PDO assignment */
     TEST_ASSERT_EQUAL_HEX8(0x01, general[6]); /* FoE */
     TEST_ASSERT_EQUAL_HEX8(0x00, general[7]);

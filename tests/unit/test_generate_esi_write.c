@@ -141,7 +141,7 @@ static void test_identity_is_that_of_the_firmware(void)
         TEST_ASSERT_EQUAL_STRING("CM1-E", text(DEVICE "/Type"));
         TEST_ASSERT_EQUAL_STRING("#x44412002", text(DEVICE "/Type/@ProductCode"));
         TEST_ASSERT_EQUAL_HEX32(info->revision, (uint32_t)number(text(DEVICE "/Type/@RevisionNo")));
-        TEST_ASSERT_NOT_NULL(strstr(text(DEVICE "/Name"), info->version));
+        TEST_ASSERT_NOT_NULL(strstr(text(DEVICE "/Comment"), info->version));
         for (int motor = 0; motor < 4; motor++)
             TEST_ASSERT_NOT_NULL(strstr(text(DEVICE "/Comment"), cm1e_device_motors[motor].name));
         TEST_ASSERT_EQUAL_STRING("1", text(DEVICE "/Info/IdentificationReg134"));
