@@ -123,7 +123,8 @@ static const struct {
     {"<EtherCAT><EscCfgs><EscCfg><Index>0</Index><Sm>\n<Index>16</Index></Sm></EscCfg></EscCfgs></EtherCAT>", "line 2",
      "16"},
     {"<EtherCAT><SdoInitCmds><SdoInitCmd><Index>0</Index><Name>A</Name><Entry><Index>0x1C12</Index>"
-     "<SubIndex>0</SubIndex><Length>1</Length>\n<Data>one</Data><Transition>2</Transition></Entry></SdoInitCmd></SdoInitCmds></EtherCAT>",
+     "<SubIndex>0</SubIndex><Length>1</Length>\n<Data>one</Data><Transition>2</Transition></Entry></SdoInitCmd>"
+     "</SdoInitCmds></EtherCAT>",
      "line 2", "one"},
 };
 
