@@ -114,14 +114,13 @@ static void describe_objects(cm1e_arena_t *arena, cm1e_object_list_t *list, cons
 }
 
 /* The alternatives of a direction exclude each other, both ways. */
-static void exclude_others(cm1e_arena_t *arena, cm1e_described_pdo_t *pdo)
+static void exclude_others(cm1e_arena_t *arena, cm1e_described_pdo_t *pdo, int mapping, bool transmit)
 {
     for (int other = 0; other < MAPPINGS; other++) {
-        const uint16_t index = (uint16_t)((pdo->transmit ? 0x1A00 : 0x1600) + other);
-        if (index == pdo->index)
+        if (other == mapping)
             continue;
         cm1e_exclude_t *exclude = CM1E_APPEND(arena, &pdo->excludes);
-        exclude->index = index;
+        exclude->index = (uint16_t)((transmit ? 0x1A00 : 0x1600) + other);
     }
 }
 
@@ -135,7 +134,8 @@ static void describe_pdos(cm1e_arena_t *arena, cm1e_pdo_list_t *list, const cm1e
             cm1e_pdo_t pdo;
             cm1e_device_pdo(&pdo, (cm1e_mapping_t)mapping, transmit, options->order, firmware->firmware);
             exclude_others(arena, cm1e_describe_pdo(arena, list, objects, &pdo, transmit,
-                                                    chosen ? manager : CM1E_NO_SYNC_MANAGER));
+                                                    chosen ? manager : CM1E_NO_SYNC_MANAGER),
+                           mapping, transmit);
         }
 }
 
