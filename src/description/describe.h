@@ -42,6 +42,8 @@ cm1e_described_entry_t *cm1e_describe_entry_of(const cm1e_object_list_t *objects
 /** Puts another default in place of that of the tables; does nothing where there is no such entry. */
 void cm1e_describe_default(cm1e_arena_t *arena, const cm1e_object_list_t *objects, uint16_t index, uint8_t subindex,
                            int64_t value);
+/** Parameters of the motor itself: the guides give no values, except where they give a range. */
+void cm1e_describe_without_defaults(const cm1e_object_list_t *objects, uint16_t index);
 /** A start-up command from Pre-Operational to Safe-Operational. */
 cm1e_init_command_t *cm1e_describe_init_command(cm1e_arena_t *arena, cm1e_init_command_list_t *list, uint16_t index,
                                                 uint8_t subindex, int64_t value, size_t bytes, const char *comment);

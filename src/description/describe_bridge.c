@@ -64,6 +64,13 @@ static void describe_identity(cm1e_arena_t *arena, cm1e_description_t *device, c
         cm1e_describe_channel(arena, device);
 }
 
+static void without_defaults(const cm1e_object_list_t *objects, unsigned axis)
+{
+    const unsigned offset = axis * CM1E_BRIDGE_INDEX_INCREMENT;
+    cm1e_describe_without_defaults(objects, (uint16_t)(OBJ_60F6_K_PARAMETERS + offset));
+    cm1e_describe_without_defaults(objects, (uint16_t)(OBJ_60FB_H_PARAMETERS + offset));
+}
+
 /* Objects that are "N/A" are in the dictionary: the guide lists them so. Axes that the file leaves out are not, with
  * their mapping objects. */
 static void describe_objects(cm1e_arena_t *arena, cm1e_object_list_t *list, const cm1e_device_options_t *options,
@@ -73,6 +80,8 @@ static void describe_objects(cm1e_arena_t *arena, cm1e_object_list_t *list, cons
     for (size_t n = 0; (object = cm1e_bridge_object(options->model, n)) != NULL; n++)
         if (cm1e_bridge_axis_of(object->index) < (int)axes)
             cm1e_describe_object(arena, list, object, CM1E_FIRMWARE_1_2_0);
+    for (unsigned axis = 0; axis < axes; axis++)
+        without_defaults(list, axis);
     cm1e_describe_default(arena, list, OBJ_1018_IDENTITY, 1, options->vendor_id);
     cm1e_describe_default(arena, list, OBJ_1018_IDENTITY, 2, options->product_code);
     cm1e_describe_default(arena, list, OBJ_1018_IDENTITY, 3, options->revision);
@@ -144,6 +153,7 @@ static void describe_module(cm1e_arena_t *arena, cm1e_module_t *module)
         for (size_t j = 0; j < object->entries.count; j++)
             widen_entry(arena, &object->entries.at[j], &cm1[i].entries[j], &cm2[i].entries[j]);
     }
+    without_defaults(&module->objects, 0);
     describe_pdos(arena, &module->pdos, &module->objects, 1);
     for (size_t i = 0; i < module->pdos.count; i++) {
         cm1e_described_pdo_t *pdo = &module->pdos.at[i];

@@ -62,17 +62,6 @@ static void set_mapping_rows(cm1e_arena_t *arena, const cm1e_object_list_t *obje
     }
 }
 
-/* Parameters of the motor itself: the guide gives no values, except where it gives a range (K47, UG 6.2.4). */
-static void leave_out_defaults(const cm1e_object_list_t *objects, uint16_t index)
-{
-    for (size_t i = 0; i < objects->count; i++)
-        for (size_t j = 0; objects->at[i].index == index && j < objects->at[i].entries.count; j++) {
-            cm1e_described_entry_t *entry = &objects->at[i].entries.at[j];
-            if (entry->subindex > 0 && !entry->minimum.data)
-                entry->default_data = (cm1e_bytes_t){0};
-        }
-}
-
 /* What the tables have by the newest firmware, as this one has it (UG 10.1). */
 static void adapt_objects(cm1e_arena_t *arena, const cm1e_object_list_t *objects, const cm1e_device_options_t *options,
                           const cm1e_firmware_info_t *firmware)
@@ -93,8 +82,8 @@ static void adapt_objects(cm1e_arena_t *arena, const cm1e_object_list_t *objects
             cm1e_describe_range(arena, entry, cm1e_bytes_signed(entry->minimum) / 1000,
                                 cm1e_bytes_signed(entry->maximum) / 1000);
     }
-    leave_out_defaults(objects, OBJ_60F6_K_PARAMETERS);
-    leave_out_defaults(objects, OBJ_60FB_H_PARAMETERS);
+    cm1e_describe_without_defaults(objects, OBJ_60F6_K_PARAMETERS);
+    cm1e_describe_without_defaults(objects, OBJ_60FB_H_PARAMETERS);
     for (int mapping = 0; mapping < MAPPINGS; mapping++)
         for (int transmit = 0; transmit < 2; transmit++) {
             cm1e_pdo_t pdo;

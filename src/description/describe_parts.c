@@ -37,6 +37,16 @@ void cm1e_describe_default(cm1e_arena_t *arena, const cm1e_object_list_t *object
         entry->default_data = cm1e_bytes_of(arena, value, (entry->bits + 7) / 8);
 }
 
+void cm1e_describe_without_defaults(const cm1e_object_list_t *objects, uint16_t index)
+{
+    for (size_t i = 0; i < objects->count; i++)
+        for (size_t j = 0; objects->at[i].index == index && j < objects->at[i].entries.count; j++) {
+            cm1e_described_entry_t *entry = &objects->at[i].entries.at[j];
+            if (entry->subindex > 0 && !entry->minimum.data)
+                entry->default_data = (cm1e_bytes_t){0};
+        }
+}
+
 /* ---- start-up commands ------------------------------------------------------------------------------------------ */
 
 cm1e_init_command_t *cm1e_describe_init_command(cm1e_arena_t *arena, cm1e_init_command_list_t *list, uint16_t index,

@@ -119,11 +119,10 @@ static void check_entry(const variant_t *variant, const cm1e_object_t *object, c
     const char *at = where("%04X:%02X, firmware %s, mapping %d, order %d", object->index, entry->subindex,
                            cm1e_firmware_info(variant->firmware)->version, (int)variant->mapping, (int)variant->order);
     const bool is_velocity = object->index == 0x606C || object->index == 0x60FF;
+    const bool per_ms = is_velocity && variant->firmware < CM1E_FIRMWARE_1_3_3;
     TEST_ASSERT_EQUAL_MESSAGE(entry->subindex, described->subindex, at);
     TEST_ASSERT_EQUAL_HEX8_MESSAGE(entry->access, described->access, at);
-    TEST_ASSERT_NULL_MESSAGE(described->comment, at);
-    TEST_ASSERT_EQUAL_STRING_MESSAGE(
-        is_velocity && variant->firmware < CM1E_FIRMWARE_1_3_3 ? "counts/ms" : entry->unit, described->unit, at);
+    TEST_ASSERT_EQUAL_STRING_MESSAGE(per_ms ? "counts/ms" : entry->unit, described->unit, at);
     check_type(entry, described, at);
     if (check_adapted(variant, object, entry, described, at))
         return;
@@ -132,8 +131,13 @@ static void check_entry(const variant_t *variant, const cm1e_object_t *object, c
         TEST_ASSERT_EQUAL_MEMORY(entry->default_string, described->default_data.data, described->default_data.size);
         return;
     }
-    check_number(entry, entry->default_value, described->default_data, at);
-    check_range(entry, described, at);
+    const bool has_range = check_range(entry, per_ms ? 1000 : 1, described, at);
+    if (!has_range)
+        TEST_ASSERT_NULL_MESSAGE(described->comment, at);
+    if (!has_range && is_motor_parameter(object->index, entry->subindex))
+        TEST_ASSERT_NULL_MESSAGE(described->default_data.data, at);
+    else
+        check_number(entry, entry->default_value, described->default_data, at);
 }
 
 static void check_object(const variant_t *variant, const cm1e_object_t *object,
@@ -160,7 +164,8 @@ static void check_dictionary(const variant_t *variant, const cm1e_description_t 
             TEST_ASSERT_NULL(object_in(&device->objects, objects[i].index));
             continue;
         }
-        if (variant->layout == CM1E_ESI_FLAT || objects[i].index < 0x6000 || objects[i].index >= 0xF000) {
+        if (variant->layout == CM1E_ESI_FLAT || objects[i].index < 0x6000 || objects[i].index >= 0xF000 ||
+            is_motor_parameter(objects[i].index, 1)) { /* those belong to the motor in whatever mode */
             check_object(variant, &objects[i], object_in(&device->objects, objects[i].index));
             TEST_ASSERT_FALSE(object_in(&device->objects, objects[i].index)->depends_on_slot);
             own++;
@@ -199,6 +204,10 @@ static void check_pdo(const variant_t *variant, const cm1e_described_pdo_t *desc
         TEST_ASSERT_EQUAL_MESSAGE(0, entry->subindex, at);
         TEST_ASSERT_EQUAL_MESSAGE(pdo.entries[e].bits, entry->bits, at);
         TEST_ASSERT_EQUAL_STRING_MESSAGE(object->name, entry->name, at);
+        const bool per_ms =
+            variant->firmware < CM1E_FIRMWARE_1_3_3 && (entry->index == 0x606C || entry->index == 0x60FF);
+        const char *unit = per_ms ? "counts/ms" : object->unit;
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(unit[0] ? unit : NULL, entry->comment, at);
         TEST_ASSERT_EQUAL_MESSAGE(pdo.entries[e].bits, cm1e_type_bits(entry->type), at);
         /* 2301 and 6079 are signed, 6079 shorter than in the dictionary */
         TEST_ASSERT_EQUAL_MESSAGE(is_signed(object), entry->type[0] != 'U', at);
