@@ -107,7 +107,7 @@ static const char *string_or_empty(reader_t *r, unsigned number, size_t place)
 static void read_mailbox(reader_t *r, const part_t *header)
 {
     cm1e_described_eeprom_t *eeprom = &r->device->eeprom;
-    const uint16_t protocols = word_of(header, SII_PROTOCOLS);
+    const unsigned protocols = word_of(header, SII_PROTOCOLS) & SII_PROTOCOLS_ALL;
     eeprom->mailbox_out_start = word_of(header, SII_MAILBOX);
     eeprom->mailbox_out_length = word_of(header, SII_MAILBOX + 2);
     eeprom->mailbox_in_start = word_of(header, SII_MAILBOX + 4);
