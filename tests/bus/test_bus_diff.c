@@ -1,5 +1,7 @@
 /* Files beside live devices: what the generator writes for a device differs in nothing from the simulated one, in every
  * variant of it; and what is changed in a file, or in a device, is found. */
+#include <time.h>
+
 #include "bus_support.h"
 #include "cm1e/generate.h"
 #include "cm1e/sii.h"
@@ -285,6 +287,64 @@ START_TEST(a_lost_frame_changes_no_finding)
 }
 END_TEST
 
+static int one_of;
+
+/** What a slave answers is changed at random: mailbox messages behind their header, words of the SII. */
+static cm1e_tap_verdict_t lie(void *context, cm1e_tap_frame_t *frame)
+{
+    enum { DATA = 26, SERVICE = DATA + 6, EEPROM_DATA = 0x0508 };
+    (void)context;
+    if (frame->direction != CM1E_TAP_RECEIVED || frame->bytes[16] != 4 /* FPRD */ || rand() % one_of != 0)
+        return CM1E_TAP_PASS;
+    const unsigned length = cm1e_get_u16(frame->bytes + 22) & 0x7FF;
+    if (length == 128 && SERVICE + 24 <= frame->length)
+        for (int n = rand() % 4; n >= 0; n--)
+            frame->bytes[SERVICE + rand() % 24] = (uint8_t)rand();
+    else if (cm1e_get_u16(frame->bytes + 20) == EEPROM_DATA)
+        frame->bytes[DATA + (unsigned)rand() % length] = (uint8_t)rand();
+    return CM1E_TAP_PASS;
+}
+
+START_TEST(a_device_that_lies_ends_in_findings_or_an_error_in_bounded_time)
+{
+    const unsigned seed = (unsigned)time(NULL);
+    unsigned good = 0;
+    printf("seed %u\n", seed);
+    srand(seed);
+    for (int i = 0; i < 60; i++) {
+        cm1e_bus_t *bus = scanned_bus(1);
+        cm1e_file_t file = {0};
+        generate(&file, formats[i % 4], tested_firmware());
+        one_of = i % 2 ? 50 : 2000;
+        cm1e_nic_set_tap(cm1e_bus_nic(bus), lie, NULL);
+        const int64_t start_ns = now_of(bus);
+        if (cm1e_diff_file(&findings, file.bytes, file.size, bus, 1, &diag) == CM1E_OK)
+            good++;
+        else
+            ck_assert(diag.text[0] && !findings);
+        ck_assert_int_lt(now_of(bus) - start_ns, INT64_C(60000000000));
+        cm1e_findings_free(findings);
+        cm1e_file_free(&file);
+        cm1e_bus_close(bus);
+    }
+    printf("%u of 60 comparisons came to their end\n", good);
+}
+END_TEST
+
+START_TEST(a_device_that_goes_away_ends_the_comparison_soon)
+{
+    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_file_t file = {0};
+    generate(&file, CM1E_FILE_ESI, tested_firmware());
+    cm1e_sim_segment_cut(segment_of(bus), 1, true);
+    const int64_t start_ns = now_of(bus);
+    ck_assert_int_eq(cm1e_diff_file(&findings, file.bytes, file.size, bus, 1, &diag), CM1E_ERROR_BUS_NO_SLAVES);
+    ck_assert_int_lt(now_of(bus) - start_ns, INT64_C(5000000000));
+    cm1e_file_free(&file);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bus_diff");
@@ -305,6 +365,8 @@ int main(void)
     suite_add_tcase(suite, different);
     TCase *live = tcase_create("live");
     tcase_add_test(live, the_live_device_is_described_by_what_it_tells);
+    tcase_add_test(live, a_device_that_lies_ends_in_findings_or_an_error_in_bounded_time);
+    tcase_add_test(live, a_device_that_goes_away_ends_the_comparison_soon);
     suite_add_tcase(suite, live);
     return run_suite(suite);
 }
