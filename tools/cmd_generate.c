@@ -177,6 +177,8 @@ static void check_words(const generate_options_t *options, struct argp_state *st
         argp_error(state, "an ENI describes a network: -b BUS-FILE for a configured one, -i INTERFACE to scan one");
     if (format != CM1E_FILE_ENI && network)
         argp_error(state, "only an ENI describes a network; leave out -i and -b");
+    if (format == CM1E_FILE_ENI && options->mapping_given && !options->common.interface_name)
+        argp_error(state, "the mapping of a configured axis stands in its bus file");
     if (format == CM1E_FILE_ENI && options->what.devices)
         argp_error(state, "the devices of an ENI come from the network, not from --device");
 }

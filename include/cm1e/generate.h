@@ -81,8 +81,9 @@ cm1e_error_t cm1e_generate(cm1e_file_t *file, const cm1e_generate_options_t *opt
  *  for each axis (UG 11.2.1). @rt init */
 cm1e_error_t cm1e_generate_trio_program(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag);
 
-/** Writes the ENI of the network that a scan found, with the mapping that every CM1-E is to run with; other devices by
- *  their SII. The bus has been scanned and does not operate; the caller owns it. @rt block */
+/** Writes the ENI of the network that a scan found. A CM1-E that is a configured axis has its name and mapping; the
+ *  others run with `mapping`; devices of another kind by their SII. The bus has been scanned and does not operate; the
+ *  caller owns it. @rt block */
 cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_mapping_t mapping, cm1e_diag_t *diag);
 
 /** Reads a file of any of the formats and writes it anew in `format`: the same one, or SII out of an ESI (its device

@@ -1,8 +1,114 @@
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "description/describe.h"
 #include "generate/file.h"
+#include "generate/live.h"
+
+enum { SM_OUTPUTS = 2, SM_INPUTS = 3 };
+
+/* What the tables say of a CM1-E of this firmware with the chosen mapping: start-up commands, sync managers, PDOs. */
+static cm1e_error_t describe_by_tables(cm1e_description_file_t *file, const cm1e_slave_info_t *slave,
+                                       cm1e_mapping_t mapping, cm1e_diag_t *diag)
+{
+    cm1e_device_options_t options = {.mapping = mapping};
+    const cm1e_firmware_info_t *firmware = cm1e_firmware_from_version(slave->software_version);
+    if (!firmware)
+        return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0,
+                             "slave %u (%s) does not tell its firmware version (object 0x100A), on which its mappings "
+                             "depend", slave->position, slave->name);
+    snprintf(options.firmware, sizeof options.firmware, "%s", firmware->version);
+    return cm1e_describe(file, &options, CM1E_ESI_FLAT, diag);
+}
+
+/* The configured axis that this slave is; NULL: none. */
+static const cm1e_axis_config_t *axis_of(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave)
+{
+    for (uint32_t i = 0; i < config->axis_count; i++) {
+        const cm1e_axis_config_t *axis = &config->axes[i];
+        const uint16_t address = axis->address_kind == CM1E_ADDRESS_ALIAS         ? slave->alias
+                                 : axis->address_kind == CM1E_ADDRESS_EXPLICIT_ID ? slave->explicit_id
+                                                                                  : slave->position;
+        if (axis->address == address && address != 0)
+            return axis;
+    }
+    return NULL;
+}
+
+/* An entry of the live mapping with the name and type that the tables have for it. */
+static cm1e_described_pdo_entry_t named(const cm1e_described_pdo_entry_t *live, const cm1e_described_pdo_t *tables)
+{
+    for (size_t i = 0; i < tables->entries.count; i++) {
+        const cm1e_described_pdo_entry_t *entry = &tables->entries.at[i];
+        if (entry->index == live->index && entry->subindex == live->subindex && entry->bits == live->bits)
+            return *entry;
+    }
+    return *live;
+}
+
+/* The manual has two orders of the objects in the mappings, so the device's own counts. */
+static void take_mappings(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_description_t *live)
+{
+    for (size_t i = 0; i < device->pdos.count; i++) {
+        const cm1e_described_pdo_t tables = device->pdos.at[i];
+        const cm1e_described_pdo_t *found = cm1e_description_pdo(live, tables.index);
+        if (!found || found->entries.count == 0)
+            continue;
+        cm1e_described_pdo_t *pdo = &device->pdos.at[i];
+        pdo->entries.at = NULL;
+        pdo->entries.count = 0;
+        for (size_t e = 0; e < found->entries.count; e++)
+            *(cm1e_described_pdo_entry_t *)CM1E_APPEND(arena, &pdo->entries) = named(&found->entries.at[e], &tables);
+    }
+    for (unsigned n = SM_OUTPUTS; n <= SM_INPUTS; n++)
+        device->sync_managers.at[n].length = (uint16_t)cm1e_description_process_bytes(device, n);
+    device->revision = live->revision;
+}
+
+/* Appends what stands at `position`: a CM1-E with the chosen mapping, another device as its SII has it. */
+static cm1e_error_t describe_slave(cm1e_description_file_t *file, cm1e_bus_t *bus, const cm1e_slave_info_t *slave,
+                                   cm1e_mapping_t mapping, cm1e_findings_t *findings, cm1e_diag_t *diag)
+{
+    cm1e_error_t error = cm1e_live_describe(file, bus, slave->position, findings, diag);
+    if (error != CM1E_OK || !slave->is_cm1e)
+        return error;
+    error = describe_by_tables(file, slave, mapping, diag);
+    if (error != CM1E_OK)
+        return error;
+    cm1e_description_t *device = &file->devices.at[file->devices.count - 1], *live = device - 1;
+    take_mappings(&file->arena, device, live);
+    *live = *device;
+    file->devices.count--;
+    return CM1E_OK;
+}
 
 cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_mapping_t mapping, cm1e_diag_t *diag)
 {
+    const uint32_t count = cm1e_bus_slave_count(bus);
     *file = (cm1e_file_t){0};
-    (void)bus, (void)mapping;
-    return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "not there yet");
+    if (count == 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "no slave is known: scan the network first");
+    cm1e_description_file_t described = {0};
+    cm1e_findings_t *findings = cm1e_findings_create();
+    cm1e_eni_slave_t *slaves = calloc(count, sizeof *slaves);
+    cm1e_error_t error = findings && slaves ? CM1E_OK
+                                            : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
+    for (uint32_t position = 1; error == CM1E_OK && position <= count; position++) {
+        const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, position);
+        const cm1e_axis_config_t *axis = axis_of(cm1e_bus_configuration(bus), slave);
+        error = describe_slave(&described, bus, slave, axis ? axis->mapping : mapping, findings, diag);
+        if (error == CM1E_OK)
+            slaves[position - 1].name =
+                axis ? axis->name : cm1e_arena_format(&described.arena, "%s %u", slave->name[0] ? slave->name : "Slave",
+                                                      (unsigned)position);
+    }
+    /* Only now: the list of devices moved while it grew. */
+    for (uint32_t i = 0; error == CM1E_OK && i < count; i++)
+        slaves[i].device = &described.devices.at[i];
+    if (error == CM1E_OK)
+        error = cm1e_file_of_eni(file, slaves, count, cm1e_bus_configuration(bus)->cycle_time_ns, diag);
+    cm1e_description_file_free(&described);
+    cm1e_findings_free(findings);
+    free(slaves);
+    return error;
 }

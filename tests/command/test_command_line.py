@@ -74,6 +74,7 @@ def check_files(folder):
         expect(anew.returncode == 0, f"generate --from of {name}", anew)
         with open(path, "rb") as first, open(again, "rb") as second:
             expect(first.read() == second.read(), f"{name} comes back as it was", anew)
+    check_networks(folder)
     image = run("cm1e", "generate", "sii", "--from", os.path.join(folder, "both"), "--number", "2", "-o",
                 os.path.join(folder, "second.sii"))
     expect(image.returncode == 0, "SII of the second device of an ESI", image)
@@ -139,6 +140,34 @@ def check_sii(folder):
     expect(forced.returncode == 0 and json.loads(forced.stdout)["backup"] == backup, "sii write, forced", forced)
 
 
+def check_networks(folder):
+    """The ENI of a network that was scanned is that of its bus file, in both orders of the mappings; one with a device
+    of another kind between the motors needs the scan."""
+    with open(f"{SOURCE}/examples/three_axes.yaml", encoding="utf-8") as file:
+        text = file.read()
+    for order in ("ug_4_4", "ug_7_2"):
+        bus = os.path.join(folder, f"{order}.yaml")
+        with open(bus, "w", encoding="utf-8") as file:
+            file.write(text.replace("bus:\n", f"bus:\n  sim_pdo_order: {order}\n", 1))
+        configured = run("cm1e", "generate", "eni", "-b", bus, "-o", "-")
+        scanned = run("cm1e", "generate", "eni", "-b", bus, "-i", "sim", "-o", "-")
+        expect(configured.returncode == 0 and configured.stdout == scanned.stdout, f"ENI of a scan, {order}", scanned)
+    gap = os.path.join(folder, "gap.yaml")
+    with open(gap, "w", encoding="utf-8") as file:
+        file.write(text.replace("position: 3", "position: 5"))
+    refused = run("cm1e", "generate", "eni", "-b", gap, "-o", "-")
+    expect(refused.returncode == WRONG_USE and "scan" in refused.stderr, "ENI of a bus file with gaps", refused)
+    path = os.path.join(folder, "gap.eni")
+    mixed = run("cm1e", "generate", "eni", "-b", gap, "-i", "sim", "-o", path)
+    expect(mixed.returncode == 0, "ENI of a network with other devices", mixed)
+    checked = run("cm1e", "check", path)
+    expect(checked.returncode == 0 and "0 errors, 0 warnings" in checked.stdout, "check of it", checked)
+    beside = run("cm1e", "diff", path, "-b", gap, "-i", "sim")
+    expect(beside.returncode == 0, "diff of it", beside)
+    plain = run("cm1e", "generate", "eni", "-i", "sim", "--mapping", "csp", "-o", "-")
+    expect(plain.returncode == 0 and "<Pdo>5633</Pdo>" in plain.stdout, "ENI of a scan with a mapping", plain)
+
+
 def check_examples(folder):
     for words in (["01_scan"], ["02_move_one_axis"],
                   ["03_plc_program", "-b", f"{SOURCE}/examples/three_axes.yaml", "--seconds", "6",
@@ -196,7 +225,31 @@ WRONG = [
     (["diff", f"{SOURCE}/README.md", "-i", "sim"], WRONG_USE, "known format"),
     (["diff", f"{SOURCE}/README.md", "-i", "sim", "-p", "2"], WRONG_USE, "no slave 2"),
     (["diff", "no-such-file", "-i", "sim"], WRONG_USE, "no-such-file"),
+    (["generate", "-o", "x"], WRONG_USE, "eni"),
+    (["generate", "edf", "-o", "x"], WRONG_USE, "ec-extend"),
+    (["generate", "esi", "sii", "-o", "x"], WRONG_USE, "sii"),
     (["generate", "sii"], WRONG_USE, "-o"),
+    (["generate", "esi", "-o", "x", "--layout", "round"], WRONG_USE, "mdp"),
+    (["generate", "esi", "-o", "x", "--device", "cm2"], WRONG_USE, "eb12"),
+    (["generate", "esi", "-o", "x", "--device", "eb12"], WRONG_USE, "vendor"),
+    (["generate", "esi", "-o", "x", "--firmware", "1.3.5", *BRIDGE], WRONG_USE, "vendor"),
+    (["generate", "esi", "-o", "x", "--mapping", "fast"], WRONG_USE, "profile"),
+    (["generate", "esi", "-o", "x", "--config-data", SOURCE], WRONG_USE, "folder"),
+    (["generate", "esi", "-o", "x", "-i", "sim"], WRONG_USE, "ENI"),
+    (["generate", "esi", "-o", "x", "--program", "y"], WRONG_USE, "ec-extend"),
+    (["generate", "sii", "-o", "x", "--device", "cm1-e", "--device", "cm1-e"], WRONG_USE, "one device"),
+    (["generate", "eni", "-o", "x"], WRONG_USE, "network"),
+    (["generate", "eni", "-o", "x", "-b", f"{SOURCE}/examples/three_axes.yaml", "--mapping", "csp"], WRONG_USE,
+     "bus file"),
+    (["generate", "eni", "-o", "x", "-b", "/no/such/file"], WRONG_USE, "/no/such/file"),
+    (["generate", "eni", "-o", "x", "-i", "sim", "--device", "eb01"], WRONG_USE, "network"),
+    (["generate", "esi", "-o", "x", "--from", "/no/such/file"], FAILED, "/no/such/file"),
+    (["generate", "esi", "-o", "x", "--from", f"{SOURCE}/README.md"], FAILED, "no file of a known format"),
+    (["check"], WRONG_USE, "which file"),
+    (["check", "a", "b"], WRONG_USE, "one file"),
+    (["check", "/no/such/file"], FAILED, "/no/such/file"),
+    (["check", SOURCE], FAILED, "folder"),
+    (["check", f"{SOURCE}/README.md"], FAILED, "EtherCATInfo"),
     (["generate", "sii", "-o", "/no/such/folder/x"], FAILED, "/no/such/folder"),
     (["generate", "sii", "-o", "x", "--firmware", "9.9"], WRONG_USE, "1.3.5"),
 ]
