@@ -279,6 +279,26 @@ static void test_the_device_that_the_file_was_made_for_does_not_differ(void)
         TEST_FAIL_MESSAGE(cm1e_findings_at(findings, 0)->text);
 }
 
+static void test_another_device_is_told_apart(void)
+{
+    static const struct {
+        const char *rule;
+        void (*break_it)(void);
+    } rows[] = {{"differs-identity", revision_unknown},
+                {"differs-pdo", entry_that_no_mapping_has},
+                {"differs-sync-manager", control_unlike_stated},
+                {"differs-mailbox", coe_not_spoken}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        read_network(&eni_networks[ENI_ONE]);
+        rows[i].break_it();
+        cm1e_eni_compare(findings, &document, 1, &described.devices.at[0]);
+        TEST_ASSERT_EQUAL_MESSAGE(1, cm1e_findings_count(findings), rows[i].rule);
+        TEST_ASSERT_EQUAL_STRING(rows[i].rule, cm1e_findings_at(findings, 0)->rule);
+        TEST_ASSERT_TRUE(cm1e_findings_at(findings, 0)->line > 0);
+        tearDown();
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -289,5 +309,6 @@ int main(void)
     RUN_TEST(test_diagnosis_of_twincat_may_lie_behind_the_image);
     RUN_TEST(test_a_position_that_the_file_does_not_have_is_said);
     RUN_TEST(test_the_device_that_the_file_was_made_for_does_not_differ);
+    RUN_TEST(test_another_device_is_told_apart);
     return UNITY_END();
 }
