@@ -168,20 +168,29 @@ static void name_entry(live_t *live, cm1e_described_pdo_entry_t *entry)
     entry->type = known && known->bits == entry->bits ? known->type : "";
 }
 
-static cm1e_error_t read_mapping(live_t *live, const cm1e_described_object_t *object, cm1e_pdo_list_t *pdos)
+/** A mapping object as the device has it; one that cannot be read is as the SII says. */
+static cm1e_error_t read_mapping(live_t *live, uint16_t index, cm1e_pdo_list_t *pdos)
 {
     uint32_t count, mapped;
     cm1e_error_t error = CM1E_OK;
-    if (!read_number(live, object->index, 0, 1, &count, &error))
+    const cm1e_described_object_t *object = cm1e_description_object(live->device, index);
+    const cm1e_described_pdo_t *of_sii = cm1e_description_pdo(live->device, index);
+    const bool readable = read_number(live, index, 0, 1, &count, &error);
+    if (!goes_on(error) || (!readable && !of_sii))
         return goes_on(error) ? CM1E_OK : error;
-    const cm1e_described_pdo_t *of_sii = cm1e_description_pdo(live->device, object->index);
     cm1e_described_pdo_t *pdo = CM1E_APPEND(live->arena, pdos);
-    pdo->index = object->index;
-    pdo->transmit = object->index >= TXPDO_FIRST;
-    pdo->name = of_sii ? of_sii->name : object->name;
+    if (of_sii)
+        *pdo = *of_sii;
+    if (!readable)
+        return CM1E_OK;
+    pdo->index = index;
+    pdo->transmit = index >= TXPDO_FIRST;
+    pdo->name = of_sii ? of_sii->name : object ? object->name : "";
     pdo->sync_manager = CM1E_NO_SYNC_MANAGER;
+    pdo->entries.at = NULL;
+    pdo->entries.count = 0;
     for (unsigned n = 1; n <= (count & 0xFF) && n <= ENTRIES_MAX && goes_on(error); n++) {
-        if (!read_number(live, object->index, (uint8_t)n, 4, &mapped, &error))
+        if (!read_number(live, index, (uint8_t)n, 4, &mapped, &error))
             continue;
         cm1e_described_pdo_entry_t *entry = CM1E_APPEND(live->arena, &pdo->entries);
         entry->index = (uint16_t)(mapped >> 16);
@@ -192,17 +201,23 @@ static cm1e_error_t read_mapping(live_t *live, const cm1e_described_object_t *ob
     return goes_on(error) ? CM1E_OK : error;
 }
 
-/** The mapping objects of the dictionary in place of the SII's PDOs: what the device does, not what it promises. */
+static bool is_mapping(uint16_t index)
+{
+    return (index >= RXPDO_FIRST && index <= RXPDO_LAST) || (index >= TXPDO_FIRST && index <= TXPDO_LAST);
+}
+
+/** The mapping objects in place of the SII's PDOs: what the device does, not what it promises. Which there are, the
+ *  dictionary says, or the SII where the device does not tell its dictionary. */
 static cm1e_error_t describe_pdos(live_t *live)
 {
+    const cm1e_description_t *device = live->device;
     cm1e_pdo_list_t pdos = {0};
     cm1e_error_t error = CM1E_OK;
-    for (size_t i = 0; i < live->device->objects.count && error == CM1E_OK; i++) {
-        const cm1e_described_object_t *object = &live->device->objects.at[i];
-        if ((object->index >= RXPDO_FIRST && object->index <= RXPDO_LAST) ||
-            (object->index >= TXPDO_FIRST && object->index <= TXPDO_LAST))
-            error = read_mapping(live, object, &pdos);
-    }
+    for (size_t i = 0; i < device->objects.count && error == CM1E_OK; i++)
+        if (is_mapping(device->objects.at[i].index))
+            error = read_mapping(live, device->objects.at[i].index, &pdos);
+    for (size_t i = 0; device->objects.count == 0 && i < device->pdos.count && error == CM1E_OK; i++)
+        error = read_mapping(live, device->pdos.at[i].index, &pdos);
     if (error != CM1E_OK || pdos.count == 0)
         return error;
     live->device->pdos = pdos;

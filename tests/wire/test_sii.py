@@ -37,6 +37,17 @@ def main(cm1e):
         sii("write", "1", backup, "--backup", os.path.join(segment.folder, "another"))
         sii("read", "1", last)
         wire.check(read(last) == read(first), "the backup is not back")
+        # The SII of an older firmware, on the configuration words of the slave: a slave that contradicts itself.
+        old, kept = os.path.join(segment.folder, "old"), os.path.join(segment.folder, "kept")
+        generated = segment.run([cm1e, "generate", "sii", "--firmware", "1.2.0", "--config-data", first, "-o", old])
+        wire.check(generated.returncode == 0, f"generate sii: {generated.stderr}")
+        sii("write", "1", old, "--backup", kept)
+        diff = segment.run([cm1e, "diff", old, "-i", wire.MASTER_INTERFACE])
+        wire.check(diff.returncode == 1 and "contradicts itself: the revision" in diff.stdout,
+                   f"diff: {diff.stdout}{diff.stderr}")
+        sii("write", "1", kept, "--backup", os.path.join(segment.folder, "third"))
+        diff = segment.run([cm1e, "diff", first, "-i", wire.MASTER_INTERFACE])
+        wire.check(diff.returncode == 0, f"diff: {diff.stdout}{diff.stderr}")
         scan = segment.run([cm1e, "scan", "-i", wire.MASTER_INTERFACE])
         wire.check(scan.returncode == 0 and "CM1-E" in scan.stdout, f"scan: {scan.stdout}{scan.stderr}")
     print("SII read, written, read back, and the backup written back")
