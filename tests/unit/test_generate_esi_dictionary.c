@@ -102,7 +102,7 @@ static void test_unlike_elements_have_an_item_each(void)
         case COMMENT: third->comment = "own comment"; break;
         case TYPE_OF_VALUE: third->type = "INT"; break;
         case ACCESS: third->access |= CM1E_ACCESS_WRITE; break;
-        default: third->subindex = 4; break;
+        default: third->subindex = 4, third->name = "SubIndex 004"; break;
         }
         write_valid_file();
         TEST_ASSERT_EQUAL_INT(0, count(TYPE "/ArrayInfo"));
@@ -159,6 +159,36 @@ static void test_the_same_shape_has_one_type(void)
     TEST_ASSERT_EQUAL_INT(4, count(OBJECT "[Type='DT2000']"));
     TEST_ASSERT_EQUAL_STRING("DT2004", text(OBJECT "[5]/Type"));
     TEST_ASSERT_EQUAL_INT(2 + 2 * 2, count(TYPE));
+}
+
+static void test_every_difference_makes_a_type_of_its_own(void)
+{
+    enum { SUBINDEX, NAME, UNIT, COMMENT, TYPE_OF_VALUE, BITS, ACCESS, MORE, CODE, CHANGES };
+    for (int change = 0; change < CHANGES; change++) {
+        cm1e_description_file_free(&description);
+        cm1e_description_t *device = add_device();
+        cm1e_described_object_t *other = NULL;
+        for (uint16_t index = 0x2000; index < 0x2002; index++) {
+            other = add_object(device, index, CM1E_OBJECT_RECORD);
+            add_entry(other, 0, "Number of entries", "USINT", 8);
+            add_entry(other, 1, "SubIndex 001", "UINT", 16);
+        }
+        cm1e_described_entry_t *entry = &other->entries.at[1];
+        switch (change) {
+        case SUBINDEX: entry->subindex = 2; break;
+        case NAME: entry->name = "another"; break;
+        case UNIT: entry->unit = "mA"; break;
+        case COMMENT: entry->comment = "comment"; break;
+        case TYPE_OF_VALUE: entry->type = "INT"; break;
+        case BITS: entry->bits = 8; break;
+        case ACCESS: entry->access |= CM1E_ACCESS_TXPDO; break;
+        case MORE: add_entry(other, 2, "more", "UINT", 16); break;
+        default: other->code = CM1E_OBJECT_ARRAY; break;
+        }
+        write_valid_file();
+        TEST_ASSERT_EQUAL_STRING("DT2000", text(OBJECT "[1]/Type"));
+        TEST_ASSERT_EQUAL_STRING("DT2001", text(OBJECT "[2]/Type"));
+    }
 }
 
 static void test_values_are_no_part_of_a_shape(void)
@@ -235,6 +265,15 @@ static void test_a_size_without_a_type_gets_one(void)
         TEST_ASSERT_EQUAL_STRING(rows[i].type, text(OBJECT "/Type"));
         TEST_ASSERT_EQUAL_INT(rows[i].bits, number(text(TYPE "[Name='%s']/BitSize", rows[i].type)));
     }
+}
+
+/* What contradicts itself is for the checker: both sizes are still there. */
+static void test_a_base_type_keeps_its_own_size(void)
+{
+    add_entry(add_object(add_device(), 0x2000, CM1E_OBJECT_VAR), 0, "v", "UINT", 8);
+    write_valid_file();
+    TEST_ASSERT_EQUAL_STRING("16", text(TYPE "[Name='UINT']/BitSize"));
+    TEST_ASSERT_EQUAL_STRING("8", text(OBJECT "/BitSize"));
 }
 
 static void test_an_object_without_entries_is_kept(void)
@@ -330,12 +369,14 @@ int main(void)
     RUN_TEST(test_elements_without_a_name_are_an_array_too);
     RUN_TEST(test_bits_follow_each_other_and_bytes_begin_at_a_byte);
     RUN_TEST(test_the_same_shape_has_one_type);
+    RUN_TEST(test_every_difference_makes_a_type_of_its_own);
     RUN_TEST(test_values_are_no_part_of_a_shape);
     RUN_TEST(test_an_index_that_is_there_twice_keeps_both_shapes);
     RUN_TEST(test_a_name_that_comes_again_is_shown_but_does_not_identify);
     RUN_TEST(test_names_that_stand_in_each_others_way_are_made_unique);
     RUN_TEST(test_texts_of_strangers_are_written_as_utf_8);
     RUN_TEST(test_a_size_without_a_type_gets_one);
+    RUN_TEST(test_a_base_type_keeps_its_own_size);
     RUN_TEST(test_an_object_without_entries_is_kept);
     RUN_TEST(test_only_sub_index_0_is_simple_unless_it_is_called_otherwise);
     RUN_TEST(test_a_type_of_a_stranger_is_kept_by_its_name);
