@@ -1,7 +1,7 @@
 #include "generate/esi_write.h"
 
 #include <inttypes.h>
-#include <stdio.h>
+#include <search.h>
 #include <string.h>
 
 #include "generate/esi.h"
@@ -137,8 +137,7 @@ static void put_init_command(cm1e_xml_writer_t *xml, const cm1e_init_command_t *
     cm1e_xml_put(xml, "SubIndex", "%u", command->subindex);
     cm1e_xml_open(xml, "Data");
     put_flag_if(xml, "AdaptAutomatically", command->adapts);
-    for (size_t i = 0; command->data.data && i < command->data.size; i++)
-        cm1e_xml_put_text(xml, "%02X", command->data.data[i]);
+    cm1e_xml_put_hex_text(xml, command->data);
     cm1e_xml_close(xml);
     put_text(xml, "Comment", command->comment);
     cm1e_xml_close(xml);
@@ -409,27 +408,38 @@ static void put_module(cm1e_xml_writer_t *xml, cm1e_arena_t *scratch, const cm1e
 
 /* ---- the file --------------------------------------------------------------------------------------------------- */
 
-static bool group_is_new(const cm1e_description_file_t *file, size_t device)
+static int compare_texts(const void *a, const void *b)
 {
-    for (size_t i = 0; i < device; i++)
-        if (strcmp(file->devices.at[i].group, file->devices.at[device].group) == 0)
-            return false;
-    return file->devices.at[device].group[0] != '\0';
+    return strcmp(a, b);
 }
 
+static void keep(void *node)
+{
+    (void)node; /* is the description's */
+}
+
+static void put_group(cm1e_xml_writer_t *xml, const cm1e_description_t *device)
+{
+    cm1e_xml_open(xml, "Group");
+    put_text(xml, "Type", device->group);
+    put_text(xml, "Name", device->group_name ? device->group_name : device->group);
+    cm1e_xml_close(xml);
+}
+
+/* Each group once, in the order of devices. */
 static void put_groups(cm1e_xml_writer_t *xml, const cm1e_description_file_t *file)
 {
+    void *known = NULL; /* a tree of tsearch() */
     cm1e_xml_open(xml, "Groups");
     for (size_t i = 0; i < file->devices.count; i++) {
         const cm1e_description_t *device = &file->devices.at[i];
-        if (!group_is_new(file, i))
+        if (device->group[0] == '\0' || tfind(device->group, &known, compare_texts))
             continue;
-        cm1e_xml_open(xml, "Group");
-        put_text(xml, "Type", device->group);
-        put_text(xml, "Name", device->group_name ? device->group_name : device->group);
-        cm1e_xml_close(xml);
+        xml->failed |= !tsearch(device->group, &known, compare_texts);
+        put_group(xml, device);
     }
     cm1e_xml_close(xml);
+    tdestroy(known, keep);
 }
 
 static void put_descriptions(cm1e_xml_writer_t *xml, cm1e_arena_t *scratch, const cm1e_description_file_t *file)

@@ -1,6 +1,7 @@
 #include "generate/esi_write.h"
 
 #include <inttypes.h>
+#include <search.h>
 #include <string.h>
 
 /*
@@ -9,7 +10,7 @@
  * of the same shape share the type of the first of them.
  */
 
-enum { AFTER_SUBINDEX_0 = 16, SIMPLE = -1 };
+enum { AFTER_SUBINDEX_0 = 16 };
 
 typedef struct base_type {
     const char *name;
@@ -26,13 +27,20 @@ typedef struct definition {
 typedef struct types {
     cm1e_arena_t *arena;
     CM1E_LIST(base_type_t) base;
-    CM1E_LIST(definition_t) definitions;
-    CM1E_LIST(int64_t) of_objects;          /* number of the definition, or SIMPLE; in the order of the objects */
+    CM1E_LIST(const definition_t *) definitions;
+    CM1E_LIST(const definition_t *) of_objects; /* in the order of the objects; NULL: of a base type */
+    void *names;                                /* trees of tsearch(): of all types ... */
+    void *shapes;                               /* ... and definitions by what their object is like */
 } types_t;
+
+static int compare_given(const char *a, const char *b)
+{
+    return strcmp(a ? a : "", b ? b : "");
+}
 
 static bool same(const char *a, const char *b)
 {
-    return strcmp(a ? a : "", b ? b : "") == 0;
+    return compare_given(a, b) == 0;
 }
 
 static bool is_given(const char *text)
@@ -95,26 +103,51 @@ static const char *entry_type(cm1e_arena_t *arena, const cm1e_described_entry_t 
 
 /* ---- collecting ------------------------------------------------------------------------------------------------- */
 
-static void add_base_type(types_t *types, const char *name, uint32_t bits)
+static int compare_texts(const void *a, const void *b)
 {
-    for (size_t i = 0; i < types->base.count; i++)
-        if (strcmp(types->base.at[i].name, name) == 0)
-            return;
-    const uint32_t known_bits = cm1e_type_bits(name);
-    *(base_type_t *)CM1E_APPEND(types->arena, &types->base) = (base_type_t){name, known_bits ? known_bits : bits};
+    return strcmp(a, b);
 }
 
-static bool same_shape(cm1e_arena_t *arena, const cm1e_described_object_t *a, const cm1e_described_object_t *b)
+/* FALSE: the name was there already. */
+static bool add_name(types_t *types, const char *name)
 {
-    if (a->entries.count != b->entries.count || is_array(arena, a) != is_array(arena, b))
+    if (tfind(name, &types->names, compare_texts))
         return false;
-    for (size_t i = 0; i < a->entries.count; i++) {
-        const cm1e_described_entry_t *x = &a->entries.at[i], *y = &b->entries.at[i];
-        if (x->subindex != y->subindex || x->bits != y->bits || x->access != y->access || !same(x->type, y->type) ||
-            !same(x->name, y->name) || !same(x->unit, y->unit) || !same(x->comment, y->comment))
-            return false;
-    }
-    return true;
+    types->arena->failed |= !tsearch(name, &types->names, compare_texts);
+    return !types->arena->failed;
+}
+
+static void add_base_type(types_t *types, const char *name, uint32_t bits)
+{
+    const uint32_t known_bits = cm1e_type_bits(name);
+    if (add_name(types, name))
+        *(base_type_t *)CM1E_APPEND(types->arena, &types->base) = (base_type_t){name, known_bits ? known_bits : bits};
+}
+
+static int compare_numbers(int64_t a, int64_t b)
+{
+    return (a > b) - (a < b);
+}
+
+static int compare_entries(const cm1e_described_entry_t *a, const cm1e_described_entry_t *b)
+{
+    int order = compare_numbers(a->subindex, b->subindex);
+    order = order ? order : compare_numbers(a->bits, b->bits);
+    order = order ? order : compare_numbers(a->access, b->access);
+    order = order ? order : compare_given(a->type, b->type);
+    order = order ? order : compare_given(a->name, b->name);
+    order = order ? order : compare_given(a->unit, b->unit);
+    return order ? order : compare_given(a->comment, b->comment);
+}
+
+static int compare_shapes(const void *left, const void *right)
+{
+    const cm1e_described_object_t *a = ((const definition_t *)left)->object, *b = ((const definition_t *)right)->object;
+    int order = compare_numbers((int64_t)a->entries.count, (int64_t)b->entries.count);
+    order = order ? order : compare_numbers(a->code, b->code);
+    for (size_t i = 0; !order && i < a->entries.count; i++)
+        order = compare_entries(&a->entries.at[i], &b->entries.at[i]);
+    return order;
 }
 
 static bool name_is_taken(const char *const *names, size_t count, const char *name)
@@ -134,38 +167,39 @@ static const char **unique_item_names(cm1e_arena_t *arena, const cm1e_described_
         const char *name = object->entries.at[i].name;
         if (!is_given(name) || name_is_taken(names.at, names.count, name))
             name = generic_name(arena, subindex);
-        for (unsigned n = 2; !arena->failed && name_is_taken(names.at, names.count, name); n++)
-            name = cm1e_arena_format(arena, "SubIndex %03u (%u)", subindex, n);
+        for (size_t n = i + 1; !arena->failed && name_is_taken(names.at, names.count, name); n++)
+            name = cm1e_arena_format(arena, "SubIndex %03u (%zu)", subindex, n);
         *(const char **)CM1E_APPEND(arena, &names) = name;
     }
     return names.at;
 }
 
-static bool type_is_taken(const types_t *types, const char *name)
+/* The same index with different content twice in a file is wrong, but not for us to hide. */
+static const char *definition_name(types_t *types, uint16_t index)
 {
-    for (size_t i = 0; i < types->definitions.count; i++)
-        if (strcmp(types->definitions.at[i].name, name) == 0)
-            return true;
-    for (size_t i = 0; i < types->base.count; i++)
-        if (strncmp(types->base.at[i].name, name, strlen(name)) == 0) /* also with "ARR" behind it */
-            return true;
-    return false;
+    const char *name = cm1e_arena_format(types->arena, "DT%04X", index);
+    const char *of_elements = cm1e_arena_format(types->arena, "%sARR", name);
+    for (size_t n = types->definitions.count + 1;
+         !types->arena->failed && !(add_name(types, name) && add_name(types, of_elements)); n++) {
+        name = cm1e_arena_format(types->arena, "DT%04X_%zu", index, n);
+        of_elements = cm1e_arena_format(types->arena, "%sARR", name);
+    }
+    return name;
 }
 
-static int64_t define(types_t *types, const cm1e_described_object_t *object)
+static const definition_t *define(types_t *types, const cm1e_described_object_t *object)
 {
-    for (size_t i = 0; i < types->definitions.count; i++)
-        if (same_shape(types->arena, types->definitions.at[i].object, object))
-            return (int64_t)i;
-    /* The same index twice in a file with different content is wrong, but not for us to hide. */
-    const char *name = cm1e_arena_format(types->arena, "DT%04X", object->index);
-    for (unsigned n = 2; !types->arena->failed && type_is_taken(types, name); n++)
-        name = cm1e_arena_format(types->arena, "DT%04X_%u", object->index, n);
-    definition_t *definition = CM1E_APPEND(types->arena, &types->definitions);
-    *definition = (definition_t){.name = name, .object = object,
-                                 .item_names = unique_item_names(types->arena, object),
-                                 .is_array = is_array(types->arena, object)};
-    return (int64_t)types->definitions.count - 1;
+    definition_t *definition = cm1e_arena_take(types->arena, sizeof *definition);
+    definition->object = object;
+    definition_t **found = types->arena->failed ? NULL : tsearch(definition, &types->shapes, compare_shapes);
+    types->arena->failed |= !found;
+    if (!found || *found != definition)
+        return found ? *found : NULL;
+    definition->name = definition_name(types, object->index);
+    definition->item_names = unique_item_names(types->arena, object);
+    definition->is_array = is_array(types->arena, object);
+    *(const definition_t **)CM1E_APPEND(types->arena, &types->definitions) = definition;
+    return definition;
 }
 
 static void collect(types_t *types, const cm1e_object_list_t *objects)
@@ -178,8 +212,19 @@ static void collect(types_t *types, const cm1e_object_list_t *objects)
             add_base_type(types, entry_type(types->arena, &object->entries.at[j]), object->entries.at[j].bits);
     }
     for (size_t i = 0; i < objects->count; i++)
-        *(int64_t *)CM1E_APPEND(types->arena, &types->of_objects) =
-            is_simple(&objects->at[i]) ? SIMPLE : define(types, &objects->at[i]);
+        *(const definition_t **)CM1E_APPEND(types->arena, &types->of_objects) =
+            is_simple(&objects->at[i]) ? NULL : define(types, &objects->at[i]);
+}
+
+static void keep(void *node)
+{
+    (void)node; /* is in the arena */
+}
+
+static void forget(types_t *types)
+{
+    tdestroy(types->names, keep);
+    tdestroy(types->shapes, keep);
 }
 
 /* ---- sizes ------------------------------------------------------------------------------------------------------ */
@@ -361,15 +406,14 @@ static void put_simple_object(cm1e_xml_writer_t *xml, cm1e_arena_t *arena, const
 }
 
 static void put_object(cm1e_xml_writer_t *xml, const types_t *types, const cm1e_described_object_t *object,
-                       int64_t number)
+                       const definition_t *definition)
 {
     cm1e_xml_open(xml, "Object");
     cm1e_esi_put_index(xml, "Index", object->index, object->depends_on_slot);
     cm1e_xml_put(xml, "Name", "%s", object->name ? object->name : "");
-    if (number == SIMPLE) {
+    if (!definition) {
         put_simple_object(xml, types->arena, object);
     } else {
-        const definition_t *definition = &types->definitions.at[number];
         put_comment(xml, NULL, object->comment);
         cm1e_xml_put(xml, "Type", "%s", definition->name);
         put_number(xml, "BitSize", bits_of(object));
@@ -382,6 +426,7 @@ void cm1e_esi_put_dictionary(cm1e_xml_writer_t *xml, cm1e_arena_t *scratch, cons
 {
     types_t types = {.arena = scratch};
     collect(&types, objects);
+    forget(&types);
     if (scratch->failed) {
         xml->failed = true;
         return;
@@ -395,7 +440,7 @@ void cm1e_esi_put_dictionary(cm1e_xml_writer_t *xml, cm1e_arena_t *scratch, cons
         cm1e_xml_close(xml);
     }
     for (size_t i = 0; i < types.definitions.count; i++)
-        put_definition(xml, scratch, &types.definitions.at[i]);
+        put_definition(xml, scratch, types.definitions.at[i]);
     cm1e_xml_close(xml);
     cm1e_xml_open(xml, "Objects");
     for (size_t i = 0; i < objects->count; i++)

@@ -115,7 +115,7 @@ void cm1e_xml_put(cm1e_xml_writer_t *writer, const char *name, const char *forma
     PUT(writer, format, xmlTextWriterWriteElement(writer->writer, xml(name), cleaned));
 }
 
-void cm1e_xml_put_hex(cm1e_xml_writer_t *writer, const char *name, cm1e_bytes_t bytes)
+void cm1e_xml_put_hex_text(cm1e_xml_writer_t *writer, cm1e_bytes_t bytes)
 {
     if (!bytes.data || bytes.size == 0)
         return;
@@ -123,10 +123,19 @@ void cm1e_xml_put_hex(cm1e_xml_writer_t *writer, const char *name, cm1e_bytes_t 
     for (size_t i = 0; digits && i < bytes.size; i++)
         snprintf(digits + 2 * i, 3, "%02X", bytes.data[i]);
     if (digits)
-        cm1e_xml_put(writer, name, "%s", digits);
+        cm1e_xml_put_text(writer, "%s", digits);
     else
         writer->failed = true;
     free(digits);
+}
+
+void cm1e_xml_put_hex(cm1e_xml_writer_t *writer, const char *name, cm1e_bytes_t bytes)
+{
+    if (!bytes.data || bytes.size == 0)
+        return;
+    cm1e_xml_open(writer, name);
+    cm1e_xml_put_hex_text(writer, bytes);
+    cm1e_xml_close(writer);
 }
 
 static void put_comment(cm1e_xml_writer_t *writer, const char *format, ...)

@@ -33,7 +33,9 @@ void cm1e_xml_put_text(cm1e_xml_writer_t *writer, const char *format, ...) __att
 /** An element with a text: <name>text</name>. */
 void cm1e_xml_put(cm1e_xml_writer_t *writer, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/** xs:hexBinary; nothing is written where there are no bytes. */
+/** xs:hexBinary as the text of the element just opened. */
+void cm1e_xml_put_hex_text(cm1e_xml_writer_t *writer, cm1e_bytes_t bytes);
+/** An element with xs:hexBinary; nothing is written where there are no bytes. */
 void cm1e_xml_put_hex(cm1e_xml_writer_t *writer, const char *name, cm1e_bytes_t bytes);
 /** A comment; "--" in it, which XML forbids, becomes "- -". */
 void cm1e_xml_put_comment(cm1e_xml_writer_t *writer, const char *text);

@@ -299,12 +299,16 @@ static void test_only_sub_index_0_is_simple_unless_it_is_called_otherwise(void)
 
 static void test_a_type_of_a_stranger_is_kept_by_its_name(void)
 {
-    cm1e_described_object_t *object = add_object(add_device(), 0x2000, CM1E_OBJECT_RECORD);
-    add_entry(object, 0, "Number of entries", "USINT", 8);
-    add_entry(object, 1, "what", "DT2000EN08", 8);
-    write_valid_file();
-    TEST_ASSERT_EQUAL_STRING("8", text(TYPE "[Name='DT2000EN08']/BitSize"));
-    TEST_ASSERT_EQUAL_STRING("DT2000_2", text(OBJECT "/Type"));
+    static const char *const types[] = {"DT2000EN08", "DT2000", "DT2000ARR"};
+    for (int i = 0; i < 3; i++) {
+        cm1e_description_file_free(&description);
+        cm1e_described_object_t *object = add_object(add_device(), 0x2000, CM1E_OBJECT_RECORD);
+        add_entry(object, 0, "Number of entries", "USINT", 8);
+        add_entry(object, 1, "what", types[i], 8);
+        write_valid_file();
+        TEST_ASSERT_EQUAL_STRING("8", text(TYPE "[Name='%s']/BitSize", types[i]));
+        TEST_ASSERT_EQUAL_STRING(i == 0 ? "DT2000" : "DT2000_1", text(OBJECT "/Type"));
+    }
 }
 
 static void test_access_is_written_as_far_as_it_is_known(void)
