@@ -35,8 +35,9 @@ cm1e_described_pdo_t *cm1e_describe_pdo(cm1e_arena_t *arena, cm1e_pdo_list_t *li
                                         const cm1e_pdo_t *pdo, bool transmit, int sync_manager);
 /** An object that an axis has, and a module in MDP layout; below are those of communication, above the device's own. */
 bool cm1e_describe_is_of_axis(uint16_t index);
-/** Those of `objects` that belong to no axis. */
-void cm1e_describe_own_objects(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_object_list_t *objects);
+/** Those of `objects` that are not of a module, in MDP layout. */
+void cm1e_describe_own_objects(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_object_list_t *objects,
+                               bool (*is_of_module)(uint16_t index));
 /** An entry to adapt; NULL: there is none. */
 cm1e_described_entry_t *cm1e_describe_entry_of(const cm1e_object_list_t *objects, uint16_t index, uint8_t subindex);
 /** Puts another default in place of that of the tables; does nothing where there is no such entry. */

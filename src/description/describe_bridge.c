@@ -204,7 +204,7 @@ cm1e_error_t cm1e_describe_bridge(cm1e_description_file_t *file, const cm1e_devi
     cm1e_describe_sync_managers(arena, device, cm1e_device_sync_managers, &pdos);
     cm1e_describe_assignment(arena, &device->init_commands, &objects, &pdos);
     if (layout == CM1E_ESI_MDP) {
-        cm1e_describe_own_objects(arena, device, &objects);
+        cm1e_describe_own_objects(arena, device, &objects, cm1e_describe_is_of_axis);
         describe_slots(file, device, axes);
         return CM1E_OK;
     }

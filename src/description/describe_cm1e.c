@@ -236,9 +236,7 @@ cm1e_error_t cm1e_describe_cm1e(cm1e_description_file_t *file, const cm1e_device
     cm1e_describe_sync_managers(arena, device, cm1e_device_sync_managers, &pdos);
     cm1e_describe_assignment(arena, &device->init_commands, &objects, &pdos);
     if (layout == CM1E_ESI_MDP) {
-        for (size_t i = 0; i < objects.count; i++)
-            if (!is_of_module(objects.at[i].index))
-                *(cm1e_described_object_t *)CM1E_APPEND(arena, &device->objects) = objects.at[i];
+        cm1e_describe_own_objects(arena, device, &objects, is_of_module);
         describe_slot(file, device, options, firmware, &objects, &pdos);
         return CM1E_OK;
     }

@@ -13,10 +13,11 @@ enum { PDI_CONTROL_SPI = 0x0005, EEPROM_BYTES = 2048, CONFIG_BYTES = 14, ALIAS_A
 
 bool cm1e_describe_is_of_axis(uint16_t index) { return index >= FIRST_OF_AXES && index < FIRST_ABOVE_AXES; }
 
-void cm1e_describe_own_objects(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_object_list_t *objects)
+void cm1e_describe_own_objects(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_object_list_t *objects,
+                               bool (*is_of_module)(uint16_t index))
 {
     for (size_t i = 0; i < objects->count; i++)
-        if (!cm1e_describe_is_of_axis(objects->at[i].index))
+        if (!is_of_module(objects->at[i].index))
             *(cm1e_described_object_t *)CM1E_APPEND(arena, &device->objects) = objects->at[i];
 }
 

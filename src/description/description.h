@@ -1,7 +1,7 @@
 /**
  * @file description.h
  * What a device is, in the words that all files about it share: identity, mailbox, sync managers, FMMUs, PDOs, object
- * dictionary, start-up commands, modules. Made from the tables of src/device (describe_*.h), from a file (ESI, SII, ENI),
+ * dictionary, start-up commands, modules. Made from the tables of src/device (describe.h), from a file (ESI, SII, ENI),
  * or from a live device; checked (check.h), compared (compare.h) and written without asking where it came from.
  * Everything a description points to lives in its arena. Not thread safe; nothing here is for the cycle.
  */
@@ -279,7 +279,8 @@ void cm1e_description_init(cm1e_description_t *device);
 
 /** NULL: there is none. @rt any */
 const cm1e_described_object_t *cm1e_description_object(const cm1e_description_t *device, uint16_t index);
-const cm1e_described_entry_t *cm1e_description_entry(const cm1e_description_t *device, uint16_t index, uint8_t subindex);
+const cm1e_described_entry_t *cm1e_description_entry(const cm1e_description_t *device, uint16_t index,
+                                                     uint8_t subindex);
 const cm1e_described_pdo_t *cm1e_description_pdo(const cm1e_description_t *device, uint16_t index);
 
 /** Bits of all entries of a PDO. @rt any */

@@ -60,7 +60,8 @@ void cm1e_findings_add(cm1e_findings_t *findings, cm1e_rule_t rule, cm1e_place_t
     finding->rule = rules[rule].name;
     finding->is_error = rules[rule].is_error;
     finding->line = place;
-    finding->text = cm1e_arena_format(&findings->arena, "%s%s", text, last ? " (There are more; the list ends here.)" : "");
+    finding->text =
+        cm1e_arena_format(&findings->arena, "%s%s", text, last ? " (There are more; the list ends here.)" : "");
 }
 
 static int by_line(const void *left, const void *right)

@@ -64,4 +64,8 @@ int cm1e_bridge_axis_of(uint16_t index);
  *  cm1e_device_sync_managers. */
 void cm1e_bridge_pdo(cm1e_pdo_t *pdo, unsigned axis, bool transmit);
 
+/** The greatest position, in either direction, by K37 (resolution and unit of speed) of the motor (BR appendix 5).
+ *  0: the motor knows no such value of K37. */
+int32_t cm1e_bridge_position_limit(cm1e_bridge_motor_t motor, int32_t k37);
+
 #endif

@@ -49,7 +49,8 @@ static void check_identity(const variant_t *variant, const cm1e_description_t *d
     TEST_ASSERT_EQUAL_HEX32(variant->firmware == CM1E_FIRMWARE_1_2_0 ? 0x20020001 : 0x20020103, device->revision);
     TEST_ASSERT_TRUE(device->product_given && device->revision_given);
     TEST_ASSERT_EQUAL_STRING("CM1-E", device->type);
-    TEST_ASSERT_NOT_NULL(strstr(device->name, firmware->version));
+    TEST_ASSERT_EQUAL_STRING("CM1-E", device->name);
+    TEST_ASSERT_NOT_NULL(strstr(device->comment, firmware->version));
     for (int motor = 0; motor < 4; motor++)
         TEST_ASSERT_NOT_NULL(strstr(device->comment, cm1e_device_motors[motor].name));
     TEST_ASSERT_TRUE(device->identification_reg134 && device->identification_reg134_given);
@@ -345,7 +346,7 @@ static void test_nothing_asked_for_is_the_newest_firmware(void)
 {
     const cm1e_device_options_t options = {0};
     const cm1e_description_t *device = describe(&options);
-    TEST_ASSERT_NOT_NULL(strstr(device->name, "1.3.5"));
+    TEST_ASSERT_NOT_NULL(strstr(device->comment, "1.3.5"));
     TEST_ASSERT_NOT_NULL(object_in(&device->objects, 0x2201));
     TEST_ASSERT_EQUAL_HEX16(0x1600, cm1e_bytes_unsigned(device->init_commands.at[2].data));
 }

@@ -282,6 +282,36 @@ static void test_signed_objects_are_signed(void)
     }
 }
 
+/* ---- positions: BR appendix 5 ------------------------------------------------------------------------------------ */
+
+static void test_position_limits_by_k37(void)
+{
+    static const struct {
+        int k37[3]; /* -1: the column is empty */
+        int32_t cm1, cm2;
+    } rows[] = {
+        {{0, 20, 80}, 8589934, 8589934}, {{1, 21, 81}, 17179869, 17179869}, {{2, 22, 82}, 21474836, 21474836},
+        {{3, 23, 83}, 42949672, 42949672}, {{4, 24, 84}, 85899345, 85899345}, {{5, 25, 85}, 107374182, 107374182},
+        {{6, 26, 86}, 214748364, 214748364}, {{7, 27, 87}, 429496729, 429496729}, {{8, 28, 88}, 999999999, 999999999},
+        {{9, 29, 89}, 0, 0}, {{10, 30, 90}, 999999999, 999999999}, {{40, 60, -1}, 13421772, 12884901},
+        {{41, 61, -1}, 17895697, 17179869}, {{42, 62, -1}, 26843545, 25769803}, {{43, 63, -1}, 35791394, 34359738},
+        {{44, 64, -1}, 53687091, 51539607}, {{45, 65, -1}, 67108863, 64424509}, {{46, 66, -1}, 134217727, 128849018},
+        {{47, 67, -1}, 178956970, 171798691}, {{48, 68, -1}, 268435455, 257698037},
+        {{49, 69, -1}, 357913941, 343597383}, {{50, 70, -1}, 536870911, 515396075},
+    };
+    for (int k37 = -200; k37 < 200; k37++) {
+        int32_t cm1 = 0, cm2 = 0;
+        for (size_t i = 0; i < COUNT(rows); i++)
+            for (int column = 0; column < 3; column++)
+                if (k37 >= 0 && rows[i].k37[column] == k37) {
+                    cm1 = column < 2 ? rows[i].cm1 : 0; /* 1 pps: CM2 only */
+                    cm2 = rows[i].cm2;
+                }
+        TEST_ASSERT_EQUAL_MESSAGE(cm1, cm1e_bridge_position_limit(CM1E_BRIDGE_CM1, k37), "CM1");
+        TEST_ASSERT_EQUAL_MESSAGE(cm2, cm1e_bridge_position_limit(CM1E_BRIDGE_CM2, k37), "CM2");
+    }
+}
+
 /* ---- process data: BR 6.3.1 and 6.3.3 ---------------------------------------------------------------------------- */
 
 static void test_process_data_are_24_bytes_each_way(void)
@@ -337,6 +367,7 @@ int main(void)
     RUN_TEST(test_values_that_the_guide_states);
     RUN_TEST(test_ranges_of_homing_by_motor);
     RUN_TEST(test_signed_objects_are_signed);
+    RUN_TEST(test_position_limits_by_k37);
     RUN_TEST(test_process_data_are_24_bytes_each_way);
     return UNITY_END();
 }

@@ -1,0 +1,24 @@
+#include "device/bridge.h"
+
+/* BR appendix 5. Resolutions 0 ... 10 and 40 ... 50 repeat 20 higher with a finer unit of speed (10 pps), and with a
+ * CM2 the first ones once more at 80 (1 pps). Of its two tables the first is taken for the CM1's, as its headings stand;
+ * in the second one speeds in 1 pps occur, which no page mentions for a CM1. */
+enum { RESOLUTIONS = 11, REPEATED = 20, OTHER_RESOLUTIONS = 40, FINEST = 80 };
+
+static const int32_t common[RESOLUTIONS] = {8589934,   17179869,  21474836,  42949672, 85899345, 107374182,
+                                            214748364, 429496729, 999999999, 0,        999999999};
+static const int32_t others[][RESOLUTIONS] = {
+    {13421772, 17895697, 26843545, 35791394, 53687091, 67108863, 134217727, 178956970, 268435455, 357913941, 536870911},
+    {12884901, 17179869, 25769803, 34359738, 51539607, 64424509, 128849018, 171798691, 257698037, 343597383, 515396075},
+};
+
+int32_t cm1e_bridge_position_limit(cm1e_bridge_motor_t motor, int32_t k37)
+{
+    if (k37 < 0 || k37 >= FINEST + REPEATED || (k37 >= FINEST && motor == CM1E_BRIDGE_CM1))
+        return 0;
+    const int32_t resolution = k37 % REPEATED;
+    if (resolution >= RESOLUTIONS)
+        return 0;
+    return k37 < OTHER_RESOLUTIONS || k37 >= FINEST ? common[resolution]
+                                                    : others[motor == CM1E_BRIDGE_CM2][resolution];
+}
