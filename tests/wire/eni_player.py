@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A master that knows nothing but an ENI file: sends its InitCmds as they stand there, with their checks and through the
-mailbox where they are SDOs, and then its cyclic frames. For tests: it says at once what is not as the file has it.
+"""A master that knows nothing but an ENI file: sends its InitCmds as they stand there, with their checks and through
+the mailbox where they are SDOs, and then its cyclic frames. For tests: it says at once what is not as the file has it.
 
 eni_player.py FILE INTERFACE PLAY     PLAY is Python: a function play(master), to be executed here
 """
@@ -205,7 +205,8 @@ class Master:
         if sdo.specifier != 1 or not 1 <= len(sdo.data) <= 4:
             raise Failed(f"{slave.name}: {sdo.comment}: this player makes short downloads only")
         slave.counter = slave.counter % 7 + 1
-        request = struct.pack("<BHB", 0x23 | (4 - len(sdo.data)) << 2, sdo.index, sdo.subindex) + sdo.data.ljust(4, b"\0")
+        request = struct.pack("<BHB", 0x23 | (4 - len(sdo.data)) << 2, sdo.index, sdo.subindex)
+        request += sdo.data.ljust(4, b"\0")
         mail = struct.pack("<HHBBH", 2 + len(request), 0, 0, 3 | slave.counter << 4, 2 << 12) + request
         end = time.monotonic() + sdo.timeout_s
         self.mailbox(slave, FPWR, slave.send, mail.ljust(slave.send_length, b"\0"), end)
@@ -260,8 +261,11 @@ class Master:
 
     # ---- variables -------------------------------------------------------------------------------------------------
 
+    def names(self, direction, slave, entry):
+        return [n for n in self.variables[direction] if n.startswith(slave + ".") and n.endswith("." + entry)]
+
     def find(self, direction, slave, entry):
-        names = [n for n in self.variables[direction] if n.startswith(slave + ".") and n.endswith("." + entry)]
+        names = self.names(direction, slave, entry)
         if len(names) != 1:
             raise Failed(f"{slave} has {len(names)} variables {entry}")
         return self.variables[direction][names[0]]
