@@ -139,7 +139,8 @@ static void read_channel(cm1e_xml_reader_t *reader, const xmlNode *node, cm1e_de
 /* A channel is an axis, say: those listed, or the one that the profile itself speaks of. */
 static void read_profiles(cm1e_xml_reader_t *reader, const xmlNode *node, cm1e_description_t *device)
 {
-    for (const xmlNode *profile = cm1e_xml_child(node, "Profile"); profile; profile = cm1e_xml_next(profile, "Profile")) {
+    for (const xmlNode *profile = cm1e_xml_child(node, "Profile"); profile;
+         profile = cm1e_xml_next(profile, "Profile")) {
         const xmlNode *channel = cm1e_xml_child(profile, "ChannelInfo");
         if (!channel && cm1e_xml_child(profile, "ProfileNo"))
             read_channel(reader, profile, device);
@@ -286,7 +287,8 @@ static void read_root(cm1e_xml_reader_t *reader, const xmlNode *root, cm1e_descr
 {
     const bool of_modules = cm1e_xml_is(root, "EtherCATModule");
     if (!of_modules && !cm1e_xml_is(root, "EtherCATInfo")) {
-        cm1e_xml_fail(reader, root, "the root element of an ESI is EtherCATInfo, here it is %.60s", (const char *)root->name);
+        cm1e_xml_fail(reader, root, "the root element of an ESI is EtherCATInfo, here it is %.60s",
+                      (const char *)root->name);
         return;
     }
     names_t names = {.file = file};

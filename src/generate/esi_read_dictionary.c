@@ -7,8 +7,8 @@
 
 /*
  * An ESI describes an object by a type, whose items are its sub-indexes, and gives values in Info. A base type is one
- * value; a type with SubItems is a record, or, where an item of it is of a type with ArrayInfo, an array, whose elements
- * are resolved here (ETG.2000 "DataTypes", "Objects").
+ * value; a type with SubItems is a record, or, where an item of it is of a type with ArrayInfo, an array, whose
+ * elements are resolved here (ETG.2000 "DataTypes", "Objects").
  */
 
 enum { SUBINDEXES = 256, ALIAS_DEPTH = 8, NUMBER_BYTES = 4 };
@@ -154,8 +154,8 @@ static bool real_of(dictionary_t *dictionary, const cm1e_described_entry_t *entr
     const float single = (float)number;
     if ((!is_single && strcmp(entry->type, "LREAL") != 0) || isnan(number))
         return false;
-    *bytes = is_single ? (cm1e_bytes_t){cm1e_arena_bytes(dictionary->reader->arena, &single, sizeof single), sizeof single}
-                       : (cm1e_bytes_t){cm1e_arena_bytes(dictionary->reader->arena, &number, sizeof number), sizeof number};
+    bytes->size = is_single ? sizeof single : sizeof number;
+    bytes->data = cm1e_arena_bytes(dictionary->reader->arena, is_single ? (const void *)&single : &number, bytes->size);
     return true;
 }
 
@@ -290,7 +290,7 @@ static void resolve(dictionary_t *dictionary, size_t number, cm1e_described_obje
     }
 }
 
-/* Which entry a SubItem of Info means: the one of that name; an element, which the type has no name for, by its turn. */
+/* Which entry a SubItem of Info means: the one of that name; an element, for which the type has no name, by its turn. */
 static size_t entry_meant(const cm1e_described_object_t *object, const slot_t *slots, size_t turn, const char *name)
 {
     for (size_t n = 0; n < object->entries.count; n++) {
@@ -360,12 +360,11 @@ static void read_record(dictionary_t *dictionary, const xmlNode *node, size_t ty
 static void read_variable(dictionary_t *dictionary, const xmlNode *node, uint8_t access,
                           cm1e_described_object_t *object)
 {
-    const uint32_t known_bits = cm1e_type_bits(object->type);
     cm1e_described_entry_t *entry = CM1E_APPEND(dictionary->reader->arena, &object->entries);
     entry->place = object->place;
     entry->name = object->name;
     entry->type = base_of(dictionary, object->type);
-    entry->bits = object->bits ? object->bits : known_bits;
+    entry->bits = object->bits ? object->bits : cm1e_type_bits(entry->type);
     entry->access = access;
     object->code = entry->type[0] ? CM1E_OBJECT_VAR : 0;
     read_comment(dictionary, node, entry);

@@ -157,7 +157,8 @@ static void read_dc_modes(cm1e_xml_reader_t *reader, const xmlNode *node, cm1e_d
 {
     const xmlNode *dc = cm1e_xml_child(node, "Dc");
     for (const xmlNode *child = cm1e_xml_child(dc, "OpMode"); child; child = cm1e_xml_next(child, "OpMode")) {
-        const xmlNode *sync0 = cm1e_xml_child(child, "CycleTimeSync0"), *sync1 = cm1e_xml_child(child, "CycleTimeSync1");
+        const xmlNode *sync0 = cm1e_xml_child(child, "CycleTimeSync0");
+        const xmlNode *sync1 = cm1e_xml_child(child, "CycleTimeSync1");
         cm1e_dc_mode_t *mode = CM1E_APPEND(reader->arena, &device->dc_modes);
         mode->place = cm1e_xml_line(child);
         mode->name = cm1e_xml_child_text(reader, child, "Name", "");

@@ -280,10 +280,21 @@ static void put_eeprom(cm1e_xml_writer_t *xml, const cm1e_description_t *device)
 
 /* ---- devices and modules ---------------------------------------------------------------------------------------- */
 
+/* All of a kind, or none: the schema wants them together. */
+static bool has_state_timeouts(const cm1e_described_timeouts_t *timeouts)
+{
+    return timeouts->preop >= 0 && timeouts->safeop_op >= 0 && timeouts->back_to_init >= 0 &&
+           timeouts->back_to_safeop >= 0;
+}
+
+static bool has_mailbox_timeouts(const cm1e_described_timeouts_t *timeouts)
+{
+    return timeouts->mailbox_request >= 0 && timeouts->mailbox_response >= 0;
+}
+
 static void put_timeouts(cm1e_xml_writer_t *xml, const cm1e_described_timeouts_t *timeouts)
 {
-    if (timeouts->preop >= 0 && timeouts->safeop_op >= 0 && timeouts->back_to_init >= 0 &&
-        timeouts->back_to_safeop >= 0) {
+    if (has_state_timeouts(timeouts)) {
         cm1e_xml_open(xml, "StateMachine");
         cm1e_xml_open(xml, "Timeout");
         put_int(xml, "PreopTimeout", timeouts->preop);
@@ -293,7 +304,7 @@ static void put_timeouts(cm1e_xml_writer_t *xml, const cm1e_described_timeouts_t
         cm1e_xml_close(xml);
         cm1e_xml_close(xml);
     }
-    if (timeouts->mailbox_request >= 0 && timeouts->mailbox_response >= 0) {
+    if (has_mailbox_timeouts(timeouts)) {
         cm1e_xml_open(xml, "Mailbox");
         cm1e_xml_open(xml, "Timeout");
         put_int(xml, "RequestTimeout", timeouts->mailbox_request);
@@ -305,9 +316,9 @@ static void put_timeouts(cm1e_xml_writer_t *xml, const cm1e_described_timeouts_t
 
 static bool has_info(const cm1e_description_t *device)
 {
-    const cm1e_described_timeouts_t *timeouts = &device->timeouts;
     return device->identification_reg134_given || device->dpram_bytes >= 0 || device->sync_managers_available >= 0 ||
-           device->fmmus_available >= 0 || timeouts->preop >= 0 || timeouts->mailbox_request >= 0;
+           device->fmmus_available >= 0 || has_state_timeouts(&device->timeouts) ||
+           has_mailbox_timeouts(&device->timeouts);
 }
 
 static void put_info(cm1e_xml_writer_t *xml, const cm1e_description_t *device)

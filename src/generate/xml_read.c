@@ -397,7 +397,9 @@ bool cm1e_xml_child_flag(cm1e_xml_reader_t *reader, const xmlNode *parent, const
 
 static int hex_digit(char c)
 {
-    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+    if (c >= '0' && c <= '9')
+        return c - '0';
+    return c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
 cm1e_bytes_t cm1e_xml_hex(cm1e_xml_reader_t *reader, const xmlNode *node)

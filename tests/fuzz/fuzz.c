@@ -61,8 +61,8 @@ void fuzz_expect_same(const cm1e_file_t *first, const cm1e_file_t *second)
     while (at < first->size && at < second->size && first->bytes[at] == second->bytes[at])
         at++;
     if (at < first->size || at < second->size)
-        fuzz_fail("written, read and written again, the file differs from byte %zu on:\n%.200s\n---- before it was:\n%.200s",
-                  at, second->bytes + at, first->bytes + at);
+        fuzz_fail("written, read and written again, the file differs from byte %zu on:\n%.200s\n"
+                  "---- before it was:\n%.200s", at, second->bytes + at, first->bytes + at);
 }
 
 void fuzz_use_findings(cm1e_findings_t *findings)

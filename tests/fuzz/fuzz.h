@@ -1,8 +1,8 @@
 /**
  * @file fuzz.h
  * What the fuzz targets share. A target is one file fuzz_<format>.c with a libFuzzer entry point and its seeds; CMake
- * finds it (preset `fuzz`), scripts/fuzz runs all of them. A target reads its input as the format, and what could be read
- * goes through the checker and through write, read, write: the second time must give the same bytes.
+ * finds it (preset `fuzz`), scripts/fuzz runs all of them. A target reads its input as the format, and what could be
+ * read goes through the checker and through write, read, write: the second time must give the same bytes.
  */
 #ifndef CM1E_TESTS_FUZZ_H
 #define CM1E_TESTS_FUZZ_H

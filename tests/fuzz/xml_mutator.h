@@ -24,19 +24,23 @@ typedef struct span {
 } span_t;
 
 static const char *const interesting[] = {
-    "", "0", "1", "2", "3", "7", "8", "16", "17", "32", "64", "-1", "127", "128", "255", "256", "65535", "65536", "2147483647",
-    "2147483648", "4294967295", "4294967296", "9223372036854775808", "#x0", "#x1600", "#x1A00", "#x1C12", "#x1018",
-    "#xFFFF", "#x10000", "#xFFFFFFFF", "0x7", "1.5", "-0.25e3", "true", "false", "ro", "rw", "wo", "T", "RT", "PS", "SO",
-    "MBoxOut", "Outputs", "Inputs", "USINT", "UINT", "DINT", "BOOL", "BIT3", "REAL", "STRING(5)", "ARRAY [0..3] OF BYTE",
+    "", "0", "1", "2", "3", "7", "8", "16", "17", "32", "64", "-1", "127", "128", "255", "256", "65535", "65536",
+    "2147483647", "2147483648", "4294967295", "4294967296", "9223372036854775808", "#x0", "#x1600", "#x1A00", "#x1C12", "#x1018",
+    "#xFFFF", "#x10000", "#xFFFFFFFF", "0x7", "1.5", "-0.25e3", "true", "false", "ro", "rw", "wo", "T", "RT", "PS",
+    "SO",
+    "MBoxOut", "Outputs", "Inputs", "USINT", "UINT", "DINT", "BOOL", "BIT3", "REAL", "STRING(5)",
+    "ARRAY [0..3] OF BYTE",
     "SubIndex 001", "SubIndex 002", "Elements", "[V] a", "]", "00", "FF", "0102", "010203040506070809", "a b", "&amp;",
     "\xC3\xA9", "<!--x-->",
 };
 static const char *const attributes[] = {
-    " DependOnSlot=\"1\"", " Sm=\"2\"", " Sm=\"3\"", " Fixed=\"1\"", " Mandatory=\"1\"", " Default=\"1\"", " Factor=\"1\"",
+    " DependOnSlot=\"1\"", " Sm=\"2\"", " Sm=\"3\"", " Fixed=\"1\"", " Mandatory=\"1\"", " Default=\"1\"",
+    " Factor=\"1\"",
     " LcId=\"1031\"", " ModuleIdent=\"#x219800\"", " AdaptAutomatically=\"1\"", " CompleteAccess=\"1\"",
     " SlotIndexIncrement=\"#x800\"", " WriteRestrictions=\"PreOP\"", " ModuleClass=\"a\"", " DefaultSize=\"128\"",
 };
-enum { INTERESTING = sizeof interesting / sizeof interesting[0], ATTRIBUTES = sizeof attributes / sizeof attributes[0] };
+enum { INTERESTING = sizeof interesting / sizeof interesting[0] };
+enum { ATTRIBUTES = sizeof attributes / sizeof attributes[0] };
 
 static size_t find_byte(const uint8_t *data, size_t from, size_t to, char byte)
 {
@@ -130,7 +134,8 @@ static size_t mutate(uint8_t *data, size_t size, size_t max_size, const uint8_t 
     switch (pick(OPERATIONS)) {
     case LEAVE_OUT: return put(data, size, max_size, element, copy, 0);
     case DOUBLE:
-        return put(data, size, max_size, (span_t){element.to, element.to}, copy + element.from, element.to - element.from);
+        return put(data, size, max_size, (span_t){element.to, element.to}, copy + element.from,
+                   element.to - element.from);
     case MOVE:
         return put(data, size, max_size, (span_t){element.from, element.from}, copy + other_element.from,
                    other_element.to - other_element.from);
@@ -145,7 +150,8 @@ static size_t mutate(uint8_t *data, size_t size, size_t max_size, const uint8_t 
     case TEXT_OF_ANOTHER:
         return put(data, size, max_size, text, copy + other_text.from, other_text.to - other_text.from);
     case VALUE:
-        return some_value(data, tag, &value) ? put(data, size, max_size, value, (const uint8_t *)word, strlen(word)) : 0;
+        return some_value(data, tag, &value)
+                   ? put(data, size, max_size, value, (const uint8_t *)word, strlen(word)) : 0;
     default: {
         const size_t at = name_in(data, tag).to;
         return put(data, size, max_size, (span_t){at, at}, (const uint8_t *)attribute, strlen(attribute));

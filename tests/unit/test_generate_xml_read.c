@@ -73,7 +73,8 @@ static const char *many(const char *before, const char *text, size_t times, cons
 
 static void test_comment_before_the_declaration_is_passed_over_and_lines_stay_right(void)
 {
-    const xmlNode *root = need("\xEF\xBB\xBF <!-- one\n-->\n\n<!-- > <a> -->\n<?xml version=\"1.0\"?>\n<r>\n<a>1</a></r>");
+    const xmlNode *root = need("\xEF\xBB\xBF <!-- one\n-->\n\n<!-- > <a> -->\n"
+                               "<?xml version=\"1.0\"?>\n<r>\n<a>1</a></r>");
     TEST_ASSERT_EQUAL_STRING("r", root->name);
     TEST_ASSERT_EQUAL(6, cm1e_xml_line(root));
     TEST_ASSERT_EQUAL(7, cm1e_xml_line(cm1e_xml_child(root, "a")));
@@ -277,7 +278,8 @@ static void test_any_thread_may_read(void)
 
 static void test_every_prefix_of_a_document_is_refused(void)
 {
-    static const char whole[] = "\xEF\xBB\xBF<!-- a --><?xml version='1.0' encoding='UTF-8'?>\n<r a='1'>\n<b>\xC3\xA9</b>"
+    static const char whole[] = "\xEF\xBB\xBF<!-- a --><?xml version='1.0' encoding='UTF-8'?>\n<r a='1'>\n"
+                                "<b>\xC3\xA9</b>"
                                 "<![CDATA[x]]>&amp;<c/></r>";
     need(whole);
     for (size_t size = 0; size < sizeof whole - 1; size++) {
@@ -301,8 +303,10 @@ static void test_numbers(void)
         {"0", true, 0}, {"26", true, 26}, {"-5", true, -5}, {"+5", true, 5}, {"#x1A", true, 26}, {"#X1a", true, 26},
         {"0x1A", true, 26}, {" \n7\t", true, 7}, {"007", true, 7}, {"-1000", true, -1000}, {"1000", true, 1000},
         {"", false, 0}, {"x", false, 0}, {"1A", false, 0}, {"#x", false, 0}, {"#xG", false, 0}, {"0x", false, 0},
-        {"1.5", false, 0}, {"1 2", false, 0}, {"- 5", false, 0}, {"#x-5", false, 0}, {"--5", false, 0}, {"#5", false, 0},
-        {"1001", false, 0}, {"-1001", false, 0}, {"9223372036854775808", false, 0}, {"99999999999999999999999", false, 0},
+        {"1.5", false, 0}, {"1 2", false, 0}, {"- 5", false, 0}, {"#x-5", false, 0}, {"--5", false, 0},
+        {"#5", false, 0},
+        {"1001", false, 0}, {"-1001", false, 0}, {"9223372036854775808", false, 0},
+        {"99999999999999999999999", false, 0},
         {"#xFFFFFFFFFFFFFFFFF", false, 0}, {"#xFFFFFFFFFFFFFFFF", false, 0}, {"-99999999999999999999999", false, 0},
         {"00000000000000000000000000000000000000000000000000000000000000000000000000000001", false, 0},
     };
