@@ -10,7 +10,8 @@ enum { DAMAGED_FILES = 3000 };
 /* Elements that hold a number, and attributes: by name, wherever they are. */
 static const char *const number_elements[] = {
     "Id", "PreopTimeout", "SafeopOpTimeout", "BackToInitTimeout", "BackToSafeopTimeout", "RequestTimeout",
-    "ResponseTimeout", "DpramSize", "SmCount", "FmmuCount", "IdentificationAdo", "ProfileNo", "AddInfo", "BitSize", "SubIdx", "BitOffs",
+    "ResponseTimeout", "DpramSize", "SmCount", "FmmuCount", "IdentificationAdo", "ProfileNo", "AddInfo", "BitSize", "SubIdx",
+    "BitOffs",
     "MinValue", "MaxValue", "LBound", "Elements", "Index", "Exclude", "SubIndex", "BitLen", "AssignActivate",
     "CycleTimeSync0", "ShiftTimeSync0", "CycleTimeSync1", "ShiftTimeSync1", "ModuleIdent", "ByteSize"};
 static const char *const number_attributes[] = {
