@@ -1,6 +1,284 @@
-#include "description/check.h"
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "description/check_private.h"
+#include "description/expand.h"
+
+/* Bounds on what a file that means harm can make us do: rounds of choices of modules, and objects and PDO entries in
+ * all of them together. A device of hundreds of modules needs a few rounds. */
+enum { ROUNDS_MAX = 512, WORK_MAX = 20000000 };
+
+void cm1e_check_add(const cm1e_check_t *check, cm1e_rule_t rule, cm1e_place_t place, const char *format, ...)
+{
+    char text[1024];
+    if (check->findings->list.count >= CM1E_FINDINGS_MAX ||
+        (check->is_modular && cm1e_findings_has(check->findings, rule, place)))
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    cm1e_findings_add(check->findings, rule, place, "%s", text);
+}
+
+/* ---- looking up -------------------------------------------------------------------------------------------------- */
+
+static int by_key(const void *left, const void *right)
+{
+    const cm1e_check_entry_t *a = left, *b = right;
+    return a->key != b->key ? (a->key < b->key ? -1 : 1) : (a->order > b->order) - (a->order < b->order);
+}
+
+static int by_index(const void *left, const void *right)
+{
+    const cm1e_check_index_t *a = left, *b = right;
+    return a->index != b->index ? (a->index < b->index ? -1 : 1) : (a->order > b->order) - (a->order < b->order);
+}
+
+/* Place of the first of a key. */
+static size_t first_entry(const cm1e_check_t *check, uint32_t key)
+{
+    size_t low = 0, high = check->entry_count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (check->entries[middle].key < key)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static size_t first_index(const cm1e_check_index_t *indexes, size_t count, uint16_t index)
+{
+    size_t low = 0, high = count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (indexes[middle].index < index)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+const cm1e_check_entry_t *cm1e_check_find_entry(const cm1e_check_t *check, uint16_t index, uint8_t subindex)
+{
+    const uint32_t key = (uint32_t)index << 8 | subindex;
+    /* Of several, the last: a module's takes the place of the device's. */
+    const size_t behind = first_entry(check, key + 1);
+    return behind > 0 && check->entries[behind - 1].key == key ? &check->entries[behind - 1] : NULL;
+}
+
+const cm1e_described_object_t *cm1e_check_find_object(const cm1e_check_t *check, uint16_t index)
+{
+    const size_t count = check->device->objects.count, found = first_index(check->objects, count, index);
+    return found < count && check->objects[found].index == index
+               ? &check->device->objects.at[check->objects[found].order]
+               : NULL;
+}
+
+const cm1e_described_pdo_t *cm1e_check_find_pdo(const cm1e_check_t *check, uint16_t index)
+{
+    const size_t count = check->device->pdos.count, found = first_index(check->pdos, count, index);
+    return found < count && check->pdos[found].index == index
+               ? &check->device->pdos.at[check->pdos[found].order]
+               : NULL;
+}
+
+const cm1e_described_pdo_t *cm1e_check_only_pdo(const cm1e_check_t *check, uint16_t index)
+{
+    const size_t count = check->device->pdos.count, found = first_index(check->pdos, count, index);
+    if (found + 1 < count && check->pdos[found + 1].index == index)
+        return NULL;
+    return cm1e_check_find_pdo(check, index);
+}
+
+bool cm1e_check_default(const cm1e_check_t *check, uint16_t index, uint8_t subindex, uint32_t *value,
+                        cm1e_place_t *place)
+{
+    const cm1e_check_entry_t *found = cm1e_check_find_entry(check, index, subindex);
+    if (!found || found->entry->default_data.size == 0)
+        return false;
+    *value = (uint32_t)cm1e_bytes_unsigned(found->entry->default_data);
+    *place = found->entry->place ? found->entry->place : found->object->place;
+    return true;
+}
+
+/* ---- a device ---------------------------------------------------------------------------------------------------- */
+
+static void *take(cm1e_arena_t *arena, size_t count, size_t size)
+{
+    return count > 0 && count <= CM1E_ARENA_LIMIT / size ? cm1e_arena_take(arena, count * size) : NULL;
+}
+
+static void collect_entries(cm1e_check_t *check, cm1e_check_entry_t *entries)
+{
+    const cm1e_object_list_t objects = {check->device->objects.at, check->device->objects.count};
+    for (size_t i = 0, n = 0; i < objects.count; i++)
+        for (size_t j = 0; j < objects.at[i].entries.count; j++, n++) {
+            const cm1e_described_entry_t *entry = &objects.at[i].entries.at[j];
+            entries[n] = (cm1e_check_entry_t){(uint32_t)objects.at[i].index << 8 | entry->subindex, n, &objects.at[i],
+                                              entry};
+            if (entry->access & (CM1E_ACCESS_RXPDO | CM1E_ACCESS_TXPDO))
+                check->states_mappability = true;
+        }
+    qsort(entries, check->entry_count, sizeof *entries, by_key);
+    check->entries = entries;
+}
+
+/* Everything sorted that is searched. false: out of memory. */
+static bool prepare(cm1e_check_t *check)
+{
+    const cm1e_description_t *device = check->device;
+    const size_t objects = device->objects.count, pdos = device->pdos.count;
+    check->entry_count = 0;
+    for (size_t i = 0; i < objects; i++)
+        check->entry_count += device->objects.at[i].entries.count;
+    cm1e_check_entry_t *entries = take(check->arena, check->entry_count, sizeof *entries);
+    cm1e_check_index_t *object_indexes = take(check->arena, objects, sizeof *object_indexes);
+    cm1e_check_index_t *pdo_indexes = take(check->arena, pdos, sizeof *pdo_indexes);
+    if (check->arena->failed)
+        return false;
+    for (size_t i = 0; i < objects; i++)
+        object_indexes[i] = (cm1e_check_index_t){device->objects.at[i].index, i};
+    for (size_t i = 0; i < pdos; i++)
+        pdo_indexes[i] = (cm1e_check_index_t){device->pdos.at[i].index, i};
+    if (objects > 0)
+        qsort(object_indexes, objects, sizeof *object_indexes, by_index);
+    if (pdos > 0)
+        qsort(pdo_indexes, pdos, sizeof *pdo_indexes, by_index);
+    check->objects = object_indexes;
+    check->pdos = pdo_indexes;
+    check->has_dictionary = objects > 0;
+    if (check->entry_count > 0)
+        collect_entries(check, entries);
+    return true;
+}
+
+static void check_flat(cm1e_check_t *check)
+{
+    if (!prepare(check)) {
+        check->findings->arena.failed = true;
+        return;
+    }
+    cm1e_check_dictionary(check);
+    cm1e_check_pdos(check);
+    cm1e_check_excludes(check);
+    cm1e_check_mapping_objects(check);
+    cm1e_check_init_commands(check);
+    if (!check->by_default)
+        return;
+    cm1e_check_identity(check);
+    cm1e_check_sync_managers(check);
+    cm1e_check_mailbox(check);
+    cm1e_check_assignment(check);
+}
+
+/* ---- choices of modules ------------------------------------------------------------------------------------------ */
+
+/* Round 0: what the file chooses by default. Further rounds: every place takes the next alternatives of its slot, until
+ * each has had its turn. false: all had. */
+static bool choose(const cm1e_description_t *device, unsigned round, uint32_t *idents, size_t places)
+{
+    if (round == 0) {
+        cm1e_description_default_modules(device, idents, places);
+        return true;
+    }
+    bool more = false;
+    size_t place = 0;
+    for (size_t s = 0; s < device->slots.count && place < places; s++) {
+        const cm1e_slot_t *slot = &device->slots.at[s];
+        const size_t first = place;
+        while (place < places && cm1e_description_place(device, place) == slot)
+            place++;
+        const size_t instances = place - first, choices = slot->choices.count;
+        for (size_t n = 0; n < instances; n++) {
+            const size_t choice = (round - 1) * instances + n;
+            more = more || choice < choices;
+            idents[first + n] = choices > 0 ? slot->choices.at[choice % choices].ident : 0;
+        }
+    }
+    return more;
+}
+
+/* A module without a dictionary says nothing of the objects that its PDOs and commands name. */
+static void mark_silent(cm1e_check_t *check, const cm1e_description_file_t *file, const cm1e_description_t *device,
+                        const uint32_t *idents, size_t places)
+{
+    bool *pdos = take(check->arena, check->device->pdos.count, sizeof *pdos);
+    bool *commands = take(check->arena, check->device->init_commands.count, sizeof *commands);
+    size_t pdo = device->pdos.count, command = device->init_commands.count;
+    for (size_t place = 0; place < places && !check->arena->failed; place++) {
+        const cm1e_module_t *module = idents[place] ? cm1e_description_module(file, idents[place]) : NULL;
+        for (size_t i = 0; module && i < module->pdos.count; i++)
+            pdos[pdo++] = module->objects.count == 0;
+        for (size_t i = 0; module && i < module->init_commands.count; i++)
+            commands[command++] = module->objects.count == 0;
+    }
+    check->silent_pdos = pdos;
+    check->silent_commands = commands;
+}
+
+static size_t work_of(const cm1e_description_t *device)
+{
+    size_t work = 1 + device->objects.count + device->pdos.count + device->init_commands.count;
+    for (size_t i = 0; i < device->objects.count; i++)
+        work += device->objects.at[i].entries.count;
+    for (size_t i = 0; i < device->pdos.count; i++)
+        work += device->pdos.at[i].entries.count;
+    return work;
+}
+
+static void check_choices(const cm1e_check_t *of_device, const cm1e_description_file_t *file)
+{
+    uint32_t idents[CM1E_PLACES_MAX];
+    const size_t places = cm1e_description_places(of_device->device);
+    size_t work = 0;
+    for (unsigned round = 0; round < ROUNDS_MAX && work < WORK_MAX; round++) {
+        if (!choose(of_device->device, round, idents, places))
+            return;
+        cm1e_arena_t arena = {0};
+        cm1e_description_t expanded;
+        cm1e_description_expand(&arena, &expanded, file, of_device->device, idents, places);
+        cm1e_check_t check = *of_device;
+        check.arena = &arena;
+        check.device = &expanded;
+        check.by_default = round == 0;
+        mark_silent(&check, file, of_device->device, idents, places);
+        if (!arena.failed)
+            check_flat(&check);
+        else
+            check.findings->arena.failed = true;
+        work += work_of(&expanded) + places * file->modules.count;
+        cm1e_arena_free(&arena);
+    }
+}
+
+static void check_device(const cm1e_check_t *of_file, const cm1e_description_file_t *file,
+                         const cm1e_description_t *device)
+{
+    cm1e_check_t check = *of_file;
+    check.device = device;
+    check.is_modular = device->slots.count > 0;
+    check.slot_index_increment = device->slot_index_increment;
+    const cm1e_check_types_t types = {.own = cm1e_check_sort_types(&check, &device->types)};
+    cm1e_check_types(&check, &device->types, &types);
+    cm1e_check_objects(&check, &device->objects, &types);
+    cm1e_check_own_pdos(&check, &device->pdos);
+    cm1e_check_slots(&check, file);
+    check_choices(&check, file);
+}
 
 void cm1e_check_description(cm1e_findings_t *findings, const cm1e_description_file_t *file)
 {
-    (void)findings, (void)file;
+    cm1e_arena_t arena = {0};
+    const cm1e_check_t check = {.findings = findings, .arena = &arena};
+    for (size_t i = 0; i < file->devices.count && findings->list.count < CM1E_FINDINGS_MAX; i++)
+        check_device(&check, file, &file->devices.at[i]);
+    cm1e_check_modules(&check, file);
+    if (arena.failed)
+        findings->arena.failed = true;
+    cm1e_arena_free(&arena);
 }

@@ -14,8 +14,64 @@
     /* ESI, SII, ENI: a device */                                                                                   \
     X(PDO_ENTRY_NOT_IN_DICTIONARY, "pdo-entry-not-in-dictionary", true)                                             \
     X(PDO_ENTRY_SIZE, "pdo-entry-size", true)                                                                       \
+    X(PDO_ENTRY_TYPE, "pdo-entry-type", true)                                                                       \
+    X(PDO_ENTRY_NOT_MAPPABLE, "pdo-entry-not-mappable", false)                                                      \
+    X(PDO_TWICE, "pdo-twice", true)                                                                                 \
+    X(PDO_INDEX, "pdo-index", false)                                                                                \
+    X(PDO_SYNC_MANAGER, "pdo-sync-manager", true)                                                                   \
+    X(PDO_MANDATORY_UNASSIGNED, "pdo-mandatory-unassigned", false)                                                  \
+    X(NO_PDO_ASSIGNED, "no-pdo-assigned", false)                                                                    \
+    X(EXCLUDE_ONE_SIDED, "exclude-one-sided", false)                                                                \
+    X(EXCLUDE_MISSING, "exclude-missing", false)                                                                    \
+    X(EXCLUDE_TWICE, "exclude-twice", false)                                                                        \
+    X(EXCLUDE_ITSELF, "exclude-itself", true)                                                                       \
+    X(EXCLUDED_ASSIGNED, "excluded-assigned", true)                                                                 \
+    X(MAPPING_OBJECT, "mapping-object", true)                                                                       \
+    X(MAPPING_COMMAND, "mapping-command", true)                                                                     \
+    X(ASSIGNMENT_OBJECT, "assignment-object", false)                                                                \
+    X(ASSIGNMENT_COMMAND, "assignment-command", true)                                                               \
+    X(INIT_COMMAND_OBJECT, "init-command-object", true)                                                             \
+    X(INIT_COMMAND_READ_ONLY, "init-command-read-only", true)                                                       \
+    X(INIT_COMMAND_SIZE, "init-command-size", true)                                                                 \
+    X(INIT_COMMAND_RANGE, "init-command-range", true)                                                               \
+    X(INIT_COMMAND_COMPLETE_ACCESS, "init-command-complete-access", true)                                           \
     X(SYNC_MANAGERS_OVERLAP, "sync-managers-overlap", true)                                                         \
+    X(SYNC_MANAGER_BEYOND_MEMORY, "sync-manager-beyond-memory", true)                                               \
+    X(SYNC_MANAGER_CONTROL, "sync-manager-control", true)                                                           \
+    X(SYNC_MANAGER_WATCHDOG, "sync-manager-watchdog", false)                                                        \
+    X(SYNC_MANAGER_ORDER, "sync-manager-order", true)                                                               \
+    X(SYNC_MANAGER_SIZE, "sync-manager-size", false)                                                                \
+    X(SYNC_MANAGER_RANGE, "sync-manager-range", true)                                                               \
+    X(SYNC_MANAGER_TYPES, "sync-manager-types", true)                                                               \
+    X(SYNC_MANAGERS_TOO_MANY, "sync-managers-too-many", true)                                                       \
+    X(FMMU_MISSING, "fmmu-missing", true)                                                                           \
+    X(FMMU_MAILBOX_MISSING, "fmmu-mailbox-missing", false)                                                          \
+    X(FMMUS_TOO_MANY, "fmmus-too-many", true)                                                                       \
     X(MAILBOX_SIZE, "mailbox-size", true)                                                                           \
+    X(MAILBOX_WITHOUT_SYNC_MANAGER, "mailbox-without-sync-manager", true)                                           \
+    X(MAILBOX_WITHOUT_PROTOCOL, "mailbox-without-protocol", false)                                                  \
+    X(BOOTSTRAP_SIZE, "bootstrap-size", true)                                                                       \
+    X(BOOTSTRAP_WITHOUT_FOE, "bootstrap-without-foe", false)                                                        \
+    X(OBJECT_TWICE, "object-twice", true)                                                                           \
+    X(SUBINDEX_TWICE, "subindex-twice", true)                                                                       \
+    X(OBJECT_SIZE, "object-size", true)                                                                             \
+    X(DATA_SIZE, "data-size", true)                                                                                 \
+    X(RANGE_EMPTY, "range-empty", true)                                                                             \
+    X(DEFAULT_OUT_OF_RANGE, "default-out-of-range", true)                                                           \
+    X(TYPE_SIZE, "type-size", true)                                                                                 \
+    X(TYPE_ITEM_SIZE, "type-item-size", true)                                                                       \
+    X(TYPE_ITEM_OFFSET, "type-item-offset", true)                                                                   \
+    X(TYPE_UNKNOWN, "type-unknown", true)                                                                           \
+    X(TYPE_TWICE, "type-twice", true)                                                                               \
+    X(TYPE_LOOP, "type-loop", true)                                                                                 \
+    X(IDENTITY_OBJECT, "identity-object", true)                                                                     \
+    X(DEVICE_TYPE, "device-type", true)                                                                             \
+    X(SLOT_MODULE_MISSING, "slot-module-missing", true)                                                             \
+    X(SLOT_DEFAULTS, "slot-defaults", true)                                                                         \
+    X(SLOT_NO_DEFAULT, "slot-no-default", false)                                                                    \
+    X(SLOT_INSTANCES, "slot-instances", true)                                                                       \
+    X(SLOT_DEPENDENCE, "slot-dependence", true)                                                                     \
+    X(MODULE_TWICE, "module-twice", true)                                                                           \
     /* an SII image */                                                                                              \
     X(SII_CHECKSUM, "sii-checksum", true)                                                                           \
     X(SII_CATEGORY_LENGTH, "sii-category-length", true)                                                             \
@@ -96,6 +152,8 @@ cm1e_findings_t *cm1e_findings_create(void);
 /** The same rule at the same place with the same text counts once. */
 void cm1e_findings_add(cm1e_findings_t *findings, cm1e_rule_t rule, cm1e_place_t place, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
+/** Whether there is a finding of that rule at that place; of place 0 nothing is known. */
+bool cm1e_findings_has(const cm1e_findings_t *findings, cm1e_rule_t rule, cm1e_place_t place);
 /** Sorts by line; call it when all are in. */
 void cm1e_findings_sort(cm1e_findings_t *findings);
 

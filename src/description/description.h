@@ -124,6 +124,7 @@ typedef struct cm1e_described_sync_manager {
     bool length_given;
     uint16_t minimum_length, maximum_length; /**< 0: not stated */
     uint8_t control;         /**< 0x0804 + 8 n */
+    bool control_missing;    /**< the file does not state it */
     uint8_t enable;          /**< 0x0806 + 8 n, bit 0 */
 } cm1e_described_sync_manager_t;
 

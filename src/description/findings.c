@@ -46,14 +46,24 @@ static bool is_known(const cm1e_findings_t *findings, const char *rule, cm1e_pla
     return false;
 }
 
+bool cm1e_findings_has(const cm1e_findings_t *findings, cm1e_rule_t rule, cm1e_place_t place)
+{
+    for (size_t i = 0; place != 0 && i < findings->list.count; i++)
+        if (findings->list.at[i].line == place && findings->list.at[i].rule == rules[rule].name)
+            return true;
+    return false;
+}
+
 void cm1e_findings_add(cm1e_findings_t *findings, cm1e_rule_t rule, cm1e_place_t place, const char *format, ...)
 {
     char text[1024];
+    if (findings->list.count >= CM1E_FINDINGS_MAX)
+        return;
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    if (findings->list.count >= CM1E_FINDINGS_MAX || is_known(findings, rules[rule].name, place, text))
+    if (is_known(findings, rules[rule].name, place, text))
         return;
     const bool last = findings->list.count == CM1E_FINDINGS_MAX - 1;
     cm1e_finding_t *finding = CM1E_APPEND(&findings->arena, &findings->list);

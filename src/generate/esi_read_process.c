@@ -87,6 +87,7 @@ static void read_sync_managers(cm1e_xml_reader_t *reader, const xmlNode *node, c
         manager->length = length >= 0 ? (uint16_t)length : 0;
         manager->minimum_length = (uint16_t)cm1e_xml_attribute_number(reader, child, "MinSize", 0, UINT16_MAX, 0);
         manager->maximum_length = (uint16_t)cm1e_xml_attribute_number(reader, child, "MaxSize", 0, UINT16_MAX, 0);
+        manager->control_missing = !cm1e_xml_attribute(reader, child, "ControlByte");
         manager->control = (uint8_t)cm1e_xml_attribute_number(reader, child, "ControlByte", 0, UINT8_MAX, 0);
         manager->enable = (uint8_t)cm1e_xml_attribute_number(reader, child, "Enable", 0, UINT8_MAX, 0);
     }

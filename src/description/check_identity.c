@@ -1,0 +1,82 @@
+#include "description/check_private.h"
+
+/* Who the device says it is: 0x1000 and 0x1018 beside the description's head. */
+
+enum { OBJECT_DEVICE_TYPE = 0x1000, OBJECT_IDENTITY = 0x1018, OBJECT_SM_TYPES = 0x1C00, PROFILE_MODULAR = 5001 };
+
+/* A default of 0 is what files write for a value that the device fills in itself. */
+static bool stated(const cm1e_check_t *check, uint16_t index, uint8_t subindex, uint32_t *value, cm1e_place_t *place)
+{
+    return cm1e_check_default(check, index, subindex, value, place) && *value != 0;
+}
+
+static void check_identity_object(const cm1e_check_t *check)
+{
+    const cm1e_description_t *device = check->device;
+    const struct {
+        uint8_t subindex;
+        const char *what;
+        uint32_t value;
+        bool given;
+    } parts[] = {{1, "vendor", device->vendor_id, device->vendor_id != 0},
+                 {2, "product code", device->product_code, device->product_given},
+                 {3, "revision", device->revision, device->revision_given}};
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+        uint32_t value;
+        cm1e_place_t place;
+        if (parts[i].given && stated(check, OBJECT_IDENTITY, parts[i].subindex, &value, &place) &&
+            value != parts[i].value)
+            cm1e_check_add(check, CM1E_RULE_IDENTITY_OBJECT, place,
+                           "0x1018:%02X gives the %s 0x%08X; the device is described with 0x%08X", parts[i].subindex,
+                           parts[i].what, (unsigned)value, (unsigned)parts[i].value);
+    }
+}
+
+/* One channel: 0x1000 is its profile with the additional information above it. Several channels have each their own in
+ * 0xF010; then 0x1000 has one of their profiles, or that of modular devices (ETG.5001), and what it likes above. */
+static void check_device_type(const cm1e_check_t *check)
+{
+    const cm1e_description_t *device = check->device;
+    uint32_t value;
+    cm1e_place_t place;
+    if (device->channels.count == 0 || !stated(check, OBJECT_DEVICE_TYPE, 0, &value, &place))
+        return;
+    const cm1e_channel_t *first = &device->channels.at[0];
+    const uint32_t expected = ((uint32_t)first->profile_no & 0xFFFF) | (uint32_t)first->add_info << 16;
+    if (device->channels.count == 1) {
+        const bool right = first->add_info >= 0 ? value == expected : (value & 0xFFFF) == (expected & 0xFFFF);
+        if (!right)
+            cm1e_check_add(check, CM1E_RULE_DEVICE_TYPE, place,
+                           "0x1000 is 0x%08X; profile %d with the additional information %d is 0x%08X",
+                           (unsigned)value, (int)first->profile_no, (int)(first->add_info < 0 ? 0 : first->add_info),
+                           (unsigned)(first->add_info < 0 ? expected & 0xFFFF : expected));
+        return;
+    }
+    bool known = (value & 0xFFFF) == PROFILE_MODULAR;
+    for (size_t i = 0; i < device->channels.count; i++)
+        known = known || (value & 0xFFFF) == ((uint32_t)device->channels.at[i].profile_no & 0xFFFF);
+    if (!known)
+        cm1e_check_add(check, CM1E_RULE_DEVICE_TYPE, place, "0x1000 is 0x%08X, profile %u, which no channel has",
+                       (unsigned)value, (unsigned)(value & 0xFFFF));
+}
+
+static void check_sync_manager_types(const cm1e_check_t *check)
+{
+    const cm1e_description_t *device = check->device;
+    for (size_t n = 0; n < device->sync_managers.count && n < 32; n++) {
+        uint32_t value;
+        cm1e_place_t place;
+        if (stated(check, OBJECT_SM_TYPES, (uint8_t)(n + 1), &value, &place) &&
+            device->sync_managers.at[n].use != CM1E_SM_UNUSED && value != (uint32_t)device->sync_managers.at[n].use)
+            cm1e_check_add(check, CM1E_RULE_SYNC_MANAGER_TYPES, place,
+                           "0x1C00:%02X gives sync manager %zu the type %u; it is described as type %u",
+                           (unsigned)n + 1, n, (unsigned)value, (unsigned)device->sync_managers.at[n].use);
+    }
+}
+
+void cm1e_check_identity(const cm1e_check_t *check)
+{
+    check_identity_object(check);
+    check_device_type(check);
+    check_sync_manager_types(check);
+}
