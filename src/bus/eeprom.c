@@ -116,10 +116,18 @@ bool cm1e_eeprom_read(cm1e_eeprom_t *eeprom, uint32_t word, uint8_t bytes[4])
     return true;
 }
 
+/** Whether a word is there. Read from the begin of its group, whatever the size of groups is: never beyond the end. */
+static bool holds(cm1e_eeprom_t *eeprom, uint32_t word, uint16_t value)
+{
+    uint8_t bytes[4];
+    return cm1e_eeprom_read(eeprom, word & ~UINT32_C(3), bytes) &&
+           cm1e_eeprom_read(eeprom, word & ~UINT32_C(1), bytes) && cm1e_get_u16(bytes + 2 * (word % 2)) == value;
+}
+
 bool cm1e_eeprom_write(cm1e_eeprom_t *eeprom, uint32_t word, uint16_t value)
 {
     uint16_t status;
-    uint8_t bytes[4];
+    uint8_t bytes[2];
     for (int try = 0; try < EEPROM_TRIES; try++) {
         if (!make_ready(eeprom, WRITE_TIMEOUT_NS))
             return false;
@@ -134,7 +142,7 @@ bool cm1e_eeprom_write(cm1e_eeprom_t *eeprom, uint32_t word, uint16_t value)
             pause_for(NACK_PAUSE_NS);
             continue;
         }
-        if (cm1e_eeprom_read(eeprom, word, bytes) && cm1e_get_u16(bytes) == value)
+        if (holds(eeprom, word, value))
             return true;
     }
     return false;

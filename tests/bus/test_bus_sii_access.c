@@ -141,6 +141,34 @@ START_TEST(only_words_that_differ_are_written_the_header_last)
 }
 END_TEST
 
+/** Reading behind the end, which some EEPROMs refuse. */
+static bool beyond;
+static cm1e_tap_verdict_t watch_the_end(void *context, cm1e_tap_frame_t *frame)
+{
+    const unsigned *words = context;
+    if (frame->direction == CM1E_TAP_SENT && frame->length >= 32 && cm1e_get_u16(frame->bytes + 20) == 0x0502 &&
+        frame->bytes[16] == COMMAND_FPWR && cm1e_get_u16(frame->bytes + 26) == 0x0100)
+        beyond |= cm1e_get_u32(frame->bytes + 28) + *words > CM1E_SII_SIZE / 2;
+    return CM1E_TAP_PASS;
+}
+
+START_TEST(every_word_up_to_the_last_is_written_without_reading_behind_it)
+{
+    for (unsigned words = 2; words <= 4; words += 2) { /* that the controller reads at a time */
+        cm1e_bus_t *bus = with_images();
+        cm1e_sim_segment_slave(segment_of(bus), 1)->sii_reads_8_bytes = words == 4;
+        for (size_t i = 0x600; i < sizeof image; i++)
+            image[i] = (uint8_t)(i * 7);
+        beyond = false;
+        cm1e_nic_set_tap(cm1e_bus_nic(bus), watch_the_end, &words);
+        ck_assert_msg(write_image(bus, &plain) == CM1E_OK, "%s", diag.text);
+        ck_assert_mem_eq(eeprom_of(bus, 1), image, sizeof image);
+        ck_assert(!beyond);
+        cm1e_bus_close(bus);
+    }
+}
+END_TEST
+
 START_TEST(an_image_shorter_than_the_eeprom_leaves_the_rest_as_it_is)
 {
     cm1e_bus_t *bus = with_images();
@@ -433,6 +461,7 @@ int main(void)
     suite_add_tcase(suite, reading);
     TCase *writing = tcase_create("writing");
     tcase_add_test(writing, only_words_that_differ_are_written_the_header_last);
+    tcase_add_test(writing, every_word_up_to_the_last_is_written_without_reading_behind_it);
     tcase_add_test(writing, an_image_shorter_than_the_eeprom_leaves_the_rest_as_it_is);
     tcase_add_test(writing, alias_and_serial_number_stay_those_of_the_slave_unless_asked);
     tcase_add_loop_test(writing, what_could_do_harm_is_refused_unless_that_very_thing_is_forced, 0,
