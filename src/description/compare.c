@@ -162,8 +162,8 @@ static void compare_pdos(const comparison_t *c)
         if (!device)
             DIFFERS(c, DIFFERS_PDO, file->place, "The device has no %s 0x%04X.", direction(file), file->index);
         else if (device->transmit != file->transmit)
-            DIFFERS(c, DIFFERS_PDO, file->place, "0x%04X is among the %ss in the file, the %ss in the device.", file->index,
-                    direction(file), direction(device));
+            DIFFERS(c, DIFFERS_PDO, file->place, "0x%04X is among the %ss in the file, the %ss in the device.",
+                    file->index, direction(file), direction(device));
         else
             compare_mapping(c, file, device);
     }
@@ -326,7 +326,7 @@ static void compare_device_side(const comparison_t *c, const cm1e_description_t 
     }
 }
 
-void cm1e_compare_variants(cm1e_findings_t *findings, const cm1e_description_t *variants, size_t count,
+void cm1e_compare_variants(cm1e_findings_t *findings, const cm1e_description_t *variants, size_t compared, size_t count,
                            const cm1e_description_t *device)
 {
     comparison_t c = {.findings = findings, .file = &variants[0], .device = device};
@@ -335,7 +335,7 @@ void cm1e_compare_variants(cm1e_findings_t *findings, const cm1e_description_t *
     compare_mailbox(&c);
     compare_sync_managers(&c);
     compare_assignment(&c);
-    for (size_t n = 0; n < count; n++) {
+    for (size_t n = 0; n < compared; n++) {
         c.file = &variants[n];
         compare_pdos(&c);
         for (size_t i = 0; device->objects.count > 0 && i < c.file->objects.count; i++)
@@ -348,5 +348,5 @@ void cm1e_compare_variants(cm1e_findings_t *findings, const cm1e_description_t *
 
 void cm1e_compare(cm1e_findings_t *findings, const cm1e_description_t *file, const cm1e_description_t *device)
 {
-    cm1e_compare_variants(findings, file, 1, device);
+    cm1e_compare_variants(findings, file, 1, 1, device);
 }

@@ -14,8 +14,9 @@
 void cm1e_compare(cm1e_findings_t *findings, const cm1e_description_t *file, const cm1e_description_t *device);
 
 /** The same for a file that offers modules: `variants[0]` is the device with those that stand in its slots when nobody
- *  chooses, the others with those that can stand there; the device has the objects and PDOs of all of them. */
-void cm1e_compare_variants(cm1e_findings_t *findings, const cm1e_description_t *variants, size_t count,
+ *  chooses, the others with those that can stand there. The first `compared` of them are compared; that something is
+ *  missing in the file is said only if it is in none of the `count`. */
+void cm1e_compare_variants(cm1e_findings_t *findings, const cm1e_description_t *variants, size_t compared, size_t count,
                            const cm1e_description_t *device);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "cm1e/generate.h"
 #include "description/compare.h"
+#include "description/expand.h"
 #include "description/sii.h"
 #include "generate/ec_extend.h"
 #include "generate/eni.h"
@@ -58,6 +59,57 @@ static void name_revisions(cm1e_findings_t *findings, const cm1e_description_fil
                           (unsigned)live->revision, revisions, (unsigned)chosen->revision);
 }
 
+/* ---- modules ---------------------------------------------------------------------------------------------------- */
+
+/** More modules than this to choose from for one slot are not looked at. */
+enum { CHOICES_MAX = 16 };
+
+typedef struct modular {
+    cm1e_arena_t arena;
+    const cm1e_description_file_t *file;
+    const cm1e_description_t *device;
+    size_t places, count;
+    uint32_t defaults[CM1E_PLACES_MAX];
+    cm1e_description_t variants[1 + 2 * CHOICES_MAX];
+} modular_t;
+
+/** One more variant: in every place (or those that are filled when nobody chooses) choice number `n` of its slot. */
+static void add_variant(modular_t *m, size_t n, bool in_every_place)
+{
+    uint32_t idents[CM1E_PLACES_MAX];
+    for (size_t place = 0; place < m->places; place++) {
+        const cm1e_slot_t *slot = cm1e_description_place(m->device, place);
+        const bool filled = slot && slot->choices.count > 0 && (in_every_place || m->defaults[place]);
+        idents[place] = filled ? slot->choices.at[n % slot->choices.count].ident : 0;
+    }
+    cm1e_description_expand(&m->arena, &m->variants[m->count++], m->file, m->device, idents, m->places);
+}
+
+static void compare_modular(cm1e_findings_t *findings, const cm1e_description_file_t *file,
+                            const cm1e_description_t *device, const cm1e_description_t *live)
+{
+    modular_t m = {.file = file, .device = device, .places = cm1e_description_places(device)};
+    size_t choices = 0;
+    for (size_t i = 0; i < device->slots.count; i++)
+        if (device->slots.at[i].choices.count > choices)
+            choices = device->slots.at[i].choices.count;
+    if (choices > CHOICES_MAX)
+        choices = CHOICES_MAX;
+    cm1e_description_default_modules(device, m.defaults, m.places);
+    cm1e_description_expand(&m.arena, &m.variants[m.count++], file, device, m.defaults, m.places);
+    for (size_t n = 0; n < choices; n++)
+        add_variant(&m, n, false);
+    const size_t compared = m.count;
+    for (size_t n = 0; n < choices; n++)
+        add_variant(&m, n, true);
+    findings->arena.failed |= m.arena.failed;
+    if (!m.arena.failed)
+        cm1e_compare_variants(findings, m.variants, compared, m.count, live);
+    cm1e_arena_free(&m.arena);
+}
+
+/* ---- formats ---------------------------------------------------------------------------------------------------- */
+
 static cm1e_error_t diff_described(cm1e_findings_t *findings, cm1e_file_format_t format, const void *bytes, size_t size,
                                    const cm1e_description_t *live, cm1e_diag_t *diag)
 {
@@ -67,7 +119,10 @@ static cm1e_error_t diff_described(cm1e_findings_t *findings, cm1e_file_format_t
     const cm1e_description_t *device = error == CM1E_OK ? choose(&file, live) : NULL;
     if (device) {
         name_revisions(findings, &file, live, device);
-        cm1e_compare(findings, device, live);
+        if (device->slots.count > 0)
+            compare_modular(findings, &file, device, live);
+        else
+            cm1e_compare(findings, device, live);
     } else if (error == CM1E_OK) {
         error = not_described(live, diag);
     }

@@ -97,6 +97,27 @@ START_TEST(the_sii_of_the_device_itself_differs_in_nothing)
 }
 END_TEST
 
+static void compare_modular(cm1e_bus_t *bus, const char *firmware)
+{
+    cm1e_file_t file = {0};
+    cm1e_device_options_t device = {.order = tested_order()};
+    snprintf(device.firmware, sizeof device.firmware, "%s", firmware);
+    const cm1e_generate_options_t options = {.format = CM1E_FILE_ESI, .layout = CM1E_ESI_MDP, .devices = &device,
+                                             .device_count = 1};
+    ck_assert_msg(cm1e_generate(&file, &options, &diag) == CM1E_OK, "%s", diag.text);
+    compare(bus, 1, file.bytes, file.size);
+    cm1e_file_free(&file);
+}
+
+START_TEST(a_modular_file_differs_in_nothing)
+{
+    cm1e_bus_t *bus = scanned_bus(1);
+    compare_modular(bus, tested_firmware());
+    check_no_finding();
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /* ---- differences ------------------------------------------------------------------------------------------------ */
 
 static bool has(const char *rule, const char *words)
@@ -107,6 +128,17 @@ static bool has(const char *rule, const char *words)
             return true;
     return false;
 }
+
+/** Also in a module that nobody has chosen. */
+START_TEST(a_modular_file_for_another_firmware_differs_in_its_modules)
+{
+    cm1e_bus_t *bus = scanned_bus(1);
+    compare_modular(bus, strcmp(tested_firmware(), "1.2.0") == 0 ? "1.3.5" : "1.2.0");
+    ck_assert_msg(has("differs-identity", "revision") && has("differs-pdo", "RxPDO 0x1603"), "%s", first_text());
+    cm1e_findings_free(findings);
+    cm1e_bus_close(bus);
+}
+END_TEST
 
 /** Changes the ESI of the device at the first place where `old` stands, to a text of the same length. */
 static void compare_changed(cm1e_bus_t *bus, const char *old, const char *changed)
@@ -238,6 +270,16 @@ START_TEST(a_file_about_something_else_is_not_compared)
     ck_assert_int_eq(cm1e_diff_file(&findings, file.bytes, file.size, bus, 1, &diag), CM1E_ERROR_NOT_FOUND);
     ck_assert_ptr_nonnull(strstr(diag.text, "does not describe"));
     cm1e_file_free(&file);
+    generate(&file, CM1E_FILE_EC_EXTEND, tested_firmware());
+    ck_assert_int_eq(cm1e_diff_file(&findings, file.bytes, file.size, bus, 1, &diag), CM1E_ERROR_NOT_FOUND);
+    cm1e_file_free(&file);
+    cm1e_bus_close(bus);
+    bus = scanned_bus(2);
+    config.axis_count = 1; /* a network of one slave */
+    generate(&file, CM1E_FILE_ENI, tested_firmware());
+    ck_assert_int_eq(cm1e_diff_file(&findings, file.bytes, file.size, bus, 2, &diag), CM1E_ERROR_NOT_FOUND);
+    ck_assert_ptr_nonnull(strstr(diag.text, "none at position 2"));
+    cm1e_file_free(&file);
     cm1e_bus_close(bus);
 }
 END_TEST
@@ -260,6 +302,59 @@ START_TEST(the_live_device_is_described_by_what_it_tells)
     ck_assert_uint_eq(entry->access, CM1E_ACCESS_READ | CM1E_ACCESS_WRITE | CM1E_ACCESS_WRITE_PREOP_ONLY);
     ck_assert_str_eq(cm1e_description_entry(device, 0x6060, 0)->type, "SINT");
     cm1e_description_file_free(&file);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/** SDO information is asked for in a service that there is not: a device that has none. */
+static cm1e_tap_verdict_t no_information(void *context, cm1e_tap_frame_t *frame)
+{
+    enum { DATA = 26, COE = DATA + 6 };
+    (void)context;
+    if (frame->direction == CM1E_TAP_SENT && frame->bytes[16] == 5 /* FPWR */ && frame->length > COE + 2 &&
+        cm1e_get_u16(frame->bytes + 22) == 128 && cm1e_get_u16(frame->bytes + COE) == 8 << 12)
+        cm1e_put_u16(frame->bytes + COE, 15 << 12);
+    return CM1E_TAP_PASS;
+}
+
+START_TEST(a_device_without_sdo_information_is_compared_by_the_rest)
+{
+    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_file_t file = {0};
+    generate(&file, CM1E_FILE_ESI, tested_firmware());
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), no_information, NULL);
+    compare(bus, 1, file.bytes, file.size);
+    ck_assert_msg(cm1e_findings_count(findings) == 1 && has("not-compared", "dictionary is not compared"), "%s",
+                  first_text());
+    cm1e_findings_free(findings);
+    cm1e_file_free(&file);
+    const bool old = strcmp(tested_firmware(), "1.2.0") == 0;
+    generate(&file, CM1E_FILE_ESI, old ? "1.3.5" : "1.2.0"); /* its mapping objects are read by SDO */
+    compare(bus, 1, file.bytes, file.size);
+    ck_assert_msg(has("differs-pdo", "0x1603"), "%s", first_text());
+    cm1e_findings_free(findings);
+    cm1e_file_free(&file);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(a_device_without_mailbox_is_compared_by_its_sii)
+{
+    sim_config(1);
+    cm1e_bus_t *bus = open_bus();
+    cm1e_sim_segment_t *segment = cm1e_sim_segment_create_empty();
+    ck_assert_int_eq(cm1e_sim_segment_add(segment, cm1e_sim_io_module_create()), CM1E_OK);
+    cm1e_nic_replace_segment(cm1e_bus_nic(bus), segment);
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    static uint8_t image[4096];
+    size_t size = sizeof image;
+    ck_assert_int_eq(cm1e_sii_read_device(bus, 1, image, &size, &diag), CM1E_OK);
+    compare(bus, 1, image, size);
+    check_no_finding();
+    cm1e_sim_segment_slave(segment, 1)->sii[0x18] ^= 1;
+    compare(bus, 1, image, size);
+    ck_assert_msg(cm1e_findings_count(findings) == 1 && has("differs-identity", "revision"), "%s", first_text());
+    cm1e_findings_free(findings);
     cm1e_bus_close(bus);
 }
 END_TEST
@@ -353,18 +448,22 @@ int main(void)
                         sizeof formats / sizeof formats[0]);
     tcase_add_test(equal, the_esi_of_every_firmware_differs_in_nothing);
     tcase_add_test(equal, the_sii_of_the_device_itself_differs_in_nothing);
+    tcase_add_test(equal, a_modular_file_differs_in_nothing);
     tcase_add_test(equal, a_lost_frame_changes_no_finding);
     suite_add_tcase(suite, equal);
     TCase *different = tcase_create("different");
     tcase_add_test(different, what_is_changed_in_a_file_is_found_in_its_line);
     tcase_add_test(different, a_file_for_another_firmware_differs_in_revision_and_dictionary);
     tcase_add_test(different, a_file_with_other_revisions_names_them);
+    tcase_add_test(different, a_modular_file_for_another_firmware_differs_in_its_modules);
     tcase_add_test(different, the_other_order_of_the_mappings_is_found);
     tcase_add_test(different, another_assignment_is_a_warning);
     tcase_add_test(different, a_file_about_something_else_is_not_compared);
     suite_add_tcase(suite, different);
     TCase *live = tcase_create("live");
     tcase_add_test(live, the_live_device_is_described_by_what_it_tells);
+    tcase_add_test(live, a_device_without_sdo_information_is_compared_by_the_rest);
+    tcase_add_test(live, a_device_without_mailbox_is_compared_by_its_sii);
     tcase_add_test(live, a_device_that_lies_ends_in_findings_or_an_error_in_bounded_time);
     tcase_add_test(live, a_device_that_goes_away_ends_the_comparison_soon);
     suite_add_tcase(suite, live);
