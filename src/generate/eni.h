@@ -7,9 +7,9 @@
  * - acontis EC-Master (also inside Simulink Real-Time and others) runs the file: every InitCmd, the cyclic frames, the
  *   variables. It takes what TwinCAT exports, so a file has to be laid out as those are.
  * - TwinCAT exports ENI, and imports it for a simulated network only (TE1111). In its files an image is the frame
- *   itself: frame n begins at byte 1536 n, InputOffs and OutputOffs are where a datagram's header lies, its data lie 10
- *   bytes behind, and BitStart and BitOffs count from the image's begin. So do ours. Others (e.g. the ENI of Synapticon's
- *   Motion Master) mean the data by InputOffs; the checker takes either.
+ *   itself: InputOffs and OutputOffs are where a datagram's header lies, its data lie 10 bytes behind, and BitStart and
+ *   BitOffs count from the image's begin. So do ours, frame n from byte 1536 n on (seen of frame 0 only). Others, e.g.
+ *   the ENI of Synapticon's Motion Master, mean the data by InputOffs; the checker takes either.
  * - SOEM 2.x (scripts/eniconv.py): AutoIncAddr, VendorId, ProductCode, RevisionNo and the CoE InitCmds. Numbers decimal
  *   or 0x but not #x there, CompleteAccess and Disabled "1" (not "true"), and a Timeout above 0: it is taken literally.
  * - KickCAT (lib ENI parser): Destination and Source of the master, Type, StartAddress, ControlByte and Enable of every
@@ -188,7 +188,7 @@ typedef struct cm1e_eni {
 
 /** One slave of the network that an ENI is made for, in the order of the wire. */
 typedef struct cm1e_eni_slave {
-    const cm1e_description_t *device; /**< identity, sync managers, PDOs with their default assignment, start-up commands */
+    const cm1e_description_t *device; /**< its PDOs by the default assignment; outlives the document */
     const char *name;                 /**< in the network: "x_axis"; must be unique */
     uint16_t alias;                   /**< configured station alias by which it is to be found; 0: by position */
 } cm1e_eni_slave_t;

@@ -104,7 +104,9 @@ static void check_place(cm1e_findings_t *findings, const cm1e_eni_t *document, c
             (!first || fmmus[n].logical < first->logical))
             first = &fmmus[n];
     const cm1e_eni_command_t *command = first ? carrier(document, first) : NULL;
-    const int64_t offset = !command ? CM1E_ENI_NOT_GIVEN : type == WRITE ? command->output_offset : command->input_offset;
+    const int64_t offset = !command        ? CM1E_ENI_NOT_GIVEN
+                           : type == WRITE ? command->output_offset
+                                           : command->input_offset;
     if (!(type == WRITE ? device->has_send : device->has_receive) || offset == CM1E_ENI_NOT_GIVEN)
         return;
     const int64_t bit = (offset + (int64_t)first->logical - command->address) * 8 + first->start_bit;

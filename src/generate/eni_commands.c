@@ -1,6 +1,6 @@
 /* The InitCmds that take a slave through its states, in the order in which TwinCAT's exported files have them: a master
- * picks those of the transition that it makes, in the file's order. The CoE InitCmds of a transition go before them, for
- * the last thing here is to ask for the new state and to see it (ETG.1000.6 6.4.1). */
+ * picks those of the transition that it makes, in the file's order. The CoE InitCmds of a transition go before them,
+ * for the last thing here is to ask for the new state and to see it (ETG.1000.6 6.4.1). */
 #include "core/bytes.h"
 #include "generate/eni.h"
 
@@ -257,9 +257,9 @@ static void set_fmmu(maker_t *maker, unsigned number, const cm1e_described_sync_
     set_bytes(maker, command, registers, sizeof registers);
 }
 
-/* One FMMU for each sync manager; outputs and inputs both from the slave's logical address on. LRW takes the outputs out
- * of the frame before it puts the inputs there (ETG.1000.4 5.4.3), so the frame is as long as the longer of the two.
- * Returns how many there are. */
+/* One FMMU for each sync manager; outputs and inputs both from the slave's logical address on. LRW takes the outputs
+ * out of the frame before it puts the inputs there (ETG.1000.4 5.4.3), so the frame is as long as the longer of the
+ * two. Returns how many there are. */
 static unsigned make_fmmus(maker_t *maker, uint32_t logical)
 {
     uint32_t next[2] = {logical, logical};

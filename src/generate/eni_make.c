@@ -219,7 +219,8 @@ static const char *variable_name(maker_t *maker, const cm1e_eni_image_t *image, 
     char pdo_name[16], entry_name[16];
     snprintf(pdo_name, sizeof pdo_name, "0x%04X", pdo->index);
     snprintf(entry_name, sizeof entry_name, "0x%04X:%02X", entry->index, entry->subindex);
-    const char *base = cm1e_arena_format(maker->arena, "%s.%s.%s", device, pdo->name && *pdo->name ? pdo->name : pdo_name,
+    const char *base = cm1e_arena_format(maker->arena, "%s.%s.%s", device,
+                                         pdo->name && *pdo->name ? pdo->name : pdo_name,
                                          entry->name && *entry->name ? entry->name : entry_name);
     const char *name = base;
     for (unsigned n = 2; is_taken(image, name) && !maker->arena->failed; n++)

@@ -1,5 +1,5 @@
-/* Elements in the order of the schema (EtherCATConfig.xsd). Numbers are decimal but for the indexes of PDOs, flags 1 and
- * 0: see eni.h for who cannot read what. */
+/* Elements in the order of the schema (EtherCATConfig.xsd). Numbers are decimal but for the indexes of PDOs, flags 1
+ * and 0: see eni.h for who cannot read what. */
 #include <stdio.h>
 
 #include "generate/eni.h"
