@@ -77,6 +77,9 @@ static cm1e_error_t diagnose_scan(const cm1e_bus_t *bus, int result, uint16_t po
     if (result == SCAN_TOO_MANY)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "More than %d slaves answer on %s.", CM1E_MAX_SLAVES,
                              name);
+    if (result == SCAN_NO_MEMORY)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory while reading the SII of slave %u on %s.",
+                             position, name);
     if (result == SCAN_LOST)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_LOST, 0,
                              "Slave %u on %s stopped answering during the scan: check its power and the cables up to "

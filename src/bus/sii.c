@@ -2,170 +2,134 @@
 
 #include <string.h>
 
-#include "core/bytes.h"
+#include "description/sii.h"
 
-/* Word addresses and category types (ETG.2010 tables 2 and 3). */
-enum {
-    WORD_VENDOR = 0x08, WORD_PRODUCT = 0x0A, WORD_REVISION = 0x0C, WORD_SERIAL = 0x0E,
-    WORD_MAILBOX_OUT = 0x18, WORD_MAILBOX_IN = 0x1A, WORD_MAILBOX_PROTOCOLS = 0x1C, WORD_CATEGORIES = 0x40,
-    CATEGORY_STRINGS = 10, CATEGORY_GENERAL = 30, CATEGORY_SYNC_MANAGERS = 41, CATEGORY_TXPDO = 50, CATEGORY_RXPDO = 51,
-    CATEGORY_END = 0xFFFF,
-};
-/** A SII is at most 4 Mbit by its size word, but no device known needs more than this; it bounds the time of a scan. */
+/** An SII is at most 8 MiB by its size word, but no device known needs more than this; it bounds the time of a scan. */
 enum { WORDS_MAX = 0x2000, CATEGORIES_MAX = 64 };
-enum { GENERAL_NAME = 3, GENERAL_COE = 5, GENERAL_FLAGS = 11, FLAG_NO_LRW = 0x02 };
-enum { SM_ENTRY_BYTES = 8, PDO_HEADER_BYTES = 8, PDO_ENTRY_BYTES = 8 };
+enum { WORD_CATEGORIES = CM1E_SII_HEADER_BYTES / 2, HEADER_WORDS = 2 };
 
-/** The bytes of one category, fetched as they are asked for. */
-typedef struct cm1e_sii_view {
+typedef struct source {
     cm1e_sii_reader reader;
     void *context;
-    uint32_t first_word, bytes;
-    uint32_t cached_word;
-    uint8_t cache[4];
-    bool failed;
-} cm1e_sii_view_t;
+    uint8_t *image;
+} source_t;
 
-/** 0 behind the end of the category and after a failure. */
-static uint8_t byte_at(cm1e_sii_view_t *view, uint32_t place)
+/** Words come in pairs: the image has room for one more behind an odd end. */
+static bool fetch(const source_t *source, uint32_t word, uint32_t count)
 {
-    const uint32_t word = view->first_word + place / 4 * 2;
-    if (view->failed || place >= view->bytes)
-        return 0;
-    if (word != view->cached_word) {
-        view->failed = !view->reader(view->context, (uint16_t)word, view->cache);
-        view->cached_word = word;
-    }
-    return view->failed ? 0 : view->cache[place % 4];
-}
-
-static uint16_t word_at(cm1e_sii_view_t *view, uint32_t place)
-{
-    return (uint16_t)(byte_at(view, place) | byte_at(view, place + 1) << 8);
-}
-
-static bool read_u32(cm1e_sii_reader reader, void *context, uint16_t word, uint32_t *value)
-{
-    uint8_t bytes[4];
-    if (!reader(context, word, bytes))
-        return false;
-    *value = cm1e_get_u32(bytes);
+    for (const uint32_t end = word + count; word < end; word += 2)
+        if (!source->reader(source->context, (uint16_t)word, source->image + 2 * word))
+            return false;
     return true;
+}
+
+static cm1e_sii_result_t describe(cm1e_description_file_t *file, const uint8_t *image, size_t size)
+{
+    const cm1e_error_t error = cm1e_sii_read(file, image, size, NULL, NULL);
+    return error == CM1E_OK ? SII_OK : error == CM1E_ERROR_NO_MEMORY ? SII_NO_MEMORY : SII_DAMAGED;
 }
 
 cm1e_sii_result_t cm1e_sii_read_header(cm1e_sii_t *sii, cm1e_sii_reader reader, void *context)
 {
-    uint32_t out, in, protocols;
+    /* Identity and mailbox; the rest of the header would only cost time, with every slave. */
+    static const struct {
+        uint8_t word, count;
+    } wanted[] = {{0x08, 8}, {0x18, 5}};
+    uint8_t image[CM1E_SII_HEADER_BYTES] = {0};
+    const source_t source = {reader, context, image};
     memset(sii, 0, sizeof *sii);
-    if (!read_u32(reader, context, WORD_VENDOR, &sii->vendor_id) ||
-        !read_u32(reader, context, WORD_PRODUCT, &sii->product_code) ||
-        !read_u32(reader, context, WORD_REVISION, &sii->revision) ||
-        !read_u32(reader, context, WORD_SERIAL, &sii->serial_number) ||
-        !read_u32(reader, context, WORD_MAILBOX_OUT, &out) || !read_u32(reader, context, WORD_MAILBOX_IN, &in) ||
-        !read_u32(reader, context, WORD_MAILBOX_PROTOCOLS, &protocols))
-        return SII_UNREADABLE;
-    sii->mailbox_out_start = (uint16_t)out;
-    sii->mailbox_out_length = (uint16_t)(out >> 16);
-    sii->mailbox_in_start = (uint16_t)in;
-    sii->mailbox_in_length = (uint16_t)(in >> 16);
-    sii->mailbox_protocols = (uint16_t)protocols;
-    return SII_OK;
-}
-
-/** String number `wanted`, from 1. */
-static void take_string(cm1e_sii_t *sii, cm1e_sii_view_t *view, unsigned wanted)
-{
-    const unsigned count = byte_at(view, 0);
-    uint32_t place = 1;
-    for (unsigned n = 1; n <= count && n < wanted; n++)
-        place += 1u + byte_at(view, place);
-    const unsigned length = wanted >= 1 && wanted <= count ? byte_at(view, place) : 0;
-    unsigned i = 0;
-    for (; i < length && i < CM1E_SII_NAME - 1; i++) {
-        const uint8_t c = byte_at(view, place + 1 + i);
-        if (c == 0)
-            break;
-        sii->name[i] = c >= ' ' && c <= '~' ? (char)c : '?';
+    for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++)
+        if (!fetch(&source, wanted[i].word, wanted[i].count))
+            return SII_UNREADABLE;
+    cm1e_description_file_t file = {0};
+    const cm1e_sii_result_t result = describe(&file, image, sizeof image);
+    if (result == SII_OK) {
+        const cm1e_description_t *device = &file.devices.at[0];
+        sii->vendor_id = device->vendor_id;
+        sii->product_code = device->product_code;
+        sii->revision = device->revision;
+        sii->serial_number = device->eeprom.serial_number;
+        sii->mailbox_out_start = device->eeprom.mailbox_out_start;
+        sii->mailbox_out_length = device->eeprom.mailbox_out_length;
+        sii->mailbox_in_start = device->eeprom.mailbox_in_start;
+        sii->mailbox_in_length = device->eeprom.mailbox_in_length;
+        sii->coe = device->mailbox.coe;
     }
-    sii->name[i] = 0;
+    cm1e_description_file_free(&file);
+    return result;
 }
 
-static void take_sync_managers(cm1e_sii_t *sii, cm1e_sii_view_t *view)
+/** The categories up to the end mark; those that nobody reads are left as they are. `*size`: bytes up to there. */
+static cm1e_sii_result_t fetch_categories(const source_t *source, size_t room, size_t *size)
 {
-    const uint32_t count = view->bytes / SM_ENTRY_BYTES;
-    sii->sync_manager_count = (uint8_t)(count < CM1E_SII_SYNC_MANAGERS ? count : CM1E_SII_SYNC_MANAGERS);
-    for (unsigned i = 0; i < sii->sync_manager_count; i++) {
-        const uint32_t place = i * SM_ENTRY_BYTES;
+    uint32_t word = WORD_CATEGORIES;
+    for (int n = 0; n < CATEGORIES_MAX; n++) {
+        cm1e_sii_category_t category;
+        if (!fetch(source, word, HEADER_WORDS))
+            return SII_UNREADABLE;
+        if (!cm1e_sii_category_at(&category, source->image, room, 2 * word))
+            return SII_DAMAGED;
+        *size = category.start;
+        if (category.type == CM1E_SII_CATEGORY_END)
+            return SII_OK;
+        const uint32_t words = (uint32_t)(category.bytes / 2), start = word + HEADER_WORDS;
+        word = start + words;
+        if (word > WORDS_MAX)
+            return SII_DAMAGED;
+        if (cm1e_sii_category_is_read(category.type) && !fetch(source, start, words))
+            return SII_UNREADABLE;
+    }
+    return SII_DAMAGED;
+}
+
+/** For a terminal: a letter that is not ASCII is "?", however many bytes it has. */
+static void take_name(cm1e_sii_t *sii, const char *name)
+{
+    size_t length = 0;
+    for (; *name && length < CM1E_SII_NAME - 1; name++)
+        if ((*name & 0xC0) != 0x80)
+            sii->name[length++] = *name >= ' ' && *name <= '~' ? *name : '?';
+    sii->name[length] = '\0';
+}
+
+static void take_sync_managers(cm1e_sii_t *sii, const cm1e_description_t *device)
+{
+    for (size_t i = 0; i < device->sync_managers.count && i < CM1E_SII_SYNC_MANAGERS; i++) {
+        const cm1e_described_sync_manager_t *manager = &device->sync_managers.at[i];
         sii->sync_managers[i] = (cm1e_sii_sync_manager_t){
-            .start = word_at(view, place),
-            .length = word_at(view, place + 2),
-            .control = byte_at(view, place + 4),
-            .enable = byte_at(view, place + 6),
-        };
+            .start = manager->start, .length = manager->length, .control = manager->control, .enable = manager->enable};
+        sii->sync_manager_count = (uint8_t)(i + 1);
     }
 }
 
-/** Adds up the bits that each sync manager carries; a PDO without one (0xFF) is not assigned. */
-static void take_pdos(cm1e_sii_t *sii, cm1e_sii_view_t *view, int direction)
+/** Adds up the bits that each sync manager carries; a PDO without one is not assigned. */
+static void take_pdos(cm1e_sii_t *sii, const cm1e_description_t *device)
 {
-    for (uint32_t place = 0; place + PDO_HEADER_BYTES <= view->bytes && !view->failed;) {
-        const unsigned entries = byte_at(view, place + 2), sm = byte_at(view, place + 3);
-        place += PDO_HEADER_BYTES;
-        for (unsigned i = 0; i < entries; i++, place += PDO_ENTRY_BYTES) {
-            if (sm < CM1E_SII_SYNC_MANAGERS)
-                sii->bits[direction][sm] += byte_at(view, place + 5);
-        }
-    }
-}
-
-/** One category; the strings are taken when the general one has told which of them is the name. */
-static void take(cm1e_sii_t *sii, uint16_t type, cm1e_sii_view_t *view, cm1e_sii_view_t *strings, unsigned *name)
-{
-    switch (type) {
-    case CATEGORY_STRINGS:
-        *strings = *view;
-        break;
-    case CATEGORY_GENERAL:
-        *name = byte_at(view, GENERAL_NAME);
-        sii->coe_details = byte_at(view, GENERAL_COE);
-        sii->no_lrw = byte_at(view, GENERAL_FLAGS) & FLAG_NO_LRW;
-        break;
-    case CATEGORY_SYNC_MANAGERS:
-        take_sync_managers(sii, view);
-        break;
-    case CATEGORY_TXPDO:
-        take_pdos(sii, view, 1);
-        break;
-    case CATEGORY_RXPDO:
-        take_pdos(sii, view, 0);
-        break;
-    default:
-        break;
+    for (size_t i = 0; i < device->pdos.count; i++) {
+        const cm1e_described_pdo_t *pdo = &device->pdos.at[i];
+        if (pdo->sync_manager >= 0 && pdo->sync_manager < CM1E_SII_SYNC_MANAGERS)
+            sii->bits[pdo->transmit][pdo->sync_manager] += cm1e_pdo_bits(pdo);
     }
 }
 
 cm1e_sii_result_t cm1e_sii_read_categories(cm1e_sii_t *sii, cm1e_sii_reader reader, void *context)
 {
-    cm1e_sii_view_t strings = {.reader = reader, .context = context, .cached_word = UINT32_MAX};
-    unsigned name = 0;
-    uint32_t word = WORD_CATEGORIES;
-    for (int n = 0; n < CATEGORIES_MAX; n++) {
-        uint32_t header;
-        if (!read_u32(reader, context, (uint16_t)word, &header))
-            return SII_UNREADABLE;
-        const uint16_t type = (uint16_t)header;
-        if (type == CATEGORY_END) {
-            take_string(sii, &strings, name ? name : 1);
-            return strings.failed ? SII_UNREADABLE : SII_OK;
-        }
-        cm1e_sii_view_t view = {.reader = reader, .context = context, .first_word = word + 2,
-                                .bytes = 2 * (header >> 16), .cached_word = UINT32_MAX};
-        word += 2 + (header >> 16);
-        if (word > WORDS_MAX)
-            return SII_DAMAGED;
-        take(sii, type, &view, &strings, &name);
-        if (view.failed)
-            return SII_UNREADABLE;
+    uint8_t image[2 * (WORDS_MAX + HEADER_WORDS)] = {0};
+    const source_t source = {reader, context, image};
+    size_t size = 0;
+    cm1e_sii_result_t result = fetch_categories(&source, sizeof image, &size);
+    if (result != SII_OK)
+        return result;
+    cm1e_description_file_t file = {0};
+    result = describe(&file, image, size);
+    if (result == SII_OK) {
+        const cm1e_description_t *device = &file.devices.at[0];
+        take_name(sii, device->name[0] ? device->name : device->type);
+        sii->complete_access = device->mailbox.complete_access;
+        sii->no_lrw = device->no_lrw;
+        take_sync_managers(sii, device);
+        take_pdos(sii, device);
     }
-    return SII_DAMAGED;
+    cm1e_description_file_free(&file);
+    return result;
 }

@@ -1,7 +1,8 @@
 /**
  * @file sii.h
- * What the bus needs of a slave's SII (EEPROM; ETG.2010), parsed with bounds from whatever is in there: no length in it
- * is believed, the way through the categories always leads forward and ends. Pure: words come through a function.
+ * What the bus needs of a slave's SII (EEPROM; ETG.2010), fetched with bounds from whatever is in there: no length in it
+ * is believed, the way through the categories always leads forward and ends. What the words mean is the affair of
+ * description/sii.h. Pure: words come through a function.
  */
 #ifndef CM1E_BUS_SII_H
 #define CM1E_BUS_SII_H
@@ -18,8 +19,8 @@ typedef struct cm1e_sii_sync_manager {
 
 typedef struct cm1e_sii {
     uint32_t vendor_id, product_code, revision, serial_number;
-    uint16_t mailbox_out_start, mailbox_out_length, mailbox_in_start, mailbox_in_length, mailbox_protocols;
-    uint8_t coe_details;
+    uint16_t mailbox_out_start, mailbox_out_length, mailbox_in_start, mailbox_in_length;
+    bool coe, complete_access;
     bool no_lrw;                                       /**< the slave cannot do LRW */
     char name[CM1E_SII_NAME];                          /**< printable, "" where there is none */
     uint8_t sync_manager_count;
@@ -27,12 +28,10 @@ typedef struct cm1e_sii {
     uint32_t bits[2][CM1E_SII_SYNC_MANAGERS];          /**< process data: [0] outputs (RxPDO), [1] inputs, by SM */
 } cm1e_sii_t;
 
-enum { SII_MAILBOX_COE = 0x0004, SII_COE_COMPLETE_ACCESS = 0x20 };
-
 /** Reads two words (four bytes) from word address `word`; false: the SII cannot be read. */
 typedef bool (*cm1e_sii_reader)(void *context, uint16_t word, uint8_t bytes[4]);
 
-typedef enum cm1e_sii_result { SII_OK = 0, SII_UNREADABLE, SII_DAMAGED } cm1e_sii_result_t;
+typedef enum cm1e_sii_result { SII_OK = 0, SII_UNREADABLE, SII_DAMAGED, SII_NO_MEMORY } cm1e_sii_result_t;
 
 /** The fixed part: identity and mailbox. */
 cm1e_sii_result_t cm1e_sii_read_header(cm1e_sii_t *sii, cm1e_sii_reader reader, void *context);

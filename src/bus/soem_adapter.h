@@ -42,8 +42,11 @@ void cm1e_soem_destroy(cm1e_soem_t *soem);
 /** Finds the slaves, brings them to Init with default settings, gives them station addresses and reads their SII. Not
  *  SOEM's own scan: that can be kept for ever by a bad SII or a slave that falls silent. Returns how many; 0: none;
  *  SCAN_TOO_MANY: more than CM1E_MAX_SLAVES; with the slave in `*position`: SCAN_LOST: it stopped answering,
- *  SCAN_SII_UNREADABLE: its EEPROM does not answer, SCAN_SII_DAMAGED: its content cannot be walked through. */
-enum { SCAN_TOO_MANY = -1, SCAN_LOST = -2, SCAN_SII_UNREADABLE = -3, SCAN_SII_DAMAGED = -4 };
+ *  SCAN_SII_UNREADABLE: its EEPROM does not answer, SCAN_SII_DAMAGED: its content cannot be walked through,
+ *  SCAN_NO_MEMORY: none to read it. */
+enum {
+    SCAN_TOO_MANY = -1, SCAN_LOST = -2, SCAN_SII_UNREADABLE = -3, SCAN_SII_DAMAGED = -4, SCAN_NO_MEMORY = -5,
+};
 int cm1e_soem_scan(cm1e_soem_t *soem, uint16_t *position);
 /** Gives one slave its station address without a scan, and takes all others theirs. 0: nobody answers there. */
 uint16_t cm1e_soem_address(cm1e_soem_t *soem, uint16_t position);

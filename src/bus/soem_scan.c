@@ -110,6 +110,8 @@ static int read_sii(cm1e_soem_t *soem, uint16_t position)
         copy_categories(sii, known);
     else if (result == SII_OK)
         result = cm1e_sii_read_categories(sii, read_words, &eeprom);
+    if (result == SII_NO_MEMORY)
+        return SCAN_NO_MEMORY;
     if (result == SII_DAMAGED)
         return SCAN_SII_DAMAGED;
     if (result == SII_UNREADABLE)
@@ -135,7 +137,7 @@ static void fill_slave(cm1e_soem_t *soem, uint16_t position)
     slave->eep_id = sii->product_code;
     slave->eep_rev = sii->revision;
     slave->eep_sn = sii->serial_number;
-    slave->CoEdetails = sii->coe_details;
+    slave->CoEdetails = sii->complete_access ? ECT_COEDET_SDOCA : 0;
     slave->blockLRW = sii->no_lrw;
     memcpy(slave->name, sii->name, EC_MAXNAME);
     slave->mbx_l = sii->mailbox_out_length;
@@ -148,7 +150,7 @@ static void fill_slave(cm1e_soem_t *soem, uint16_t position)
     slave->mbx_wo = sii->mailbox_out_start;
     slave->mbx_rl = sii->mailbox_in_length;
     slave->mbx_ro = sii->mailbox_in_start;
-    slave->mbx_proto = sii->mailbox_protocols;
+    slave->mbx_proto = sii->coe ? ECT_MBXPROT_COE : 0;
     for (uint8 sm = 0; sm < 4; sm++)
         slave->SMtype[sm] = (uint8)(sm + 1);
 }
@@ -206,8 +208,8 @@ void cm1e_soem_facts(const cm1e_soem_t *soem, uint16_t position, cm1e_slave_fact
         .mailbox_out_length = sii->mailbox_out_length,
         .mailbox_in_start = sii->mailbox_in_start,
         .mailbox_in_length = sii->mailbox_in_length,
-        .coe = sii->mailbox_out_length > 0 && sii->mailbox_in_length > 0 && sii->mailbox_protocols & SII_MAILBOX_COE,
-        .complete_access = sii->coe_details & SII_COE_COMPLETE_ACCESS,
+        .coe = sii->mailbox_out_length > 0 && sii->mailbox_in_length > 0 && sii->coe,
+        .complete_access = sii->complete_access,
     };
     memcpy(facts->name, sii->name, sizeof facts->name);
 }

@@ -1,4 +1,4 @@
-/* The parser of a slave's SII: what it takes from a good one, and that nothing in a bad one leads it astray. */
+/* What the bus takes from a slave's SII: all that it needs of a good one, and nothing in a bad one leads it astray. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -81,9 +81,9 @@ static void test_good_image_gives_everything(void)
     TEST_ASSERT_EQUAL_HEX16(0x1000, sii.mailbox_out_start);
     TEST_ASSERT_EQUAL_HEX16(0x80, sii.mailbox_out_length);
     TEST_ASSERT_EQUAL_HEX16(0x1080, sii.mailbox_in_start);
-    TEST_ASSERT_EQUAL_HEX16(SII_MAILBOX_COE, sii.mailbox_protocols);
+    TEST_ASSERT_TRUE(sii.coe);
     TEST_ASSERT_EQUAL_STRING("name", sii.name);
-    TEST_ASSERT_EQUAL_HEX8(0x23, sii.coe_details);
+    TEST_ASSERT_TRUE(sii.complete_access);
     TEST_ASSERT_TRUE(sii.no_lrw);
     TEST_ASSERT_EQUAL_UINT8(4, sii.sync_manager_count);
     TEST_ASSERT_EQUAL_HEX16(0x1400, sii.sync_managers[3].start);
@@ -113,6 +113,9 @@ static void test_no_categories_at_all_is_a_slave_without_name(void)
     TEST_ASSERT_EQUAL_INT(SII_OK, parse());
     TEST_ASSERT_EQUAL_STRING("", sii.name);
     TEST_ASSERT_EQUAL_UINT8(0, sii.sync_manager_count);
+    cm1e_put_u16(image + 0x38, 0x0008); /* FoE alone */
+    TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+    TEST_ASSERT_FALSE(sii.coe);
 }
 
 static void test_names_are_cut_and_cleaned(void)
@@ -126,6 +129,36 @@ static void test_names_are_cut_and_cleaned(void)
     TEST_ASSERT_EQUAL_INT(SII_OK, parse());
     TEST_ASSERT_EQUAL_size_t(CM1E_SII_NAME - 1, strlen(sii.name));
     TEST_ASSERT_EQUAL_STRING_LEN("xxx???xxx", sii.name, 9);
+}
+
+static void test_a_letter_that_is_not_ascii_is_one_question_mark(void)
+{
+    put_category(10, "\001\005\xC4nd\xB5m", 4);
+    TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+    TEST_ASSERT_EQUAL_STRING("?nd?m", sii.name);
+}
+
+static void test_a_slave_without_name_shows_its_order_number(void)
+{
+    static const uint8_t general[32] = {0, 0, 1};
+    put_category(10, "\001\005ORDER", 4);
+    put_category(30, general, 16);
+    TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+    TEST_ASSERT_EQUAL_STRING("ORDER", sii.name);
+    TEST_ASSERT_FALSE(sii.complete_access);
+    TEST_ASSERT_FALSE(sii.no_lrw);
+}
+
+/* It would cost the time of a scan. */
+static void test_categories_that_nobody_reads_are_not_fetched(void)
+{
+    static uint8_t bytes[0x2000];
+    TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+    const unsigned before = reads;
+    put_category(0x8001, bytes, 0x1000);
+    reads = 0;
+    TEST_ASSERT_EQUAL_INT(SII_OK, parse());
+    TEST_ASSERT_EQUAL_UINT(before + 1, reads);
 }
 
 static void test_string_longer_than_its_category_ends_with_it(void)
@@ -193,6 +226,9 @@ int main(void)
     RUN_TEST(test_read_that_fails_anywhere_is_reported);
     RUN_TEST(test_no_categories_at_all_is_a_slave_without_name);
     RUN_TEST(test_names_are_cut_and_cleaned);
+    RUN_TEST(test_a_letter_that_is_not_ascii_is_one_question_mark);
+    RUN_TEST(test_a_slave_without_name_shows_its_order_number);
+    RUN_TEST(test_categories_that_nobody_reads_are_not_fetched);
     RUN_TEST(test_string_longer_than_its_category_ends_with_it);
     RUN_TEST(test_lengths_that_lead_nowhere_are_damage);
     RUN_TEST(test_more_sync_managers_and_entries_than_fit_are_bounded);
