@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/bytes.h"
+#include "description/describe.h"
 #include "description/sii_format.h"
 
 typedef struct reader {
@@ -133,7 +134,7 @@ static void read_header(reader_t *r)
     eeprom->place = SII_CHECKSUM;
     eeprom->byte_size = (word_of(&header, SII_KBIT) + 1u) * 128;
     eeprom->config_data = (cm1e_bytes_t){cm1e_arena_bytes(r->arena, r->image, SII_CONFIG_BYTES), SII_CONFIG_BYTES};
-    eeprom->config_known = true;
+    eeprom->config_known = cm1e_describe_config_is_known(r->image);
     eeprom->bootstrap = (cm1e_bytes_t){
         cm1e_arena_bytes(r->arena, r->image + SII_BOOTSTRAP, SII_BOOTSTRAP_BYTES), SII_BOOTSTRAP_BYTES};
     eeprom->alias = word_of(&header, SII_ALIAS);

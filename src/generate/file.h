@@ -11,6 +11,8 @@
 
 /** The SII image of a device as a file. */
 cm1e_error_t cm1e_file_of_sii(cm1e_file_t *file, const cm1e_description_t *device, cm1e_diag_t *diag);
+/** Warns where the configuration words of the device are not those of a real one. */
+void cm1e_file_warn_of_eeprom(cm1e_file_t *file, const cm1e_description_t *device);
 /** What is said of bytes of no known format; CM1E_ERROR_FILE. */
 cm1e_error_t cm1e_file_not_recognised(cm1e_diag_t *diag);
 /** The ENI of a network as a file. */

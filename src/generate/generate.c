@@ -20,14 +20,13 @@ void cm1e_file_free(cm1e_file_t *file)
 
 static const cm1e_device_options_t one_cm1e = {0};
 
-static void warn_of_eeprom(cm1e_file_t *file, const cm1e_description_file_t *described)
+void cm1e_file_warn_of_eeprom(cm1e_file_t *file, const cm1e_description_t *device)
 {
-    for (size_t i = 0; i < described->devices.count; i++)
-        if (!described->devices.at[i].eeprom.config_known)
-            snprintf(file->warning, sizeof file->warning,
-                     "the configuration words of the %s's EEPROM are not public: do not write an EEPROM from this "
-                     "file. With the words of a real device (cm1e sii read, then --config-data) it can be",
-                     described->devices.at[i].type);
+    if (!device->eeprom.config_known)
+        snprintf(file->warning, sizeof file->warning,
+                 "the configuration words of the %s's EEPROM are not public: do not write an EEPROM from this "
+                 "file. With the words of a real device (cm1e sii read, then --config-data) it can be",
+                 device->type);
 }
 
 cm1e_error_t cm1e_file_of_sii(cm1e_file_t *file, const cm1e_description_t *device, cm1e_diag_t *diag)
@@ -64,8 +63,8 @@ static cm1e_error_t generate_described(cm1e_file_t *file, const cm1e_generate_op
     if (error == CM1E_OK)
         error = options->format == CM1E_FILE_ESI ? cm1e_esi_write(file, &described, diag)
                                                  : cm1e_file_of_sii(file, &described.devices.at[0], diag);
-    if (error == CM1E_OK)
-        warn_of_eeprom(file, &described);
+    for (size_t i = 0; error == CM1E_OK && i < described.devices.count; i++)
+        cm1e_file_warn_of_eeprom(file, &described.devices.at[i]);
     cm1e_description_file_free(&described);
     return error;
 }

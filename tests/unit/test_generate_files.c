@@ -190,9 +190,33 @@ static void test_file_without_known_configuration_words_warns(void)
 {
     generate(&file, &(cm1e_generate_options_t){.format = CM1E_FILE_SII});
     TEST_ASSERT_NOT_NULL(strstr(file.warning, "do not write an EEPROM"));
-    cm1e_device_options_t device = {.config_data_size = 14};
+    cm1e_device_options_t device = {.config_data = {0x05, 0x0E}, .config_data_size = 14};
     generate(&again, &(cm1e_generate_options_t){.format = CM1E_FILE_SII, .devices = &device, .device_count = 1});
     TEST_ASSERT_EQUAL_STRING("", again.warning);
+}
+
+/* Neither by way of an image of ours nor by way of an ESI do guessed words become those of a real device. */
+static void test_guessed_configuration_words_stay_guessed(void)
+{
+    static const uint8_t guesses[][14] = {{0}, {0x05}, {[0] = 0x05, [8] = 0x34, [9] = 0x12},
+                                          {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF}};
+    for (size_t i = 0; i < sizeof guesses / sizeof guesses[0]; i++) {
+        cm1e_device_options_t device = {.config_data_size = 14};
+        memcpy(device.config_data, guesses[i], sizeof guesses[i]);
+        generate(&file, &(cm1e_generate_options_t){.format = CM1E_FILE_ESI, .devices = &device, .device_count = 1});
+        TEST_ASSERT_NOT_NULL(strstr(file.warning, "do not write an EEPROM"));
+        TEST_ASSERT_NULL(strstr((char *)file.bytes, "<ConfigData>"));
+        cm1e_file_free(&file);
+    }
+    generate(&file, &(cm1e_generate_options_t){.format = CM1E_FILE_SII});
+    const cm1e_file_format_t into[] = {CM1E_FILE_ESI, CM1E_FILE_SII};
+    for (size_t i = 0; i < 2; i++) {
+        TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, cm1e_generate_from(&again, file.bytes, file.size, into[i], 0, &diag),
+                                      diag.text);
+        TEST_ASSERT_NOT_NULL(strstr(again.warning, "do not write an EEPROM"));
+        TEST_ASSERT_NULL(i == 0 ? strstr((char *)again.bytes, "<ConfigData>") : NULL);
+        cm1e_file_free(&again);
+    }
 }
 
 /* ---- refusals --------------------------------------------------------------------------------------------------- */
@@ -272,6 +296,7 @@ int main(void)
     RUN_TEST(test_default_is_one_motor_of_the_newest_firmware);
     RUN_TEST(test_sii_out_of_an_esi_is_the_generated_one);
     RUN_TEST(test_file_without_known_configuration_words_warns);
+    RUN_TEST(test_guessed_configuration_words_stay_guessed);
     RUN_TEST(test_options_that_do_not_fit_are_refused_with_the_reason);
     RUN_TEST(test_eni_needs_a_network_whose_places_are_known);
     RUN_TEST(test_axes_in_any_order_stand_in_the_eni_in_the_order_of_the_wire);
