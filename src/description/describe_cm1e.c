@@ -1,5 +1,6 @@
 #include "description/describe.h"
 
+#include <stdio.h>
 #include <string.h>
 
 enum { MAPPINGS = 4 };
@@ -58,7 +59,8 @@ static void set_mapping_rows(cm1e_arena_t *arena, const cm1e_object_list_t *obje
             continue;
         row->name = names[i];
         cm1e_describe_default(arena, objects, pdo->index, (uint8_t)(i + 1),
-                    (int64_t)pdo->entries[i].index << 16 | pdo->entries[i].subindex << 8 | pdo->entries[i].bits);
+                              (int64_t)pdo->entries[i].index << 16 | pdo->entries[i].subindex << 8 |
+                                  pdo->entries[i].bits);
     }
 }
 
@@ -208,14 +210,21 @@ static void describe_slot(cm1e_description_file_t *file, cm1e_description_t *dev
     }
 }
 
+static cm1e_error_t no_such_firmware(const char *version, cm1e_diag_t *diag)
+{
+    char versions[CM1E_FIRMWARE_COUNT * 8] = "";
+    for (int f = 0; f < CM1E_FIRMWARE_COUNT; f++)
+        snprintf(versions + strlen(versions), sizeof versions - strlen(versions), " %s",
+                 cm1e_firmware_info((cm1e_firmware_t)f)->version);
+    return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "there is no firmware \"%s\"; there are%s", version, versions);
+}
+
 cm1e_error_t cm1e_describe_cm1e(cm1e_description_file_t *file, const cm1e_device_options_t *options,
                                 cm1e_esi_layout_t layout, cm1e_diag_t *diag)
 {
     const cm1e_firmware_info_t *firmware = firmware_of(options);
     if (!firmware)
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                             "there is no firmware \"%s\"; there are 1.2.0 1.3.0 1.3.2 1.3.3 1.3.4 1.3.5",
-                             options->firmware);
+        return no_such_firmware(options->firmware, diag);
     if (options->vendor_id || options->product_code || options->revision || options->axes > 1)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
                              "vendor, product, revision and axes of a CM1-E follow from its tables: leave them 0");

@@ -406,7 +406,8 @@ static void test_eeprom_words_of_a_real_device_are_kept(void)
 
 static void test_options_that_do_not_fit_are_refused_by_name(void)
 {
-    check_refused(&(cm1e_device_options_t){.firmware = "1.3.1"}, "no firmware \"1.3.1\"");
+    check_refused(&(cm1e_device_options_t){.firmware = "1.3.1"}, "no firmware \"1.3.1\"; there are 1.2.0 1.3.0 1.3.2 ");
+    check_refused(&(cm1e_device_options_t){.firmware = "1.3.1"}, " 1.3.3 1.3.4 1.3.5");
     check_refused(&(cm1e_device_options_t){.firmware = "V1.3.5"}, "no firmware \"V1.3.5\"");
     check_refused(&(cm1e_device_options_t){.vendor_id = 1}, "leave them 0");
     check_refused(&(cm1e_device_options_t){.product_code = 1}, "leave them 0");
