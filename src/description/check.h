@@ -157,6 +157,9 @@ bool cm1e_findings_has(const cm1e_findings_t *findings, cm1e_rule_t rule, cm1e_p
 /** Sorts by line; call it when all are in. */
 void cm1e_findings_sort(cm1e_findings_t *findings);
 
+/** First address behind the memory of a sync manager: process data has three buffers behind each other, a mailbox, or
+ *  what has its mode, one (ETG.1000.4 6.7). */
+uint32_t cm1e_sync_manager_end(const cm1e_described_sync_manager_t *manager);
 /** Sync managers of one device that lie on top of each other; those without a length or not enabled lie nowhere. */
 void cm1e_check_overlap(cm1e_findings_t *findings, const cm1e_described_sync_manager_t *managers, size_t count);
 

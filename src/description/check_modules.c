@@ -79,10 +79,12 @@ void cm1e_check_slots(const cm1e_check_t *check, const cm1e_description_file_t *
 static void check_dependence(const cm1e_check_t *check, const cm1e_check_seen_t objects[2], uint16_t index,
                              bool depends_on_slot, cm1e_place_t place, const char *what)
 {
-    if (cm1e_check_has_seen(&objects[!depends_on_slot], index) && !cm1e_check_has_seen(&objects[depends_on_slot], index))
+    const bool has = cm1e_check_has_seen(&objects[depends_on_slot], index);
+    if (!has && cm1e_check_has_seen(&objects[!depends_on_slot], index))
         cm1e_check_add(check, CM1E_RULE_SLOT_DEPENDENCE, place,
-                       depends_on_slot ? "%s names 0x%04X as depending on the slot, which the object does not"
-                                       : "%s names 0x%04X as the same in every slot, but the object depends on the slot",
+                       depends_on_slot
+                           ? "%s names 0x%04X as depending on the slot, which the object does not"
+                           : "%s names 0x%04X as the same in every slot, but the object depends on the slot",
                        what, index);
 }
 

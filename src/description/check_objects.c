@@ -116,7 +116,7 @@ static void check_entries(const cm1e_check_t *check, const cm1e_described_object
     bool seen[SUBINDEXES] = {false};
     for (size_t i = 0; i < object->entries.count; i++) {
         const cm1e_described_entry_t *entry = &object->entries.at[i];
-        if (seen[entry->subindex])
+        if (seen[entry->subindex] && !types_stated) /* else the type has it twice */
             cm1e_check_add(check, CM1E_RULE_SUBINDEX_TWICE, place_of(object, entry),
                            "0x%04X has sub-index %u twice", object->index, entry->subindex);
         seen[entry->subindex] = true;

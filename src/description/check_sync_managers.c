@@ -1,5 +1,3 @@
-#include <stdlib.h>
-
 #include "description/check_private.h"
 
 /* Sync managers, FMMUs and the mailbox: registers 0x0800 and 0x0600 of the slave controller (ETG.1000.4 6.6, 6.7). */
@@ -12,7 +10,7 @@ enum {
 };
 /* User memory begins at 0x1000; below are registers, among them those of digital I/O, where sync managers may stand. */
 enum { FIRST_MEMORY = 0x1000, END_OF_DIGITAL_INPUTS = 0x1004, END_OF_ADDRESSES = 0x10000 };
-enum { BUFFERS = 3, BITS_MAX = 0x1000000 };
+enum { BITS_MAX = 0x1000000 };
 /* Header of the mailbox 6 bytes, of CoE 2, an expedited SDO 8 (ETG.1000.6 5.6.2). */
 enum { LEAST_MAILBOX = 6, LEAST_COE_MAILBOX = 16, LONGEST_MAILBOX = 1486 };
 
@@ -89,12 +87,6 @@ static void check_size(const cm1e_check_t *check, size_t n, uint32_t bytes)
 
 /* ---- memory ------------------------------------------------------------------------------------------------------ */
 
-typedef struct area {
-    uint32_t start, end; /* behind the last byte */
-    size_t n;
-    bool buffered;
-} area_t;
-
 /* Inputs of a controller with digital I/O instead of a processor: registers 0x1000 to 0x1003, without buffers. */
 static bool is_digital_input(const cm1e_description_t *device, const cm1e_described_sync_manager_t *manager)
 {
@@ -104,62 +96,46 @@ static bool is_digital_input(const cm1e_description_t *device, const cm1e_descri
     return manager->use == CM1E_SM_INPUTS && manager->start < END_OF_DIGITAL_INPUTS;
 }
 
-static bool area_of(area_t *area, const cm1e_check_t *check, size_t n, uint32_t bytes)
+/* The sync manager as a master sets it: with the length of its PDOs, and enabled. false: it takes no memory. */
+static bool in_use(cm1e_described_sync_manager_t *used, const cm1e_check_t *check, size_t n, uint32_t bytes)
 {
     const cm1e_described_sync_manager_t *manager = &check->device->sync_managers.at[n];
-    const uint32_t length = is_process_data(manager) && bytes > 0 ? bytes : manager->length;
-    const bool buffered = is_process_data(manager) && !is_digital_input(check->device, manager) &&
-                          (manager->control_missing || (manager->control & CONTROL_MODE) == MODE_BUFFERED);
-    *area = (area_t){.start = manager->start, .n = n, .buffered = buffered,
-                     .end = manager->start + (buffered ? BUFFERS : 1) * length};
-    return manager->use != CM1E_SM_UNUSED && length > 0 && manager->start >= FIRST_MEMORY;
+    *used = *manager;
+    used->enable = 0;
+    if (is_process_data(manager) && bytes > 0)
+        used->length = bytes < UINT16_MAX ? (uint16_t)bytes : UINT16_MAX;
+    const bool one_buffer = is_mailbox(manager) || is_digital_input(check->device, manager) ||
+                            (!manager->control_missing && (manager->control & CONTROL_MODE) != MODE_BUFFERED);
+    used->control = one_buffer ? MODE_MAILBOX : MODE_BUFFERED;
+    return manager->use != CM1E_SM_UNUSED && used->length > 0 && manager->start >= FIRST_MEMORY;
 }
 
-static int by_start(const void *left, const void *right)
-{
-    const area_t *a = left, *b = right;
-    return a->start != b->start ? (a->start < b->start ? -1 : 1) : (a->n > b->n) - (a->n < b->n);
-}
-
-static void check_memory(const cm1e_check_t *check, const area_t *area)
+static void check_memory(const cm1e_check_t *check, const cm1e_described_sync_manager_t *used, size_t n)
 {
     const cm1e_description_t *device = check->device;
-    const uint32_t end = device->dpram_bytes > 0 && device->dpram_bytes <= END_OF_ADDRESSES - FIRST_MEMORY
-                             ? FIRST_MEMORY + (uint32_t)device->dpram_bytes
-                             : END_OF_ADDRESSES;
-    if (area->end > end)
-        cm1e_check_add(check, CM1E_RULE_SYNC_MANAGER_BEYOND_MEMORY, device->sync_managers.at[area->n].place,
-                       "sync manager %zu takes 0x%04X to 0x%04X%s; the memory ends at 0x%04X", area->n, area->start,
-                       (unsigned)(area->end - 1), area->buffered ? " with its three buffers" : "", (unsigned)(end - 1));
-}
-
-static void check_overlap(const cm1e_check_t *check, const area_t *before, const area_t *area)
-{
-    if (area->start < before->end)
-        cm1e_check_add(check, CM1E_RULE_SYNC_MANAGERS_OVERLAP, check->device->sync_managers.at[area->n].place,
-                       "sync manager %zu begins at 0x%04X, within sync manager %zu, which takes 0x%04X to 0x%04X%s",
-                       area->n, area->start, before->n, before->start, (unsigned)(before->end - 1),
-                       before->buffered ? " with its three buffers" : "");
+    const uint32_t end = cm1e_sync_manager_end(used);
+    const uint32_t memory_end = device->dpram_bytes > 0 && device->dpram_bytes <= END_OF_ADDRESSES - FIRST_MEMORY
+                                    ? FIRST_MEMORY + (uint32_t)device->dpram_bytes
+                                    : END_OF_ADDRESSES;
+    if (end > memory_end)
+        cm1e_check_add(check, CM1E_RULE_SYNC_MANAGER_BEYOND_MEMORY, used->place,
+                       "sync manager %zu takes 0x%04X to 0x%04X%s; the memory ends at 0x%04X", n, used->start,
+                       (unsigned)(end - 1), used->control == MODE_BUFFERED ? ", its length three times" : "",
+                       (unsigned)(memory_end - 1));
 }
 
 static void check_areas(const cm1e_check_t *check, const uint32_t *bytes)
 {
     const size_t count = check->device->sync_managers.count;
-    area_t *areas = cm1e_arena_take(check->arena, count * sizeof *areas);
+    cm1e_described_sync_manager_t *used = cm1e_arena_take(check->arena, count * sizeof *used);
     if (check->arena->failed)
         return;
-    size_t used = 0;
     for (size_t n = 0; n < count; n++)
-        used += area_of(&areas[used], check, n, bytes[n]);
-    qsort(areas, used, sizeof *areas, by_start);
-    size_t farthest = 0;
-    for (size_t i = 0; i < used; i++) {
-        check_memory(check, &areas[i]);
-        if (i > 0)
-            check_overlap(check, &areas[farthest], &areas[i]);
-        if (areas[i].end > areas[farthest].end)
-            farthest = i;
-    }
+        if (in_use(&used[n], check, n, bytes[n])) {
+            used[n].enable = 1;
+            check_memory(check, &used[n], n);
+        }
+    cm1e_check_overlap(check->findings, used, count);
 }
 
 /* ---- all of them ------------------------------------------------------------------------------------------------- */
@@ -241,7 +217,7 @@ void cm1e_check_sync_managers(const cm1e_check_t *check)
 {
     const cm1e_description_t *device = check->device;
     const size_t count = device->sync_managers.count;
-    if (count == 0 || count > CM1E_ARENA_LIMIT / sizeof(area_t))
+    if (count == 0 || count > CM1E_ARENA_LIMIT / sizeof(cm1e_described_sync_manager_t))
         return;
     uint32_t *bytes = cm1e_arena_take(check->arena, count * sizeof *bytes);
     if (check->arena->failed)

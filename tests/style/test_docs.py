@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """The documentation names nothing that is not there: every error of error.h stands in docs/FUNCTION-BLOCKS.md with its
-ErrorID and its text, every proof in a table of features or of safety is a test, a case in one, or a file, every relative
-link leads to a file and to a heading in it, every path of the repository that is mentioned exists, the rooms use each
-other as docs/DESIGN.md says.
+ErrorID and its text, every rule of the cross-checker in docs/CHECK-RULES.md and in a test, every proof in a table of
+features or of safety is a test, a case in one, or a file, every relative link leads to a file and to a heading in it,
+every path of the repository that is mentioned exists, the rooms use each other as docs/DESIGN.md says.
 
 test_docs.py SOURCE-DIRECTORY
 """
@@ -62,6 +62,37 @@ def check_errors():
             faults.append(f"docs/FUNCTION-BLOCKS.md:{number}: {error_id} is `{name}`, \"{text}\"")
     for error_id in set(told) - set(known):
         faults.append(f"docs/FUNCTION-BLOCKS.md:{told[error_id][0]}: there is no error with ErrorID {error_id}")
+
+
+# ---- rules of the cross-checker -------------------------------------------------------------------------------------
+
+def check_rules():
+    """Every rule has a row in docs/CHECK-RULES.md that says whether it is an error, and a test that breaks a file in
+    that way: one that has its name in quotes, its enumerator, or it in a row BREAKS(...) of broken_description.h."""
+    page = "docs/CHECK-RULES.md"
+    known = {name: (enumerator, is_error == "true") for enumerator, name, is_error in
+             re.findall(r'X\((\w+), "([\w-]+)", (true|false)\)', read("src/description/check.h"))}
+    if not known:
+        faults.append("src/description/check.h: its list of rules cannot be read")
+    told = {}
+    for number, cells in rows(read(page)):
+        match = re.fullmatch(r"`([\w-]+)`( \(warning\))?", cells[0])
+        if not match:
+            continue
+        if match[1] in told:
+            faults.append(f"{page}:{number}: `{match[1]}` stands there twice")
+        told[match[1]] = number
+        if match[1] not in known:
+            faults.append(f"{page}:{number}: there is no rule `{match[1]}`")
+        elif known[match[1]][1] == bool(match[2]):
+            faults.append(f"{page}:{number}: `{match[1]}` is {'an error' if match[2] else 'a warning'}")
+    tests = "".join(read(path) for path in expand("tests/*/test_*.c"))
+    proved = set(re.findall(r"\b(?:CM1E_RULE_|BREAKS\()(\w+)", tests)) | set(re.findall(r'"([\w-]+)"', tests))
+    for name, (enumerator, _) in known.items():
+        if name not in told:
+            faults.append(f"{page} lacks the rule `{name}`")
+        if enumerator not in proved and name not in proved:
+            faults.append(f"no test breaks a file in the way of the rule `{name}`")
 
 
 # ---- tests ----------------------------------------------------------------------------------------------------------
@@ -145,6 +176,7 @@ def main():
     documents = expand("*.md") + expand("docs/*.md") + expand("docs/blocks/*.md") + expand("bench/*.md") \
         + expand("fb/interface/*.md") + expand("examples/*.md")
     check_errors()
+    check_rules()
     check_proofs()
     check_rooms()
     for path in documents:

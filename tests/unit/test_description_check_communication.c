@@ -164,14 +164,14 @@ static cm1e_place_t no_foe(cm1e_description_file_t *file)
 
 static const broken_t breaks[] = {
     BREAKS(SYNC_MANAGERS_OVERLAP, overlap_third_buffer,
-           "sync manager 3 begins at 0x1117, within sync manager 2, which takes 0x1100 to 0x1117 with its three "
-           "buffers"),
+           "sync manager 3 begins at 0x1117, within sync manager 2, which takes 0x1100 to 0x1117, its length "
+           "three times"),
     BREAKS(SYNC_MANAGERS_OVERLAP, overlap_mailbox,
            "sync manager 1 begins at 0x1080, within sync manager 0, which takes 0x1078 to 0x10F7"),
     BREAKS(SYNC_MANAGER_BEYOND_MEMORY, end_memory_early,
-           "sync manager 3 takes 0x1400 to 0x142F with its three buffers; the memory ends at 0x1409"),
+           "sync manager 3 takes 0x1400 to 0x142F, its length three times; the memory ends at 0x1409"),
     BREAKS(SYNC_MANAGER_BEYOND_MEMORY, begin_at_the_end,
-           "sync manager 3 takes 0xFFFF to 0x1002E with its three buffers; the memory ends at 0xFFFF"),
+           "sync manager 3 takes 0xFFFF to 0x1002E, its length three times; the memory ends at 0xFFFF"),
     BREAKS(SYNC_MANAGER_CONTROL, reverse_outputs,
            "sync manager 2 is for outputs, but its control byte 0x20 is of another direction; usual is 0x64"),
     BREAKS(SYNC_MANAGER_CONTROL, reverse_inputs,

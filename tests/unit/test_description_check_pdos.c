@@ -327,7 +327,7 @@ static void test_device_may_map_part_of_an_object_but_never_more(void)
     cm1e_description_file_free(&file);
 }
 
-/* A device without dictionary (SII); one that does not state what can be mapped, and leaves the mapping to the master. */
+/* A device without dictionary (SII); one that does not state what can be mapped, nor the default mapping. */
 static void test_what_is_not_stated_is_no_mistake(void)
 {
     cm1e_description_file_t file = {0};
