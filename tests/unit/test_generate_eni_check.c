@@ -102,6 +102,15 @@ static void another_address_given(void) { data_of(device(2), "set physical addre
 static void mask_too_short(void) { command(device(0), "check device state for OP")->mask.size = 2; }
 static void answer_too_short(void) { command(device(0), "check device state for OP")->length = 4; }
 static void nobody_asks_for_op(void) { command(device(0), "set device state to OP")->transitions = 0; }
+static void asks_for_safeop_instead(void) { data_of(device(0), "set device state to OP")[0] = 4; }
+/* As SOEM could do with: it asks by itself, and makes frames and images of its own. */
+static void sdos_alone(void)
+{
+    device(0)->commands.count = 0;
+    document.cyclics.count = 0;
+    document.has_image = false;
+    document.inputs.variables.count = document.outputs.variables.count = 0;
+}
 static void length_unlike_pdos(void) { data_of(device(0), "set sm 2 (outputs)")[2]++; }
 static void control_unlike_stated(void) { data_of(device(0), "set sm 2 (outputs)")[4] = 0x24; }
 static void mailbox_unlike_stated(void) { data_of(device(0), "set sm 0 (mailbox out)")[2] -= 8; }
@@ -168,6 +177,8 @@ static const struct breakage {
     {"eni-validate", ENI_ONE, 0, mask_too_short, 1},
     {"eni-validate", ENI_ONE, 0, answer_too_short, 1},
     {"eni-start", ENI_ONE, 0, nobody_asks_for_op, 1},
+    {"eni-start", ENI_ONE, 0, asks_for_safeop_instead, 1},
+    {"eni-start", ENI_ONE, 0, sdos_alone, 3},
     {"eni-sync-manager", ENI_ONE, 0, length_unlike_pdos, 1},
     {"eni-sync-manager", ENI_ONE, 0, control_unlike_stated, 1},
     {"eni-sync-manager", ENI_ONE, 0, mailbox_unlike_stated, 1},
