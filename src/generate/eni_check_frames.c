@@ -10,10 +10,14 @@ enum { REGISTERS_END = 0x1000, LRW_READ = 1, LRW_WRITE = 2 };
 
 typedef struct fmmu {
     const cm1e_eni_command_t *command; /* NULL: this one is not set */
+    const cm1e_eni_command_t *carrier; /* the cyclic command that carries the whole of it; NULL: none does */
+    const cm1e_eni_device_t *device;
     uint64_t logical, end;
     uint16_t length, physical;
     uint8_t start_bit, type;
 } fmmu_t;
+
+typedef CM1E_LIST(fmmu_t) fmmu_list_t;
 
 /* What the InitCmds leave in the FMMUs of a slave in Operational. */
 static void read_fmmus(fmmu_t fmmus[FMMUS], const cm1e_eni_device_t *device)
@@ -26,8 +30,9 @@ static void read_fmmus(fmmu_t fmmus[FMMUS], const cm1e_eni_device_t *device)
         if (!(command->transitions & (CM1E_ENI_IP | CM1E_ENI_PS | CM1E_ENI_SO)) ||
             !cm1e_eni_sets(command, FMMU, FMMU_BYTES, &n) || !(data[12] & 1))
             continue;
-        fmmus[n] = (fmmu_t){.command = command, .logical = cm1e_get_u32(data), .length = cm1e_get_u16(data + 4),
-                            .start_bit = data[6] & 7, .physical = cm1e_get_u16(data + 8), .type = data[11]};
+        fmmus[n] = (fmmu_t){.command = command, .device = device, .logical = cm1e_get_u32(data),
+                            .length = cm1e_get_u16(data + 4), .start_bit = data[6] & 7,
+                            .physical = cm1e_get_u16(data + 8), .type = data[11]};
         fmmus[n].end = fmmus[n].logical + fmmus[n].length;
     }
 }
@@ -37,7 +42,6 @@ static bool moves(uint8_t code, uint8_t type)
     return code == CM1E_ENI_LRW || (type == READ ? code == CM1E_ENI_LRD : code == CM1E_ENI_LWR);
 }
 
-/* The cyclic command that carries the whole of an FMMU; NULL: none does. */
 static const cm1e_eni_command_t *carrier(const cm1e_eni_t *document, const fmmu_t *fmmu)
 {
     for (size_t c = 0; c < document->cyclics.count; c++)
@@ -68,25 +72,25 @@ static bool held(const cm1e_description_t *described, const fmmu_t *fmmu)
     return false;
 }
 
-static void check_fmmu(cm1e_findings_t *findings, const cm1e_eni_t *document, const cm1e_eni_device_t *device,
-                       const cm1e_description_t *described, const fmmu_t *fmmu)
+static void check_fmmu(cm1e_findings_t *findings, const cm1e_description_t *described, const fmmu_t *fmmu)
 {
     const cm1e_place_t place = fmmu->command->place;
+    const char *name = fmmu->device->name;
     if ((fmmu->type != READ && fmmu->type != WRITE) || fmmu->length == 0) {
         cm1e_findings_add(findings, CM1E_RULE_ENI_FMMU, place,
-                          "%s: an FMMU of type %u and %u bytes; 1 is for inputs, 2 for outputs.", device->name,
-                          fmmu->type, fmmu->length);
+                          "%s: an FMMU of type %u and %u bytes; 1 is for inputs, 2 for outputs.", name, fmmu->type,
+                          fmmu->length);
         return;
     }
     if (fmmu->physical >= REGISTERS_END && !held(described, fmmu))
         cm1e_findings_add(findings, CM1E_RULE_ENI_FMMU, place,
-                          "%s: an FMMU maps 0x%04X ... 0x%04X, which no sync manager for %s holds.", device->name,
+                          "%s: an FMMU maps 0x%04X ... 0x%04X, which no sync manager for %s holds.", name,
                           fmmu->physical, (unsigned)fmmu->physical + fmmu->length - 1,
                           fmmu->type == WRITE ? "outputs" : "inputs");
-    if (!carrier(document, fmmu))
+    if (!fmmu->carrier)
         cm1e_findings_add(findings, CM1E_RULE_ENI_FMMU, place,
-                          "%s: no cyclic command for %s carries the logical addresses 0x%08llX ... 0x%08llX.",
-                          device->name, fmmu->type == WRITE ? "outputs" : "inputs", (unsigned long long)fmmu->logical,
+                          "%s: no cyclic command for %s carries the logical addresses 0x%08llX ... 0x%08llX.", name,
+                          fmmu->type == WRITE ? "outputs" : "inputs", (unsigned long long)fmmu->logical,
                           (unsigned long long)fmmu->end - 1);
 }
 
@@ -94,8 +98,7 @@ static void check_fmmu(cm1e_findings_t *findings, const cm1e_eni_t *document, co
 
 /* Where a slave's data begin in the image, by the frame that carries its first FMMU of that direction. By InputOffs and
  * OutputOffs some mean the datagram, others its data: see eni.h. */
-static void check_place(cm1e_findings_t *findings, const cm1e_eni_t *document, const cm1e_eni_device_t *device,
-                        const fmmu_t *fmmus, uint8_t type)
+static void check_place(cm1e_findings_t *findings, const cm1e_eni_device_t *device, const fmmu_t *fmmus, uint8_t type)
 {
     const cm1e_eni_range_t *range = type == WRITE ? &device->send : &device->receive;
     const fmmu_t *first = NULL;
@@ -103,14 +106,11 @@ static void check_place(cm1e_findings_t *findings, const cm1e_eni_t *document, c
         if (fmmus[n].command && fmmus[n].type == type && fmmus[n].physical >= REGISTERS_END &&
             (!first || fmmus[n].logical < first->logical))
             first = &fmmus[n];
-    const cm1e_eni_command_t *command = first ? carrier(document, first) : NULL;
-    const int64_t offset = !command        ? CM1E_ENI_NOT_GIVEN
-                           : type == WRITE ? command->output_offset
-                                           : command->input_offset;
-    if (!(type == WRITE ? device->has_send : device->has_receive) || offset == CM1E_ENI_NOT_GIVEN)
+    if (!(type == WRITE ? device->has_send : device->has_receive) || !first || !first->carrier)
         return;
-    const int64_t bit = (offset + (int64_t)first->logical - command->address) * 8 + first->start_bit;
-    if (range->start != bit && range->start != bit + CM1E_ENI_DATAGRAM_HEADER * 8)
+    const int64_t offset = type == WRITE ? first->carrier->output_offset : first->carrier->input_offset;
+    const int64_t bit = (offset + (int64_t)first->logical - first->carrier->address) * 8 + first->start_bit;
+    if (offset != CM1E_ENI_NOT_GIVEN && range->start != bit && range->start != bit + CM1E_ENI_DATAGRAM_HEADER * 8)
         cm1e_findings_add(findings, CM1E_RULE_ENI_IMAGE_PLACE, range->place,
                           "%s: BitStart of %s is %u, but its frame brings them to bit %lld (or %lld, where the image "
                           "holds the datagrams' headers too).",
@@ -246,36 +246,41 @@ static void check_image(cm1e_findings_t *findings, const cm1e_eni_t *document, b
 
 /* ---- frames ----------------------------------------------------------------------------------------------------- */
 
-/* What all slaves in Operational add to the working counter of a logical command (ETG.1000.4 5.4.3). */
-static uint64_t expected_count(const cm1e_eni_command_t *command, const fmmu_t *fmmus, size_t devices)
+/* What one slave adds to the working counter of a logical command (ETG.1000.4 5.4.3). */
+static uint64_t count_of(uint8_t code, bool reads, bool writes)
+{
+    if (code == CM1E_ENI_LRW)
+        return (reads ? LRW_READ : 0) + (writes ? LRW_WRITE : 0);
+    return code == CM1E_ENI_LRD ? reads : writes;
+}
+
+/* What all slaves in Operational add. The FMMUs of a slave follow one another in the list. */
+static uint64_t expected_count(const cm1e_eni_command_t *command, const fmmu_list_t *fmmus)
 {
     const uint64_t end = (uint64_t)command->address + command->length;
     uint64_t count = 0;
-    for (size_t d = 0; d < devices; d++) {
-        bool reads = false, writes = false;
-        for (int n = 0; n < FMMUS; n++) {
-            const fmmu_t *fmmu = &fmmus[d * FMMUS + (size_t)n];
-            if (!fmmu->command || fmmu->logical >= end || fmmu->end <= command->address)
-                continue;
+    bool reads = false, writes = false;
+    for (size_t i = 0; i < fmmus->count; i++) {
+        const fmmu_t *fmmu = &fmmus->at[i];
+        if (i > 0 && fmmu->device != fmmus->at[i - 1].device) {
+            count += count_of(command->code, reads, writes);
+            reads = writes = false;
+        }
+        if (fmmu->logical < end && fmmu->end > command->address) {
             reads |= (fmmu->type & READ) != 0;
             writes |= (fmmu->type & WRITE) != 0;
         }
-        if (command->code == CM1E_ENI_LRW)
-            count += (reads ? LRW_READ : 0) + (writes ? LRW_WRITE : 0);
-        else
-            count += command->code == CM1E_ENI_LRD ? reads : writes;
     }
-    return count;
+    return count + count_of(command->code, reads, writes);
 }
 
 static void check_command(cm1e_findings_t *findings, const cm1e_eni_t *document, const cm1e_eni_command_t *command,
-                          const fmmu_t *fmmus)
+                          const fmmu_list_t *fmmus)
 {
     const bool states = command->code == CM1E_ENI_BRD && command->ado == AL_STATUS;
     if (command->count == CM1E_ENI_NOT_GIVEN || (!states && !cm1e_eni_is_logical(command->code)))
         return;
-    const uint64_t count =
-        states ? document->devices.count : expected_count(command, fmmus, document->devices.count);
+    const uint64_t count = states ? document->devices.count : expected_count(command, fmmus);
     if (count != (uint64_t)command->count)
         cm1e_findings_add(findings, CM1E_RULE_ENI_WORKING_COUNTER, command->place,
                           "Cnt is %d; %s count up to %llu.", (int)command->count,
@@ -284,7 +289,7 @@ static void check_command(cm1e_findings_t *findings, const cm1e_eni_t *document,
 }
 
 static void check_frame(cm1e_findings_t *findings, const cm1e_eni_t *document, const cm1e_eni_frame_t *frame,
-                        const fmmu_t *fmmus)
+                        const fmmu_list_t *fmmus)
 {
     uint64_t bytes = 0;
     for (size_t i = 0; i < frame->commands.count; i++) {
@@ -297,26 +302,36 @@ static void check_frame(cm1e_findings_t *findings, const cm1e_eni_t *document, c
                           (unsigned long long)bytes, CM1E_ENI_FRAME_BYTES);
 }
 
+/* Checks the FMMUs of a slave and adds them to the list of all. */
+static void check_device(cm1e_findings_t *findings, const cm1e_eni_t *document, const cm1e_eni_device_t *device,
+                         cm1e_arena_t *arena, fmmu_list_t *all)
+{
+    fmmu_t fmmus[FMMUS];
+    cm1e_arena_t own = {0};
+    const cm1e_description_t described = cm1e_eni_describe(&own, device);
+    read_fmmus(fmmus, device);
+    for (int n = 0; n < FMMUS && !own.failed; n++) {
+        if (!fmmus[n].command)
+            continue;
+        fmmus[n].carrier = carrier(document, &fmmus[n]);
+        check_fmmu(findings, &described, &fmmus[n]);
+        *(fmmu_t *)CM1E_APPEND(arena, all) = fmmus[n];
+    }
+    cm1e_arena_free(&own);
+    check_place(findings, device, fmmus, WRITE);
+    check_place(findings, device, fmmus, READ);
+}
+
 void cm1e_eni_check_frames(cm1e_findings_t *findings, const cm1e_eni_t *document)
 {
-    fmmu_t *fmmus = calloc(document->devices.count * FMMUS + 1, sizeof *fmmus);
-    for (size_t d = 0; fmmus && d < document->devices.count; d++) {
-        const cm1e_eni_device_t *device = &document->devices.at[d];
-        fmmu_t *own = &fmmus[d * FMMUS];
-        cm1e_arena_t arena = {0};
-        const cm1e_description_t described = cm1e_eni_describe(&arena, device);
-        read_fmmus(own, device);
-        for (int n = 0; n < FMMUS && !arena.failed; n++)
-            if (own[n].command)
-                check_fmmu(findings, document, device, &described, &own[n]);
-        cm1e_arena_free(&arena);
-        check_place(findings, document, device, own, WRITE);
-        check_place(findings, document, device, own, READ);
-    }
-    for (size_t c = 0; fmmus && c < document->cyclics.count; c++)
+    cm1e_arena_t arena = {0};
+    fmmu_list_t fmmus = {0};
+    for (size_t d = 0; d < document->devices.count; d++)
+        check_device(findings, document, &document->devices.at[d], &arena, &fmmus);
+    for (size_t c = 0; c < document->cyclics.count && !arena.failed; c++)
         for (size_t f = 0; f < document->cyclics.at[c].frames.count; f++)
-            check_frame(findings, document, &document->cyclics.at[c].frames.at[f], fmmus);
-    free(fmmus);
+            check_frame(findings, document, &document->cyclics.at[c].frames.at[f], &fmmus);
+    cm1e_arena_free(&arena);
     check_image(findings, document, true);
     check_image(findings, document, false);
 }
