@@ -7,7 +7,8 @@
 enum { FIRST_OF_AXES = 0x6000, FIRST_ABOVE_AXES = 0xF000 };
 enum { PROFILE_402 = 402, TYPE_SERVO = 4 }; /* 0x1000: profile in the low word, type in the high one */
 /* PDI control 0x05: SPI slave, as microcontrollers are connected. The value of the real devices is not known. */
-enum { PDI_CONTROL_SPI = 0x0005, EEPROM_BYTES = 2048, CONFIG_BYTES = 14, ALIAS_AT = 8, MAILBOX_BYTES = 8, ERASED = 0xFF };
+enum { PDI_CONTROL_SPI = 0x0005, EEPROM_BYTES = 2048, CONFIG_BYTES = 14, ALIAS_AT = 8, MAILBOX_BYTES = 8 };
+enum { ERASED = 0xFF };
 
 /* ---- objects ---------------------------------------------------------------------------------------------------- */
 

@@ -198,8 +198,9 @@ static void test_file_without_known_configuration_words_warns(void)
 /* Neither by way of an image of ours nor by way of an ESI do guessed words become those of a real device. */
 static void test_guessed_configuration_words_stay_guessed(void)
 {
-    static const uint8_t guesses[][14] = {{0}, {0x05}, {[0] = 0x05, [8] = 0x34, [9] = 0x12},
-                                          {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF}};
+    static const uint8_t guesses[][14] = {
+        {0}, {0x05}, {[0] = 0x05, [8] = 0x34, [9] = 0x12},
+        {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF}};
     for (size_t i = 0; i < sizeof guesses / sizeof guesses[0]; i++) {
         cm1e_device_options_t device = {.config_data_size = 14};
         memcpy(device.config_data, guesses[i], sizeof guesses[i]);
