@@ -9,8 +9,9 @@
 #include "description/description.h"
 #include "generate/eni.h"
 
-/** The SII image of a device as a file. */
-cm1e_error_t cm1e_file_of_sii(cm1e_file_t *file, const cm1e_description_t *device, cm1e_diag_t *diag);
+/** The SII image of a device of `described` as a file; a modular one with the modules that stand in it by default. */
+cm1e_error_t cm1e_file_of_sii(cm1e_file_t *file, const cm1e_description_file_t *described, size_t device,
+                              cm1e_diag_t *diag);
 /** Warns where the configuration words of the device are not those of a real one. */
 void cm1e_file_warn_of_eeprom(cm1e_file_t *file, const cm1e_description_t *device);
 /** What is said of bytes of no known format; CM1E_ERROR_FILE. */

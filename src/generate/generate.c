@@ -4,6 +4,7 @@
 
 #include "cm1e/generate.h"
 #include "description/describe.h"
+#include "description/expand.h"
 #include "description/sii.h"
 #include "generate/ec_extend.h"
 #include "generate/eni.h"
@@ -29,20 +30,40 @@ void cm1e_file_warn_of_eeprom(cm1e_file_t *file, const cm1e_description_t *devic
                  device->type);
 }
 
-cm1e_error_t cm1e_file_of_sii(cm1e_file_t *file, const cm1e_description_t *device, cm1e_diag_t *diag)
+static cm1e_error_t write_sii(cm1e_file_t *file, const cm1e_description_t *device, cm1e_diag_t *diag)
 {
-    const size_t room = device->eeprom.byte_size > 0 ? device->eeprom.byte_size : CM1E_SII_SIZE;
+    const size_t stated = device->eeprom.byte_size > 0 ? device->eeprom.byte_size : CM1E_SII_SIZE;
+    const size_t room = stated < CM1E_SII_SIZE_MAX ? stated : CM1E_SII_SIZE_MAX;
     uint8_t *image = calloc(1, room + 1);
+    cm1e_diag_t reason = {0};
     if (!image)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
-    const size_t size = cm1e_sii_write(image, room, device, diag);
+    const size_t size = cm1e_sii_write(image, room, device, &reason);
     if (size == 0) {
         free(image);
-        return diag ? diag->error : CM1E_ERROR_CONFIG;
+        return cm1e_diag_set(diag, reason.error, 0, "%s", reason.text);
     }
     file->bytes = image;
     file->size = size;
     return CM1E_OK;
+}
+
+cm1e_error_t cm1e_file_of_sii(cm1e_file_t *file, const cm1e_description_file_t *described, size_t device,
+                              cm1e_diag_t *diag)
+{
+    const cm1e_description_t *as_described = &described->devices.at[device];
+    if (as_described->slots.count == 0)
+        return write_sii(file, as_described, diag);
+    cm1e_arena_t arena = {0};
+    cm1e_description_t expanded;
+    uint32_t idents[CM1E_PLACES_MAX];
+    const size_t places = cm1e_description_places(as_described);
+    cm1e_description_default_modules(as_described, idents, places);
+    cm1e_description_expand(&arena, &expanded, described, as_described, idents, places);
+    const cm1e_error_t error = arena.failed ? cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory")
+                                            : write_sii(file, &expanded, diag);
+    cm1e_arena_free(&arena);
+    return error;
 }
 
 static cm1e_error_t describe_all(cm1e_description_file_t *described, const cm1e_generate_options_t *options,
@@ -51,8 +72,9 @@ static cm1e_error_t describe_all(cm1e_description_file_t *described, const cm1e_
     const cm1e_device_options_t *devices = options->devices ? options->devices : &one_cm1e;
     const size_t count = options->devices ? options->device_count : 1;
     cm1e_error_t error = CM1E_OK;
+    const cm1e_esi_layout_t layout = options->format == CM1E_FILE_ESI ? options->layout : CM1E_ESI_FLAT;
     for (size_t i = 0; i < count && error == CM1E_OK; i++)
-        error = cm1e_describe(described, &devices[i], options->layout, diag);
+        error = cm1e_describe(described, &devices[i], layout, diag);
     return error;
 }
 
@@ -62,7 +84,7 @@ static cm1e_error_t generate_described(cm1e_file_t *file, const cm1e_generate_op
     cm1e_error_t error = describe_all(&described, options, diag);
     if (error == CM1E_OK)
         error = options->format == CM1E_FILE_ESI ? cm1e_esi_write(file, &described, diag)
-                                                 : cm1e_file_of_sii(file, &described.devices.at[0], diag);
+                                                 : cm1e_file_of_sii(file, &described, 0, diag);
     for (size_t i = 0; error == CM1E_OK && i < described.devices.count; i++)
         cm1e_file_warn_of_eeprom(file, &described.devices.at[i]);
     cm1e_description_file_free(&described);

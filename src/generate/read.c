@@ -208,7 +208,7 @@ cm1e_error_t cm1e_generate_from(cm1e_file_t *file, const void *bytes, size_t siz
                               device + 1, content.devices.count);
     if (error == CM1E_OK)
         error = format == CM1E_FILE_ESI ? cm1e_esi_write(file, &content, diag)
-                                        : cm1e_file_of_sii(file, &content.devices.at[device], diag);
+                                        : cm1e_file_of_sii(file, &content, device, diag);
     for (size_t i = 0; error == CM1E_OK && i < content.devices.count; i++)
         if (format == CM1E_FILE_ESI || i == device)
             cm1e_file_warn_of_eeprom(file, &content.devices.at[i]);
