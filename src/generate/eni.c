@@ -47,14 +47,15 @@ static const cm1e_described_pdo_t *find_pdo(const cm1e_eni_device_t *device, uin
     return NULL;
 }
 
-uint32_t cm1e_eni_pdo_bits(const cm1e_eni_device_t *device, const cm1e_eni_sync_manager_t *manager)
+bool cm1e_eni_add_pdo_bits(const cm1e_eni_device_t *device, const cm1e_eni_sync_manager_t *manager, uint32_t *bits)
 {
-    uint32_t bits = 0;
     for (size_t i = 0; i < manager->pdos.count; i++) {
         const cm1e_described_pdo_t *pdo = find_pdo(device, manager->pdos.at[i]);
-        bits += pdo ? cm1e_pdo_bits(pdo) : 0;
+        if (!pdo)
+            return false;
+        *bits += cm1e_pdo_bits(pdo);
     }
-    return bits;
+    return manager->pdos.count > 0;
 }
 
 /* ---- a slave in the words of descriptions ----------------------------------------------------------------------- */

@@ -224,8 +224,8 @@ cm1e_eni_command_t cm1e_eni_command(uint8_t code);
 bool cm1e_eni_is_logical(uint8_t code);
 /** Whether the command sets a sync manager or FMMU block of registers, number `n` of `size` bytes from `first` on. */
 bool cm1e_eni_sets(const cm1e_eni_command_t *command, uint16_t first, unsigned size, unsigned *n);
-/** Bits of the PDOs that a sync manager carries. */
-uint32_t cm1e_eni_pdo_bits(const cm1e_eni_device_t *device, const cm1e_eni_sync_manager_t *manager);
+/** Adds the bits of the PDOs that a sync manager carries; false: it names none, or one that the file does not have. */
+bool cm1e_eni_add_pdo_bits(const cm1e_eni_device_t *device, const cm1e_eni_sync_manager_t *manager, uint32_t *bits);
 /** A slave of the file in the words of descriptions, in `arena`. */
 cm1e_description_t cm1e_eni_describe(cm1e_arena_t *arena, const cm1e_eni_device_t *device);
 /** The InitCmds that start a slave of our making; its addresses, sync managers, PDOs and mailbox are already there.

@@ -134,13 +134,15 @@ static void check_written_manager(cm1e_findings_t *findings, const cm1e_eni_devi
                                   const cm1e_eni_command_t *command, const cm1e_eni_sync_manager_t *manager)
 {
     const uint16_t start = cm1e_get_u16(command->data.data), length = cm1e_get_u16(command->data.data + 2);
-    const uint32_t bytes = (cm1e_eni_pdo_bits(device, manager) + 7) / 8;
+    uint32_t bits = 0;
+    const bool known = cm1e_eni_add_pdo_bits(device, manager, &bits);
+    const uint32_t bytes = (bits + 7) / 8;
     if (start != manager->manager.start || command->data.data[4] != manager->manager.control)
         cm1e_findings_add(findings, CM1E_RULE_ENI_SYNC_MANAGER, command->place,
                           "%s: sync manager %u is set to 0x%04X with control 0x%02X; Sm%u says 0x%04X and 0x%02X.",
                           device->name, manager->number, start, command->data.data[4], manager->number,
                           manager->manager.start, manager->manager.control);
-    if (manager->pdos.count > 0 && length != bytes)
+    if (known && length != bytes)
         cm1e_findings_add(findings, CM1E_RULE_ENI_SYNC_MANAGER, command->place,
                           "%s: sync manager %u is set to %u bytes; the PDOs that it carries have %u.", device->name,
                           manager->number, length, (unsigned)bytes);
@@ -178,23 +180,22 @@ static void check_sync_managers(cm1e_findings_t *findings, const cm1e_eni_device
     }
 }
 
-/* Whole bytes are stated as well as bits. */
+/* Some state bits, some whole bytes; some files name PDOs without describing them. */
 static void check_range(cm1e_findings_t *findings, const cm1e_eni_device_t *device, bool send)
 {
     const cm1e_eni_range_t *range = send ? &device->send : &device->receive;
     uint64_t bits = 0, rounded = 0;
-    size_t pdos = 0;
+    bool known = send ? device->has_send : device->has_receive;
     for (size_t i = 0; i < device->sync_managers.count; i++) {
         const cm1e_eni_sync_manager_t *manager = &device->sync_managers.at[i];
         if (manager->manager.use != (send ? CM1E_SM_OUTPUTS : CM1E_SM_INPUTS))
             continue;
-        const uint32_t carried = cm1e_eni_pdo_bits(device, manager);
+        uint32_t carried = 0;
+        known = known && (manager->pdos.count == 0 || cm1e_eni_add_pdo_bits(device, manager, &carried));
         bits += carried;
         rounded += (carried + 7) / 8 * 8;
-        pdos += manager->pdos.count;
     }
-    if ((send ? device->has_send : device->has_receive) && pdos > 0 && range->length != bits &&
-        range->length != rounded)
+    if (known && bits > 0 && range->length != bits && range->length != rounded)
         cm1e_findings_add(findings, CM1E_RULE_ENI_PROCESS_DATA, range->place,
                           "%s: BitLength of %s is %u; the PDOs of its sync managers have %llu bits.", device->name,
                           send ? "Send" : "Recv", (unsigned)range->length, (unsigned long long)bits);

@@ -270,6 +270,15 @@ static void test_diagnosis_of_twincat_may_lie_behind_the_image(void)
     TEST_ASSERT_EQUAL(0, cm1e_findings_count(findings));
 }
 
+/* The descriptions are optional; then the assignment names what nobody describes. */
+static void test_pdos_may_be_named_without_being_described(void)
+{
+    read_network(&eni_networks[ENI_ONE]);
+    device(0)->pdos.count = 0;
+    cm1e_eni_check(findings, &document);
+    TEST_ASSERT_EQUAL(0, cm1e_findings_count(findings));
+}
+
 /* ---- beside a live device --------------------------------------------------------------------------------------- */
 
 static void test_a_position_that_the_file_does_not_have_is_said(void)
@@ -318,6 +327,7 @@ int main(void)
     RUN_TEST(test_every_rule_of_eni_has_a_breakage);
     RUN_TEST(test_either_meaning_of_the_offsets_is_taken);
     RUN_TEST(test_diagnosis_of_twincat_may_lie_behind_the_image);
+    RUN_TEST(test_pdos_may_be_named_without_being_described);
     RUN_TEST(test_a_position_that_the_file_does_not_have_is_said);
     RUN_TEST(test_the_device_that_the_file_was_made_for_does_not_differ);
     RUN_TEST(test_another_device_is_told_apart);
