@@ -21,6 +21,7 @@ typedef struct definition {
     const char *name;                       /* "DT1018" */
     const cm1e_described_object_t *object;  /* the first of this shape */
     const char **item_names;                /* of its sub-indexes, each one once */
+    const char **item_types;
     bool is_array;
 } definition_t;
 
@@ -129,24 +130,34 @@ static int compare_numbers(int64_t a, int64_t b)
     return (a > b) - (a < b);
 }
 
-static int compare_entries(const cm1e_described_entry_t *a, const cm1e_described_entry_t *b)
+/* Beside an item's Name, where that is not what the sub-index is called. */
+static const char *display_name(const definition_t *definition, size_t item)
 {
-    int order = compare_numbers(a->subindex, b->subindex);
-    order = order ? order : compare_numbers(a->bits, b->bits);
-    order = order ? order : compare_numbers(a->access, b->access);
-    order = order ? order : compare_given(a->type, b->type);
-    order = order ? order : compare_given(a->name, b->name);
-    order = order ? order : compare_given(a->unit, b->unit);
-    return order ? order : compare_given(a->comment, b->comment);
+    const char *name = definition->object->entries.at[item].name;
+    return is_given(name) && strcmp(name, definition->item_names[item]) != 0 ? name : "";
+}
+
+/* By what will be written: what is read again later must have the same shapes. */
+static int compare_items(const definition_t *a, const definition_t *b, size_t item)
+{
+    const cm1e_described_entry_t *left = &a->object->entries.at[item], *right = &b->object->entries.at[item];
+    int order = compare_numbers(left->subindex, right->subindex);
+    order = order ? order : compare_numbers(left->bits, right->bits);
+    order = order ? order : compare_numbers(left->access, right->access);
+    order = order ? order : strcmp(a->item_types[item], b->item_types[item]);
+    order = order ? order : strcmp(a->item_names[item], b->item_names[item]);
+    order = order ? order : strcmp(display_name(a, item), display_name(b, item));
+    order = order ? order : compare_given(left->unit, right->unit);
+    return order ? order : compare_given(left->comment, right->comment);
 }
 
 static int compare_shapes(const void *left, const void *right)
 {
-    const cm1e_described_object_t *a = ((const definition_t *)left)->object, *b = ((const definition_t *)right)->object;
-    int order = compare_numbers((int64_t)a->entries.count, (int64_t)b->entries.count);
-    order = order ? order : compare_numbers(a->code, b->code);
-    for (size_t i = 0; !order && i < a->entries.count; i++)
-        order = compare_entries(&a->entries.at[i], &b->entries.at[i]);
+    const definition_t *a = left, *b = right;
+    int order = compare_numbers((int64_t)a->object->entries.count, (int64_t)b->object->entries.count);
+    order = order ? order : compare_numbers(a->is_array, b->is_array);
+    for (size_t i = 0; !order && i < a->object->entries.count; i++)
+        order = compare_items(a, b, i);
     return order;
 }
 
@@ -174,6 +185,14 @@ static const char **unique_item_names(cm1e_arena_t *arena, const cm1e_described_
     return names.at;
 }
 
+static const char **item_types(cm1e_arena_t *arena, const cm1e_described_object_t *object)
+{
+    CM1E_LIST(const char *) names = {0};
+    for (size_t i = 0; i < object->entries.count; i++)
+        *(const char **)CM1E_APPEND(arena, &names) = entry_type(arena, &object->entries.at[i]);
+    return names.at;
+}
+
 /* The same index with different content twice in a file is wrong, but not for us to hide. */
 static const char *definition_name(types_t *types, uint16_t index)
 {
@@ -191,13 +210,14 @@ static const definition_t *define(types_t *types, const cm1e_described_object_t 
 {
     definition_t *definition = cm1e_arena_take(types->arena, sizeof *definition);
     definition->object = object;
+    definition->item_names = unique_item_names(types->arena, object);
+    definition->item_types = item_types(types->arena, object);
+    definition->is_array = is_array(types->arena, object);
     definition_t **found = types->arena->failed ? NULL : tsearch(definition, &types->shapes, compare_shapes);
     types->arena->failed |= !found;
     if (!found || *found != definition)
         return found ? *found : NULL;
     definition->name = definition_name(types, object->index);
-    definition->item_names = unique_item_names(types->arena, object);
-    definition->is_array = is_array(types->arena, object);
     *(const definition_t **)CM1E_APPEND(types->arena, &types->definitions) = definition;
     return definition;
 }

@@ -3,6 +3,7 @@
 #include "description/describe.h"
 #include "fuzz.h"
 #include "generate/ec_extend.h"
+#include "xml_mutator.h"
 
 /* Every device beside the document: those of its profiles are few, and this is where the document is asked most. */
 static void compare(cm1e_findings_t *findings, const cm1e_ec_extend_t *document)

@@ -3,6 +3,7 @@
 #include "description/describe.h"
 #include "fuzz.h"
 #include "generate/eni.h"
+#include "xml_mutator.h"
 
 static bool read_and_write(cm1e_file_t *written, const void *bytes, size_t size, bool must)
 {
