@@ -144,7 +144,7 @@ static void check_memory(cm1e_findings_t *findings, const cm1e_ec_controller_t *
         managers[from->index] = (cm1e_described_sync_manager_t){
             .place = from->place, .use = use, .start = from->start, .control = from->control, .enable = from->enable,
             .length = from->size >= 0 ? (uint16_t)from->size : bytes <= UINT16_MAX ? (uint16_t)bytes : UINT16_MAX};
-        if (bytes > 0 && from->size > 0 && (uint32_t)from->size != bytes)
+        if (bytes > 0 && from->size >= 0 && (uint32_t)from->size != bytes)
             cm1e_findings_add(findings, CM1E_RULE_TRIO_PDO_SIZE, from->place,
                               "sync manager %u has %d bytes, the process data of a slave that uses it %u",
                               (unsigned)from->index, (int)from->size, (unsigned)bytes);

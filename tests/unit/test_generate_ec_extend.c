@@ -343,6 +343,28 @@ static void test_lists_that_differ_get_names_of_their_own(void)
     golden_compare("ec_extend_two_firmwares.txt", file.bytes, file.size);
 }
 
+/* 0x1601 and 0x1602 have the same lengths, 0x1600 in its two orders the same names. */
+static void test_lists_are_shared_only_where_names_and_lengths_are_the_same(void)
+{
+    const cm1e_device_options_t names[] = {{.firmware = "1.2.0", .mapping = CM1E_MAPPING_CSP},
+                                           {.mapping = CM1E_MAPPING_CSV}};
+    generate_all(names, 2);
+    expect_list("RxPdos/RxPdo[1]", "CTRL_WORD2 DOUT2 TARGET_POS4 NULL0 ", false);
+    expect_list("RxPdos/RxPdo[2]", "CTRL_WORD2 DOUT2 TARGET_SPEED4 NULL0 ", false);
+    TEST_ASSERT_EQUAL_INT(1, count("TxPdos/TxPdo"));
+    TEST_ASSERT_EQUAL_STRING("TXPDO_PROFILE_CSP", cell("SlvCfgs/SlvCfg[2]/TxPdoIndex"));
+    expect_clean();
+
+    const cm1e_device_options_t orders[] = {{.firmware = "1.2.0"}, {.order = CM1E_PDO_ORDER_UG_7_2}};
+    generate_all(orders, 2);
+    TEST_ASSERT_EQUAL_INT(2, count("RxPdos/RxPdo"));
+    TEST_ASSERT_EQUAL_STRING("RXPDO_PROFILE_1", cell("RxPdos/RxPdo[2]/Name"));
+    TEST_ASSERT_EQUAL_STRING("RXPDO_PROFILE_1", cell("SlvCfgs/SlvCfg[2]/RxPdoIndex"));
+    TEST_ASSERT_EQUAL_STRING("TXPDO_PROFILE_1", cell("SlvCfgs/SlvCfg[2]/TxPdoIndex"));
+    TEST_ASSERT_EQUAL_INT(1, count("SdoInitCmds/SdoInitCmd"));
+    expect_clean();
+}
+
 /* One slave of several axes, as the two-axis device in Trio's file: lists of one axis, and the way to the next. */
 static void test_a_bridge_has_the_lists_of_one_axis(void)
 {
@@ -440,6 +462,7 @@ int main(void)
     RUN_TEST(test_what_the_manual_does_not_show_has_defaults_and_options);
     RUN_TEST(test_two_firmwares_share_what_they_have_in_common);
     RUN_TEST(test_lists_that_differ_get_names_of_their_own);
+    RUN_TEST(test_lists_are_shared_only_where_names_and_lengths_are_the_same);
     RUN_TEST(test_a_bridge_has_the_lists_of_one_axis);
     RUN_TEST(test_devices_that_the_controller_cannot_tell_apart_are_refused);
     RUN_TEST(test_options_that_do_not_fit_are_refused);

@@ -145,6 +145,7 @@ static const struct {
     {"trio-pdo-entry", ENTRY("DIN", "2"), 1, ENTRY("DOUT", "2"), "<TxPdos>", 29, "controller sends"},
     {"trio-pdo-size", "<Controlbyte>0x64<", 1, "<Size>14</Size><Controlbyte>0x64<", "<Size>14", -3, "13"},
     {"trio-pdo-size", "<Controlbyte>0x20<", 1, "<Size>20</Size><Controlbyte>0x20<", "<Size>20", -3, "21"},
+    {"trio-pdo-size", "<Controlbyte>0x64<", 1, "<Size>0</Size><Controlbyte>0x64<", "<Size>0<", -3, "13"},
     {"sync-managers-overlap", "<Startaddress>0x1080<", 1, "<Startaddress>0x1070<", "0x1070", -2, "0x1070"},
     {"sync-managers-overlap", "<Startaddress>0x1400<", 1, "<Startaddress>0x1126<", "0x1126", -2, "three times"},
     {"trio-sync-manager", "<Controlbyte>0x26<", 1, "<Controlbyte>0x22<", "<Sm>", 0, "device writes"},
@@ -207,6 +208,23 @@ static void test_commands_need_coe(void)
     check(text);
     expect_one("trio-mailbox", true, line_of(text, "<SlvCfg>"), "need COE");
     free(text);
+}
+
+/* Trio's file has a list without commands, for slaves that need none. */
+static void test_a_list_without_commands_needs_no_coe(void)
+{
+    static const char whole[] = "<MbxStartupProtocol>COE</MbxStartupProtocol>\n      <MbxProtocols>COE</MbxProtocols>";
+    be_a_stranger();
+    char *text = broken(whole, 1, "<MbxStartupProtocol>FOE</MbxStartupProtocol>");
+    cm1e_file_free(&file);
+    file = (cm1e_file_t){.bytes = (uint8_t *)text, .size = strlen(text)};
+    char *none = broken("</SdoInitCmd>\n", 1,
+                        "</SdoInitCmd><SdoInitCmd><Index>1</Index><Name>SDO_NONE</Name></SdoInitCmd>\n");
+    text = strstr(none, "<SdoInitCmdIndex>SDO_APP_CSP<");
+    TEST_ASSERT_NOT_NULL(text);
+    memcpy(text, "<SdoInitCmdIndex>SDO_NONE   <", strlen("<SdoInitCmdIndex>SDO_APP_CSP<"));
+    expect_nothing(none);
+    free(none);
 }
 
 /* Warnings: the format is not public, so what is unknown may be right. */
@@ -375,6 +393,7 @@ int main(void)
     RUN_TEST(test_each_rule_finds_its_fault_and_nothing_else);
     RUN_TEST(test_an_assignment_that_assigns_nothing);
     RUN_TEST(test_commands_need_coe);
+    RUN_TEST(test_a_list_without_commands_needs_no_coe);
     RUN_TEST(test_what_is_not_known_is_worth_a_warning);
     RUN_TEST(test_the_mailbox_of_bootstrap_is_judged_by_itself);
     RUN_TEST(test_our_own_device_is_compared_with_its_tables);
