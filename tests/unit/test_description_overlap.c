@@ -18,7 +18,7 @@ static const struct {
 } cases[] = {
     {{{0x1000, 128, MAILBOX, 1}, {0x1080, 128, MAILBOX, 1}}, false},
     {{{0x1000, 129, MAILBOX, 1}, {0x1080, 128, MAILBOX, 1}}, true},
-    {{{0x1080, 128, MAILBOX, 1}, {0x1000, 129, MAILBOX, 1}}, true}, /* the second lies before the first */
+    {{{0x1080, 128, MAILBOX, 1}, {0x1000, 129, MAILBOX, 1}}, true}, /* found where the upper one stands */
     {{{0x1080, 128, MAILBOX, 1}, {0x1000, 128, MAILBOX, 1}}, false},
     {{{0x1100, 16, BUFFERED, 1}, {0x1130, 16, BUFFERED, 1}}, false},
     {{{0x1100, 17, BUFFERED, 1}, {0x1130, 16, BUFFERED, 1}}, true},
@@ -48,7 +48,7 @@ static void test_what_lies_on_top_of_each_other_is_found(void)
         TEST_ASSERT_EQUAL_UINT_MESSAGE(cases[i].overlap, cm1e_findings_count(findings), which);
         if (cases[i].overlap) {
             TEST_ASSERT_EQUAL_STRING("sync-managers-overlap", cm1e_findings_at(findings, 0)->rule);
-            TEST_ASSERT_EQUAL_UINT(20, cm1e_findings_at(findings, 0)->line);
+            TEST_ASSERT_EQUAL_UINT(managers[0].start > managers[1].start ? 10 : 20, cm1e_findings_at(findings, 0)->line);
         }
         cm1e_findings_free(findings);
     }
