@@ -32,10 +32,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
-/** Compares with one slave and prints it. EXIT_WRONG_USE: it could not be compared; `*described` says whether the file
- *  is about it at all. */
+/** Compares with one slave and prints it, or appends it to `json`. EXIT_WRONG_USE: it could not be compared;
+ *  `*described` says whether the file is about it at all. */
 static int diff_slave(cm1e_bus_t *bus, const diff_options_t *options, const input_t *input, uint16_t position,
-                      bool *described, cm1e_diag_t *diag)
+                      json_t *json, bool *described, cm1e_diag_t *diag)
 {
     char title[64];
     cm1e_findings_t *findings = NULL;
@@ -43,14 +43,19 @@ static int diff_slave(cm1e_bus_t *bus, const diff_options_t *options, const inpu
     *described = error != CM1E_ERROR_NOT_FOUND;
     if (error != CM1E_OK)
         return EXIT_WRONG_USE;
-    snprintf(title, sizeof title, "%s beside slave %u",
-             cm1e_file_format_name(cm1e_file_recognise(input->bytes, input->size)), position);
-    const int status = print_findings(options->file, title, findings, options->common.json);
+    const char *format = cm1e_file_format_name(cm1e_file_recognise(input->bytes, input->size));
+    snprintf(title, sizeof title, "%s beside slave %u", format, position);
+    const int status = json ? findings_status(findings) : print_findings(options->file, title, findings, false);
+    if (json) {
+        json_t *object = findings_as_json(options->file, format, findings);
+        json_object_set_new(object, "position", json_integer(position));
+        json_array_append_new(json, object);
+    }
     cm1e_findings_free(findings);
     return status;
 }
 
-static int run(cm1e_bus_t *bus, const diff_options_t *options, const input_t *input)
+static int run(cm1e_bus_t *bus, const diff_options_t *options, const input_t *input, json_t *json)
 {
     cm1e_diag_t diag = {0};
     const uint32_t count = cm1e_bus_slave_count(bus);
@@ -64,7 +69,7 @@ static int run(cm1e_bus_t *bus, const diff_options_t *options, const input_t *in
         bool described;
         if (options->position && position != options->position)
             continue;
-        const int of_slave = diff_slave(bus, options, input, (uint16_t)position, &described, &diag);
+        const int of_slave = diff_slave(bus, options, input, (uint16_t)position, json, &described, &diag);
         if (of_slave == EXIT_WRONG_USE && (described || options->position)) {
             complain("%s: slave %u: %s", options->file, position, diag.text);
             return EXIT_WRONG_USE;
@@ -98,12 +103,17 @@ int command_diff(int argc, char **argv)
         return EXIT_WRONG_USE;
     cm1e_diag_t diag = {0};
     cm1e_bus_t *bus = NULL;
+    json_t *json = options.common.json ? json_array() : NULL;
     int status = EXIT_WRONG_USE;
     if (cm1e_bus_open(&bus, &config, &diag) == CM1E_OK && cm1e_bus_scan(bus, &diag) == CM1E_OK)
-        status = run(bus, &options, &input);
+        status = run(bus, &options, &input, json);
     else
         fail(&diag);
     cm1e_bus_close(bus);
+    if (json && status != EXIT_WRONG_USE)
+        print_json(json);
+    else
+        json_decref(json);
     free(input.bytes);
     return status;
 }

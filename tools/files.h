@@ -5,6 +5,7 @@
 #ifndef CM1E_TOOLS_FILES_H
 #define CM1E_TOOLS_FILES_H
 
+#include <jansson.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -27,5 +28,8 @@ bool write_output(const char *path, const void *bytes, size_t size);
 /** Prints findings as compilers do, "FILE:LINE: error: text [rule]", and how many there are; or as JSON. Returns the
  *  exit status: EXIT_FAILED where there is an error among them. */
 int print_findings(const char *path, const char *format, const cm1e_findings_t *findings, bool json);
+/** The same as one JSON object, and the exit status alone. */
+json_t *findings_as_json(const char *path, const char *format, const cm1e_findings_t *findings);
+int findings_status(const cm1e_findings_t *findings);
 
 #endif

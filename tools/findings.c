@@ -4,7 +4,7 @@
 #include "command.h"
 #include "files.h"
 
-static int print_as_json(const char *path, const char *format, const cm1e_findings_t *findings, size_t errors)
+json_t *findings_as_json(const char *path, const char *format, const cm1e_findings_t *findings)
 {
     json_t *list = json_array();
     for (size_t i = 0; i < cm1e_findings_count(findings); i++) {
@@ -13,18 +13,26 @@ static int print_as_json(const char *path, const char *format, const cm1e_findin
                                               finding->is_error ? "error" : "warning", "line", (int)finding->line,
                                               "text", finding->text));
     }
-    print_json(json_pack("{s:s, s:s, s:o}", "file", path, "format", format, "findings", list));
-    return errors > 0 ? EXIT_FAILED : EXIT_OK;
+    return json_pack("{s:s, s:s, s:o}", "file", path, "format", format, "findings", list);
 }
+
+static size_t count_errors(const cm1e_findings_t *findings)
+{
+    size_t errors = 0;
+    for (size_t i = 0; i < cm1e_findings_count(findings); i++)
+        errors += cm1e_findings_at(findings, i)->is_error;
+    return errors;
+}
+
+int findings_status(const cm1e_findings_t *findings) { return count_errors(findings) > 0 ? EXIT_FAILED : EXIT_OK; }
 
 int print_findings(const char *path, const char *format, const cm1e_findings_t *findings, bool json)
 {
-    const size_t count = cm1e_findings_count(findings);
-    size_t errors = 0;
-    for (size_t i = 0; i < count; i++)
-        errors += cm1e_findings_at(findings, i)->is_error;
-    if (json)
-        return print_as_json(path, format, findings, errors);
+    const size_t count = cm1e_findings_count(findings), errors = count_errors(findings);
+    if (json) {
+        print_json(findings_as_json(path, format, findings));
+        return findings_status(findings);
+    }
     for (size_t i = 0; i < count; i++) {
         const cm1e_finding_t *finding = cm1e_findings_at(findings, i);
         printf("%s:%u: %s: %s [%s]\n", path, finding->line, finding->is_error ? "error" : "warning", finding->text,
@@ -32,5 +40,5 @@ int print_findings(const char *path, const char *format, const cm1e_findings_t *
     }
     printf("%s: %s, %zu error%s, %zu warning%s\n", path, format, errors, errors == 1 ? "" : "s", count - errors,
            count - errors == 1 ? "" : "s");
-    return errors > 0 ? EXIT_FAILED : EXIT_OK;
+    return findings_status(findings);
 }

@@ -94,12 +94,14 @@ def check_diff(folder):
     expect(same.returncode == 0 and "beside slave 1, 0 errors" in same.stdout, "diff of the same", same)
     three = run("cm1e", "diff", image, "-b", f"{SOURCE}/examples/three_axes.yaml", "-i", "sim")
     expect(three.returncode == 0 and "beside slave 3" in three.stdout, "diff of three axes", three)
+    told = run("cm1e", "diff", image, "-b", f"{SOURCE}/examples/three_axes.yaml", "-i", "sim", "--json")
+    expect([slave["position"] for slave in json.loads(told.stdout)] == [1, 2, 3], "diff of three axes as JSON", told)
     with open(image, "r+b") as file:
         file.seek(2 * 0x0C)
         file.write(b"\x99")
     other = run("cm1e", "diff", image, "-i", "sim", "-p", "1", "--json")
     expect(other.returncode == FAILED and "differs-identity" in [finding["rule"] for finding in
-                                                                  json.loads(other.stdout)["findings"]],
+                                                                  json.loads(other.stdout)[0]["findings"]],
            "diff of another revision", other)
     with open(image, "r+b") as file:
         file.seek(2 * 0x0A)
