@@ -48,7 +48,8 @@ static void test_what_lies_on_top_of_each_other_is_found(void)
         TEST_ASSERT_EQUAL_UINT_MESSAGE(cases[i].overlap, cm1e_findings_count(findings), which);
         if (cases[i].overlap) {
             TEST_ASSERT_EQUAL_STRING("sync-managers-overlap", cm1e_findings_at(findings, 0)->rule);
-            TEST_ASSERT_EQUAL_UINT(managers[0].start > managers[1].start ? 10 : 20, cm1e_findings_at(findings, 0)->line);
+            TEST_ASSERT_EQUAL_UINT(managers[0].start > managers[1].start ? 10 : 20,
+                                   cm1e_findings_at(findings, 0)->line);
         }
         cm1e_findings_free(findings);
     }
