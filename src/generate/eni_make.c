@@ -9,6 +9,7 @@ enum { FIRST_STATION = 0x1001, FIRST_LOGICAL = 0x01000000, LOGICAL_PER_FRAME = 0
 /* An image is the frames behind each other, each in a room of its own; datagrams begin behind the headers of Ethernet
  * and EtherCAT. */
 enum { IMAGE_PER_FRAME = 1536, FRAME_HEADERS = 16 };
+enum { SYNC_MANAGERS = 16, MOST_DATA = CM1E_ENI_FRAME_BYTES - CM1E_ENI_DATAGRAM_OVERHEAD };
 enum { AL_STATUS = 0x0130, COE_TIMEOUT_MS = 3000, MAILBOX_POLL_MS = 50, BOOTSTRAP_BYTES = 8 };
 enum { LRW_BOTH = 3, LRW_OUTPUTS = 2, LRW_INPUTS = 1 }; /* working counter of LRW, ETG.1000.4 5.4.3 */
 
@@ -290,6 +291,21 @@ static void add_state_check(maker_t *maker, size_t slaves)
 
 /* ---- the network ------------------------------------------------------------------------------------------------ */
 
+static cm1e_error_t check_size(maker_t *maker, const cm1e_eni_slave_t *slave)
+{
+    uint32_t outputs = 0, inputs = 0;
+    if (slave->device->sync_managers.count > SYNC_MANAGERS)
+        return wrong(maker, slave, "a slave controller has 16 sync managers at most");
+    for (unsigned n = 0; n < slave->device->sync_managers.count; n++) {
+        const cm1e_sync_manager_use_t use = slave->device->sync_managers.at[n].use;
+        outputs += use == CM1E_SM_OUTPUTS ? cm1e_description_process_bytes(slave->device, n) : 0;
+        inputs += use == CM1E_SM_INPUTS ? cm1e_description_process_bytes(slave->device, n) : 0;
+    }
+    if (outputs > MOST_DATA || inputs > MOST_DATA)
+        return wrong(maker, slave, "its process data do not fit into one frame (1486 bytes)");
+    return CM1E_OK;
+}
+
 static cm1e_error_t check_slaves(maker_t *maker, const cm1e_eni_slave_t *slaves, size_t count, int64_t cycle_time_ns)
 {
     if (count == 0 || count > CM1E_MAX_SLAVES)
@@ -303,9 +319,9 @@ static cm1e_error_t check_slaves(maker_t *maker, const cm1e_eni_slave_t *slaves,
         for (size_t j = 0; j < i; j++)
             if (strcmp(slaves[i].name, slaves[j].name) == 0)
                 return wrong(maker, &slaves[i], "this name is there twice; the variables could not be told apart");
-        for (unsigned n = 0; n < slaves[i].device->sync_managers.count; n++)
-            if (cm1e_description_process_bytes(slaves[i].device, n) > CM1E_ENI_FRAME_BYTES - CM1E_ENI_DATAGRAM_OVERHEAD)
-                return wrong(maker, &slaves[i], "its process data do not fit into one frame (1486 bytes)");
+        const cm1e_error_t error = check_size(maker, &slaves[i]);
+        if (error != CM1E_OK)
+            return error;
     }
     return CM1E_OK;
 }

@@ -229,6 +229,23 @@ static void test_networks_that_no_file_can_describe_are_refused(void)
     entry->bits = 1487 * 8;
     const cm1e_eni_slave_t too_large = {&large, "x", 0};
     refused(&too_large, 1, 1000000, "1486");
+    /* Two sync managers of one direction count together. */
+    large.sync_managers.at = NULL;
+    large.sync_managers.count = 0;
+    for (int n = 0; n < 4; n++) {
+        cm1e_described_sync_manager_t *manager = CM1E_APPEND(&described.arena, &large.sync_managers);
+        *manager = (cm1e_described_sync_manager_t){.use = CM1E_SM_OUTPUTS, .enable = 1};
+    }
+    entry->bits = 1000 * 8;
+    const cm1e_described_pdo_t first = large.pdos.at[0];
+    pdo = CM1E_APPEND(&described.arena, &large.pdos);
+    *pdo = first;
+    pdo->sync_manager = 3;
+    refused(&too_large, 1, 1000000, "1486");
+    large.pdos.count = 0;
+    while (large.sync_managers.count < 17)
+        CM1E_APPEND(&described.arena, &large.sync_managers);
+    refused(&too_large, 1, 1000000, "16 sync managers");
 }
 
 static void test_the_same_names_of_entries_get_numbers(void)
