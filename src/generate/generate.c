@@ -20,6 +20,7 @@ void cm1e_file_free(cm1e_file_t *file)
 
 
 static const cm1e_device_options_t one_cm1e = {0};
+enum { CONFIG_ALIAS = 8 }; /* byte of the configured station alias in the configuration words */
 
 void cm1e_file_warn_of_eeprom(cm1e_file_t *file, const cm1e_description_t *device)
 {
@@ -72,9 +73,13 @@ static cm1e_error_t describe_all(cm1e_description_file_t *described, const cm1e_
     const cm1e_device_options_t *devices = options->devices ? options->devices : &one_cm1e;
     const size_t count = options->devices ? options->device_count : 1;
     cm1e_error_t error = CM1E_OK;
-    const cm1e_esi_layout_t layout = options->format == CM1E_FILE_ESI ? options->layout : CM1E_ESI_FLAT;
-    for (size_t i = 0; i < count && error == CM1E_OK; i++)
-        error = cm1e_describe(described, &devices[i], layout, diag);
+    const bool is_esi = options->format == CM1E_FILE_ESI;
+    for (size_t i = 0; i < count && error == CM1E_OK; i++) {
+        cm1e_device_options_t device = devices[i];
+        if (is_esi) /* it speaks of all devices of a kind: the alias of the one that was read is not theirs */
+            memset(device.config_data + CONFIG_ALIAS, 0, 2);
+        error = cm1e_describe(described, &device, is_esi ? options->layout : CM1E_ESI_FLAT, diag);
+    }
     return error;
 }
 
@@ -177,6 +182,11 @@ cm1e_error_t cm1e_generate(cm1e_file_t *file, const cm1e_generate_options_t *opt
     *file = (cm1e_file_t){0};
     if (options->devices && options->device_count == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "no device is given");
+    for (size_t i = 0; options->devices && i < options->device_count && options->format != CM1E_FILE_SII; i++)
+        if (options->devices[i].alias != 0 || options->devices[i].serial_number != 0)
+            return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
+                                 "alias and serial number belong to one device and its SII; %s speaks of all of a kind",
+                                 cm1e_file_format_name(options->format));
     switch (options->format) {
     case CM1E_FILE_SII:
         if (options->devices && options->device_count > 1)

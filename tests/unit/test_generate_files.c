@@ -250,6 +250,20 @@ static void test_options_that_do_not_fit_are_refused_with_the_reason(void)
     }
 }
 
+static void test_alias_and_serial_number_belong_to_an_sii(void)
+{
+    for (unsigned n = 0; n < 2; n++) {
+        refuse(CM1E_ERROR_CONFIG, "SII", &(cm1e_generate_options_t){.format = all_formats[n], ONE(.alias = 1)});
+        refuse(CM1E_ERROR_CONFIG, "SII", &(cm1e_generate_options_t){.format = all_formats[n], ONE(.serial_number = 1)});
+    }
+    cm1e_device_options_t device = {.config_data = {8, 12, 0x81, 0x66, 0, 0, 0, 0, 0x34, 0x12}, .config_data_size = 14};
+    generate(&file, &(cm1e_generate_options_t){.format = CM1E_FILE_SII, .devices = &device, .device_count = 1});
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(device.config_data, file.bytes, 14);
+    cm1e_file_free(&file);
+    generate(&file, &(cm1e_generate_options_t){.format = CM1E_FILE_ESI, .devices = &device, .device_count = 1});
+    TEST_ASSERT_NOT_NULL(strstr((const char *)file.bytes, "<ConfigData>080C8166000000000000"));
+}
+
 static void test_eni_needs_a_network_whose_places_are_known(void)
 {
     refuse(CM1E_ERROR_CONFIG, "network", &(cm1e_generate_options_t){.format = CM1E_FILE_ENI});
@@ -299,6 +313,7 @@ int main(void)
     RUN_TEST(test_file_without_known_configuration_words_warns);
     RUN_TEST(test_guessed_configuration_words_stay_guessed);
     RUN_TEST(test_options_that_do_not_fit_are_refused_with_the_reason);
+    RUN_TEST(test_alias_and_serial_number_belong_to_an_sii);
     RUN_TEST(test_eni_needs_a_network_whose_places_are_known);
     RUN_TEST(test_axes_in_any_order_stand_in_the_eni_in_the_order_of_the_wire);
     RUN_TEST(test_unknown_files_are_refused);
