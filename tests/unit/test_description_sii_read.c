@@ -294,7 +294,7 @@ static void test_categories_may_stand_in_any_order(void)
     begin_image();
     put_category(0x8001, "of the maker", 12);
     put_category(50, first, sizeof first);
-    put_category(0, NULL, 0);
+    put_category(0, "", 0);
     put_category(30, general, sizeof general);
     put_category(20, "types", 6);
     put_category(50, second, sizeof second);
@@ -315,6 +315,39 @@ static void test_categories_may_stand_in_any_order(void)
     TEST_ASSERT_EQUAL_size_t(1, cm1e_findings_count(findings)); /* the second category of TxPDOs */
     TEST_ASSERT_FALSE(device->mailbox.present);
     TEST_ASSERT_EQUAL_HEX32(0x1234, file.vendor_id);
+}
+
+/* The first one counts, as for most masters; process data adds up. */
+static void test_a_second_category_of_a_kind_adds_process_data_only(void)
+{
+    static const uint8_t manager[8] = {0x00, 0x11, 1, 0, 0x64, 0, 1, 3}, pdo[8] = {0x00, 0x16, 0, 2};
+    static const uint8_t mode[24] = {[14] = 0x00, 0x03}, fmmu[2] = {1, 2};
+    begin_image();
+    for (int n = 0; n < 2; n++) {
+        put_category(10, n ? "\001\002no" : "\001\002on", 4);
+        put_category(30, general, sizeof general);
+        put_category(40, fmmu, sizeof fmmu);
+        put_category(41, manager, sizeof manager);
+        put_category(51, pdo, sizeof pdo);
+        put_category(60, mode, sizeof mode);
+    }
+    end_image();
+    const cm1e_description_t *device = read();
+    TEST_ASSERT_EQUAL_STRING("on", device->group);
+    TEST_ASSERT_EQUAL_size_t(2, device->fmmus.count);
+    TEST_ASSERT_EQUAL_size_t(1, device->sync_managers.count);
+    TEST_ASSERT_EQUAL_size_t(2, device->pdos.count);
+    TEST_ASSERT_EQUAL_size_t(2, device->dc_modes.count);
+}
+
+static void test_protocols_that_nobody_knows_make_no_mailbox(void)
+{
+    begin_image();
+    cm1e_put_u16(image + 0x38, 0x4800);
+    end_image();
+    TEST_ASSERT_FALSE(read()->mailbox.present);
+    cm1e_put_u16(image + 0x38, 0x0001);
+    TEST_ASSERT_TRUE(read()->mailbox.present);
 }
 
 static void test_without_general_string_1_is_the_name(void)
@@ -530,6 +563,8 @@ int main(void)
     RUN_TEST(test_io_module_comes_back_as_it_was_written);
     RUN_TEST(test_what_other_devices_have_comes_back_too);
     RUN_TEST(test_categories_may_stand_in_any_order);
+    RUN_TEST(test_a_second_category_of_a_kind_adds_process_data_only);
+    RUN_TEST(test_protocols_that_nobody_knows_make_no_mailbox);
     RUN_TEST(test_without_general_string_1_is_the_name);
     RUN_TEST(test_devices_add_up_in_a_file);
     RUN_TEST(test_sizes_that_no_image_has_are_refused);

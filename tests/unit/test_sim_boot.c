@@ -4,6 +4,7 @@
 #include "core/bytes.h"
 #include "description/describe.h"
 #include "description/sii.h"
+#include "sim/cm1e_app.h"
 #include "sim/esc.h"
 #include "sim/segment.h"
 #include "unity.h"
@@ -59,6 +60,7 @@ static void test_the_image_is_what_the_slave_has(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(image, slave()->sii, 4096);
     TEST_ASSERT_TRUE(slave()->sii_valid);
     TEST_ASSERT_EQUAL_HEX16(0x1234, cm1e_get_u16(slave()->memory + ESC_STATION_ALIAS));
+    TEST_ASSERT_EQUAL_HEX16(0x1234, cm1e_sim_cm1e_of(slave())->alias); /* with an ID set too it refuses Pre-Op */
     TEST_ASSERT_EQUAL_UINT8(0, slave()->role_manager[ESC_ROLE_MAILBOX_OUT]);
     TEST_ASSERT_EQUAL_UINT8(3, slave()->role_manager[ESC_ROLE_INPUTS]);
 }
