@@ -11,30 +11,30 @@ enum { FIRST_MAPPING = 0x1600, LAST_RX_MAPPING = 0x17FF, FIRST_TX_MAPPING = 0x1A
 /* Rows of a mapping or an assignment object, by default or as start-up commands leave them. */
 typedef struct rows {
     uint32_t at[ROWS_MAX];
-    unsigned count;
+    unsigned count;          /* as stated, whatever there is room for */
     cm1e_place_t place;      /* of the count */
     cm1e_place_t places[ROWS_MAX];
     bool given[ROWS_MAX];
 } rows_t;
 
-/* false: they are not stated. */
+/* false: they are not stated, or not all. */
 static bool default_rows(const cm1e_check_t *check, uint16_t object, rows_t *rows)
 {
     uint32_t count;
-    if (!cm1e_check_default(check, object, 0, &count, &rows->place) || count == 0 || count > ROWS_MAX)
+    if (!cm1e_check_default(check, object, 0, &count, &rows->place) || count == 0)
         return false;
     rows->count = count;
-    for (unsigned k = 0; k < count; k++)
+    for (unsigned k = 0; k < count && k < ROWS_MAX; k++) {
         if (!cm1e_check_default(check, object, (uint8_t)(k + 1), &rows->at[k], &rows->places[k]))
             return false;
-        else
-            rows->given[k] = true;
+        rows->given[k] = rows->at[k] != 0; /* which the device fills in */
+    }
     return true;
 }
 
 static bool all_given(const rows_t *rows)
 {
-    for (unsigned k = 0; k < rows->count; k++)
+    for (unsigned k = 0; k < rows->count && k < ROWS_MAX; k++)
         if (!rows->given[k])
             return false;
     return true;
@@ -66,13 +66,13 @@ static bool next_of_pdo(const cm1e_described_pdo_t *pdo, size_t *row, mapped_t *
 
 static bool next_of_rows(const rows_t *rows, size_t *row, mapped_t *mapped)
 {
-    if (*row >= rows->count)
+    if (*row >= rows->count || *row >= ROWS_MAX)
         return false;
     const uint32_t value = rows->at[*row];
     const uint16_t index = (uint16_t)(value >> 16);
     *mapped = (mapped_t){index, index ? (uint8_t)(value >> 8) : 0, value & 0xFF, false, rows->places[*row], *row};
     ++*row;
-    while (mapped->index == 0 && *row < rows->count && rows->at[*row] >> 16 == 0)
+    while (mapped->index == 0 && *row < rows->count && *row < ROWS_MAX && rows->at[*row] >> 16 == 0)
         mapped->bits += rows->at[(*row)++] & 0xFF;
     return true;
 }
@@ -136,7 +136,7 @@ void cm1e_check_mapping_objects(const cm1e_check_t *check)
         const cm1e_described_pdo_t *pdo = &check->device->pdos.at[i];
         const bool master_maps = check->device->mailbox.pdo_config && !pdo->fixed;
         if (!pdo->is_virtual && !master_maps && cm1e_check_only_pdo(check, pdo->index) &&
-            default_rows(check, pdo->index, &rows))
+            default_rows(check, pdo->index, &rows) && all_given(&rows))
             compare_mapping(check, CM1E_RULE_MAPPING_OBJECT, pdo, &rows, "maps by default");
     }
 }
@@ -152,7 +152,7 @@ static void compare_assignment(const cm1e_check_t *check, cm1e_rule_t rule, int 
         const cm1e_described_pdo_t *pdo = &device->pdos.at[i];
         if (pdo->sync_manager != n || pdo->is_virtual)
             continue;
-        if (assigned < rows->count && rows->given[assigned] && rows->at[assigned] != pdo->index) {
+        if (assigned < rows->count && assigned < ROWS_MAX && rows->given[assigned] && rows->at[assigned] != pdo->index) {
             cm1e_check_add(check, rule, rows->places[assigned],
                            "0x%04X:%02X %s 0x%04X; by its Sm, PDO %u of sync manager %d is 0x%04X",
                            (unsigned)(ASSIGNMENT_BASE + n), assigned + 1, says, (unsigned)rows->at[assigned],
@@ -185,7 +185,7 @@ void cm1e_check_assignment(const cm1e_check_t *check)
 static void set_row(rows_t *rows, unsigned subindex, uint32_t value, cm1e_place_t place)
 {
     if (subindex == 0) {
-        rows->count = value <= ROWS_MAX ? value : ROWS_MAX;
+        rows->count = value;
         rows->place = place;
     } else if (subindex <= ROWS_MAX) {
         rows->at[subindex - 1] = value;

@@ -209,6 +209,13 @@ static cm1e_place_t command_too_many(cm1e_description_file_t *file)
     return command_for(file, 0x1C13, 0)->place;
 }
 
+static cm1e_place_t command_absurd_number(cm1e_description_file_t *file)
+{
+    entry_in(&DEVICE(file)->objects, 0x1C13, 0)->maximum = (cm1e_bytes_t){0};
+    command_for(file, 0x1C13, 0)->data = cm1e_bytes_of(&file->arena, 255, 1);
+    return command_for(file, 0x1C13, 0)->place;
+}
+
 /* ---- start-up commands ------------------------------------------------------------------------------------------- */
 
 static cm1e_place_t command_missing(cm1e_description_file_t *file)
@@ -273,6 +280,8 @@ static const broken_t breaks[] = {
         "0x1C13:01 becomes at start-up 0x1A02; by its Sm, PDO 1 of sync manager 3 is 0x1A01"),
     BREAKS(ASSIGNMENT_COMMAND, command_too_many,
         "0x1C13:00 becomes at start-up 2 PDOs; sync manager 3 has 1 by their Sm"),
+    BREAKS(ASSIGNMENT_COMMAND, command_absurd_number,
+           "0x1C13:00 becomes at start-up 255 PDOs; sync manager 3 has 1 by their Sm"),
     BREAKS(INIT_COMMAND_OBJECT, command_missing,
         "the start-up command writes 0x2FFF:01, which is not in the dictionary"),
     BREAKS(INIT_COMMAND_READ_ONLY, command_read_only, "the start-up command writes 0x6041:00, which is read-only"),
@@ -348,6 +357,18 @@ static void test_what_is_not_stated_is_no_mistake(void)
     cm1e_description_file_free(&file);
 }
 
+/* A row of 0 is filled in by the device. */
+static void test_row_that_the_device_fills_in_is_no_mistake(void)
+{
+    cm1e_description_file_t file = {0};
+    make_good(&file);
+    entry_in(&DEVICE(&file)->objects, 0x1C12, 1)->minimum = (cm1e_bytes_t){0};
+    set_default(&file, entry_in(&DEVICE(&file)->objects, 0x1C12, 1), 0);
+    set_default(&file, entry_in(&DEVICE(&file)->objects, 0x1603, 1), 0);
+    assert_no_finding(&file);
+    cm1e_description_file_free(&file);
+}
+
 static void test_virtual_pdo_maps_what_it_likes(void)
 {
     cm1e_description_file_t file = {0};
@@ -386,6 +407,7 @@ int main(void)
     RUN_TEST(test_gaps_may_be_cut_differently);
     RUN_TEST(test_device_may_map_part_of_an_object_but_never_more);
     RUN_TEST(test_what_is_not_stated_is_no_mistake);
+    RUN_TEST(test_row_that_the_device_fills_in_is_no_mistake);
     RUN_TEST(test_virtual_pdo_maps_what_it_likes);
     RUN_TEST(test_assignment_by_complete_access_is_understood);
     return UNITY_END();
