@@ -302,7 +302,63 @@ static void test_what_is_not_stated_is_no_mistake(void)
     cm1e_description_file_free(&file);
 }
 
-/* The two motors' order of sync managers is fixed by 0x1C12 and 0x1C13; a device without mailbox has no such order. */
+/* What just fits. */
+static void test_limits_may_be_used_up(void)
+{
+    cm1e_description_file_t file = {0};
+    make_good(&file);
+    manager(&file, 2)->minimum_length = manager(&file, 2)->maximum_length = 8;
+    DEVICE(&file)->sync_managers_available = 4;
+    DEVICE(&file)->fmmus_available = 3;
+    DEVICE(&file)->dpram_bytes = 0x0400 + 3 * 16;
+    manager(&file, 0)->length = manager(&file, 1)->length = 16;
+    assert_no_finding(&file);
+    manager(&file, 1)->start = 0x3000;
+    manager(&file, 1)->length = 1486;
+    DEVICE(&file)->dpram_bytes = 0;
+    assert_no_finding(&file);
+    cm1e_description_file_free(&file);
+}
+
+/* A device that has inputs only needs no FMMU for outputs, though another sync manager is there. */
+static void test_fmmu_is_needed_for_what_is_used(void)
+{
+    cm1e_description_file_t file = {0};
+    make_good(&file);
+    cm1e_description_t *device = DEVICE(&file);
+    size_t kept = 0;
+    for (size_t i = 0; i < device->pdos.count; i++)
+        if (device->pdos.at[i].transmit)
+            device->pdos.at[kept++] = device->pdos.at[i];
+    device->pdos.count = kept;
+    device->init_commands.count = device->objects.count = 0;
+    device->fmmus.at[0].use = CM1E_FMMU_UNUSED;
+    assert_no_finding(&file);
+    cm1e_description_file_free(&file);
+}
+
+/* Digital inputs of a controller without processor: 0x1000 to 0x1003, a byte each, without buffers. */
+static void test_digital_inputs_have_no_buffers(void)
+{
+    cm1e_description_file_t file = {0};
+    cm1e_describe_io_module(&file);
+    number_places(&file);
+    manager(&file, 0)->start = 0x0F00;
+    manager(&file, 1)->start = 0x1000;
+    cm1e_described_sync_manager_t *second = add_manager(&file, CM1E_SM_INPUTS);
+    second->start = 0x1001;
+    second->length = 1;
+    second->control = 0x00;
+    assert_no_finding(&file);
+    manager(&file, 1)->start = 0x1004;
+    second->start = 0x1005;
+    assert_one_finding(&file, CM1E_RULE_SYNC_MANAGERS_OVERLAP, 7000,
+                       "sync manager 2 begins at 0x1005, within sync manager 1, which takes 0x1004 to 0x1006, its "
+                       "length three times");
+    cm1e_description_file_free(&file);
+}
+
+/* The order of sync managers is fixed by 0x1C12 and 0x1C13; a device without mailbox has no such order. */
 static void test_order_is_of_devices_with_a_mailbox(void)
 {
     cm1e_description_file_t file = {0};
@@ -335,6 +391,9 @@ int main(void)
     RUN_TEST(test_single_buffer_counts_once);
     RUN_TEST(test_overlap_is_seen_over_a_neighbour);
     RUN_TEST(test_what_is_not_stated_is_no_mistake);
+    RUN_TEST(test_limits_may_be_used_up);
+    RUN_TEST(test_fmmu_is_needed_for_what_is_used);
+    RUN_TEST(test_digital_inputs_have_no_buffers);
     RUN_TEST(test_order_is_of_devices_with_a_mailbox);
     return UNITY_END();
 }

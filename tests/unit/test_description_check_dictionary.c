@@ -343,6 +343,37 @@ static void test_what_is_not_known_is_no_mistake(void)
     cm1e_description_file_free(&file);
 }
 
+/* An enumeration needs no more bits than its values; an array of bits may fill its last byte; LREAL has 64 bits; what is
+ * on the edge of its range is within. */
+static void test_what_just_fits_is_no_mistake(void)
+{
+    static const uint8_t one[] = {0, 0, 0, 0, 0, 0, 0xF0, 0x3F}, two[] = {0, 0, 0, 0, 0, 0, 0, 0x40};
+    cm1e_description_file_t file = {0};
+    make_good(&file);
+    type_of(&file, "DT0800EN08")->bits = 3;
+    cm1e_type_definition_t *bits = add_type(&file, "DTBITS", 8);
+    bits->base_type = "BOOL";
+    bits->is_array = true;
+    bits->elements = 5;
+    add_type(&file, "DTBYTES", 16)->base_type = "ARRAY[0..1] OF BYTE";
+    cm1e_described_entry_t *tried = entry(&file, 0x6502, 0);
+    tried->type = "LREAL";
+    tried->bits = 64;
+    tried->minimum = tried->default_data = (cm1e_bytes_t){one, 8};
+    tried->maximum = (cm1e_bytes_t){two, 8};
+    assert_no_finding(&file);
+    tried->default_data = tried->maximum;
+    assert_no_finding(&file);
+    tried->maximum = tried->minimum;
+    assert_one_finding(&file, CM1E_RULE_DEFAULT_OUT_OF_RANGE, tried->place,
+                       "the default value 2 of 0x6502:00 is outside its range, 1 to 1");
+    tried->default_data = tried->minimum;
+    type_of(&file, "DTBITS")->bits = 16;
+    assert_one_finding(&file, CM1E_RULE_TYPE_SIZE, 0,
+                       "the array type DTBITS has 16 bits; its 5 elements of type BOOL with 1 bits make 5");
+    cm1e_description_file_free(&file);
+}
+
 /* Unsigned numbers of which the highest bit is set are above those without, signed ones below. */
 static void test_ranges_know_signs(void)
 {
@@ -391,6 +422,7 @@ int main(void)
     RUN_TEST(test_each_mistake_is_found_once_and_where_it_is);
     RUN_TEST(test_identity_that_the_device_fills_in_is_no_mistake);
     RUN_TEST(test_what_is_not_known_is_no_mistake);
+    RUN_TEST(test_what_just_fits_is_no_mistake);
     RUN_TEST(test_ranges_know_signs);
     RUN_TEST(test_deep_chain_of_types_ends);
     return UNITY_END();

@@ -221,6 +221,33 @@ static void test_modules_move_by_the_increments_of_their_slot(void)
     cm1e_description_file_free(&file);
 }
 
+/* A module's own mapping object says the index of the first slot, whichever slot it stands in; or that of another slot,
+ * but no other. */
+static void test_mapping_object_of_a_module_is_of_any_slot(void)
+{
+    cm1e_description_file_t file = {0};
+    make_good(&file);
+    cm1e_module_t *module = &file.modules.at[PROFILE];
+    cm1e_described_object_t *object = CM1E_APPEND(&file.arena, &module->objects);
+    *object = (cm1e_described_object_t){.index = 0x1605, .depends_on_slot = true, .name = "added", .type = ""};
+    for (uint8_t subindex = 0; subindex < 2; subindex++) {
+        cm1e_described_entry_t *row = CM1E_APPEND(&file.arena, &object->entries);
+        *row = (cm1e_described_entry_t){.place = 9001u + subindex, .subindex = subindex, .name = "added",
+                                        .type = subindex ? "UDINT" : "USINT", .bits = subindex ? 32 : 8};
+        set_default(&file, row, subindex ? 0x60400010 : 1);
+    }
+    cm1e_described_pdo_t *pdo = CM1E_APPEND(&file.arena, &module->pdos);
+    *pdo = (cm1e_described_pdo_t){.index = 0x1605, .depends_on_slot = true, .sync_manager = CM1E_NO_SYNC_MANAGER};
+    cm1e_described_pdo_entry_t *entry = CM1E_APPEND(&file.arena, &pdo->entries);
+    *entry = (cm1e_described_pdo_entry_t){.index = 0x6040, .depends_on_slot = true, .bits = 16, .type = "UINT"};
+    assert_no_finding(&file);
+    set_default(&file, &object->entries.at[1], 0x60600010);
+    assert_one_finding(&file, CM1E_RULE_MAPPING_OBJECT, 9002,
+                       "0x1605:01 maps by default 0x6060:00 with 16 bits; entry 1 of RxPDO 0x1605 is 0x6040:00 with 16 "
+                       "bits");
+    cm1e_description_file_free(&file);
+}
+
 /* A module that states no objects may map anything; one with alternatives in hundreds is judged as well. */
 static void test_module_without_dictionary_is_no_mistake(void)
 {
@@ -280,6 +307,7 @@ int main(void)
     RUN_TEST(test_each_mistake_is_found_once_and_where_it_is);
     RUN_TEST(test_places_are_bounded_and_filled_by_default);
     RUN_TEST(test_modules_move_by_the_increments_of_their_slot);
+    RUN_TEST(test_mapping_object_of_a_module_is_of_any_slot);
     RUN_TEST(test_module_without_dictionary_is_no_mistake);
     RUN_TEST(test_every_alternative_has_its_turn);
     RUN_TEST(test_work_is_bounded);

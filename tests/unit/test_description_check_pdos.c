@@ -357,6 +357,46 @@ static void test_what_is_not_stated_is_no_mistake(void)
     cm1e_description_file_free(&file);
 }
 
+/* A text may be written shorter than its room, a number may not. */
+static void test_command_may_write_a_shorter_text(void)
+{
+    cm1e_description_file_t file = {0};
+    make_good(&file);
+    entry_in(&DEVICE(&file)->objects, 0x1008, 0)->access |= CM1E_ACCESS_WRITE;
+    cm1e_init_command_t *command = add_command(&file, 0x1008, 0, -6, 1);
+    assert_no_finding(&file);
+    command->index = 0x6098;
+    assert_no_finding(&file);
+    command->index = 0x6081;
+    assert_one_finding(&file, CM1E_RULE_INIT_COMMAND_SIZE, command->place,
+                       "the start-up command writes 1 byte to 0x6081:00, which has 32 bits, 4 bytes");
+    cm1e_description_file_free(&file);
+}
+
+/* Excluded by one side only, and both assigned: two findings, whichever side it is. */
+static void test_one_sided_exclusion_counts(void)
+{
+    for (int side = 0; side < 2; side++) {
+        cm1e_description_file_t file = {0};
+        cm1e_findings_t *findings = cm1e_findings_create();
+        make_good(&file);
+        forget_assignment(&file);
+        DEVICE(&file)->sync_managers.at[2].length = 0;
+        for (size_t i = 0; i < DEVICE(&file)->pdos.count; i++)
+            DEVICE(&file)->pdos.at[i].excludes.count = 0;
+        pdo_in(&DEVICE(&file)->pdos, 0x1603)->sync_manager = 2;
+        cm1e_described_pdo_t *pdo = pdo_in(&DEVICE(&file)->pdos, side ? 0x1601 : 0x1603);
+        pdo->excludes.count = 1;
+        pdo->excludes.at[0].index = side ? 0x1603 : 0x1601;
+        cm1e_check_description(findings, &file);
+        TEST_ASSERT_EQUAL(2, cm1e_findings_count(findings));
+        TEST_ASSERT_EQUAL_STRING("exclude-one-sided", cm1e_findings_at(findings, 0)->rule);
+        TEST_ASSERT_EQUAL_STRING("excluded-assigned", cm1e_findings_at(findings, 1)->rule);
+        cm1e_findings_free(findings);
+        cm1e_description_file_free(&file);
+    }
+}
+
 /* A row of 0 is filled in by the device. */
 static void test_row_that_the_device_fills_in_is_no_mistake(void)
 {
@@ -407,6 +447,8 @@ int main(void)
     RUN_TEST(test_gaps_may_be_cut_differently);
     RUN_TEST(test_device_may_map_part_of_an_object_but_never_more);
     RUN_TEST(test_what_is_not_stated_is_no_mistake);
+    RUN_TEST(test_command_may_write_a_shorter_text);
+    RUN_TEST(test_one_sided_exclusion_counts);
     RUN_TEST(test_row_that_the_device_fills_in_is_no_mistake);
     RUN_TEST(test_virtual_pdo_maps_what_it_likes);
     RUN_TEST(test_assignment_by_complete_access_is_understood);
