@@ -5,7 +5,7 @@
 #include "generate/esi.h"
 #include "xml_mutator.h"
 
-enum { SEED_OBJECTS = 12, SEED_ENTRIES = 5, SEED_MODULES = 2 }; /* small seeds are run more often */
+enum { SEED_OBJECTS = 5, SEED_ENTRIES = 4, SEED_MODULES = 1 }; /* small seeds are run more often */
 
 static bool read_and_write(cm1e_file_t *written, const void *bytes, size_t size, bool must)
 {
