@@ -1,7 +1,7 @@
 /**
  * @file sii.h
- * What the bus needs of a slave's SII (EEPROM; ETG.2010), fetched with bounds from whatever is in there: no length in it
- * is believed, the way through the categories always leads forward and ends. What the words mean is the affair of
+ * What the bus needs of a slave's SII (EEPROM; ETG.2010), fetched with bounds from whatever is in there: no length in
+ * it is believed, the way through the categories always leads forward and ends. What the words mean is the affair of
  * description/sii.h. Pure: words come through a function.
  */
 #ifndef CM1E_BUS_SII_H

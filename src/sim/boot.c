@@ -35,8 +35,8 @@ static bool check_identity(const boot_t *boot)
                       (unsigned)image->vendor_id, (unsigned)image->product_code, (unsigned)device->vendor_id,
                       (unsigned)device->product_code);
     if (image->revision != device->revision)
-        return REFUSE(boot, "is one of revision 0x%08X; with its firmware this slave has 0x%08X. The bus file says which "
-                      "firmware it plays", (unsigned)image->revision, (unsigned)device->revision);
+        return REFUSE(boot, "is one of revision 0x%08X; with its firmware this slave has 0x%08X. The bus file says "
+                      "which firmware it plays", (unsigned)image->revision, (unsigned)device->revision);
     return true;
 }
 

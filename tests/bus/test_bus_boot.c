@@ -96,8 +96,8 @@ static void learn(cm1e_bus_t *bus, learned_t learned[SLAVES], uint32_t serial_nu
     cm1e_bus_close(bus);
 }
 
-/** The image says which mapping is the default; the device's own default stays 0x1600 and 0x1A00. What a master runs it
- *  with is what it assigned: here the same that the image says, so that SII and process image can be compared. */
+/** The image says which mapping is the default; the device's own default stays 0x1600 and 0x1A00. What a master runs
+ *  it with is what it assigned: here the same that the image says, so that SII and process image can be compared. */
 START_TEST(slaves_from_images_are_those_from_the_tables)
 {
     const choice_t choice = choice_of(_i);
@@ -124,8 +124,8 @@ START_TEST(slaves_from_images_are_those_from_the_tables)
 }
 END_TEST
 
-/** What an EEPROM says is assigned by default is not what the device's program assigns: a master reads 0x1C12, or writes
- *  it. */
+/** What an EEPROM says is assigned by default is not what the device's program assigns: a master reads 0x1C12, or
+ *  writes it. */
 START_TEST(default_of_the_image_is_not_the_default_of_the_device)
 {
     const choice_t csp = {tested_firmware(), CM1E_MAPPING_CSP, tested_order()};

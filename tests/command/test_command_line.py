@@ -221,6 +221,8 @@ WRONG = [
     (["sii", "-i", "sim", "write", "1", f"{SOURCE}/README.md", "--backup", "/no/such/folder/x"], FAILED, "backup"),
     (["sii", "read", "1", "x"], WRONG_USE, "-i"),
     (["sii", "decode", "no-such-file"], FAILED, "no-such-file"),
+    (["sim", "-i", "lo", "--sii", "no-such-file"], FAILED, "no-such-file"),
+    (["sim", "-i", "lo", "--sii", f"{SOURCE}/README.md"], FAILED, "is damaged at byte 0x000E"),
     (["sii", "decode", f"{SOURCE}/README.md"], FAILED, ""),
     (["diff", "-i", "sim"], WRONG_USE, "which file"),
     (["diff", f"{SOURCE}/README.md"], WRONG_USE, "-i"),

@@ -31,7 +31,8 @@ static void generate(cm1e_file_t *file, cm1e_file_format_t format, cm1e_esi_layo
 static void convert(cm1e_file_t *to, const cm1e_file_t *from, cm1e_file_format_t format)
 {
     cm1e_file_free(to);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, cm1e_generate_from(to, from->bytes, from->size, format, 0, &diag), diag.text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, cm1e_generate_from(to, from->bytes, from->size, format, 0, &diag),
+                                  diag.text);
 }
 
 static const cm1e_description_t *read(const cm1e_file_t *file)
