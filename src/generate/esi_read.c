@@ -274,14 +274,6 @@ static void read_vendor(cm1e_xml_reader_t *reader, const xmlNode *root, cm1e_des
     file->vendor_name = cm1e_esi_text(reader, vendor, "Name", NULL);
 }
 
-/* The comment before the root element; it is the only one that is read. */
-static void read_comment(cm1e_xml_reader_t *reader, const xmlNode *root, cm1e_description_file_t *file)
-{
-    for (const xmlNode *node = root->prev; node && !file->comment; node = node->prev)
-        if (node->type == XML_COMMENT_NODE)
-            file->comment = cm1e_xml_text(reader, node);
-}
-
 /* A file of modules alone (root EtherCATModule, to which an ESI refers) has them without Descriptions. */
 static void read_root(cm1e_xml_reader_t *reader, const xmlNode *root, cm1e_description_file_t *file)
 {
@@ -293,7 +285,7 @@ static void read_root(cm1e_xml_reader_t *reader, const xmlNode *root, cm1e_descr
     }
     names_t names = {.file = file};
     const xmlNode *descriptions = of_modules ? root : cm1e_xml_need(reader, root, "Descriptions");
-    read_comment(reader, root, file);
+    file->comment = cm1e_xml_comment(reader, root);
     read_vendor(reader, root, file);
     read_groups(reader, cm1e_xml_child(descriptions, "Groups"), &names);
     read_modules(reader, cm1e_xml_child(descriptions, "Modules"), file, &names);

@@ -1,5 +1,3 @@
-#include <libxml/xpath.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -145,15 +143,14 @@ static cm1e_bytes_t bytes_of_number(dictionary_t *dictionary, const cm1e_describ
     return cm1e_bytes_of(dictionary->reader->arena, value, bytes < sizeof value ? bytes : sizeof value);
 }
 
-/* REAL and LREAL are written with a point, in whatever country. */
 static bool real_of(dictionary_t *dictionary, const cm1e_described_entry_t *entry, const char *text,
                     cm1e_bytes_t *bytes)
 {
     const bool is_single = strcmp(entry->type, "REAL") == 0;
-    const double number = xmlXPathCastStringToNumber((const xmlChar *)text);
-    const float single = (float)number;
-    if ((!is_single && strcmp(entry->type, "LREAL") != 0) || isnan(number))
+    double number;
+    if ((!is_single && strcmp(entry->type, "LREAL") != 0) || !cm1e_xml_real(text, &number))
         return false;
+    const float single = (float)number;
     bytes->size = is_single ? sizeof single : sizeof number;
     bytes->data = cm1e_arena_bytes(dictionary->reader->arena, is_single ? (const void *)&single : &number, bytes->size);
     return true;

@@ -4,6 +4,8 @@
 #include <libxml/SAX2.h>
 #include <libxml/parser.h>
 #include <libxml/parserInternals.h>
+#include <libxml/xpath.h>
+#include <math.h>
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -314,6 +316,15 @@ const char *cm1e_xml_child_text(cm1e_xml_reader_t *reader, const xmlNode *parent
     return child ? cm1e_xml_text(reader, child) : fallback;
 }
 
+const char *cm1e_xml_comment(cm1e_xml_reader_t *reader, const xmlNode *root)
+{
+    const xmlNode *found = NULL;
+    for (const xmlNode *node = root->prev; node; node = node->prev)
+        if (node->type == XML_COMMENT_NODE)
+            found = node;
+    return cm1e_xml_text(reader, found);
+}
+
 const char *cm1e_xml_attribute(cm1e_xml_reader_t *reader, const xmlNode *node, const char *name)
 {
     xmlChar *value = attribute(node, name);
@@ -368,6 +379,12 @@ int64_t cm1e_xml_attribute_number(cm1e_xml_reader_t *reader, const xmlNode *node
     char text[LONGEST_NUMBER];
     xmlChar *value = attribute(node, name);
     return value ? checked_number(reader, node, name, word(text, value), minimum, maximum, fallback) : fallback;
+}
+
+bool cm1e_xml_real(const char *text, double *number)
+{
+    *number = xmlXPathCastStringToNumber((const xmlChar *)text);
+    return !isnan(*number);
 }
 
 static bool parse_flag(cm1e_xml_reader_t *reader, const xmlNode *node, const char *name, const char *text,

@@ -43,6 +43,8 @@ const char *cm1e_xml_text(cm1e_xml_reader_t *reader, const xmlNode *node);
 /** The text of a child; `fallback` where there is no such child. */
 const char *cm1e_xml_child_text(cm1e_xml_reader_t *reader, const xmlNode *parent, const char *name,
                                 const char *fallback);
+/** The text of the first comment before the root element; NULL: there is none. */
+const char *cm1e_xml_comment(cm1e_xml_reader_t *reader, const xmlNode *root);
 /** NULL: no such attribute. */
 const char *cm1e_xml_attribute(cm1e_xml_reader_t *reader, const xmlNode *node, const char *name);
 
@@ -54,6 +56,8 @@ int64_t cm1e_xml_child_number(cm1e_xml_reader_t *reader, const xmlNode *parent, 
                               int64_t maximum, int64_t fallback);
 int64_t cm1e_xml_attribute_number(cm1e_xml_reader_t *reader, const xmlNode *node, const char *name, int64_t minimum,
                                   int64_t maximum, int64_t fallback);
+/** A number with a point, in whatever country. False: it is none. */
+bool cm1e_xml_real(const char *text, double *number);
 /** xs:boolean: 0, 1, false, true (any case). */
 bool cm1e_xml_attribute_flag(cm1e_xml_reader_t *reader, const xmlNode *node, const char *name, bool fallback);
 bool cm1e_xml_child_flag(cm1e_xml_reader_t *reader, const xmlNode *parent, const char *name, bool fallback);

@@ -327,6 +327,25 @@ static void test_numbers(void)
     }
 }
 
+static void test_numbers_with_a_point(void)
+{
+    double number;
+    TEST_ASSERT_TRUE(cm1e_xml_real("-0.25", &number));
+    TEST_ASSERT_EQUAL_DOUBLE(-0.25, number);
+    TEST_ASSERT_TRUE(cm1e_xml_real("1.5e2", &number));
+    TEST_ASSERT_EQUAL_DOUBLE(150, number);
+    TEST_ASSERT_FALSE(cm1e_xml_real("1,5", &number));
+    TEST_ASSERT_FALSE(cm1e_xml_real("", &number));
+    TEST_ASSERT_FALSE(cm1e_xml_real("x", &number));
+}
+
+static void test_comment_before_the_root(void)
+{
+    TEST_ASSERT_EQUAL_STRING("a b", cm1e_xml_comment(&reader, need("<?xml version='1.0'?><!-- a b --><!--c--><r/>")));
+    TEST_ASSERT_NULL(cm1e_xml_comment(&reader, need("<r><!-- inside --></r><!-- behind -->")));
+    TEST_ASSERT_EQUAL_STRING("", cm1e_xml_comment(&reader, need("<!----><r/>")));
+}
+
 static void test_flags(void)
 {
     static const struct {
@@ -423,6 +442,8 @@ int main(void)
     RUN_TEST(test_handler_of_the_application_comes_back);
     RUN_TEST(test_every_prefix_of_a_document_is_refused);
     RUN_TEST(test_numbers);
+    RUN_TEST(test_numbers_with_a_point);
+    RUN_TEST(test_comment_before_the_root);
     RUN_TEST(test_flags);
     RUN_TEST(test_hexadecimal_bytes);
     RUN_TEST(test_what_is_not_there_has_its_fallback);
