@@ -7,7 +7,7 @@
 
 /* Bounds on what a file that means harm can make us do: rounds of choices of modules, and objects and PDO entries in
  * all of them together. A device of hundreds of modules needs a few rounds. */
-enum { ROUNDS_MAX = 512, WORK_MAX = 20000000 };
+enum { ROUNDS_MAX = 512, WORK_MAX = 4000000 };
 
 void cm1e_check_add(const cm1e_check_t *check, cm1e_rule_t rule, cm1e_place_t place, const char *format, ...)
 {
@@ -159,10 +159,8 @@ static bool prepare(cm1e_check_t *check)
 
 static void check_flat(cm1e_check_t *check)
 {
-    if (!prepare(check)) {
-        check->findings->arena.failed = true;
+    if (!prepare(check))
         return;
-    }
     cm1e_check_dictionary(check);
     cm1e_check_pdos(check);
     cm1e_check_excludes(check);
@@ -231,33 +229,40 @@ static size_t work_of(const cm1e_description_t *device)
     return work;
 }
 
-static void check_choices(const cm1e_check_t *of_device, const cm1e_description_file_t *file)
+/* One choice of modules; returns how much there was to do. */
+static size_t check_choice(const cm1e_check_t *of_device, const cm1e_description_file_t *file, const uint32_t *idents,
+                           size_t places, bool by_default)
+{
+    cm1e_arena_t arena = {0};
+    cm1e_description_t expanded;
+    cm1e_description_expand(&arena, &expanded, file, of_device->device, idents, places);
+    cm1e_check_t check = *of_device;
+    check.arena = &arena;
+    check.device = &expanded;
+    check.by_default = by_default;
+    mark_silent(&check, file, of_device->device, idents, places);
+    if (!arena.failed)
+        check_flat(&check);
+    if (arena.failed && by_default) /* alternatives that nobody has memory for are left out */
+        check.findings->arena.failed = true;
+    const size_t work = work_of(&expanded) + places * file->modules.count;
+    cm1e_arena_free(&arena);
+    return work;
+}
+
+static void check_choices(const cm1e_check_t *of_device, const cm1e_description_file_t *file, size_t *work)
 {
     uint32_t idents[CM1E_PLACES_MAX];
     const size_t places = cm1e_description_places(of_device->device);
-    size_t work = 0;
-    for (unsigned round = 0; round < ROUNDS_MAX && work < WORK_MAX; round++) {
+    for (unsigned round = 0; round == 0 || (round < ROUNDS_MAX && *work < WORK_MAX); round++) {
         if (!choose(of_device->device, round, idents, places))
             return;
-        cm1e_arena_t arena = {0};
-        cm1e_description_t expanded;
-        cm1e_description_expand(&arena, &expanded, file, of_device->device, idents, places);
-        cm1e_check_t check = *of_device;
-        check.arena = &arena;
-        check.device = &expanded;
-        check.by_default = round == 0;
-        mark_silent(&check, file, of_device->device, idents, places);
-        if (!arena.failed)
-            check_flat(&check);
-        else
-            check.findings->arena.failed = true;
-        work += work_of(&expanded) + places * file->modules.count;
-        cm1e_arena_free(&arena);
+        *work += check_choice(of_device, file, idents, places, round == 0);
     }
 }
 
 static void check_device(const cm1e_check_t *of_file, const cm1e_description_file_t *file,
-                         const cm1e_description_t *device)
+                         const cm1e_description_t *device, size_t *work)
 {
     cm1e_check_t check = *of_file;
     check.device = device;
@@ -268,15 +273,17 @@ static void check_device(const cm1e_check_t *of_file, const cm1e_description_fil
     cm1e_check_objects(&check, &device->objects, &types);
     cm1e_check_own_pdos(&check, &device->pdos);
     cm1e_check_slots(&check, file);
-    check_choices(&check, file);
+    check_choices(&check, file, work);
 }
 
 void cm1e_check_description(cm1e_findings_t *findings, const cm1e_description_file_t *file)
 {
     cm1e_arena_t arena = {0};
     const cm1e_check_t check = {.findings = findings, .arena = &arena};
-    for (size_t i = 0; i < file->devices.count && findings->list.count < CM1E_FINDINGS_MAX; i++)
-        check_device(&check, file, &file->devices.at[i]);
+    size_t work = 0;
+    for (size_t i = 0; i < file->devices.count && findings->list.count < CM1E_FINDINGS_MAX && !findings->arena.failed;
+         i++)
+        check_device(&check, file, &file->devices.at[i], &work);
     cm1e_check_modules(&check, file);
     if (arena.failed)
         findings->arena.failed = true;

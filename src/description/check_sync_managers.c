@@ -87,24 +87,25 @@ static void check_size(const cm1e_check_t *check, size_t n, uint32_t bytes)
 
 /* ---- memory ------------------------------------------------------------------------------------------------------ */
 
-/* Inputs of a controller with digital I/O instead of a processor: registers 0x1000 to 0x1003, without buffers. */
-static bool is_digital_input(const cm1e_description_t *device, const cm1e_described_sync_manager_t *manager)
+static bool has_mailbox(const cm1e_description_t *device)
 {
     for (size_t n = 0; n < device->sync_managers.count; n++)
         if (is_mailbox(&device->sync_managers.at[n]))
-            return false;
-    return manager->use == CM1E_SM_INPUTS && manager->start < END_OF_DIGITAL_INPUTS;
+            return true;
+    return false;
 }
 
-/* The sync manager as a master sets it: with the length of its PDOs, and enabled. false: it takes no memory. */
-static bool in_use(cm1e_described_sync_manager_t *used, const cm1e_check_t *check, size_t n, uint32_t bytes)
+/* The sync manager as a master sets it, with the length of its PDOs. Without a processor behind the controller, which
+ * would have a mailbox, registers 0x1000 to 0x1003 are digital inputs, without buffers. false: it takes no memory. */
+static bool in_use(cm1e_described_sync_manager_t *used, const cm1e_described_sync_manager_t *manager, uint32_t bytes,
+                   bool mailbox)
 {
-    const cm1e_described_sync_manager_t *manager = &check->device->sync_managers.at[n];
+    const bool digital_input = !mailbox && manager->use == CM1E_SM_INPUTS && manager->start < END_OF_DIGITAL_INPUTS;
     *used = *manager;
     used->enable = 0;
     if (is_process_data(manager) && bytes > 0)
         used->length = bytes < UINT16_MAX ? (uint16_t)bytes : UINT16_MAX;
-    const bool one_buffer = is_mailbox(manager) || is_digital_input(check->device, manager) ||
+    const bool one_buffer = is_mailbox(manager) || digital_input ||
                             (!manager->control_missing && (manager->control & CONTROL_MODE) != MODE_BUFFERED);
     used->control = one_buffer ? MODE_MAILBOX : MODE_BUFFERED;
     return manager->use != CM1E_SM_UNUSED && used->length > 0 && manager->start >= FIRST_MEMORY;
@@ -130,8 +131,9 @@ static void check_areas(const cm1e_check_t *check, const uint32_t *bytes)
     cm1e_described_sync_manager_t *used = cm1e_arena_take(check->arena, count * sizeof *used);
     if (check->arena->failed)
         return;
+    const bool mailbox = has_mailbox(check->device);
     for (size_t n = 0; n < count; n++)
-        if (in_use(&used[n], check, n, bytes[n])) {
+        if (in_use(&used[n], &check->device->sync_managers.at[n], bytes[n], mailbox)) {
             used[n].enable = 1;
             check_memory(check, &used[n], n);
         }
@@ -146,9 +148,7 @@ static void check_order(const cm1e_check_t *check)
     static const cm1e_sync_manager_use_t order[] = {CM1E_SM_MAILBOX_OUT, CM1E_SM_MAILBOX_IN, CM1E_SM_OUTPUTS,
                                                     CM1E_SM_INPUTS};
     const cm1e_description_t *device = check->device;
-    bool mailbox = false;
-    for (size_t n = 0; n < device->sync_managers.count; n++)
-        mailbox = mailbox || is_mailbox(&device->sync_managers.at[n]);
+    const bool mailbox = has_mailbox(device);
     for (size_t n = 0; mailbox && n < device->sync_managers.count; n++) {
         const cm1e_described_sync_manager_t *manager = &device->sync_managers.at[n];
         const bool wrong = n < 4 ? manager->use != CM1E_SM_UNUSED && manager->use != order[n] : is_mailbox(manager);
