@@ -287,7 +287,7 @@ static void resolve(dictionary_t *dictionary, size_t number, cm1e_described_obje
     }
 }
 
-/* Which entry a SubItem of Info means: the one of that name; an element, which is not named in the type, by its turn. */
+/* Which entry a SubItem of Info means: the one of that name; an element, which has none in the type, by its turn. */
 static size_t entry_meant(const cm1e_described_object_t *object, const slot_t *slots, size_t turn, const char *name)
 {
     for (size_t n = 0; n < object->entries.count; n++) {

@@ -20,7 +20,8 @@ static const struct {
 static const char *const others[] = {
     "", "uint", "UINT(2)", "UINT ", "STRING(", "STRING()", "STRING(5", "STRING(-1)", "STRING(65536)", "STRING(5) ",
     "STRING(99999999999999999999)", "DT1018", "ARRAY", "ARRAY [0..3] OF REAL", "ARRAY [0..3] OF ", "ARRAY [0..3]",
-    "ARRAY [0.3] OF BYTE", "ARRAY [-1..3] OF BYTE", "ARRAY [0..65536] OF BYTE", "ARRAY [0..99999999999999999999] OF BYTE",
+    "ARRAY [0.3] OF BYTE", "ARRAY [-1..3] OF BYTE", "ARRAY [0..65536] OF BYTE",
+    "ARRAY [0..99999999999999999999] OF BYTE",
 };
 
 static void test_base_types_have_a_number_and_a_size(void)
