@@ -340,6 +340,15 @@ static void test_what_is_not_known_is_no_mistake(void)
     type_of(&file, "DT1C32")->items.at[2].type = "ARRAY [0..3] OF BYTE";
     type_of(&file, "DT1C12ARR")->base_type = "ARRAY [0..1] OF BYTE";
     assert_no_finding(&file);
+    /* A text without its length, everywhere that a type is named; an object without its size. */
+    type_of(&file, "DT1C12ARR")->base_type = "STRING";
+    type_of(&file, "DT0800EN08")->base_type = "STRING";
+    type_of(&file, "DT1C32")->items.at[2].type = "STRING";
+    object_in(&DEVICE(&file)->objects, 0x1C33)->type = "STRING";
+    object_in(&DEVICE(&file)->objects, 0x1C33)->bits = 77;
+    object_in(&DEVICE(&file)->objects, 0x1C32)->type = "DT1C32";
+    object_in(&DEVICE(&file)->objects, 0x1C32)->bits = 0;
+    assert_no_finding(&file);
     cm1e_description_file_free(&file);
 }
 
