@@ -152,7 +152,8 @@ static void compare_assignment(const cm1e_check_t *check, cm1e_rule_t rule, int 
         const cm1e_described_pdo_t *pdo = &device->pdos.at[i];
         if (pdo->sync_manager != n || pdo->is_virtual)
             continue;
-        if (assigned < rows->count && assigned < ROWS_MAX && rows->given[assigned] && rows->at[assigned] != pdo->index) {
+        const bool given = assigned < rows->count && assigned < ROWS_MAX && rows->given[assigned];
+        if (given && rows->at[assigned] != pdo->index) {
             cm1e_check_add(check, rule, rows->places[assigned],
                            "0x%04X:%02X %s 0x%04X; by its Sm, PDO %u of sync manager %d is 0x%04X",
                            (unsigned)(ASSIGNMENT_BASE + n), assigned + 1, says, (unsigned)rows->at[assigned],

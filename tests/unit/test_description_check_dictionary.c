@@ -352,8 +352,8 @@ static void test_what_is_not_known_is_no_mistake(void)
     cm1e_description_file_free(&file);
 }
 
-/* An enumeration needs no more bits than its values; an array of bits may fill its last byte; LREAL has 64 bits; what is
- * on the edge of its range is within. */
+/* An enumeration needs no more bits than its values; an array of bits may fill its last byte; LREAL has 64 bits; what
+ * is on the edge of its range is within. */
 static void test_what_just_fits_is_no_mistake(void)
 {
     static const uint8_t one[] = {0, 0, 0, 0, 0, 0, 0xF0, 0x3F}, two[] = {0, 0, 0, 0, 0, 0, 0, 0x40};
