@@ -244,7 +244,7 @@ static void test_what_fuzzing_found(void)
         {"Mode of it</DisplayName><Type>DT0800EN08<", "Mode of it</DisplayName><Type>DT2001ARR<"},
         {"<Mailbox><Timeout><RequestTimeout>100</RequestTimeout>", "<Mailbox><Timeout>"},
         {"<Elements>3</Elements>", "<Elements>0</Elements>"},
-        {"</DataTypes>\n            <Objects>", /* an array without elements, a record like it */
+        {"</DataTypes>\n            <Objects>\n", /* an array without elements, a record like it */
          "<DataType><Name>X</Name><SubItem><SubIdx>0</SubIdx><Name>n</Name><Type>USINT</Type></SubItem></DataType>"
          "<DataType><Name>YARR</Name><ArrayInfo><Elements>0</Elements></ArrayInfo></DataType>"
          "<DataType><Name>Y</Name><SubItem><SubIdx>0</SubIdx><Name>n</Name><Type>USINT</Type></SubItem>"
