@@ -8,6 +8,7 @@
 
 #include "command.h"
 #include "core/bytes.h"
+#include "core/text.h"
 #include "device/device.h"
 #include "sdo_list.h"
 
@@ -102,7 +103,9 @@ static int64_t sign_extend(uint64_t value, unsigned bytes)
 
 static void print_value(const uint8_t *data, size_t size, int type, bool json)
 {
-    char hex[3 * 64 + 4] = "";
+    char hex[3 * 64 + 4] = "", text[MAX_SDO_BYTES + 1];
+    snprintf(text, sizeof text, "%.*s", (int)size, (const char *)data);
+    cm1e_text_clean(text);
     for (size_t i = 0; i < size && i < 64; i++)
         snprintf(hex + strlen(hex), sizeof hex - strlen(hex), "%s%02X", i ? " " : "", data[i]);
     const bool is_text = type >= 0 && types[type].type == CM1E_TYPE_STRING;
@@ -112,12 +115,12 @@ static void print_value(const uint8_t *data, size_t size, int type, bool json)
     if (json) {
         json_t *object = json_pack("{s:s, s:s}", "type", type >= 0 ? types[type].name : "raw", "bytes", hex);
         if (is_text)
-            json_object_set_new(object, "value", json_stringn((const char *)data, size));
+            json_object_set_new(object, "value", text_as_json(text));
         else if (is_number)
             json_object_set_new(object, "value", json_integer(number));
         print_json(object);
     } else if (is_text) {
-        printf("%.*s\n", (int)size, (const char *)data);
+        printf("%s\n", text);
     } else if (is_number) {
         printf("%" PRId64 " (0x%0*" PRIX64 ")\n", number, (int)size * 2, bits);
     } else {

@@ -97,7 +97,7 @@ static int run_read(cm1e_bus_t *bus, const sii_options_t *options, uint16_t posi
         return fail(&diag);
     const bool written = write_output(options->words[2], image.bytes, image.size);
     if (written && options->common.json)
-        print_json(json_pack("{s:s, s:I}", "file", options->words[2], "bytes", (json_int_t)image.size));
+        print_json(json_pack("{s:o, s:I}", "file", text_as_json(options->words[2]), "bytes", (json_int_t)image.size));
     else if (written && strcmp(options->words[2], "-") != 0)
         printf("%s: %zu bytes, the SII of slave %u\n", options->words[2], image.size, position);
     free(image.bytes);
@@ -146,7 +146,7 @@ static int write_with_backup(cm1e_bus_t *bus, const sii_options_t *options, uint
         return EXIT_FAILED;
     }
     if (options->common.json)
-        print_json(json_pack("{s:b, s:s}", "written", true, "backup", options->backup));
+        print_json(json_pack("{s:b, s:o}", "written", true, "backup", text_as_json(options->backup)));
     else
         printf("The SII of slave %u is written and reads back as it should; what it was before is in %s.\n"
                "Switch the slave off and on: it takes over its SII then.\n", position, options->backup);

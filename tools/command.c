@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/text.h"
+
 enum { KEY_PCAP = 0x100, KEY_JSON };
 
 static const struct argp_option common_option_table[] = {
@@ -137,6 +139,16 @@ bool parse_real(const char *word, const char *what, double *value)
         return true;
     complain("%s is \"%s\"; expected a number", what, word);
     return false;
+}
+
+json_t *text_as_json(const char *text)
+{
+    char *copy = strdup(text ? text : "");
+    if (copy)
+        cm1e_text_clean(copy);
+    json_t *value = json_string(copy ? copy : "");
+    free(copy);
+    return value;
 }
 
 void print_json(json_t *value)

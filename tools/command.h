@@ -57,6 +57,9 @@ bool parse_real(const char *word, const char *what, double *value);
 int fail(const cm1e_diag_t *diag);
 void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/** A text as JSON, which has to be UTF-8; what is not, and control characters, become "?". NULL counts as "". */
+json_t *text_as_json(const char *text);
+
 /** Prints a JSON value on standard output with a final newline, and releases it. */
 void print_json(json_t *value);
 

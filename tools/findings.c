@@ -13,7 +13,7 @@ json_t *findings_as_json(const char *path, const char *format, const cm1e_findin
                                               finding->is_error ? "error" : "warning", "line", (int)finding->line,
                                               "text", finding->text));
     }
-    return json_pack("{s:s, s:s, s:o}", "file", path, "format", format, "findings", list);
+    return json_pack("{s:o, s:s, s:o}", "file", text_as_json(path), "format", format, "findings", list);
 }
 
 static size_t count_errors(const cm1e_findings_t *findings)

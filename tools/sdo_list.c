@@ -45,15 +45,14 @@ static json_t *value_as_json(const char *type, const uint8_t *bytes, size_t size
         return json_integer((json_int_t)cm1e_bytes_signed(number));
     if (size >= 1 && size <= 8 && is_unsigned(type))
         return json_integer((json_int_t)cm1e_bytes_unsigned(number));
+    char text[VALUE_TEXT] = "";
     if (strncmp(type, "STRING", 6) == 0) {
-        json_t *text = json_stringn((const char *)bytes, strnlen((const char *)bytes, size));
-        if (text)
-            return text;
+        snprintf(text, sizeof text, "%.*s", (int)size, (const char *)bytes);
+        return text_as_json(text);
     }
-    char hex[VALUE_TEXT] = "";
-    for (size_t i = 0; i < size && strlen(hex) + 4 < sizeof hex; i++)
-        snprintf(hex + strlen(hex), sizeof hex - strlen(hex), "%s%02X", i ? " " : "", bytes[i]);
-    return json_string(hex);
+    for (size_t i = 0; i < size && strlen(text) + 4 < sizeof text; i++)
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%s%02X", i ? " " : "", bytes[i]);
+    return json_string(text);
 }
 
 /** The present value; NULL: it cannot be read, or it is not to be. */

@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "command.h"
+
 static const char *const sync_manager_uses[] = {
     [CM1E_SM_UNUSED] = "not used", [CM1E_SM_MAILBOX_OUT] = "mailbox out", [CM1E_SM_MAILBOX_IN] = "mailbox in",
     [CM1E_SM_OUTPUTS] = "outputs", [CM1E_SM_INPUTS] = "inputs",
@@ -133,13 +135,6 @@ void print_sii(const cm1e_description_t *device, size_t size, const cm1e_finding
 }
 
 /* ---- JSON ------------------------------------------------------------------------------------------------------- */
-
-/** Texts of a damaged image may be no UTF-8. */
-static json_t *text_as_json(const char *text)
-{
-    json_t *value = json_string(text ? text : "");
-    return value ? value : json_string("?");
-}
 
 static json_t *pdo_as_json(const cm1e_described_pdo_t *pdo)
 {

@@ -112,7 +112,8 @@ typedef struct cm1e_diag {
     char text[512];        /**< one or more sentences, no trailing newline */
 } cm1e_diag_t;
 
-/** Fills a diagnosis (printf style) and returns `error`; `diag` may be NULL. @rt block */
+/** Fills a diagnosis (printf style) and returns `error`; `diag` may be NULL. Control characters and what is no UTF-8,
+ *  as a name out of a file can have them, become "?". @rt block */
 cm1e_error_t cm1e_diag_set(cm1e_diag_t *diag, cm1e_error_t error, uint32_t foreign_code, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 

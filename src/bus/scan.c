@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "bus/bus_internal.h"
+#include "core/text.h"
 
 /** The explicit device ID comes at once or never (ETG.1020: a device without it ignores the request). */
 #define ID_TIMEOUT_NS INT64_C(100000000)
@@ -23,6 +24,7 @@ static void set_up_slave(cm1e_bus_t *bus, uint16_t position)
         .is_cm1e = facts->vendor_id == CM1E_VENDOR_ID && facts->product_code == CM1E_PRODUCT_CODE,
     };
     memcpy(slave->info.name, facts->name, sizeof slave->info.name);
+    cm1e_text_clean(slave->info.name);
     slave->al.station = facts->station;
     slave->coe.mailbox = (cm1e_mailbox_t){
         .station = facts->station,

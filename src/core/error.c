@@ -3,6 +3,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "core/text.h"
+
 static const struct {
     cm1e_error_t error;
     const char *text;
@@ -43,6 +45,7 @@ cm1e_error_t cm1e_diag_set(cm1e_diag_t *diag, cm1e_error_t error, uint32_t forei
         va_start(args, format);
         vsnprintf(diag->text, sizeof diag->text, format, args);
         va_end(args);
+        cm1e_text_clean(diag->text);
     }
     return error;
 }

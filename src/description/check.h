@@ -149,7 +149,8 @@ struct cm1e_findings {
 
 /** Empty; NULL: no memory. Freed with cm1e_findings_free(). */
 cm1e_findings_t *cm1e_findings_create(void);
-/** The same rule at the same place with the same text counts once. */
+/** The same rule at the same place with the same text counts once. Names out of a file lose what could act on a
+ *  terminal (cm1e_text_clean()). */
 void cm1e_findings_add(cm1e_findings_t *findings, cm1e_rule_t rule, cm1e_place_t place, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 /** Whether there is a finding of that rule at that place; of place 0 nothing is known. */

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/text.h"
 #include "description/check.h"
 
 static const struct {
@@ -63,6 +64,7 @@ void cm1e_findings_add(cm1e_findings_t *findings, cm1e_rule_t rule, cm1e_place_t
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
+    cm1e_text_clean(text);
     if (is_known(findings, rules[rule].name, place, text))
         return;
     const bool last = findings->list.count == CM1E_FINDINGS_MAX - 1;

@@ -82,9 +82,45 @@ def check_files(folder):
     expect(shown.returncode == 0 and shown.stdout.startswith("<?xml"), "generate to standard output", shown)
     expect("EEPROM" in shown.stderr, "generate esi warns of the EEPROM", shown)
 
+    check_configuration_words(folder)
+    check_hostile_names(folder)
     check_dictionary()
     check_sii(folder)
     check_diff(folder)
+
+
+def check_configuration_words(folder):
+    """Words of another device, or damaged ones, can make a device unreachable."""
+    image, other = os.path.join(folder, "words.sii"), os.path.join(folder, "other.sii")
+    run("cm1e", "generate", "sii", "-o", image)
+    with open(image, "rb") as file:
+        good = bytearray(file.read())
+    for at, word in ((0, "checksum"), (0x10, "vendor"), (0x14, "product")):
+        wrong = bytearray(good)
+        wrong[at] ^= 1
+        with open(other, "wb") as file:
+            file.write(wrong)
+        refused = run("cm1e", "generate", "esi", "--config-data", other, "-o", "-")
+        expect(refused.returncode == WRONG_USE and word in refused.stderr, f"words of an image with a wrong {word}",
+               refused)
+    taken = run("cm1e", "generate", "esi", "--config-data", image, "-o", "-")
+    expect(taken.returncode == 0, "words of an image", taken)
+
+
+def check_hostile_names(folder):
+    """What a file has for names never acts on a terminal, and JSON stays JSON; names of files that are no UTF-8, too."""
+    good = run("cm1e", "generate", "esi", "-o", "-").stdout
+    hostile = good.replace("<Type>UINT</Type>", "<Type>A\u009b31mB\nC\u202eD&#10;E</Type>")
+    path = os.path.join(os.fsencode(folder), b"hostile-\xe9.xml")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(hostile)
+    plain, as_json = (subprocess.run([os.path.join(BIN, "cm1e"), "check", *words, path], capture_output=True,
+                                     timeout=60) for words in ([], ["--json"]))
+    expect(plain.returncode == FAILED and b"A?31mB?C?D?E" in plain.stdout
+           and not any(mark.encode() in plain.stdout for mark in "\u009b\u202e\x1b"), "hostile names", plain)
+    findings = json.loads(as_json.stdout or b"{}").get("findings", [])
+    expect(len(findings) > 0 and len(findings) == plain.stdout.count(b" [type-unknown]\n")
+           + plain.stdout.count(b" [pdo-"), "hostile names as JSON", as_json)
 
 
 def check_diff(folder):
@@ -239,6 +275,14 @@ WRONG = [
     (["generate", "esi", "-o", "x", "--firmware", "1.3.5", *BRIDGE], WRONG_USE, "vendor"),
     (["generate", "esi", "-o", "x", "--mapping", "fast"], WRONG_USE, "profile"),
     (["generate", "esi", "-o", "x", "--config-data", SOURCE], WRONG_USE, "folder"),
+    (["generate", "esi", "-o", "x", "--config-data", f"{SOURCE}/README.md"], WRONG_USE, "no image"),
+    (["generate", "esi", "-o", ""], WRONG_USE, "where to"),
+    (["generate", "esi", "-o", "x", *BRIDGE[:2], "--vendor", "-1"], WRONG_USE, "the vendor ID"),
+    (["generate", "sii", "-o", "x", "--layout", "mdp"], WRONG_USE, "--layout is for esi"),
+    (["generate", "esi", "-o", "x", "--alias", "7"], WRONG_USE, "--alias is for sii"),
+    (["generate", "esi", "-o", "x", "--dc-mode", "7"], WRONG_USE, "--dc-mode is for ec-extend"),
+    (["generate", "esi", "-o", "x", "--from", "y", "--layout", "mdp"], WRONG_USE, "--layout"),
+    (["generate", "sii", "-o", "x", "--number", "2"], WRONG_USE, "--number is for --from"),
     (["generate", "esi", "-o", "x", "-i", "sim"], WRONG_USE, "ENI"),
     (["generate", "esi", "-o", "x", "--program", "y"], WRONG_USE, "ec-extend"),
     (["generate", "sii", "-o", "x", "--device", "cm1-e", "--device", "cm1-e"], WRONG_USE, "one device"),
