@@ -5,6 +5,9 @@
 
 #include "cm1e/generate.h"
 #include "command.h"
+#include "core/bytes.h"
+#include "description/sii.h"
+#include "device/device.h"
 #include "files.h"
 
 enum {
@@ -12,7 +15,7 @@ enum {
     KEY_REVISION, KEY_AXES, KEY_SERIAL, KEY_DC, KEY_COMPLETE, KEY_CONFIG, KEY_FROM, KEY_NUMBER, KEY_PROGRAM,
     KEY_DC_MODE, KEY_MAILBOX_RATE,
 };
-enum { MAX_DEVICES = 16 };
+enum { MAX_DEVICES = 16, CONFIG_BYTES = 14 };
 
 typedef struct generate_options {
     common_options_t common;
@@ -21,7 +24,33 @@ typedef struct generate_options {
     const char *file, *from, *program;
     size_t number;     /**< of the device in the file read, 0 = first */
     bool mapping_given;
+    uint32_t given;    /**< bit n: restricted[n] */
+    struct {
+        const char *path;
+        uint32_t vendor_id, product_code;
+    } config_of[MAX_DEVICES]; /**< the image that a device's configuration words come from; NULL: none */
 } generate_options_t;
+
+/* Options that not every format has; elsewhere they would do nothing. */
+static const struct {
+    int key;
+    const char *name;
+    const char *formats;
+    unsigned mask;
+    bool beside_from;
+} restricted[] = {
+    {KEY_LAYOUT, "--layout", "esi", 1u << CM1E_FILE_ESI, false},
+    {KEY_PROGRAM, "--program", "ec-extend", 1u << CM1E_FILE_EC_EXTEND, false},
+    {KEY_DC_MODE, "--dc-mode", "ec-extend", 1u << CM1E_FILE_EC_EXTEND, false},
+    {KEY_MAILBOX_RATE, "--mailbox-rate", "ec-extend", 1u << CM1E_FILE_EC_EXTEND, false},
+    {KEY_SERIAL, "--serial", "sii", 1u << CM1E_FILE_SII, false},
+    {KEY_ALIAS, "--alias", "sii", 1u << CM1E_FILE_SII, false},
+    {KEY_CONFIG, "--config-data", "esi and sii", 1u << CM1E_FILE_ESI | 1u << CM1E_FILE_SII, false},
+    {KEY_DC, "--dc", "esi and sii", 1u << CM1E_FILE_ESI | 1u << CM1E_FILE_SII, false},
+    {KEY_COMPLETE, "--complete-access", "esi and sii", 1u << CM1E_FILE_ESI | 1u << CM1E_FILE_SII, false},
+    {KEY_NUMBER, "--number", "sii", 1u << CM1E_FILE_SII, true},
+};
+enum { RESTRICTED = sizeof restricted / sizeof restricted[0] };
 
 /* A word out of a few; EINVAL and a complaint that lists them. */
 typedef struct choice {
@@ -74,21 +103,30 @@ static error_t begin_device(generate_options_t *options, const char *word)
     return 0;
 }
 
-static bool parse_config_data(const char *path, cm1e_device_options_t *device)
+/* Configuration words of another device can make this one unreachable: the file has to be an image, and a whole one. Of
+ * which device is looked at when all options are read. */
+static bool parse_config_data(const char *path, generate_options_t *options)
 {
     input_t input;
     if (!read_input(path, &input))
         return false;
-    const bool long_enough = input.size >= sizeof device->config_data;
-    if (long_enough) {
-        memcpy(device->config_data, input.bytes, sizeof device->config_data);
-        device->config_data_size = sizeof device->config_data;
+    cm1e_device_options_t *device = device_of(options);
+    const bool is_image = cm1e_file_recognise(input.bytes, input.size) == CM1E_FILE_SII;
+    const bool whole = is_image && cm1e_sii_crc8(input.bytes, CONFIG_BYTES) == input.bytes[CONFIG_BYTES];
+    if (whole) {
+        memcpy(device->config_data, input.bytes, CONFIG_BYTES);
+        device->config_data_size = CONFIG_BYTES;
+        const size_t n = options->what.device_count - 1;
+        options->config_of[n].path = path;
+        options->config_of[n].vendor_id = cm1e_get_u32(input.bytes + 0x10);
+        options->config_of[n].product_code = cm1e_get_u32(input.bytes + 0x14);
+    } else if (is_image) {
+        complain("%s: the checksum of words 0 to 6 is wrong; read the image from the device again", path);
     } else {
-        complain("%s has %zu bytes; an image of an SII as `cm1e sii read` writes it has at least 128", path,
-                 input.size);
+        complain("%s is no image of an SII, as `cm1e sii read` writes it from a real device", path);
     }
     free(input.bytes);
-    return long_enough;
+    return whole;
 }
 
 static error_t parse_device(int key, char *arg, generate_options_t *options)
@@ -111,7 +149,10 @@ static error_t parse_device(int key, char *arg, generate_options_t *options)
         device->order = (cm1e_pdo_order_t)value;
         return 0;
     case KEY_VENDOR: case KEY_PRODUCT: case KEY_REVISION: case KEY_SERIAL:
-        if (!parse_number(arg, "the number", 0, 0xFFFFFFFFLL, &number))
+        if (!parse_number(arg, key == KEY_VENDOR     ? "the vendor ID"
+                               : key == KEY_PRODUCT  ? "the product code"
+                               : key == KEY_REVISION ? "the revision"
+                                                     : "the serial number", 0, 0xFFFFFFFFLL, &number))
             return EINVAL;
         *(key == KEY_VENDOR ? &device->vendor_id : key == KEY_PRODUCT ? &device->product_code
           : key == KEY_REVISION ? &device->revision : &device->serial_number) = (uint32_t)number;
@@ -128,7 +169,7 @@ static error_t parse_device(int key, char *arg, generate_options_t *options)
         return 0;
     case KEY_DC: device->distributed_clocks = true; return 0;
     case KEY_COMPLETE: device->complete_access = true; return 0;
-    case KEY_CONFIG: return parse_config_data(arg, device) ? 0 : EINVAL;
+    case KEY_CONFIG: return parse_config_data(arg, options) ? 0 : EINVAL;
     default: return ARGP_ERR_UNKNOWN;
     }
 }
@@ -161,17 +202,48 @@ static error_t parse_file(int key, char *arg, generate_options_t *options)
     }
 }
 
+static void check_restricted(const generate_options_t *options, struct argp_state *state)
+{
+    for (int i = 0; i < RESTRICTED; i++) {
+        if (!(options->given & 1u << i))
+            continue;
+        if (!(restricted[i].mask & 1u << options->what.format))
+            argp_error(state, "%s is for %s alone", restricted[i].name, restricted[i].formats);
+        if (options->from && !restricted[i].beside_from)
+            argp_error(state, "%s: --from takes everything from the file", restricted[i].name);
+        if (!options->from && restricted[i].beside_from)
+            argp_error(state, "%s is for --from alone: it says which device of that file", restricted[i].name);
+    }
+}
+
+/* Whose configuration words they are. */
+static void check_config_data(const generate_options_t *options, struct argp_state *state)
+{
+    for (size_t i = 0; i < options->what.device_count; i++) {
+        const cm1e_device_options_t *device = &options->devices[i];
+        const bool is_motor = device->model == CM1E_DEVICE_CM1E;
+        const uint32_t vendor = is_motor ? CM1E_VENDOR_ID : device->vendor_id;
+        const uint32_t product = is_motor ? CM1E_PRODUCT_CODE : device->product_code;
+        if (options->config_of[i].path &&
+            (options->config_of[i].vendor_id != vendor || options->config_of[i].product_code != product))
+            argp_error(state, "%s is of a device of vendor 0x%08X, product 0x%08X; the file is to describe vendor "
+                       "0x%08X, product 0x%08X, whose configuration words are others", options->config_of[i].path,
+                       (unsigned)options->config_of[i].vendor_id, (unsigned)options->config_of[i].product_code,
+                       (unsigned)vendor, (unsigned)product);
+    }
+}
+
 static void check_words(const generate_options_t *options, struct argp_state *state)
 {
     const cm1e_file_format_t format = options->what.format;
     if (format == CM1E_FILE_UNKNOWN)
         argp_error(state, "which format? There are: esi, ec-extend, sii, eni");
-    if (!options->file)
+    if (!options->file || !options->file[0])
         argp_error(state, "where to? -o FILE, or -o - for standard output");
     if (options->from && (options->what.devices || options->common.interface_name || options->common.bus_file))
         argp_error(state, "--from takes everything from the file: no device and no network beside it");
-    if (options->program && format != CM1E_FILE_EC_EXTEND)
-        argp_error(state, "--program belongs to ec-extend: it is a TrioBASIC program");
+    check_restricted(options, state);
+    check_config_data(options, state);
     const bool network = options->common.interface_name || options->common.bus_file;
     if (format == CM1E_FILE_ENI && !network && !options->from)
         argp_error(state, "an ENI describes a network: -b BUS-FILE for a configured one, -i INTERFACE to scan one");
@@ -199,6 +271,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_END: check_words(options, state); return 0;
     default: break;
     }
+    for (int i = 0; i < RESTRICTED; i++)
+        if (restricted[i].key == key)
+            options->given |= 1u << i;
     const error_t result = parse_file(key, arg, options);
     if (result != ARGP_ERR_UNKNOWN)
         return result;
