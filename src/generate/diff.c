@@ -147,16 +147,34 @@ static cm1e_error_t diff_ec_extend(cm1e_findings_t *findings, const void *bytes,
     return error;
 }
 
+/* An ENI is of a whole network: what one of both has behind the last slave that both have. */
+static void compare_ends(cm1e_findings_t *findings, const cm1e_eni_t *document, uint16_t position, uint32_t slaves)
+{
+    const size_t described = document->devices.count;
+    if (position == described && slaves > described)
+        cm1e_findings_add(findings, CM1E_RULE_DIFFERS, document->devices.at[described - 1].place,
+                          "The file's network ends with this slave, number %zu; the one that is there has %u. A master "
+                          "that starts by the file refuses it.", described, (unsigned)slaves);
+    for (size_t i = slaves; position == slaves && i < described; i++)
+        cm1e_findings_add(findings, CM1E_RULE_DIFFERS, document->devices.at[i].place,
+                          "The file has slave %zu, \"%s\" (vendor 0x%08X, product 0x%08X), here; the network ends with "
+                          "slave %u.", i + 1, document->devices.at[i].name,
+                          (unsigned)document->devices.at[i].vendor_id, (unsigned)document->devices.at[i].product_code,
+                          (unsigned)slaves);
+}
+
 static cm1e_error_t diff_eni(cm1e_findings_t *findings, const void *bytes, size_t size, uint16_t position,
-                             const cm1e_description_t *live, cm1e_diag_t *diag)
+                             uint32_t slaves, const cm1e_description_t *live, cm1e_diag_t *diag)
 {
     cm1e_eni_t document = {0};
     cm1e_error_t error = cm1e_eni_read(&document, bytes, size, diag);
     if (error == CM1E_OK && position > document.devices.count)
         error = cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "the file describes a network of %zu slaves, and none at "
                               "position %u", document.devices.count, position);
-    else if (error == CM1E_OK)
+    if (error == CM1E_OK) {
         cm1e_eni_compare(findings, &document, position, live);
+        compare_ends(findings, &document, position, slaves);
+    }
     cm1e_eni_free(&document);
     return error;
 }
@@ -170,7 +188,8 @@ static cm1e_error_t diff(cm1e_findings_t *findings, const void *bytes, size_t si
                                                      : cm1e_live_describe(&device, bus, position, findings, diag);
     if (error == CM1E_OK) {
         const cm1e_description_t *live = &device.devices.at[0];
-        error = format == CM1E_FILE_ENI         ? diff_eni(findings, bytes, size, position, live, diag)
+        error = format == CM1E_FILE_ENI         ? diff_eni(findings, bytes, size, position, cm1e_bus_slave_count(bus), live,
+                                                         diag)
                 : format == CM1E_FILE_EC_EXTEND ? diff_ec_extend(findings, bytes, size, live, diag)
                                                 : diff_described(findings, format, bytes, size, live, diag);
     }

@@ -108,7 +108,7 @@ def check_configuration_words(folder):
 
 
 def check_hostile_names(folder):
-    """What a file has for names never acts on a terminal, and JSON stays JSON; names of files that are no UTF-8, too."""
+    """Names out of a file never act on a terminal, and JSON stays JSON; names of files that are no UTF-8, too."""
     good = run("cm1e", "generate", "esi", "-o", "-").stdout
     hostile = good.replace("<Type>UINT</Type>", "<Type>A\u009b31mB\nC\u202eD&#10;E</Type>")
     path = os.path.join(os.fsencode(folder), b"hostile-\xe9.xml")
@@ -123,6 +123,21 @@ def check_hostile_names(folder):
            + plain.stdout.count(b" [pdo-"), "hostile names as JSON", as_json)
 
 
+def check_diff_of_network(folder):
+    """An ENI is of a whole network: slaves that are missing, or too many, are a difference."""
+    three, one = (["-b", f"{SOURCE}/examples/three_axes.yaml", "-i", "sim"], ["-i", "sim"])
+    for network, other, wanted, word in ((three, three, 0, ""), (one, one, 0, ""),
+                                         (three, one, 2, "network ends with slave 1"),
+                                         (one, three, 1, "ends with this slave, number 1")):
+        path = os.path.join(folder, "network.eni")
+        run("cm1e", "generate", "eni", *network, "-o", path)
+        result = run("cm1e", "diff", path, *other, "--json")
+        texts = [(finding["line"], finding["text"]) for slave in json.loads(result.stdout or "[]")
+                 for finding in slave["findings"] if finding["rule"] == "differs"]
+        expect(result.returncode == (FAILED if wanted else 0) and len(texts) == wanted
+               and all(line > 0 and word in text for line, text in texts), f"diff of an ENI: {word}", result)
+
+
 def check_diff(folder):
     image = os.path.join(folder, "diff.sii")
     run("cm1e", "sii", "-i", "sim", "read", "1", image)
@@ -132,6 +147,7 @@ def check_diff(folder):
     expect(three.returncode == 0 and "beside slave 3" in three.stdout, "diff of three axes", three)
     told = run("cm1e", "diff", image, "-b", f"{SOURCE}/examples/three_axes.yaml", "-i", "sim", "--json")
     expect([slave["position"] for slave in json.loads(told.stdout)] == [1, 2, 3], "diff of three axes as JSON", told)
+    check_diff_of_network(folder)
     with open(image, "r+b") as file:
         file.seek(2 * 0x0C)
         file.write(b"\x99")
