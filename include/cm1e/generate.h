@@ -118,9 +118,9 @@ void cm1e_findings_free(cm1e_findings_t *findings);
  *  freed) says what is wrong with its content; CM1E_ERROR_FILE: it cannot be read, `diag` says where. @rt init */
 cm1e_error_t cm1e_check_file(cm1e_findings_t **findings, const void *bytes, size_t size, cm1e_diag_t *diag);
 
-/** Compares a file with the device at `position`: dictionary, mapping, SII, as far as the file speaks of them. The slaves
- *  that an ENI has and the network has not, or the other way round, are told at the last slave that both have. The bus
- *  has been scanned and does not operate; the caller owns it. @rt block */
+/** Compares a file with the device at `position`: dictionary, mapping, SII, as far as the file speaks of them. Slaves
+ *  that an ENI has and the network has not, or the other way round, are told at the last slave that both have. The
+ *  bus has been scanned and does not operate; the caller owns it. @rt block */
 cm1e_error_t cm1e_diff_file(cm1e_findings_t **findings, const void *bytes, size_t size, cm1e_bus_t *bus,
                             uint16_t position, cm1e_diag_t *diag);
 
