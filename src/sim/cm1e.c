@@ -15,9 +15,7 @@ enum {
 enum { INIT = 1, PRE_OPERATIONAL = 2, OPERATIONAL = 8 };
 enum { ERROR_OVERLOAD = 0x2310, ERROR_OVER_SPEED = 0x7310, ERROR_POSITION = 0x7320 };
 
-/* Not in the manual: of the size usual for such motors. */
-#define ROTOR_INERTIA_PER_PEAK_TORQUE 3e-5
-/* Nor are the limits of the supervision. */
+/* The limits of the supervision are not in the manual. */
 #define OVER_SPEED_RATIO 1.1      /* of the motor's peak speed */
 #define OVER_SPEED_TIME_S 0.002
 #define LAG_LIMIT_COUNTS 50000.0  /* a revolution */
@@ -125,8 +123,7 @@ void cm1e_sim_cm1e_power_on(void *app, int64_t now_ns)
 static void destroy(void *app)
 {
     cm1e_sim_cm1e_t *drive = app;
-    free(drive->first_entry);
-    free(drive->values);
+    cm1e_sim_store_destroy(&drive->store);
     free(drive);
 }
 
@@ -168,7 +165,7 @@ cm1e_sim_cm1e_t *cm1e_sim_cm1e_create_app(const cm1e_axis_config_t *config, cm1e
         destroy(drive);
         return NULL;
     }
-    cm1e_mechanics_init(&drive->mechanics, &config->sim, motor->peak_torque_nm * ROTOR_INERTIA_PER_PEAK_TORQUE);
+    cm1e_mechanics_init(&drive->mechanics, &config->sim, motor->peak_torque_nm * CM1E_ROTOR_INERTIA_PER_PEAK_TORQUE);
     cm1e_servo_init(&drive->servo, &drive->mechanics);
     cm1e_sim_cm1e_power_on(drive, 0);
     drive->running = false; /* the first advance() tells the time */

@@ -7,7 +7,8 @@
  *   cm1e_fsa.c         power drive system: states, errors, modes of operation, statusword (UG 6.1)
  *   cm1e_modes.c       CSP, CSV, PP, PV (UG 6.2)
  *   cm1e_homing.c      HM (UG 6.2.4)
- *   cm1e_servo.c       position servo
+ *   servo.c            position servo; reference.c moves its reference
+ *   store.c            dictionary and its values
  *   mechanics.c        the axis behind the motor
  * Unlike the driver it protects nobody: what the manual lets a master do wrong goes wrong here too.
  */
@@ -15,9 +16,10 @@
 #define CM1E_SIM_CM1E_APP_H
 
 #include "cia402/cia402.h"
-#include "sim/cm1e_servo.h"
+#include "sim/reference.h"
 #include "sim/segment.h"
 #include "sim/slave.h"
+#include "sim/store.h"
 
 /** The objects that the drive works with, one int32_t each; the dictionary and the process image refer to them by
  *  offset. Unsigned ones keep their bits. */
@@ -86,11 +88,7 @@ struct cm1e_sim_cm1e {
     uint16_t alias;
     uint8_t rotary_switches;
 
-    /* dictionary: values of the entries that are not in `objects`, one per entry of the device tables */
-    const cm1e_object_t *dictionary;
-    size_t object_count;
-    uint32_t *first_entry;   /**< per object: place of its first entry in values */
-    int64_t *values;
+    cm1e_sim_store_t store;  /**< dictionary, with the values of the entries that are not in `objects` */
 
     /* time */
     bool running;            /**< now_ns is known */
@@ -130,8 +128,8 @@ struct cm1e_sim_cm1e {
     double overload;         /**< i2t sum, s */
     double overspeed_s, lag_s;
     bool following;
-    double goal, goal_velocity; /**< CSP: interpolation; PP: set-point; CSV, PV: velocity */
-    double slot_s;              /**< CSP: time since the line to the goal began */
+    cm1e_sim_line_t line;       /**< CSP */
+    double goal, goal_velocity; /**< PP: set-point; CSV, PV: velocity */
     double profile_velocity, profile_acceleration, profile_deceleration;
     bool set_point_acknowledge;
     cm1e_sim_homing_t homing;
@@ -202,10 +200,6 @@ static inline int32_t cm1e_sim_velocity_unit(const cm1e_sim_cm1e_t *drive)
 {
     return drive->firmware->velocity_in_counts_per_ms ? 1000 : 1;
 }
-/** Moves `*velocity` towards `wanted` by at most acceleration * step. */
-void cm1e_sim_ramp(double *velocity, double wanted, double acceleration, double step_s);
-/** One step of a trapezoidal move of the servo's reference to `target`; TRUE: it is there and stands. */
-bool cm1e_sim_move_step(cm1e_servo_t *servo, double target, double velocity, double acceleration, double step_s);
 void cm1e_sim_homing_reset(cm1e_sim_cm1e_t *drive);
 /** Torque is gone: a procedure under way is lost. */
 void cm1e_sim_homing_abort(cm1e_sim_cm1e_t *drive);

@@ -1,7 +1,3 @@
-#include <stdlib.h>
-#include <string.h>
-
-#include "core/bytes.h"
 #include "sim/cm1e_app.h"
 
 /* Objects that the drive works with, in order of index. */
@@ -58,40 +54,6 @@ static const cm1e_entry_t kpulses_entries[] = {
      .maximum = 32767, .kept_minimum = 1},
 };
 
-/* Where an entry is: the object's place in the dictionary and the entry's in the object. */
-typedef struct position {
-    size_t object, entry;
-} position_t;
-
-static bool find_object(const cm1e_sim_cm1e_t *drive, uint16_t index, size_t *found)
-{
-    size_t low = 0, high = drive->object_count;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (drive->dictionary[middle].index < index)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    *found = low;
-    return low < drive->object_count && drive->dictionary[low].index == index &&
-           drive->dictionary[low].since <= drive->firmware->firmware;
-}
-
-static const cm1e_entry_t *find_entry(const cm1e_sim_cm1e_t *drive, uint16_t index, uint8_t subindex,
-                                      position_t *position)
-{
-    if (!find_object(drive, index, &position->object))
-        return NULL;
-    const cm1e_object_t *object = &drive->dictionary[position->object];
-    for (position->entry = 0; position->entry < object->entry_count; position->entry++) {
-        const cm1e_entry_t *entry = &object->entries[position->entry];
-        if (entry->subindex == subindex)
-            return entry->since <= drive->firmware->firmware ? entry : NULL;
-    }
-    return NULL;
-}
-
 /* The entry as this device has it. */
 static const cm1e_entry_t *own_entry(const cm1e_sim_cm1e_t *drive, const cm1e_entry_t *entry)
 {
@@ -104,52 +66,34 @@ static const cm1e_entry_t *own_entry(const cm1e_sim_cm1e_t *drive, const cm1e_en
 
 const cm1e_entry_t *cm1e_sim_entry(void *app, uint16_t index, uint8_t subindex)
 {
-    position_t position;
-    const cm1e_entry_t *entry = find_entry(app, index, subindex, &position);
-    return entry ? own_entry(app, entry) : NULL;
+    const cm1e_sim_cm1e_t *drive = app;
+    cm1e_sim_cell_t cell;
+    return cm1e_sim_store_find(&drive->store, index, subindex, &cell) == 0 ? own_entry(drive, cell.entry) : NULL;
 }
 
 const cm1e_object_t *cm1e_sim_object(void *app, size_t n)
 {
-    const cm1e_sim_cm1e_t *drive = app;
-    for (size_t i = 0; i < drive->object_count; i++)
-        if (drive->dictionary[i].since <= drive->firmware->firmware && n-- == 0)
-            return &drive->dictionary[i];
-    return NULL;
-}
-
-static int64_t *value_at(cm1e_sim_cm1e_t *drive, const position_t *position)
-{
-    return &drive->values[drive->first_entry[position->object] + position->entry];
+    return cm1e_sim_store_object(&((const cm1e_sim_cm1e_t *)app)->store, n);
 }
 
 /* ---- creation and power-on -------------------------------------------------------------------------------------- */
 
+static const cm1e_object_t *object_of_tables(const void *context, size_t n)
+{
+    (void)context;
+    size_t count;
+    const cm1e_object_t *objects = cm1e_device_objects(&count);
+    return n < count ? &objects[n] : NULL;
+}
+
 bool cm1e_sim_dictionary_create(cm1e_sim_cm1e_t *drive)
 {
-    drive->dictionary = cm1e_device_objects(&drive->object_count);
-    drive->first_entry = calloc(drive->object_count, sizeof *drive->first_entry);
-    if (!drive->first_entry)
-        return false;
-    uint32_t count = 0;
-    for (size_t i = 0; i < drive->object_count; i++) {
-        drive->first_entry[i] = count;
-        count += drive->dictionary[i].entry_count;
-    }
-    drive->values = calloc(count, sizeof *drive->values);
-    if (!drive->values)
-        return false;
-    for (size_t i = 0; i < drive->object_count; i++)
-        for (uint16_t k = 0; k < drive->dictionary[i].entry_count; k++)
-            drive->values[drive->first_entry[i] + k] = drive->dictionary[i].entries[k].default_value;
-    return true;
+    return cm1e_sim_store_create(&drive->store, object_of_tables, NULL, drive->firmware->firmware);
 }
 
 static void set_value(cm1e_sim_cm1e_t *drive, uint16_t index, uint8_t subindex, int64_t value)
 {
-    position_t position;
-    if (find_entry(drive, index, subindex, &position))
-        *value_at(drive, &position) = value;
+    cm1e_sim_store_set(&drive->store, index, subindex, value);
 }
 
 /* The mapping objects show the order that this device has. */
@@ -188,10 +132,11 @@ static bool non_volatile(uint16_t index) { return index == OBJ_60FB_H_PARAMETERS
 
 void cm1e_sim_dictionary_reset(cm1e_sim_cm1e_t *drive)
 {
-    for (size_t i = 0; i < drive->object_count; i++) {
-        const cm1e_object_t *object = &drive->dictionary[i];
+    const cm1e_sim_store_t *store = &drive->store;
+    for (size_t i = 0; i < store->object_count; i++) {
+        const cm1e_object_t *object = store->objects[i];
         for (uint16_t k = 0; k < object->entry_count && !non_volatile(object->index); k++)
-            drive->values[drive->first_entry[i] + k] = own_entry(drive, &object->entries[k])->default_value;
+            store->values[store->first_entry[i] + k] = own_entry(drive, &object->entries[k])->default_value;
     }
     drive->objects = (cm1e_sim_objects_t){0};
     int32_t *objects = (int32_t *)&drive->objects;
@@ -206,106 +151,56 @@ void cm1e_sim_dictionary_reset(cm1e_sim_cm1e_t *drive)
 
 /* ---- access ----------------------------------------------------------------------------------------------------- */
 
-static uint32_t missing(const cm1e_sim_cm1e_t *drive, uint16_t index)
+static int64_t present_value(const cm1e_sim_cm1e_t *drive, const cm1e_sim_cell_t *cell)
 {
-    size_t object;
-    return find_object(drive, index, &object) ? SDO_ABORT_NO_SUBINDEX : SDO_ABORT_NO_OBJECT;
-}
-
-static uint32_t read_string(const char *text, uint8_t *data, size_t *size)
-{
-    const size_t length = strlen(text);
-    if (*size < length)
-        return SDO_ABORT_MEMORY;
-    memcpy(data, text, length);
-    *size = length;
-    return 0;
-}
-
-static int64_t present_value(cm1e_sim_cm1e_t *drive, const cm1e_entry_t *entry, const position_t *position)
-{
+    const cm1e_entry_t *entry = cell->entry;
     if (entry->index == OBJ_1C12_RXPDO_ASSIGN || entry->index == OBJ_1C13_TXPDO_ASSIGN) {
         const cm1e_sim_image_t *image = entry->index == OBJ_1C12_RXPDO_ASSIGN ? &drive->outputs : &drive->inputs;
         return entry->subindex == 0 ? image->assigned : image->pdo;
     }
     const int place = cm1e_sim_object_place(entry->index, entry->subindex);
-    return place >= 0 ? ((const int32_t *)&drive->objects)[place] : *value_at(drive, position);
+    return place >= 0 ? ((const int32_t *)&drive->objects)[place] : *cell->value;
 }
 
 uint32_t cm1e_sim_sdo_read(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, uint8_t *data, size_t *size)
 {
     (void)al_state; /* the dictionary is there in every state since V1.2.0 (UG 10.1) */
     cm1e_sim_cm1e_t *drive = app;
-    position_t position;
-    const cm1e_entry_t *entry = find_entry(drive, index, subindex, &position);
-    if (!entry)
-        return missing(drive, index);
-    if (!(entry->access & CM1E_ACCESS_READ))
+    cm1e_sim_cell_t cell;
+    const uint32_t missing = cm1e_sim_store_find(&drive->store, index, subindex, &cell);
+    if (missing)
+        return missing;
+    if (!(cell.entry->access & CM1E_ACCESS_READ))
         return SDO_ABORT_WRITE_ONLY;
-    if (entry->type == CM1E_TYPE_STRING)
-        return read_string(index == OBJ_100A_SOFTWARE_VERSION ? drive->firmware->version : entry->default_string,
-                           data, size);
-    const unsigned bytes = entry->bits / 8u;
-    if (*size < bytes)
-        return SDO_ABORT_MEMORY;
+    if (cell.entry->type == CM1E_TYPE_STRING)
+        return cm1e_sim_give_text(index == OBJ_100A_SOFTWARE_VERSION ? drive->firmware->version
+                                                                      : cell.entry->default_string, data, size);
     cm1e_sim_refresh(drive);
-    cm1e_put_uint(data, bytes, (uint64_t)present_value(drive, entry, &position));
-    *size = bytes;
-    return 0;
-}
-
-static bool is_signed(cm1e_data_type_t type)
-{
-    return type == CM1E_TYPE_SINT || type == CM1E_TYPE_INT || type == CM1E_TYPE_DINT;
-}
-
-static int64_t decode(const cm1e_entry_t *entry, const uint8_t *data)
-{
-    const uint64_t value = cm1e_get_uint(data, entry->bits / 8u);
-    if (!is_signed(entry->type))
-        return (int64_t)value;
-    const uint64_t sign = UINT64_C(1) << (entry->bits - 1);
-    return (int64_t)((value ^ sign) - sign);
+    return cm1e_sim_give_number(cell.entry, present_value(drive, &cell), data, size);
 }
 
 static uint32_t check_value(const cm1e_entry_t *entry, int64_t value)
 {
-    if (value > entry->maximum)
-        return SDO_ABORT_TOO_HIGH;
-    if (value < entry->minimum)
-        return SDO_ABORT_TOO_LOW;
-    if (entry->index == OBJ_6060_MODES_OF_OPERATION && value != CM1E_MODE_NONE && !cm1e_mode_find((int8_t)value))
+    const uint32_t abort_code = cm1e_sim_check_range(entry, value);
+    if (abort_code == 0 && entry->index == OBJ_6060_MODES_OF_OPERATION && value != CM1E_MODE_NONE &&
+        !cm1e_mode_find((int8_t)value))
         return SDO_ABORT_RANGE;
-    return 0;
-}
-
-static uint32_t check_access(const cm1e_entry_t *entry, uint8_t al_state, size_t size)
-{
-    enum { PRE_OPERATIONAL = 2 };
-    if (!(entry->access & CM1E_ACCESS_WRITE))
-        return SDO_ABORT_READ_ONLY;
-    if (size > entry->bits / 8u)
-        return SDO_ABORT_TOO_LONG;
-    if (size < entry->bits / 8u)
-        return SDO_ABORT_TOO_SHORT;
-    if ((entry->access & CM1E_ACCESS_WRITE_PREOP_ONLY) && al_state != PRE_OPERATIONAL)
-        return SDO_ABORT_STATE;
-    return 0;
+    return abort_code;
 }
 
 uint32_t cm1e_sim_sdo_write(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, const uint8_t *data,
                             size_t size)
 {
     cm1e_sim_cm1e_t *drive = app;
-    position_t position;
-    const cm1e_entry_t *entry = find_entry(drive, index, subindex, &position);
-    if (!entry)
-        return missing(drive, index);
-    entry = own_entry(drive, entry);
-    uint32_t abort_code = check_access(entry, al_state, size);
+    cm1e_sim_cell_t cell;
+    const uint32_t missing = cm1e_sim_store_find(&drive->store, index, subindex, &cell);
+    if (missing)
+        return missing;
+    const cm1e_entry_t *entry = own_entry(drive, cell.entry);
+    uint32_t abort_code = cm1e_sim_check_write(entry, al_state, size);
     if (abort_code)
         return abort_code;
-    int64_t value = decode(entry, data);
+    int64_t value = cm1e_sim_take_number(entry, data);
     if (index == OBJ_1C12_RXPDO_ASSIGN || index == OBJ_1C13_TXPDO_ASSIGN)
         return cm1e_sim_assign_write(drive, index, subindex, (uint32_t)value);
     abort_code = check_value(entry, value);
@@ -316,7 +211,7 @@ uint32_t cm1e_sim_sdo_write(void *app, uint16_t index, uint8_t subindex, uint8_t
     if (place >= 0)
         ((int32_t *)&drive->objects)[place] = (int32_t)value;
     else
-        *value_at(drive, &position) = value;
+        *cell.value = value;
     if (index == OBJ_6060_MODES_OF_OPERATION)
         cm1e_sim_fsa_request_mode(drive);
     return 0;

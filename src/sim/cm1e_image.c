@@ -3,16 +3,11 @@
 #include "core/bytes.h"
 #include "sim/cm1e_app.h"
 
-/* ETG.1000.6: a sub-index cannot be written while sub-index 0 is not 0. */
-#define SDO_ABORT_SUBINDEX_0_NOT_ZERO 0x06010003u
-
 /* ---- assignment ------------------------------------------------------------------------------------------------- */
 
 static uint8_t sign_shift(const cm1e_pdo_entry_t *entry)
 {
-    const cm1e_data_type_t type = cm1e_device_entry(entry->index, entry->subindex)->type;
-    const bool is_signed = type == CM1E_TYPE_SINT || type == CM1E_TYPE_INT || type == CM1E_TYPE_DINT;
-    return is_signed ? (uint8_t)(32 - entry->bits) : 0;
+    return cm1e_sim_is_signed(cm1e_device_entry(entry->index, entry->subindex)->type) ? (uint8_t)(32 - entry->bits) : 0;
 }
 
 /* Resolves the objects of a mapping once, so that the cycle need not search. */

@@ -3,43 +3,10 @@
 #include "sim/cm1e_app.h"
 
 #define DEFAULT_CYCLE_S 1e-3        /* until the cycle time is detected */
-#define TIME_BASE_PULL 0.125        /* part of an output's delay by which the time base follows it */
-#define TIME_BASE_PATIENCE 1.25     /* cycles from one target on, in which the next one should come */
 #define FOLLOWING_WINDOW 5000.0     /* counts; PP, statusword bit 13 */
 #define POSITION_WINDOW 10.0        /* counts; target reached */
 #define VELOCITY_WINDOW 500.0       /* counts/s; target reached */
 #define STANDSTILL_WINDOW 100.0     /* counts/s; "velocity of axis is 0" */
-
-void cm1e_sim_ramp(double *velocity, double wanted, double acceleration, double step_s)
-{
-    const double most = acceleration * step_s;
-    if (wanted > *velocity + most)
-        *velocity += most;
-    else if (wanted < *velocity - most)
-        *velocity -= most;
-    else
-        *velocity = wanted;
-}
-
-bool cm1e_sim_move_step(cm1e_servo_t *servo, double target, double velocity, double acceleration, double step_s)
-{
-    const double distance = target - servo->reference;
-    const double most = acceleration * step_s; /* change of velocity in one step */
-    if (fabs(distance) <= most * step_s && fabs(servo->reference_velocity) <= most) {
-        servo->reference = target;
-        servo->reference_velocity = 0;
-        return true;
-    }
-    /* The velocity from which steps of `most` end at the target, from v^2 / 2a + v step / 2 = distance. The last step
-     * is cut to what is left where that is nearly what it would be anyway. */
-    const double stopping = sqrt(most * most / 4 + 2 * acceleration * fabs(distance)) - most / 2;
-    const double fastest = fmin(stopping, velocity), last = distance / step_s;
-    cm1e_sim_ramp(&servo->reference_velocity, distance < 0 ? -fastest : fastest, acceleration, step_s);
-    if (fabs(servo->reference_velocity) > fabs(last) && fabs(servo->reference_velocity - last) <= most)
-        servo->reference_velocity = last;
-    servo->reference += servo->reference_velocity * step_s;
-    return false;
-}
 
 /* 0x607A on the scale of the mechanics. It has 32 bits and wraps: the nearest turn of the wheel is meant. */
 static double target_position(const cm1e_sim_cm1e_t *drive)
@@ -68,14 +35,9 @@ static bool stands(const cm1e_sim_cm1e_t *drive) { return fabs(drive->mechanics.
 
 /* ---- cyclic synchronous position -------------------------------------------------------------------------------- */
 
-/* The drive takes the target as it is: one that is not the actual position makes the motor jump. */
 static void csp_enter(cm1e_sim_cm1e_t *drive)
 {
-    drive->goal = target_position(drive);
-    drive->goal_velocity = 0;
-    drive->slot_s = 0;
-    drive->servo.reference = drive->goal;
-    drive->servo.reference_velocity = 0;
+    cm1e_sim_line_begin(&drive->line, &drive->servo, target_position(drive));
 }
 
 static double cycle_s(const cm1e_sim_cm1e_t *drive)
@@ -83,26 +45,15 @@ static double cycle_s(const cm1e_sim_cm1e_t *drive)
     return drive->period_ns ? drive->period_ns * 1e-9 : DEFAULT_CYCLE_S;
 }
 
-/* A straight line from the last target to the new one, on a time base of the drive's own that follows the outputs
- * slowly: without SYNC0 they come a little early or late, and the motor is not to feel it. */
 static void csp_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
 {
     (void)rising_bits;
-    const double goal = target_position(drive), cycle = cycle_s(drive), late_s = drive->slot_s - cycle;
-    drive->slot_s = fabs(late_s) < cycle / 2 ? late_s * (1 - TIME_BASE_PULL) : 0;
-    drive->goal_velocity = (goal - drive->goal) / cycle;
-    drive->goal = goal;
+    cm1e_sim_line_target(&drive->line, target_position(drive), cycle_s(drive));
 }
 
-/* The line goes on for a while where the next target is late; then the motor stands at the last one. */
 static void csp_step(cm1e_sim_cm1e_t *drive, double step_s)
 {
-    const double cycle = cycle_s(drive);
-    drive->slot_s += step_s;
-    if (drive->slot_s > TIME_BASE_PATIENCE * cycle)
-        drive->goal_velocity = 0;
-    drive->servo.reference = drive->goal - drive->goal_velocity * (cycle - drive->slot_s);
-    drive->servo.reference_velocity = drive->goal_velocity;
+    cm1e_sim_line_step(&drive->line, &drive->servo, cycle_s(drive), step_s);
 }
 
 static uint16_t cyclic_status_bits(const cm1e_sim_cm1e_t *drive)

@@ -12,6 +12,8 @@
 #include "cm1e/config.h"
 
 #define CM1E_COUNTS_PER_RADIAN (50000.0 / 6.283185307179586)
+/** kg m2 for 1 Nm. Not in the manuals: of the size usual for such motors. */
+#define CM1E_ROTOR_INERTIA_PER_PEAK_TORQUE 3e-5
 
 typedef struct cm1e_mechanics {
     double position;         /**< counts */

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "sim/cm1e_servo.h"
+#include "sim/servo.h"
 #include "sim/mechanics.h"
 #include "unity.h"
 

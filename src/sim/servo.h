@@ -1,10 +1,10 @@
 /**
- * @file cm1e_servo.h
- * The position servo inside a simulated CM1-E: from a reference position and velocity to a motor torque within a limit.
+ * @file servo.h
+ * The position servo inside a simulated motor: from a reference position and velocity to a motor torque within a limit.
  * @rt cycle.
  */
-#ifndef CM1E_SIM_CM1E_SERVO_H
-#define CM1E_SIM_CM1E_SERVO_H
+#ifndef CM1E_SIM_SERVO_H
+#define CM1E_SIM_SERVO_H
 
 #include <stdbool.h>
 

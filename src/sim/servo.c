@@ -1,4 +1,4 @@
-#include "sim/cm1e_servo.h"
+#include "sim/servo.h"
 
 /* Bandwidth of the position loop; damping ratio 1. */
 #define BANDWIDTH_RAD_PER_S 500.0

@@ -1,0 +1,54 @@
+/**
+ * @file store.h
+ * The object dictionary of a simulated device with a present value for each of its entries, and the rules of SDO access
+ * that hold for every device: which abort code says what (ETG.1000.6 table 41). Private to the simulator.
+ */
+#ifndef CM1E_SIM_STORE_H
+#define CM1E_SIM_STORE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "device/device.h"
+
+typedef struct cm1e_sim_store {
+    const cm1e_object_t **objects; /**< those that the device has, in order of index */
+    size_t object_count;
+    cm1e_firmware_t firmware;      /**< entries that came later are not there */
+    uint32_t *first_entry;         /**< per object: place of its first entry in `values` */
+    int64_t *values;               /**< one per entry of the device tables, texts included */
+} cm1e_sim_store_t;
+
+/** An entry and its value. */
+typedef struct cm1e_sim_cell {
+    const cm1e_entry_t *entry;
+    int64_t *value;
+} cm1e_sim_cell_t;
+
+/** Object number n of the device tables, in order of index; NULL: no more. */
+typedef const cm1e_object_t *(*cm1e_sim_objects_fn)(const void *context, size_t n);
+
+/** Every value is the default of the tables. FALSE: no memory; destroy it all the same. */
+bool cm1e_sim_store_create(cm1e_sim_store_t *store, cm1e_sim_objects_fn objects, const void *context,
+                           cm1e_firmware_t firmware);
+void cm1e_sim_store_destroy(cm1e_sim_store_t *store);
+/** NULL: no more. */
+const cm1e_object_t *cm1e_sim_store_object(const cm1e_sim_store_t *store, size_t n);
+/** 0, or the abort code that says what is missing; the cell is then NULL and NULL. */
+uint32_t cm1e_sim_store_find(const cm1e_sim_store_t *store, uint16_t index, uint8_t subindex, cm1e_sim_cell_t *cell);
+/** Does nothing where there is no such entry. */
+void cm1e_sim_store_set(cm1e_sim_store_t *store, uint16_t index, uint8_t subindex, int64_t value);
+
+/* ---- values on the wire; all return 0 or an abort code --------------------------------------------------------------- */
+bool cm1e_sim_is_signed(cm1e_data_type_t type);
+/** `size`: room, then bytes. */
+uint32_t cm1e_sim_give_number(const cm1e_entry_t *entry, int64_t value, uint8_t *data, size_t *size);
+uint32_t cm1e_sim_give_text(const char *text, uint8_t *data, size_t *size);
+/** Whether a number of `size` bytes may be written now. */
+uint32_t cm1e_sim_check_write(const cm1e_entry_t *entry, uint8_t al_state, size_t size);
+/** The number in as many bytes as the entry has. */
+int64_t cm1e_sim_take_number(const cm1e_entry_t *entry, const uint8_t *data);
+uint32_t cm1e_sim_check_range(const cm1e_entry_t *entry, int64_t value);
+
+#endif
