@@ -9,6 +9,7 @@
 #include "files.h"
 #include "nic/nic.h"
 #include "sim/segment.h"
+#include "sim/slave.h"
 
 static volatile int stop_requested;
 
@@ -18,13 +19,34 @@ static void request_stop(int signal_number)
     stop_requested = 1;
 }
 
-enum { KEY_SII = 0x400 };
+enum { KEY_SII = 0x400, KEY_BRIDGE };
 
 typedef struct sim_options {
     const char *interface_name, *bus_file, *order;
     const char *sii[CM1E_MAX_SLAVES]; /* files, by place on the line */
     uint32_t sii_count;
+    cm1e_device_model_t bridges[CM1E_MAX_SLAVES]; /* behind the other slaves */
+    uint32_t bridge_count;
 } sim_options_t;
+
+static const struct {
+    const char *word;
+    cm1e_device_model_t model;
+} bridges[] = {{"eb01", CM1E_DEVICE_EB01}, {"eb02", CM1E_DEVICE_EB02}, {"eb12", CM1E_DEVICE_EB12}};
+enum { BRIDGES = sizeof bridges / sizeof bridges[0] };
+
+static void take_bridge(sim_options_t *options, const char *word, struct argp_state *state)
+{
+    int i = 0;
+    while (i < BRIDGES && strcmp(bridges[i].word, word) != 0)
+        i++;
+    if (i == BRIDGES)
+        argp_error(state, "there is no bridge \"%s\"; there are eb01, eb02 and eb12", word);
+    else if (options->bridge_count == CM1E_MAX_SLAVES)
+        argp_error(state, "a segment has %d slaves at most", CM1E_MAX_SLAVES);
+    else
+        options->bridges[options->bridge_count++] = bridges[i].model;
+}
 
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
@@ -37,6 +59,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "a segment has %d slaves at most", CM1E_MAX_SLAVES);
         options->sii[options->sii_count++] = arg;
         return 0;
+    case KEY_BRIDGE: take_bridge(options, arg, state); return 0;
     case ARGP_KEY_ARG:
         if (options->bus_file)
             argp_error(state, "one bus file is enough; \"%s\" is too many", arg);
@@ -53,7 +76,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 static bool describe(const sim_options_t *options, cm1e_bus_config_t *config)
 {
     cm1e_diag_t diag = {0};
-    cm1e_bus_config_init(config, "sim", options->sii_count > 0 ? options->sii_count : 1);
+    const uint32_t bridges_only = options->bridge_count;
+    cm1e_bus_config_init(config, "sim", bridges_only ? 0 : options->sii_count > 0 ? options->sii_count : 1);
     if (options->bus_file && cm1e_bus_config_load(config, options->bus_file, &diag) != CM1E_OK) {
         fail(&diag);
         return false;
@@ -63,6 +87,20 @@ static bool describe(const sim_options_t *options, cm1e_bus_config_t *config)
     else if (options->order && strcmp(options->order, "ug-4.4") != 0) {
         complain("there is no PDO order \"%s\"; there are ug-4.4 and ug-7.2", options->order);
         return false;
+    }
+    return true;
+}
+
+static bool add_bridges(cm1e_sim_segment_t *segment, const sim_options_t *options)
+{
+    for (uint32_t i = 0; i < options->bridge_count; i++) {
+        cm1e_sim_slave_t *slave = cm1e_sim_bridge_create(options->bridges[i]);
+        if (cm1e_sim_segment_add(segment, slave) != CM1E_OK) {
+            cm1e_sim_slave_destroy(slave);
+            complain("the simulated bridge %u cannot be made: out of memory, or more than %d slaves", i + 1,
+                     CM1E_MAX_SLAVES);
+            return false;
+        }
     }
     return true;
 }
@@ -91,11 +129,13 @@ int command_sim(int argc, char **argv)
         {"pdo-order", 'o', "ORDER", 0, "ug-4.4 (default) or ug-7.2: the order of objects in the PDO mappings", 0},
         {"sii", KEY_SII, "FILE", 0, "A slave boots from this image of its SII instead of the tables; once for the "
          "first slave, again for the second ...", 0},
+        {"bridge", KEY_BRIDGE, "MODEL", 0, "A Cool MUSCLE Bridge with four motors behind the other slaves: eb01, eb02 "
+         "or eb12; again for another one", 0},
         {0}};
     static const struct argp argp = {
         table, parse, "[BUS-FILE]",
         "Serves a simulated network until SIGINT or SIGTERM; without a bus file one CM1-E-17S30D, firmware 1.3.5, or "
-        "as many as there are SII images. "
+        "as many as there are SII images, or the bridges alone. "
         "Lines on standard input act on it; `help` lists them.", NULL, NULL, NULL};
     sim_options_t options = {0};
     if (argp_parse(&argp, argc, argv, 0, NULL, &options))
@@ -108,7 +148,7 @@ int command_sim(int argc, char **argv)
     cm1e_sim_segment_t *segment = cm1e_sim_segment_create(&config, &diag);
     if (!segment)
         return fail(&diag);
-    if (!boot(segment, &options)) {
+    if (!add_bridges(segment, &options) || !boot(segment, &options)) {
         cm1e_sim_segment_destroy(segment);
         return EXIT_FAILED;
     }

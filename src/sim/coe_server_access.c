@@ -38,20 +38,31 @@ static uint32_t check_complete_access(cm1e_sim_slave_t *slave, uint16_t index, u
 }
 
 /* The highest sub-index as the device has it now; sub-index 0 of a mapping or an assignment changes. */
-static unsigned highest_subindex(cm1e_sim_slave_t *slave, uint16_t index)
+static uint32_t read_highest_subindex(cm1e_sim_slave_t *slave, uint16_t index, unsigned *highest)
 {
     uint8_t value[8] = {0};
     size_t size = sizeof value;
-    return read_entry(slave, index, 0, value, &size) == 0 && size > 0 ? value[0] : 0;
+    const uint32_t abort = read_entry(slave, index, 0, value, &size);
+    *highest = value[0];
+    return abort;
+}
+
+/* What cannot be read, although the object as a whole can, reads as zero. */
+static bool reads_as_zero(uint32_t abort, unsigned subindex)
+{
+    return abort == SDO_ABORT_WRITE_ONLY ||
+           (subindex > 0 && (abort == SDO_ABORT_UNSUPPORTED_ACCESS || abort == SDO_ABORT_NO_SUBINDEX));
 }
 
 static uint32_t read_complete(cm1e_sim_slave_t *slave, uint16_t index, uint8_t subindex, uint8_t *data, size_t *size)
 {
     const size_t room = *size;
-    const uint32_t refused = check_complete_access(slave, index, subindex);
+    unsigned highest = 0;
+    uint32_t refused = check_complete_access(slave, index, subindex);
+    if (!refused)
+        refused = read_highest_subindex(slave, index, &highest);
     if (refused)
         return refused;
-    const unsigned highest = highest_subindex(slave, index);
     size_t at = 0;
     for (unsigned sub = subindex; sub <= highest; sub++) {
         const cm1e_entry_t *entry = cm1e_sim_coe_entry(slave, index, (uint8_t)sub);
@@ -63,8 +74,7 @@ static uint32_t read_complete(cm1e_sim_slave_t *slave, uint16_t index, uint8_t s
         size_t got = bytes;
         memset(data + at, 0, bytes);
         const uint32_t abort = read_entry(slave, index, (uint8_t)sub, data + at, &got);
-        /* What can only be written reads as zero. */
-        if (abort && abort != SDO_ABORT_WRITE_ONLY)
+        if (abort && !reads_as_zero(abort, sub))
             return abort;
         at += bytes;
     }
@@ -104,12 +114,14 @@ static uint32_t write_entries(cm1e_sim_slave_t *slave, uint16_t index, unsigned 
 static uint32_t write_complete(cm1e_sim_slave_t *slave, uint16_t index, uint8_t subindex, const uint8_t *data,
                                size_t size)
 {
-    const uint32_t refused = check_complete_access(slave, index, subindex);
+    unsigned last = 0;
+    uint32_t refused = check_complete_access(slave, index, subindex);
+    if (!refused)
+        refused = read_highest_subindex(slave, index, &last);
     if (refused)
         return refused;
     const cm1e_entry_t *count_entry = cm1e_sim_coe_entry(slave, index, 0);
     const bool count_writable = subindex == 0 && count_entry && (count_entry->access & CM1E_ACCESS_WRITE);
-    unsigned last = highest_subindex(slave, index);
     size_t used = 0;
     uint32_t abort = 0;
     if (subindex == 0) {

@@ -15,6 +15,7 @@
 typedef struct cm1e_sim_segment cm1e_sim_segment_t;
 typedef struct cm1e_sim_slave cm1e_sim_slave_t;
 typedef struct cm1e_sim_cm1e cm1e_sim_cm1e_t;
+typedef struct cm1e_sim_bridge cm1e_sim_bridge_t;
 
 /** The network that a configuration describes: one CM1-E per axis, placed by position, alias or explicit ID (aliases
  *  and IDs are set in the simulated devices in the order of the list). NULL and a diagnosis on failure. */

@@ -1,7 +1,7 @@
 /**
  * @file slave.h
  * The seam inside a simulated slave: below it the slave controller (esc.h: datagrams, registers, FMMUs, sync managers,
- * SII, AL state machine, mailbox, CoE server), above it the application (a CM1-E, an I/O module). One const table of
+ * SII, AL state machine, mailbox, CoE server), above it the application (a CM1-E, a bridge, an I/O module). One const table of
  * functions plus a context. Everything runs in the thread that feeds the segment frames.
  */
 #ifndef CM1E_SIM_SLAVE_H
@@ -30,7 +30,7 @@ enum {
     AL_CODE_NONE = 0, AL_CODE_INVALID_STATE_CHANGE = 0x0011, AL_CODE_UNKNOWN_STATE = 0x0012,
     AL_CODE_BOOT_NOT_SUPPORTED = 0x0013, AL_CODE_INVALID_MAILBOX_BOOT = 0x0015, AL_CODE_INVALID_MAILBOX_PREOP = 0x0016,
     AL_CODE_INVALID_SM_CONFIG = 0x0017, AL_CODE_NO_VALID_INPUTS = 0x0018, AL_CODE_NO_VALID_OUTPUTS = 0x0019,
-    AL_CODE_SM_WATCHDOG = 0x001B, AL_CODE_INVALID_OUTPUT_CONFIG = 0x001D, AL_CODE_INVALID_INPUT_CONFIG = 0x001E,
+    AL_CODE_SYNC_ERROR = 0x001A, AL_CODE_SM_WATCHDOG = 0x001B, AL_CODE_INVALID_OUTPUT_CONFIG = 0x001D, AL_CODE_INVALID_INPUT_CONFIG = 0x001E,
     AL_CODE_INVALID_WATCHDOG_CONFIG = 0x001F,
 };
 
@@ -88,5 +88,13 @@ uint8_t cm1e_sim_slave_al_state(const cm1e_sim_slave_t *slave);
 cm1e_sim_slave_t *cm1e_sim_cm1e_create(const cm1e_axis_config_t *config, cm1e_pdo_order_t order, uint16_t alias,
                                        uint8_t rotary_switches);
 cm1e_sim_slave_t *cm1e_sim_io_module_create(void);
+/** A Cool MUSCLE Bridge (CM1E_DEVICE_EB01 ... EB12) with its four motors, each behind the default mechanics of
+ *  cm1e/config.h. NULL: no bridge, or no memory. */
+cm1e_sim_slave_t *cm1e_sim_bridge_create(cm1e_device_model_t model);
+/** Its guide states no identity. The vendor is Muscle Corporation in ETG's list, the rest is the simulator's own. */
+#define CM1E_SIM_BRIDGE_VENDOR_ID 0x0000AA77u
+#define CM1E_SIM_BRIDGE_REVISION 0x00010000u
+/** 0xEB01, 0xEB02, 0xEB12 */
+uint32_t cm1e_sim_bridge_product_code(cm1e_device_model_t model);
 
 #endif

@@ -1,0 +1,209 @@
+#include <stdlib.h>
+
+#include "cm1e/bus.h"
+#include "description/describe.h"
+#include "description/sii.h"
+#include "sim/bridge_app.h"
+
+enum {
+    STEP_NS = 250000,          /* longest integration step */
+    CATCH_UP_NS = 1000000000,  /* what a longer pause is cut to */
+    READY_NS = 50000000,       /* from power-on to Switch on disabled; the guide gives no time */
+    EXCHANGE_NS = 1000000,     /* of the serial lines (F511:3 ... F514:3) */
+};
+
+/* Bounds of a cycle (BR 7.4, F530:19 and 20). */
+enum { LATE_US = 1300, EARLY_US = 700 };
+/* 0x10F1:2 counts as ETG.1020 has it. It is 0 from the start: then so many cycles in a row, all too long or all too
+ * short, are a wrong cycle time; a host that pauses now and then is let pass. */
+enum { SYNC_ERROR = 3, WRONG_CYCLES = 100 };
+
+/* ---- time ------------------------------------------------------------------------------------------------------- */
+
+static void step(cm1e_sim_bridge_t *bridge, double step_s)
+{
+    const bool exchange = bridge->now_ns >= bridge->exchange_ns;
+    if (exchange)
+        bridge->exchange_ns = bridge->now_ns + EXCHANGE_NS;
+    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++) {
+        cm1e_sim_bridge_axis_t *axis = &bridge->axes[i];
+        if (bridge->now_ns >= bridge->ready_ns)
+            cm1e_sim_bridge_axis_ready(axis);
+        if (exchange)
+            cm1e_sim_bridge_axis_exchange(axis);
+        cm1e_sim_bridge_axis_step(axis, step_s);
+    }
+}
+
+static void advance(void *app, int64_t now_ns)
+{
+    cm1e_sim_bridge_t *bridge = app;
+    if (now_ns <= bridge->now_ns && bridge->running)
+        return;
+    if (!bridge->running || now_ns - bridge->now_ns > CATCH_UP_NS) {
+        const int64_t from_ns = bridge->running ? now_ns - CATCH_UP_NS : now_ns;
+        bridge->ready_ns += from_ns - bridge->now_ns;
+        bridge->exchange_ns = from_ns;
+        bridge->now_ns = from_ns;
+        bridge->running = true;
+    }
+    while (bridge->now_ns < now_ns) {
+        const int64_t left_ns = now_ns - bridge->now_ns;
+        const int64_t step_ns = left_ns < STEP_NS ? left_ns : STEP_NS;
+        bridge->now_ns += step_ns;
+        step(bridge, (double)step_ns * 1e-9);
+    }
+}
+
+/* ---- cycle time (BR 6.3: 1 ms) ---------------------------------------------------------------------------------- */
+
+static bool wrong_cycle_time(cm1e_sim_bridge_t *bridge, bool late, bool early)
+{
+    const bool same_side = late ? bridge->wrong_cycles > 0 : bridge->wrong_cycles < 0;
+    bridge->wrong_cycles = !late && !early ? 0 : (same_side ? bridge->wrong_cycles : 0) + (late ? 1 : -1);
+    if (late || early)
+        bridge->sync_errors += SYNC_ERROR;
+    else if (bridge->sync_errors > 0)
+        bridge->sync_errors--;
+    cm1e_sim_cell_t limit;
+    cm1e_sim_store_find(&bridge->store, OBJ_10F1_ERROR_SETTINGS, 2, &limit);
+    return *limit.value != 0 ? bridge->sync_errors > *limit.value
+                             : bridge->wrong_cycles >= WRONG_CYCLES || bridge->wrong_cycles <= -WRONG_CYCLES;
+}
+
+static void watch_cycle(cm1e_sim_bridge_t *bridge, int64_t now_ns)
+{
+    const int64_t interval_us = (now_ns - bridge->last_outputs_ns + 500) / 1000;
+    const bool first = bridge->last_outputs_ns == 0;
+    bridge->last_outputs_ns = now_ns;
+    if (first)
+        return;
+    const uint32_t us = interval_us < UINT32_MAX ? (uint32_t)interval_us : UINT32_MAX;
+    const bool late = us > LATE_US, early = us < EARLY_US;
+    if (us > bridge->longest_us)
+        bridge->longest_us = us;
+    if (us < bridge->shortest_us || bridge->shortest_us == 0)
+        bridge->shortest_us = us;
+    bridge->late_cycles += late;
+    bridge->early_cycles += early;
+    if (wrong_cycle_time(bridge, late, early) && bridge->slave)
+        cm1e_sim_slave_fall_back(bridge->slave, CM1E_AL_SAFE_OP, AL_CODE_SYNC_ERROR);
+}
+
+static void outputs(void *app, const uint8_t *data, uint16_t size, int64_t now_ns)
+{
+    cm1e_sim_bridge_outputs(app, data, size, now_ns);
+    watch_cycle(app, now_ns);
+}
+
+/* ---- EtherCAT --------------------------------------------------------------------------------------------------- */
+
+static void disable(void *app)
+{
+    cm1e_sim_bridge_t *bridge = app;
+    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
+        cm1e_sim_bridge_axis_disable(&bridge->axes[i]);
+}
+
+static uint16_t state_change(void *app, uint8_t from, uint8_t to)
+{
+    cm1e_sim_bridge_t *bridge = app;
+    bridge->al_state = to;
+    if (from == CM1E_AL_OP && to != CM1E_AL_OP)
+        disable(bridge);
+    if (to == CM1E_AL_OP) {
+        bridge->last_outputs_ns = 0;
+        bridge->wrong_cycles = 0;
+        bridge->sync_errors = 0;
+    }
+    return AL_CODE_NONE;
+}
+
+/* ---- life ------------------------------------------------------------------------------------------------------- */
+
+static void power_on(void *app, int64_t now_ns)
+{
+    cm1e_sim_bridge_t *bridge = app;
+    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
+        cm1e_sim_bridge_axis_disable(&bridge->axes[i]); /* until now they ran out without torque */
+    advance(bridge, now_ns);
+    bridge->al_state = CM1E_AL_INIT;
+    bridge->ready_ns = bridge->now_ns + READY_NS;
+    bridge->last_outputs_ns = 0;
+    bridge->longest_us = bridge->shortest_us = bridge->late_cycles = bridge->early_cycles = 0;
+    cm1e_sim_bridge_dictionary_reset(bridge);
+    cm1e_sim_bridge_assign_default(bridge);
+    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
+        cm1e_sim_bridge_axis_power_on(bridge, &bridge->axes[i]);
+}
+
+static void destroy(void *app)
+{
+    cm1e_sim_store_destroy(&((cm1e_sim_bridge_t *)app)->store);
+    free(app);
+}
+
+const cm1e_sim_app_ops_t cm1e_sim_bridge_ops = {
+    .advance = advance, .state_change = state_change, .process_data_sizes = cm1e_sim_bridge_sizes, .outputs = outputs,
+    .inputs = cm1e_sim_bridge_inputs, .watchdog_expired = disable, .sdo_read = cm1e_sim_bridge_sdo_read,
+    .sdo_write = cm1e_sim_bridge_sdo_write, .object = cm1e_sim_bridge_object, .entry = cm1e_sim_bridge_entry,
+    .power_on = power_on, .destroy = destroy,
+};
+
+cm1e_sim_bridge_t *cm1e_sim_bridge_create_app(cm1e_device_model_t model)
+{
+    cm1e_sim_bridge_t *bridge = cm1e_bridge_name(model) ? calloc(1, sizeof *bridge) : NULL;
+    if (!bridge)
+        return NULL;
+    bridge->model = model;
+    if (!cm1e_sim_bridge_dictionary_create(bridge)) {
+        destroy(bridge);
+        return NULL;
+    }
+    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
+        cm1e_sim_bridge_axis_create(bridge, i);
+    power_on(bridge, 0);
+    bridge->running = false; /* the first advance() tells the time */
+    return bridge;
+}
+
+uint32_t cm1e_sim_bridge_product_code(cm1e_device_model_t model)
+{
+    return (uint32_t)strtoul(cm1e_bridge_name(model), NULL, 16);
+}
+
+static size_t write_sii(uint8_t *sii, size_t room, const cm1e_sim_bridge_t *bridge)
+{
+    const cm1e_device_options_t options = {
+        .model = bridge->model,
+        .vendor_id = CM1E_SIM_BRIDGE_VENDOR_ID,
+        .product_code = cm1e_sim_bridge_product_code(bridge->model),
+        .revision = CM1E_SIM_BRIDGE_REVISION,
+    };
+    cm1e_description_file_t file = {0};
+    const size_t size = cm1e_describe(&file, &options, CM1E_ESI_FLAT, NULL) == CM1E_OK
+                            ? cm1e_sii_write(sii, room, &file.devices.at[0], NULL)
+                            : 0;
+    cm1e_description_file_free(&file);
+    return size;
+}
+
+cm1e_sim_slave_t *cm1e_sim_bridge_create(cm1e_device_model_t model)
+{
+    cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_create_app(model);
+    if (!bridge)
+        return NULL;
+    uint8_t sii[CM1E_SII_SIZE];
+    const size_t size = write_sii(sii, sizeof sii, bridge);
+    cm1e_sim_slave_t *slave = size > 0 ? cm1e_sim_slave_create(sii, size, &cm1e_sim_bridge_ops, bridge) : NULL;
+    if (slave)
+        bridge->slave = slave;
+    else
+        destroy(bridge);
+    return slave;
+}
+
+cm1e_sim_bridge_t *cm1e_sim_bridge_of(cm1e_sim_slave_t *slave)
+{
+    return slave && cm1e_sim_slave_ops(slave) == &cm1e_sim_bridge_ops ? cm1e_sim_slave_app(slave) : NULL;
+}

@@ -1,0 +1,126 @@
+/**
+ * @file bridge_app.h
+ * The EtherCAT Cool MUSCLE Bridge as the application behind a simulated slave controller, with four CM1 or CM2 motors;
+ * private to the simulator. Files:
+ *   bridge.c             life, EtherCAT state changes, time, cycle time
+ *   bridge_dictionary.c  object dictionary: SDO access
+ *   bridge_image.c       PDO assignment, process data in and out
+ *   bridge_axis.c        one axis: power drive system, statusword, the motor with its errors (BR 6.1, 7.4)
+ *   store.c, servo.c, reference.c, mechanics.c  as with the CM1-E
+ * What the guide (BR) leaves open is decided in docs/DEVICE.md. Like the simulated CM1-E it protects nobody.
+ */
+#ifndef CM1E_SIM_BRIDGE_APP_H
+#define CM1E_SIM_BRIDGE_APP_H
+
+#include "cia402/cia402.h"
+#include "device/bridge.h"
+#include "sim/reference.h"
+#include "sim/segment.h"
+#include "sim/slave.h"
+#include "sim/store.h"
+
+/** What a motor says of itself (BR 7.4): F530:5 ... F530:8. */
+enum {
+    BRIDGE_STATUS_RUNNING = 0x00, BRIDGE_STATUS_POSITION_OVERFLOW = 0x01, BRIDGE_STATUS_OVER_SPEED = 0x02,
+    BRIDGE_STATUS_OVERLOAD = 0x04, BRIDGE_STATUS_IN_POSITION = 0x08, BRIDGE_STATUS_SERIAL_ERROR = 0x0F,
+    BRIDGE_STATUS_MOTOR_FREE = 0x10, BRIDGE_STATUS_TEMPERATURE = 0x80,
+};
+
+/** One motor and what the bridge does for it. */
+typedef struct cm1e_sim_bridge_axis {
+    uint8_t number;          /**< 0 ... 3 */
+    cm1e_bridge_motor_t motor;
+
+    /* process data */
+    uint16_t controlword, last_controlword;
+    int32_t target_position;
+
+    /* power drive system */
+    cm1e_fsa_state_t state;
+    bool motor_free;
+    uint8_t error;           /**< of the motor, as in F530; 0: none */
+
+    /* motion; positions on the scale of the mechanics */
+    cm1e_mechanics_t mechanics;
+    cm1e_servo_t servo;
+    cm1e_sim_line_t line;
+    int64_t zero;            /**< where 0x6064 is 0 */
+    double lag_s, overload;  /**< how long the lag is too large; sum of the overload, s */
+
+    uint32_t sent, received; /**< over the serial line (F530:9 ... F530:16) */
+} cm1e_sim_bridge_axis_t;
+
+struct cm1e_sim_bridge {
+    cm1e_sim_slave_t *slave; /**< NULL: no slave controller below (unit tests) */
+    cm1e_device_model_t model;
+    cm1e_sim_store_t store;
+    uint8_t al_state;
+
+    /* PDO assignment: 0x1C12, 0x1C13 */
+    uint8_t assigned[2];                  /**< sub-index 0 */
+    uint16_t pdos[2][CM1E_BRIDGE_AXES];   /**< sub-indexes 1 ... 4 */
+
+    /* time */
+    bool running;            /**< now_ns is known */
+    int64_t now_ns, ready_ns, exchange_ns;
+    int64_t last_outputs_ns; /**< 0: none since Operational */
+    uint32_t longest_us, shortest_us, late_cycles, early_cycles; /**< F530:17 ... F530:20 */
+    int wrong_cycles;        /**< in a row; < 0: too short */
+    uint32_t sync_errors;    /**< counted against 0x10F1:2 */
+
+    cm1e_sim_bridge_axis_t axes[CM1E_BRIDGE_AXES];
+};
+
+/* ---- bridge.c --------------------------------------------------------------------------------------------------- */
+extern const cm1e_sim_app_ops_t cm1e_sim_bridge_ops;
+/** The application alone; destroyed by its ops. NULL: no bridge, or no memory. */
+cm1e_sim_bridge_t *cm1e_sim_bridge_create_app(cm1e_device_model_t model);
+/** The bridge in a slave; NULL: it is something else. */
+cm1e_sim_bridge_t *cm1e_sim_bridge_of(cm1e_sim_slave_t *slave);
+
+/* ---- bridge_dictionary.c ---------------------------------------------------------------------------------------- */
+bool cm1e_sim_bridge_dictionary_create(cm1e_sim_bridge_t *bridge);
+/** Back to what it is after power-on; what the motors keep stays. */
+void cm1e_sim_bridge_dictionary_reset(cm1e_sim_bridge_t *bridge);
+const cm1e_object_t *cm1e_sim_bridge_object(void *app, size_t n);
+const cm1e_entry_t *cm1e_sim_bridge_entry(void *app, uint16_t index, uint8_t subindex);
+uint32_t cm1e_sim_bridge_sdo_read(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, uint8_t *data,
+                                  size_t *size);
+uint32_t cm1e_sim_bridge_sdo_write(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, const uint8_t *data,
+                                   size_t size);
+/** The value of an object of an axis, by its index on the first axis. */
+int64_t *cm1e_sim_bridge_value(const cm1e_sim_bridge_t *bridge, unsigned axis, uint16_t index, uint8_t subindex);
+/** K21 ... K99 of a motor. */
+int64_t *cm1e_sim_bridge_k(const cm1e_sim_bridge_t *bridge, unsigned axis, unsigned number);
+
+/* ---- bridge_image.c --------------------------------------------------------------------------------------------- */
+/** Writing 0x1C12 or 0x1C13; 0 or an abort code. */
+uint32_t cm1e_sim_bridge_assign_write(cm1e_sim_bridge_t *bridge, uint16_t index, uint8_t subindex, uint32_t value);
+uint32_t cm1e_sim_bridge_assign_read(const cm1e_sim_bridge_t *bridge, uint16_t index, uint8_t subindex);
+void cm1e_sim_bridge_assign_default(cm1e_sim_bridge_t *bridge);
+void cm1e_sim_bridge_sizes(void *app, uint16_t *output_bytes, uint16_t *input_bytes);
+void cm1e_sim_bridge_outputs(void *app, const uint8_t *data, uint16_t size, int64_t now_ns);
+void cm1e_sim_bridge_inputs(void *app, uint8_t *data, uint16_t size);
+
+/* ---- bridge_axis.c ---------------------------------------------------------------------------------------------- */
+void cm1e_sim_bridge_axis_create(cm1e_sim_bridge_t *bridge, unsigned number);
+/** Control power comes: the motor stands where it stands, which is 0 now. */
+void cm1e_sim_bridge_axis_power_on(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
+/** Initialisation is over. */
+void cm1e_sim_bridge_axis_ready(cm1e_sim_bridge_axis_t *axis);
+/** New process data has come. */
+void cm1e_sim_bridge_axis_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
+/** No more process data comes: motor free, Switch on disabled. */
+void cm1e_sim_bridge_axis_disable(cm1e_sim_bridge_axis_t *axis);
+void cm1e_sim_bridge_axis_step(cm1e_sim_bridge_axis_t *axis, double step_s);
+/** A millisecond of the serial line. */
+void cm1e_sim_bridge_axis_exchange(cm1e_sim_bridge_axis_t *axis);
+/** An error of the motor: one of BRIDGE_STATUS_... */
+void cm1e_sim_bridge_axis_error(cm1e_sim_bridge_axis_t *axis, uint8_t status);
+uint16_t cm1e_sim_bridge_statusword(const cm1e_sim_bridge_axis_t *axis);
+/** F530:5 ... F530:8 */
+uint8_t cm1e_sim_bridge_motor_status(const cm1e_sim_bridge_axis_t *axis);
+/** 0x6064 */
+int64_t cm1e_sim_bridge_position(const cm1e_sim_bridge_axis_t *axis);
+
+#endif

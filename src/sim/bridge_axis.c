@@ -1,0 +1,249 @@
+#include <math.h>
+
+#include "sim/bridge_app.h"
+
+#define CYCLE_S 1e-3 /* BR 6.3 */
+/* Not in the guide: of the size usual for such motors, and those of the simulated CM1-E. */
+#define LAG_LIMIT_COUNTS 50000.0 /* a revolution */
+#define LAG_TIME_S 0.005
+#define FOLLOWING_WINDOW_COUNTS 1000.0
+#define OVERLOAD_LIMIT_S 0.5     /* i2t */
+#define PEAK_TO_RATED_TORQUE 1.25
+#define STANDSTILL_COUNTS_PER_S 100.0
+enum { K_RESOLUTION = 37, K_ENABLE_AT_POWER_ON = 68 };
+enum { STATUSWORD_MOTOR_ERROR = 0x4000, STATUSWORD_MOTOR_FREE = 0x8000 };
+
+static double peak_torque(void) { return cm1e_device_motor("")->peak_torque_nm; }
+
+/* ---- the motor -------------------------------------------------------------------------------------------------- */
+
+int64_t cm1e_sim_bridge_position(const cm1e_sim_bridge_axis_t *axis)
+{
+    return (int64_t)floor(axis->mechanics.position + 0.5) - axis->zero;
+}
+
+static void enable_motor(cm1e_sim_bridge_axis_t *axis)
+{
+    if (!axis->motor_free)
+        return;
+    axis->motor_free = false;
+    axis->servo.torque_limit = peak_torque();
+    cm1e_servo_catch(&axis->servo, &axis->mechanics);
+}
+
+static void hold(cm1e_sim_bridge_axis_t *axis) { axis->servo.reference_velocity = 0; }
+
+/* 0x607A on the scale of the mechanics, within what the resolution allows (BR appendix 5). It has 32 bits and wraps: the
+ * nearest turn of the wheel is meant. */
+static double target(const cm1e_sim_bridge_t *bridge, const cm1e_sim_bridge_axis_t *axis)
+{
+    const int32_t limit = cm1e_bridge_position_limit(
+        axis->motor, (int32_t)*cm1e_sim_bridge_k(bridge, axis->number, K_RESOLUTION));
+    int32_t wanted = axis->target_position;
+    if (limit && wanted > limit)
+        wanted = limit;
+    else if (limit && wanted < -limit)
+        wanted = -limit;
+    const int64_t actual = cm1e_sim_bridge_position(axis);
+    return (double)(axis->zero + actual + (int32_t)((uint32_t)wanted - (uint32_t)actual));
+}
+
+static void supervise(cm1e_sim_bridge_axis_t *axis, double step_s)
+{
+    const double lag = fabs(axis->servo.reference - axis->mechanics.position);
+    const double load = axis->servo.torque * PEAK_TO_RATED_TORQUE / peak_torque();
+    axis->lag_s = lag > LAG_LIMIT_COUNTS ? axis->lag_s + step_s : 0;
+    axis->overload = fmax(0, axis->overload + step_s * (load * load - 1));
+    if (axis->lag_s > LAG_TIME_S)
+        cm1e_sim_bridge_axis_error(axis, BRIDGE_STATUS_POSITION_OVERFLOW);
+    else if (axis->overload > OVERLOAD_LIMIT_S)
+        cm1e_sim_bridge_axis_error(axis, BRIDGE_STATUS_OVERLOAD);
+}
+
+void cm1e_sim_bridge_axis_step(cm1e_sim_bridge_axis_t *axis, double step_s)
+{
+    if (axis->motor_free) {
+        if (!cm1e_mechanics_at_rest(&axis->mechanics))
+            cm1e_mechanics_step(&axis->mechanics, 0, step_s);
+        return;
+    }
+    if (axis->state == OPERATION_ENABLED)
+        cm1e_sim_line_step(&axis->line, &axis->servo, CYCLE_S, step_s);
+    cm1e_mechanics_step(&axis->mechanics, cm1e_servo_step(&axis->servo, &axis->mechanics, step_s), step_s);
+    supervise(axis, step_s);
+}
+
+void cm1e_sim_bridge_axis_exchange(cm1e_sim_bridge_axis_t *axis)
+{
+    axis->sent++;
+    axis->received++;
+}
+
+static bool stands(const cm1e_sim_bridge_axis_t *axis)
+{
+    return fabs(axis->mechanics.velocity) < STANDSTILL_COUNTS_PER_S && axis->servo.reference_velocity == 0;
+}
+
+uint8_t cm1e_sim_bridge_motor_status(const cm1e_sim_bridge_axis_t *axis)
+{
+    if (axis->error)
+        return axis->error;
+    if (axis->motor_free)
+        return BRIDGE_STATUS_MOTOR_FREE;
+    return stands(axis) ? BRIDGE_STATUS_IN_POSITION : BRIDGE_STATUS_RUNNING;
+}
+
+/* ---- power drive system (BR 6.1) -------------------------------------------------------------------------------- */
+
+/* State A is reached: "when transiting to state A from state B or C, Cool Muscle will be motor free automatically". */
+static void release(cm1e_sim_bridge_axis_t *axis, cm1e_fsa_state_t state)
+{
+    axis->state = state;
+    axis->motor_free = true;
+    axis->servo.torque = 0;
+}
+
+static void switch_on(cm1e_sim_bridge_axis_t *axis)
+{
+    axis->state = SWITCHED_ON;
+    enable_motor(axis);
+    hold(axis);
+}
+
+/* The target is taken as it is: one that is not the actual position makes the motor jump. */
+static void enable_operation(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
+{
+    axis->state = OPERATION_ENABLED;
+    cm1e_sim_line_begin(&axis->line, &axis->servo, target(bridge, axis));
+}
+
+void cm1e_sim_bridge_axis_error(cm1e_sim_bridge_axis_t *axis, uint8_t status)
+{
+    axis->error = status;
+    axis->motor_free = true;
+    axis->servo.torque = axis->overload = axis->lag_s = 0;
+    if (axis->state != FAULT && axis->state != NOT_READY_TO_SWITCH_ON)
+        axis->state = FAULT_REACTION_ACTIVE;
+}
+
+void cm1e_sim_bridge_axis_disable(cm1e_sim_bridge_axis_t *axis)
+{
+    if (axis->state == SWITCHED_ON || axis->state == OPERATION_ENABLED)
+        release(axis, SWITCH_ON_DISABLED);
+    axis->last_controlword = axis->controlword = 0;
+}
+
+void cm1e_sim_bridge_axis_ready(cm1e_sim_bridge_axis_t *axis)
+{
+    if (axis->state == NOT_READY_TO_SWITCH_ON)
+        axis->state = axis->error ? FAULT : SWITCH_ON_DISABLED;
+}
+
+/* What a controlword asks for (BR 6.1.2). Quick stop is no command here: it is ignored. */
+static cm1e_fsa_command_t command_of(uint16_t controlword)
+{
+    if (!(controlword & CONTROLWORD_ENABLE_VOLTAGE))
+        return COMMAND_DISABLE_VOLTAGE;
+    if (!(controlword & CONTROLWORD_QUICK_STOP))
+        return COMMAND_QUICK_STOP;
+    if (!(controlword & CONTROLWORD_SWITCH_ON))
+        return COMMAND_SHUTDOWN;
+    return controlword & CONTROLWORD_ENABLE_OPERATION ? COMMAND_ENABLE_OPERATION : COMMAND_SWITCH_ON;
+}
+
+/* One transition each cycle; the numbers are those of BR 6.1.1. */
+static void obey(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, cm1e_fsa_command_t command)
+{
+    const bool wants_power = command == COMMAND_SWITCH_ON || command == COMMAND_ENABLE_OPERATION;
+    switch (axis->state) {
+    case SWITCH_ON_DISABLED:
+        if (command == COMMAND_SHUTDOWN)
+            axis->state = READY_TO_SWITCH_ON; /* 2 */
+        break;
+    case READY_TO_SWITCH_ON:
+        if (wants_power)
+            switch_on(axis); /* 3 */
+        else if (command == COMMAND_DISABLE_VOLTAGE)
+            release(axis, SWITCH_ON_DISABLED); /* 7 */
+        break;
+    case SWITCHED_ON:
+    case OPERATION_ENABLED:
+        if (command == COMMAND_ENABLE_OPERATION && axis->state == SWITCHED_ON)
+            enable_operation(bridge, axis); /* 4 */
+        else if (command == COMMAND_SWITCH_ON)
+            switch_on(axis); /* 5 */
+        else if (command == COMMAND_SHUTDOWN)
+            release(axis, READY_TO_SWITCH_ON); /* 6, 8 */
+        else if (command == COMMAND_DISABLE_VOLTAGE)
+            release(axis, SWITCH_ON_DISABLED); /* 9, 10 */
+        break;
+    default:
+        break;
+    }
+}
+
+static void reset_fault(cm1e_sim_bridge_axis_t *axis)
+{
+    axis->error = 0;
+    release(axis, SWITCH_ON_DISABLED); /* 15 */
+}
+
+void cm1e_sim_bridge_axis_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
+{
+    const unsigned rising = axis->controlword & ~(unsigned)axis->last_controlword;
+    axis->last_controlword = axis->controlword;
+    if (axis->state == FAULT_REACTION_ACTIVE)
+        axis->state = FAULT; /* 14 */
+    else if (axis->state == FAULT && (rising & CONTROLWORD_FAULT_RESET))
+        reset_fault(axis);
+    else if (!(axis->controlword & CONTROLWORD_FAULT_RESET))
+        obey(bridge, axis, command_of(axis->controlword));
+    if (axis->state == OPERATION_ENABLED)
+        cm1e_sim_line_target(&axis->line, target(bridge, axis), CYCLE_S);
+}
+
+static bool following(const cm1e_sim_bridge_axis_t *axis)
+{
+    return axis->state == OPERATION_ENABLED &&
+           fabs(axis->servo.reference - axis->mechanics.position) <= FOLLOWING_WINDOW_COUNTS;
+}
+
+/* BR 6.1.3: of the lower bits, 4 and 5 are no part of the state, and 0 here. */
+uint16_t cm1e_sim_bridge_statusword(const cm1e_sim_bridge_axis_t *axis)
+{
+    static const uint16_t bits_of_state[CM1E_FSA_STATE_COUNT] = {
+        [NOT_READY_TO_SWITCH_ON] = 0x00, [SWITCH_ON_DISABLED] = 0x40,    [READY_TO_SWITCH_ON] = 0x01,
+        [SWITCHED_ON] = 0x03,            [OPERATION_ENABLED] = 0x07,     [FAULT_REACTION_ACTIVE] = 0x0F,
+        [FAULT] = 0x08,
+    };
+    return (uint16_t)(bits_of_state[axis->state] | STATUSWORD_REMOTE | (following(axis) ? STATUSWORD_BIT12 : 0) |
+                      (axis->error ? STATUSWORD_MOTOR_ERROR : 0) | (axis->motor_free ? STATUSWORD_MOTOR_FREE : 0));
+}
+
+/* ---- life ------------------------------------------------------------------------------------------------------- */
+
+void cm1e_sim_bridge_axis_create(cm1e_sim_bridge_t *bridge, unsigned number)
+{
+    static const cm1e_sim_axis_config_t load = {0};
+    cm1e_sim_bridge_axis_t *axis = &bridge->axes[number];
+    axis->number = (uint8_t)number;
+    axis->motor = cm1e_bridge_motor(bridge->model, number);
+    cm1e_mechanics_init(&axis->mechanics, &load, peak_torque() * CM1E_ROTOR_INERTIA_PER_PEAK_TORQUE);
+    cm1e_servo_init(&axis->servo, &axis->mechanics);
+}
+
+/* "When transiting to the state A after power is supplied, CM1 will be motor enable and CM2 is settable" (BR 6.1.1). */
+void cm1e_sim_bridge_axis_power_on(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
+{
+    axis->zero = 0;
+    axis->zero = cm1e_sim_bridge_position(axis);
+    axis->error = 0;
+    axis->sent = axis->received = 0;
+    axis->controlword = axis->last_controlword = 0;
+    axis->target_position = 0;
+    axis->overload = axis->lag_s = 0;
+    release(axis, NOT_READY_TO_SWITCH_ON);
+    if (axis->motor == CM1E_BRIDGE_CM1 || *cm1e_sim_bridge_k(bridge, axis->number, K_ENABLE_AT_POWER_ON) == 1)
+        enable_motor(axis);
+    hold(axis);
+}
