@@ -281,6 +281,7 @@ void cm1e_check_description(cm1e_findings_t *findings, const cm1e_description_fi
     cm1e_arena_t arena = {0};
     const cm1e_check_t check = {.findings = findings, .arena = &arena};
     size_t work = 0;
+    cm1e_check_devices(&check, file);
     for (size_t i = 0; i < file->devices.count && findings->list.count < CM1E_FINDINGS_MAX && !findings->arena.failed;
          i++)
         check_device(&check, file, &file->devices.at[i], &work);

@@ -1,3 +1,5 @@
+#include <stdlib.h>
+
 #include "description/check_private.h"
 
 /* Who the device says it is: 0x1000 and 0x1018 beside the description's head. */
@@ -33,7 +35,8 @@ static void check_identity_object(const cm1e_check_t *check)
 }
 
 /* One channel: 0x1000 is its profile with the additional information above it. Several channels have each their own in
- * 0xF010; then 0x1000 has one of their profiles, or that of modular devices (ETG.5001), and what it likes above. */
+ * 0xF010; then 0x1000 has one of their profiles, or that of modular devices (ETG.5001), and what it likes above. With
+ * slots that profile is right for one channel, too. */
 static void check_device_type(const cm1e_check_t *check)
 {
     const cm1e_description_t *device = check->device;
@@ -43,6 +46,8 @@ static void check_device_type(const cm1e_check_t *check)
         return;
     const cm1e_channel_t *first = &device->channels.at[0];
     const uint32_t expected = ((uint32_t)first->profile_no & 0xFFFF) | (uint32_t)first->add_info << 16;
+    if (check->is_modular && (value & 0xFFFF) == PROFILE_MODULAR && first->profile_no != PROFILE_MODULAR)
+        return;
     if (device->channels.count == 1) {
         const bool right = first->add_info >= 0 ? value == expected : (value & 0xFFFF) == (expected & 0xFFFF);
         if (!right)
@@ -79,4 +84,43 @@ void cm1e_check_identity(const cm1e_check_t *check)
     check_identity_object(check);
     check_device_type(check);
     check_sync_manager_types(check);
+}
+
+/* ---- beside the other devices of the file ----------------------------------------------------------------------- */
+
+static int by_identity(const void *left, const void *right)
+{
+    const cm1e_description_t *a = *(const cm1e_description_t *const *)left;
+    const cm1e_description_t *b = *(const cm1e_description_t *const *)right;
+    if (a->vendor_id != b->vendor_id)
+        return a->vendor_id < b->vendor_id ? -1 : 1;
+    if (a->product_code != b->product_code)
+        return a->product_code < b->product_code ? -1 : 1;
+    if (a->revision != b->revision)
+        return a->revision < b->revision ? -1 : 1;
+    return (a > b) - (a < b); /* in the order of the file */
+}
+
+/* Masters find a description by vendor, product and revision (ETG.2000). */
+void cm1e_check_devices(const cm1e_check_t *check, const cm1e_description_file_t *file)
+{
+    const cm1e_description_t **devices = NULL;
+    size_t count = 0;
+    if (file->devices.count > 1 && file->devices.count <= CM1E_ARENA_LIMIT / sizeof *devices)
+        devices = cm1e_arena_take(check->arena, file->devices.count * sizeof *devices);
+    if (!devices || check->arena->failed)
+        return;
+    for (size_t i = 0; i < file->devices.count; i++)
+        if (file->devices.at[i].product_given && file->devices.at[i].revision_given)
+            devices[count++] = &file->devices.at[i];
+    qsort(devices, count, sizeof *devices, by_identity);
+    for (size_t i = 1; i < count; i++) {
+        const cm1e_description_t *device = devices[i], *before = devices[i - 1];
+        if (device->vendor_id == before->vendor_id && device->product_code == before->product_code &&
+            device->revision == before->revision)
+            cm1e_check_add(check, CM1E_RULE_DEVICE_TWICE, device->identity_place,
+                           "there is a device of product code 0x%08X and revision 0x%08X before this one: which of "
+                           "them a master takes is not defined",
+                           (unsigned)device->product_code, (unsigned)device->revision);
+    }
 }

@@ -100,6 +100,7 @@ bool cm1e_check_within_range(const cm1e_described_entry_t *entry, cm1e_bytes_t d
 /** Of a device with its slots filled. */
 void cm1e_check_dictionary(const cm1e_check_t *check);
 void cm1e_check_identity(const cm1e_check_t *check);
+void cm1e_check_devices(const cm1e_check_t *check, const cm1e_description_file_t *file);
 void cm1e_check_sync_managers(const cm1e_check_t *check);
 void cm1e_check_mailbox(const cm1e_check_t *check);
 /** PDOs of the device, or of a module, by themselves. */

@@ -83,10 +83,27 @@ static cm1e_error_t describe_all(cm1e_description_file_t *described, const cm1e_
     return error;
 }
 
+/* Masters find a description by vendor, product and revision (ETG.2000). */
+static cm1e_error_t check_identities(const cm1e_description_file_t *described, cm1e_diag_t *diag)
+{
+    const cm1e_description_t *devices = described->devices.at;
+    for (size_t i = 0; i < described->devices.count; i++)
+        for (size_t j = 0; j < i; j++)
+            if (devices[i].product_code == devices[j].product_code && devices[i].revision == devices[j].revision)
+                return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
+                                     "devices %zu and %zu have the same product 0x%08X and revision 0x%08X: which of "
+                                     "them a master takes is not defined. One device has all mappings to choose from; "
+                                     "for another default make a file of its own", j + 1, i + 1,
+                                     (unsigned)devices[i].product_code, (unsigned)devices[i].revision);
+    return CM1E_OK;
+}
+
 static cm1e_error_t generate_described(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag)
 {
     cm1e_description_file_t described = {0};
     cm1e_error_t error = describe_all(&described, options, diag);
+    if (error == CM1E_OK)
+        error = check_identities(&described, diag);
     if (error == CM1E_OK)
         error = options->format == CM1E_FILE_ESI ? cm1e_esi_write(file, &described, diag)
                                                  : cm1e_file_of_sii(file, &described, 0, diag);

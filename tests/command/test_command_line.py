@@ -302,6 +302,8 @@ WRONG = [
     (["generate", "esi", "-o", "x", "-i", "sim"], WRONG_USE, "ENI"),
     (["generate", "esi", "-o", "x", "--program", "y"], WRONG_USE, "ec-extend"),
     (["generate", "sii", "-o", "x", "--device", "cm1-e", "--device", "cm1-e"], WRONG_USE, "one device"),
+    (["generate", "esi", "-o", "x", "--device", "cm1-e", "--device", "cm1-e", "--mapping", "csp"], WRONG_USE,
+     "the same product"),
     (["generate", "eni", "-o", "x"], WRONG_USE, "network"),
     (["generate", "eni", "-o", "x", "-b", f"{SOURCE}/examples/three_axes.yaml", "--mapping", "csp"], WRONG_USE,
      "bus file"),

@@ -137,6 +137,15 @@ static cm1e_place_t object_twice_in_module(cm1e_description_file_t *file)
     return 9000;
 }
 
+static cm1e_place_t device_again(cm1e_description_file_t *file)
+{
+    const cm1e_description_t again = file->devices.at[0];
+    cm1e_description_t *device = CM1E_APPEND(&file->arena, &file->devices);
+    *device = again;
+    device->identity_place = 9000;
+    return 9000;
+}
+
 static const broken_t breaks[] = {
     BREAKS(SLOT_MODULE_MISSING, name_missing_module,
            "slot 1 Second axis names module 0x00000777, which is not in the file"),
@@ -152,6 +161,9 @@ static const broken_t breaks[] = {
     BREAKS(OBJECT_TWICE, object_in_the_place_of_the_second_axis,
            "the object 0x6D02 (Supported drive modes) is in the dictionary twice"),
     BREAKS(PDO_TWICE, pdo_in_the_place_of_the_second_axis, "there are two PDOs 0x1611"),
+    BREAKS(DEVICE_TWICE, device_again,
+           "there is a device of product code 0x44412002 and revision 0x20020103 before this one: which of them a "
+           "master takes is not defined"),
     BREAKS(MODULE_TWICE, add_module_again, "there are two modules with the ident 0x00119860"),
     BREAKS(INIT_COMMAND_SIZE, command_in_module_too_long,
            "the start-up command writes 2 bytes to 0x6060:00, which has 8 bits, 1 byte"),
@@ -301,6 +313,22 @@ static void test_work_is_bounded(void)
     cm1e_description_file_free(&file);
 }
 
+/* A modular device may have the profile of its one channel in <Profile> and 5001 in 0x1000 (ETG.5001). */
+static void test_modular_profile_beside_one_channel_is_no_mistake(void)
+{
+    cm1e_description_file_t file = {0};
+    make_good(&file);
+    cm1e_described_entry_t *type = &object_in(&file.devices.at[0].objects, 0x1000)->entries.at[0];
+    type->default_data = cm1e_bytes_of(&file.arena, 5001, 4);
+    assert_no_finding(&file);
+    type->default_data = cm1e_bytes_of(&file.arena, 5002, 4);
+    cm1e_findings_t *findings = cm1e_findings_create();
+    cm1e_check_description(findings, &file);
+    TEST_ASSERT_EQUAL_STRING("device-type", cm1e_findings_at(findings, 0)->rule);
+    cm1e_findings_free(findings);
+    cm1e_description_file_free(&file);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -311,5 +339,6 @@ int main(void)
     RUN_TEST(test_module_without_dictionary_is_no_mistake);
     RUN_TEST(test_every_alternative_has_its_turn);
     RUN_TEST(test_work_is_bounded);
+    RUN_TEST(test_modular_profile_beside_one_channel_is_no_mistake);
     return UNITY_END();
 }
