@@ -271,6 +271,8 @@ static void check_device(const cm1e_check_t *of_file, const cm1e_description_fil
     const cm1e_check_types_t types = {.own = cm1e_check_sort_types(&check, &device->types)};
     cm1e_check_types(&check, &device->types, &types);
     cm1e_check_objects(&check, &device->objects, &types);
+    if (device->objects.count > 0)
+        cm1e_check_pdo_types(&check, &device->pdos, &types);
     cm1e_check_own_pdos(&check, &device->pdos);
     cm1e_check_slots(&check, file);
     check_choices(&check, file, work);

@@ -120,6 +120,8 @@ void cm1e_check_modules(const cm1e_check_t *check, const cm1e_description_file_t
         const cm1e_check_types_t types = {cm1e_check_sort_types(check, &module->types), common};
         cm1e_check_types(check, &module->types, &types);
         cm1e_check_objects(check, &module->objects, &types);
+        if (module->objects.count > 0)
+            cm1e_check_pdo_types(check, &module->pdos, &types);
         cm1e_check_own_pdos(check, &module->pdos);
         check_slot_dependence(check, module);
     }

@@ -92,6 +92,8 @@ void cm1e_check_objects(const cm1e_check_t *check, const cm1e_object_list_t *obj
 /** An object against the type it names. */
 void cm1e_check_object_type(const cm1e_check_t *check, const cm1e_described_object_t *object,
                             const cm1e_check_types_t *known);
+/** What the entries of PDOs name; for those that stand beside a dictionary. */
+void cm1e_check_pdo_types(const cm1e_check_t *check, const cm1e_pdo_list_t *pdos, const cm1e_check_types_t *known);
 
 /** A value as a number; and whether it lies in the range of the sub-index, or that cannot be said. */
 const char *cm1e_check_value_text(char *text, size_t room, const cm1e_described_entry_t *entry, cm1e_bytes_t data);

@@ -78,6 +78,11 @@ static cm1e_place_t change_type(cm1e_description_file_t *file)
     mapped_6081(file)->type = "UINT";
     return mapped_6081(file)->place;
 }
+static cm1e_place_t misspell_type(cm1e_description_file_t *file)
+{
+    mapped_6081(file)->type = "UDNIT";
+    return mapped_6081(file)->place;
+}
 static cm1e_place_t forbid_mapping(cm1e_description_file_t *file)
 {
     entry_6081(file)->access &= (uint8_t)~CM1E_ACCESS_RXPDO;
@@ -247,6 +252,8 @@ static const broken_t breaks[] = {
         "RxPDO 0x1603 maps 0x6081:07, a sub-index that the object does not have"),
     BREAKS(PDO_ENTRY_SIZE, shorten_object, "RxPDO 0x1603 maps 0x6081:00 with 32 bits; the object has 16"),
     BREAKS(PDO_ENTRY_SIZE, shorten_mapped, "RxPDO 0x1603 maps 0x6081:00 with 16 bits; the object has 32"),
+    BREAKS(TYPE_UNKNOWN, misspell_type, "0x6081:00 in RxPDO 0x1603 is of the type UDNIT, which is neither defined in the "
+           "dictionary nor a base type"),
     BREAKS(PDO_ENTRY_TYPE, change_type, "RxPDO 0x1603 gives 0x6081:00 32 bits and the type UINT, which has 16"),
     BREAKS(PDO_ENTRY_NOT_MAPPABLE, forbid_mapping,
         "RxPDO 0x1603 maps 0x6081:00, which the dictionary does not mark as mappable in a RxPDO"),
