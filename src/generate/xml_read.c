@@ -20,6 +20,9 @@ typedef struct guard {
     size_t parts;        /* elements, attributes, comments so far */
     const char *refused; /* why, NULL: not refused */
     int line;
+    /* The parser's first error; those behind it follow from it, and libxml2 itself keeps the last one. */
+    int first_code, first_line;
+    char first[256];
 } guard_t;
 
 static pthread_once_t once = PTHREAD_ONCE_INIT;
@@ -85,6 +88,18 @@ static void on_error(void *context, xmlError *error)
     (void)context, (void)error;
 }
 
+/* As XML's own handler of errors: `data` is the parser. */
+static void on_parser_error(void *data, xmlError *error)
+{
+    guard_t *guard = ((xmlParserCtxt *)data)->_private;
+    if (error->level < XML_ERR_ERROR || guard->first_code != 0)
+        return;
+    guard->first_code = error->code;
+    guard->first_line = error->line;
+    snprintf(guard->first, sizeof guard->first, "%s", error->message ? error->message : "");
+    guard->first[strcspn(guard->first, "\n")] = '\0';
+}
+
 static const char *find(const char *text, size_t size, const char *what)
 {
     return memmem(text, size, what, strlen(what));
@@ -146,17 +161,14 @@ static void keep_comments(xmlDoc *doc, const char *text, size_t skipped)
     }
 }
 
-static void report(cm1e_diag_t *diag, const guard_t *guard, const xmlError *error)
+static void report(cm1e_diag_t *diag, const guard_t *guard)
 {
-    char text[256];
-    if (guard->refused) {
+    if (guard->refused)
         cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "line %d: %s", guard->line, guard->refused);
-        return;
-    }
-    snprintf(text, sizeof text, "%s", error && error->message ? error->message : "no XML document");
-    text[strcspn(text, "\n")] = '\0';
-    cm1e_diag_set(diag, error && error->code == XML_ERR_NO_MEMORY ? CM1E_ERROR_NO_MEMORY : CM1E_ERROR_FILE, 0,
-                  "line %d: %s", error && error->line > 0 ? error->line : 1, text);
+    else
+        cm1e_diag_set(diag, guard->first_code == XML_ERR_NO_MEMORY ? CM1E_ERROR_NO_MEMORY : CM1E_ERROR_FILE, 0,
+                      "line %d: %s", guard->first_line > 0 ? guard->first_line : 1,
+                      guard->first[0] ? guard->first : "no XML document");
 }
 
 /* A parser of its own for every document; `line` is the number of its first. */
@@ -176,10 +188,11 @@ static xmlDoc *parse(const char *text, size_t size, int line, bool is_utf8, cm1e
     context->input->line = line;
     xmlCtxtUseOptions(context, XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING | XML_PARSE_NOCDATA |
                                    XML_PARSE_NOBLANKS | XML_PARSE_COMPACT | (is_utf8 ? XML_PARSE_IGNORE_ENC : 0));
+    context->sax->serror = on_parser_error;
     xmlParseDocument(context);
     xmlDoc *doc = context->myDoc;
     if (!context->wellFormed || guard.refused || !doc || !xmlDocGetRootElement(doc)) {
-        report(diag, &guard, xmlCtxtGetLastError(context));
+        report(diag, &guard);
         xmlFreeDoc(doc);
         doc = NULL;
     }
