@@ -240,6 +240,8 @@ static void check_words(const generate_options_t *options, struct argp_state *st
         argp_error(state, "which format? There are: esi, ec-extend, sii, eni");
     if (!options->file || !options->file[0])
         argp_error(state, "where to? -o FILE, or -o - for standard output");
+    if (options->program && strcmp(options->program, options->file) == 0)
+        argp_error(state, "-o and --program are the same file, \"%s\": each needs one of its own", options->file);
     if (options->from && (options->what.devices || options->common.interface_name || options->common.bus_file))
         argp_error(state, "--from takes everything from the file: no device and no network beside it");
     check_restricted(options, state);

@@ -31,6 +31,15 @@ static void print_usage(FILE *file)
           "`-i eth1` a real one (needs the right to open raw sockets).\n", file);
 }
 
+/* What was printed and did not arrive (a full disk, a closed pipe) is no success. */
+static int finish(int status)
+{
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return status;
+    complain("cannot write to standard output");
+    return status == EXIT_OK ? EXIT_FAILED : status;
+}
+
 int main(int argc, char **argv)
 {
     if (argc < 2) {
@@ -51,7 +60,7 @@ int main(int argc, char **argv)
             char name[32];
             snprintf(name, sizeof name, "cm1e %s", commands[i].name);
             argv[1] = name;
-            return commands[i].run(argc - 1, argv + 1);
+            return finish(commands[i].run(argc - 1, argv + 1));
         }
     fprintf(stderr, "cm1e: there is no command \"%s\"\n\n", argv[1]);
     print_usage(stderr);

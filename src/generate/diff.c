@@ -188,8 +188,8 @@ static cm1e_error_t diff(cm1e_findings_t *findings, const void *bytes, size_t si
                                                      : cm1e_live_describe(&device, bus, position, findings, diag);
     if (error == CM1E_OK) {
         const cm1e_description_t *live = &device.devices.at[0];
-        error = format == CM1E_FILE_ENI         ? diff_eni(findings, bytes, size, position, cm1e_bus_slave_count(bus), live,
-                                                         diag)
+        const uint32_t slaves = cm1e_bus_slave_count(bus);
+        error = format == CM1E_FILE_ENI         ? diff_eni(findings, bytes, size, position, slaves, live, diag)
                 : format == CM1E_FILE_EC_EXTEND ? diff_ec_extend(findings, bytes, size, live, diag)
                                                 : diff_described(findings, format, bytes, size, live, diag);
     }

@@ -84,6 +84,7 @@ def check_files(folder):
 
     check_configuration_words(folder)
     check_hostile_names(folder)
+    check_lost_output(folder)
     check_dictionary()
     check_sii(folder)
     check_diff(folder)
@@ -136,6 +137,18 @@ def check_diff_of_network(folder):
                  for finding in slave["findings"] if finding["rule"] == "differs"]
         expect(result.returncode == (FAILED if wanted else 0) and len(texts) == wanted
                and all(line > 0 and word in text for line, text in texts), f"diff of an ENI: {word}", result)
+
+
+def check_lost_output(folder):
+    """What does not arrive is no success."""
+    path = os.path.join(folder, "lost.sii")
+    run("cm1e", "generate", "sii", "-o", path)
+    for words in (["check", path], ["check", "--json", path], ["sii", "decode", path], ["generate", "sii", "-o", "-"]):
+        with open("/dev/full", "wb") as full:
+            lost = subprocess.run([os.path.join(BIN, "cm1e"), *words], stdout=full, stderr=subprocess.PIPE, text=True,
+                                  timeout=60)
+        expect(lost.returncode == FAILED and "standard output" in lost.stderr, f"lost output of {words[0]}",
+               subprocess.CompletedProcess(words, lost.returncode, "", lost.stderr))
 
 
 def check_diff(folder):
@@ -304,6 +317,7 @@ WRONG = [
     (["generate", "sii", "-o", "x", "--device", "cm1-e", "--device", "cm1-e"], WRONG_USE, "one device"),
     (["generate", "esi", "-o", "x", "--device", "cm1-e", "--device", "cm1-e", "--mapping", "csp"], WRONG_USE,
      "the same product"),
+    (["generate", "ec-extend", "-o", "x", "--program", "x"], WRONG_USE, "same file"),
     (["generate", "eni", "-o", "x"], WRONG_USE, "network"),
     (["generate", "eni", "-o", "x", "-b", f"{SOURCE}/examples/three_axes.yaml", "--mapping", "csp"], WRONG_USE,
      "bus file"),

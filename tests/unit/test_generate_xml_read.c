@@ -150,7 +150,7 @@ static const struct {
     {"<r", "line 1: "},
     {"<r></r><s/>", "line 1: "},
     {"<r>\n\n<a></b></r>", "line 3: "},
-    {"<r>\n<a>\n<b>\n</a>\n</r>\n\n", "line 4: Opening and ending tag mismatch: b line 3 and a"}, /* not where it ends */
+    {"<r>\n<a>\n<b>\n</a>\n</r>\n\n", "line 4: Opening and ending tag mismatch: b line 3 and a"}, /* not the end */
     {"<r a='1' a='2'/>", "line 1: "},
     {"<r>\n\xE9</r>", "line 2: "},
     {"<r>\n\xF4\xBF\xBF\xBF</r>", "line 2: "},
