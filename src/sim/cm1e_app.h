@@ -7,7 +7,7 @@
  *   cm1e_fsa.c         power drive system: states, errors, modes of operation, statusword (UG 6.1)
  *   cm1e_modes.c       CSP, CSV, PP, PV (UG 6.2)
  *   cm1e_homing.c      HM (UG 6.2.4)
- *   servo.c            position servo; reference.c moves its reference
+ *   servo.c            position servo; reference.c and search.c move its reference
  *   store.c            dictionary and its values
  *   mechanics.c        the axis behind the motor
  * Unlike the driver it protects nobody: what the manual lets a master do wrong goes wrong here too.
@@ -16,7 +16,7 @@
 #define CM1E_SIM_CM1E_APP_H
 
 #include "cia402/cia402.h"
-#include "sim/reference.h"
+#include "sim/search.h"
 #include "sim/segment.h"
 #include "sim/slave.h"
 #include "sim/store.h"
@@ -56,27 +56,11 @@ typedef struct cm1e_sim_mode {
     uint16_t (*status_bits)(const cm1e_sim_cm1e_t *drive);         /**< 10, 12, 13 */
 } cm1e_sim_mode_t;
 
-typedef enum cm1e_sim_homing_phase {
-    HOMING_IDLE = 0,      /**< not started, or aborted */
-    HOMING_LEAVE_SENSOR,  /**< standing on the sensor: move off it first */
-    HOMING_TURN_ROUND,    /**< off the sensor: stop */
-    HOMING_SEARCH_SENSOR,
-    HOMING_SEARCH_STOP,
-    HOMING_APPROACH,      /**< back to the captured position or the encoder tooth */
-    HOMING_OFFSET,
-    HOMING_DONE,
-    HOMING_PHASE_COUNT,
-} cm1e_sim_homing_phase_t;
-
 typedef struct cm1e_sim_homing {
-    cm1e_sim_homing_phase_t phase;
+    cm1e_sim_search_t search;
     bool halted;           /**< stopping or stopped by the halt bit */
     bool abandoned;        /**< the mode is left: stop, then let go */
-    int8_t direction;      /**< +1 CW, -1 CCW */
     uint8_t input;         /**< bit of 0x60FD; hard stop: 0 */
-    double speed, acceleration;
-    double target;         /**< counts on the scale of the mechanics */
-    double stalled_s;      /**< how long the torque limit has held the motor, or a move has been settling */
 } cm1e_sim_homing_t;
 
 struct cm1e_sim_cm1e {

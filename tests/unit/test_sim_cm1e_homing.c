@@ -215,7 +215,7 @@ static void test_start_needs_an_edge_while_enabled(void)
     bench_cycle(&b);
     b.controlword = 0x11F; /* "enable bit 4" needs halt at 0 */
     bench_run(&b, 0.1);
-    TEST_ASSERT_EQUAL(HOMING_IDLE, b.drive->homing.phase);
+    TEST_ASSERT_EQUAL(SEARCH_IDLE, b.drive->homing.search.phase);
     begin(&b);
     TEST_ASSERT_EQUAL_HEX16(IN_PROGRESS, b.statusword & BITS);
     bench_close(&b);
@@ -259,7 +259,7 @@ static void test_halt_anywhere_stops_and_a_new_start_continues(void)
             TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(100, stopped, shaft(&b), "only bit 4 goes on");
             TEST_ASSERT_TRUE(home(&b));
             TEST_ASSERT_EQUAL(0, b.position);
-            TEST_ASSERT_DOUBLE_WITHIN(1, b.drive->homing.target, shaft(&b));
+            TEST_ASSERT_DOUBLE_WITHIN(1, b.drive->homing.search.target, shaft(&b));
             bench_close(&b);
         }
 }
