@@ -31,7 +31,9 @@ static void step(cm1e_sim_bridge_t *bridge, double step_s)
             cm1e_sim_bridge_axis_ready(axis);
         if (exchange)
             cm1e_sim_bridge_axis_exchange(axis);
+        cm1e_sim_bridge_mode_due(bridge, axis);
         cm1e_sim_bridge_axis_step(axis, step_s);
+        cm1e_sim_bridge_command_step(axis);
     }
 }
 

@@ -6,7 +6,10 @@
  *   bridge_dictionary.c  object dictionary: SDO access
  *   bridge_image.c       PDO assignment, process data in and out
  *   bridge_axis.c        one axis: power drive system, statusword, the motor with its errors (BR 6.1, 7.4)
- *   store.c, servo.c, reference.c, mechanics.c  as with the CM1-E
+ *   bridge_modes.c       modes of operation and the ways between them (BR 6, appendix 3)
+ *   bridge_homing.c      origin search: hm and CMD (BR 6.4)
+ *   bridge_command.c     CMD and CPIO (BR 7.1, appendix 1)
+ *   store.c, servo.c, reference.c, search.c, mechanics.c  as with the CM1-E
  * What the guide (BR) leaves open is decided in docs/DEVICE.md. Like the simulated CM1-E it protects nobody.
  */
 #ifndef CM1E_SIM_BRIDGE_APP_H
@@ -14,7 +17,7 @@
 
 #include "cia402/cia402.h"
 #include "device/bridge.h"
-#include "sim/reference.h"
+#include "sim/search.h"
 #include "sim/segment.h"
 #include "sim/slave.h"
 #include "sim/store.h"
@@ -39,11 +42,23 @@ typedef struct cm1e_sim_bridge_axis {
     cm1e_fsa_state_t state;
     bool motor_free;
     uint8_t error;           /**< of the motor, as in F530; 0: none */
+    uint8_t outputs;         /**< bit 0: output 1 */
+
+    /* modes of operation */
+    int8_t mode, next_mode;  /**< 0x6061, and what it will be at mode_due_ns */
+    int64_t mode_request_ns, mode_due_ns;
+
+    /* CMD */
+    unsigned same_words;     /**< cycles with the present controlword */
+    bool armed;              /**< 0007h was there long enough */
+    uint8_t answer;          /**< high byte of the statusword */
 
     /* motion; positions on the scale of the mechanics */
     cm1e_mechanics_t mechanics;
     cm1e_servo_t servo;
     cm1e_sim_line_t line;
+    cm1e_sim_search_t search;
+    double search_s;         /**< since the search began */
     int64_t zero;            /**< where 0x6064 is 0 */
     double lag_s, overload;  /**< how long the lag is too large; sum of the overload, s */
 
@@ -117,10 +132,46 @@ void cm1e_sim_bridge_axis_step(cm1e_sim_bridge_axis_t *axis, double step_s);
 void cm1e_sim_bridge_axis_exchange(cm1e_sim_bridge_axis_t *axis);
 /** An error of the motor: one of BRIDGE_STATUS_... */
 void cm1e_sim_bridge_axis_error(cm1e_sim_bridge_axis_t *axis, uint8_t status);
+/** What the low four bits of a controlword ask for (BR 6.1.2). */
+void cm1e_sim_bridge_axis_obey(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, unsigned controlword);
+void cm1e_sim_bridge_axis_power(cm1e_sim_bridge_axis_t *axis, bool on);
+/** Limits the torque to so many % of the rated one; 0: to the peak torque. */
+void cm1e_sim_bridge_axis_torque(cm1e_sim_bridge_axis_t *axis, double percent);
+bool cm1e_sim_bridge_axis_stands(const cm1e_sim_bridge_axis_t *axis);
+/** The target of the process data holds from now on. */
+void cm1e_sim_bridge_axis_begin_csp(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
+/** Outputs that the motor has: on a CM1 the first is its serial line. */
+uint8_t cm1e_sim_bridge_output_mask(const cm1e_sim_bridge_axis_t *axis);
+/** 0x60FD, 0x60FE: in csp, in Switched on and Operation enabled only (BR 6.5). */
+bool cm1e_sim_bridge_io_available(const cm1e_sim_bridge_axis_t *axis);
+/** Bits 0 ... 3 and 6 of the statusword. */
+uint16_t cm1e_sim_bridge_state_bits(const cm1e_sim_bridge_axis_t *axis);
 uint16_t cm1e_sim_bridge_statusword(const cm1e_sim_bridge_axis_t *axis);
 /** F530:5 ... F530:8 */
 uint8_t cm1e_sim_bridge_motor_status(const cm1e_sim_bridge_axis_t *axis);
 /** 0x6064 */
 int64_t cm1e_sim_bridge_position(const cm1e_sim_bridge_axis_t *axis);
+
+/* ---- bridge_modes.c --------------------------------------------------------------------------------------------- */
+/** 0x6060 is written. */
+void cm1e_sim_bridge_request_mode(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, int8_t value);
+/** Time passes. */
+void cm1e_sim_bridge_mode_due(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
+void cm1e_sim_bridge_mode_reset(cm1e_sim_bridge_axis_t *axis);
+
+/* ---- bridge_homing.c -------------------------------------------------------------------------------------------- */
+void cm1e_sim_bridge_search_begin(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
+/** Does nothing where none is under way. */
+void cm1e_sim_bridge_search_abort(cm1e_sim_bridge_axis_t *axis);
+void cm1e_sim_bridge_search_step(cm1e_sim_bridge_axis_t *axis, double step_s);
+/** Bit 0: input 1. */
+uint8_t cm1e_sim_bridge_inputs_of(const cm1e_sim_bridge_axis_t *axis);
+
+/* ---- bridge_command.c ------------------------------------------------------------------------------------------- */
+void cm1e_sim_bridge_command_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
+void cm1e_sim_bridge_command_step(cm1e_sim_bridge_axis_t *axis);
+uint16_t cm1e_sim_bridge_command_status(const cm1e_sim_bridge_axis_t *axis);
+void cm1e_sim_bridge_cpio_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
+uint16_t cm1e_sim_bridge_cpio_status(const cm1e_sim_bridge_axis_t *axis);
 
 #endif

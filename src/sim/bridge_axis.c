@@ -13,6 +13,9 @@
 enum { K_RESOLUTION = 37, K_ENABLE_AT_POWER_ON = 68 };
 enum { STATUSWORD_MOTOR_ERROR = 0x4000, STATUSWORD_MOTOR_FREE = 0x8000 };
 
+/* BR 6.5: inputs and outputs that a CM1 shares with its serial line are not there. */
+enum { OUTPUTS_CM1 = 0x02, OUTPUTS_CM2 = 0x0F };
+
 static double peak_torque(void) { return cm1e_device_motor("")->peak_torque_nm; }
 
 /* ---- the motor -------------------------------------------------------------------------------------------------- */
@@ -22,16 +25,27 @@ int64_t cm1e_sim_bridge_position(const cm1e_sim_bridge_axis_t *axis)
     return (int64_t)floor(axis->mechanics.position + 0.5) - axis->zero;
 }
 
-static void enable_motor(cm1e_sim_bridge_axis_t *axis)
+void cm1e_sim_bridge_axis_torque(cm1e_sim_bridge_axis_t *axis, double percent)
 {
-    if (!axis->motor_free)
-        return;
-    axis->motor_free = false;
-    axis->servo.torque_limit = peak_torque();
-    cm1e_servo_catch(&axis->servo, &axis->mechanics);
+    axis->servo.torque_limit = percent > 0 ? peak_torque() / PEAK_TO_RATED_TORQUE * percent / 100 : peak_torque();
 }
 
 static void hold(cm1e_sim_bridge_axis_t *axis) { axis->servo.reference_velocity = 0; }
+
+void cm1e_sim_bridge_axis_power(cm1e_sim_bridge_axis_t *axis, bool on)
+{
+    if (on == !axis->motor_free)
+        return;
+    axis->motor_free = !on;
+    cm1e_sim_bridge_axis_torque(axis, 0);
+    cm1e_servo_catch(&axis->servo, &axis->mechanics);
+    hold(axis);
+}
+
+uint8_t cm1e_sim_bridge_output_mask(const cm1e_sim_bridge_axis_t *axis)
+{
+    return axis->motor == CM1E_BRIDGE_CM1 ? OUTPUTS_CM1 : OUTPUTS_CM2;
+}
 
 /* 0x607A on the scale of the mechanics, within what the resolution allows (BR appendix 5). It has 32 bits and wraps: the
  * nearest turn of the wheel is meant. */
@@ -46,6 +60,11 @@ static double target(const cm1e_sim_bridge_t *bridge, const cm1e_sim_bridge_axis
         wanted = -limit;
     const int64_t actual = cm1e_sim_bridge_position(axis);
     return (double)(axis->zero + actual + (int32_t)((uint32_t)wanted - (uint32_t)actual));
+}
+
+static bool follows_targets(const cm1e_sim_bridge_axis_t *axis)
+{
+    return axis->mode == CM1E_BRIDGE_MODE_CSP || axis->mode == CM1E_BRIDGE_MODE_CPIO;
 }
 
 static void supervise(cm1e_sim_bridge_axis_t *axis, double step_s)
@@ -67,7 +86,9 @@ void cm1e_sim_bridge_axis_step(cm1e_sim_bridge_axis_t *axis, double step_s)
             cm1e_mechanics_step(&axis->mechanics, 0, step_s);
         return;
     }
-    if (axis->state == OPERATION_ENABLED)
+    if (cm1e_sim_search_running(&axis->search))
+        cm1e_sim_bridge_search_step(axis, step_s);
+    else if (axis->state == OPERATION_ENABLED && follows_targets(axis))
         cm1e_sim_line_step(&axis->line, &axis->servo, CYCLE_S, step_s);
     cm1e_mechanics_step(&axis->mechanics, cm1e_servo_step(&axis->servo, &axis->mechanics, step_s), step_s);
     supervise(axis, step_s);
@@ -79,7 +100,7 @@ void cm1e_sim_bridge_axis_exchange(cm1e_sim_bridge_axis_t *axis)
     axis->received++;
 }
 
-static bool stands(const cm1e_sim_bridge_axis_t *axis)
+bool cm1e_sim_bridge_axis_stands(const cm1e_sim_bridge_axis_t *axis)
 {
     return fabs(axis->mechanics.velocity) < STANDSTILL_COUNTS_PER_S && axis->servo.reference_velocity == 0;
 }
@@ -90,7 +111,7 @@ uint8_t cm1e_sim_bridge_motor_status(const cm1e_sim_bridge_axis_t *axis)
         return axis->error;
     if (axis->motor_free)
         return BRIDGE_STATUS_MOTOR_FREE;
-    return stands(axis) ? BRIDGE_STATUS_IN_POSITION : BRIDGE_STATUS_RUNNING;
+    return cm1e_sim_bridge_axis_stands(axis) ? BRIDGE_STATUS_IN_POSITION : BRIDGE_STATUS_RUNNING;
 }
 
 /* ---- power drive system (BR 6.1) -------------------------------------------------------------------------------- */
@@ -99,29 +120,37 @@ uint8_t cm1e_sim_bridge_motor_status(const cm1e_sim_bridge_axis_t *axis)
 static void release(cm1e_sim_bridge_axis_t *axis, cm1e_fsa_state_t state)
 {
     axis->state = state;
-    axis->motor_free = true;
-    axis->servo.torque = 0;
+    cm1e_sim_bridge_search_abort(axis);
+    cm1e_sim_bridge_axis_power(axis, false);
 }
 
 static void switch_on(cm1e_sim_bridge_axis_t *axis)
 {
     axis->state = SWITCHED_ON;
-    enable_motor(axis);
+    cm1e_sim_bridge_search_abort(axis);
+    cm1e_sim_bridge_axis_power(axis, true);
     hold(axis);
 }
 
 /* The target is taken as it is: one that is not the actual position makes the motor jump. */
+void cm1e_sim_bridge_axis_begin_csp(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
+{
+    cm1e_sim_line_begin(&axis->line, &axis->servo, target(bridge, axis));
+}
+
 static void enable_operation(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
 {
     axis->state = OPERATION_ENABLED;
-    cm1e_sim_line_begin(&axis->line, &axis->servo, target(bridge, axis));
+    if (follows_targets(axis))
+        cm1e_sim_bridge_axis_begin_csp(bridge, axis);
 }
 
 void cm1e_sim_bridge_axis_error(cm1e_sim_bridge_axis_t *axis, uint8_t status)
 {
     axis->error = status;
-    axis->motor_free = true;
-    axis->servo.torque = axis->overload = axis->lag_s = 0;
+    cm1e_sim_bridge_search_abort(axis);
+    cm1e_sim_bridge_axis_power(axis, false);
+    axis->overload = axis->lag_s = 0;
     if (axis->state != FAULT && axis->state != NOT_READY_TO_SWITCH_ON)
         axis->state = FAULT_REACTION_ACTIVE;
 }
@@ -130,6 +159,7 @@ void cm1e_sim_bridge_axis_disable(cm1e_sim_bridge_axis_t *axis)
 {
     if (axis->state == SWITCHED_ON || axis->state == OPERATION_ENABLED)
         release(axis, SWITCH_ON_DISABLED);
+    cm1e_sim_bridge_search_abort(axis);
     axis->last_controlword = axis->controlword = 0;
 }
 
@@ -140,7 +170,7 @@ void cm1e_sim_bridge_axis_ready(cm1e_sim_bridge_axis_t *axis)
 }
 
 /* What a controlword asks for (BR 6.1.2). Quick stop is no command here: it is ignored. */
-static cm1e_fsa_command_t command_of(uint16_t controlword)
+static cm1e_fsa_command_t command_of(unsigned controlword)
 {
     if (!(controlword & CONTROLWORD_ENABLE_VOLTAGE))
         return COMMAND_DISABLE_VOLTAGE;
@@ -152,8 +182,9 @@ static cm1e_fsa_command_t command_of(uint16_t controlword)
 }
 
 /* One transition each cycle; the numbers are those of BR 6.1.1. */
-static void obey(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, cm1e_fsa_command_t command)
+void cm1e_sim_bridge_axis_obey(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, unsigned controlword)
 {
+    const cm1e_fsa_command_t command = command_of(controlword);
     const bool wants_power = command == COMMAND_SWITCH_ON || command == COMMAND_ENABLE_OPERATION;
     switch (axis->state) {
     case SWITCH_ON_DISABLED:
@@ -188,35 +219,68 @@ static void reset_fault(cm1e_sim_bridge_axis_t *axis)
     release(axis, SWITCH_ON_DISABLED); /* 15 */
 }
 
-void cm1e_sim_bridge_axis_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
+/* csp and hm (BR 6.1.2). */
+static void drive_profile_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
 {
     const unsigned rising = axis->controlword & ~(unsigned)axis->last_controlword;
-    axis->last_controlword = axis->controlword;
-    if (axis->state == FAULT_REACTION_ACTIVE)
-        axis->state = FAULT; /* 14 */
-    else if (axis->state == FAULT && (rising & CONTROLWORD_FAULT_RESET))
+    if (axis->state == FAULT && (rising & CONTROLWORD_FAULT_RESET))
         reset_fault(axis);
     else if (!(axis->controlword & CONTROLWORD_FAULT_RESET))
-        obey(bridge, axis, command_of(axis->controlword));
-    if (axis->state == OPERATION_ENABLED)
-        cm1e_sim_line_target(&axis->line, target(bridge, axis), CYCLE_S);
+        cm1e_sim_bridge_axis_obey(bridge, axis, axis->controlword);
+    const bool may_search = axis->mode == CM1E_BRIDGE_MODE_HM && axis->state == OPERATION_ENABLED;
+    if (may_search && (rising & CONTROLWORD_HOMING_START) && !cm1e_sim_search_running(&axis->search))
+        cm1e_sim_bridge_search_begin(bridge, axis);
 }
 
-static bool following(const cm1e_sim_bridge_axis_t *axis)
+void cm1e_sim_bridge_axis_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
 {
-    return axis->state == OPERATION_ENABLED &&
-           fabs(axis->servo.reference - axis->mechanics.position) <= FOLLOWING_WINDOW_COUNTS;
+    if (axis->state == FAULT_REACTION_ACTIVE)
+        axis->state = FAULT; /* 14 */
+    else if (axis->mode == CM1E_BRIDGE_MODE_CMD)
+        cm1e_sim_bridge_command_outputs(bridge, axis);
+    else if (axis->mode == CM1E_BRIDGE_MODE_CPIO)
+        cm1e_sim_bridge_cpio_outputs(bridge, axis);
+    else
+        drive_profile_outputs(bridge, axis);
+    if (axis->state == OPERATION_ENABLED && follows_targets(axis))
+        cm1e_sim_line_target(&axis->line, target(bridge, axis), CYCLE_S);
+    axis->last_controlword = axis->controlword;
+}
+
+bool cm1e_sim_bridge_io_available(const cm1e_sim_bridge_axis_t *axis)
+{
+    return axis->mode == CM1E_BRIDGE_MODE_CSP && (axis->state == SWITCHED_ON || axis->state == OPERATION_ENABLED);
 }
 
 /* BR 6.1.3: of the lower bits, 4 and 5 are no part of the state, and 0 here. */
-uint16_t cm1e_sim_bridge_statusword(const cm1e_sim_bridge_axis_t *axis)
+uint16_t cm1e_sim_bridge_state_bits(const cm1e_sim_bridge_axis_t *axis)
 {
     static const uint16_t bits_of_state[CM1E_FSA_STATE_COUNT] = {
         [NOT_READY_TO_SWITCH_ON] = 0x00, [SWITCH_ON_DISABLED] = 0x40,    [READY_TO_SWITCH_ON] = 0x01,
         [SWITCHED_ON] = 0x03,            [OPERATION_ENABLED] = 0x07,     [FAULT_REACTION_ACTIVE] = 0x0F,
         [FAULT] = 0x08,
     };
-    return (uint16_t)(bits_of_state[axis->state] | STATUSWORD_REMOTE | (following(axis) ? STATUSWORD_BIT12 : 0) |
+    return bits_of_state[axis->state];
+}
+
+/* BR 6.1.3 and 6.4.2: bits 10, 12 and 13. */
+static unsigned mode_bits(const cm1e_sim_bridge_axis_t *axis)
+{
+    const double lag = fabs(axis->servo.reference - axis->mechanics.position);
+    if (axis->mode == CM1E_BRIDGE_MODE_HM)
+        return (cm1e_sim_search_running(&axis->search) ? 0u : STATUSWORD_TARGET_REACHED) |
+               (axis->search.phase == SEARCH_DONE ? STATUSWORD_HOMING_ATTAINED : 0u) |
+               (axis->error ? STATUSWORD_HOMING_ERROR : 0u);
+    return axis->state == OPERATION_ENABLED && lag <= FOLLOWING_WINDOW_COUNTS ? STATUSWORD_BIT12 : 0u;
+}
+
+uint16_t cm1e_sim_bridge_statusword(const cm1e_sim_bridge_axis_t *axis)
+{
+    if (axis->mode == CM1E_BRIDGE_MODE_CMD)
+        return cm1e_sim_bridge_command_status(axis);
+    if (axis->mode == CM1E_BRIDGE_MODE_CPIO)
+        return cm1e_sim_bridge_cpio_status(axis);
+    return (uint16_t)(cm1e_sim_bridge_state_bits(axis) | STATUSWORD_REMOTE | mode_bits(axis) |
                       (axis->error ? STATUSWORD_MOTOR_ERROR : 0) | (axis->motor_free ? STATUSWORD_MOTOR_FREE : 0));
 }
 
@@ -242,8 +306,13 @@ void cm1e_sim_bridge_axis_power_on(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_ax
     axis->controlword = axis->last_controlword = 0;
     axis->target_position = 0;
     axis->overload = axis->lag_s = 0;
+    axis->outputs = 0;
+    axis->armed = false;
+    axis->answer = 0;
+    axis->same_words = 0;
+    axis->search = (cm1e_sim_search_t){0};
+    cm1e_sim_bridge_mode_reset(axis);
     release(axis, NOT_READY_TO_SWITCH_ON);
     if (axis->motor == CM1E_BRIDGE_CM1 || *cm1e_sim_bridge_k(bridge, axis->number, K_ENABLE_AT_POWER_ON) == 1)
-        enable_motor(axis);
-    hold(axis);
+        cm1e_sim_bridge_axis_power(axis, true);
 }

@@ -114,8 +114,11 @@ static int64_t value_of_axis(const cm1e_sim_bridge_t *bridge, const cm1e_sim_bri
     switch (first) {
     case OBJ_6040_CONTROLWORD: return axis->controlword;
     case OBJ_6041_STATUSWORD: return cm1e_sim_bridge_statusword(axis);
+    case OBJ_6061_MODES_OF_OPERATION_DISPLAY: return axis->mode;
     case OBJ_6064_POSITION_ACTUAL_VALUE: return cm1e_sim_bridge_position(axis);
     case OBJ_607A_TARGET_POSITION: return axis->target_position;
+    case OBJ_60FD_DIGITAL_INPUTS:
+        return cm1e_sim_bridge_io_available(axis) ? cm1e_sim_bridge_inputs_of(axis) & cell->entry->maximum : 0;
     default: return k ? *cm1e_sim_bridge_k(bridge, axis->number, k) : *cell->value;
     }
 }
@@ -151,6 +154,14 @@ uint32_t cm1e_sim_bridge_sdo_read(void *app, uint16_t index, uint8_t subindex, u
                : cm1e_sim_give_number(cell.entry, present_value(bridge, &cell), data, size);
 }
 
+/* BR 6.5.2: what the mask does not let through is off. */
+static void set_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
+{
+    const int64_t wanted = *cm1e_sim_bridge_value(bridge, axis->number, OBJ_60FE_DIGITAL_OUTPUTS, 1);
+    const int64_t mask = *cm1e_sim_bridge_value(bridge, axis->number, OBJ_60FE_DIGITAL_OUTPUTS, 2);
+    axis->outputs = (uint8_t)(wanted & mask & cm1e_sim_bridge_output_mask(axis));
+}
+
 static void take_value(cm1e_sim_bridge_t *bridge, const cm1e_sim_cell_t *cell, int64_t value)
 {
     const int axis = cm1e_bridge_axis_of(cell->entry->index);
@@ -166,6 +177,10 @@ static void take_value(cm1e_sim_bridge_t *bridge, const cm1e_sim_cell_t *cell, i
         bridge->axes[axis].target_position = (int32_t)value;
     else
         *(k ? cm1e_sim_bridge_k(bridge, (unsigned)axis, k) : cell->value) = value;
+    if (first == OBJ_6060_MODES_OF_OPERATION)
+        cm1e_sim_bridge_request_mode(bridge, &bridge->axes[axis], (int8_t)value);
+    if (first == OBJ_60FE_DIGITAL_OUTPUTS && cm1e_sim_bridge_io_available(&bridge->axes[axis]))
+        set_outputs(bridge, &bridge->axes[axis]);
 }
 
 uint32_t cm1e_sim_bridge_sdo_write(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, const uint8_t *data,

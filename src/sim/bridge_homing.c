@@ -1,0 +1,71 @@
+#include "sim/bridge_app.h"
+
+/* Where the sensors are is not the guide's affair: IN2 is that of CW, IN3 that of CCW, as behind the simulated CM1-E. */
+#define SENSOR_EDGE_COUNTS 150000.0
+#define DEFAULT_TORQUE_PERCENT 30
+enum { INPUT_2 = 0x02, INPUT_3 = 0x04 };
+enum { K_SPEED = 42, K_ACCELERATION = 43, K_OFFSET_UNIT = 45, K_TORQUE = 47, K_OFFSET = 48 };
+
+/* BR 6.4.1, in the order of 0x6098. */
+static const struct {
+    int8_t direction;
+    bool by_sensor;
+} methods[] = {{+1, false}, {-1, false}, {+1, true}, {-1, true}};
+
+uint8_t cm1e_sim_bridge_inputs_of(const cm1e_sim_bridge_axis_t *axis)
+{
+    const double position = axis->mechanics.position;
+    return (position >= SENSOR_EDGE_COUNTS ? INPUT_2 : 0) | (position <= -SENSOR_EDGE_COUNTS ? INPUT_3 : 0);
+}
+
+static void look_at_sensor(cm1e_sim_bridge_axis_t *axis)
+{
+    const int8_t direction = axis->search.direction;
+    axis->search.sensor = (cm1e_sim_bridge_inputs_of(axis) & (direction > 0 ? INPUT_2 : INPUT_3)) != 0;
+    axis->search.edge = direction * SENSOR_EDGE_COUNTS;
+}
+
+/* "x100, 10 or 1 pulse, set by 2nd digit of K45" on a CM2. */
+static double offset_unit(const cm1e_sim_bridge_t *bridge, const cm1e_sim_bridge_axis_t *axis)
+{
+    static const double units[] = {100, 10, 1};
+    const int64_t digit = *cm1e_sim_bridge_k(bridge, axis->number, K_OFFSET_UNIT) / 10 % 10;
+    return axis->motor == CM1E_BRIDGE_CM2 && (digit == 1 || digit == 2) ? units[digit] : units[0];
+}
+
+void cm1e_sim_bridge_search_begin(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
+{
+    const unsigned n = axis->number;
+    const int64_t method = *cm1e_sim_bridge_value(bridge, n, OBJ_6098_HOMING_METHOD, 0);
+    const int64_t torque = *cm1e_sim_bridge_k(bridge, n, K_TORQUE);
+    axis->search = (cm1e_sim_search_t){
+        .direction = methods[method - 1].direction,
+        .speed = 100.0 * (double)*cm1e_sim_bridge_k(bridge, n, K_SPEED),
+        .acceleration = 1000.0 * (double)*cm1e_sim_bridge_k(bridge, n, K_ACCELERATION),
+        .offset = offset_unit(bridge, axis) * (double)*cm1e_sim_bridge_k(bridge, n, K_OFFSET),
+    };
+    look_at_sensor(axis);
+    cm1e_sim_search_begin(&axis->search, methods[method - 1].by_sensor);
+    cm1e_sim_bridge_axis_torque(axis, torque > 0 && torque <= 100 ? (double)torque : DEFAULT_TORQUE_PERCENT);
+    axis->search_s = 0;
+}
+
+void cm1e_sim_bridge_search_abort(cm1e_sim_bridge_axis_t *axis)
+{
+    if (!cm1e_sim_search_running(&axis->search))
+        return;
+    axis->search.phase = SEARCH_IDLE;
+    cm1e_servo_catch(&axis->servo, &axis->mechanics);
+    axis->servo.reference_velocity = 0;
+    cm1e_sim_bridge_axis_torque(axis, 0);
+}
+
+void cm1e_sim_bridge_search_step(cm1e_sim_bridge_axis_t *axis, double step_s)
+{
+    const cm1e_sim_searcher_t motor = {&axis->servo, &axis->mechanics, &axis->zero};
+    look_at_sensor(axis);
+    axis->search_s += step_s;
+    cm1e_sim_search_step(&axis->search, &motor, step_s);
+    if (axis->search.phase == SEARCH_DONE)
+        cm1e_sim_bridge_axis_torque(axis, 0);
+}
