@@ -389,19 +389,24 @@ static void put_values(cm1e_xml_writer_t *xml, const cm1e_described_entry_t *ent
     cm1e_xml_close(xml);
 }
 
-/* Found by their names, so those without values are not listed. */
+static size_t values_end(const cm1e_described_object_t *object)
+{
+    size_t end = object->entries.count;
+    while (end > 0 && !has_values(&object->entries.at[end - 1]))
+        end--;
+    return end;
+}
+
+/* Found by their names (ETG.2000) or, by some readers, by their order: so those without values are listed too, but not
+ * behind the last one that has some. */
 static void put_values_of_items(cm1e_xml_writer_t *xml, const cm1e_described_object_t *object,
                                 const definition_t *definition)
 {
-    bool any = false;
-    for (size_t i = 0; i < object->entries.count; i++)
-        any |= has_values(&object->entries.at[i]);
-    if (!any)
+    const size_t end = values_end(object);
+    if (end == 0)
         return;
     cm1e_xml_open(xml, "Info");
-    for (size_t i = 0; i < object->entries.count; i++) {
-        if (!has_values(&object->entries.at[i]))
-            continue;
+    for (size_t i = 0; i < end; i++) {
         cm1e_xml_open(xml, "SubItem");
         cm1e_xml_put(xml, "Name", "%s", definition->item_names[i]);
         put_values(xml, &object->entries.at[i]);

@@ -262,9 +262,29 @@ static void test_what_the_guide_does_not_tell_is_not_stated(void)
     TEST_ASSERT_EQUAL_INT(0, count(DEVICE "/Info/StateMachine|" DEVICE "/Info/Mailbox|" DEVICE
                                           "/Info/EtherCATController"));
     TEST_ASSERT_EQUAL_INT(0, count(DEVICE "/Sm/@MinSize|" DEVICE "/Sm/@MaxSize"));
-    TEST_ASSERT_EQUAL_INT(0, count(DICTIONARY "/Objects/Object[Index='#x60F6']/Info/SubItem[Name='K21']"));
+    TEST_ASSERT_EQUAL_INT(0, count(DICTIONARY "/Objects/Object[Index='#x60F6']/Info/SubItem[Name='K21']/Info/*"));
+    TEST_ASSERT_EQUAL_INT(0, count(DICTIONARY "/Objects/Object[Index='#x60F6']/Info/SubItem[Name='K48']"));
     TEST_ASSERT_EQUAL_STRING("1E00", text(DICTIONARY "/Objects/Object[Index='#x60F6']/Info/SubItem[Name='K47']/Info/"
                                                      "DefaultData"));
+}
+
+/* Values of sub-indexes stand in the type's order without gaps: some readers go by that instead of the names. */
+static void test_values_of_sub_indexes_are_found_by_name_and_by_order(void)
+{
+    const cm1e_device_options_t options = {0};
+    write_device(&options, CM1E_ESI_FLAT);
+    const int objects = count(DICTIONARY "/Objects/Object");
+    TEST_ASSERT_GREATER_THAN_INT(40, objects);
+    for (int i = 1; i <= objects; i++) {
+        char object[120];
+        snprintf(object, sizeof object, DICTIONARY "/Objects/Object[%d]", i);
+        for (int item = 1; item <= count("%s/Info/SubItem", object); item++) {
+            char name[120];
+            snprintf(name, sizeof name, "%s", text("%s/Info/SubItem[%d]/Name", object, item));
+            TEST_ASSERT_EQUAL_STRING(name, text(DICTIONARY "/DataTypes/DataType[Name=%s/Type]/SubItem[%d]/Name", object,
+                                                item));
+        }
+    }
 }
 
 static void check_pdo(const cm1e_pdo_t *pdo, const char *where, bool has_sync_manager, bool in_module)
@@ -476,6 +496,7 @@ int main(void)
     RUN_TEST(test_texts_are_default_data_too);
     RUN_TEST(test_velocities_have_the_unit_and_the_range_of_the_firmware);
     RUN_TEST(test_what_the_guide_does_not_tell_is_not_stated);
+    RUN_TEST(test_values_of_sub_indexes_are_found_by_name_and_by_order);
     RUN_TEST(test_flat_pdos_are_those_of_the_tables);
     RUN_TEST(test_mdp_pdos_are_in_the_modules);
     RUN_TEST(test_mdp_slot_offers_every_module_and_chooses_one);
