@@ -199,6 +199,8 @@ cm1e_error_t cm1e_generate(cm1e_file_t *file, const cm1e_generate_options_t *opt
     *file = (cm1e_file_t){0};
     if (options->devices && options->device_count == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "no device is given");
+    if (options->format == CM1E_FILE_ESI && options->layout != CM1E_ESI_FLAT && options->layout != CM1E_ESI_MDP)
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "there is no such layout; there are flat and modular");
     for (size_t i = 0; options->devices && i < options->device_count && options->format != CM1E_FILE_SII; i++)
         if (options->devices[i].alias != 0 || options->devices[i].serial_number != 0)
             return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,

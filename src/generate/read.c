@@ -89,6 +89,8 @@ static cm1e_file_format_t recognise_utf16(const void *bytes, size_t size)
 
 cm1e_file_format_t cm1e_file_recognise(const void *bytes, size_t size)
 {
+    if (size == 0) /* `bytes` may be NULL then */
+        return CM1E_FILE_UNKNOWN;
     if (looks_like_sii(bytes, size))
         return CM1E_FILE_SII;
     if (is_utf16(bytes, size))

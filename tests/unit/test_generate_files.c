@@ -51,6 +51,7 @@ static void test_format_is_seen_in_the_root_element(void)
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         TEST_ASSERT_EQUAL_INT_MESSAGE(cases[i].format, recognise(cases[i].text), cases[i].text);
+    TEST_ASSERT_EQUAL_INT(CM1E_FILE_UNKNOWN, cm1e_file_recognise(NULL, 0));
 }
 
 static void test_format_is_seen_in_utf16_too(void)
@@ -299,6 +300,16 @@ static void test_unknown_files_are_refused(void)
     cm1e_findings_free(NULL);
 }
 
+static void test_layout_that_is_none_is_refused(void)
+{
+    const cm1e_generate_options_t options = {.format = CM1E_FILE_ESI, .layout = (cm1e_esi_layout_t)7};
+    cm1e_diag_t diag = {0};
+    cm1e_file_t file;
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_CONFIG, cm1e_generate(&file, &options, &diag));
+    TEST_ASSERT_NOT_NULL(strstr(diag.text, "flat and modular"));
+    cm1e_file_free(&file);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -317,5 +328,6 @@ int main(void)
     RUN_TEST(test_eni_needs_a_network_whose_places_are_known);
     RUN_TEST(test_axes_in_any_order_stand_in_the_eni_in_the_order_of_the_wire);
     RUN_TEST(test_unknown_files_are_refused);
+    RUN_TEST(test_layout_that_is_none_is_refused);
     return UNITY_END();
 }
