@@ -169,21 +169,24 @@ static void compare_pdos(const comparison_t *c)
     }
 }
 
-static size_t assigned(const cm1e_description_t *description, bool transmit)
+/** Whether any RxPDO, any TxPDO is assigned. */
+static void find_assigned(bool assigned[2], const cm1e_description_t *description)
 {
-    size_t count = 0;
     for (size_t i = 0; i < description->pdos.count; i++)
-        count += description->pdos.at[i].transmit == transmit && description->pdos.at[i].sync_manager >= 0;
-    return count;
+        if (description->pdos.at[i].sync_manager >= 0)
+            assigned[description->pdos.at[i].transmit] = true;
 }
 
 /** Which PDOs are in use: a warning, because masters assign them anew at start-up. */
 static void compare_assignment(const comparison_t *c)
 {
+    bool in_file[2] = {false}, in_device[2] = {false};
+    find_assigned(in_file, c->file);
+    find_assigned(in_device, c->device);
     for (size_t i = 0; i < c->file->pdos.count; i++) {
         const cm1e_described_pdo_t *file = &c->file->pdos.at[i];
         const cm1e_described_pdo_t *device = cm1e_description_pdo(c->device, file->index);
-        if (!device || assigned(c->file, file->transmit) == 0 || assigned(c->device, file->transmit) == 0)
+        if (!device || !in_file[file->transmit] || !in_device[file->transmit])
             continue;
         if (file->sync_manager >= 0 && device->sync_manager < 0)
             DIFFERS(c, DIFFERS_ASSIGNMENT, file->place,

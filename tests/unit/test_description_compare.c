@@ -1,6 +1,7 @@
 /* A file beside a device: nothing where both say the same, and exactly one finding for each thing that differs. */
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 #include <unity.h>
 
 #include "description/compare.h"
@@ -269,6 +270,20 @@ static void test_objects_and_pdos_of_any_module_that_can_stand_in_a_slot_are_in_
     cm1e_description_file_free(&third);
 }
 
+/* A file can have as many as it likes; the work must not grow with their square. */
+static void test_very_many_pdos_are_compared_in_no_time(void)
+{
+    enum { MANY = 300000, SECONDS = 10 };
+    const cm1e_described_pdo_t pdo = *pdo_of(file, 0x1600);
+    for (int i = 0; i < MANY; i++)
+        *(cm1e_described_pdo_t *)CM1E_APPEND(&left.arena, &file->pdos) = pdo;
+    TEST_ASSERT_FALSE(left.arena.failed);
+    const clock_t begin = clock();
+    cm1e_compare(findings, file, device);
+    TEST_ASSERT_EQUAL_size_t(0, cm1e_findings_count(findings));
+    TEST_ASSERT_LESS_THAN_INT64(SECONDS * (int64_t)CLOCKS_PER_SEC, clock() - begin);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -280,5 +295,6 @@ int main(void)
     RUN_TEST(test_names_that_a_device_leaves_out_or_cuts_do_not_count);
     RUN_TEST(test_an_eni_names_protocols_alone);
     RUN_TEST(test_objects_and_pdos_of_any_module_that_can_stand_in_a_slot_are_in_the_file);
+    RUN_TEST(test_very_many_pdos_are_compared_in_no_time);
     return UNITY_END();
 }
