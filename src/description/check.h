@@ -144,7 +144,7 @@ typedef enum cm1e_rule {
 #define CM1E_FINDINGS_MAX 1000
 
 struct cm1e_findings {
-    cm1e_arena_t arena;
+    cm1e_arena_t arena; /**< `failed`: something was not checked, so no finding does not mean that all is well */
     CM1E_LIST(cm1e_finding_t) list;
 };
 

@@ -363,6 +363,7 @@ static const cm1e_description_t *known_orders(known_t *known, const cm1e_firmwar
 static void check_cm1e(cm1e_findings_t *findings, const cm1e_ec_extend_t *document, const cm1e_ec_slave_t *slave,
                        const cm1e_description_t *orders)
 {
+    findings->arena.failed |= !orders;
     if (orders && cm1e_ec_extend_beside(NULL, CM1E_RULE_TRIO_DEVICE, document, slave, &orders[1]) > 0)
         cm1e_ec_extend_beside(findings, CM1E_RULE_TRIO_DEVICE, document, slave, &orders[0]);
 }

@@ -153,7 +153,9 @@ void cm1e_eni_compare(cm1e_findings_t *findings, const cm1e_eni_t *document, uin
     }
     cm1e_arena_t arena = {0};
     const cm1e_description_t described = cm1e_eni_describe(&arena, &document->devices.at[position - 1]);
-    if (!arena.failed)
+    if (arena.failed)
+        findings->arena.failed = true;
+    else
         cm1e_compare(findings, &described, device);
     cm1e_arena_free(&arena);
 }

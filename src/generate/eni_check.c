@@ -13,6 +13,7 @@ enum { SYNC_MANAGER_BYTES = 8, MAPPINGS = 4, PDO_ORDERS = 2 };
 static void check_addresses(cm1e_findings_t *findings, const cm1e_eni_t *document)
 {
     cm1e_place_t *seen = calloc(STATIONS, sizeof *seen);
+    findings->arena.failed |= !seen;
     for (size_t i = 0; seen && i < document->devices.count; i++) {
         const cm1e_eni_device_t *device = &document->devices.at[i];
         if (device->station == 0)
@@ -36,6 +37,7 @@ static void check_addresses(cm1e_findings_t *findings, const cm1e_eni_t *documen
 static void check_previous_ports(cm1e_findings_t *findings, const cm1e_eni_t *document)
 {
     bool *before = calloc(STATIONS, sizeof *before);
+    findings->arena.failed |= !before;
     for (size_t i = 0; before && i < document->devices.count; i++) {
         const cm1e_eni_device_t *device = &document->devices.at[i];
         for (size_t p = 0; p < device->previous.count; p++) {
@@ -163,7 +165,9 @@ static void check_sync_managers(cm1e_findings_t *findings, const cm1e_eni_device
 {
     cm1e_arena_t arena = {0};
     const cm1e_description_t described = cm1e_eni_describe(&arena, device);
-    if (!arena.failed)
+    if (arena.failed)
+        findings->arena.failed = true;
+    else
         cm1e_check_overlap(findings, described.sync_managers.at, described.sync_managers.count);
     cm1e_arena_free(&arena);
     for (size_t i = 0; i < device->commands.count; i++) {

@@ -209,6 +209,7 @@ static bool is_diagnosis(const char *name)
 static void check_variables(cm1e_findings_t *findings, const cm1e_eni_image_t *image, const char *name)
 {
     const cm1e_eni_variable_t **sorted = calloc(image->variables.count + 1, sizeof(const cm1e_eni_variable_t *));
+    findings->arena.failed |= !sorted;
     for (size_t i = 0; i < image->variables.count; i++) {
         const cm1e_eni_variable_t *variable = &image->variables.at[i];
         if ((uint64_t)variable->offset + variable->bits > (uint64_t)image->bytes * 8 && !is_diagnosis(variable->name))
@@ -234,6 +235,7 @@ static void check_image(cm1e_findings_t *findings, const cm1e_eni_t *document, b
     const cm1e_eni_image_t *image = send ? &document->outputs : &document->inputs;
     const char *name = send ? "outputs" : "inputs";
     stretch_t *stretches = calloc(document->devices.count + command_count(document) + 1, sizeof *stretches);
+    findings->arena.failed |= !stretches;
     if (stretches) {
         check_stretches(findings, stretches, stretches_of_slaves(stretches, document, send), name,
                         (uint64_t)image->bytes * 8, document->has_image);
@@ -317,6 +319,7 @@ static void check_device(cm1e_findings_t *findings, const cm1e_eni_t *document, 
         check_fmmu(findings, &described, &fmmus[n]);
         *(fmmu_t *)CM1E_APPEND(arena, all) = fmmus[n];
     }
+    findings->arena.failed |= own.failed;
     cm1e_arena_free(&own);
     check_place(findings, device, fmmus, WRITE);
     check_place(findings, device, fmmus, READ);
@@ -331,6 +334,7 @@ void cm1e_eni_check_frames(cm1e_findings_t *findings, const cm1e_eni_t *document
     for (size_t c = 0; c < document->cyclics.count && !arena.failed; c++)
         for (size_t f = 0; f < document->cyclics.at[c].frames.count; f++)
             check_frame(findings, document, &document->cyclics.at[c].frames.at[f], &fmmus);
+    findings->arena.failed |= arena.failed;
     cm1e_arena_free(&arena);
     check_image(findings, document, true);
     check_image(findings, document, false);

@@ -102,6 +102,8 @@ cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_m
                 axis ? axis->name : cm1e_arena_format(&described.arena, "%s %u", slave->name[0] ? slave->name : "Slave",
                                                       (unsigned)position);
     }
+    if (error == CM1E_OK && described.arena.failed)
+        error = cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
     /* Only now: the list of devices moved while it grew. */
     for (uint32_t i = 0; error == CM1E_OK && i < count; i++)
         slaves[i].device = &described.devices.at[i];
