@@ -83,11 +83,14 @@ cm1e_error_t cm1e_generate_trio_program(cm1e_file_t *file, const cm1e_generate_o
 
 /** Writes the ENI of the network that a scan found. A CM1-E that is a configured axis has its name and mapping; the
  *  others run with `mapping`; devices of another kind by their SII. The bus has been scanned and does not operate; the
- *  caller owns it. @rt block */
+ *  caller owns it. CM1E_ERROR_STATE: it knows no slave; CM1E_ERROR_UNSUPPORTED: a CM1-E does not tell its firmware.
+ *  @rt block */
 cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_mapping_t mapping, cm1e_diag_t *diag);
 
-/** Reads a file of any of the formats and writes it anew in `format`: the same one, or SII out of an ESI (its device
- *  number `device`, 0 = first). A file that cm1e_generate() wrote comes back as it was. @rt init */
+/** Reads a file of any of the formats and writes it anew in `format`: the same one, or ESI and SII out of each other.
+ *  `device` is the one of an ESI that an SII is for, 0 = first; CM1E_ERROR_NOT_FOUND: there is none of that number. A
+ *  file that cm1e_generate() wrote comes back as it was. CM1E_ERROR_FILE: it cannot be read, `diag` says where;
+ *  CM1E_ERROR_UNSUPPORTED: `format` needs what this file does not have. @rt init */
 cm1e_error_t cm1e_generate_from(cm1e_file_t *file, const void *bytes, size_t size, cm1e_file_format_t format,
                                 size_t device, cm1e_diag_t *diag);
 
@@ -120,7 +123,9 @@ cm1e_error_t cm1e_check_file(cm1e_findings_t **findings, const void *bytes, size
 
 /** Compares a file with the device at `position`: dictionary, mapping, SII, as far as the file speaks of them. Slaves
  *  that an ENI has and the network has not, or the other way round, are told at the last slave that both have. The
- *  bus has been scanned and does not operate; the caller owns it. @rt block */
+ *  bus has been scanned and does not operate; the caller owns it. CM1E_OK: `*findings`, to be freed, are the
+ *  differences; CM1E_ERROR_NOT_FOUND: the file does not describe this device; CM1E_ERROR_FILE: it cannot be read.
+ *  @rt block */
 cm1e_error_t cm1e_diff_file(cm1e_findings_t **findings, const void *bytes, size_t size, cm1e_bus_t *bus,
                             uint16_t position, cm1e_diag_t *diag);
 

@@ -1,7 +1,8 @@
 /**
  * @file arena.h
- * Memory of one file that is read or written: taken piece by piece, given back at once. Nothing here returns NULL: when
- * memory ends, `failed` is set, what is asked for next goes into a sink, and who owns the arena asks once, at the end.
+ * Memory of one file that is read or written: taken piece by piece, given back at once. Nobody has to look for NULL:
+ * when memory ends, `failed` is set, what is asked for next goes into a sink, and who owns the arena asks once, at the
+ * end.
  * One thread at a time.
  */
 #ifndef CM1E_DESCRIPTION_ARENA_H
@@ -28,7 +29,7 @@ typedef struct cm1e_arena {
 void cm1e_arena_free(cm1e_arena_t *arena);
 /** `size` zeroed bytes, aligned for anything; `size` at most CM1E_ARENA_SINK, or check `failed` before use. @rt init */
 void *cm1e_arena_take(cm1e_arena_t *arena, size_t size);
-/** A copy of `size` bytes. "" and NULL where there is no memory or size is 0. @rt init */
+/** A copy of `size` bytes; NULL where there is no memory, and where `size` is 0. @rt init */
 const uint8_t *cm1e_arena_bytes(cm1e_arena_t *arena, const void *bytes, size_t size);
 /** A copy of a text; NULL stays NULL. "" where there is no memory. @rt init */
 const char *cm1e_arena_text(cm1e_arena_t *arena, const char *text);

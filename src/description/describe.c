@@ -79,16 +79,6 @@ void cm1e_describe_object(cm1e_arena_t *arena, cm1e_object_list_t *list, const c
             describe_entry(arena, CM1E_APPEND(arena, &described->entries), &object->entries[i]);
 }
 
-static const cm1e_described_entry_t *find_entry(const cm1e_object_list_t *objects, const cm1e_pdo_entry_t *mapped)
-{
-    for (size_t i = 0; i < objects->count; i++)
-        if (objects->at[i].index == mapped->index)
-            for (size_t j = 0; j < objects->at[i].entries.count; j++)
-                if (objects->at[i].entries.at[j].subindex == mapped->subindex)
-                    return &objects->at[i].entries.at[j];
-    return NULL;
-}
-
 /* The type on the wire: that of the dictionary, unless the mapping has another length (0x6079: UG 7.2). */
 static const char *mapped_type(cm1e_arena_t *arena, const cm1e_described_entry_t *entry, unsigned bits)
 {
@@ -112,7 +102,8 @@ cm1e_described_pdo_t *cm1e_describe_pdo(cm1e_arena_t *arena, cm1e_pdo_list_t *li
     described->fixed = true;
     for (unsigned i = 0; i < pdo->entry_count; i++) {
         const cm1e_pdo_entry_t *mapped = &pdo->entries[i];
-        const cm1e_described_entry_t *entry = mapped->index ? find_entry(objects, mapped) : NULL;
+        const cm1e_described_entry_t *entry =
+            mapped->index ? cm1e_describe_entry_of(objects, mapped->index, mapped->subindex) : NULL;
         cm1e_described_pdo_entry_t *into = CM1E_APPEND(arena, &described->entries);
         into->index = mapped->index;
         into->subindex = mapped->subindex;

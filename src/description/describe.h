@@ -38,7 +38,7 @@ bool cm1e_describe_is_of_axis(uint16_t index);
 /** Those of `objects` that are not of a module, in MDP layout. */
 void cm1e_describe_own_objects(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_object_list_t *objects,
                                bool (*is_of_module)(uint16_t index));
-/** An entry to adapt; NULL: there is none. */
+/** NULL: there is no such entry. */
 cm1e_described_entry_t *cm1e_describe_entry_of(const cm1e_object_list_t *objects, uint16_t index, uint8_t subindex);
 /** Puts another default in place of that of the tables; does nothing where there is no such entry. */
 void cm1e_describe_default(cm1e_arena_t *arena, const cm1e_object_list_t *objects, uint16_t index, uint8_t subindex,

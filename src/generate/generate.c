@@ -11,16 +11,14 @@
 #include "generate/esi.h"
 #include "generate/file.h"
 
+static const cm1e_device_options_t one_cm1e = {0};
+enum { CONFIG_ALIAS = 8 }; /* byte of the configured station alias in the configuration words */
 
 void cm1e_file_free(cm1e_file_t *file)
 {
     free(file->bytes);
     *file = (cm1e_file_t){0};
 }
-
-
-static const cm1e_device_options_t one_cm1e = {0};
-enum { CONFIG_ALIAS = 8 }; /* byte of the configured station alias in the configuration words */
 
 void cm1e_file_warn_of_eeprom(cm1e_file_t *file, const cm1e_description_t *device)
 {
@@ -35,7 +33,7 @@ static cm1e_error_t write_sii(cm1e_file_t *file, const cm1e_description_t *devic
 {
     const size_t stated = device->eeprom.byte_size > 0 ? device->eeprom.byte_size : CM1E_SII_SIZE;
     const size_t room = stated < CM1E_SII_SIZE_MAX ? stated : CM1E_SII_SIZE_MAX;
-    uint8_t *image = calloc(1, room + 1);
+    uint8_t *image = calloc(1, room + 1); /* with the 0 that stands behind every cm1e_file_t */
     cm1e_diag_t reason = {0};
     if (!image)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
@@ -188,7 +186,7 @@ static cm1e_error_t generate_eni(cm1e_file_t *file, const cm1e_bus_config_t *net
         error = order_slaves(slaves, &described, network, diag);
     if (error == CM1E_OK)
         error = cm1e_file_of_eni(file, slaves, network->axis_count,
-                          network->cycle_time_ns > 0 ? network->cycle_time_ns : 1000000, diag);
+                                 network->cycle_time_ns > 0 ? network->cycle_time_ns : 1000000, diag);
     cm1e_description_file_free(&described);
     free(slaves);
     return error;
