@@ -15,7 +15,7 @@ enum {
     KEY_REVISION, KEY_AXES, KEY_SERIAL, KEY_DC, KEY_COMPLETE, KEY_CONFIG, KEY_FROM, KEY_NUMBER, KEY_PROGRAM,
     KEY_DC_MODE, KEY_MAILBOX_RATE,
 };
-enum { MAX_DEVICES = 16, CONFIG_BYTES = 14 };
+enum { MAX_DEVICES = 16 };
 
 typedef struct generate_options {
     common_options_t common;
@@ -112,14 +112,15 @@ static bool parse_config_data(const char *path, generate_options_t *options)
         return false;
     cm1e_device_options_t *device = device_of(options);
     const bool is_image = cm1e_file_recognise(input.bytes, input.size) == CM1E_FILE_SII;
-    const bool whole = is_image && cm1e_sii_crc8(input.bytes, CONFIG_BYTES) == input.bytes[CONFIG_BYTES];
+    const bool whole =
+        is_image && cm1e_sii_crc8(input.bytes, CM1E_SII_CONFIG_BYTES) == input.bytes[CM1E_SII_CHECKSUM];
     if (whole) {
-        memcpy(device->config_data, input.bytes, CONFIG_BYTES);
-        device->config_data_size = CONFIG_BYTES;
+        memcpy(device->config_data, input.bytes, CM1E_SII_CONFIG_BYTES);
+        device->config_data_size = CM1E_SII_CONFIG_BYTES;
         const size_t n = options->what.device_count - 1;
         options->config_of[n].path = path;
-        options->config_of[n].vendor_id = cm1e_get_u32(input.bytes + 0x10);
-        options->config_of[n].product_code = cm1e_get_u32(input.bytes + 0x14);
+        options->config_of[n].vendor_id = cm1e_get_u32(input.bytes + CM1E_SII_VENDOR);
+        options->config_of[n].product_code = cm1e_get_u32(input.bytes + CM1E_SII_PRODUCT);
     } else if (is_image) {
         complain("%s: the checksum of words 0 to 6 is wrong; read the image from the device again", path);
     } else {

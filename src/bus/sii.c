@@ -34,7 +34,7 @@ cm1e_sii_result_t cm1e_sii_read_header(cm1e_sii_t *sii, cm1e_sii_reader reader, 
     /* Identity and mailbox; the rest of the header would only cost time, with every slave. */
     static const struct {
         uint8_t word, count;
-    } wanted[] = {{0x08, 8}, {0x18, 5}};
+    } wanted[] = {{CM1E_SII_VENDOR / 2, 8}, {CM1E_SII_MAILBOX / 2, 5}};
     uint8_t image[CM1E_SII_HEADER_BYTES] = {0};
     const source_t source = {reader, context, image};
     memset(sii, 0, sizeof *sii);

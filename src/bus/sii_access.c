@@ -10,12 +10,13 @@
 #include "core/bytes.h"
 #include "description/sii.h"
 
-/* Word addresses (ETG.1000.6 table 16). */
+/* An EEPROM is addressed by words. */
 enum {
-    WORD_ALIAS = 0x04, WORD_CHECKSUM = 0x07, WORD_VENDOR = 0x08, WORD_PRODUCT = 0x0A, WORD_SERIAL = 0x0E,
-    WORD_SIZE = 0x3E, WORD_CATEGORIES = 0x40,
+    WORD_ALIAS = CM1E_SII_ALIAS / 2, WORD_CHECKSUM = CM1E_SII_CHECKSUM / 2, WORD_VENDOR = CM1E_SII_VENDOR / 2,
+    WORD_PRODUCT = CM1E_SII_PRODUCT / 2, WORD_SERIAL = CM1E_SII_SERIAL / 2, WORD_SIZE = CM1E_SII_KBIT / 2,
+    WORD_CATEGORIES = CM1E_SII_HEADER_BYTES / 2,
 };
-enum { BYTES_PER_KBIT = 128, LARGEST_KBIT = 4096, ERASED = 0xFFFF };
+enum { LARGEST_KBIT = 4096, ERASED = 0xFFFF };
 
 /** The EEPROM interface of one slave, taken for a while. */
 typedef struct session {
@@ -31,7 +32,7 @@ static uint32_t dword_at(const uint8_t *image, uint32_t word) { return cm1e_get_
 /** Bytes of the EEPROM by word 0x3E; 0: it states none (erased, never filled in, more than there can be). */
 static size_t stated_size(uint16_t word)
 {
-    return word == 0 || word == ERASED || word >= LARGEST_KBIT ? 0 : (word + (size_t)1) * BYTES_PER_KBIT;
+    return word == 0 || word == ERASED || word >= LARGEST_KBIT ? 0 : (word + (size_t)1) * CM1E_SII_BYTES_PER_KBIT;
 }
 
 static cm1e_error_t diagnose_eeprom(const session_t *session, const char *what, uint32_t word, cm1e_diag_t *diag)

@@ -1,4 +1,5 @@
 #include "description/check_private.h"
+#include "description/sii.h"
 
 /* Sync managers, FMMUs and the mailbox: registers 0x0800 and 0x0600 of the slave controller (ETG.1000.4 6.6, 6.7). */
 
@@ -259,7 +260,7 @@ static void check_bootstrap(const cm1e_check_t *check)
     const cm1e_described_eeprom_t *eeprom = &check->device->eeprom;
     if (eeprom->bootstrap.size == 0)
         return;
-    if (eeprom->bootstrap.size != 8) {
+    if (eeprom->bootstrap.size != CM1E_SII_BOOTSTRAP_BYTES) {
         cm1e_check_add(check, CM1E_RULE_BOOTSTRAP_SIZE, eeprom->place,
                        "the bootstrap mailbox is described by %zu bytes; words 0x14 to 0x17 of the EEPROM are 8",
                        eeprom->bootstrap.size);

@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "description/sii.h"
+
 enum { FIRST_MAPPING_OBJECT = 0x1600, LAST_MAPPING_OBJECT = 0x1BFF };
 
 typedef struct comparison {
@@ -41,7 +43,7 @@ static bool same_bytes(cm1e_bytes_t a, cm1e_bytes_t b, size_t from, size_t to)
 
 static void compare_eeprom(const comparison_t *c)
 {
-    enum { ALIAS = 8, BEHIND_ALIAS = 10 }; /* word 4: each device has its own */
+    enum { ALIAS = CM1E_SII_ALIAS, BEHIND_ALIAS = CM1E_SII_ALIAS + 2 }; /* each device has its own */
     const cm1e_described_eeprom_t *file = &c->file->eeprom, *device = &c->device->eeprom;
     if (file->config_known && !same_bytes(file->config_data, device->config_data, ALIAS, BEHIND_ALIAS))
         DIFFERS(c, DIFFERS_EEPROM, file->place,

@@ -16,6 +16,7 @@ cm1e_error_t cm1e_describe(cm1e_description_file_t *file, const cm1e_device_opti
 /** Appends the plain I/O module of the simulator: no mailbox, 1 byte out and 1 byte in, vendor 0. */
 void cm1e_describe_io_module(cm1e_description_file_t *file);
 
+/** The sync managers that carry process data: 0x1C12 and 0x1C13 assign PDOs to them. */
 enum { CM1E_SM_NUMBER_OUTPUTS = 2, CM1E_SM_NUMBER_INPUTS = 3 };
 
 /* ---- private to this room: one model each, `options` already checked by cm1e_describe() ------------------------- */

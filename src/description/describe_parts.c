@@ -3,11 +3,12 @@
 #include <string.h>
 
 #include "core/bytes.h"
+#include "description/sii.h"
 
 enum { FIRST_OF_AXES = 0x6000, FIRST_ABOVE_AXES = 0xF000 };
 enum { PROFILE_402 = 402, TYPE_SERVO = 4 }; /* 0x1000: profile in the low word, type in the high one */
 /* PDI control 0x05: SPI slave, as microcontrollers are connected. The value of the real devices is not known. */
-enum { PDI_CONTROL_SPI = 0x0005, EEPROM_BYTES = 2048, CONFIG_BYTES = 14, ALIAS_AT = 8, MAILBOX_BYTES = 8 };
+enum { PDI_CONTROL_SPI = 0x0005 };
 enum { ERASED = 0xFF };
 
 /* ---- objects ---------------------------------------------------------------------------------------------------- */
@@ -163,8 +164,8 @@ void cm1e_describe_communication(cm1e_arena_t *arena, cm1e_description_t *device
 bool cm1e_describe_config_is_known(const uint8_t *config)
 {
     bool guessed = true, blank = true;
-    for (size_t i = 0; i < CONFIG_BYTES; i++) {
-        const bool is_alias = i == ALIAS_AT || i == ALIAS_AT + 1; /* a user's, set in a guess too */
+    for (size_t i = 0; i < CM1E_SII_CONFIG_BYTES; i++) {
+        const bool is_alias = i == CM1E_SII_ALIAS || i == CM1E_SII_ALIAS + 1; /* a user's, set in a guess too */
         guessed &= is_alias || config[i] == (i == 0 ? PDI_CONTROL_SPI : 0);
         blank &= is_alias || (config[i] == config[0] && (config[0] == 0 || config[0] == ERASED));
     }
@@ -175,17 +176,17 @@ void cm1e_describe_eeprom(cm1e_arena_t *arena, cm1e_description_t *device, const
                           bool bootstrap)
 {
     const cm1e_sync_manager_t *managers = cm1e_device_sync_managers;
-    uint8_t config[CONFIG_BYTES] = {PDI_CONTROL_SPI}, mailbox[MAILBOX_BYTES];
+    uint8_t config[CM1E_SII_CONFIG_BYTES] = {PDI_CONTROL_SPI}, mailbox[CM1E_SII_BOOTSTRAP_BYTES];
     cm1e_described_eeprom_t *eeprom = &device->eeprom;
     eeprom->config_known =
-        options->config_data_size == CONFIG_BYTES && cm1e_describe_config_is_known(options->config_data);
+        options->config_data_size == CM1E_SII_CONFIG_BYTES && cm1e_describe_config_is_known(options->config_data);
     if (eeprom->config_known)
-        memcpy(config, options->config_data, CONFIG_BYTES);
+        memcpy(config, options->config_data, CM1E_SII_CONFIG_BYTES);
     if (options->alias != 0 || !eeprom->config_known)
-        cm1e_put_u16(config + ALIAS_AT, options->alias);
-    eeprom->byte_size = EEPROM_BYTES;
+        cm1e_put_u16(config + CM1E_SII_ALIAS, options->alias);
+    eeprom->byte_size = CM1E_SII_SIZE;
     eeprom->version = 1;
-    eeprom->alias = cm1e_get_u16(config + ALIAS_AT);
+    eeprom->alias = cm1e_get_u16(config + CM1E_SII_ALIAS);
     eeprom->serial_number = options->serial_number;
     eeprom->config_data = (cm1e_bytes_t){cm1e_arena_bytes(arena, config, sizeof config), sizeof config};
     eeprom->mailbox_out_start = managers[0].start;

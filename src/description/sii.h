@@ -24,6 +24,17 @@ enum {
     CM1E_SII_HEADER_BYTES = 0x80,  /**< the fixed part; the categories follow */
     CM1E_SII_CATEGORY_END = 0xFFFF,
 };
+/** Byte addresses of the fixed words (ETG.1000.6 table 16, ETG.2010 table 2). */
+enum {
+    CM1E_SII_CONFIG = 0x00, CM1E_SII_ALIAS = 0x08, CM1E_SII_CHECKSUM = 0x0E, CM1E_SII_VENDOR = 0x10,
+    CM1E_SII_PRODUCT = 0x14, CM1E_SII_REVISION = 0x18, CM1E_SII_SERIAL = 0x1C, CM1E_SII_BOOTSTRAP = 0x28,
+    CM1E_SII_MAILBOX = 0x30, CM1E_SII_PROTOCOLS = 0x38, CM1E_SII_KBIT = 0x7C, CM1E_SII_VERSION = 0x7E,
+};
+enum {
+    CM1E_SII_CONFIG_BYTES = 14,    /**< words 0-6, which the checksum is of */
+    CM1E_SII_BOOTSTRAP_BYTES = 8,  /**< start and length of the mailbox out, then in */
+    CM1E_SII_BYTES_PER_KBIT = 128, /**< the size word counts kbit, less one */
+};
 
 /** Writes a device's description as an image of `eeprom.byte_size` bytes (0: CM1E_SII_SIZE) into `image`. 0: it does
  *  not fit into `room`, into the EEPROM or into the format, `diag` says why, and what is in `image` is of no use. A

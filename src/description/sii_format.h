@@ -1,18 +1,10 @@
 /**
  * @file sii_format.h
- * Where what stands in an SII image: the fixed words (ETG.1000.6 table 16, ETG.2010 table 2) and the categories behind
- * them (ETG.1000.6 tables 17 to 24). Private to sii_read.c and sii_write.c.
+ * Where what stands in the categories of an SII image (ETG.1000.6 tables 17 to 24); the fixed words before them are in
+ * sii.h. Private to sii_read.c and sii_write.c.
  */
 #ifndef CM1E_DESCRIPTION_SII_FORMAT_H
 #define CM1E_DESCRIPTION_SII_FORMAT_H
-
-/** Byte addresses of the fixed words. */
-enum {
-    SII_CONFIG = 0x00, SII_ALIAS = 0x08, SII_CHECKSUM = 0x0E, SII_VENDOR = 0x10, SII_PRODUCT = 0x14,
-    SII_REVISION = 0x18, SII_SERIAL = 0x1C, SII_BOOTSTRAP = 0x28, SII_MAILBOX = 0x30, SII_PROTOCOLS = 0x38,
-    SII_KBIT = 0x7C, SII_VERSION = 0x7E,
-    SII_CONFIG_BYTES = 14, SII_BOOTSTRAP_BYTES = 8,
-};
 
 enum {
     SII_CATEGORY_STRINGS = 10, SII_CATEGORY_GENERAL = 30, SII_CATEGORY_FMMU = 40, SII_CATEGORY_SYNC_MANAGERS = 41,
@@ -20,7 +12,7 @@ enum {
 };
 enum { SII_CATEGORY_HEADER_BYTES = 4, SII_STRINGS_MAX = 255, SII_STRING_BYTES_MAX = 255 };
 
-/** Word SII_PROTOCOLS. */
+/** Word CM1E_SII_PROTOCOLS. */
 enum {
     SII_PROTOCOL_AOE = 0x01, SII_PROTOCOL_EOE = 0x02, SII_PROTOCOL_COE = 0x04, SII_PROTOCOL_FOE = 0x08,
     SII_PROTOCOL_SOE = 0x10, SII_PROTOCOL_VOE = 0x20, SII_PROTOCOLS_ALL = 0x3F,

@@ -108,17 +108,22 @@ static const char *string_or_empty(reader_t *r, unsigned number, size_t place)
 static void read_mailbox(reader_t *r, const part_t *header)
 {
     cm1e_described_eeprom_t *eeprom = &r->device->eeprom;
-    const unsigned protocols = word_of(header, SII_PROTOCOLS) & SII_PROTOCOLS_ALL;
-    eeprom->mailbox_out_start = word_of(header, SII_MAILBOX);
-    eeprom->mailbox_out_length = word_of(header, SII_MAILBOX + 2);
-    eeprom->mailbox_in_start = word_of(header, SII_MAILBOX + 4);
-    eeprom->mailbox_in_length = word_of(header, SII_MAILBOX + 6);
+    const unsigned protocols = word_of(header, CM1E_SII_PROTOCOLS) & SII_PROTOCOLS_ALL;
+    eeprom->mailbox_out_start = word_of(header, CM1E_SII_MAILBOX);
+    eeprom->mailbox_out_length = word_of(header, CM1E_SII_MAILBOX + 2);
+    eeprom->mailbox_in_start = word_of(header, CM1E_SII_MAILBOX + 4);
+    eeprom->mailbox_in_length = word_of(header, CM1E_SII_MAILBOX + 6);
     r->device->mailbox = (cm1e_mailbox_protocols_t){
-        .place = SII_PROTOCOLS,
+        .place = CM1E_SII_PROTOCOLS,
         .present = protocols != 0 || eeprom->mailbox_out_length != 0 || eeprom->mailbox_in_length != 0,
         .aoe = protocols & SII_PROTOCOL_AOE, .eoe = protocols & SII_PROTOCOL_EOE, .coe = protocols & SII_PROTOCOL_COE,
         .foe = protocols & SII_PROTOCOL_FOE, .soe = protocols & SII_PROTOCOL_SOE, .voe = protocols & SII_PROTOCOL_VOE,
     };
+}
+
+static cm1e_bytes_t copy(reader_t *r, size_t at, size_t size)
+{
+    return (cm1e_bytes_t){cm1e_arena_bytes(r->arena, r->image + at, size), size};
 }
 
 static void read_header(reader_t *r)
@@ -126,26 +131,25 @@ static void read_header(reader_t *r)
     const part_t header = {r->image, CM1E_SII_HEADER_BYTES, 0};
     cm1e_description_t *device = r->device;
     cm1e_described_eeprom_t *eeprom = &device->eeprom;
-    device->place = device->identity_place = SII_VENDOR;
-    device->vendor_id = double_word_of(&header, SII_VENDOR);
-    device->product_code = double_word_of(&header, SII_PRODUCT);
-    device->revision = double_word_of(&header, SII_REVISION);
+    device->place = device->identity_place = CM1E_SII_VENDOR;
+    device->vendor_id = double_word_of(&header, CM1E_SII_VENDOR);
+    device->product_code = double_word_of(&header, CM1E_SII_PRODUCT);
+    device->revision = double_word_of(&header, CM1E_SII_REVISION);
     device->product_given = device->revision_given = true;
-    eeprom->place = SII_CHECKSUM;
-    eeprom->byte_size = (word_of(&header, SII_KBIT) + 1u) * 128;
-    eeprom->config_data = (cm1e_bytes_t){cm1e_arena_bytes(r->arena, r->image, SII_CONFIG_BYTES), SII_CONFIG_BYTES};
+    eeprom->place = CM1E_SII_CHECKSUM;
+    eeprom->byte_size = (word_of(&header, CM1E_SII_KBIT) + 1u) * CM1E_SII_BYTES_PER_KBIT;
+    eeprom->config_data = copy(r, CM1E_SII_CONFIG, CM1E_SII_CONFIG_BYTES);
     eeprom->config_known = cm1e_describe_config_is_known(r->image);
-    eeprom->bootstrap = (cm1e_bytes_t){
-        cm1e_arena_bytes(r->arena, r->image + SII_BOOTSTRAP, SII_BOOTSTRAP_BYTES), SII_BOOTSTRAP_BYTES};
-    eeprom->alias = word_of(&header, SII_ALIAS);
-    eeprom->serial_number = double_word_of(&header, SII_SERIAL);
-    eeprom->version = word_of(&header, SII_VERSION);
+    eeprom->bootstrap = copy(r, CM1E_SII_BOOTSTRAP, CM1E_SII_BOOTSTRAP_BYTES);
+    eeprom->alias = word_of(&header, CM1E_SII_ALIAS);
+    eeprom->serial_number = double_word_of(&header, CM1E_SII_SERIAL);
+    eeprom->version = word_of(&header, CM1E_SII_VERSION);
     read_mailbox(r, &header);
-    const uint8_t checksum = cm1e_sii_crc8(r->image, SII_CONFIG_BYTES);
-    if (checksum != r->image[SII_CHECKSUM])
-        FOUND(r, SII_CHECKSUM, SII_CHECKSUM,
+    const uint8_t checksum = cm1e_sii_crc8(r->image, CM1E_SII_CONFIG_BYTES);
+    if (checksum != r->image[CM1E_SII_CHECKSUM])
+        FOUND(r, SII_CHECKSUM, CM1E_SII_CHECKSUM,
               "the checksum of the configuration words is 0x%02X; it should be 0x%02X. A slave controller refuses such "
-              "an EEPROM", r->image[SII_CHECKSUM], checksum);
+              "an EEPROM", r->image[CM1E_SII_CHECKSUM], checksum);
 }
 
 /* ---- categories ------------------------------------------------------------------------------------------------- */
@@ -383,7 +387,7 @@ static void check_chain(reader_t *r)
     if (!there)
         FOUND(r, SII_NO_END, at, "the categories lead to the end of the image; 0xFFFF should follow the last one");
     else if (category.start > r->device->eeprom.byte_size)
-        FOUND(r, SII_SIZE, SII_KBIT, "the categories end at byte %zu, and the EEPROM has %u bytes by word 0x3E",
+        FOUND(r, SII_SIZE, CM1E_SII_KBIT, "the categories end at byte %zu, and the EEPROM has %u bytes by word 0x3E",
               category.start, (unsigned)r->device->eeprom.byte_size);
 }
 
@@ -404,7 +408,7 @@ static void check_mailbox(reader_t *r, cm1e_sync_manager_use_t use, uint16_t sta
 static void check_protocol(reader_t *r, bool in_header, bool in_general, const char *name)
 {
     if (in_header != in_general)
-        FOUND(r, SII_PROTOCOLS, SII_PROTOCOLS, "%s: %s by word 0x1C, %s by the category General", name,
+        FOUND(r, SII_PROTOCOLS, CM1E_SII_PROTOCOLS, "%s: %s by word 0x1C, %s by the category General", name,
               in_header ? "supported" : "not supported", in_general ? "supported" : "not supported");
 }
 
@@ -442,7 +446,7 @@ cm1e_error_t cm1e_sii_read(cm1e_description_file_t *file, const uint8_t *image, 
     check_twice_told(&reader);
     if (file->devices.count == 1) {
         file->vendor_id = device->vendor_id;
-        file->vendor_place = SII_VENDOR;
+        file->vendor_place = CM1E_SII_VENDOR;
     }
     return file->arena.failed ? cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory") : CM1E_OK;
 }

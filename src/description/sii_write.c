@@ -202,7 +202,11 @@ static void write_mailbox(uint8_t *at, uint16_t start, uint16_t length, const cm
     cm1e_put_u16(at + 2, stated ? length : manager->length);
 }
 
-static size_t at_most(size_t size, size_t limit) { return size < limit ? size : limit; }
+static void write_bytes(uint8_t *at, cm1e_bytes_t bytes, size_t limit)
+{
+    if (bytes.data)
+        memcpy(at, bytes.data, bytes.size < limit ? bytes.size : limit);
+}
 
 static void write_header(writer_t *w)
 {
@@ -212,29 +216,27 @@ static void write_header(writer_t *w)
     uint8_t *const image = w->image;
     memset(image, 0xFF, w->size);
     memset(image, 0, CM1E_SII_HEADER_BYTES);
-    if (eeprom->config_data.data)
-        memcpy(image + SII_CONFIG, eeprom->config_data.data, at_most(eeprom->config_data.size, SII_CONFIG_BYTES));
+    write_bytes(image + CM1E_SII_CONFIG, eeprom->config_data, CM1E_SII_CONFIG_BYTES);
     if (eeprom->alias != 0)
-        cm1e_put_u16(image + SII_ALIAS, eeprom->alias);
-    image[SII_CHECKSUM] = cm1e_sii_crc8(image, SII_CONFIG_BYTES);
-    cm1e_put_u32(image + SII_VENDOR, device->vendor_id);
-    cm1e_put_u32(image + SII_PRODUCT, device->product_code);
-    cm1e_put_u32(image + SII_REVISION, device->revision);
-    cm1e_put_u32(image + SII_SERIAL, eeprom->serial_number);
-    if (eeprom->bootstrap.data)
-        memcpy(image + SII_BOOTSTRAP, eeprom->bootstrap.data, at_most(eeprom->bootstrap.size, SII_BOOTSTRAP_BYTES));
+        cm1e_put_u16(image + CM1E_SII_ALIAS, eeprom->alias);
+    image[CM1E_SII_CHECKSUM] = cm1e_sii_crc8(image, CM1E_SII_CONFIG_BYTES);
+    cm1e_put_u32(image + CM1E_SII_VENDOR, device->vendor_id);
+    cm1e_put_u32(image + CM1E_SII_PRODUCT, device->product_code);
+    cm1e_put_u32(image + CM1E_SII_REVISION, device->revision);
+    cm1e_put_u32(image + CM1E_SII_SERIAL, eeprom->serial_number);
+    write_bytes(image + CM1E_SII_BOOTSTRAP, eeprom->bootstrap, CM1E_SII_BOOTSTRAP_BYTES);
     if (mailbox->present) {
-        write_mailbox(image + SII_MAILBOX, eeprom->mailbox_out_start, eeprom->mailbox_out_length,
+        write_mailbox(image + CM1E_SII_MAILBOX, eeprom->mailbox_out_start, eeprom->mailbox_out_length,
                       sync_manager_for(device, CM1E_SM_MAILBOX_OUT));
-        write_mailbox(image + SII_MAILBOX + 4, eeprom->mailbox_in_start, eeprom->mailbox_in_length,
+        write_mailbox(image + CM1E_SII_MAILBOX + 4, eeprom->mailbox_in_start, eeprom->mailbox_in_length,
                       sync_manager_for(device, CM1E_SM_MAILBOX_IN));
     }
-    cm1e_put_u16(image + SII_PROTOCOLS,
+    cm1e_put_u16(image + CM1E_SII_PROTOCOLS,
                  (uint16_t)((mailbox->aoe ? SII_PROTOCOL_AOE : 0) | (mailbox->eoe ? SII_PROTOCOL_EOE : 0) |
                             (mailbox->coe ? SII_PROTOCOL_COE : 0) | (mailbox->foe ? SII_PROTOCOL_FOE : 0) |
                             (mailbox->soe ? SII_PROTOCOL_SOE : 0) | (mailbox->voe ? SII_PROTOCOL_VOE : 0)));
-    cm1e_put_u16(image + SII_KBIT, (uint16_t)(w->size / 128 - 1));
-    cm1e_put_u16(image + SII_VERSION, eeprom->version ? eeprom->version : 1);
+    cm1e_put_u16(image + CM1E_SII_KBIT, (uint16_t)(w->size / CM1E_SII_BYTES_PER_KBIT - 1));
+    cm1e_put_u16(image + CM1E_SII_VERSION, eeprom->version ? eeprom->version : 1);
 }
 
 /* ---- categories ------------------------------------------------------------------------------------------------- */
@@ -390,7 +392,7 @@ size_t cm1e_sii_write(uint8_t *image, size_t room, const cm1e_description_t *dev
 {
     writer_t w = {.image = image, .at = CM1E_SII_HEADER_BYTES, .device = device, .diag = diag};
     w.size = device->eeprom.byte_size ? device->eeprom.byte_size : CM1E_SII_SIZE;
-    if (w.size % 128 != 0 || w.size > CM1E_SII_SIZE_MAX)
+    if (w.size % CM1E_SII_BYTES_PER_KBIT != 0 || w.size > CM1E_SII_SIZE_MAX)
         fail(&w, "its EEPROM has %zu bytes; expected a multiple of 128 (1 kbit), at most 8 MiB", w.size);
     else if (w.size > room)
         fail(&w, "its EEPROM has %zu bytes; there is room for %zu", w.size, room);

@@ -1,6 +1,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/bytes.h"
+#include "description/sii.h"
 #include "generate/eni.h"
 
 /* Station addresses as this library's own master gives them; logical addresses as TwinCAT does, a range for each frame
@@ -10,7 +12,7 @@ enum { FIRST_STATION = 0x1001, FIRST_LOGICAL = 0x01000000, LOGICAL_PER_FRAME = 0
  * and EtherCAT. */
 enum { IMAGE_PER_FRAME = 1536, FRAME_HEADERS = 16 };
 enum { SYNC_MANAGERS = 16, MOST_DATA = CM1E_ENI_FRAME_BYTES - CM1E_ENI_DATAGRAM_OVERHEAD };
-enum { AL_STATUS = 0x0130, COE_TIMEOUT_MS = 3000, MAILBOX_POLL_MS = 50, BOOTSTRAP_BYTES = 8 };
+enum { AL_STATUS = 0x0130, COE_TIMEOUT_MS = 3000, MAILBOX_POLL_MS = 50 };
 enum { LRW_BOTH = 3, LRW_OUTPUTS = 2, LRW_INPUTS = 1 }; /* working counter of LRW, ETG.1000.4 5.4.3 */
 
 typedef struct maker {
@@ -101,11 +103,6 @@ static void make_sdos(maker_t *maker, cm1e_eni_mailbox_t *mailbox, const cm1e_de
     }
 }
 
-static uint16_t word(const uint8_t *bytes)
-{
-    return (uint16_t)(bytes[0] | bytes[1] << 8);
-}
-
 static void make_mailbox(maker_t *maker, cm1e_eni_device_t *device, const cm1e_description_t *described)
 {
     cm1e_eni_mailbox_t *mailbox = &device->mailbox;
@@ -132,10 +129,10 @@ static void make_mailbox(maker_t *maker, cm1e_eni_device_t *device, const cm1e_d
     mailbox->soe = protocols->soe;
     mailbox->voe = protocols->voe;
     const cm1e_bytes_t boot = described->eeprom.bootstrap;
-    if (protocols->foe && boot.size == BOOTSTRAP_BYTES && word(boot.data + 2) > 0 && word(boot.data + 6) > 0) {
-        mailbox->has_bootstrap = true;
-        mailbox->boot_send = (cm1e_eni_mailbox_area_t){word(boot.data), word(boot.data + 2)};
-        mailbox->boot_receive = (cm1e_eni_mailbox_area_t){word(boot.data + 4), word(boot.data + 6)};
+    if (protocols->foe && boot.size == CM1E_SII_BOOTSTRAP_BYTES) {
+        mailbox->boot_send = (cm1e_eni_mailbox_area_t){cm1e_get_u16(boot.data), cm1e_get_u16(boot.data + 2)};
+        mailbox->boot_receive = (cm1e_eni_mailbox_area_t){cm1e_get_u16(boot.data + 4), cm1e_get_u16(boot.data + 6)};
+        mailbox->has_bootstrap = mailbox->boot_send.length > 0 && mailbox->boot_receive.length > 0;
     }
     if (protocols->coe)
         make_sdos(maker, mailbox, described);

@@ -1,6 +1,7 @@
 #include <string.h>
 
 #include "core/bytes.h"
+#include "description/sii.h"
 #include "generate/esi_read.h"
 
 /* A word of a list, whatever its case; `fallback` where it is none of them. */
@@ -182,10 +183,9 @@ static cm1e_bytes_t part_of(cm1e_bytes_t image, size_t at, size_t size)
     return image.size >= at + size ? (cm1e_bytes_t){image.data + at, size} : (cm1e_bytes_t){0};
 }
 
-/* Either the words that matter, or the image (ETG.1000.6 table 16: words 0-6, bootstrap mailbox 14-17, size 3E). */
+/* Either the words that matter, or the image. */
 static void read_eeprom(cm1e_xml_reader_t *reader, const xmlNode *node, cm1e_description_t *device)
 {
-    enum { CONFIG_BYTES = 14, BOOTSTRAP_AT = 0x28, BOOTSTRAP_BYTES = 8, SIZE_AT = 0x7C, BYTES_PER_KBIT = 128 };
     const xmlNode *child = cm1e_xml_child(node, "Eeprom");
     cm1e_described_eeprom_t *eeprom = &device->eeprom;
     if (!child)
@@ -193,10 +193,11 @@ static void read_eeprom(cm1e_xml_reader_t *reader, const xmlNode *node, cm1e_des
     eeprom->place = cm1e_xml_line(child);
     const cm1e_bytes_t image = cm1e_xml_hex(reader, cm1e_xml_child(child, "Data"));
     if (image.data) {
-        const cm1e_bytes_t kilobits = part_of(image, SIZE_AT, 2);
-        eeprom->byte_size = kilobits.data ? ((uint32_t)cm1e_get_u16(kilobits.data) + 1) * BYTES_PER_KBIT : 0;
-        eeprom->config_data = part_of(image, 0, CONFIG_BYTES);
-        eeprom->bootstrap = part_of(image, BOOTSTRAP_AT, BOOTSTRAP_BYTES);
+        const cm1e_bytes_t kilobits = part_of(image, CM1E_SII_KBIT, 2);
+        eeprom->byte_size =
+            kilobits.data ? ((uint32_t)cm1e_get_u16(kilobits.data) + 1) * CM1E_SII_BYTES_PER_KBIT : 0;
+        eeprom->config_data = part_of(image, CM1E_SII_CONFIG, CM1E_SII_CONFIG_BYTES);
+        eeprom->bootstrap = part_of(image, CM1E_SII_BOOTSTRAP, CM1E_SII_BOOTSTRAP_BYTES);
     } else {
         eeprom->byte_size = (uint32_t)cm1e_xml_child_number(reader, child, "ByteSize", 0, INT32_MAX, 0);
         eeprom->config_data = cm1e_xml_hex(reader, cm1e_xml_child(child, "ConfigData"));

@@ -12,7 +12,6 @@
 #include "generate/file.h"
 
 static const cm1e_device_options_t one_cm1e = {0};
-enum { CONFIG_ALIAS = 8 }; /* byte of the configured station alias in the configuration words */
 
 void cm1e_file_free(cm1e_file_t *file)
 {
@@ -75,7 +74,7 @@ static cm1e_error_t describe_all(cm1e_description_file_t *described, const cm1e_
     for (size_t i = 0; i < count && error == CM1E_OK; i++) {
         cm1e_device_options_t device = devices[i];
         if (is_esi) /* it speaks of all devices of a kind: the alias of the one that was read is not theirs */
-            memset(device.config_data + CONFIG_ALIAS, 0, 2);
+            memset(device.config_data + CM1E_SII_ALIAS, 0, 2);
         error = cm1e_describe(described, &device, is_esi ? options->layout : CM1E_ESI_FLAT, diag);
     }
     return error;

@@ -6,6 +6,7 @@
 #include "cm1e/sdo_info.h"
 #include "cm1e/sii.h"
 #include "core/bytes.h"
+#include "description/describe.h"
 #include "description/sii.h"
 
 enum { OBJECTS_MAX = 0x10000, ENTRIES_MAX = 254 };
@@ -221,8 +222,10 @@ static cm1e_error_t describe_pdos(live_t *live)
     if (error != CM1E_OK || pdos.count == 0)
         return error;
     live->device->pdos = pdos;
-    error = read_assignment(live, OBJ_1C12_RXPDO_ASSIGN, 2);
-    return error == CM1E_OK ? read_assignment(live, OBJ_1C13_TXPDO_ASSIGN, 3) : error;
+    error = read_assignment(live, OBJ_1C12_RXPDO_ASSIGN, CM1E_SM_NUMBER_OUTPUTS);
+    if (error == CM1E_OK)
+        error = read_assignment(live, OBJ_1C13_TXPDO_ASSIGN, CM1E_SM_NUMBER_INPUTS);
+    return error;
 }
 
 /* ---- both ------------------------------------------------------------------------------------------------------- */

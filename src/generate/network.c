@@ -5,8 +5,6 @@
 #include "generate/file.h"
 #include "generate/live.h"
 
-enum { SM_OUTPUTS = 2, SM_INPUTS = 3 };
-
 /* What the tables say of a CM1-E of this firmware with the chosen mapping: start-up commands, sync managers, PDOs. */
 static cm1e_error_t describe_by_tables(cm1e_description_file_t *file, const cm1e_slave_info_t *slave,
                                        cm1e_mapping_t mapping, cm1e_diag_t *diag)
@@ -60,7 +58,7 @@ static void take_mappings(cm1e_arena_t *arena, cm1e_description_t *device, const
         for (size_t e = 0; e < found->entries.count; e++)
             *(cm1e_described_pdo_entry_t *)CM1E_APPEND(arena, &pdo->entries) = named(&found->entries.at[e], &tables);
     }
-    for (unsigned n = SM_OUTPUTS; n <= SM_INPUTS; n++)
+    for (unsigned n = CM1E_SM_NUMBER_OUTPUTS; n <= CM1E_SM_NUMBER_INPUTS; n++)
         device->sync_managers.at[n].length = (uint16_t)cm1e_description_process_bytes(device, n);
     device->revision = live->revision;
 }

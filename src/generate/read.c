@@ -11,8 +11,6 @@
 #include "generate/file.h"
 #include "generate/xml_read.h"
 
-enum { SII_LEAST_BYTES = 0x80 };
-
 static const struct {
     const char *root; /* element; NULL: no XML */
     const char *name;
@@ -70,10 +68,12 @@ static bool is_utf16(const uint8_t *bytes, size_t size)
 /* No text (which has no zeros), and its checksum or its size and version words say that it is an image. */
 static bool looks_like_sii(const uint8_t *bytes, size_t size)
 {
-    if (size < SII_LEAST_BYTES || size % 2 != 0 || is_utf16(bytes, size) || !memchr(bytes, 0, SII_LEAST_BYTES))
+    if (size < CM1E_SII_HEADER_BYTES || size % 2 != 0 || is_utf16(bytes, size) ||
+        !memchr(bytes, 0, CM1E_SII_HEADER_BYTES))
         return false;
-    const bool sized = bytes[0x7D] == 0 && bytes[0x7E] == 1 && bytes[0x7F] == 0;
-    return sized || cm1e_sii_crc8(bytes, 14) == bytes[14];
+    const bool sized =
+        bytes[CM1E_SII_KBIT + 1] == 0 && bytes[CM1E_SII_VERSION] == 1 && bytes[CM1E_SII_VERSION + 1] == 0;
+    return sized || cm1e_sii_crc8(bytes, CM1E_SII_CONFIG_BYTES) == bytes[CM1E_SII_CHECKSUM];
 }
 
 static cm1e_file_format_t recognise_utf16(const void *bytes, size_t size)

@@ -14,7 +14,7 @@ enum {
 };
 /* Times of an I2C EEPROM, roughly. */
 enum { READ_NS = 150000, WRITE_NS = 3000000, RELOAD_NS = 1000000 };
-enum { WORD_ALIAS = 4, WORD_CHECKSUM = 7, CONFIG_OFFERED_TO_PDI = 0x01 };
+enum { CONFIG_OFFERED_TO_PDI = 0x01 };
 
 static uint16_t control(const cm1e_sim_slave_t *slave) { return cm1e_get_u16(slave->memory + ESC_SII_CONTROL); }
 static void set_control(cm1e_sim_slave_t *slave, unsigned set, unsigned clear)
@@ -25,7 +25,7 @@ static void set_control(cm1e_sim_slave_t *slave, unsigned set, unsigned clear)
 static bool checksum_valid(const cm1e_sim_slave_t *slave)
 {
     return slave->sii_size >= CM1E_SII_HEADER_BYTES &&
-           cm1e_sii_crc8(slave->sii, 2 * WORD_CHECKSUM) == slave->sii[2 * WORD_CHECKSUM];
+           cm1e_sii_crc8(slave->sii, CM1E_SII_CONFIG_BYTES) == slave->sii[CM1E_SII_CHECKSUM];
 }
 
 static void load_configuration(cm1e_sim_slave_t *slave)
@@ -45,7 +45,7 @@ void cm1e_sim_esc_sii_power_on(cm1e_sim_slave_t *slave)
     load_configuration(slave);
     /* The alias is taken over by the first loading only: a reload does not change it (0x0012). */
     if (slave->sii_valid)
-        memcpy(slave->memory + ESC_STATION_ALIAS, slave->sii + 2 * WORD_ALIAS, 2);
+        memcpy(slave->memory + ESC_STATION_ALIAS, slave->sii + CM1E_SII_ALIAS, 2);
 }
 
 bool cm1e_sim_esc_sii_writable(const cm1e_sim_slave_t *slave)
