@@ -347,15 +347,26 @@ static cm1e_error_t generate_network(cm1e_file_t *file, generate_options_t *opti
     return error;
 }
 
-static int write_program(const generate_options_t *options)
+/* EXIT_WRONG_USE where the options do not fit together, but not what a file read has in it. */
+static int refuse(const generate_options_t *options, cm1e_error_t error, const cm1e_diag_t *diag)
 {
-    cm1e_file_t program;
+    if (diag->text[0])
+        fail(diag);
+    return error == CM1E_ERROR_CONFIG && !options->from ? EXIT_WRONG_USE : EXIT_FAILED;
+}
+
+/* Both files, or neither where one of them is refused. */
+static int write_files(const generate_options_t *options, const cm1e_file_t *file)
+{
+    cm1e_file_t program = {0};
     cm1e_diag_t diag = {0};
-    if (!options->program)
-        return EXIT_OK;
-    if (cm1e_generate_trio_program(&program, &options->what, &diag) != CM1E_OK)
-        return fail(&diag);
-    const bool written = write_output(options->program, program.bytes, program.size);
+    if (options->program) {
+        const cm1e_error_t error = cm1e_generate_trio_program(&program, &options->what, &diag);
+        if (error != CM1E_OK)
+            return refuse(options, error, &diag);
+    }
+    const bool written = write_output(options->file, file->bytes, file->size) &&
+                         (!options->program || write_output(options->program, program.bytes, program.size));
     cm1e_file_free(&program);
     return written ? EXIT_OK : EXIT_FAILED;
 }
@@ -379,14 +390,11 @@ int command_generate(int argc, char **argv)
     const cm1e_error_t error = options.from                              ? generate_from_file(&file, &options, &diag)
                                : options.what.format == CM1E_FILE_ENI ? generate_network(&file, &options, &diag)
                                                                       : cm1e_generate(&file, &options.what, &diag);
-    if (error != CM1E_OK) {
-        if (diag.text[0])
-            fail(&diag);
-        return error == CM1E_ERROR_CONFIG ? EXIT_WRONG_USE : EXIT_FAILED;
-    }
+    if (error != CM1E_OK)
+        return refuse(&options, error, &diag);
     if (file.warning[0])
         complain("%s", file.warning);
-    const bool written = write_output(options.file, file.bytes, file.size);
+    const int status = write_files(&options, &file);
     cm1e_file_free(&file);
-    return written ? write_program(&options) : EXIT_FAILED;
+    return status;
 }

@@ -318,6 +318,9 @@ WRONG = [
     (["generate", "esi", "-o", "x", "--device", "cm1-e", "--device", "cm1-e", "--mapping", "csp"], WRONG_USE,
      "the same product"),
     (["generate", "ec-extend", "-o", "x", "--program", "x"], WRONG_USE, "same file"),
+    (["generate", "ec-extend", "-o", "never", "--mapping", "csv", "--program", "y"], WRONG_USE, "dynamic or csp"),
+    (["generate", "sii", "-o", "x", "--number", "2", "--from", f"{SOURCE}/tests/golden/esi-cm1e-1.3.5-flat.xml"],
+     FAILED, "no device 2"),
     (["generate", "eni", "-o", "x"], WRONG_USE, "network"),
     (["generate", "eni", "-o", "x", "-b", f"{SOURCE}/examples/three_axes.yaml", "--mapping", "csp"], WRONG_USE,
      "bus file"),
@@ -336,10 +339,13 @@ WRONG = [
 
 
 def check_wrong():
+    """Nor is anything written then."""
     for words, status, word in WRONG:
         result = run("cm1e", *words)
-        expect(result.returncode == status and word in result.stderr, f"cm1e {' '.join(words)[:80]}: expected exit status "
-               f"{status} and \"{word}\"", result)
+        expect(result.returncode == status and word in result.stderr,
+               f"cm1e {' '.join(words)[:80]}: expected exit status {status} and \"{word}\"", result)
+    if os.path.exists("never"):
+        faults.append("a file was written although its program was refused")
 
 
 def main():
