@@ -34,6 +34,7 @@ static void step(cm1e_sim_bridge_t *bridge, double step_s)
         cm1e_sim_bridge_mode_due(bridge, axis);
         cm1e_sim_bridge_axis_step(axis, step_s);
         cm1e_sim_bridge_command_step(axis);
+        cm1e_sim_bridge_cml_step(bridge, axis);
     }
 }
 

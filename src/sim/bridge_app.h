@@ -8,6 +8,7 @@
  *   bridge_axis.c        one axis: power drive system, statusword, the motor with its errors (BR 6.1, 7.4)
  *   bridge_modes.c       modes of operation and the ways between them (BR 6, appendix 3)
  *   bridge_homing.c      origin search: hm and CMD (BR 6.4)
+ *   bridge_cml.c         CML strings (BR 7.2, appendix 2)
  *   bridge_command.c     CMD and CPIO (BR 7.1, appendix 1)
  *   store.c, servo.c, reference.c, search.c, mechanics.c  as with the CM1-E
  * What the guide (BR) leaves open is decided in docs/DEVICE.md. Like the simulated CM1-E it protects nobody.
@@ -29,6 +30,22 @@ enum {
     BRIDGE_STATUS_MOTOR_FREE = 0x10, BRIDGE_STATUS_TEMPERATURE = 0x80,
 };
 
+/** Answers of the motor that wait in the mailbox. */
+enum { CML_LINES = 8 };
+typedef struct cml_line {
+    int64_t due_ns;          /**< when it has come */
+    char text[CM1E_BRIDGE_CML_BYTES];
+} cml_line_t;
+
+typedef struct cm1e_sim_cml {
+    int64_t free_ns;         /**< the next string may be sent */
+    cml_line_t lines[CML_LINES];
+    unsigned first, count;
+    unsigned list_next;      /**< number of the K parameter to come; 0: no list under way */
+    int64_t list_due_ns;
+    bool searching;          /**< the end of an origin search is to be told */
+} cm1e_sim_cml_t;
+
 /** One motor and what the bridge does for it. */
 typedef struct cm1e_sim_bridge_axis {
     uint8_t number;          /**< 0 ... 3 */
@@ -48,8 +65,11 @@ typedef struct cm1e_sim_bridge_axis {
     int8_t mode, next_mode;  /**< 0x6061, and what it will be at mode_due_ns */
     int64_t mode_request_ns, mode_due_ns;
 
-    /* CMD */
+    bool abnormal;           /**< was in CMD or CPIO: csp works no more (BR 6, note 2) */
     unsigned same_words;     /**< cycles with the present controlword */
+    cm1e_sim_cml_t cml;
+
+    /* CMD */
     bool armed;              /**< 0007h was there long enough */
     uint8_t answer;          /**< high byte of the statusword */
 
@@ -167,7 +187,19 @@ void cm1e_sim_bridge_search_step(cm1e_sim_bridge_axis_t *axis, double step_s);
 /** Bit 0: input 1. */
 uint8_t cm1e_sim_bridge_inputs_of(const cm1e_sim_bridge_axis_t *axis);
 
+/* ---- bridge_cml.c ----------------------------------------------------------------------------------------------- */
+/** F581 ... F584; 0 or an abort code. */
+uint32_t cm1e_sim_bridge_cml_write(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, const uint8_t *data,
+                                   size_t size);
+/** F591 ... F594: takes the next answer out. */
+const char *cm1e_sim_bridge_cml_read(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
+void cm1e_sim_bridge_cml_step(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
+
 /* ---- bridge_command.c ------------------------------------------------------------------------------------------- */
+/** "Wait for 5 cycles of PDO sending" (BR appendix 1, 2): the controlword is there long enough. */
+bool cm1e_sim_bridge_word_is_sent(const cm1e_sim_bridge_axis_t *axis);
+/** ... and is 0000h: no controlwords go over the serial line. */
+bool cm1e_sim_bridge_line_is_free(const cm1e_sim_bridge_axis_t *axis);
 void cm1e_sim_bridge_command_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
 void cm1e_sim_bridge_command_step(cm1e_sim_bridge_axis_t *axis);
 uint16_t cm1e_sim_bridge_command_status(const cm1e_sim_bridge_axis_t *axis);

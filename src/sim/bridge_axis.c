@@ -64,7 +64,7 @@ static double target(const cm1e_sim_bridge_t *bridge, const cm1e_sim_bridge_axis
 
 static bool follows_targets(const cm1e_sim_bridge_axis_t *axis)
 {
-    return axis->mode == CM1E_BRIDGE_MODE_CSP || axis->mode == CM1E_BRIDGE_MODE_CPIO;
+    return (axis->mode == CM1E_BRIDGE_MODE_CSP && !axis->abnormal) || axis->mode == CM1E_BRIDGE_MODE_CPIO;
 }
 
 static void supervise(cm1e_sim_bridge_axis_t *axis, double step_s)
@@ -135,14 +135,14 @@ static void switch_on(cm1e_sim_bridge_axis_t *axis)
 /* The target is taken as it is: one that is not the actual position makes the motor jump. */
 void cm1e_sim_bridge_axis_begin_csp(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
 {
-    cm1e_sim_line_begin(&axis->line, &axis->servo, target(bridge, axis));
+    if (follows_targets(axis))
+        cm1e_sim_line_begin(&axis->line, &axis->servo, target(bridge, axis));
 }
 
 static void enable_operation(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
 {
     axis->state = OPERATION_ENABLED;
-    if (follows_targets(axis))
-        cm1e_sim_bridge_axis_begin_csp(bridge, axis);
+    cm1e_sim_bridge_axis_begin_csp(bridge, axis);
 }
 
 void cm1e_sim_bridge_axis_error(cm1e_sim_bridge_axis_t *axis, uint8_t status)
@@ -161,6 +161,7 @@ void cm1e_sim_bridge_axis_disable(cm1e_sim_bridge_axis_t *axis)
         release(axis, SWITCH_ON_DISABLED);
     cm1e_sim_bridge_search_abort(axis);
     axis->last_controlword = axis->controlword = 0;
+    axis->same_words = UINT16_MAX; /* none goes over the serial line any more */
 }
 
 void cm1e_sim_bridge_axis_ready(cm1e_sim_bridge_axis_t *axis)
@@ -234,13 +235,14 @@ static void drive_profile_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axi
 
 void cm1e_sim_bridge_axis_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
 {
+    axis->same_words = axis->controlword == axis->last_controlword ? axis->same_words + 1 : 1;
     if (axis->state == FAULT_REACTION_ACTIVE)
         axis->state = FAULT; /* 14 */
     else if (axis->mode == CM1E_BRIDGE_MODE_CMD)
         cm1e_sim_bridge_command_outputs(bridge, axis);
     else if (axis->mode == CM1E_BRIDGE_MODE_CPIO)
         cm1e_sim_bridge_cpio_outputs(bridge, axis);
-    else
+    else if (axis->mode != CM1E_BRIDGE_MODE_CML) /* there the controlword says nothing */
         drive_profile_outputs(bridge, axis);
     if (axis->state == OPERATION_ENABLED && follows_targets(axis))
         cm1e_sim_line_target(&axis->line, target(bridge, axis), CYCLE_S);
@@ -271,7 +273,7 @@ static unsigned mode_bits(const cm1e_sim_bridge_axis_t *axis)
         return (cm1e_sim_search_running(&axis->search) ? 0u : STATUSWORD_TARGET_REACHED) |
                (axis->search.phase == SEARCH_DONE ? STATUSWORD_HOMING_ATTAINED : 0u) |
                (axis->error ? STATUSWORD_HOMING_ERROR : 0u);
-    return axis->state == OPERATION_ENABLED && lag <= FOLLOWING_WINDOW_COUNTS ? STATUSWORD_BIT12 : 0u;
+    return axis->state == OPERATION_ENABLED && follows_targets(axis) && lag <= FOLLOWING_WINDOW_COUNTS ? STATUSWORD_BIT12 : 0u;
 }
 
 uint16_t cm1e_sim_bridge_statusword(const cm1e_sim_bridge_axis_t *axis)
@@ -309,7 +311,8 @@ void cm1e_sim_bridge_axis_power_on(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_ax
     axis->outputs = 0;
     axis->armed = false;
     axis->answer = 0;
-    axis->same_words = 0;
+    axis->same_words = UINT16_MAX; /* none has come yet */
+    axis->cml = (cm1e_sim_cml_t){0};
     axis->search = (cm1e_sim_search_t){0};
     cm1e_sim_bridge_mode_reset(axis);
     release(axis, NOT_READY_TO_SWITCH_ON);

@@ -11,6 +11,13 @@ enum {
 };
 enum { READY = 0x0007, CPIO = 0xC, CPIO_POSITION_CONTROL = 0x0F };
 
+bool cm1e_sim_bridge_word_is_sent(const cm1e_sim_bridge_axis_t *axis) { return axis->same_words >= SENT_CYCLES; }
+
+bool cm1e_sim_bridge_line_is_free(const cm1e_sim_bridge_axis_t *axis)
+{
+    return axis->controlword == 0 && cm1e_sim_bridge_word_is_sent(axis);
+}
+
 /* ---- CMD -------------------------------------------------------------------------------------------------------- */
 
 static void execute(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, uint8_t command)
@@ -48,7 +55,6 @@ void cm1e_sim_bridge_command_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_
 {
     const uint16_t word = axis->controlword;
     const bool is_free = word == (MOTOR_FREE << 8 | READY) || word == MOTOR_FREE << 8; /* the guide has both */
-    axis->same_words = word == axis->last_controlword ? axis->same_words + 1 : 1;
     if (axis->same_words != SENT_CYCLES)
         return;
     if (word == READY) {

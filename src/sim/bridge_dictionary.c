@@ -134,23 +134,30 @@ static int64_t present_value(const cm1e_sim_bridge_t *bridge, const cm1e_sim_cel
     return axis < 0 || index < 0x6000 ? *cell->value : value_of_axis(bridge, &bridge->axes[axis], cell);
 }
 
-static bool is_cml_answer(uint16_t index)
+/* The axis whose string this is, of four objects in a row; NULL: none of them. */
+static cm1e_sim_bridge_axis_t *axis_of_string(cm1e_sim_bridge_t *bridge, uint16_t index, uint16_t first)
 {
-    return index >= OBJ_F591_CML_RESPONSE_AXIS_1 && index < OBJ_F591_CML_RESPONSE_AXIS_1 + CM1E_BRIDGE_AXES;
+    return index >= first && index < first + CM1E_BRIDGE_AXES ? &bridge->axes[index - first] : NULL;
+}
+
+static const char *present_text(cm1e_sim_bridge_t *bridge, const cm1e_entry_t *entry)
+{
+    cm1e_sim_bridge_axis_t *axis = axis_of_string(bridge, entry->index, OBJ_F591_CML_RESPONSE_AXIS_1);
+    return axis ? cm1e_sim_bridge_cml_read(bridge, axis) : entry->default_string;
 }
 
 uint32_t cm1e_sim_bridge_sdo_read(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, uint8_t *data,
                                   size_t *size)
 {
     (void)al_state; /* the mailbox is there from Pre-Operational on (BR 5.2) */
-    const cm1e_sim_bridge_t *bridge = app;
+    cm1e_sim_bridge_t *bridge = app;
     cm1e_sim_cell_t cell;
     const uint32_t missing = cm1e_sim_store_find(&bridge->store, index, subindex, &cell);
     const uint32_t abort_code = missing ? missing : check_available(cell.entry);
     if (abort_code)
         return abort_code;
     return cell.entry->type == CM1E_TYPE_STRING
-               ? cm1e_sim_give_text(is_cml_answer(index) ? "Null\r\n" : cell.entry->default_string, data, size)
+               ? cm1e_sim_give_text(present_text(bridge, cell.entry), data, size)
                : cm1e_sim_give_number(cell.entry, present_value(bridge, &cell), data, size);
 }
 
@@ -190,8 +197,11 @@ uint32_t cm1e_sim_bridge_sdo_write(void *app, uint16_t index, uint8_t subindex, 
     cm1e_sim_cell_t cell;
     const uint32_t missing = cm1e_sim_store_find(&bridge->store, index, subindex, &cell);
     uint32_t abort_code = missing ? missing : check_available(cell.entry);
+    cm1e_sim_bridge_axis_t *sender = axis_of_string(bridge, index, OBJ_F581_CML_COMMAND_AXIS_1);
+    if (!abort_code && sender)
+        return cm1e_sim_bridge_cml_write(bridge, sender, data, size);
     if (!abort_code && cell.entry->type == CM1E_TYPE_STRING)
-        abort_code = cell.entry->access & CM1E_ACCESS_WRITE ? SDO_ABORT_STATE : SDO_ABORT_READ_ONLY;
+        abort_code = SDO_ABORT_READ_ONLY;
     if (!abort_code)
         abort_code = cm1e_sim_check_write(cell.entry, al_state, size);
     if (abort_code)

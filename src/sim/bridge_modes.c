@@ -5,8 +5,8 @@ enum { INTERVAL_NS = 5000000, SWITCH_NS = 2000000 };
 
 static bool is_mode(int8_t mode)
 {
-    return mode == CM1E_BRIDGE_MODE_HM || mode == CM1E_BRIDGE_MODE_CSP || mode == CM1E_BRIDGE_MODE_CMD ||
-           mode == CM1E_BRIDGE_MODE_CPIO;
+    return mode == CM1E_BRIDGE_MODE_HM || mode == CM1E_BRIDGE_MODE_CSP || mode == CM1E_BRIDGE_MODE_CML ||
+           mode == CM1E_BRIDGE_MODE_CMD || mode == CM1E_BRIDGE_MODE_CPIO;
 }
 
 /* The drawing of BR 6: hm from csp only, csp from hm and CML only, the other three from csp and from each other. */
@@ -53,13 +53,16 @@ void cm1e_sim_bridge_mode_due(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t 
         axis->servo.reference_velocity = 0; /* nothing moves it on any more */
     if (axis->mode == CM1E_BRIDGE_MODE_HM)
         axis->search = (cm1e_sim_search_t){0};
-    if (from == CM1E_BRIDGE_MODE_HM && axis->state == OPERATION_ENABLED)
+    if (axis->mode == CM1E_BRIDGE_MODE_CMD || axis->mode == CM1E_BRIDGE_MODE_CPIO)
+        axis->abnormal = true;
+    if (axis->mode == CM1E_BRIDGE_MODE_CSP && axis->state == OPERATION_ENABLED)
         cm1e_sim_bridge_axis_begin_csp(bridge, axis);
 }
 
 void cm1e_sim_bridge_mode_reset(cm1e_sim_bridge_axis_t *axis)
 {
     axis->mode = axis->next_mode = CM1E_BRIDGE_MODE_CSP;
+    axis->abnormal = false;
     axis->mode_request_ns = INT64_MIN / 2;
     axis->mode_due_ns = INT64_MAX;
 }

@@ -2,7 +2,7 @@
  * in csp (BR 6.5). */
 #include "sim_bridge_bench.h"
 
-enum { HM = 6, CSP = 8, CMD = 120, CPIO = 121 };
+enum { HM = 6, CSP = 8, CML = 101, CMD = 120, CPIO = 121 };
 
 static bench_t b;
 
@@ -36,10 +36,11 @@ static void test_every_axis_starts_in_csp_and_switches_alone(void)
 /* The drawing of BR 6: from the row's mode to the column's. */
 static void test_the_ways_between_the_modes(void)
 {
-    static const int8_t modes[] = {CSP, HM, CMD, CPIO};
-    static const bool leads[4][4] = {{1, 1, 1, 1}, {1, 1, 0, 0}, {0, 0, 1, 1}, {0, 0, 1, 1}};
-    for (int from = 0; from < 4; from++)
-        for (int to = 0; to < 4; to++) {
+    static const int8_t modes[] = {CSP, HM, CML, CMD, CPIO};
+    static const bool leads[5][5] = {
+        {1, 1, 1, 1, 1}, {1, 1, 0, 0, 0}, {1, 0, 1, 1, 1}, {0, 0, 1, 1, 1}, {0, 0, 1, 1, 1}};
+    for (int from = 0; from < 5; from++)
+        for (int to = 0; to < 5; to++) {
             char where[40];
             snprintf(where, sizeof where, "%d to %d", modes[from], modes[to]);
             tearDown();

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The simulated Cool MUSCLE Bridge over a veth pair: `cm1e scan` finds it, and pysoem, a master that is not ours, scans it,
-reads and writes its objects, and runs it with 24 + 24 bytes.
+"""The simulated Cool MUSCLE Bridge over a veth pair: `cm1e scan` finds it, and pysoem, a master that is not ours, scans
+it, reads and writes its objects, sends a CML query, and runs it with 24 + 24 bytes.
 
 test_bridge.py CM1E PYTHON: starts the segment and runs itself with --master in the master's namespace.
 """
@@ -43,6 +43,24 @@ def check_objects(pysoem, slave):
         check_abort(pysoem, 0x06010002, lambda o=offset: slave.sdo_write(0x6041 + o, 0, b"\0\0"), "read-only")
 
 
+def check_cml(slave):
+    """A query on the second axis, in Pre-Operational, where no controlwords keep its serial line busy."""
+    slave.sdo_write(0x6860, 0, struct.pack("<b", 101))
+    wire.wait_for(lambda: number(slave, 0x6861) == 101, 1.0, "CML not reached")
+    slave.sdo_write(0xF582, 0, b"?99.2")
+    answers = []
+
+    def answered():
+        answers.append(slave.sdo_read(0xF592, 0))
+        return answers[-1] != b"Null\r\n"
+    wire.wait_for(answered, 1.0, "no answer to ?99.2")
+    wire.check(answers[-1] == b"Ux.2=8\r\n", f"?99.2: {answers}")
+    wire.check(slave.sdo_read(0xF592, 0) == b"Null\r\n", "the answer came twice")
+    time.sleep(0.01)
+    slave.sdo_write(0x6860, 0, struct.pack("<b", 8))
+    wire.wait_for(lambda: number(slave, 0x6861) == 8, 1.0, "csp not reached")
+
+
 def exchange(master, slave, words):
     slave.output = b"".join(struct.pack("<Hi", word, target) for word, target in words)
     master.send_processdata()
@@ -59,6 +77,7 @@ def run_master():
     wire.check((slave.man, slave.id) == (VENDOR, PRODUCT), f"identity {slave.man:08X} {slave.id:08X}")
     wire.wait_for(lambda: (master.read_state(), slave.state == pysoem.PREOP_STATE)[1], 2.0, "Pre-Op not reached")
     check_objects(pysoem, slave)
+    check_cml(slave)
     master.config_map()
     wire.check((len(slave.output), len(slave.input)) == (24, 24), f"{len(slave.output)} + {len(slave.input)} bytes")
     wire.check(master.state_check(pysoem.SAFEOP_STATE, 1_000_000) == pysoem.SAFEOP_STATE, "Safe-Op not reached")
@@ -92,7 +111,7 @@ def run_master():
     master.state = pysoem.INIT_STATE
     master.write_state()
     master.close()
-    print("pysoem: identity, SDOs with their aborts, 24 + 24 bytes, Op, 1,500 good cycles, four axes moved")
+    print("pysoem: identity, SDOs with their aborts, a CML query, 24 + 24 bytes, Op, 1,500 good cycles, four axes moved")
 
 
 def main(cm1e, python):
