@@ -67,29 +67,61 @@ static bool write_all(FILE *file, const void *bytes, size_t size)
     return fwrite(bytes, 1, size, file) == size && fflush(file) == 0;
 }
 
+/* A new file beside `path`, under a name that nobody has, with the rights that `path` has or would get. NULL: errno. */
+static FILE *create_beside(const char *path, const struct stat *present, char *temporary)
+{
+    sprintf(temporary, "%s.XXXXXX", path);
+    const int descriptor = mkstemp(temporary);
+    const mode_t mask = umask(0);
+    umask(mask);
+    FILE *file = descriptor >= 0 ? fdopen(descriptor, "wb") : NULL;
+    if (file && fchmod(descriptor, present ? present->st_mode & 07777 : 0666 & ~mask) == 0)
+        return file;
+    const int error = errno;
+    if (file)
+        fclose(file);
+    if (descriptor >= 0)
+        remove(temporary);
+    errno = error;
+    return NULL;
+}
+
+static bool write_and_rename(const char *path, const struct stat *present, const void *bytes, size_t size)
+{
+    char *temporary = malloc(strlen(path) + sizeof ".XXXXXX");
+    FILE *file = temporary ? create_beside(path, present, temporary) : NULL;
+    bool good = file && write_all(file, bytes, size);
+    good = file && fclose(file) == 0 && good && rename(temporary, path) == 0;
+    if (file && !good) {
+        const int error = errno;
+        remove(temporary);
+        errno = error;
+    }
+    free(temporary);
+    return good;
+}
+
 bool write_output(const char *path, const void *bytes, size_t size)
 {
-    char temporary[4096];
     if (strcmp(path, "-") == 0) {
         const bool written = write_all(stdout, bytes, size);
         if (!written)
             complain("cannot write to standard output: %s", strerror(errno));
         return written;
     }
-    /* Not a plain file (a device, a pipe): nothing to rename. */
     struct stat about;
-    const bool special = stat(path, &about) == 0 && !S_ISREG(about.st_mode);
-    if ((size_t)snprintf(temporary, sizeof temporary, special ? "%s" : "%s.part", path) >= sizeof temporary) {
-        complain("the file name is too long");
-        return false;
+    const bool there = stat(path, &about) == 0;
+    bool good;
+    if (there && !S_ISREG(about.st_mode)) { /* a device, a pipe: nothing to rename */
+        FILE *file = fopen(path, "wb");
+        good = file && write_all(file, bytes, size);
+        good = file && fclose(file) == 0 && good;
+    } else {
+        char *linked = there ? realpath(path, NULL) : NULL; /* a link stays one */
+        good = write_and_rename(linked ? linked : path, there ? &about : NULL, bytes, size);
+        free(linked);
     }
-    FILE *file = fopen(temporary, "wb");
-    bool good = file && write_all(file, bytes, size);
-    good = file && fclose(file) == 0 && good && (special || rename(temporary, path) == 0);
-    if (!good) {
+    if (!good)
         complain("cannot write %s: %s", path, strerror(errno));
-        if (file && !special)
-            remove(temporary);
-    }
     return good;
 }

@@ -85,6 +85,7 @@ def check_files(folder):
     check_configuration_words(folder)
     check_hostile_names(folder)
     check_lost_output(folder)
+    check_kept_files(folder)
     check_dictionary()
     check_sii(folder)
     check_diff(folder)
@@ -137,6 +138,24 @@ def check_diff_of_network(folder):
                  for finding in slave["findings"] if finding["rule"] == "differs"]
         expect(result.returncode == (FAILED if wanted else 0) and len(texts) == wanted
                and all(line > 0 and word in text for line, text in texts), f"diff of an ENI: {word}", result)
+
+
+def check_kept_files(folder):
+    """A file that is written again keeps its rights, a link stays a link, and no other file is touched."""
+    path, link, beside = (os.path.join(folder, name) for name in ("kept.sii", "link.sii", "kept.sii.part"))
+    with open(beside, "w", encoding="utf-8") as file:
+        file.write("of somebody else")
+    for name in (path, link):
+        written = run("cm1e", "generate", "sii", "--serial", "5", "-o", name)
+        expect(written.returncode == 0 and os.path.getsize(path) == 2048, f"writing {name}", written)
+        if name == path:
+            os.chmod(path, 0o640)
+            os.truncate(path, 7)
+            os.symlink(path, link)
+    with open(beside, encoding="utf-8") as file:
+        expect(file.read() == "of somebody else" and os.path.islink(link) and os.stat(path).st_mode & 0o777 == 0o640
+               and sorted(name for name in os.listdir(folder) if name.startswith("kept")) ==
+               ["kept.sii", "kept.sii.part"], "files beside, links and rights", written)
 
 
 def check_lost_output(folder):
