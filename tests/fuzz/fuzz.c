@@ -55,7 +55,7 @@ void fuzz_fail(const char *format, ...)
     abort();
 }
 
-void fuzz_expect_same(const cm1e_file_t *first, const cm1e_file_t *second)
+static void expect_same(const cm1e_file_t *first, const cm1e_file_t *second)
 {
     size_t at = 0;
     while (at < first->size && at < second->size && first->bytes[at] == second->bytes[at])
@@ -65,8 +65,31 @@ void fuzz_expect_same(const cm1e_file_t *first, const cm1e_file_t *second)
                   "---- before it was:\n%.200s", at, second->bytes + at, first->bytes + at);
 }
 
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
+{
+    cm1e_file_t first = {0}, second = {0};
+    if (fuzz_rewrite(&first, bytes, size, false)) {
+        fuzz_rewrite(&second, first.bytes, first.size, true);
+        expect_same(&first, &second);
+    }
+    cm1e_file_free(&first);
+    cm1e_file_free(&second);
+    return 0;
+}
+
+cm1e_findings_t *fuzz_findings(void)
+{
+    cm1e_findings_t *findings = cm1e_findings_create();
+    if (!findings)
+        fuzz_fail("no memory");
+    return findings;
+}
+
 void fuzz_use_findings(cm1e_findings_t *findings)
 {
+    cm1e_findings_sort(findings);
     for (size_t i = 0; i < cm1e_findings_count(findings); i++) {
         const cm1e_finding_t *finding = cm1e_findings_at(findings, i);
         if (strlen(finding->rule) == 0 || strlen(finding->text) == 0)

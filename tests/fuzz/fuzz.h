@@ -1,20 +1,22 @@
 /**
  * @file fuzz.h
- * What the fuzz targets share. A target is one file fuzz_<format>.c with a libFuzzer entry point and its seeds; CMake
- * finds it (preset `fuzz`), scripts/fuzz runs all of them. A target reads its input as the format, and what could be
- * read goes through the checker and through write, read, write: the second time must give the same bytes.
+ * What the fuzz targets share. A target is one file fuzz_<format>.c with fuzz_rewrite() and fuzz_seeds(); CMake finds
+ * it (preset `fuzz`), scripts/fuzz runs all of them. An input that can be read goes through the checker and through
+ * write, read, write: the second time must give the same bytes.
  */
 #ifndef CM1E_TESTS_FUZZ_H
 #define CM1E_TESTS_FUZZ_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #include "cm1e/generate.h"
 #include "description/check.h"
 
-/** The target: returns 0, or does not return. */
-int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
+/** Every target's: reads the format, checks it, writes it anew. False: it cannot be read or written, and `written` holds
+ *  nothing. `must`: our own writer wrote it, so that this would be a finding. */
+bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool must);
 
 /** Every target's: hands its good files to fuzz_seed(), made by our own writers. */
 void fuzz_seeds(void);
@@ -25,9 +27,9 @@ const cm1e_device_options_t *fuzz_devices(size_t *count);
 
 /** A finding: says what is wrong, and ends the program so that libFuzzer keeps the input. */
 _Noreturn void fuzz_fail(const char *format, ...) __attribute__((format(printf, 1, 2)));
-/** Both must hold the same bytes. */
-void fuzz_expect_same(const cm1e_file_t *first, const cm1e_file_t *second);
-/** Reads every byte of every finding, and frees them. */
+/** Empty ones, for fuzz_use_findings(). */
+cm1e_findings_t *fuzz_findings(void);
+/** Sorts findings, reads every byte of each, and frees them. */
 void fuzz_use_findings(cm1e_findings_t *findings);
 
 #endif
