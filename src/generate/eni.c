@@ -10,7 +10,6 @@ const char *const cm1e_eni_transition_names[CM1E_ENI_TRANSITION_COUNT] = {
 #undef NAME
 };
 const char *const cm1e_eni_state_names[CM1E_ENI_STATE_COUNT] = {"INIT", "PREOP", "SAFEOP", "OP"};
-const char *const cm1e_eni_use_names[CM1E_SM_INPUTS + 1] = {NULL, "MBoxOut", "MBoxIn", "Outputs", "Inputs"};
 
 void cm1e_eni_free(cm1e_eni_t *document)
 {

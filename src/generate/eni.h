@@ -215,8 +215,6 @@ void cm1e_eni_compare(cm1e_findings_t *findings, const cm1e_eni_t *document, uin
 
 extern const char *const cm1e_eni_transition_names[CM1E_ENI_TRANSITION_COUNT];
 extern const char *const cm1e_eni_state_names[CM1E_ENI_STATE_COUNT];
-/** Texts of a sync manager's Type, by cm1e_sync_manager_use_t; CM1E_SM_UNUSED: NULL. */
-extern const char *const cm1e_eni_use_names[CM1E_SM_INPUTS + 1];
 
 /** A zeroed command with every "not given". */
 cm1e_eni_command_t cm1e_eni_command(uint8_t code);

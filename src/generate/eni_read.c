@@ -1,6 +1,7 @@
 #include <string.h>
 
 #include "generate/eni.h"
+#include "generate/words.h"
 #include "generate/xml_read.h"
 
 typedef cm1e_xml_reader_t reader_t;
@@ -150,11 +151,9 @@ static bool read_range(reader_t *r, const xmlNode *node, cm1e_eni_range_t *range
 
 static cm1e_sync_manager_use_t read_use(reader_t *r, const xmlNode *node)
 {
-    const char *text = cm1e_xml_child_text(r, node, "Type", "");
-    for (int use = 0; use <= CM1E_SM_INPUTS; use++)
-        if (cm1e_eni_use_names[use] && strcasecmp(cm1e_eni_use_names[use], text) == 0)
-            return (cm1e_sync_manager_use_t)use;
-    return CM1E_SM_UNUSED; /* "Sm0": TwinCAT's for one that nothing goes through */
+    /* "Sm0" is TwinCAT's for one that nothing goes through. */
+    return (cm1e_sync_manager_use_t)cm1e_word_value(cm1e_words_of_sync_managers,
+                                                    cm1e_xml_child_text(r, node, "Type", ""), CM1E_SM_UNUSED);
 }
 
 static void read_sync_manager(reader_t *r, const xmlNode *node, unsigned number, cm1e_eni_sync_manager_t *into)

@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "generate/eni.h"
+#include "generate/words.h"
 #include "generate/xml_write.h"
 
 typedef cm1e_xml_writer_t writer_t;
@@ -140,11 +141,11 @@ static void put_range(writer_t *w, const char *name, const cm1e_eni_range_t *ran
 
 static void put_sync_manager(writer_t *w, const cm1e_eni_sync_manager_t *manager)
 {
+    const char *use = cm1e_word_text(cm1e_words_of_sync_managers, manager->manager.use);
     char name[8];
     snprintf(name, sizeof name, "Sm%u", manager->number);
     cm1e_xml_open(w, name);
-    cm1e_xml_put(w, "Type", "%s", cm1e_eni_use_names[manager->manager.use] ? cm1e_eni_use_names[manager->manager.use]
-                                                                          : name);
+    cm1e_xml_put(w, "Type", "%s", use ? use : name);
     if (manager->manager.minimum_length > 0)
         put_number(w, "MinSize", manager->manager.minimum_length);
     if (manager->manager.maximum_length > 0)

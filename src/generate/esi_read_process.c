@@ -3,21 +3,7 @@
 #include "core/bytes.h"
 #include "description/sii.h"
 #include "generate/esi_read.h"
-
-/* A word of a list, whatever its case; `fallback` where it is none of them. */
-typedef struct word {
-    const char *text;
-    int value;
-} word_t;
-
-static int value_of(const word_t *words, size_t count, const char *text, int fallback)
-{
-    for (size_t i = 0; i < count; i++)
-        if (strcasecmp(words[i].text, text) == 0)
-            return words[i].value;
-    return fallback;
-}
-#define VALUE_OF(words, text, fallback) value_of(words, sizeof(words) / sizeof(words)[0], text, fallback)
+#include "generate/words.h"
 
 /* ---- process data ----------------------------------------------------------------------------------------------- */
 
@@ -65,24 +51,22 @@ void cm1e_esi_read_pdos(cm1e_xml_reader_t *reader, const xmlNode *parent, cm1e_p
 
 static void read_fmmus(cm1e_xml_reader_t *reader, const xmlNode *node, cm1e_description_t *device)
 {
-    static const word_t uses[] = {
-        {"Outputs", CM1E_FMMU_OUTPUTS}, {"Inputs", CM1E_FMMU_INPUTS}, {"MBoxState", CM1E_FMMU_MAILBOX_STATE}};
     for (const xmlNode *child = cm1e_xml_child(node, "Fmmu"); child; child = cm1e_xml_next(child, "Fmmu")) {
         cm1e_described_fmmu_t *fmmu = CM1E_APPEND(reader->arena, &device->fmmus);
         fmmu->place = cm1e_xml_line(child);
-        fmmu->use = (cm1e_fmmu_use_t)VALUE_OF(uses, cm1e_xml_text(reader, child), CM1E_FMMU_UNUSED);
+        fmmu->use = (cm1e_fmmu_use_t)cm1e_word_value(cm1e_words_of_fmmus, cm1e_xml_text(reader, child),
+                                                     CM1E_FMMU_UNUSED);
     }
 }
 
 static void read_sync_managers(cm1e_xml_reader_t *reader, const xmlNode *node, cm1e_description_t *device)
 {
-    static const word_t uses[] = {{"MBoxOut", CM1E_SM_MAILBOX_OUT}, {"MBoxIn", CM1E_SM_MAILBOX_IN},
-                                  {"Outputs", CM1E_SM_OUTPUTS}, {"Inputs", CM1E_SM_INPUTS}};
     for (const xmlNode *child = cm1e_xml_child(node, "Sm"); child; child = cm1e_xml_next(child, "Sm")) {
         cm1e_described_sync_manager_t *manager = CM1E_APPEND(reader->arena, &device->sync_managers);
         const int64_t length = cm1e_xml_attribute_number(reader, child, "DefaultSize", 0, UINT16_MAX, -1);
         manager->place = cm1e_xml_line(child);
-        manager->use = (cm1e_sync_manager_use_t)VALUE_OF(uses, cm1e_xml_text(reader, child), CM1E_SM_UNUSED);
+        manager->use = (cm1e_sync_manager_use_t)cm1e_word_value(cm1e_words_of_sync_managers,
+                                                                cm1e_xml_text(reader, child), CM1E_SM_UNUSED);
         manager->start = (uint16_t)cm1e_xml_attribute_number(reader, child, "StartAddress", 0, UINT16_MAX, 0);
         manager->length_given = length >= 0;
         manager->length = length >= 0 ? (uint16_t)length : 0;
@@ -98,16 +82,14 @@ static void read_sync_managers(cm1e_xml_reader_t *reader, const xmlNode *node, c
 
 void cm1e_esi_read_init_commands(cm1e_xml_reader_t *reader, const xmlNode *coe, cm1e_init_command_list_t *commands)
 {
-    static const word_t transitions[] = {{"IP", CM1E_TRANSITION_IP}, {"PS", CM1E_TRANSITION_PS},
-                                         {"SO", CM1E_TRANSITION_SO}, {"SP", CM1E_TRANSITION_SP},
-                                         {"OP", CM1E_TRANSITION_OP}, {"OS", CM1E_TRANSITION_OS}};
     for (const xmlNode *node = cm1e_xml_child(coe, "InitCmd"); node; node = cm1e_xml_next(node, "InitCmd")) {
         cm1e_init_command_t *command = CM1E_APPEND(reader->arena, commands);
         const xmlNode *data = cm1e_xml_child(node, "Data");
         command->place = cm1e_xml_line(node);
         for (const xmlNode *child = cm1e_xml_child(node, "Transition"); child;
              child = cm1e_xml_next(child, "Transition"))
-            command->transitions |= (uint8_t)VALUE_OF(transitions, cm1e_xml_text(reader, child), 0);
+            command->transitions |=
+                (uint8_t)cm1e_word_value(cm1e_words_of_transitions, cm1e_xml_text(reader, child), 0);
         command->index = cm1e_esi_index(reader, cm1e_xml_need(reader, node, "Index"), &command->depends_on_slot);
         command->subindex = (uint8_t)cm1e_xml_child_number(reader, node, "SubIndex", 0, UINT8_MAX, 0);
         command->fixed = cm1e_xml_attribute_flag(reader, node, "Fixed", false);

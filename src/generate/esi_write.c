@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "generate/esi.h"
+#include "generate/words.h"
 
 /*
  * The order of elements and attributes is that of ETG.2000 (EtherCATInfo.xsd, EtherCATBase.xsd 1.14); "#x" numbers,
@@ -93,17 +94,13 @@ static void put_pdos(cm1e_xml_writer_t *xml, const cm1e_pdo_list_t *pdos)
 
 static void put_fmmu(cm1e_xml_writer_t *xml, const cm1e_described_fmmu_t *fmmu)
 {
-    static const char *const names[] = {
-        [CM1E_FMMU_UNUSED] = "", [CM1E_FMMU_OUTPUTS] = "Outputs", [CM1E_FMMU_INPUTS] = "Inputs",
-        [CM1E_FMMU_MAILBOX_STATE] = "MBoxState"};
-    put_text(xml, "Fmmu", names[fmmu->use]);
+    const char *use = cm1e_word_text(cm1e_words_of_fmmus, fmmu->use);
+    put_text(xml, "Fmmu", use ? use : "");
 }
 
 static void put_sync_manager(cm1e_xml_writer_t *xml, const cm1e_described_sync_manager_t *manager)
 {
-    static const char *const names[] = {
-        [CM1E_SM_UNUSED] = "", [CM1E_SM_MAILBOX_OUT] = "MBoxOut", [CM1E_SM_MAILBOX_IN] = "MBoxIn",
-        [CM1E_SM_OUTPUTS] = "Outputs", [CM1E_SM_INPUTS] = "Inputs"};
+    const char *use = cm1e_word_text(cm1e_words_of_sync_managers, manager->use);
     cm1e_xml_open(xml, "Sm");
     if (manager->minimum_length > 0)
         cm1e_xml_put_attribute(xml, "MinSize", "%u", manager->minimum_length);
@@ -114,7 +111,7 @@ static void put_sync_manager(cm1e_xml_writer_t *xml, const cm1e_described_sync_m
     cm1e_xml_put_attribute(xml, "StartAddress", "#x%04X", manager->start);
     cm1e_xml_put_attribute(xml, "ControlByte", "#x%02X", manager->control);
     cm1e_xml_put_attribute(xml, "Enable", "%u", manager->enable);
-    cm1e_xml_put_text(xml, "%s", names[manager->use]);
+    cm1e_xml_put_text(xml, "%s", use ? use : "");
     cm1e_xml_close(xml);
 }
 
@@ -122,17 +119,12 @@ static void put_sync_manager(cm1e_xml_writer_t *xml, const cm1e_described_sync_m
 
 static void put_init_command(cm1e_xml_writer_t *xml, const cm1e_init_command_t *command)
 {
-    static const struct {
-        uint8_t flag;
-        const char *name;
-    } transitions[] = {{CM1E_TRANSITION_IP, "IP"}, {CM1E_TRANSITION_PS, "PS"}, {CM1E_TRANSITION_SO, "SO"},
-                       {CM1E_TRANSITION_SP, "SP"}, {CM1E_TRANSITION_OP, "OP"}, {CM1E_TRANSITION_OS, "OS"}};
     cm1e_xml_open(xml, "InitCmd");
     put_flag_if(xml, "Fixed", command->fixed);
     put_flag_if(xml, "CompleteAccess", command->complete_access);
-    for (size_t i = 0; i < sizeof transitions / sizeof transitions[0]; i++)
-        if (command->transitions & transitions[i].flag)
-            put_text(xml, "Transition", transitions[i].name);
+    for (const cm1e_word_t *transition = cm1e_words_of_transitions; transition->text; transition++)
+        if (command->transitions & transition->value)
+            put_text(xml, "Transition", transition->text);
     cm1e_esi_put_index(xml, "Index", command->index, command->depends_on_slot);
     cm1e_xml_put(xml, "SubIndex", "%u", command->subindex);
     cm1e_xml_open(xml, "Data");
