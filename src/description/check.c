@@ -24,73 +24,64 @@ void cm1e_check_add(const cm1e_check_t *check, cm1e_rule_t rule, cm1e_place_t pl
 
 /* ---- looking up -------------------------------------------------------------------------------------------------- */
 
-static int by_key(const void *left, const void *right)
+static int by_number(const void *left, const void *right)
 {
-    const cm1e_check_entry_t *a = left, *b = right;
-    return a->key != b->key ? (a->key < b->key ? -1 : 1) : (a->order > b->order) - (a->order < b->order);
+    const cm1e_check_key_t *a = left, *b = right;
+    return a->number != b->number ? (a->number < b->number ? -1 : 1) : (a->order > b->order) - (a->order < b->order);
 }
 
-static int by_index(const void *left, const void *right)
+void cm1e_check_sort(void *items, size_t count, size_t item_size)
 {
-    const cm1e_check_index_t *a = left, *b = right;
-    return a->index != b->index ? (a->index < b->index ? -1 : 1) : (a->order > b->order) - (a->order < b->order);
+    if (count > 0)
+        qsort(items, count, item_size, by_number);
 }
 
-/* Place of the first of a key. */
-static size_t first_entry(const cm1e_check_t *check, uint32_t key)
+size_t cm1e_check_first(const void *items, size_t count, size_t item_size, uint32_t number)
 {
-    size_t low = 0, high = check->entry_count;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (check->entries[middle].key < key)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
-static size_t first_index(const cm1e_check_index_t *indexes, size_t count, uint16_t index)
-{
+    const uint8_t *bytes = items;
     size_t low = 0, high = count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        if (indexes[middle].index < index)
+        if (((const cm1e_check_key_t *)(const void *)(bytes + middle * item_size))->number < number)
             low = middle + 1;
         else
             high = middle;
     }
     return low;
+}
+
+/* Order of the first of an index; -1: there is none. */
+static ptrdiff_t find_index(const cm1e_check_key_t *keys, size_t count, uint16_t index)
+{
+    const size_t found = cm1e_check_first(keys, count, sizeof *keys, index);
+    return found < count && keys[found].number == index ? (ptrdiff_t)keys[found].order : -1;
 }
 
 const cm1e_check_entry_t *cm1e_check_find_entry(const cm1e_check_t *check, uint16_t index, uint8_t subindex)
 {
     const uint32_t key = (uint32_t)index << 8 | subindex;
     /* Of several, the last: a module's takes the place of the device's. */
-    const size_t behind = first_entry(check, key + 1);
-    return behind > 0 && check->entries[behind - 1].key == key ? &check->entries[behind - 1] : NULL;
+    const size_t behind = cm1e_check_first(check->entries, check->entry_count, sizeof *check->entries, key + 1);
+    return behind > 0 && check->entries[behind - 1].key.number == key ? &check->entries[behind - 1] : NULL;
 }
 
 const cm1e_described_object_t *cm1e_check_find_object(const cm1e_check_t *check, uint16_t index)
 {
-    const size_t count = check->device->objects.count, found = first_index(check->objects, count, index);
-    return found < count && check->objects[found].index == index
-               ? &check->device->objects.at[check->objects[found].order]
-               : NULL;
+    const ptrdiff_t found = find_index(check->objects, check->device->objects.count, index);
+    return found >= 0 ? &check->device->objects.at[found] : NULL;
 }
 
 const cm1e_described_pdo_t *cm1e_check_find_pdo(const cm1e_check_t *check, uint16_t index)
 {
-    const size_t count = check->device->pdos.count, found = first_index(check->pdos, count, index);
-    return found < count && check->pdos[found].index == index
-               ? &check->device->pdos.at[check->pdos[found].order]
-               : NULL;
+    const ptrdiff_t found = find_index(check->pdos, check->device->pdos.count, index);
+    return found >= 0 ? &check->device->pdos.at[found] : NULL;
 }
 
 const cm1e_described_pdo_t *cm1e_check_only_pdo(const cm1e_check_t *check, uint16_t index)
 {
-    const size_t count = check->device->pdos.count, found = first_index(check->pdos, count, index);
-    if (found + 1 < count && check->pdos[found + 1].index == index)
+    const size_t count = check->device->pdos.count;
+    const size_t found = cm1e_check_first(check->pdos, count, sizeof *check->pdos, index);
+    if (found + 1 < count && check->pdos[found + 1].number == index)
         return NULL;
     return cm1e_check_find_pdo(check, index);
 }
@@ -119,12 +110,12 @@ static void collect_entries(cm1e_check_t *check, cm1e_check_entry_t *entries)
     for (size_t i = 0, n = 0; i < objects.count; i++)
         for (size_t j = 0; j < objects.at[i].entries.count; j++, n++) {
             const cm1e_described_entry_t *entry = &objects.at[i].entries.at[j];
-            entries[n] = (cm1e_check_entry_t){(uint32_t)objects.at[i].index << 8 | entry->subindex, n, &objects.at[i],
-                                              entry};
+            entries[n] = (cm1e_check_entry_t){
+                {(uint32_t)objects.at[i].index << 8 | entry->subindex, n}, &objects.at[i], entry};
             if (entry->access & (CM1E_ACCESS_RXPDO | CM1E_ACCESS_TXPDO))
                 check->states_mappability = true;
         }
-    qsort(entries, check->entry_count, sizeof *entries, by_key);
+    cm1e_check_sort(entries, check->entry_count, sizeof *entries);
     check->entries = entries;
 }
 
@@ -137,20 +128,18 @@ static bool prepare(cm1e_check_t *check)
     for (size_t i = 0; i < objects; i++)
         check->entry_count += device->objects.at[i].entries.count;
     cm1e_check_entry_t *entries = take(check->arena, check->entry_count, sizeof *entries);
-    cm1e_check_index_t *object_indexes = take(check->arena, objects, sizeof *object_indexes);
-    cm1e_check_index_t *pdo_indexes = take(check->arena, pdos, sizeof *pdo_indexes);
+    cm1e_check_key_t *object_keys = take(check->arena, objects, sizeof *object_keys);
+    cm1e_check_key_t *pdo_keys = take(check->arena, pdos, sizeof *pdo_keys);
     if (check->arena->failed)
         return false;
     for (size_t i = 0; i < objects; i++)
-        object_indexes[i] = (cm1e_check_index_t){device->objects.at[i].index, i};
+        object_keys[i] = (cm1e_check_key_t){device->objects.at[i].index, i};
     for (size_t i = 0; i < pdos; i++)
-        pdo_indexes[i] = (cm1e_check_index_t){device->pdos.at[i].index, i};
-    if (objects > 0)
-        qsort(object_indexes, objects, sizeof *object_indexes, by_index);
-    if (pdos > 0)
-        qsort(pdo_indexes, pdos, sizeof *pdo_indexes, by_index);
-    check->objects = object_indexes;
-    check->pdos = pdo_indexes;
+        pdo_keys[i] = (cm1e_check_key_t){device->pdos.at[i].index, i};
+    cm1e_check_sort(object_keys, objects, sizeof *object_keys);
+    cm1e_check_sort(pdo_keys, pdos, sizeof *pdo_keys);
+    check->objects = object_keys;
+    check->pdos = pdo_keys;
     check->has_dictionary = objects > 0;
     if (check->entry_count > 0)
         collect_entries(check, entries);

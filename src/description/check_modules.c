@@ -1,48 +1,29 @@
-#include <stdlib.h>
-
 #include "description/check_private.h"
 
 /* Slots and the modules for them (ETG.5001, ETG.2000 Slots and Modules). */
 
-typedef struct ident {
-    uint32_t ident;
-    size_t order;
-} ident_t;
-
-static int by_ident(const void *left, const void *right)
-{
-    const ident_t *a = left, *b = right;
-    return a->ident != b->ident ? (a->ident < b->ident ? -1 : 1) : (a->order > b->order) - (a->order < b->order);
-}
-
-static ident_t *sorted_modules(const cm1e_check_t *check, const cm1e_description_file_t *file)
+/* By their idents; NULL: there are none, or no memory. */
+static cm1e_check_key_t *sorted_modules(const cm1e_check_t *check, const cm1e_description_file_t *file)
 {
     const size_t count = file->modules.count;
-    if (count == 0 || count > CM1E_ARENA_LIMIT / sizeof(ident_t))
+    if (count == 0 || count > CM1E_ARENA_LIMIT / sizeof(cm1e_check_key_t))
         return NULL;
-    ident_t *idents = cm1e_arena_take(check->arena, count * sizeof *idents);
+    cm1e_check_key_t *idents = cm1e_arena_take(check->arena, count * sizeof *idents);
     if (check->arena->failed)
         return NULL;
     for (size_t i = 0; i < count; i++)
-        idents[i] = (ident_t){file->modules.at[i].ident, i};
-    qsort(idents, count, sizeof *idents, by_ident);
+        idents[i] = (cm1e_check_key_t){file->modules.at[i].ident, i};
+    cm1e_check_sort(idents, count, sizeof *idents);
     return idents;
 }
 
-static bool has_ident(const ident_t *idents, size_t count, uint32_t ident)
+static bool has_ident(const cm1e_check_key_t *idents, size_t count, uint32_t ident)
 {
-    size_t low = 0, high = count;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (idents[middle].ident < ident)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < count && idents[low].ident == ident;
+    const size_t found = cm1e_check_first(idents, count, sizeof *idents, ident);
+    return found < count && idents[found].number == ident;
 }
 
-static void check_slot(const cm1e_check_t *check, const cm1e_slot_t *slot, size_t number, const ident_t *idents,
+static void check_slot(const cm1e_check_t *check, const cm1e_slot_t *slot, size_t number, const cm1e_check_key_t *idents,
                        size_t count)
 {
     const char *name = slot->name ? slot->name : "";
@@ -70,7 +51,7 @@ void cm1e_check_slots(const cm1e_check_t *check, const cm1e_description_file_t *
 {
     if (check->device->slots.count == 0)
         return;
-    const ident_t *idents = sorted_modules(check, file);
+    const cm1e_check_key_t *idents = sorted_modules(check, file);
     for (size_t i = 0; i < check->device->slots.count; i++)
         check_slot(check, &check->device->slots.at[i], i, idents, idents ? file->modules.count : 0);
 }
@@ -106,11 +87,11 @@ static void check_slot_dependence(const cm1e_check_t *check, const cm1e_module_t
 
 void cm1e_check_modules(const cm1e_check_t *check, const cm1e_description_file_t *file)
 {
-    const ident_t *idents = sorted_modules(check, file);
+    const cm1e_check_key_t *idents = sorted_modules(check, file);
     for (size_t i = 1; idents && i < file->modules.count; i++)
-        if (idents[i].ident == idents[i - 1].ident)
+        if (idents[i].number == idents[i - 1].number)
             cm1e_check_add(check, CM1E_RULE_MODULE_TWICE, file->modules.at[idents[i].order].place,
-                           "there are two modules with the ident 0x%08X", (unsigned)idents[i].ident);
+                           "there are two modules with the ident 0x%08X", (unsigned)idents[i].number);
     /* A module's dictionary may use the types of the device. */
     cm1e_check_sorted_types_t common = {0};
     for (size_t i = 0; i < file->devices.count && common.count == 0; i++)

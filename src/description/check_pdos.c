@@ -1,5 +1,3 @@
-#include <stdlib.h>
-
 #include "description/check_private.h"
 
 /* What PDOs map, beside the dictionary; and which of them rule each other out. */
@@ -125,33 +123,18 @@ void cm1e_check_own_pdos(const cm1e_check_t *check, const cm1e_pdo_list_t *pdos)
 /* ---- PDOs that exclude each other -------------------------------------------------------------------------------- */
 
 typedef struct exclusion {
+    cm1e_check_key_t key; /* the PDO that excludes in the upper half, the other one in the lower */
     uint16_t from, to;
-    size_t order; /* in the file */
     const cm1e_described_pdo_t *pdo;
     cm1e_place_t place;
 } exclusion_t;
 
-static int by_pair(const void *left, const void *right)
-{
-    const exclusion_t *a = left, *b = right;
-    if (a->from != b->from)
-        return a->from < b->from ? -1 : 1;
-    if (a->to != b->to)
-        return a->to < b->to ? -1 : 1;
-    return (a->order > b->order) - (a->order < b->order);
-}
+static uint32_t pair(uint16_t from, uint16_t to) { return (uint32_t)from << 16 | to; }
 
 static bool is_excluded(const exclusion_t *exclusions, size_t count, uint16_t from, uint16_t to)
 {
-    size_t low = 0, high = count;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (exclusions[middle].from < from || (exclusions[middle].from == from && exclusions[middle].to < to))
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < count && exclusions[low].from == from && exclusions[low].to == to;
+    const size_t found = cm1e_check_first(exclusions, count, sizeof *exclusions, pair(from, to));
+    return found < count && exclusions[found].key.number == pair(from, to);
 }
 
 static void check_exclusion(const cm1e_check_t *check, const exclusion_t *all, size_t count, size_t i)
@@ -159,7 +142,7 @@ static void check_exclusion(const cm1e_check_t *check, const exclusion_t *all, s
     const exclusion_t *e = &all[i];
     const char *kind = cm1e_check_pdo_kind(e->pdo);
     const cm1e_described_pdo_t *other = cm1e_check_find_pdo(check, e->to);
-    if (i > 0 && all[i - 1].from == e->from && all[i - 1].to == e->to) {
+    if (i > 0 && all[i - 1].key.number == e->key.number) {
         cm1e_check_add(check, CM1E_RULE_EXCLUDE_TWICE, e->place, "%s 0x%04X excludes 0x%04X twice", kind, e->from,
                        e->to);
         return;
@@ -195,9 +178,11 @@ void cm1e_check_excludes(const cm1e_check_t *check)
     for (size_t i = 0; i < device->pdos.count; i++)
         for (size_t j = 0; j < device->pdos.at[i].excludes.count; j++, n++) {
             const cm1e_exclude_t *exclude = &device->pdos.at[i].excludes.at[j];
-            all[n] = (exclusion_t){device->pdos.at[i].index, exclude->index, n, &device->pdos.at[i], exclude->place};
+            const uint16_t from = device->pdos.at[i].index;
+            all[n] = (exclusion_t){{pair(from, exclude->index), n}, from, exclude->index, &device->pdos.at[i],
+                                   exclude->place};
         }
-    qsort(all, count, sizeof *all, by_pair);
+    cm1e_check_sort(all, count, sizeof *all);
     for (size_t i = 0; i < count; i++)
         check_exclusion(check, all, count, i);
 }

@@ -7,20 +7,23 @@
 
 #include "description/check.h"
 
-/** One sub-index of a dictionary and where to find it: dictionaries are searched, not walked, because a file decides
- *  how large they are. */
+/** Begin of whatever is searched by a number: dictionaries and lists are not walked, because a file decides how large
+ *  they are. */
+typedef struct cm1e_check_key {
+    uint32_t number;
+    size_t order;   /**< in the file: of two with one number, the first comes first */
+} cm1e_check_key_t;
+/** Sorts `count` items that begin with a key. */
+void cm1e_check_sort(void *items, size_t count, size_t item_size);
+/** Place of the first item, of sorted ones, whose number is not below `number`; `count`: there is none. */
+size_t cm1e_check_first(const void *items, size_t count, size_t item_size, uint32_t number);
+
+/** One sub-index of a dictionary. */
 typedef struct cm1e_check_entry {
-    uint32_t key;   /**< index << 8 | sub-index */
-    size_t order;
+    cm1e_check_key_t key; /**< index << 8 | sub-index */
     const cm1e_described_object_t *object;
     const cm1e_described_entry_t *entry;
 } cm1e_check_entry_t;
-
-/** An object or a PDO by its index. */
-typedef struct cm1e_check_index {
-    uint16_t index;
-    size_t order;   /**< in the file */
-} cm1e_check_index_t;
 
 /** One device under check, its slots filled. */
 typedef struct cm1e_check {
@@ -34,8 +37,8 @@ typedef struct cm1e_check {
     /* By their number: whether a PDO, a start-up command is of a module that states no objects at all. */
     const bool *silent_pdos, *silent_commands;
     size_t entry_count;
-    const cm1e_check_entry_t *entries;       /**< sorted by key */
-    const cm1e_check_index_t *objects, *pdos;/**< sorted by index */
+    const cm1e_check_entry_t *entries;       /**< sorted */
+    const cm1e_check_key_t *objects, *pdos;  /**< by index, sorted */
 } cm1e_check_t;
 
 /** As cm1e_findings_add(), without what another slot or choice of modules already brought to light at that place. */
