@@ -289,8 +289,8 @@ void cm1e_check_mailbox(const cm1e_check_t *check)
     const bool used = mailbox->coe || mailbox->foe || mailbox->eoe || mailbox->soe || mailbox->voe || mailbox->aoe;
     if (used && (!out || !in))
         cm1e_check_add(check, CM1E_RULE_MAILBOX_WITHOUT_SYNC_MANAGER, device->mailbox.place,
-                       "there is a mailbox, but no sync manager for it %s",
-                       !out && !in ? "" : out ? "from the device" : "to the device");
+                       "there is a mailbox, but no sync manager for it%s",
+                       !out && !in ? "" : out ? " from the device" : " to the device");
     else if (first && !device->mailbox.present)
         cm1e_check_add(check, CM1E_RULE_MAILBOX_WITHOUT_PROTOCOL, first->place,
                        "there are sync managers for a mailbox, but no protocol for it is described");

@@ -32,13 +32,13 @@ static const struct {
 static const char profile_warning[] =
     "the profile mapping leaves the motion to the motor: MOVE and its like do not work with it, a program has to write "
     "DRIVE_CONTROLWORD; profile velocity and acceleration come from VR(300) on. For motions of the controller take the "
-    "mapping dynamic or csp. ";
+    "mapping dynamic or csp.";
 static const char csv_warning[] =
     "in CSV the controller closes the position loop: gains and the scale of its output have to be tuned before the "
-    "motor may turn. Take the mapping dynamic or csp unless you need it. ";
+    "motor may turn. Take the mapping dynamic or csp unless you need it.";
 static const char bridge_warning[] =
     "the bridge's guide does not say where its sync managers lie; here they are the CM1-E's. Compare the file with the "
-    "bridge before use (cm1e diff). ";
+    "bridge before use (cm1e diff).";
 
 /* One device on its way into the document. */
 typedef struct plan {
@@ -206,7 +206,7 @@ static void warn(plan_t *plan, const char *text)
 {
     const char *before = plan->lists.warning ? plan->lists.warning : "";
     if (!strstr(before, text))
-        plan->lists.warning = cm1e_arena_format(&plan->lists.arena, "%s%s", before, text);
+        plan->lists.warning = cm1e_arena_format(&plan->lists.arena, "%s%s%s", before, *before ? " " : "", text);
 }
 
 static void plan_slave(plan_t *plan, size_t n)

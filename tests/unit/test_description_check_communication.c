@@ -146,6 +146,11 @@ static cm1e_place_t one_way_mailbox(cm1e_description_file_t *file)
     manager(file, 1)->use = CM1E_SM_UNUSED;
     return DEVICE(file)->mailbox.place;
 }
+static cm1e_place_t mailbox_of_no_way(cm1e_description_file_t *file)
+{
+    manager(file, 0)->use = manager(file, 1)->use = CM1E_SM_UNUSED;
+    return DEVICE(file)->mailbox.place;
+}
 static cm1e_place_t mailbox_without_protocol(cm1e_description_file_t *file)
 {
     DEVICE(file)->mailbox = (cm1e_mailbox_protocols_t){0};
@@ -206,6 +211,7 @@ static const broken_t breaks[] = {
            "the mailbox in sync manager 1 has 1487 bytes; no frame carries more than 1486"),
     BREAKS(MAILBOX_WITHOUT_SYNC_MANAGER, one_way_mailbox,
            "there is a mailbox, but no sync manager for it from the device"),
+    BREAKS(MAILBOX_WITHOUT_SYNC_MANAGER, mailbox_of_no_way, "there is a mailbox, but no sync manager for it"),
     BREAKS(MAILBOX_WITHOUT_PROTOCOL, mailbox_without_protocol,
            "there are sync managers for a mailbox, but no protocol for it is described"),
     BREAKS(BOOTSTRAP_SIZE, shorten_bootstrap,
