@@ -82,6 +82,10 @@ typedef struct cm1e_sim_bridge_axis {
     int64_t zero;            /**< where 0x6064 is 0 */
     double lag_s, overload;  /**< how long the lag is too large; sum of the overload, s */
 
+    bool unplugged;
+    uint32_t broken_answers; /**< so many to come arrive broken */
+    unsigned silent_ms;      /**< since the last good answer */
+    int64_t known_position;  /**< 0x6064 while nothing is heard of the motor */
     uint32_t sent, received; /**< over the serial line (F530:9 ... F530:16) */
 } cm1e_sim_bridge_axis_t;
 
@@ -150,7 +154,9 @@ void cm1e_sim_bridge_axis_disable(cm1e_sim_bridge_axis_t *axis);
 void cm1e_sim_bridge_axis_step(cm1e_sim_bridge_axis_t *axis, double step_s);
 /** A millisecond of the serial line. */
 void cm1e_sim_bridge_axis_exchange(cm1e_sim_bridge_axis_t *axis);
-/** An error of the motor: one of BRIDGE_STATUS_... */
+/** The cable between bridge and motor. */
+void cm1e_sim_bridge_axis_plug(cm1e_sim_bridge_axis_t *axis, bool plugged);
+/** An error of the motor, or of the serial line to it: one of BRIDGE_STATUS_... */
 void cm1e_sim_bridge_axis_error(cm1e_sim_bridge_axis_t *axis, uint8_t status);
 /** What the low four bits of a controlword ask for (BR 6.1.2). */
 void cm1e_sim_bridge_axis_obey(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, unsigned controlword);
@@ -170,6 +176,7 @@ uint16_t cm1e_sim_bridge_statusword(const cm1e_sim_bridge_axis_t *axis);
 /** F530:5 ... F530:8 */
 uint8_t cm1e_sim_bridge_motor_status(const cm1e_sim_bridge_axis_t *axis);
 /** 0x6064 */
+int64_t cm1e_sim_bridge_shown_position(const cm1e_sim_bridge_axis_t *axis);
 int64_t cm1e_sim_bridge_position(const cm1e_sim_bridge_axis_t *axis);
 
 /* ---- bridge_modes.c --------------------------------------------------------------------------------------------- */

@@ -10,6 +10,7 @@
 #define OVERLOAD_LIMIT_S 0.5     /* i2t */
 #define PEAK_TO_RATED_TORQUE 1.25
 #define STANDSTILL_COUNTS_PER_S 100.0
+enum { SILENCE_MS = 10 };        /* without a good answer: an error of the serial line */
 enum { K_RESOLUTION = 37, K_ENABLE_AT_POWER_ON = 68 };
 enum { STATUSWORD_MOTOR_ERROR = 0x4000, STATUSWORD_MOTOR_FREE = 0x8000 };
 
@@ -30,11 +31,16 @@ void cm1e_sim_bridge_axis_torque(cm1e_sim_bridge_axis_t *axis, double percent)
     axis->servo.torque_limit = percent > 0 ? peak_torque() / PEAK_TO_RATED_TORQUE * percent / 100 : peak_torque();
 }
 
+int64_t cm1e_sim_bridge_shown_position(const cm1e_sim_bridge_axis_t *axis)
+{
+    return axis->unplugged ? axis->known_position : cm1e_sim_bridge_position(axis);
+}
+
 static void hold(cm1e_sim_bridge_axis_t *axis) { axis->servo.reference_velocity = 0; }
 
 void cm1e_sim_bridge_axis_power(cm1e_sim_bridge_axis_t *axis, bool on)
 {
-    if (on == !axis->motor_free)
+    if (on == !axis->motor_free || axis->unplugged) /* it does not hear */
         return;
     axis->motor_free = !on;
     cm1e_sim_bridge_axis_torque(axis, 0);
@@ -47,8 +53,8 @@ uint8_t cm1e_sim_bridge_output_mask(const cm1e_sim_bridge_axis_t *axis)
     return axis->motor == CM1E_BRIDGE_CM1 ? OUTPUTS_CM1 : OUTPUTS_CM2;
 }
 
-/* 0x607A on the scale of the mechanics, within what the resolution allows (BR appendix 5). It has 32 bits and wraps: the
- * nearest turn of the wheel is meant. */
+/* 0x607A on the scale of the mechanics, within what the resolution allows (BR appendix 5). It has 32 bits and wraps:
+ * the nearest turn of the wheel is meant. */
 static double target(const cm1e_sim_bridge_t *bridge, const cm1e_sim_bridge_axis_t *axis)
 {
     const int32_t limit = cm1e_bridge_position_limit(
@@ -88,16 +94,31 @@ void cm1e_sim_bridge_axis_step(cm1e_sim_bridge_axis_t *axis, double step_s)
     }
     if (cm1e_sim_search_running(&axis->search))
         cm1e_sim_bridge_search_step(axis, step_s);
+    else if (axis->unplugged)
+        hold(axis);
     else if (axis->state == OPERATION_ENABLED && follows_targets(axis))
         cm1e_sim_line_step(&axis->line, &axis->servo, CYCLE_S, step_s);
     cm1e_mechanics_step(&axis->mechanics, cm1e_servo_step(&axis->servo, &axis->mechanics, step_s), step_s);
     supervise(axis, step_s);
 }
 
+void cm1e_sim_bridge_axis_plug(cm1e_sim_bridge_axis_t *axis, bool plugged)
+{
+    axis->known_position = cm1e_sim_bridge_shown_position(axis);
+    axis->unplugged = !plugged;
+}
+
+/* One broken answer is counted, some in a row are an error of the line. Of a motor that nothing is heard of nothing is
+ * lost: it stands where it is. */
 void cm1e_sim_bridge_axis_exchange(cm1e_sim_bridge_axis_t *axis)
 {
+    const bool heard = !axis->unplugged && axis->broken_answers == 0;
     axis->sent++;
-    axis->received++;
+    axis->received += heard;
+    axis->broken_answers -= axis->broken_answers > 0;
+    axis->silent_ms = heard ? 0 : axis->silent_ms + 1;
+    if (axis->silent_ms >= SILENCE_MS && axis->error != BRIDGE_STATUS_SERIAL_ERROR)
+        cm1e_sim_bridge_axis_error(axis, BRIDGE_STATUS_SERIAL_ERROR);
 }
 
 bool cm1e_sim_bridge_axis_stands(const cm1e_sim_bridge_axis_t *axis)
@@ -217,6 +238,7 @@ void cm1e_sim_bridge_axis_obey(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t
 static void reset_fault(cm1e_sim_bridge_axis_t *axis)
 {
     axis->error = 0;
+    axis->silent_ms = 0;
     release(axis, SWITCH_ON_DISABLED); /* 15 */
 }
 
@@ -273,7 +295,8 @@ static unsigned mode_bits(const cm1e_sim_bridge_axis_t *axis)
         return (cm1e_sim_search_running(&axis->search) ? 0u : STATUSWORD_TARGET_REACHED) |
                (axis->search.phase == SEARCH_DONE ? STATUSWORD_HOMING_ATTAINED : 0u) |
                (axis->error ? STATUSWORD_HOMING_ERROR : 0u);
-    return axis->state == OPERATION_ENABLED && follows_targets(axis) && lag <= FOLLOWING_WINDOW_COUNTS ? STATUSWORD_BIT12 : 0u;
+    const bool follows = axis->state == OPERATION_ENABLED && follows_targets(axis) && lag <= FOLLOWING_WINDOW_COUNTS;
+    return follows ? STATUSWORD_BIT12 : 0u;
 }
 
 uint16_t cm1e_sim_bridge_statusword(const cm1e_sim_bridge_axis_t *axis)
@@ -304,6 +327,7 @@ void cm1e_sim_bridge_axis_power_on(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_ax
     axis->zero = 0;
     axis->zero = cm1e_sim_bridge_position(axis);
     axis->error = 0;
+    axis->silent_ms = 0;
     axis->sent = axis->received = 0;
     axis->controlword = axis->last_controlword = 0;
     axis->target_position = 0;

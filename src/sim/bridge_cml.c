@@ -113,8 +113,8 @@ static void take_k(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, int6
         *cm1e_sim_bridge_k(bridge, axis->number, (unsigned)number) = wanted;
 }
 
-/* A letter, perhaps a number, ".ID" (BR 1.4: that of the connector), perhaps "=value". What a motor does not understand,
- * or what is for another one, has no answer. */
+/* A letter, perhaps a number, ".ID" (BR 1.4: that of the connector), perhaps "=value". What a motor does not
+ * understand, or what is for another one, has no answer. */
 static void execute(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, int64_t due_ns, char *text)
 {
     char *rest = text + 1;
@@ -154,7 +154,7 @@ uint32_t cm1e_sim_bridge_cml_write(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_ax
     const bool busy = bridge->now_ns < axis->cml.free_ns;
     axis->cml.free_ns = bridge->now_ns + (size < LONG_BYTES ? SHORT_NS : LONG_NS);
     memcpy(text, data, size);
-    if (busy || !cm1e_sim_bridge_line_is_free(axis) || strpbrk(text, "\r\n"))
+    if (busy || axis->unplugged || !cm1e_sim_bridge_line_is_free(axis) || strpbrk(text, "\r\n"))
         return 0;
     for (char *next, *command = text; command; command = next) {
         next = strchr(command, ',');

@@ -95,5 +95,6 @@ void cm1e_sim_bridge_cpio_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axi
 uint16_t cm1e_sim_bridge_cpio_status(const cm1e_sim_bridge_axis_t *axis)
 {
     const unsigned inputs = cm1e_sim_bridge_inputs_of(axis), status = cm1e_sim_bridge_motor_status(axis);
-    return (uint16_t)(CPIO << 12 | (status & 0x0F) << 8 | (inputs & 0x0F) << 4 | (cm1e_sim_bridge_state_bits(axis) & 0x0F));
+    const unsigned state = cm1e_sim_bridge_state_bits(axis);
+    return (uint16_t)(CPIO << 12 | (status & 0x0F) << 8 | (inputs & 0x0F) << 4 | (state & 0x0F));
 }

@@ -27,7 +27,10 @@ static uint32_t check_available(const cm1e_entry_t *entry)
 enum { K_FIRST = 21, K_RESOLUTION = 37, K_SPEED = 42, K_ACCELERATION = 43, K_OFFSET = 48 };
 enum { K_50000_PULSES_PER_REVOLUTION = 10 };
 
-static uint16_t on_axis(unsigned axis, uint16_t index) { return (uint16_t)(index + CM1E_BRIDGE_INDEX_INCREMENT * axis); }
+static uint16_t on_axis(unsigned axis, uint16_t index)
+{
+    return (uint16_t)(index + CM1E_BRIDGE_INDEX_INCREMENT * axis);
+}
 
 int64_t *cm1e_sim_bridge_value(const cm1e_sim_bridge_t *bridge, unsigned axis, uint16_t index, uint8_t subindex)
 {
@@ -115,7 +118,7 @@ static int64_t value_of_axis(const cm1e_sim_bridge_t *bridge, const cm1e_sim_bri
     case OBJ_6040_CONTROLWORD: return axis->controlword;
     case OBJ_6041_STATUSWORD: return cm1e_sim_bridge_statusword(axis);
     case OBJ_6061_MODES_OF_OPERATION_DISPLAY: return axis->mode;
-    case OBJ_6064_POSITION_ACTUAL_VALUE: return cm1e_sim_bridge_position(axis);
+    case OBJ_6064_POSITION_ACTUAL_VALUE: return cm1e_sim_bridge_shown_position(axis);
     case OBJ_607A_TARGET_POSITION: return axis->target_position;
     case OBJ_60FD_DIGITAL_INPUTS:
         return cm1e_sim_bridge_io_available(axis) ? cm1e_sim_bridge_inputs_of(axis) & cell->entry->maximum : 0;

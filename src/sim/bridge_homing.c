@@ -1,6 +1,6 @@
 #include "sim/bridge_app.h"
 
-/* Where the sensors are is not the guide's affair: IN2 is that of CW, IN3 that of CCW, as behind the simulated CM1-E. */
+/* The guide does not say where the sensors are: IN2 is that of CW, IN3 that of CCW, as behind the simulated CM1-E. */
 #define SENSOR_EDGE_COUNTS 150000.0
 #define DEFAULT_TORQUE_PERCENT 30
 enum { INPUT_2 = 0x02, INPUT_3 = 0x04 };

@@ -94,6 +94,6 @@ void cm1e_sim_bridge_inputs(void *app, uint8_t *data, uint16_t size)
     for (unsigned place = 0; place < bridge->assigned[1]; place++, data += AXIS_BYTES) {
         const cm1e_sim_bridge_axis_t *axis = axis_at(bridge, true, place);
         cm1e_put_u16(data, cm1e_sim_bridge_statusword(axis));
-        cm1e_put_u32(data + POSITION_AT, (uint32_t)cm1e_sim_bridge_position(axis));
+        cm1e_put_u32(data + POSITION_AT, (uint32_t)cm1e_sim_bridge_shown_position(axis));
     }
 }

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sim/bridge_app.h"
 #include "sim/cm1e_app.h"
 #include "sim/esc.h"
 
@@ -29,7 +30,7 @@ typedef struct call {
 
 typedef struct command {
     const char *word;
-    enum { NO_SLAVE, ANY_SLAVE, DRIVE, DRIVE_OR_ALL } subject;
+    enum { NO_SLAVE, ANY_SLAVE, DRIVE, DRIVE_OR_ALL, BRIDGE } subject;
     int least, most;         /* arguments behind the slave */
     cm1e_error_t (*run)(call_t *call);
     const char *usage, *help;
@@ -110,10 +111,26 @@ static const char *mode_name(int32_t mode)
     return row ? row->abbreviation : "no mode";
 }
 
+static void say_bridge(call_t *call, uint32_t position, const cm1e_sim_bridge_t *bridge)
+{
+    say(call, "%u: %s, %s", position, cm1e_bridge_name(bridge->model),
+        al_state_name(cm1e_sim_slave_al_state(bridge->slave)));
+    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++) {
+        const cm1e_sim_bridge_axis_t *axis = &bridge->axes[i];
+        say(call, "; ID%u %s, mode %d, position %d, motor 0x%02X", i + 1, cm1e_fsa_name(axis->state), axis->mode,
+            (int)cm1e_sim_bridge_shown_position(axis), cm1e_sim_bridge_motor_status(axis));
+    }
+}
+
 static void say_status(call_t *call, uint32_t position)
 {
     cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(call->segment, position);
     cm1e_sim_cm1e_t *drive = cm1e_sim_cm1e_of(slave);
+    const cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(slave);
+    if (bridge) {
+        say_bridge(call, position, bridge);
+        return;
+    }
     if (!drive) {
         say(call, "%u: not a CM1-E, %s", position, al_state_name(cm1e_sim_slave_al_state(slave)));
         return;
@@ -291,6 +308,54 @@ static cm1e_error_t run_power_up_fault(call_t *call)
     return CM1E_OK;
 }
 
+/* ---- commands on a bridge --------------------------------------------------------------------------------------- */
+
+static cm1e_error_t motor_error(call_t *call, cm1e_sim_bridge_axis_t *axis)
+{
+    static const char *const names[] = {"position", "over-speed", "overload", "temperature", NULL};
+    static const uint8_t codes[] = {BRIDGE_STATUS_POSITION_OVERFLOW, BRIDGE_STATUS_OVER_SPEED, BRIDGE_STATUS_OVERLOAD,
+                                    BRIDGE_STATUS_TEMPERATURE};
+    const int n = choice(argument(call, 2), names);
+    if (n < 0)
+        return REFUSE(call, "\"%s\": expected position, over-speed, overload or temperature", argument(call, 2));
+    cm1e_sim_bridge_axis_error(axis, codes[n]);
+    say(call, "slave %u: motor %u has the error %s (0x%02X)", call->position, axis->number + 1u, names[n], codes[n]);
+    return CM1E_OK;
+}
+
+static cm1e_error_t break_answers(call_t *call, cm1e_sim_bridge_axis_t *axis)
+{
+    enum { ANSWERS_MAX = 1000000 };
+    long count;
+    if (!parse_whole(argument(call, 2), 10, 0, ANSWERS_MAX, &count))
+        return REFUSE(call, "\"%s\": expected a number of answers, 0 to %d", argument(call, 2), ANSWERS_MAX);
+    axis->broken_answers = (uint32_t)count;
+    say(call, "slave %u: the next %ld answers of motor %u arrive broken", call->position, count, axis->number + 1u);
+    return CM1E_OK;
+}
+
+static cm1e_error_t run_motor(call_t *call)
+{
+    enum { UNPLUG, REPLUG, BROKEN, ERROR };
+    static const char *const words[] = {"unplug", "replug", "broken", "error", NULL};
+    const int what = choice(argument(call, 1), words);
+    long id;
+    if (!parse_whole(argument(call, 0), 10, 1, CM1E_BRIDGE_AXES, &id))
+        return REFUSE(call, "\"%s\": expected the ID of a motor, 1 to %d", argument(call, 0), CM1E_BRIDGE_AXES);
+    if (what < 0)
+        return REFUSE(call, "\"%s\": expected unplug, replug, broken or error", argument(call, 1));
+    cm1e_sim_bridge_axis_t *axis = &cm1e_sim_bridge_of(call->slave)->axes[id - 1];
+    if (what == BROKEN)
+        return break_answers(call, axis);
+    if (what == ERROR)
+        return motor_error(call, axis);
+    if (argument(call, 2)[0])
+        return REFUSE(call, "\"%s\" is too much behind %s", argument(call, 2), words[what]);
+    cm1e_sim_bridge_axis_plug(axis, what == REPLUG);
+    say(call, "slave %u: cable to motor %ld %s", call->position, id, what == REPLUG ? "plugged in" : "unplugged");
+    return CM1E_OK;
+}
+
 /* ---- commands on cables, supply and frames ---------------------------------------------------------------------- */
 
 static cm1e_error_t run_power_cycle(call_t *call)
@@ -355,6 +420,8 @@ static const command_t commands[] = {
     {"error", DRIVE, 1, 2, run_error, "<slave> <code>|clear [hold]",
      "an error code of the guide's 7.3.1; hold: its cause stays until clear"},
     {"power-up-fault", DRIVE, 1, 1, run_power_up_fault, "<slave> <times>|always", "error 7510 at the next power-ups"},
+    {"motor", BRIDGE, 2, 3, run_motor, "<slave> <1...4> unplug|replug|broken <n>|error <which>",
+     "a bridge's motor: its cable, its next answers, an error"},
     {"power-cycle", ANY_SLAVE, 0, 1, run_power_cycle, "<slave> [ms]", "control power off and on again"},
     {"unplug", ANY_SLAVE, 0, 0, run_unplug, "<slave>", "pull the cable before it"},
     {"replug", ANY_SLAVE, 0, 0, run_replug, "<slave>", "plug the cable in again"},
@@ -367,7 +434,7 @@ enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 static cm1e_error_t run_help(call_t *call)
 {
     for (int i = 0; i < COMMAND_COUNT; i++) {
-        char left[48];
+        char left[64];
         snprintf(left, sizeof left, "%s %s", commands[i].word, commands[i].usage);
         say(call, "%s%-36s %s", i ? "\n" : "", left, commands[i].help);
     }
@@ -408,6 +475,8 @@ static cm1e_error_t find_slave(call_t *call, const command_t *command)
     call->drive = cm1e_sim_cm1e_of(call->slave);
     if (command->subject == DRIVE && !call->drive)
         return REFUSE(call, "slave %u is not a CM1-E", call->position);
+    if (command->subject == BRIDGE && !cm1e_sim_bridge_of(call->slave))
+        return REFUSE(call, "slave %u is not a bridge", call->position);
     return CM1E_OK;
 }
 

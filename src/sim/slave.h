@@ -1,8 +1,8 @@
 /**
  * @file slave.h
- * The seam inside a simulated slave: below it the slave controller (esc.h: datagrams, registers, FMMUs, sync managers,
- * SII, AL state machine, mailbox, CoE server), above it the application (a CM1-E, a bridge, an I/O module). One const table of
- * functions plus a context. Everything runs in the thread that feeds the segment frames.
+ * The seam inside a simulated slave: below it the slave controller (esc.h: datagrams, registers, FMMUs, sync
+ * managers, SII, AL state machine, mailbox, CoE server), above it the application (a CM1-E, a bridge, an I/O module).
+ * One const table of functions plus a context. Everything runs in the thread that feeds the segment frames.
  */
 #ifndef CM1E_SIM_SLAVE_H
 #define CM1E_SIM_SLAVE_H
@@ -28,9 +28,10 @@ enum {
 /** AL status codes (ETG.1000.6 table 11) that the simulator answers with. */
 enum {
     AL_CODE_NONE = 0, AL_CODE_INVALID_STATE_CHANGE = 0x0011, AL_CODE_UNKNOWN_STATE = 0x0012,
-    AL_CODE_BOOT_NOT_SUPPORTED = 0x0013, AL_CODE_INVALID_MAILBOX_BOOT = 0x0015, AL_CODE_INVALID_MAILBOX_PREOP = 0x0016,
-    AL_CODE_INVALID_SM_CONFIG = 0x0017, AL_CODE_NO_VALID_INPUTS = 0x0018, AL_CODE_NO_VALID_OUTPUTS = 0x0019,
-    AL_CODE_SYNC_ERROR = 0x001A, AL_CODE_SM_WATCHDOG = 0x001B, AL_CODE_INVALID_OUTPUT_CONFIG = 0x001D, AL_CODE_INVALID_INPUT_CONFIG = 0x001E,
+    AL_CODE_BOOT_NOT_SUPPORTED = 0x0013, AL_CODE_INVALID_MAILBOX_BOOT = 0x0015,
+    AL_CODE_INVALID_MAILBOX_PREOP = 0x0016, AL_CODE_INVALID_SM_CONFIG = 0x0017, AL_CODE_NO_VALID_INPUTS = 0x0018,
+    AL_CODE_NO_VALID_OUTPUTS = 0x0019, AL_CODE_SYNC_ERROR = 0x001A, AL_CODE_SM_WATCHDOG = 0x001B,
+    AL_CODE_INVALID_OUTPUT_CONFIG = 0x001D, AL_CODE_INVALID_INPUT_CONFIG = 0x001E,
     AL_CODE_INVALID_WATCHDOG_CONFIG = 0x001F,
 };
 

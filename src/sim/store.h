@@ -40,7 +40,7 @@ uint32_t cm1e_sim_store_find(const cm1e_sim_store_t *store, uint16_t index, uint
 /** Does nothing where there is no such entry. */
 void cm1e_sim_store_set(cm1e_sim_store_t *store, uint16_t index, uint8_t subindex, int64_t value);
 
-/* ---- values on the wire; all return 0 or an abort code --------------------------------------------------------------- */
+/* ---- values on the wire; all return 0 or an abort code ------------------------------------------------------- */
 bool cm1e_sim_is_signed(cm1e_data_type_t type);
 /** `size`: room, then bytes. */
 uint32_t cm1e_sim_give_number(const cm1e_entry_t *entry, int64_t value, uint8_t *data, size_t *size);

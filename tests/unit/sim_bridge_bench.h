@@ -101,7 +101,8 @@ static inline uint32_t bench_try_write(bench_t *b, uint16_t index, uint8_t subin
     const cm1e_entry_t *entry = b->ops->entry(b->bridge, index, subindex);
     uint8_t data[8];
     cm1e_put_uint(data, 8, (uint64_t)value);
-    return b->ops->sdo_write(b->bridge, index, subindex, b->bridge->al_state, data, entry ? (entry->bits + 7u) / 8u : 4);
+    const size_t size = entry ? (entry->bits + 7u) / 8u : 4;
+    return b->ops->sdo_write(b->bridge, index, subindex, b->bridge->al_state, data, size);
 }
 
 static inline void bench_write(bench_t *b, uint16_t index, uint8_t subindex, int64_t value)

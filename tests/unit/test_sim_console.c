@@ -48,8 +48,8 @@ static void accept(const char *line) { TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, say(li
 static void test_help_lists_every_command(void)
 {
     static const char *const words[] = {"help", "status", "show", "power", "switches", "sensor", "load", "over-torque",
-                                        "temperature", "error", "power-up-fault", "power-cycle", "unplug", "replug",
-                                        "lose", "corrupt", "delay"};
+                                        "temperature", "error", "power-up-fault", "motor", "power-cycle", "unplug",
+                                        "replug", "lose", "corrupt", "delay"};
     accept("help");
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(answer, words[i]), words[i]);
