@@ -252,7 +252,7 @@ static void test_mistake_in_the_real_two_axis_esi_is_found(void)
 {
     static const broken_text_t broken = {
         .rule = "pdo-entry-size",
-        .edits = {{"<Modules>", "<BitLen>32", "<BitLen>31"}, {"<Modules>", "<DataType>DINT", "<DataType>BITS"}},
+        .edits = {{"<Modules>", "<BitLen>32", "<BitLen>31"}, {"<Modules>", "<DataType>DINT</DataType>", ""}},
         .after = "<Modules>", .line = "<Entry>\n\t\t\t\t\t\t<Index DependOnSlot=\"true\">#x607A",
         .text = "RxPDO 0x1600 maps 0x607A:00 with 31 bits; the object has 32"};
     char *text = load_two_axes();
