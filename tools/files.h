@@ -28,7 +28,11 @@ bool write_output(const char *path, const void *bytes, size_t size);
 /** Prints findings as compilers do, "FILE:LINE: error: text [rule]", and how many there are; or as JSON. Returns the
  *  exit status: EXIT_FAILED where there is an error among them. */
 int print_findings(const char *path, const char *format, const cm1e_findings_t *findings, bool json);
-/** The same as one JSON object, and the exit status alone. */
+/** "error" or "warning". */
+const char *finding_severity(const cm1e_finding_t *finding);
+/** A JSON array of them; `place` is what their lines are called. */
+json_t *findings_as_list(const cm1e_findings_t *findings, const char *place);
+/** What print_findings() prints as one JSON object, and its exit status alone. */
 json_t *findings_as_json(const char *path, const char *format, const cm1e_findings_t *findings);
 int findings_status(const cm1e_findings_t *findings);
 

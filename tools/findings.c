@@ -4,16 +4,24 @@
 #include "command.h"
 #include "files.h"
 
-json_t *findings_as_json(const char *path, const char *format, const cm1e_findings_t *findings)
+const char *finding_severity(const cm1e_finding_t *finding) { return finding->is_error ? "error" : "warning"; }
+
+json_t *findings_as_list(const cm1e_findings_t *findings, const char *place)
 {
     json_t *list = json_array();
     for (size_t i = 0; i < cm1e_findings_count(findings); i++) {
         const cm1e_finding_t *finding = cm1e_findings_at(findings, i);
         json_array_append_new(list, json_pack("{s:s, s:s, s:i, s:s}", "rule", finding->rule, "severity",
-                                              finding->is_error ? "error" : "warning", "line", (int)finding->line,
-                                              "text", finding->text));
+                                              finding_severity(finding), place, (int)finding->line, "text",
+                                              finding->text));
     }
-    return json_pack("{s:o, s:s, s:o}", "file", text_as_json(path), "format", format, "findings", list);
+    return list;
+}
+
+json_t *findings_as_json(const char *path, const char *format, const cm1e_findings_t *findings)
+{
+    return json_pack("{s:o, s:s, s:o}", "file", text_as_json(path), "format", format, "findings",
+                     findings_as_list(findings, "line"));
 }
 
 static size_t count_errors(const cm1e_findings_t *findings)
@@ -35,7 +43,7 @@ int print_findings(const char *path, const char *format, const cm1e_findings_t *
     }
     for (size_t i = 0; i < count; i++) {
         const cm1e_finding_t *finding = cm1e_findings_at(findings, i);
-        printf("%s:%u: %s: %s [%s]\n", path, finding->line, finding->is_error ? "error" : "warning", finding->text,
+        printf("%s:%u: %s: %s [%s]\n", path, finding->line, finding_severity(finding), finding->text,
                finding->rule);
     }
     printf("%s: %s, %zu error%s, %zu warning%s\n", path, format, errors, errors == 1 ? "" : "s", count - errors,

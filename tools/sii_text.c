@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "files.h"
 
 static const char *const sync_manager_uses[] = {
     [CM1E_SM_UNUSED] = "not used", [CM1E_SM_MAILBOX_OUT] = "mailbox out", [CM1E_SM_MAILBOX_IN] = "mailbox in",
@@ -129,7 +130,7 @@ void print_sii(const cm1e_description_t *device, size_t size, const cm1e_finding
         print_pdo(&device->pdos.at[i]);
     for (size_t i = 0; i < cm1e_findings_count(findings); i++) {
         const cm1e_finding_t *finding = cm1e_findings_at(findings, i);
-        printf("%s at byte 0x%04X: %s [%s]\n", finding->is_error ? "error" : "warning", (unsigned)finding->line,
+        printf("%s at byte 0x%04X: %s [%s]\n", finding_severity(finding), (unsigned)finding->line,
                finding->text, finding->rule);
     }
 }
@@ -193,18 +194,12 @@ json_t *sii_as_json(const cm1e_description_t *device, size_t size, const cm1e_fi
         (json_int_t)device->revision, "serial_number", (json_int_t)eeprom->serial_number, "alias", eeprom->alias,
         "name", text_as_json(device->name), "order_number", text_as_json(device->type), "group",
         text_as_json(device->group), "mailbox", mailbox_as_json(device));
-    json_t *channels = channels_as_json(device), *pdos = json_array(), *list = json_array();
+    json_t *channels = channels_as_json(device), *pdos = json_array();
     json_object_update(object, channels);
     json_decref(channels);
     for (size_t i = 0; i < device->pdos.count; i++)
         json_array_append_new(pdos, pdo_as_json(&device->pdos.at[i]));
-    for (size_t i = 0; i < cm1e_findings_count(findings); i++) {
-        const cm1e_finding_t *finding = cm1e_findings_at(findings, i);
-        json_array_append_new(list, json_pack("{s:s, s:s, s:i, s:s}", "rule", finding->rule, "severity",
-                                              finding->is_error ? "error" : "warning", "byte", (int)finding->line,
-                                              "text", finding->text));
-    }
     json_object_set_new(object, "pdos", pdos);
-    json_object_set_new(object, "findings", list);
+    json_object_set_new(object, "findings", findings_as_list(findings, "byte"));
     return object;
 }
