@@ -2,7 +2,9 @@
 
 #include <string.h>
 
+#include "core/bytes.h"
 #include "description/compare.h"
+#include "generate/eni_registers.h"
 
 const char *const cm1e_eni_transition_names[CM1E_ENI_TRANSITION_COUNT] = {
 #define NAME(name) #name,
@@ -59,8 +61,6 @@ bool cm1e_eni_add_pdo_bits(const cm1e_eni_device_t *device, const cm1e_eni_sync_
 
 /* ---- a slave in the words of descriptions ----------------------------------------------------------------------- */
 
-enum { SYNC_MANAGERS = 16, REGISTER_SYNC_MANAGER = 0x0800, SYNC_MANAGER_BYTES = 8 };
-
 /* What the last command that switches a sync manager on writes is what it is: a file's DefaultSize is a proposal. */
 static void describe_written(cm1e_described_sync_manager_t managers[SYNC_MANAGERS], const cm1e_eni_device_t *device)
 {
@@ -69,11 +69,11 @@ static void describe_written(cm1e_described_sync_manager_t managers[SYNC_MANAGER
         const uint8_t *data = command->data.data;
         unsigned n;
         if (!(command->transitions & (CM1E_ENI_IP | CM1E_ENI_PS)) ||
-            !cm1e_eni_sets(command, REGISTER_SYNC_MANAGER, SYNC_MANAGER_BYTES, &n) || !(data[6] & 1))
+            !cm1e_eni_sets(command, SYNC_MANAGER, SYNC_MANAGER_BYTES, &n) || !(data[6] & 1))
             continue;
         managers[n].place = command->place;
-        managers[n].start = (uint16_t)(data[0] | data[1] << 8);
-        managers[n].length = (uint16_t)(data[2] | data[3] << 8);
+        managers[n].start = cm1e_get_u16(data);
+        managers[n].length = cm1e_get_u16(data + 2);
         managers[n].length_given = true;
         managers[n].control = data[4];
         managers[n].enable = 1;
@@ -85,8 +85,8 @@ static void describe_sync_managers(cm1e_arena_t *arena, cm1e_description_t *into
     cm1e_described_sync_manager_t managers[SYNC_MANAGERS] = {{0}};
     size_t count = 0;
     if (device->mailbox.present) {
-        managers[0].control = 0x26; /* mailbox, written by the master, event to the slave; 0x22: read by it */
-        managers[1].control = 0x22;
+        managers[0].control = CONTROL_MAILBOX_OUT;
+        managers[1].control = CONTROL_MAILBOX_IN;
         managers[0].use = CM1E_SM_MAILBOX_OUT;
         managers[0].start = device->mailbox.send.start;
         managers[0].length = device->mailbox.send.length;

@@ -212,6 +212,7 @@ void cm1e_eni_compare(cm1e_findings_t *findings, const cm1e_eni_t *document, uin
 #define CM1E_ENI_DATAGRAM_HEADER 10     /**< before the data of a datagram; 2 bytes of working counter behind them */
 #define CM1E_ENI_DATAGRAM_OVERHEAD 12
 #define CM1E_ENI_FRAME_BYTES 1498       /**< of all datagrams: Ethernet's 1500 less the EtherCAT header */
+#define CM1E_ENI_DATAGRAM_BYTES (CM1E_ENI_FRAME_BYTES - CM1E_ENI_DATAGRAM_OVERHEAD) /**< data of the longest datagram */
 
 extern const char *const cm1e_eni_transition_names[CM1E_ENI_TRANSITION_COUNT];
 extern const char *const cm1e_eni_state_names[CM1E_ENI_STATE_COUNT];

@@ -4,9 +4,9 @@
 
 #include "core/bytes.h"
 #include "generate/eni.h"
+#include "generate/eni_registers.h"
 
-enum { STATIONS = 0x10000, STATION_ADDRESS = 0x0010, AL_CONTROL = 0x0120, SYNC_MANAGER = 0x0800 };
-enum { SYNC_MANAGER_BYTES = 8, MAPPINGS = 4, PDO_ORDERS = 2 };
+enum { STATIONS = 0x10000, MAPPINGS = 4, PDO_ORDERS = 2 };
 
 /* ---- addresses -------------------------------------------------------------------------------------------------- */
 

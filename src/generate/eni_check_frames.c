@@ -4,9 +4,7 @@
 
 #include "core/bytes.h"
 #include "generate/eni.h"
-
-enum { AL_STATUS = 0x0130, FMMU = 0x0600, FMMU_BYTES = 16, FMMUS = 16, READ = 1, WRITE = 2 };
-enum { REGISTERS_END = 0x1000, LRW_READ = 1, LRW_WRITE = 2 };
+#include "generate/eni_registers.h"
 
 typedef struct fmmu {
     const cm1e_eni_command_t *command; /* NULL: this one is not set */
@@ -39,7 +37,7 @@ static void read_fmmus(fmmu_t fmmus[FMMUS], const cm1e_eni_device_t *device)
 
 static bool moves(uint8_t code, uint8_t type)
 {
-    return code == CM1E_ENI_LRW || (type == READ ? code == CM1E_ENI_LRD : code == CM1E_ENI_LWR);
+    return code == CM1E_ENI_LRW || (type == FMMU_READ ? code == CM1E_ENI_LRD : code == CM1E_ENI_LWR);
 }
 
 static const cm1e_eni_command_t *carrier(const cm1e_eni_t *document, const fmmu_t *fmmu)
@@ -49,7 +47,7 @@ static const cm1e_eni_command_t *carrier(const cm1e_eni_t *document, const fmmu_
             const cm1e_eni_frame_t *frame = &document->cyclics.at[c].frames.at[f];
             for (size_t i = 0; i < frame->commands.count; i++) {
                 const cm1e_eni_command_t *command = &frame->commands.at[i];
-                if (cm1e_eni_is_logical(command->code) && moves(command->code, fmmu->type & (READ | WRITE)) &&
+                if (cm1e_eni_is_logical(command->code) && moves(command->code, fmmu->type & (FMMU_READ | FMMU_WRITE)) &&
                     command->address <= fmmu->logical && fmmu->end <= (uint64_t)command->address + command->length)
                     return command;
             }
@@ -62,7 +60,7 @@ static const cm1e_eni_command_t *carrier(const cm1e_eni_t *document, const fmmu_
 /* Whether a sync manager of the FMMU's direction holds what it maps. */
 static bool held(const cm1e_description_t *described, const fmmu_t *fmmu)
 {
-    const cm1e_sync_manager_use_t use = fmmu->type == WRITE ? CM1E_SM_OUTPUTS : CM1E_SM_INPUTS;
+    const cm1e_sync_manager_use_t use = fmmu->type == FMMU_WRITE ? CM1E_SM_OUTPUTS : CM1E_SM_INPUTS;
     for (size_t i = 0; i < described->sync_managers.count; i++) {
         const cm1e_described_sync_manager_t *manager = &described->sync_managers.at[i];
         if (manager->use == use && manager->start <= fmmu->physical &&
@@ -76,7 +74,7 @@ static void check_fmmu(cm1e_findings_t *findings, const cm1e_description_t *desc
 {
     const cm1e_place_t place = fmmu->command->place;
     const char *name = fmmu->device->name;
-    if ((fmmu->type != READ && fmmu->type != WRITE) || fmmu->length == 0) {
+    if ((fmmu->type != FMMU_READ && fmmu->type != FMMU_WRITE) || fmmu->length == 0) {
         cm1e_findings_add(findings, CM1E_RULE_ENI_FMMU, place,
                           "%s: an FMMU of type %u and %u bytes; 1 is for inputs, 2 for outputs.", name, fmmu->type,
                           fmmu->length);
@@ -86,11 +84,11 @@ static void check_fmmu(cm1e_findings_t *findings, const cm1e_description_t *desc
         cm1e_findings_add(findings, CM1E_RULE_ENI_FMMU, place,
                           "%s: an FMMU maps 0x%04X ... 0x%04X, which no sync manager for %s holds.", name,
                           fmmu->physical, (unsigned)fmmu->physical + fmmu->length - 1,
-                          fmmu->type == WRITE ? "outputs" : "inputs");
+                          fmmu->type == FMMU_WRITE ? "outputs" : "inputs");
     if (!fmmu->carrier)
         cm1e_findings_add(findings, CM1E_RULE_ENI_FMMU, place,
                           "%s: no cyclic command for %s carries the logical addresses 0x%08llX ... 0x%08llX.", name,
-                          fmmu->type == WRITE ? "outputs" : "inputs", (unsigned long long)fmmu->logical,
+                          fmmu->type == FMMU_WRITE ? "outputs" : "inputs", (unsigned long long)fmmu->logical,
                           (unsigned long long)fmmu->end - 1);
 }
 
@@ -100,21 +98,21 @@ static void check_fmmu(cm1e_findings_t *findings, const cm1e_description_t *desc
  * OutputOffs some mean the datagram, others its data: see eni.h. */
 static void check_place(cm1e_findings_t *findings, const cm1e_eni_device_t *device, const fmmu_t *fmmus, uint8_t type)
 {
-    const cm1e_eni_range_t *range = type == WRITE ? &device->send : &device->receive;
+    const cm1e_eni_range_t *range = type == FMMU_WRITE ? &device->send : &device->receive;
     const fmmu_t *first = NULL;
     for (int n = 0; n < FMMUS; n++)
         if (fmmus[n].command && fmmus[n].type == type && fmmus[n].physical >= REGISTERS_END &&
             (!first || fmmus[n].logical < first->logical))
             first = &fmmus[n];
-    if (!(type == WRITE ? device->has_send : device->has_receive) || !first || !first->carrier)
+    if (!(type == FMMU_WRITE ? device->has_send : device->has_receive) || !first || !first->carrier)
         return;
-    const int64_t offset = type == WRITE ? first->carrier->output_offset : first->carrier->input_offset;
+    const int64_t offset = type == FMMU_WRITE ? first->carrier->output_offset : first->carrier->input_offset;
     const int64_t bit = (offset + (int64_t)first->logical - first->carrier->address) * 8 + first->start_bit;
     if (offset != CM1E_ENI_NOT_GIVEN && range->start != bit && range->start != bit + CM1E_ENI_DATAGRAM_HEADER * 8)
         cm1e_findings_add(findings, CM1E_RULE_ENI_IMAGE_PLACE, range->place,
                           "%s: BitStart of %s is %u, but its frame brings them to bit %lld (or %lld, where the image "
                           "holds the datagrams' headers too).",
-                          device->name, type == WRITE ? "Send" : "Recv", (unsigned)range->start, (long long)bit,
+                          device->name, type == FMMU_WRITE ? "Send" : "Recv", (unsigned)range->start, (long long)bit,
                           (long long)bit + CM1E_ENI_DATAGRAM_HEADER * 8);
 }
 
@@ -183,7 +181,7 @@ static size_t stretches_of_commands(stretch_t *stretches, const cm1e_eni_t *docu
             for (size_t i = 0; i < list->count; i++) {
                 const cm1e_eni_command_t *command = &list->at[i];
                 const int64_t offset = send ? command->output_offset : command->input_offset;
-                if (!cm1e_eni_is_logical(command->code) || !moves(command->code, send ? WRITE : READ) ||
+                if (!cm1e_eni_is_logical(command->code) || !moves(command->code, send ? FMMU_WRITE : FMMU_READ) ||
                     offset == CM1E_ENI_NOT_GIVEN || command->length == 0)
                     continue;
                 stretches[count++] = (stretch_t){(uint64_t)offset * 8, ((uint64_t)offset + command->length) * 8,
@@ -248,11 +246,11 @@ static void check_image(cm1e_findings_t *findings, const cm1e_eni_t *document, b
 
 /* ---- frames ----------------------------------------------------------------------------------------------------- */
 
-/* What one slave adds to the working counter of a logical command (ETG.1000.4 5.4.3). */
+/* What one slave adds to the working counter of a logical command. */
 static uint64_t count_of(uint8_t code, bool reads, bool writes)
 {
     if (code == CM1E_ENI_LRW)
-        return (reads ? LRW_READ : 0) + (writes ? LRW_WRITE : 0);
+        return (reads ? LRW_INPUTS : 0) + (writes ? LRW_OUTPUTS : 0);
     return code == CM1E_ENI_LRD ? reads : writes;
 }
 
@@ -269,8 +267,8 @@ static uint64_t expected_count(const cm1e_eni_command_t *command, const fmmu_lis
             reads = writes = false;
         }
         if (fmmu->logical < end && fmmu->end > command->address) {
-            reads |= (fmmu->type & READ) != 0;
-            writes |= (fmmu->type & WRITE) != 0;
+            reads |= (fmmu->type & FMMU_READ) != 0;
+            writes |= (fmmu->type & FMMU_WRITE) != 0;
         }
     }
     return count + count_of(command->code, reads, writes);
@@ -321,8 +319,8 @@ static void check_device(cm1e_findings_t *findings, const cm1e_eni_t *document, 
     }
     findings->arena.failed |= own.failed;
     cm1e_arena_free(&own);
-    check_place(findings, device, fmmus, WRITE);
-    check_place(findings, device, fmmus, READ);
+    check_place(findings, device, fmmus, FMMU_WRITE);
+    check_place(findings, device, fmmus, FMMU_READ);
 }
 
 void cm1e_eni_check_frames(cm1e_findings_t *findings, const cm1e_eni_t *document)

@@ -3,30 +3,9 @@
  * for the last thing here is to ask for the new state and to see it (ETG.1000.6 6.4.1). */
 #include "core/bytes.h"
 #include "generate/eni.h"
+#include "generate/eni_registers.h"
 
-/* Registers of the slave controller (ETG.1000.4 6). */
-enum {
-    STATION_ADDRESS = 0x0010,   /* configured station address, 6.1 */
-    STATION_ALIAS = 0x0012,     /* 6.1 */
-    DL_CONTROL_ALIAS = 0x0103,  /* bit 0: the alias is an address too; 6.1 */
-    AL_CONTROL = 0x0120,        /* 6.2 */
-    AL_STATUS = 0x0130,         /* 6.2, with the status code 4 bytes behind it */
-    ECAT_EVENT_MASK = 0x0200,   /* 6.2 */
-    RX_ERRORS = 0x0300,         /* 6.3 */
-    WATCHDOG_DIVIDER = 0x0400,  /* 6.3 */
-    WATCHDOG_PDI = 0x0410,      /* 6.3 */
-    WATCHDOG_PROCESS_DATA = 0x0420, /* 6.3 */
-    SII_ACCESS = 0x0500,        /* who has the EEPROM: 0 the master, 1 the slave's processor; 6.4 */
-    SII_CONTROL = 0x0502,       /* 6.4 */
-    SII_DATA = 0x0508,          /* 6.4 */
-    FMMU = 0x0600,              /* 16 bytes each, 6.6 */
-    SYNC_MANAGER = 0x0800,      /* 8 bytes each, 6.7 */
-    DC_SYSTEM_TIME = 0x0910,    /* 6.8 */
-    DC_SPEED = 0x0930,          /* 6.8 */
-    DC_FILTER = 0x0934,         /* 6.8 */
-    DC_ACTIVATION = 0x0981,     /* 6.8 */
-};
-enum { FMMU_BYTES = 16, SYNC_MANAGER_BYTES = 8, BLOCKS_BYTES = 256, FMMU_READ = 1, FMMU_WRITE = 2 };
+enum { BLOCKS_BYTES = 256 }; /* of all FMMUs; of the sync managers and what follows them */
 enum { AL_INIT = 1, AL_PREOP = 2, AL_BOOT = 3, AL_SAFEOP = 4, AL_OP = 8, AL_ACKNOWLEDGE = 0x10, AL_ERROR = 0x10 };
 enum { SII_READ = 0x0100, SII_VENDOR = 0x08, SII_PRODUCT = 0x0A };
 enum { RETRIES = 3, ONE_SLAVE = 1 };
@@ -179,7 +158,6 @@ static void set_sync_manager(maker_t *maker, uint32_t transitions, unsigned numb
 
 static void make_mailbox(maker_t *maker)
 {
-    enum { CONTROL_OUT = 0x26, CONTROL_IN = 0x22 }; /* mailbox, written or read by the master, event to the slave */
     const cm1e_eni_mailbox_t *mailbox = &maker->device->mailbox;
     const uint32_t boot = mailbox->has_bootstrap ? CM1E_ENI_IB : 0;
     if (!mailbox->present)
@@ -188,16 +166,16 @@ static void make_mailbox(maker_t *maker)
           2 * SYNC_MANAGER_BYTES, "clear sm 0/1 (mailbox out/in)");
     if (boot)
         clear(maker, CM1E_ENI_BI, CM1E_ENI_APWR, SYNC_MANAGER, 2 * SYNC_MANAGER_BYTES, "clear sm 0/1 (mailbox out/in)");
-    set_sync_manager(maker, CM1E_ENI_IP, 0, mailbox->send.start, mailbox->send.length, CONTROL_OUT,
+    set_sync_manager(maker, CM1E_ENI_IP, 0, mailbox->send.start, mailbox->send.length, CONTROL_MAILBOX_OUT,
                      "set sm 0 (mailbox out)");
-    set_sync_manager(maker, CM1E_ENI_IP, 1, mailbox->receive.start, mailbox->receive.length, CONTROL_IN,
+    set_sync_manager(maker, CM1E_ENI_IP, 1, mailbox->receive.start, mailbox->receive.length, CONTROL_MAILBOX_IN,
                      "set sm 1 (mailbox in)");
     if (!boot)
         return;
-    set_sync_manager(maker, CM1E_ENI_IB, 0, mailbox->boot_send.start, mailbox->boot_send.length, CONTROL_OUT,
+    set_sync_manager(maker, CM1E_ENI_IB, 0, mailbox->boot_send.start, mailbox->boot_send.length, CONTROL_MAILBOX_OUT,
                      "set sm 0 (bootstrap out)");
-    set_sync_manager(maker, CM1E_ENI_IB, 1, mailbox->boot_receive.start, mailbox->boot_receive.length, CONTROL_IN,
-                     "set sm 1 (bootstrap in)");
+    set_sync_manager(maker, CM1E_ENI_IB, 1, mailbox->boot_receive.start, mailbox->boot_receive.length,
+                     CONTROL_MAILBOX_IN, "set sm 1 (bootstrap in)");
 }
 
 /* Only where outputs are watched (control byte bit 6): from V1.3.0 on the motor goes off when they stay away. */

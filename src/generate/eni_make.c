@@ -4,6 +4,7 @@
 #include "core/bytes.h"
 #include "description/sii.h"
 #include "generate/eni.h"
+#include "generate/eni_registers.h"
 
 /* Station addresses as this library's own master gives them; logical addresses as TwinCAT does, a range for each frame
  * that is longer than any frame. */
@@ -11,9 +12,7 @@ enum { FIRST_STATION = 0x1001, FIRST_LOGICAL = 0x01000000, LOGICAL_PER_FRAME = 0
 /* An image is the frames behind each other, each in a room of its own; datagrams begin behind the headers of Ethernet
  * and EtherCAT. */
 enum { IMAGE_PER_FRAME = 1536, FRAME_HEADERS = 16 };
-enum { SYNC_MANAGERS = 16, MOST_DATA = CM1E_ENI_FRAME_BYTES - CM1E_ENI_DATAGRAM_OVERHEAD };
-enum { AL_STATUS = 0x0130, COE_TIMEOUT_MS = 3000, MAILBOX_POLL_MS = 50 };
-enum { LRW_BOTH = 3, LRW_OUTPUTS = 2, LRW_INPUTS = 1 }; /* working counter of LRW, ETG.1000.4 5.4.3 */
+enum { COE_TIMEOUT_MS = 3000, MAILBOX_POLL_MS = 50 };
 
 typedef struct maker {
     cm1e_eni_t *document;
@@ -262,7 +261,7 @@ static void place_process_data(maker_t *maker, cm1e_eni_device_t *device, uint32
     const uint32_t bit = ((uint32_t)command->input_offset + CM1E_ENI_DATAGRAM_HEADER + command->length) * 8;
     *logical = command->address + command->length;
     command->length += bytes;
-    command->count += outputs && inputs ? LRW_BOTH : outputs ? LRW_OUTPUTS : LRW_INPUTS;
+    command->count += (outputs ? LRW_OUTPUTS : 0) + (inputs ? LRW_INPUTS : 0);
     device->has_send = outputs > 0;
     device->send = (cm1e_eni_range_t){.start = bit, .length = outputs * 8};
     device->has_receive = inputs > 0;
@@ -298,7 +297,7 @@ static cm1e_error_t check_size(maker_t *maker, const cm1e_eni_slave_t *slave)
         outputs += use == CM1E_SM_OUTPUTS ? cm1e_description_process_bytes(slave->device, n) : 0;
         inputs += use == CM1E_SM_INPUTS ? cm1e_description_process_bytes(slave->device, n) : 0;
     }
-    if (outputs > MOST_DATA || inputs > MOST_DATA)
+    if (outputs > CM1E_ENI_DATAGRAM_BYTES || inputs > CM1E_ENI_DATAGRAM_BYTES)
         return wrong(maker, slave, "its process data do not fit into one frame (1486 bytes)");
     return CM1E_OK;
 }

@@ -1,12 +1,13 @@
 #include <string.h>
 
 #include "generate/eni.h"
+#include "generate/eni_registers.h"
 #include "generate/words.h"
 #include "generate/xml_read.h"
 
 typedef cm1e_xml_reader_t reader_t;
 
-enum { U8 = 0xFF, U16 = 0xFFFF, DATAGRAM_BYTES = 1486, SYNC_MANAGERS = 16 };
+enum { U8 = 0xFF, U16 = 0xFFFF };
 #define U32 ((int64_t)UINT32_MAX)
 #define S32_LEAST ((int64_t)INT32_MIN)
 #define S32_MOST ((int64_t)INT32_MAX)
@@ -84,9 +85,10 @@ static void read_data(reader_t *r, const xmlNode *node, cm1e_eni_command_t *comm
     command->data = cm1e_xml_hex(r, data);
     command->length = command->data.size > 0
                           ? (uint32_t)command->data.size
-                          : (uint32_t)cm1e_xml_child_number(r, node, "DataLength", 0, DATAGRAM_BYTES, 0);
-    if (command->data.size > DATAGRAM_BYTES)
-        cm1e_xml_fail(r, data, "%zu bytes do not fit into a datagram, %d do", command->data.size, DATAGRAM_BYTES);
+                          : (uint32_t)cm1e_xml_child_number(r, node, "DataLength", 0, CM1E_ENI_DATAGRAM_BYTES, 0);
+    if (command->data.size > CM1E_ENI_DATAGRAM_BYTES)
+        cm1e_xml_fail(r, data, "%zu bytes do not fit into a datagram, %d do", command->data.size,
+                      CM1E_ENI_DATAGRAM_BYTES);
 }
 
 static void read_validate(reader_t *r, const xmlNode *node, cm1e_eni_command_t *command)
