@@ -70,6 +70,8 @@ static void adapt_objects(cm1e_arena_t *arena, const cm1e_object_list_t *objects
 {
     cm1e_describe_default(arena, objects, OBJ_1018_IDENTITY, 3, firmware->revision);
     cm1e_describe_default(arena, objects, OBJ_1018_IDENTITY, 4, options->serial_number);
+    cm1e_describe_default(arena, objects, OBJ_1C32_SM_OUTPUT_PARAMETER, 5, firmware->shortest_cycle_ns);
+    cm1e_describe_default(arena, objects, OBJ_1C33_SM_INPUT_PARAMETER, 5, firmware->shortest_cycle_ns);
     cm1e_described_entry_t *version = cm1e_describe_entry_of(objects, OBJ_100A_SOFTWARE_VERSION, 0);
     if (version)
         version->default_data =

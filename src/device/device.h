@@ -80,6 +80,7 @@ typedef struct cm1e_firmware_info {
     bool mode_in_profile_pdo;         /**< 0x6060/0x6061 in 0x1603/0x1A03 (V1.3.0) */
     bool following_bit;               /**< statusword bit 12 in CSP and CSV (V1.3.0) */
     bool all_cycle_times;             /**< 200/250/500/1000 us; before V1.3.2 only 1000 us */
+    uint32_t shortest_cycle_ns;       /**< of these; 0x1C32:5, 0x1C33:5 */
     bool user_variables;              /**< 0x2201 (V1.3.4) */
     bool communication_fault_resets;  /**< clearing a power-up fault 0x7510 resets the device (V1.3.5) */
     bool fault_bit_on_7510;           /**< statusword fault bit on a 0x7510 at power-up (V1.3.5) */

@@ -8,6 +8,7 @@ static const cm1e_firmware_info_t firmwares[CM1E_FIRMWARE_COUNT] = {
         .revision = 0x20020001, /* UG 7.1.6 and the EC_EXTEND of UG 11.2.1 */
         .velocity_in_counts_per_ms = true,
         .velocity_quarter_in_hm_pp = true,
+        .shortest_cycle_ns = 1000000,
     },
     {
         .firmware = CM1E_FIRMWARE_1_3_0,
@@ -17,6 +18,7 @@ static const cm1e_firmware_info_t firmwares[CM1E_FIRMWARE_COUNT] = {
         .watchdog = true,
         .mode_in_profile_pdo = true,
         .following_bit = true,
+        .shortest_cycle_ns = 1000000,
     },
     {
         .firmware = CM1E_FIRMWARE_1_3_2,
@@ -27,6 +29,7 @@ static const cm1e_firmware_info_t firmwares[CM1E_FIRMWARE_COUNT] = {
         .mode_in_profile_pdo = true,
         .following_bit = true,
         .all_cycle_times = true,
+        .shortest_cycle_ns = 200000,
     },
     {
         .firmware = CM1E_FIRMWARE_1_3_3,
@@ -36,6 +39,7 @@ static const cm1e_firmware_info_t firmwares[CM1E_FIRMWARE_COUNT] = {
         .mode_in_profile_pdo = true,
         .following_bit = true,
         .all_cycle_times = true,
+        .shortest_cycle_ns = 200000,
     },
     {
         .firmware = CM1E_FIRMWARE_1_3_4,
@@ -45,6 +49,7 @@ static const cm1e_firmware_info_t firmwares[CM1E_FIRMWARE_COUNT] = {
         .mode_in_profile_pdo = true,
         .following_bit = true,
         .all_cycle_times = true,
+        .shortest_cycle_ns = 200000,
         .user_variables = true,
     },
     {
@@ -55,6 +60,7 @@ static const cm1e_firmware_info_t firmwares[CM1E_FIRMWARE_COUNT] = {
         .mode_in_profile_pdo = true,
         .following_bit = true,
         .all_cycle_times = true,
+        .shortest_cycle_ns = 200000,
         .user_variables = true,
         .communication_fault_resets = true,
         .fault_bit_on_7510 = true,

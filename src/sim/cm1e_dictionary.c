@@ -145,6 +145,8 @@ void cm1e_sim_dictionary_reset(cm1e_sim_cm1e_t *drive)
         objects[places[i].place] = (int32_t)own_entry(drive, entry)->default_value;
     }
     set_value(drive, OBJ_1018_IDENTITY, 3, drive->firmware->revision);
+    set_value(drive, OBJ_1C32_SM_OUTPUT_PARAMETER, 5, drive->firmware->shortest_cycle_ns);
+    set_value(drive, OBJ_1C33_SM_INPUT_PARAMETER, 5, drive->firmware->shortest_cycle_ns);
     set_mapping_objects(drive);
     set_motor_objects(drive);
 }

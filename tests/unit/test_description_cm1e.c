@@ -107,6 +107,10 @@ static bool check_adapted(const variant_t *variant, const cm1e_object_t *object,
     switch (object->index << 8 | entry->subindex) {
     case 0x101803: check_number(entry, firmware->revision, described->default_data, at); return true;
     case 0x101804: check_number(entry, 77, described->default_data, at); return true;
+    case 0x1C3205:
+    case 0x1C3305: /* UG 10.1: 1 ms only before V1.3.2 */
+        check_number(entry, variant->firmware < CM1E_FIRMWARE_1_3_2 ? 1000000 : 200000, described->default_data, at);
+        return true;
     case 0x1C1201: check_number(entry, 0x1600 + (int)variant->mapping, described->default_data, at); return true;
     case 0x1C1301: check_number(entry, 0x1A00 + (int)variant->mapping, described->default_data, at); return true;
     case 0x100A00: TEST_ASSERT_EQUAL_MEMORY(firmware->version, described->default_data.data, 5); return true;

@@ -128,6 +128,7 @@ static void test_firmware_features_begin_where_the_manual_says(void)
         TEST_ASSERT_EQUAL(i >= CM1E_FIRMWARE_1_3_0, info->mode_in_profile_pdo);
         TEST_ASSERT_EQUAL(i >= CM1E_FIRMWARE_1_3_0, info->following_bit);
         TEST_ASSERT_EQUAL(i >= CM1E_FIRMWARE_1_3_2, info->all_cycle_times);
+        TEST_ASSERT_EQUAL_UINT32(i >= CM1E_FIRMWARE_1_3_2 ? 200000 : 1000000, info->shortest_cycle_ns);
         TEST_ASSERT_EQUAL(i >= CM1E_FIRMWARE_1_3_4, info->user_variables);
         TEST_ASSERT_EQUAL(i >= CM1E_FIRMWARE_1_3_5, info->communication_fault_resets);
         TEST_ASSERT_EQUAL(i >= CM1E_FIRMWARE_1_3_5, info->fault_bit_on_7510);
@@ -139,6 +140,7 @@ static void test_dictionary_shows_the_newest_firmware(void)
     const cm1e_firmware_info_t *newest = cm1e_firmware_info((cm1e_firmware_t)(CM1E_FIRMWARE_COUNT - 1));
     TEST_ASSERT_EQUAL_STRING(newest->version, cm1e_device_entry(0x100A, 0)->default_string);
     TEST_ASSERT_EQUAL_HEX32(newest->revision, cm1e_device_entry(0x1018, 3)->default_value);
+    TEST_ASSERT_EQUAL_UINT32(newest->shortest_cycle_ns, cm1e_device_entry(0x1C32, 5)->default_value);
 }
 
 static void test_firmware_version_is_parsed(void)

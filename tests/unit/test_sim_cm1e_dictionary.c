@@ -73,6 +73,9 @@ static void test_identity_shows_firmware_and_revision(void)
         TEST_ASSERT_EQUAL_HEX32(0x44412002, bench_read(&b, 0x1018, 2));
         TEST_ASSERT_EQUAL_HEX32(i == 0 ? 0x20020001 : 0x20020103, bench_read(&b, 0x1018, 3));
         TEST_ASSERT_EQUAL_HEX32(0x1A5, bench_read(&b, 0x6502, 0));
+        const bool all_cycle_times = cm1e_firmware_from_version(firmwares[i])->all_cycle_times;
+        TEST_ASSERT_EQUAL_INT32(all_cycle_times ? 200000 : 1000000, bench_read(&b, 0x1C32, 5));
+        TEST_ASSERT_EQUAL_INT32(all_cycle_times ? 200000 : 1000000, bench_read(&b, 0x1C33, 5));
         bench_close(&b);
     }
 }
