@@ -201,11 +201,12 @@ static void read_lists(cm1e_xml_reader_t *reader, cm1e_ec_extend_t *document, co
 
 cm1e_error_t cm1e_ec_extend_read(cm1e_ec_extend_t *document, const void *bytes, size_t size, cm1e_diag_t *diag)
 {
-    xmlDoc *doc = cm1e_xml_parse(bytes, size, diag);
+    cm1e_diag_t own = {0};
+    cm1e_xml_reader_t reader = {.arena = &document->arena, .diag = diag ? diag : &own};
+    xmlDoc *doc = cm1e_xml_parse(bytes, size, reader.diag);
     if (!doc)
-        return CM1E_ERROR_FILE;
+        return reader.diag->error;
     document->doc = doc;
-    cm1e_xml_reader_t reader = {.arena = &document->arena, .diag = diag};
     const xmlNode *root = xmlDocGetRootElement(doc);
     if (!cm1e_xml_is(root, "EtherCAT"))
         cm1e_xml_fail(&reader, root, "the root element is <%s>; that of an EC_EXTEND is <EtherCAT>",

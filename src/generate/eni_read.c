@@ -387,7 +387,7 @@ cm1e_error_t cm1e_eni_read(cm1e_eni_t *document, const void *bytes, size_t size,
     cm1e_xml_reader_t r = {.arena = &document->arena, .diag = diag ? diag : &own};
     xmlDoc *doc = cm1e_xml_parse(bytes, size, r.diag);
     if (!doc)
-        return CM1E_ERROR_FILE;
+        return r.diag->error;
     const xmlNode *root = xmlDocGetRootElement(doc);
     if (!cm1e_xml_is(root, "EtherCATConfig"))
         cm1e_xml_fail(&r, root, "the root of an ENI is <EtherCATConfig>, not <%s>", (const char *)root->name);
