@@ -109,7 +109,7 @@ static void print_channels(const cm1e_description_t *device)
 
 static void print_pdo(const cm1e_described_pdo_t *pdo)
 {
-    printf("%s 0x%04X    %s, %u bits, ", pdo->transmit ? "TxPDO" : "RxPDO", pdo->index, or_none(pdo->name),
+    printf("%s 0x%04X    %s, %u bits, ", cm1e_pdo_kind(pdo), pdo->index, or_none(pdo->name),
            (unsigned)cm1e_pdo_bits(pdo));
     if (pdo->sync_manager == CM1E_NO_SYNC_MANAGER)
         printf("not assigned\n");

@@ -114,7 +114,7 @@ static void compare_mapping(const cm1e_check_t *check, cm1e_rule_t rule, const c
             return;
         if (more != more_rows) {
             cm1e_check_add(check, rule, rows->place, "0x%04X:00 %s %u objects; %s 0x%04X has %zu", pdo->index, says,
-                           rows->count, cm1e_check_pdo_kind(pdo), pdo->index, pdo->entries.count);
+                           rows->count, cm1e_pdo_kind(pdo), pdo->index, pdo->entries.count);
             return;
         }
         if (is_told_by_size(check, &of_pdo, &of_row))
@@ -122,7 +122,7 @@ static void compare_mapping(const cm1e_check_t *check, cm1e_rule_t rule, const c
         if (!is_same(check, &of_pdo, &of_row) || of_pdo.bits != of_row.bits) {
             cm1e_check_add(check, rule, of_row.place, "0x%04X:%02X %s %s; entry %zu of %s 0x%04X is %s", pdo->index,
                            (unsigned)of_row.row + 1, says, mapped_text(row_text, sizeof row_text, &of_row),
-                           of_pdo.row + 1, cm1e_check_pdo_kind(pdo), pdo->index,
+                           of_pdo.row + 1, cm1e_pdo_kind(pdo), pdo->index,
                            mapped_text(pdo_text, sizeof pdo_text, &of_pdo));
             return;
         }

@@ -23,8 +23,8 @@ static bool has_ident(const cm1e_check_key_t *idents, size_t count, uint32_t ide
     return found < count && idents[found].number == ident;
 }
 
-static void check_slot(const cm1e_check_t *check, const cm1e_slot_t *slot, size_t number, const cm1e_check_key_t *idents,
-                       size_t count)
+static void check_slot(const cm1e_check_t *check, const cm1e_slot_t *slot, size_t number,
+                       const cm1e_check_key_t *idents, size_t count)
 {
     const char *name = slot->name ? slot->name : "";
     unsigned defaults = 0;
@@ -78,7 +78,7 @@ static void check_slot_dependence(const cm1e_check_t *check, const cm1e_module_t
         for (size_t j = 0; j < module->pdos.at[i].entries.count; j++) {
             const cm1e_described_pdo_entry_t *entry = &module->pdos.at[i].entries.at[j];
             check_dependence(check, objects, entry->index, entry->depends_on_slot, entry->place,
-                             cm1e_check_pdo_kind(&module->pdos.at[i]));
+                             cm1e_pdo_kind(&module->pdos.at[i]));
         }
     for (size_t i = 0; i < module->init_commands.count; i++)
         check_dependence(check, objects, module->init_commands.at[i].index, module->init_commands.at[i].depends_on_slot,

@@ -27,13 +27,13 @@ static void check_mapped(const cm1e_check_t *check, const cm1e_described_pdo_t *
     if (entry->bits != found->entry->bits && found->entry->bits > 0 &&
         !device_maps_part(check, pdo, row, found->entry->bits))
         cm1e_check_add(check, CM1E_RULE_PDO_ENTRY_SIZE, entry->place,
-                       "%s 0x%04X maps 0x%04X:%02X with %u bits; the object has %u", cm1e_check_pdo_kind(pdo),
+                       "%s 0x%04X maps 0x%04X:%02X with %u bits; the object has %u", cm1e_pdo_kind(pdo),
                        pdo->index, entry->index, entry->subindex, (unsigned)entry->bits,
                        (unsigned)found->entry->bits);
     if (check->states_mappability && !(access & needed))
         cm1e_check_add(check, CM1E_RULE_PDO_ENTRY_NOT_MAPPABLE, entry->place,
                        "%s 0x%04X maps 0x%04X:%02X, which the dictionary does not mark as mappable in a %s",
-                       cm1e_check_pdo_kind(pdo), pdo->index, entry->index, entry->subindex, cm1e_check_pdo_kind(pdo));
+                       cm1e_pdo_kind(pdo), pdo->index, entry->index, entry->subindex, cm1e_pdo_kind(pdo));
 }
 
 static void check_entry(const cm1e_check_t *check, const cm1e_described_pdo_t *pdo, size_t row, bool silent)
@@ -42,7 +42,7 @@ static void check_entry(const cm1e_check_t *check, const cm1e_described_pdo_t *p
     const uint32_t type_bits = entry->type ? cm1e_type_bits(entry->type) : 0;
     if (type_bits > 0 && entry->bits != type_bits)
         cm1e_check_add(check, CM1E_RULE_PDO_ENTRY_TYPE, entry->place,
-                       "%s 0x%04X gives 0x%04X:%02X %u bits and the type %s, which has %u", cm1e_check_pdo_kind(pdo),
+                       "%s 0x%04X gives 0x%04X:%02X %u bits and the type %s, which has %u", cm1e_pdo_kind(pdo),
                        pdo->index, entry->index, entry->subindex, (unsigned)entry->bits, entry->type,
                        (unsigned)type_bits);
     if (entry->index < FIRST_OBJECT || !check->has_dictionary)
@@ -55,7 +55,7 @@ static void check_entry(const cm1e_check_t *check, const cm1e_described_pdo_t *p
                        cm1e_check_find_object(check, entry->index)
                            ? "%s 0x%04X maps 0x%04X:%02X, a sub-index that the object does not have"
                            : "%s 0x%04X maps 0x%04X:%02X, an object that is not in the dictionary",
-                       cm1e_check_pdo_kind(pdo), pdo->index, entry->index, entry->subindex);
+                       cm1e_pdo_kind(pdo), pdo->index, entry->index, entry->subindex);
 }
 
 #define TWICE "there are two PDOs 0x%04X"
@@ -69,18 +69,18 @@ static void check_sync_manager(const cm1e_check_t *check, const cm1e_described_p
     if (pdo->sync_manager == CM1E_NO_SYNC_MANAGER) {
         if (pdo->mandatory)
             cm1e_check_add(check, CM1E_RULE_PDO_MANDATORY_UNASSIGNED, pdo->place,
-                           "%s 0x%04X is mandatory, but no sync manager carries it", cm1e_check_pdo_kind(pdo),
+                           "%s 0x%04X is mandatory, but no sync manager carries it", cm1e_pdo_kind(pdo),
                            pdo->index);
         return;
     }
     if (pdo->sync_manager < 0 || (size_t)pdo->sync_manager >= device->sync_managers.count)
         cm1e_check_add(check, CM1E_RULE_PDO_SYNC_MANAGER, pdo->place,
-                       "%s 0x%04X is assigned to sync manager %d; the device has %zu", cm1e_check_pdo_kind(pdo),
+                       "%s 0x%04X is assigned to sync manager %d; the device has %zu", cm1e_pdo_kind(pdo),
                        pdo->index, pdo->sync_manager, device->sync_managers.count);
     else if (device->sync_managers.at[pdo->sync_manager].use != CM1E_SM_UNUSED && /* which stands for unknown, too */
              device->sync_managers.at[pdo->sync_manager].use != (pdo->transmit ? CM1E_SM_INPUTS : CM1E_SM_OUTPUTS))
         cm1e_check_add(check, CM1E_RULE_PDO_SYNC_MANAGER, pdo->place,
-                       "%s 0x%04X is assigned to sync manager %d, which is not for %s", cm1e_check_pdo_kind(pdo),
+                       "%s 0x%04X is assigned to sync manager %d, which is not for %s", cm1e_pdo_kind(pdo),
                        pdo->index, pdo->sync_manager, needed);
 }
 
@@ -90,7 +90,7 @@ static void check_index(const cm1e_check_t *check, const cm1e_described_pdo_t *p
     const uint16_t first = pdo->transmit ? 0x1A00 : 0x1600, last = pdo->transmit ? 0x1BFF : 0x17FF;
     if (check->device->mailbox.coe && (pdo->index < first || pdo->index > last))
         cm1e_check_add(check, CM1E_RULE_PDO_INDEX, pdo->place, "%s 0x%04X: %ss have the indexes 0x%04X to 0x%04X",
-                       cm1e_check_pdo_kind(pdo), pdo->index, cm1e_check_pdo_kind(pdo), first, last);
+                       cm1e_pdo_kind(pdo), pdo->index, cm1e_pdo_kind(pdo), first, last);
 }
 
 void cm1e_check_pdos(const cm1e_check_t *check)
@@ -140,7 +140,7 @@ static bool is_excluded(const exclusion_t *exclusions, size_t count, uint16_t fr
 static void check_exclusion(const cm1e_check_t *check, const exclusion_t *all, size_t count, size_t i)
 {
     const exclusion_t *e = &all[i];
-    const char *kind = cm1e_check_pdo_kind(e->pdo);
+    const char *kind = cm1e_pdo_kind(e->pdo);
     const cm1e_described_pdo_t *other = cm1e_check_find_pdo(check, e->to);
     if (i > 0 && all[i - 1].key.number == e->key.number) {
         cm1e_check_add(check, CM1E_RULE_EXCLUDE_TWICE, e->place, "%s 0x%04X excludes 0x%04X twice", kind, e->from,

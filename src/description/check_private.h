@@ -70,12 +70,6 @@ static inline bool cm1e_check_seen(cm1e_check_seen_t *seen, uint16_t index)
     return before;
 }
 
-/** "RxPDO" or "TxPDO". */
-static inline const char *cm1e_check_pdo_kind(const cm1e_described_pdo_t *pdo)
-{
-    return pdo->transmit ? "TxPDO" : "RxPDO";
-}
-
 /* ---- the groups of rules ----------------------------------------------------------------------------------------- */
 
 /** Definitions sorted by name. */

@@ -289,7 +289,7 @@ void cm1e_check_pdo_types(const cm1e_check_t *check, const cm1e_pdo_list_t *pdos
             const cm1e_described_pdo_entry_t *entry = &pdos->at[i].entries.at[j];
             char user[48];
             snprintf(user, sizeof user, "0x%04X:%02X in %s 0x%04X", entry->index, entry->subindex,
-                     cm1e_check_pdo_kind(&pdos->at[i]), pdos->at[i].index);
+                     cm1e_pdo_kind(&pdos->at[i]), pdos->at[i].index);
             if (entry->index != 0 && entry->type && bits_of(types, entry->type) < 0)
                 unknown_type(check, entry->place, entry->type, user);
         }

@@ -136,8 +136,6 @@ static void compare_sync_managers(const comparison_t *c)
 
 /* ---- process data ----------------------------------------------------------------------------------------------- */
 
-static const char *direction(const cm1e_described_pdo_t *pdo) { return pdo->transmit ? "TxPDO" : "RxPDO"; }
-
 static void compare_mapping(const comparison_t *c, const cm1e_described_pdo_t *file, const cm1e_described_pdo_t *device)
 {
     const size_t common = file->entries.count < device->entries.count ? file->entries.count : device->entries.count;
@@ -146,12 +144,12 @@ static void compare_mapping(const comparison_t *c, const cm1e_described_pdo_t *f
         if (a->index != b->index || (a->index && a->subindex != b->subindex) || a->bits != b->bits)
             DIFFERS(c, DIFFERS_PDO, a->place,
                     "Entry %zu of %s 0x%04X is 0x%04X:%02X with %u bits in the file, 0x%04X:%02X with %u bits in the "
-                    "device.", i + 1, direction(file), file->index, a->index, a->subindex, (unsigned)a->bits, b->index,
-                    b->subindex, (unsigned)b->bits);
+                    "device.", i + 1, cm1e_pdo_kind(file), file->index, a->index, a->subindex, (unsigned)a->bits,
+                    b->index, b->subindex, (unsigned)b->bits);
     }
     if (file->entries.count != device->entries.count)
         DIFFERS(c, DIFFERS_PDO, file->place,
-                "%s 0x%04X has %zu entries (%u bits) in the file, %zu (%u bits) in the device.", direction(file),
+                "%s 0x%04X has %zu entries (%u bits) in the file, %zu (%u bits) in the device.", cm1e_pdo_kind(file),
                 file->index, file->entries.count, (unsigned)cm1e_pdo_bits(file), device->entries.count,
                 (unsigned)cm1e_pdo_bits(device));
 }
@@ -162,10 +160,10 @@ static void compare_pdos(const comparison_t *c)
         const cm1e_described_pdo_t *file = &c->file->pdos.at[i];
         const cm1e_described_pdo_t *device = cm1e_description_pdo(c->device, file->index);
         if (!device)
-            DIFFERS(c, DIFFERS_PDO, file->place, "The device has no %s 0x%04X.", direction(file), file->index);
+            DIFFERS(c, DIFFERS_PDO, file->place, "The device has no %s 0x%04X.", cm1e_pdo_kind(file), file->index);
         else if (device->transmit != file->transmit)
             DIFFERS(c, DIFFERS_PDO, file->place, "0x%04X is among the %ss in the file, the %ss in the device.",
-                    file->index, direction(file), direction(device));
+                    file->index, cm1e_pdo_kind(file), cm1e_pdo_kind(device));
         else
             compare_mapping(c, file, device);
     }
@@ -192,16 +190,16 @@ static void compare_assignment(const comparison_t *c)
             continue;
         if (file->sync_manager >= 0 && device->sync_manager < 0)
             DIFFERS(c, DIFFERS_ASSIGNMENT, file->place,
-                    "%s 0x%04X is assigned by default in the file, and not in the device now.", direction(file),
+                    "%s 0x%04X is assigned by default in the file, and not in the device now.", cm1e_pdo_kind(file),
                     file->index);
         else if (file->sync_manager >= 0 && file->sync_manager != device->sync_manager)
             DIFFERS(c, DIFFERS_PDO, file->place,
                     "%s 0x%04X belongs to sync manager %d in the file, to sync manager %d in the device.",
-                    direction(file), file->index, file->sync_manager, device->sync_manager);
+                    cm1e_pdo_kind(file), file->index, file->sync_manager, device->sync_manager);
         else if (file->sync_manager < 0 && device->sync_manager >= 0)
             DIFFERS(c, DIFFERS_ASSIGNMENT, file->place,
-                    "%s 0x%04X is not assigned by default in the file, but it is in the device now.", direction(file),
-                    file->index);
+                    "%s 0x%04X is not assigned by default in the file, but it is in the device now.",
+                    cm1e_pdo_kind(file), file->index);
     }
 }
 
@@ -327,7 +325,7 @@ static void compare_device_side(const comparison_t *c, const cm1e_description_t 
             found = cm1e_description_pdo(&variants[n], c->device->pdos.at[i].index) != NULL;
         if (!found)
             DIFFERS(c, DIFFERS_PDO, c->file->place, "The file does not offer %s 0x%04X (\"%s\"), which the device has.",
-                    direction(&c->device->pdos.at[i]), c->device->pdos.at[i].index, c->device->pdos.at[i].name);
+                    cm1e_pdo_kind(&c->device->pdos.at[i]), c->device->pdos.at[i].index, c->device->pdos.at[i].name);
     }
 }
 

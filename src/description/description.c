@@ -75,6 +75,11 @@ const cm1e_described_pdo_t *cm1e_description_pdo(const cm1e_description_t *devic
     return NULL;
 }
 
+const char *cm1e_pdo_kind(const cm1e_described_pdo_t *pdo)
+{
+    return pdo->transmit ? "TxPDO" : "RxPDO";
+}
+
 uint32_t cm1e_pdo_bits(const cm1e_described_pdo_t *pdo)
 {
     uint32_t bits = 0;

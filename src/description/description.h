@@ -284,6 +284,8 @@ const cm1e_described_entry_t *cm1e_description_entry(const cm1e_description_t *d
                                                      uint8_t subindex);
 const cm1e_described_pdo_t *cm1e_description_pdo(const cm1e_description_t *device, uint16_t index);
 
+/** "RxPDO" or "TxPDO". @rt any */
+const char *cm1e_pdo_kind(const cm1e_described_pdo_t *pdo);
 /** Bits of all entries of a PDO. @rt any */
 uint32_t cm1e_pdo_bits(const cm1e_described_pdo_t *pdo);
 /** Bytes that the PDOs of a sync manager have together, by the default assignment. @rt any */

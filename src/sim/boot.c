@@ -72,7 +72,7 @@ static bool check_pdo(const boot_t *boot, const cm1e_described_pdo_t *pdo)
 {
     const cm1e_described_pdo_t *own = cm1e_description_pdo(boot->device, pdo->index);
     if (!own || own->transmit != pdo->transmit)
-        return REFUSE(boot, "has a %s 0x%04X, which this slave has not", pdo->transmit ? "TxPDO" : "RxPDO", pdo->index);
+        return REFUSE(boot, "has a %s 0x%04X, which this slave has not", cm1e_pdo_kind(pdo), pdo->index);
     if (pdo->entries.count != own->entries.count)
         return REFUSE(boot, "has %zu entries in PDO 0x%04X; on this slave it has %zu, by its firmware",
                       pdo->entries.count, pdo->index, own->entries.count);
