@@ -224,7 +224,7 @@ static void test_size_is_bounded(void)
 
 static void test_nothing_is_printed(void)
 {
-    char path[] = "/tmp/cm1e_xml_XXXXXX";
+    char path[] = CM1E_TEST_OUTPUT "/cm1e_xml_XXXXXX";
     const int kept = dup(STDERR_FILENO), file = mkstemp(path);
     TEST_ASSERT_GREATER_OR_EQUAL(0, file);
     fflush(stderr);
