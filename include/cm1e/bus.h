@@ -40,6 +40,8 @@ typedef struct cm1e_slave_info {
     uint16_t explicit_id; /**< 0: none or not supported */
     uint16_t al_state, al_status_code;
     bool is_cm1e;
+    bool is_bridge;             /**< an EtherCAT Cool MUSCLE Bridge, by its modular objects (0xF000, 0xF010, 0xF050) */
+    cm1e_device_model_t model;  /**< which one, by 0xF511:1 ... 0xF514:1; meaningless where is_bridge is FALSE */
     char software_version[16]; /**< object 0x100A, "" where it cannot be read */
     uint16_t output_bytes, input_bytes; /**< of the process image, once configured */
 } cm1e_slave_info_t;

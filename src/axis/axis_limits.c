@@ -54,7 +54,7 @@ cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
     const double counts = cm1e_unit_scale(c);
     const double backlash_velocity = c->backlash == 0.0 ? 0.0
                                      : or_default(c->backlash_velocity, CM1E_BACKLASH_VELOCITY_COUNTS / counts);
-    const double peak = axis->drive.motor->max_velocity_counts_per_s / counts - backlash_velocity;
+    const double peak = cm1e_unit_peak_velocity(axis->config) / counts - backlash_velocity;
     axis->unit = cm1e_unit_of(c);
     axis->scale = c->invert ? -counts : counts;
     axis->modulo_range = c->modulo_range;

@@ -67,5 +67,13 @@ void cm1e_bridge_pdo(cm1e_pdo_t *pdo, unsigned axis, bool transmit);
 /** The greatest position, in either direction, by K37 (resolution and unit of speed) of the motor (BR appendix 5).
  *  0: the motor knows no such value of K37. */
 int32_t cm1e_bridge_position_limit(cm1e_bridge_motor_t motor, int32_t k37);
+/** Counts in one revolution by K37; 0: no motor knows such a value. */
+int32_t cm1e_bridge_counts_per_revolution(int32_t k37);
+
+/** "CM1", "CM2". */
+const char *cm1e_bridge_motor_name(cm1e_bridge_motor_t motor);
+/** The model that has these motors at its connectors: "CM1", "CM2", or "" for any. EB12 where all may be any. FALSE:
+ *  there is no such bridge. */
+bool cm1e_bridge_model_with(const char *const motors[CM1E_BRIDGE_AXES], cm1e_device_model_t *model);
 
 #endif

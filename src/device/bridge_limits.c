@@ -22,3 +22,16 @@ int32_t cm1e_bridge_position_limit(cm1e_bridge_motor_t motor, int32_t k37)
     return k37 < OTHER_RESOLUTIONS || k37 >= FINEST ? common[resolution]
                                                     : others[motor == CM1E_BRIDGE_CM2][resolution];
 }
+
+/* The guide has no resolutions. Known of CM1 and CM2; appendix 5 is 42,949.67 times them, 44,739.24 times the second
+ * row behind a CM1, as far as it is not cut to 999,999,999. */
+int32_t cm1e_bridge_counts_per_revolution(int32_t k37)
+{
+    static const int32_t resolutions[][RESOLUTIONS] = {
+        {200, 400, 500, 1000, 2000, 2500, 5000, 10000, 25000, 0, 50000},
+        {300, 400, 600, 800, 1200, 1500, 3000, 4000, 6000, 8000, 12000},
+    };
+    if (cm1e_bridge_position_limit(CM1E_BRIDGE_CM2, k37) == 0)
+        return 0;
+    return resolutions[k37 >= OTHER_RESOLUTIONS && k37 < FINEST][k37 % REPEATED];
+}

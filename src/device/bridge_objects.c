@@ -1,3 +1,5 @@
+#include <string.h>
+
 #include "device/bridge_tables.h"
 
 /*
@@ -167,6 +169,24 @@ const char *cm1e_bridge_name(cm1e_device_model_t model)
 cm1e_bridge_motor_t cm1e_bridge_motor(cm1e_device_model_t model, unsigned axis)
 {
     return motors[model - CM1E_DEVICE_EB01][axis];
+}
+
+const char *cm1e_bridge_motor_name(cm1e_bridge_motor_t motor) { return motor == CM1E_BRIDGE_CM1 ? "CM1" : "CM2"; }
+
+static bool has(cm1e_device_model_t model, const char *const asked[CM1E_BRIDGE_AXES])
+{
+    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
+        if (asked[i][0] && strcmp(asked[i], cm1e_bridge_motor_name(cm1e_bridge_motor(model, i))) != 0)
+            return false;
+    return true;
+}
+
+bool cm1e_bridge_model_with(const char *const asked[CM1E_BRIDGE_AXES], cm1e_device_model_t *model)
+{
+    for (*model = CM1E_DEVICE_EB12; is_bridge(*model); (*model)--)
+        if (has(*model, asked))
+            return true;
+    return false;
 }
 
 /* The dictionary of a model lies in parts, one behind the other by index. */

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "device/device.h"
+#include "device/bridge.h"
 
 __extension__ typedef unsigned __int128 wide_t;
 
@@ -18,12 +18,26 @@ static double units_per_revolution(const cm1e_axis_config_t *config)
     return config->units_per_revolution > 0.0 ? config->units_per_revolution : 1.0;
 }
 
+double cm1e_unit_counts_per_revolution(const cm1e_axis_config_t *config)
+{
+    const int32_t counts = config->channel && config->k37_stated ? cm1e_bridge_counts_per_revolution(config->k37) : 0;
+    return counts > 0 ? counts : CM1E_COUNTS_PER_REVOLUTION;
+}
+
+double cm1e_unit_peak_velocity(const cm1e_axis_config_t *config)
+{
+    if (config->channel)
+        return 50.0 * cm1e_unit_counts_per_revolution(config);
+    const cm1e_motor_t *motor = cm1e_device_motor(config->motor);
+    return motor ? motor->max_velocity_counts_per_s : 0.0;
+}
+
 cm1e_unit_t cm1e_unit_of(const cm1e_axis_config_t *config)
 {
     if (config->counts_per_unit > 0.0)
         return (cm1e_unit_t){.counts = config->counts_per_unit, .units = 1.0};
     return (cm1e_unit_t){
-        .counts = (double)CM1E_COUNTS_PER_REVOLUTION * or_one(config->gear_numerator),
+        .counts = cm1e_unit_counts_per_revolution(config) * or_one(config->gear_numerator),
         .units = units_per_revolution(config) * or_one(config->gear_denominator),
     };
 }
@@ -99,7 +113,7 @@ bool cm1e_unit_modulo(const cm1e_axis_config_t *config, cm1e_fraction_t *turn)
     } else {
         good = rational(units_per_revolution(config), &unit) && multiply(&range, unit.denominator, unit.numerator) &&
                multiply(&range, or_one(config->gear_numerator), or_one(config->gear_denominator)) &&
-               multiply(&range, CM1E_COUNTS_PER_REVOLUTION, 1);
+               multiply(&range, (wide_t)cm1e_unit_counts_per_revolution(config), 1);
     }
     if (!good)
         return false;

@@ -36,6 +36,14 @@ typedef struct cm1e_fraction {
 /** Default velocity of the backlash compensation, counts/s. */
 #define CM1E_BACKLASH_VELOCITY_COUNTS 50000.0
 
+/** Counts in one revolution of the motor: of a CM1-E always the same, behind a bridge by its K37 (50,000 where that is
+ *  not stated). */
+double cm1e_unit_counts_per_revolution(const cm1e_axis_config_t *config);
+
+/** The motor's peak speed, counts/s: of a CM1-E by its size (UG 6.3), 3000 1/min behind a bridge, whose guide does not
+ *  state it. 0: there is no such motor. */
+double cm1e_unit_peak_velocity(const cm1e_axis_config_t *config);
+
 cm1e_unit_t cm1e_unit_of(const cm1e_axis_config_t *config);
 /** Counts per u. */
 double cm1e_unit_scale(const cm1e_axis_config_t *config);

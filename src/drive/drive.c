@@ -76,6 +76,14 @@ bool cm1e_drive_supports(const cm1e_drive_t *drive, cm1e_mode_t mode)
     }
 }
 
+const cm1e_entry_t *cm1e_drive_entry(const cm1e_drive_t *drive, uint16_t index, uint8_t subindex)
+{
+    if (!cm1e_drive_bridged(drive))
+        return cm1e_device_entry(index, subindex);
+    const cm1e_entry_t *entry = cm1e_bridge_entry(drive->bridge, cm1e_drive_index(drive, index), subindex);
+    return entry && entry->availability == CM1E_AVAILABLE ? entry : NULL;
+}
+
 void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
 {
     cm1e_drive_fault_t *fault = &drive->fault;

@@ -20,17 +20,19 @@
 #include "bus/bus_image.h"
 #include "cia402/cia402.h"
 #include "cm1e/bus.h"
+#include "device/bridge.h"
 
 /** What the caller wants of the drive; written every cycle before cm1e_drive_write(). */
 typedef struct cm1e_drive_command {
     bool enable;                    /**< Operation enabled, if possible */
     bool reset;                     /**< rising edge: one fault reset attempt */
-    cm1e_mode_t mode;               /**< CSP, CSV, PP, PV or HM */
+    cm1e_mode_t mode;               /**< CSP, CSV, PP, PV or HM; behind a bridge CSP, HM, or one of the other values of
+                                         cm1e_bridge_mode_t */
     int32_t target_position;        /**< counts; CSP, PP. Used only while `enabled` is TRUE */
     int32_t target_velocity;        /**< counts/s; CSV, PV */
     bool homing_start;              /**< HM: rising edge starts, FALSE ends (controlword bit 4) */
     bool halt;                      /**< PP, PV, HM: controlword bit 8 */
-    uint16_t digital_outputs;       /**< 0x60FE */
+    uint16_t digital_outputs;       /**< 0x60FE; behind a bridge by SDO, bit 0: output 1 */
 } cm1e_drive_command_t;
 
 /** What the drive shows, fresh after cm1e_drive_read(). */
@@ -44,7 +46,8 @@ typedef struct cm1e_drive_feedback {
     int32_t velocity;               /**< counts/s, whatever the firmware's unit; where the mapping lacks it or the
                                          firmware shows it wrong: from the difference of two positions */
     int16_t torque;                 /**< 0.1 % of rated torque */
-    uint16_t digital_inputs;
+    uint16_t digital_inputs;        /**< bit 0: input 1 */
+    bool digital_known;             /**< they are mapped, or were read a short time ago (behind a bridge) */
     int16_t temperature;            /**< degrees C */
     int32_t dc_link_decivolt;
     bool enabled;                   /**< Operation enabled and in the commanded mode: set-points act */
@@ -62,6 +65,8 @@ typedef struct cm1e_drive_fault {
     uint16_t al_state, al_status_code;
     bool slave_lost;                /**< it did not answer at its address, then or later */
     bool slave_deaf;                /**< it took no part in the cycle, then or later */
+    uint8_t motor_status;           /**< behind a bridge: F530:5 ... 8, read when the motor showed an error ... */
+    bool motor_status_known;        /**< ... where this is TRUE */
 } cm1e_drive_fault_t;
 
 /** In the order of use: first what every cycle looks at. */
@@ -101,8 +106,9 @@ typedef struct cm1e_drive {
     cm1e_sdo_t mode_sdo;            /**< 0x6060 and 0x6061 where the mapping lacks them */
     uint32_t axis;                  /**< index in the configuration */
     const cm1e_axis_config_t *config;
-    const cm1e_motor_t *motor;
+    const cm1e_motor_t *motor;      /**< NULL behind a bridge */
     const cm1e_firmware_info_t *firmware;
+    cm1e_device_model_t bridge;     /**< where the motor stands behind one */
 } cm1e_drive_t;
 
 /** Resolves the objects of the mapping. A mapping that lacks an object the configured use needs is
@@ -122,6 +128,17 @@ static inline bool cm1e_drive_operational(const cm1e_drive_t *drive)
 {
     return !drive->watch.lost && (drive->watch.al_state == CM1E_AL_NONE || drive->watch.al_state == CM1E_AL_OP);
 }
+/** The motor stands behind a bridge. @rt any */
+static inline bool cm1e_drive_bridged(const cm1e_drive_t *drive) { return drive->config->channel != 0; }
+/** On the wire, the index of an object that the dictionary of a first axis has at `index`. @rt any */
+static inline uint16_t cm1e_drive_index(const cm1e_drive_t *drive, uint16_t index)
+{
+    return (uint16_t)(index + (drive->config->channel ? (drive->config->channel - 1) * CM1E_BRIDGE_INDEX_INCREMENT : 0));
+}
+/** The dictionary's entry of an object of this drive, by the index that it has on a first axis; NULL: it has none, or
+ *  one that is not available. @rt any */
+const cm1e_entry_t *cm1e_drive_entry(const cm1e_drive_t *drive, uint16_t index, uint8_t subindex);
+
 /** Whether the mapping allows a mode: its target is mapped. The mode itself goes over SDO where 0x6060 is not mapped.
  *  @rt cycle */
 bool cm1e_drive_supports(const cm1e_drive_t *drive, cm1e_mode_t mode);
