@@ -96,13 +96,13 @@ typedef struct cm1e_axis_config {
     char name[CM1E_NAME_LENGTH];     /**< "": "axis<n>" */
     cm1e_address_kind_t address_kind;
     uint16_t address;                /**< position 1 ..., alias or ID; 0: position = place in the list */
-    uint8_t channel;                 /**< 0: the slave is the motor, a CM1-E. 1 ... 4: the motor at this connector (ID) of
-                                          an EtherCAT Cool MUSCLE Bridge; up to four axes have the bridge's address then */
-    char motor[20];                  /**< "CM1-E-17S30D", -17L30D, -23S30D or -23L20D; "": CM1-E-17S30D. Behind a bridge
-                                          "CM1" or "CM2"; "": whichever the bridge has there */
+    uint8_t channel;                 /**< 0: the slave is the motor, a CM1-E. 1 ... 4: the motor at this connector (ID)
+                                          of an EtherCAT Cool MUSCLE Bridge; up to four axes have its address then */
+    char motor[20];                  /**< "CM1-E-17S30D", -17L30D, -23S30D or -23L20D; "": CM1-E-17S30D. Behind a
+                                          bridge "CM1" or "CM2"; "": whichever the bridge has there */
     uint8_t k37;                     /**< behind a bridge: the motor's K37, its resolution and unit of speed */
-    bool k37_stated;                 /**< TRUE: the field above holds. An axis behind a bridge needs it to move: counts of
-                                          another resolution would be other ways */
+    bool k37_stated;                 /**< TRUE: the field above holds. An axis behind a bridge needs it to move: with
+                                          another resolution the same counts are another way */
     char firmware[12];               /**< expected, or played by the simulator: "1.2.0" ... "1.3.5"; "": any, 1.3.5 */
     cm1e_mapping_t mapping;
     cm1e_motion_backend_t motion;

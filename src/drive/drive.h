@@ -133,7 +133,8 @@ static inline bool cm1e_drive_bridged(const cm1e_drive_t *drive) { return drive-
 /** On the wire, the index of an object that the dictionary of a first axis has at `index`. @rt any */
 static inline uint16_t cm1e_drive_index(const cm1e_drive_t *drive, uint16_t index)
 {
-    return (uint16_t)(index + (drive->config->channel ? (drive->config->channel - 1) * CM1E_BRIDGE_INDEX_INCREMENT : 0));
+    const unsigned channel = drive->config->channel;
+    return (uint16_t)(index + (channel ? (channel - 1) * CM1E_BRIDGE_INDEX_INCREMENT : 0));
 }
 /** The dictionary's entry of an object of this drive, by the index that it has on a first axis; NULL: it has none, or
  *  one that is not available. @rt any */
