@@ -21,6 +21,7 @@
 #include "cia402/cia402.h"
 #include "cm1e/bus.h"
 #include "device/bridge.h"
+#include "drive/drive_command.h"
 
 /** What the caller wants of the drive; written every cycle before cm1e_drive_write(). */
 typedef struct cm1e_drive_command {
@@ -33,6 +34,8 @@ typedef struct cm1e_drive_command {
     bool homing_start;              /**< HM: rising edge starts, FALSE ends (controlword bit 4) */
     bool halt;                      /**< PP, PV, HM: controlword bit 8 */
     uint16_t digital_outputs;       /**< 0x60FE; behind a bridge by SDO, bit 0: output 1 */
+    bool mode_insist;               /**< behind a bridge: csp by way of CML after CMD or CPIO, though it "will possibly
+                                         result in operating abnormal" (BR 6 note 2) */
 } cm1e_drive_command_t;
 
 /** What the drive shows, fresh after cm1e_drive_read(). */
@@ -143,6 +146,28 @@ const cm1e_entry_t *cm1e_drive_entry(const cm1e_drive_t *drive, uint16_t index, 
 /** Whether the mapping allows a mode: its target is mapped. The mode itself goes over SDO where 0x6060 is not mapped.
  *  @rt cycle */
 bool cm1e_drive_supports(const cm1e_drive_t *drive, cm1e_mode_t mode);
+/** Whether the device can be switched to `mode` from the one it was last told. CM1E_ERROR_UNSUPPORTED: it has no such
+ *  mode; CM1E_ERROR_STATE: no way leads there. `*why` (may be NULL) is a sentence then. A command for a mode that no way
+ *  leads to is not carried out: the caller asks here first. @rt cycle */
+cm1e_error_t cm1e_drive_mode_check(const cm1e_drive_t *drive, cm1e_mode_t mode, bool insist, const char **why);
+
+/** Behind a bridge digital signals go by SDO, in csp, while the motor is enabled (BR 6.5). Who reads inputs says so, as
+ *  often as he reads: for a second from then on they are polled, and `feedback.digital_known` tells when they are
+ *  fresh. Does nothing with other drives. @rt cycle */
+void cm1e_drive_want_inputs(cm1e_drive_t *drive);
+/** How `command.digital_outputs` stands with the motor. */
+typedef enum cm1e_drive_outputs {
+    CM1E_DRIVE_OUTPUTS_SET = 0,     /**< they are as commanded (where they are process data: always) */
+    CM1E_DRIVE_OUTPUTS_UNDER_WAY,
+    CM1E_DRIVE_OUTPUTS_WAITING,     /**< they cannot be written now: not enabled, not in csp, not on the bus */
+    CM1E_DRIVE_OUTPUTS_FAILED,      /**< the last transfer ended with an error; it is repeated */
+} cm1e_drive_outputs_t;
+/** @rt cycle */
+cm1e_drive_outputs_t cm1e_drive_outputs(const cm1e_drive_t *drive);
+/** Bit 0: input 1, output 1. Those that can be reached from the bus: all of the mapping, or what the motor behind a
+ *  bridge leaves to its user (BR 6.5). 0: none. @rt cycle */
+uint16_t cm1e_drive_input_mask(const cm1e_drive_t *drive);
+uint16_t cm1e_drive_output_mask(const cm1e_drive_t *drive);
 /** The latched fault as sentences: cause, numbers, cure. @rt block */
 void cm1e_drive_fault_text(const cm1e_drive_t *drive, char *text, size_t size);
 
