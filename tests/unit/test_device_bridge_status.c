@@ -1,0 +1,192 @@
+#include <stdio.h>
+#include <string.h>
+
+#include "device/bridge_status.h"
+#include "unity.h"
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static char text[CM1E_BRIDGE_STATUS_TEXT];
+static const char *words(cm1e_bridge_motor_t motor, uint32_t status)
+{
+    return cm1e_bridge_status_text(motor, status, text, sizeof text);
+}
+
+/* ---- BR 7.4, typed off the guide with its patterns ---------------------------------------------------------------- */
+
+enum { ERROR = 1, FREE = 2, MOVING = 4, THERE = 8, SERIAL = 16 };
+typedef struct pattern {
+    const char *bits; /* 7 ... 0 */
+    const char *name;
+    int is;
+} pattern_t;
+
+static const pattern_t cm1[] = {
+    {"00000xx1", "counter overflow", ERROR},
+    {"00000x1x", "over speed or regenerative current", ERROR},
+    {"000001xx", "overload", ERROR},
+    {"00001111", "serial communication error", ERROR | SERIAL},
+    {"00000000", "running", MOVING},
+    {"00001000", "in position", THERE},
+    {"00010000", "motor free", FREE},
+    {"00100000", "in push mode", MOVING},
+    {"00101000", "end of push mode", 0},
+    {"10000000", "temperature alarm", ERROR},
+    {0},
+};
+static const pattern_t cm2[] = {
+    {"00000xx1", "position error overflow", ERROR},
+    {"00000x1x", "over speed or regenerative voltage", ERROR},
+    {"000001xx", "overload", ERROR},
+    {"00001111", "serial communication error", ERROR | SERIAL},
+    {"00000000", "running", MOVING},
+    {"00001000", "in position", THERE},
+    {"00010000", "motor free", FREE},
+    {"00100000", "in push motion", MOVING},
+    {"00101000", "push motion completed", 0},
+    {"01000000", "power module over-current", ERROR},
+    {"10000000", "temperature alarm", ERROR},
+    {0},
+};
+static const pattern_t *table_of(cm1e_bridge_motor_t motor) { return motor == CM1E_BRIDGE_CM1 ? cm1 : cm2; }
+
+static bool fits(const pattern_t *pattern, unsigned status)
+{
+    for (int i = 0; i < 8; i++)
+        if (pattern->bits[i] != 'x' && pattern->bits[i] - '0' != (int)(status >> (7 - i) & 1))
+            return false;
+    return true;
+}
+
+static int predicates(cm1e_bridge_motor_t motor, uint32_t status)
+{
+    return (cm1e_bridge_status_is_error(motor, status) ? ERROR : 0) | (cm1e_bridge_status_is_free(status) ? FREE : 0)
+           | (cm1e_bridge_status_is_moving(motor, status) ? MOVING : 0)
+           | (cm1e_bridge_status_is_in_position(status) ? THERE : 0)
+           | (cm1e_bridge_status_is_serial(status) ? SERIAL : 0);
+}
+
+/* Of all values those that the guide lists, with the names of every pattern that fits and of no other. */
+static int check_listed(cm1e_bridge_motor_t motor, unsigned status)
+{
+    char expected[CM1E_BRIDGE_STATUS_TEXT] = "";
+    int is = 0, found = 0;
+    for (const pattern_t *pattern = table_of(motor); pattern->bits; pattern++)
+        if (fits(pattern, status)) {
+            strcat(strcat(expected, found++ ? ", " : ""), pattern->name);
+            is |= pattern->is;
+        }
+    if (found) {
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(expected, words(motor, status), expected);
+        TEST_ASSERT_EQUAL_HEX_MESSAGE(is, predicates(motor, status), expected);
+        TEST_ASSERT_EQUAL_MESSAGE((is & ERROR) != 0, cm1e_bridge_status_cure(motor, status)[0] != 0, expected);
+    }
+    return found > 0;
+}
+
+static void test_every_value_of_the_guide_has_its_names(void)
+{
+    int listed = 0;
+    for (unsigned status = 0; status < 256; status++)
+        listed += check_listed(CM1E_BRIDGE_CM1, status) + check_listed(CM1E_BRIDGE_CM2, status);
+    TEST_ASSERT_EQUAL(14 + 15, listed); /* 7 combinations of errors, and the other rows */
+}
+
+static bool is_listed(cm1e_bridge_motor_t motor, unsigned status)
+{
+    for (const pattern_t *pattern = table_of(motor); pattern->bits; pattern++)
+        if (fits(pattern, status))
+            return true;
+    return false;
+}
+
+/* The rest is said to be unlisted, and each of its bits is named: by its row, or as unknown. */
+static void check_unlisted(cm1e_bridge_motor_t motor, unsigned status)
+{
+    char number[40];
+    snprintf(number, sizeof number, "(0x%02X is not listed in the guide)", status);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(words(motor, status), number), text);
+    TEST_ASSERT_LESS_THAN_MESSAGE(sizeof text - 1, strlen(text), text);
+    for (const pattern_t *pattern = table_of(motor); pattern->bits; pattern++) {
+        unsigned bits = 0;
+        for (int i = 0; i < 8; i++)
+            bits = bits << 1 | (pattern->bits[i] == '1');
+        const bool single = bits && (bits & (bits - 1)) == 0;
+        const bool in_serial = (status & 0x0F) == 0x0F && bits <= 0x08;
+        const bool in_push = (status & 0x28) == 0x28 && (bits == 0x08 || bits == 0x20) && (status & 0x0F) != 0x0F;
+        if (single && !in_serial && !in_push)
+            TEST_ASSERT_EQUAL_MESSAGE((status & bits) != 0, strstr(text, pattern->name) != NULL, text);
+    }
+    TEST_ASSERT_EQUAL_MESSAGE((status & 0x0F) == 0x0F, strstr(text, "serial communication error") != NULL, text);
+    const bool unknown = motor == CM1E_BRIDGE_CM1 && (status & 0x40);
+    TEST_ASSERT_EQUAL_MESSAGE(unknown, strstr(text, "unknown bits 0x40") != NULL, text);
+    /* never taken for harmless: an error bit, or one that nobody knows */
+    TEST_ASSERT_EQUAL_MESSAGE((status & 0xC7) != 0, cm1e_bridge_status_is_error(motor, status), text);
+    if (status & 0xC7)
+        TEST_ASSERT_TRUE_MESSAGE(cm1e_bridge_status_cure(motor, status)[0], text);
+    TEST_ASSERT_EQUAL_MESSAGE((status & 0x10) != 0, cm1e_bridge_status_is_free(status), text);
+    TEST_ASSERT_FALSE_MESSAGE(cm1e_bridge_status_is_in_position(status), text);
+    TEST_ASSERT_FALSE_MESSAGE(cm1e_bridge_status_is_moving(motor, status) && (status & 0xDF), text);
+}
+
+static void test_every_other_value_is_named_as_unlisted(void)
+{
+    for (unsigned status = 0; status < 256; status++)
+        for (cm1e_bridge_motor_t motor = CM1E_BRIDGE_CM1; motor <= CM1E_BRIDGE_CM2; motor++)
+            if (!is_listed(motor, status))
+                check_unlisted(motor, status);
+    TEST_ASSERT_EQUAL_STRING("motor free, unknown bits 0x40 (0x50 is not listed in the guide)",
+                             words(CM1E_BRIDGE_CM1, 0x50));
+    TEST_ASSERT_EQUAL_STRING("motor free, power module over-current (0x50 is not listed in the guide)",
+                             words(CM1E_BRIDGE_CM2, 0x50));
+}
+
+/* "Bit 8 ~ 31 are fixed data (0)" */
+static void test_bits_above_the_eighth_are_unknown_ones(void)
+{
+    TEST_ASSERT_EQUAL_STRING("in position, unknown bits 0x100 (0x108 is not listed in the guide)",
+                             words(CM1E_BRIDGE_CM2, 0x108));
+    TEST_ASSERT_EQUAL_STRING("unknown bits 0x80000000 (0x80000000 is not listed in the guide)",
+                             words(CM1E_BRIDGE_CM1, 0x80000000u));
+    TEST_ASSERT_EQUAL_HEX(ERROR, predicates(CM1E_BRIDGE_CM2, 0x108));
+    TEST_ASSERT_LESS_THAN(sizeof text - 1, strlen(words(CM1E_BRIDGE_CM1, 0xFFFFFFF7u)));
+}
+
+static void test_text_in_too_little_room_is_cut(void)
+{
+    char small[16];
+    for (size_t size = 1; size <= sizeof small; size++) {
+        memset(small, '#', sizeof small);
+        cm1e_bridge_status_text(CM1E_BRIDGE_CM1, 0xD7, small, size);
+        TEST_ASSERT_EQUAL(size - 1, strlen(small));
+        TEST_ASSERT_EQUAL_INT(0, memcmp("counter overflow", small, size - 1));
+    }
+}
+
+/* BR 7.1.3 */
+static void test_status_of_cpio_is_the_low_half_of_the_same_table(void)
+{
+    static const struct {
+        uint16_t statusword;
+        const char *name;
+    } cases[] = {
+        {0xC1F7, "counter overflow"}, {0xC207, "over speed or regenerative current"}, {0xC4A7, "overload"},
+        {0xCF07, "serial communication error"}, {0xC0F7, "running"}, {0xC807, "in position"},
+        {0xC507, "counter overflow, overload"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        TEST_ASSERT_EQUAL_STRING(cases[i].name,
+                                 words(CM1E_BRIDGE_CM1, cm1e_bridge_status_of_cpio(cases[i].statusword)));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_every_value_of_the_guide_has_its_names);
+    RUN_TEST(test_every_other_value_is_named_as_unlisted);
+    RUN_TEST(test_bits_above_the_eighth_are_unknown_ones);
+    RUN_TEST(test_text_in_too_little_room_is_cut);
+    RUN_TEST(test_status_of_cpio_is_the_low_half_of_the_same_table);
+    return UNITY_END();
+}
