@@ -60,7 +60,8 @@ static bool powered_state(cm1e_axis_state_t state)
 static bool was_deaf(const cm1e_axis_t *axis, double lag, double lag_before)
 {
     const double few_counts = 50.0;
-    return lag > lag_before + 2.0 * fabs(axis->set_velocity * axis->scale) * axis->cycle_s + few_counts;
+    return lag > lag_before + 2.0 * fabs(axis->set_velocity * axis->scale) * axis->cycle_s +
+                     cm1e_axis_few(axis, few_counts);
 }
 
 /* A set-point that the motor has lost is a jump to come: braking begins anew where the motor is. */

@@ -27,7 +27,7 @@ void cm1e_axis_backlash_init(cm1e_axis_t *axis)
     b->gap = c->backlash * scale;
     if (b->gap == 0.0)
         return;
-    b->velocity = c->backlash_velocity > 0.0 ? c->backlash_velocity * scale : CM1E_BACKLASH_VELOCITY_COUNTS;
+    b->velocity = c->backlash_velocity > 0.0 ? c->backlash_velocity * scale : cm1e_unit_backlash_velocity(c);
     b->acceleration = fmin(b->velocity / ramp_s, fmin(axis->maximum.acceleration, axis->maximum.deceleration) * scale);
 }
 
@@ -42,7 +42,7 @@ bool cm1e_axis_backlash_at_rest(const cm1e_axis_t *axis) { return axis->backlash
 /* The motor goes where the drive, or nobody, wants it. */
 static bool foreign(const cm1e_axis_t *axis)
 {
-    return axis->activity == ACTIVITY_FREE || (axis->activity == ACTIVITY_HOMING && axis->home.step != HOME_WRITE);
+    return axis->activity == ACTIVITY_FREE || (axis->activity == ACTIVITY_HOMING && axis->home.away);
 }
 
 void cm1e_axis_backlash_track(cm1e_axis_t *axis, int32_t moved_counts)

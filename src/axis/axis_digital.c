@@ -118,8 +118,8 @@ cm1e_axis_measures_t cm1e_axis_measures(const cm1e_axis_t *axis)
         .resolution = 1.0 / fabs(axis->scale),
         .modulo_range = axis->modulo_range,
         .max_velocity = most,
-        .lower = axis->software_limits ? axis->lower : -INFINITY,
-        .upper = axis->software_limits ? axis->upper : INFINITY,
+        .lower = axis->modulo_range > 0.0 ? -INFINITY : axis->lower,
+        .upper = axis->modulo_range > 0.0 ? INFINITY : axis->upper,
         .jog_slow = fmin(config->jog_slow > 0.0 ? config->jog_slow : 0.05 * most, most),
         .jog_fast = fmin(config->jog_fast > 0.0 ? config->jog_fast : 0.25 * most, most),
     };

@@ -1,7 +1,11 @@
 /*
- * MC_Home with the drive's own routines (UG 6.2.4): parameters over SDO while the axis holds its position, homing mode,
- * start bit, the table of statusword bits 13, 12 and 10, and back to the axis's own mode with the set-point where the
- * motor stands. The drive calls the end position 0; the axis calls it MC_Home.Position.
+ * MC_Home with the drive's own routines (UG 6.2.4; BR 6.4 and appendix 4 behind a bridge): parameters over SDO, homing
+ * mode, start bit, the table of statusword bits 13, 12 and 10, and back to the axis's own mode with the set-point where
+ * the motor stands. The drive calls the end position 0; the axis calls it MC_Home.Position. What differs between the
+ * drives, the order of the steps first of all, is the table of kinds.
+ *
+ * A CM1-E stops by its halt bit. The bridge has none (BR 6.1.2), nor does its guide say what ends an origin search: the
+ * start bit is taken away, which interrupts a homing by CiA 402, and where the motor does not come to rest, its torque.
  */
 #include <math.h>
 #include <stdio.h>
@@ -13,27 +17,99 @@
 static const int64_t start_timeout_ns = 500 * MS_IN_NS;
 static const int64_t longest_halt_ns = 10000 * MS_IN_NS;
 static const int64_t standing_ns = 50 * MS_IN_NS;
+static const int64_t rest_timeout_ns = 1000 * MS_IN_NS;
 static const int64_t interrupted_ns = 100 * MS_IN_NS;
-static const int32_t standing_counts = 10;
+static const int64_t taken_ns = 100 * MS_IN_NS; /* BR appendix 4.1: "until setting is done" */
+static const double standing_counts = 10.0;
 
 typedef struct homing_object {
     uint16_t index;
     uint8_t subindex;
+    double unit; /* counts, or what it is, in one of the object's */
 } homing_object_t;
 
 enum { OFFSET = 0, METHOD, SPEED, ACCELERATION, TORQUE, TIMEOUT };
-enum { FIRST_METHOD = -6, LAST_METHOD = -1 };
+enum { MOST_STEPS = 10 };
 static const double longest_timeout_s = 1e6;
-static const homing_object_t homing_objects[HOMING_PARAMETERS] = {
-    [OFFSET] = {OBJ_607C_HOME_OFFSET, 0},
-    [METHOD] = {OBJ_6098_HOMING_METHOD, 0},
-    [SPEED] = {OBJ_6099_HOMING_SPEEDS, 1},
-    [ACCELERATION] = {OBJ_609A_HOMING_ACCELERATION, 0},
-    [TORQUE] = {OBJ_60F6_K_PARAMETERS, CM1E_K_PARAMETER_HOMING_TORQUE},
+
+typedef struct homing_kind {
+    int8_t first_method, last_method;
+    bool halts;                /* it has a halt bit */
+    bool attained_is_enough;   /* bit 12 alone and a motor that stands (BR appendix 4.2) */
+    homing_object_t objects[HOMING_PARAMETERS];
+    uint8_t subindex_by_stop;  /* of SPEED, for the methods without a switch; 0: the same */
+    home_step_t steps[MOST_STEPS]; /* up to HOME_RETURN */
+} homing_kind_t;
+
+#define STEPS_BEHIND_BRIDGE                                                                                         \
+    HOME_REST, HOME_SWITCH, HOME_WRITE, HOME_TAKEN, HOME_START, HOME_RUN, HOME_SETTLE, HOME_RETURN
+#define OBJECTS_BEHIND_BRIDGE                                                                                       \
+    {                                                                                                               \
+        [OFFSET] = {OBJ_607C_HOME_OFFSET, 0, 100.0},             /* K48 */                                          \
+        [METHOD] = {OBJ_6098_HOMING_METHOD, 0, 1.0},                                                                \
+        [SPEED] = {OBJ_6099_HOMING_SPEEDS, 1, 100.0},            /* K42 */                                          \
+        [ACCELERATION] = {OBJ_609A_HOMING_ACCELERATION, 0, 1e3}, /* K43 */                                          \
+        [TORQUE] = {OBJ_60F6_K_PARAMETERS, CM1E_K_PARAMETER_HOMING_TORQUE, 1.0},                                    \
+    }
+
+static const homing_kind_t homing_kinds[] = {
+    [HOMING_CM1E] = {
+        .first_method = -6, .last_method = -1, .halts = true,
+        .objects = {
+            [OFFSET] = {OBJ_607C_HOME_OFFSET, 0, 1.0},
+            [METHOD] = {OBJ_6098_HOMING_METHOD, 0, 1.0},
+            [SPEED] = {OBJ_6099_HOMING_SPEEDS, 1, 1.0},
+            [ACCELERATION] = {OBJ_609A_HOMING_ACCELERATION, 0, 1.0},
+            [TORQUE] = {OBJ_60F6_K_PARAMETERS, CM1E_K_PARAMETER_HOMING_TORQUE, 1.0},
+        },
+        .steps = {HOME_WRITE, HOME_SWITCH, HOME_START, HOME_RUN, HOME_RETURN},
+    },
+    [HOMING_CM1] = {
+        .first_method = 1, .last_method = 4, .attained_is_enough = true, .subindex_by_stop = 2,
+        .objects = OBJECTS_BEHIND_BRIDGE, .steps = {STEPS_BEHIND_BRIDGE},
+    },
+    [HOMING_CM2] = { /* its K45 says what K48 counts in (BR 6.4.1, note 3) */
+        .first_method = 1, .last_method = 4, .attained_is_enough = true, .subindex_by_stop = 2,
+        .objects = OBJECTS_BEHIND_BRIDGE, .steps = {HOME_READ, STEPS_BEHIND_BRIDGE},
+    },
 };
 
-/* UG 6.2.4, "Bit Sequence", by bit 13 * 4 + bit 12 * 2 + bit 10. 110 is not in the table; with the error bit in it, it
- * is one. */
+static homing_kind_id_t kind_id(const cm1e_axis_t *axis)
+{
+    const cm1e_drive_t *drive = &axis->drive;
+    if (!cm1e_drive_bridged(drive))
+        return HOMING_CM1E;
+    return cm1e_bridge_motor(drive->bridge, drive->config->channel - 1u) == CM1E_BRIDGE_CM2 ? HOMING_CM2 : HOMING_CM1;
+}
+
+static const homing_kind_t *kind_of(const cm1e_axis_t *axis) { return &homing_kinds[kind_id(axis)]; }
+
+bool cm1e_axis_homes_by_switch(const cm1e_axis_t *axis, int method)
+{
+    return cm1e_drive_bridged(&axis->drive) ? method >= 3 : method <= -3;
+}
+
+/* The object of a parameter for a method, and what its range is: of K47 behind a bridge that of a CM1-E, as the guide
+ * has none. */
+static homing_object_t object_of(const cm1e_axis_t *axis, int which, int method)
+{
+    const homing_kind_t *kind = kind_of(axis);
+    homing_object_t object = kind->objects[which];
+    if (which == SPEED && kind->subindex_by_stop && !cm1e_axis_homes_by_switch(axis, method))
+        object.subindex = kind->subindex_by_stop;
+    if (which == OFFSET && axis->home.offset_unit > 0.0)
+        object.unit = axis->home.offset_unit;
+    return object;
+}
+
+static const cm1e_entry_t *range_of(const cm1e_axis_t *axis, int which, homing_object_t object)
+{
+    return which == TORQUE ? cm1e_device_entry(object.index, object.subindex)
+                           : cm1e_drive_entry(&axis->drive, object.index, object.subindex);
+}
+
+/* UG 6.2.4, "Bit Sequence", and BR 6.4.2, by bit 13 * 4 + bit 12 * 2 + bit 10. 110 is not in the table; with the error
+ * bit in it, it is one. */
 typedef enum meaning { IN_PROGRESS = 0, INTERRUPTED, ATTAINED, COMPLETED, FAILED } meaning_t;
 static const meaning_t meanings[8] = {IN_PROGRESS, INTERRUPTED, ATTAINED, COMPLETED, FAILED, FAILED, FAILED, FAILED};
 
@@ -43,17 +119,21 @@ static uint8_t bits(const cm1e_axis_t *axis)
     return (uint8_t)(f->bit13 << 2 | f->bit12 << 1 | f->target_reached);
 }
 
-/* Checked against the device's range and rounded as the device rounds, before anything reaches the wire. */
-static bool parameter(homing_t *home, int which, double value)
+/* ---- parameters -------------------------------------------------------------------------------------------------- */
+
+/* Checked against the device's range and rounded as the device rounds, before anything reaches the wire. 0 is the
+ * default of those that have one. */
+static bool parameter(cm1e_axis_t *axis, int which, int method, double value)
 {
-    const homing_object_t *object = &homing_objects[which];
-    const cm1e_entry_t *entry = cm1e_device_entry(object->index, object->subindex);
-    if (!entry || !isfinite(value) || fabs(value) > INT32_MAX)
+    const homing_object_t object = object_of(axis, which, method);
+    const cm1e_entry_t *entry = range_of(axis, which, object);
+    if (!entry || !isfinite(value) || fabs(value / object.unit) > INT32_MAX)
         return false;
-    const int64_t rounded = cm1e_entry_round(entry, llround(value));
+    const bool by_default = value == 0.0 && which != OFFSET && which != METHOD;
+    const int64_t rounded = cm1e_entry_round(entry, by_default ? entry->default_value : llround(value / object.unit));
     if (rounded < entry->minimum || rounded > entry->maximum)
         return false;
-    home->raw[which] = (int32_t)rounded;
+    axis->home.raw[which] = (int32_t)rounded;
     return true;
 }
 
@@ -69,15 +149,22 @@ void cm1e_axis_home_wrong_text(const cm1e_axis_t *axis, char *text, size_t size)
     static const char *const names[] = {"offset", "method", "velocity", "acceleration", "torque", "timeout_s"};
     static const char *const units[] = {" u", "", " u/s", " u/s2", " %", " s"};
     const int which = axis->home.wrong;
-    double least = FIRST_METHOD, most = LAST_METHOD;
+    double least = kind_of(axis)->first_method, most = kind_of(axis)->last_method;
+    if (which == OFFSET && axis->home.offset_unit < 0.0) {
+        snprintf(text, size, "Axis \"%s\": homing was not started: the second digit of the motor's K45 = %d says in "
+                 "which unit homing.offset is; 0, 1 or 2 is right (100, 10 or 1 pulses). Set K45, parameter 1045, or "
+                 "leave the offset out.", axis->config->name, (int)axis->home.k45);
+        return;
+    }
     if (which == TIMEOUT) {
         least = 0.0;
         most = longest_timeout_s;
     } else if (which != METHOD) {
-        const cm1e_entry_t *entry = cm1e_device_entry(homing_objects[which].index, homing_objects[which].subindex);
+        const homing_object_t object = object_of(axis, which, axis->home.raw[METHOD]);
+        const cm1e_entry_t *entry = range_of(axis, which, object);
         const double counts = which == TORQUE ? 1.0 : fabs(axis->scale);
-        least = (double)entry->minimum / counts;
-        most = (double)entry->maximum / counts;
+        least = (double)entry->minimum * object.unit / counts;
+        most = (double)entry->maximum * object.unit / counts;
     }
     const bool has_default = which == SPEED || which == ACCELERATION || which == TORQUE || which == TIMEOUT;
     snprintf(text, size, "Axis \"%s\": homing was not started: homing.%s is %.6g%s; %.6g ... %.6g%s is right%s.",
@@ -85,85 +172,135 @@ void cm1e_axis_home_wrong_text(const cm1e_axis_t *axis, char *text, size_t size)
              has_default ? ", or 0 for the default" : "");
 }
 
+static cm1e_error_t take_parameters(cm1e_axis_t *axis, const cm1e_homing_config_t *c)
+{
+    const double scale = fabs(axis->scale);
+    const double values[HOMING_PARAMETERS] = {
+        [OFFSET] = c->offset * axis->scale,
+        [METHOD] = c->method,
+        [SPEED] = c->velocity * scale,
+        [ACCELERATION] = c->acceleration * scale,
+        [TORQUE] = c->torque,
+    };
+    const double asked[HOMING_PARAMETERS] = {c->offset, c->method, c->velocity, c->acceleration, c->torque};
+    axis->home.offset_unit = 0.0; /* until it is read: the largest one */
+    axis->home.offset = values[OFFSET];
+    axis->home.raw[METHOD] = c->method;
+    for (int i = 0; i < HOMING_PARAMETERS; i++)
+        if (!parameter(axis, i, c->method, values[i]))
+            return wrong(&axis->home, i, asked[i]);
+    return CM1E_OK;
+}
+
 cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *command)
 {
     const cm1e_homing_config_t *c = command->homing ? command->homing : &axis->config->homing;
+    const homing_kind_t *kind = kind_of(axis);
     homing_t *home = &axis->home;
     position_t position;
     if (!cm1e_axis_position_from_units(axis, command->position, &position))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     if (!(axis->enable_positive && axis->enable_negative))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED; /* every method moves both ways */
-    if (c->method > LAST_METHOD || c->method < FIRST_METHOD) /* 0 is "no home routine selected": it would never end */
+    if (c->method > kind->last_method || c->method < kind->first_method) /* 0 is "no home routine selected" */
         return wrong(home, METHOD, c->method);
     if (home->submitted && cm1e_sdo_state(&home->sdo) == CM1E_SDO_BUSY)
         return CM1E_ERROR_BUSY; /* a transfer of a homing that was stopped */
     if (!isfinite(c->timeout_s) || c->timeout_s < 0.0 || c->timeout_s > longest_timeout_s)
         return wrong(home, TIMEOUT, c->timeout_s);
-    const double scale = fabs(axis->scale);
-    const double values[HOMING_PARAMETERS] = {
-        [OFFSET] = c->offset * axis->scale,
-        [METHOD] = c->method,
-        [SPEED] = c->velocity == 0.0 ? 50000.0 : c->velocity * scale,
-        [ACCELERATION] = c->acceleration == 0.0 ? 100000.0 : c->acceleration * scale,
-        [TORQUE] = c->torque == 0.0 ? 30.0 : c->torque,
-    };
-    const double asked[HOMING_PARAMETERS] = {c->offset, c->method, c->velocity, c->acceleration, c->torque};
-    for (int i = 0; i < HOMING_PARAMETERS; i++)
-        if (!parameter(home, i, values[i]))
-            return wrong(home, i, asked[i]);
+    const cm1e_error_t error = take_parameters(axis, c);
+    if (error)
+        return error;
     home->position = command->position;
     home->timeout_ns = (int64_t)((c->timeout_s == 0.0 ? 60.0 : c->timeout_s) * 1e9);
     return CM1E_OK;
 }
 
+/* ---- from step to step ------------------------------------------------------------------------------------------- */
+
+/* What a step begins with. */
 static void enter(cm1e_axis_t *axis, home_step_t step)
 {
-    axis->home.step = step;
-    axis->home.step_ns = axis->now_ns;
-    axis->home.quiet_ns = axis->now_ns;
-    axis->home.quiet_position = axis->raw;
+    homing_t *home = &axis->home;
+    cm1e_drive_command_t *command = &axis->drive.command;
+    home->step = step;
+    home->step_ns = home->quiet_ns = home->told_ns = axis->now_ns;
+    home->quiet_position = axis->raw;
+    if (step == HOME_SWITCH) {
+        home->away = true;
+        command->mode = CM1E_MODE_HM;
+        command->homing_start = command->halt = false;
+    } else if (step == HOME_START) {
+        axis->homed = false;
+        home->bits_before = bits(axis);
+        home->deadline_ns = axis->now_ns + home->timeout_ns;
+        command->homing_start = true;
+    } else if (step == HOME_SETTLE) {
+        command->homing_start = false;
+    } else if (step == HOME_RETURN) { /* a halt stays until the mode is left: its end would start again */
+        command->homing_start = false;
+        command->mode = axis->mode;
+    }
+}
+
+/* The drive's 0 is the reference, wherever in its last counts the motor stands just now. */
+static void take_reference(cm1e_axis_t *axis)
+{
+    cm1e_axis_set_origin(axis, cm1e_axis_load(axis, axis->actual_counts - axis->raw), axis->home.position);
+    axis->homed = true;
+}
+
+static void next_step(cm1e_axis_t *axis)
+{
+    const home_step_t step = kind_of(axis)->steps[++axis->home.place];
+    if (step == HOME_RETURN)
+        take_reference(axis);
+    enter(axis, step);
 }
 
 void cm1e_axis_home_begin(cm1e_axis_t *axis)
 {
-    axis->home.next = 0;
-    axis->home.submitted = false;
-    axis->home.refused = CM1E_OK;
-    axis->home.goal = HOME_GOAL_DONE;
-    axis->home.deadline_ns = axis->now_ns + axis->home.timeout_ns;
+    homing_t *home = &axis->home;
+    home->next = home->place = 0;
+    home->submitted = home->away = home->unstoppable = false;
+    home->refused = CM1E_OK;
+    home->goal = HOME_GOAL_DONE;
+    home->deadline_ns = axis->now_ns + home->timeout_ns;
     axis->activity = ACTIVITY_HOMING;
-    enter(axis, HOME_WRITE);
+    enter(axis, kind_of(axis)->steps[0]);
 }
 
 /* Homing is over in the axis's own mode. */
 static void leave(cm1e_axis_t *axis)
 {
     axis->activity = ACTIVITY_HOLD;
+    axis->home.away = false;
     if (axis->active)
         cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK); /* of MC_Home, or of the MC_Stop that ended it */
     if (axis->state == CM1E_AXIS_HOMING)
         axis->state = CM1E_AXIS_STANDSTILL;
 }
 
-/* ---- the steps --------------------------------------------------------------------------------------------------- */
-
+/* Nothing has moved: no reason for ErrorStop. */
 static void refuse(cm1e_axis_t *axis, cm1e_error_t error)
 {
     axis->home.refused = error;
     cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, error);
-    leave(axis); /* nothing has moved: no reason for ErrorStop */
+    if (!axis->home.away) {
+        leave(axis);
+        return;
+    }
+    axis->home.goal = HOME_GOAL_HOLD;
+    enter(axis, HOME_RETURN);
 }
 
-static void submit(cm1e_axis_t *axis)
+/* ---- the steps --------------------------------------------------------------------------------------------------- */
+
+static void submit(cm1e_axis_t *axis, uint16_t index, uint8_t subindex, unsigned bytes, bool write)
 {
     homing_t *home = &axis->home;
-    const homing_object_t *object = &homing_objects[home->next];
-    const cm1e_entry_t *entry = cm1e_device_entry(object->index, object->subindex);
-    const unsigned bytes = entry->bits / 8u;
-    cm1e_put_uint(home->data, bytes, (uint32_t)home->raw[home->next]);
-    home->sdo = (cm1e_sdo_t){.position = axis->drive.position, .index = object->index, .subindex = object->subindex,
-                             .write = true, .data = home->data, .size = bytes};
+    home->sdo = (cm1e_sdo_t){.position = axis->drive.position, .index = cm1e_drive_index(&axis->drive, index),
+                             .subindex = subindex, .write = write, .data = home->data, .size = bytes};
     const cm1e_error_t error = cm1e_sdo_submit(axis->drive.bus, &home->sdo);
     if (error == CM1E_OK)
         home->submitted = true;
@@ -171,32 +308,106 @@ static void submit(cm1e_axis_t *axis)
         refuse(axis, error);
 }
 
+/* TRUE: the transfer under way has ended well. */
+static bool transferred(cm1e_axis_t *axis)
+{
+    homing_t *home = &axis->home;
+    const cm1e_sdo_state_t state = cm1e_sdo_state(&home->sdo);
+    if (state != CM1E_SDO_ERROR && state != CM1E_SDO_DONE)
+        return false;
+    home->submitted = false;
+    if (state == CM1E_SDO_ERROR)
+        refuse(axis, home->sdo.error);
+    return state == CM1E_SDO_DONE;
+}
+
+static void submit_parameter(cm1e_axis_t *axis)
+{
+    homing_t *home = &axis->home;
+    const homing_object_t object = object_of(axis, home->next, home->raw[METHOD]);
+    const unsigned bytes = cm1e_drive_entry(&axis->drive, object.index, object.subindex)->bits / 8u;
+    cm1e_put_uint(home->data, bytes, (uint32_t)home->raw[home->next]);
+    submit(axis, object.index, object.subindex, bytes, true);
+}
+
+/* Before the deadline of a step that transfers; a transfer under way ends by itself. */
+static bool too_late(cm1e_axis_t *axis)
+{
+    if (axis->now_ns < axis->home.deadline_ns)
+        return false;
+    refuse(axis, CM1E_ERROR_TIMEOUT);
+    return true;
+}
+
 static void step_write(cm1e_axis_t *axis)
 {
     homing_t *home = &axis->home;
-    if (axis->now_ns >= home->deadline_ns) {
-        refuse(axis, CM1E_ERROR_TIMEOUT); /* a transfer under way ends by itself */
+    if (home->away)
+        cm1e_axis_set_to_actual(axis);
+    if (too_late(axis))
         return;
-    }
-    if (!home->submitted) {
-        submit(axis);
-        return;
-    }
-    const cm1e_sdo_state_t state = cm1e_sdo_state(&home->sdo);
-    if (state == CM1E_SDO_ERROR) {
-        home->submitted = false;
-        refuse(axis, home->sdo.error);
-    } else if (state == CM1E_SDO_DONE) {
-        home->submitted = false;
-        if (++home->next < HOMING_PARAMETERS) {
-            submit(axis);
+    if (home->submitted) {
+        if (!transferred(axis))
             return;
-        }
-        axis->drive.command.mode = CM1E_MODE_HM;
-        axis->drive.command.homing_start = false;
-        axis->drive.command.halt = false;
-        enter(axis, HOME_SWITCH);
+        home->next++;
     }
+    if (home->next < HOMING_PARAMETERS)
+        submit_parameter(axis);
+    else
+        next_step(axis);
+}
+
+/* "x100, 10 or 1 pulse, set by 2nd digit of K45" (BR 6.4.1, note 3). Without an offset its unit is of no matter. */
+static void take_offset_unit(cm1e_axis_t *axis)
+{
+    static const double units[] = {100.0, 10.0, 1.0};
+    homing_t *home = &axis->home;
+    home->k45 = (int32_t)cm1e_get_u32(home->data);
+    const int32_t digit = home->k45 / 10 % 10;
+    const bool known = digit >= 0 && digit <= 2;
+    home->offset_unit = known ? units[digit] : -1.0;
+    if (home->offset == 0.0)
+        next_step(axis);
+    else if (known && parameter(axis, OFFSET, home->raw[METHOD], home->offset))
+        next_step(axis);
+    else
+        refuse(axis, wrong(home, OFFSET, home->offset / axis->scale));
+}
+
+static void step_read(cm1e_axis_t *axis)
+{
+    homing_t *home = &axis->home;
+    if (too_late(axis))
+        return;
+    if (!home->submitted)
+        submit(axis, OBJ_60F6_K_PARAMETERS, CM1E_K_PARAMETER_HOMING_OFFSET_UNIT, sizeof home->data, false);
+    else if (!transferred(axis))
+        return;
+    else if (home->sdo.size != sizeof home->data)
+        refuse(axis, CM1E_ERROR_BUS_MAILBOX);
+    else
+        take_offset_unit(axis);
+}
+
+/* Since when the motor stands is in `quiet_ns`; it stands if that is long ago. */
+static bool stands(cm1e_axis_t *axis)
+{
+    homing_t *home = &axis->home;
+    const int32_t moved = (int32_t)((uint32_t)axis->raw - (uint32_t)home->quiet_position);
+    if (!axis->drive.feedback.online || abs(moved) > cm1e_axis_few(axis, standing_counts)) {
+        home->quiet_ns = axis->now_ns;
+        home->quiet_position = axis->raw;
+    }
+    return axis->now_ns - home->quiet_ns >= standing_ns;
+}
+
+/* BR appendix 3.1: in position before the mode is switched. */
+static void step_rest(cm1e_axis_t *axis)
+{
+    if (stands(axis))
+        next_step(axis);
+    else if (axis->now_ns - axis->home.step_ns >= rest_timeout_ns)
+        refuse(axis, CM1E_ERROR_AXIS_NOT_AT_REST);
 }
 
 static bool acting_in(const cm1e_axis_t *axis, cm1e_mode_t mode)
@@ -221,26 +432,17 @@ static void step_switch(cm1e_axis_t *axis)
     cm1e_axis_set_to_actual(axis);
     if (!acting_in(axis, CM1E_MODE_HM)) /* the drive's mode timeout bounds this */
         return;
-    if (axis->home.goal != HOME_GOAL_DONE) {
-        axis->drive.command.mode = axis->mode;
+    if (axis->home.goal == HOME_GOAL_DONE)
+        next_step(axis);
+    else
         enter(axis, HOME_RETURN);
-        return;
-    }
-    axis->homed = false;
-    axis->home.bits_before = bits(axis);
-    axis->home.deadline_ns = axis->now_ns + axis->home.timeout_ns;
-    axis->drive.command.homing_start = true;
-    enter(axis, HOME_START);
 }
 
-static void complete(cm1e_axis_t *axis)
+static void step_taken(cm1e_axis_t *axis)
 {
-    /* The drive's 0 is the reference, wherever in its last counts the motor stands just now. */
-    cm1e_axis_set_origin(axis, cm1e_axis_load(axis, axis->actual_counts - axis->raw), axis->home.position);
-    axis->homed = true;
-    axis->drive.command.homing_start = false;
-    axis->drive.command.mode = axis->mode;
-    enter(axis, HOME_RETURN);
+    cm1e_axis_set_to_actual(axis);
+    if (axis->now_ns - axis->home.step_ns >= taken_ns)
+        next_step(axis);
 }
 
 static void fail(cm1e_axis_t *axis, cm1e_error_t error) { cm1e_axis_fail(axis, error, bits(axis), 0.0); }
@@ -261,36 +463,60 @@ static void step_start(cm1e_axis_t *axis)
         return;
     const uint8_t now = bits(axis);
     const meaning_t meaning = meanings[now];
-    if (meaning == IN_PROGRESS || meaning == ATTAINED || (now != axis->home.bits_before && meaning != INTERRUPTED))
-        enter(axis, HOME_RUN);
+    const bool progress = meaning == IN_PROGRESS || (meaning == ATTAINED && !kind_of(axis)->attained_is_enough);
+    if (progress || (now != axis->home.bits_before && meaning != INTERRUPTED))
+        next_step(axis);
     else if (axis->now_ns - axis->home.step_ns >= start_timeout_ns)
         fail(axis, CM1E_ERROR_AXIS_HOMING_FAILED);
 }
 
+static bool completed(cm1e_axis_t *axis, meaning_t meaning)
+{
+    const bool enough = meaning == ATTAINED && kind_of(axis)->attained_is_enough;
+    return meaning == COMPLETED || (stands(axis) && enough);
+}
+
 static void step_run(cm1e_axis_t *axis)
 {
+    homing_t *home = &axis->home;
     cm1e_axis_set_to_actual(axis);
     if (!axis->drive.feedback.online)
         return;
     const meaning_t meaning = meanings[bits(axis)];
     if (meaning != INTERRUPTED)
-        axis->home.quiet_ns = axis->now_ns;
-    if (meaning == COMPLETED)
-        complete(axis);
-    else if (meaning == FAILED || axis->now_ns - axis->home.quiet_ns >= interrupted_ns)
+        home->told_ns = axis->now_ns;
+    if (completed(axis, meaning))
+        next_step(axis);
+    else if (meaning == FAILED || axis->now_ns - home->told_ns >= interrupted_ns)
         fail(axis, CM1E_ERROR_AXIS_HOMING_FAILED);
     else
         timed_out(axis);
 }
 
-/* How long the halt may take: the speed over the deceleration (UG 6.2.4: that of 0x609A). Who sees the motor gives it
- * twice that and a second more; who does not, because the bus is gone, waits for it and then takes the torque away. */
+/* Behind a bridge the end of the homing and its position come over the serial line of the motor, perhaps not in the same
+ * cycle: they count when the motor stands. */
+static void step_settle(cm1e_axis_t *axis)
+{
+    cm1e_axis_set_to_actual(axis);
+    if (stands(axis))
+        next_step(axis);
+    else if (axis->now_ns - axis->home.step_ns >= rest_timeout_ns)
+        fail(axis, CM1E_ERROR_AXIS_HOMING_FAILED);
+}
+
+/* How long the stop may take: the speed over the deceleration (UG 6.2.4: that of 0x609A). Who sees a motor with a halt
+ * bit gives it twice that and a second more; one that may not stop at all gets no more than it needs, and so does one
+ * that nobody sees, because the bus is gone. */
 static int64_t halt_bound_ns(const cm1e_axis_t *axis)
 {
-    const int32_t *raw = axis->home.raw;
-    const int64_t braking_ns = INT64_C(1000000000) * raw[SPEED] / raw[ACCELERATION];
+    const homing_kind_t *kind = kind_of(axis);
+    const double speed = axis->home.raw[SPEED] * kind->objects[SPEED].unit;
+    const double acceleration = axis->home.raw[ACCELERATION] * kind->objects[ACCELERATION].unit;
+    const double braking_s = fmin(speed / acceleration, 1e-9 * (double)longest_halt_ns);
+    const int64_t braking_ns = (int64_t)(1e9 * braking_s);
     const bool blind = axis->drive.fault.error != CM1E_OK;
-    const int64_t bound_ns = blind ? braking_ns + standing_ns : 2 * braking_ns + 1000 * MS_IN_NS;
+    const int64_t bound_ns = !kind->halts ? braking_ns + 2 * standing_ns
+                             : blind      ? braking_ns + standing_ns : 2 * braking_ns + 1000 * MS_IN_NS;
     return bound_ns < longest_halt_ns ? bound_ns : longest_halt_ns;
 }
 
@@ -299,22 +525,16 @@ static void step_halt(cm1e_axis_t *axis)
 {
     homing_t *home = &axis->home;
     cm1e_axis_set_to_actual(axis);
-    const int32_t moved = (int32_t)((uint32_t)axis->raw - (uint32_t)home->quiet_position);
-    if (!axis->drive.feedback.online || abs(moved) > standing_counts) {
-        home->quiet_ns = axis->now_ns;
-        home->quiet_position = axis->raw;
-    }
-    const bool expired = axis->now_ns - home->step_ns >= halt_bound_ns(axis);
-    if (!expired && axis->now_ns - home->quiet_ns < standing_ns)
+    const bool at_rest = stands(axis), expired = axis->now_ns - home->step_ns >= halt_bound_ns(axis);
+    if (!expired && !at_rest)
         return;
     if (off(axis))
         return;
     if (expired) {
+        home->unstoppable = !kind_of(axis)->halts;
         fail(axis, CM1E_ERROR_AXIS_HOMING_FAILED);
         return;
     }
-    axis->drive.command.homing_start = false; /* the halt stays until the mode is left: its end would start again */
-    axis->drive.command.mode = axis->mode;
     enter(axis, HOME_RETURN);
 }
 
@@ -330,8 +550,9 @@ static void step_return(cm1e_axis_t *axis)
 void cm1e_axis_home_step(cm1e_axis_t *axis)
 {
     static void (*const steps[])(cm1e_axis_t *) = {
-        [HOME_WRITE] = step_write, [HOME_SWITCH] = step_switch, [HOME_START] = step_start,
-        [HOME_RUN] = step_run, [HOME_HALT] = step_halt, [HOME_RETURN] = step_return,
+        [HOME_READ] = step_read,   [HOME_REST] = step_rest,   [HOME_WRITE] = step_write, [HOME_SWITCH] = step_switch,
+        [HOME_TAKEN] = step_taken, [HOME_START] = step_start, [HOME_RUN] = step_run,     [HOME_SETTLE] = step_settle,
+        [HOME_HALT] = step_halt,   [HOME_RETURN] = step_return,
     };
     if (!axis->drive.feedback.enabled && axis->home.goal == HOME_GOAL_OFF && axis->drive.fault.error) {
         (void)off(axis);
@@ -345,8 +566,15 @@ void cm1e_axis_home_abort(cm1e_axis_t *axis, home_goal_t goal)
     homing_t *home = &axis->home;
     home->goal = goal;
     switch (home->step) {
-    case HOME_WRITE: /* still in the axis's own mode, holding; a transfer under way may end by itself */
-        if (!off(axis))
+    case HOME_READ:
+    case HOME_REST:
+    case HOME_WRITE: /* holding, or standing in homing mode; a transfer under way may end by itself */
+    case HOME_TAKEN:
+        if (off(axis))
+            break;
+        if (home->away)
+            enter(axis, HOME_RETURN);
+        else
             leave(axis);
         break;
     case HOME_SWITCH:
@@ -355,7 +583,10 @@ void cm1e_axis_home_abort(cm1e_axis_t *axis, home_goal_t goal)
         break;
     case HOME_START:
     case HOME_RUN:
-        axis->drive.command.halt = true;
+    case HOME_SETTLE:
+        axis->drive.command.halt = kind_of(axis)->halts;
+        if (!kind_of(axis)->halts)
+            axis->drive.command.homing_start = false;
         enter(axis, HOME_HALT);
         break;
     case HOME_HALT:

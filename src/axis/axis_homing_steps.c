@@ -17,7 +17,8 @@
 static const int64_t default_detection_ns = 50 * MS_IN_NS;
 static const double default_timeout_s = 60.0;
 static const double few_counts = 20.0;
-/* Of a set-point that goes back from a stop, and of one that comes nearer to it again; counts/s. */
+/* Here as everywhere in this file: counts of a CM1-E. Of a set-point that goes back from a stop, and of one that comes
+ * nearer to it again; counts/s. */
 static const double relief_velocity_counts = 5000.0;
 static const double creep_velocity_counts = 250.0;
 static const double pressing_time_s = 0.01;
@@ -172,7 +173,7 @@ static double lag_counts(const cm1e_axis_t *axis) { return cm1e_position_minus(a
 
 static double relief_velocity(const cm1e_axis_t *axis)
 {
-    return fmin(relief_velocity_counts / fabs(axis->scale), axis->maximum.velocity);
+    return fmin(relief_velocity_counts * axis->count / fabs(axis->scale), axis->maximum.velocity);
 }
 
 /* The motor pushes, or is about to, in the direction of `way`. The set-point goes back until it does not any more: to
@@ -193,7 +194,7 @@ static void relieve_cycle(cm1e_axis_t *axis)
     const double push = -s->way, lag = lag_counts(axis) / axis->scale;
     /* Whole counts, whole per cent: what is less is rounding. */
     const bool pushes = lag * fabs(axis->scale) * push > 1.0 || torque_percent(axis) * push > 1.0;
-    const bool enough = s->travel * fabs(axis->scale) >= farthest_relief_counts;
+    const bool enough = s->travel * fabs(axis->scale) >= farthest_relief_counts * axis->count;
     if ((pushes && !enough) || !axis->drive.feedback.fresh)
         return;
     s->phase = STEPPING_RELIEVED;
@@ -214,13 +215,13 @@ static bool presses(const cm1e_axis_t *axis)
 
 static bool held_up(const cm1e_axis_t *axis)
 {
-    return axis->drive.feedback.fresh && (fabs(lag_counts(axis)) > few_counts || presses_by_torque(axis));
+    return axis->drive.feedback.fresh && (fabs(lag_counts(axis)) > cm1e_axis_few(axis, few_counts) || presses_by_torque(axis));
 }
 
 static double pushed_way(const cm1e_axis_t *axis)
 {
     const double lag = lag_counts(axis) / axis->scale;
-    const double way = fabs(lag * axis->scale) > few_counts ? lag : torque_percent(axis);
+    const double way = fabs(lag * axis->scale) > cm1e_axis_few(axis, few_counts) ? lag : torque_percent(axis);
     return way > 0.0 ? 1.0 : -1.0;
 }
 
@@ -446,7 +447,7 @@ static void keep_pressed(cm1e_axis_t *axis, double now)
 {
     stepping_t *s = &axis->stepping;
     const double pace = s->step.torque_limit == 0.0 ? 0.0
-                        : now >= 1.0 ? -relief_velocity(axis) : creep_velocity_counts / fabs(axis->scale);
+                        : now >= 1.0 ? -relief_velocity(axis) : creep_velocity_counts * axis->count / fabs(axis->scale);
     if (s->pressed && pace == s->pace)
         return;
     s->pace = pace;
@@ -478,11 +479,24 @@ static void look_for_block(cm1e_axis_t *axis)
     }
 }
 
+/* Behind a bridge the motor's own counts end, whatever positions mean. TRUE: it has to brake now. */
+static bool out_of_counts(const cm1e_axis_t *axis)
+{
+    const double v = axis->set_velocity, now = cm1e_axis_line(axis, axis->set);
+    const double end = now + v * (axis->cycle_s + fabs(v) * axis->emergency_way);
+    return v > 0.0 ? end > axis->counts_upper : v < 0.0 && end < axis->counts_lower;
+}
+
 /* TRUE: one of the limits of the step is reached, or the direction is taken away. */
 static bool over_a_limit(cm1e_axis_t *axis)
 {
     const stepping_t *s = &axis->stepping;
     cm1e_error_t error = CM1E_OK;
+    if (axis->counts_limit && out_of_counts(axis)) {
+        decide(axis, CM1E_ERROR_AXIS_POSITION_RANGE);
+        go_within(axis, 0.0, &axis->emergency);
+        return true;
+    }
     if (!cm1e_axis_direction_enabled(axis, s->way))
         error = CM1E_ERROR_AXIS_DIRECTION_DISABLED;
     else if (axis->now_ns >= s->deadline_ns)

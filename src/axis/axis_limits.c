@@ -7,6 +7,7 @@
 static const double tolerance_counts = 0.01;
 static const double relative_tolerance = 1e-9;
 
+/* Counts of a CM1-E: 100 revolutions/s2, 2000/s3, half a revolution. */
 static const double default_acceleration_counts = 5e6;
 static const double default_jerk_counts = 1e8;
 static const double default_lag_counts = 25000.0;
@@ -34,6 +35,26 @@ static cm1e_error_t check_configuration(const cm1e_axis_t *axis, cm1e_diag_t *di
     return CM1E_OK;
 }
 
+/* BR appendix 5: the counts in which the motor behind a bridge is told where to go have less than 32 bits. Between them
+ * and ours lie whole turns of 2^32, and the gap of a backlash. */
+static void find_counts_limits(cm1e_axis_t *axis)
+{
+    const double reach = (double)axis->counts_limit - axis->backlash.gap;
+    const position_t zero = {axis->actual_counts - axis->raw, 0.0};
+    const double a = cm1e_axis_line(axis, cm1e_position_plus(zero, -reach));
+    const double b = cm1e_axis_line(axis, cm1e_position_plus(zero, reach));
+    axis->counts_lower = axis->counts_limit ? fmin(a, b) : -INFINITY;
+    axis->counts_upper = axis->counts_limit ? fmax(a, b) : INFINITY;
+}
+
+void cm1e_axis_apply_limits(cm1e_axis_t *axis)
+{
+    find_counts_limits(axis);
+    axis->upper = fmin(axis->limit_positive_enabled ? axis->limit_positive : INFINITY, axis->counts_upper);
+    axis->lower = fmax(axis->limit_negative_enabled ? axis->limit_negative : -INFINITY, axis->counts_lower);
+    axis->software_limits = axis->limit_positive_enabled || axis->limit_negative_enabled || axis->counts_limit;
+}
+
 static void take_software_limits(cm1e_axis_t *axis)
 {
     const double negative = axis->config->software_limit_negative, positive = axis->config->software_limit_positive;
@@ -42,39 +63,59 @@ static void take_software_limits(cm1e_axis_t *axis)
     axis->limit_negative_enabled = limited && isfinite(negative);
     axis->limit_positive = axis->limit_positive_enabled ? positive : 0.0;
     axis->limit_negative = axis->limit_negative_enabled ? negative : 0.0;
-    cm1e_axis_apply_software_limits(axis);
+    cm1e_axis_apply_limits(axis);
+}
+
+/* Behind a bridge (BR 6.2, 6.3): csp alone, and counts whose number and range are those of K37. */
+static cm1e_error_t init_bridged(cm1e_axis_t *axis, cm1e_diag_t *diag)
+{
+    const cm1e_axis_config_t *c = axis->config;
+    const cm1e_bridge_motor_t motor = cm1e_bridge_motor(axis->drive.bridge, c->channel - 1u);
+    if (c->motion == CM1E_MOTION_DRIVE)
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": motion: drive is not possible behind a bridge, "
+                             "whose motors have no profile modes; leave it out.", c->name);
+    axis->counts_limit = c->k37_stated ? cm1e_bridge_position_limit(motor, c->k37) : 0;
+    if (axis->counts_limit == 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": K37, the resolution of the %s at connector %u, "
+                             "is %s; state the value that the motor answers to the CML string \"K37.%u\".", c->name,
+                             cm1e_bridge_motor_name(motor), c->channel,
+                             c->k37_stated ? "none that it knows" : "not stated", c->channel);
+    return CM1E_OK;
 }
 
 cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {
     const cm1e_axis_config_t *c = axis->config;
-    const cm1e_error_t error = check_configuration(axis, diag);
+    cm1e_error_t error = check_configuration(axis, diag);
+    if (!error && cm1e_drive_bridged(&axis->drive))
+        error = init_bridged(axis, diag);
     if (error)
         return error;
-    const double counts = cm1e_unit_scale(c);
+    const double counts = cm1e_unit_scale(c), count = cm1e_unit_counts_per_revolution(c) / CM1E_COUNTS_PER_REVOLUTION;
     const double backlash_velocity = c->backlash == 0.0 ? 0.0
-                                     : or_default(c->backlash_velocity, CM1E_BACKLASH_VELOCITY_COUNTS / counts);
+                                     : or_default(c->backlash_velocity, cm1e_unit_backlash_velocity(c) / counts);
     const double peak = cm1e_unit_peak_velocity(axis->config) / counts - backlash_velocity;
     axis->unit = cm1e_unit_of(c);
+    axis->count = count;
     axis->scale = c->invert ? -counts : counts;
     axis->modulo_range = c->modulo_range;
     if (!(peak > 0.0) || (c->modulo_range > 0.0 && !cm1e_unit_modulo(c, &axis->turn)))
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": backlash velocity, unit or a turn of %.17g u "
                              "are numbers that the axis cannot compute with.", c->name, c->modulo_range);
     axis->maximum.velocity = fmin(or_default(c->max_velocity, peak), peak);
-    axis->maximum.acceleration = or_default(c->max_acceleration, default_acceleration_counts / counts);
+    axis->maximum.acceleration = or_default(c->max_acceleration, default_acceleration_counts * count / counts);
     axis->maximum.deceleration = or_default(c->max_deceleration, axis->maximum.acceleration);
-    axis->maximum.jerk = or_default(c->max_jerk, default_jerk_counts / counts);
+    axis->maximum.jerk = or_default(c->max_jerk, default_jerk_counts * count / counts);
     axis->system = axis->maximum;
     axis->emergency = axis->system;
     axis->override = axis->override_refused = (override_t){1.0, 1.0, 1.0};
     axis->emergency.jerk = INFINITY;
     axis->emergency_way = 0.5 / axis->emergency.deceleration;
     axis->tolerance = tolerance_counts / fabs(axis->scale);
-    axis->max_lag = or_default(c->max_position_lag, default_lag_counts / counts);
+    axis->max_lag = or_default(c->max_position_lag, default_lag_counts * count / counts);
     axis->lag_monitoring = true;
-    take_software_limits(axis);
     cm1e_axis_backlash_init(axis);
+    take_software_limits(axis);
     return CM1E_OK;
 }
 
@@ -207,7 +248,7 @@ bool cm1e_axis_limits_contain_way(const cm1e_axis_t *axis, const from_t *from, d
 {
     if (!axis->software_limits)
         return true;
-    const double tolerance = axis->tolerance, now = cm1e_axis_units(axis, from->position);
+    const double tolerance = axis->tolerance, now = cm1e_axis_line(axis, from->position);
     if (from->shared) {
         lowest += axis->superimposed.lowest;
         highest += axis->superimposed.highest;
@@ -266,7 +307,7 @@ bool cm1e_axis_limits_hold(const cm1e_axis_t *axis, double lower, double upper)
         return isinf(lower) && isinf(upper);
     if (axis->activity != ACTIVITY_PROFILE)
         return true;
-    const double base = axis->base_units, now = cm1e_axis_units(axis, axis->set), v = axis->set_velocity;
+    const double base = axis->base_line, now = cm1e_axis_line(axis, axis->set), v = axis->set_velocity;
     const double end = axis->profile.end.velocity, brake = axis->emergency_way;
     double lowest, highest;
     cm1e_profile_extent(&axis->profile, &lowest, &highest);

@@ -20,7 +20,7 @@ static void begin_run(cm1e_axis_t *axis, const from_t *from, position_t target, 
 {
     axis->stretch = no_stretch;
     axis->base = from->position;
-    axis->base_units = cm1e_axis_units(axis, axis->base);
+    axis->base_line = cm1e_axis_line(axis, axis->base);
     axis->target = target;
     axis->profile_cycles = 0;
     axis->profile_offset_s = offset_s;
@@ -173,7 +173,7 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
 static bool may_go_on(const cm1e_axis_t *axis, cm1e_motion_state_t next)
 {
     return !axis->software_limits || !commanded_motion(axis) ||
-           cm1e_axis_limits_can_stop(axis, axis->base_units, next);
+           cm1e_axis_limits_can_stop(axis, axis->base_line, next);
 }
 
 /* Reckoned a cycle ahead, since the set-point of a cycle waits for it. */
@@ -205,7 +205,7 @@ CM1E_RARE static void count_anew(cm1e_axis_t *axis)
     const int64_t whole = (int64_t)counts;
     axis->base.counts += whole;
     axis->base = axis->set = cm1e_position_plus(axis->base, (double)(counts - (long double)whole));
-    axis->base_units = cm1e_axis_units(axis, axis->base);
+    axis->base_line = cm1e_axis_line(axis, axis->base);
     axis->along_table = false;
     axis->profile.segment_count = 0;
     axis->profile.duration_s = 0.0;

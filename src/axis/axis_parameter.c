@@ -77,13 +77,6 @@ cm1e_error_t cm1e_axis_read_parameter(const cm1e_axis_t *axis, int number, doubl
 
 /* ---- writing ----------------------------------------------------------------------------------------------------- */
 
-void cm1e_axis_apply_software_limits(cm1e_axis_t *axis)
-{
-    axis->upper = axis->limit_positive_enabled ? axis->limit_positive : INFINITY;
-    axis->lower = axis->limit_negative_enabled ? axis->limit_negative : -INFINITY;
-    axis->software_limits = axis->limit_positive_enabled || axis->limit_negative_enabled;
-}
-
 /* Limits as they would be: in order, and kept by what runs. One who stands outside may come back but go no farther. */
 static cm1e_error_t change_limits(cm1e_axis_t *axis, double positive, double negative, bool positive_enabled,
                                   bool negative_enabled)
@@ -99,7 +92,7 @@ static cm1e_error_t change_limits(cm1e_axis_t *axis, double positive, double neg
     axis->limit_negative = negative;
     axis->limit_positive_enabled = positive_enabled;
     axis->limit_negative_enabled = negative_enabled;
-    cm1e_axis_apply_software_limits(axis);
+    cm1e_axis_apply_limits(axis);
     return CM1E_OK;
 }
 

@@ -112,7 +112,7 @@ cm1e_error_t cm1e_axis_signed_velocity(const cm1e_axis_t *axis, const from_t *fr
 /* A velocity that goes on for ever must be allowed, and not begin too late to brake before a limit. */
 static cm1e_error_t check_endless(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
-    const double velocity = profile->end.velocity, now = cm1e_axis_units(axis, from->position);
+    const double velocity = profile->end.velocity, now = cm1e_axis_line(axis, from->position);
     if (!cm1e_axis_direction_enabled(axis, velocity))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
     if (axis->software_limits && (velocity > 0.0 ? now >= axis->upper : velocity < 0.0 && now <= axis->lower))

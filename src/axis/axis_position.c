@@ -105,8 +105,14 @@ double cm1e_axis_units(const cm1e_axis_t *axis, position_t position)
         const double units = to_units(axis, phase);
         return units < axis->modulo_range ? units : 0.0; /* the last 1e-16 of a turn */
     }
+    return cm1e_axis_line(axis, position);
+}
+
+double cm1e_axis_line(const cm1e_axis_t *axis, position_t position)
+{
     const position_t way = from_origin(axis, position);
-    return axis->origin_units + to_units(axis, (double)way.counts + way.fraction);
+    const double origin = axis->modulo_range > 0.0 ? 0.0 : axis->origin_units;
+    return origin + to_units(axis, (double)way.counts + way.fraction);
 }
 
 bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position)
@@ -188,7 +194,8 @@ void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units)
         axis->origin = at;
         axis->origin_units = units;
     }
-    axis->base_units = cm1e_axis_units(axis, axis->base);
+    axis->base_line = cm1e_axis_line(axis, axis->base);
+    cm1e_axis_apply_limits(axis);
 }
 
 /* What the actual position becomes; FALSE: out of range. */
@@ -217,12 +224,15 @@ static cm1e_error_t set_position(cm1e_axis_t *axis, double position, bool relati
     double value;
     if (!new_position(axis, now, position, relative, &value))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    if (axis->software_limits && axis->activity == ACTIVITY_DRIVE)
+    /* The written limits; those of the motor's counts stay where they are. */
+    const double lower = axis->limit_negative_enabled ? axis->limit_negative : -INFINITY;
+    const double upper = axis->limit_positive_enabled ? axis->limit_positive : INFINITY;
+    const bool limited = axis->limit_negative_enabled || axis->limit_positive_enabled;
+    if (limited && axis->activity == ACTIVITY_DRIVE)
         return CM1E_ERROR_AXIS_STATE; /* of the drive's way only the end is known */
-    if (axis->software_limits) {
+    if (limited) {
         const double shift = value - now, set = cm1e_axis_units(axis, axis->set) + shift;
-        if (!(set >= axis->lower && set <= axis->upper) ||
-            !cm1e_axis_limits_hold(axis, axis->lower - shift, axis->upper - shift))
+        if (!(set >= lower && set <= upper) || !cm1e_axis_limits_hold(axis, lower - shift, upper - shift))
             return CM1E_ERROR_AXIS_POSITION_RANGE;
     }
     cm1e_axis_set_origin(axis, actual, value);

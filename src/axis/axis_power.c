@@ -130,6 +130,7 @@ static void take_over(cm1e_axis_t *axis)
         cm1e_axis_set_to_actual(axis);
     axis->activity = ACTIVITY_HOLD;
     axis->energized = true;
+    cm1e_axis_apply_limits(axis); /* without torque it may have been turned over the end of the drive's counts */
     axis->state = CM1E_AXIS_STANDSTILL;
 }
 

@@ -139,12 +139,19 @@ typedef struct superimposed {
     move_t move;
 } superimposed_t;
 
+/** Drives that home in different ways (axis_home.c). */
+typedef enum homing_kind_id { HOMING_CM1E = 0, HOMING_CM1, HOMING_CM2 } homing_kind_id_t;
+
 typedef enum home_step {
-    HOME_WRITE = 0, /**< parameters over SDO; the axis still holds its position */
+    HOME_READ = 0,  /**< the unit of the offset over SDO; the axis holds its position */
+    HOME_REST,      /**< it holds its position until the motor stands */
+    HOME_WRITE,     /**< parameters over SDO; the axis holds its position, or stands in homing mode */
     HOME_SWITCH,    /**< to homing mode */
+    HOME_TAKEN,     /**< the drive takes the parameters over */
     HOME_START,     /**< start bit set; the status bits are still those of before */
     HOME_RUN,
-    HOME_HALT,      /**< halt bit set, until the motor stands */
+    HOME_SETTLE,    /**< the drive has ended: until the motor stands */
+    HOME_HALT,      /**< halt bit set, or start bit taken away, until the motor stands */
     HOME_RETURN,    /**< back to the axis's own mode */
 } home_step_t;
 
@@ -154,14 +161,21 @@ typedef enum home_goal { HOME_GOAL_DONE = 0, HOME_GOAL_HOLD, HOME_GOAL_OFF } hom
 typedef struct homing {
     home_step_t step;
     home_goal_t goal;
+    uint8_t place;         /**< of the step in the order of its kind */
+    bool away;             /**< the axis's own mode is left */
+    bool unstoppable;      /**< for the text: it went on without its start bit */
     double position;       /**< u, at the reference */
+    double offset;         /**< counts, as asked for */
+    double offset_unit;    /**< counts of one of the object; 0: as its kind says; < 0: K45 says none that is known */
+    int32_t k45;
     int32_t raw[HOMING_PARAMETERS]; /**< in the order of homing_objects (axis_home.c) */
     uint8_t next;          /**< parameter to write next */
     bool submitted;
     cm1e_sdo_t sdo;
     uint8_t data[4];
     int64_t timeout_ns, deadline_ns, step_ns; /**< step_ns: when the step began */
-    int64_t quiet_ns;      /**< since when the motor stands, or the bits say "interrupted" */
+    int64_t quiet_ns;      /**< since when the motor stands */
+    int64_t told_ns;       /**< since when the bits say "interrupted" */
     int32_t quiet_position;
     uint8_t bits_before;   /**< statusword bits 13, 12, 10 before the start */
     cm1e_error_t refused;  /**< why the last homing could not start, for the text; with the numbers in `sdo` */
@@ -319,10 +333,11 @@ struct cm1e_axis {
     double profile_next_s;          /**< its time in the next cycle */
     cm1e_profile_stretch_t stretch; /**< of it, the one that the set-point is in */
     position_t set, base, target;   /**< base: where the profile began; target: where it ends, exactly */
-    double base_units;              /**< u; where base is */
+    double base_line;               /**< u; cm1e_axis_line() of base */
     double set_velocity, set_acceleration; /**< u/s, u/s2 */
     double scale;                   /**< counts per u; negative: inverted */
-    double lower, upper;            /**< u; infinite: none on that side */
+    double count;                   /**< counts of this motor on the way of one count of a CM1-E */
+    double lower, upper;            /**< u, as cm1e_axis_line() counts; infinite: none on that side */
     double tolerance;               /**< u; which they are kept with */
     double emergency_way;           /**< s2/u; times the square of a velocity: that it goes */
     double max_lag;                 /**< u */
@@ -349,6 +364,8 @@ struct cm1e_axis {
     cm1e_motion_limits_t emergency; /**< u; the ramp of an error: that of `system` without a limit of jerk */
     double limit_positive, limit_negative; /**< u */
     bool limit_positive_enabled, limit_negative_enabled;
+    int32_t counts_limit;           /**< of the motor's own counts in either direction, by its K37; 0: none */
+    double counts_lower, counts_upper; /**< u, as cm1e_axis_line() counts; where that is; infinite: none */
 
     cm1e_error_t error;
     uint16_t device_error;
@@ -390,12 +407,17 @@ struct cm1e_axis {
     stepping_t stepping;
 };
 
+/** Counts of this motor that are as far as so many of a CM1-E; two at least, as one is rounding. */
+static inline double cm1e_axis_few(const cm1e_axis_t *axis, double counts) { return fmax(counts * axis->count, 2.0); }
+
 /* axis.c */
 /** The axis's own half of cm1e_axis_outputs(): state diagram and set-point, before they become the drive's. */
 void cm1e_axis_advance(cm1e_axis_t *axis);
 
 /* axis_position.c */
 double cm1e_axis_units(const cm1e_axis_t *axis, position_t position);
+/** The same without the turns of a modulo axis: what limits are compared with. */
+double cm1e_axis_line(const cm1e_axis_t *axis, position_t position);
 /** FALSE: not finite, or farther away than the axis counts. */
 bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position);
 /** Where a command to `position` (u) ends that begins at `from` with `velocity` (u/s): on a linear axis there, whatever
@@ -459,14 +481,13 @@ bool cm1e_axis_limits_contain_way(const cm1e_axis_t *axis, const from_t *from, d
 bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
 /** The same, and no disabled direction in it. */
 cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
-/** Whether the emergency ramp from `next` (its position counted from `base_units`, u) would end inside the software
- *  limits. */
-static inline bool cm1e_axis_limits_can_stop(const cm1e_axis_t *axis, double base_units, cm1e_motion_state_t next)
+/** Whether the emergency ramp from `next` (its position counted from `base`, u) would end inside the software limits. */
+static inline bool cm1e_axis_limits_can_stop(const cm1e_axis_t *axis, double base, cm1e_motion_state_t next)
 {
     if (!axis->software_limits)
         return true;
     /* Without a limit of jerk the way of a stop is known in closed form, whatever the acceleration is. */
-    const double end = base_units + next.position + next.velocity * fabs(next.velocity) * axis->emergency_way;
+    const double end = base + next.position + next.velocity * fabs(next.velocity) * axis->emergency_way;
     return next.velocity > 0.0 ? end <= axis->upper + axis->tolerance
            : next.velocity < 0.0 ? end >= axis->lower - axis->tolerance : true;
 }
@@ -475,8 +496,10 @@ bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity);
 /** Whether the motion under way, and a stop from it, would keep these software limits (u). */
 bool cm1e_axis_limits_hold(const cm1e_axis_t *axis, double lower, double upper);
 
+/* axis_limits.c: when limits are written, and when positions get another meaning */
+void cm1e_axis_apply_limits(cm1e_axis_t *axis);
+
 /* axis_parameter.c, axis_object.c */
-void cm1e_axis_apply_software_limits(cm1e_axis_t *axis);
 /** For the text: what was refused last is told. A success takes back only what was told of the same. */
 void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what);
 void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size);
@@ -636,6 +659,8 @@ void cm1e_axis_enable_step(cm1e_axis_t *axis);
 void cm1e_axis_reset_step(cm1e_axis_t *axis); /* while a reset is under way */
 
 /* axis_home.c */
+/** A method that looks for a switch and not for a stop. */
+bool cm1e_axis_homes_by_switch(const cm1e_axis_t *axis, int method);
 cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *command);
 /** In words: what cm1e_axis_home_prepare() refused for its method or another parameter. */
 void cm1e_axis_home_wrong_text(const cm1e_axis_t *axis, char *text, size_t size);

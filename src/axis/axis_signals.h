@@ -49,7 +49,7 @@ typedef struct cm1e_axis_measures {
     double resolution;           /**< u per count of the motor */
     double modulo_range;         /**< u; 0: a linear axis */
     double max_velocity;         /**< u/s */
-    double lower, upper;         /**< u, the software limits in force; infinite: none */
+    double lower, upper;         /**< u, the limits in force; infinite: none, or a modulo axis */
     double jog_slow, jog_fast;   /**< u/s */
 } cm1e_axis_measures_t;
 cm1e_axis_measures_t cm1e_axis_measures(const cm1e_axis_t *axis);

@@ -91,7 +91,7 @@ static void give_to_base(cm1e_axis_t *axis)
 {
     const double covered = axis->superimposed.now.position, counts = covered * axis->scale;
     axis->base = cm1e_position_plus(axis->base, counts);
-    axis->base_units = cm1e_axis_units(axis, axis->base);
+    axis->base_line = cm1e_axis_line(axis, axis->base);
     axis->target = cm1e_position_plus(axis->target, counts);
     if (axis->active) {
         axis->move.origin = cm1e_position_plus(axis->move.origin, counts);

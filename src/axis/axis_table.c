@@ -111,7 +111,7 @@ static cm1e_error_t check(const cm1e_axis_t *axis, const from_t *from, cm1e_tabl
     if ((!axis->enable_positive && goes_after(table, 0.0, 1.0)) ||
         (!axis->enable_negative && goes_after(table, 0.0, -1.0)))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
-    return cm1e_axis_limits_can_stop(axis, cm1e_axis_units(axis, from->position), table->end)
+    return cm1e_axis_limits_can_stop(axis, cm1e_axis_line(axis, from->position), table->end)
                ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
 }
 

@@ -1,6 +1,7 @@
 /* What happened to an axis, in sentences. */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "axis/axis_private.h"
 
@@ -13,12 +14,23 @@ static void lag_text(const cm1e_axis_t *axis, char *text, size_t size)
              axis->config->name, cm1e_strerror(axis->error), axis->error_value, axis->error_bound);
 }
 
+/* Behind what has been said: where the counts of a motor behind a bridge end (BR appendix 5). */
+static void add_counts_limit(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const size_t used = strlen(text);
+    if (axis->counts_limit && used < size)
+        snprintf(text + used, size - used, " Behind the bridge the motor's own counts end at +-%d, by its K37 = %u: that "
+                 "is %.6g ... %.6g u%s.", (int)axis->counts_limit, axis->config->k37, axis->counts_lower,
+                 axis->counts_upper, axis->modulo_range > 0.0 ? " of this modulo axis, turns counted" : "");
+}
+
 static void range_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     snprintf(text, size,
              "Axis \"%s\": the motion was braked at %.6g u because it would have run over the limit at %.6g u. Reset "
              "the axis with MC_Reset and move away from the limit.",
              axis->config->name, axis->error_value, axis->error_bound);
+    add_counts_limit(axis, text, size);
 }
 
 static void homing_text(const cm1e_axis_t *axis, char *text, size_t size)
@@ -31,7 +43,7 @@ static void homing_text(const cm1e_axis_t *axis, char *text, size_t size)
              "timeout; then reset the axis with MC_Reset.",
              axis->config->name, cm1e_strerror(axis->error), (int)home->raw[1], bits >> 2 & 1u, bits >> 1 & 1u,
              bits & 1u, home->bits_before >> 2 & 1u, home->bits_before >> 1 & 1u, home->bits_before & 1u,
-             home->raw[1] <= -3 ? "sensor" : "hard stop");
+             cm1e_axis_homes_by_switch(axis, home->raw[1]) ? "sensor" : "hard stop");
 }
 
 static void other_text(const cm1e_axis_t *axis, char *text, size_t size)
@@ -81,6 +93,8 @@ void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t siz
     else
         snprintf(text, size, "Axis \"%s\": %s, running or waiting, was ended: %s.", axis->config->name,
                  kind_names[ended->number], cm1e_strerror(ended->error));
+    if (ended->error == CM1E_ERROR_AXIS_POSITION_RANGE)
+        add_counts_limit(axis, text, size);
 }
 
 static void refused_velocity_text(const cm1e_axis_t *axis, char *text, size_t size)
@@ -147,6 +161,7 @@ static void refused_on_top_text(const cm1e_axis_t *axis, char *text, size_t size
 
 static void refused_position_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
+    const bool limited = axis->limit_negative_enabled || axis->limit_positive_enabled;
     const double position = cm1e_axis_units(axis, axis->set);
     if (axis->modulo_range > 0.0)
         snprintf(text, size, "Axis \"%s\": position or distance %.6g was asked for; positions of this modulo axis are "
@@ -155,12 +170,14 @@ static void refused_position_text(const cm1e_axis_t *axis, char *text, size_t si
         refused_on_top_text(axis, text, size);
     else if (axis->software_limits)
         snprintf(text, size,
-                 "Axis \"%s\": a motion from %.6g with target, distance or stopping way %.6g would leave the software "
-                 "limits %.6g ... %.6g u.",
-                 axis->config->name, position, axis->refused.position, axis->lower, axis->upper);
+                 "Axis \"%s\": a motion from %.6g with target, distance or stopping way %.6g would leave the %slimits "
+                 "%.6g ... %.6g u.",
+                 axis->config->name, position, axis->refused.position, limited ? "software " : "", axis->lower,
+                 axis->upper);
     else
         snprintf(text, size, "Axis \"%s\": target or distance %.6g is not a finite number within +-%.6g u.",
                  axis->config->name, axis->refused.position, cm1e_axis_farthest(axis));
+    add_counts_limit(axis, text, size);
 }
 
 /* A command was refused; the axis itself has no error. */

@@ -251,7 +251,7 @@ static bool check_velocity(check_t *check)
     if (axis->backlash == 0 && axis->backlash_velocity != 0)
         return axis_wrong(check, "backlash.velocity", "is given without a gap; expected backlash.gap too");
     if (axis->backlash != 0)
-        kept = CM1E_BACKLASH_VELOCITY_COUNTS;
+        kept = cm1e_unit_backlash_velocity(axis);
     if (axis->backlash_velocity != 0) {
         if (!check_range(check, "backlash.velocity", axis->backlash_velocity, IN_COUNTS, CM1E_LEAST_VELOCITY_COUNTS,
                          peak / 2, "counts/s"))

@@ -55,6 +55,7 @@ enum {
     OBJ_FF00_LED_BRIGHTNESS = 0xFF00,
     OBJ_FF01_LED_OVERRIDE = 0xFF01,
 };
+#define CM1E_K_PARAMETER_HOMING_OFFSET_UNIT 0x19 /**< ... K45, behind a bridge (BR 6.4.1) */
 #define CM1E_K_PARAMETER_HOMING_TORQUE 0x1B /**< sub-index of 0x60F6: K47, % of rated torque (UG 6.2.4) */
 
 /* ---- firmware ---------------------------------------------------------------------------------------------------- */

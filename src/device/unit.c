@@ -32,6 +32,11 @@ double cm1e_unit_peak_velocity(const cm1e_axis_config_t *config)
     return motor ? motor->max_velocity_counts_per_s : 0.0;
 }
 
+double cm1e_unit_backlash_velocity(const cm1e_axis_config_t *config)
+{
+    return cm1e_unit_counts_per_revolution(config);
+}
+
 cm1e_unit_t cm1e_unit_of(const cm1e_axis_config_t *config)
 {
     if (config->counts_per_unit > 0.0)

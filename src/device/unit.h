@@ -33,9 +33,6 @@ typedef struct cm1e_fraction {
 #define CM1E_LEAST_MODULO_COUNTS 1000.0
 #define CM1E_LARGEST_MODULO_COUNTS 1e12
 
-/** Default velocity of the backlash compensation, counts/s. */
-#define CM1E_BACKLASH_VELOCITY_COUNTS 50000.0
-
 /** Counts in one revolution of the motor: of a CM1-E always the same, behind a bridge by its K37 (50,000 where that is
  *  not stated). */
 double cm1e_unit_counts_per_revolution(const cm1e_axis_config_t *config);
@@ -43,6 +40,9 @@ double cm1e_unit_counts_per_revolution(const cm1e_axis_config_t *config);
 /** The motor's peak speed, counts/s: of a CM1-E by its size (UG 6.3), 3000 1/min behind a bridge, whose guide does not
  *  state it. 0: there is no such motor. */
 double cm1e_unit_peak_velocity(const cm1e_axis_config_t *config);
+
+/** Default velocity of the backlash compensation, counts/s: a revolution/s. */
+double cm1e_unit_backlash_velocity(const cm1e_axis_config_t *config);
 
 cm1e_unit_t cm1e_unit_of(const cm1e_axis_config_t *config);
 /** Counts per u. */

@@ -133,11 +133,13 @@ static inline bool cm1e_drive_operational(const cm1e_drive_t *drive)
 }
 /** The motor stands behind a bridge. @rt any */
 static inline bool cm1e_drive_bridged(const cm1e_drive_t *drive) { return drive->config->channel != 0; }
-/** On the wire, the index of an object that the dictionary of a first axis has at `index`. @rt any */
+/** On the wire, the index of an object that the dictionary of a first axis has at `index`; what is the device's and no
+ *  axis's stays where it is. @rt any */
 static inline uint16_t cm1e_drive_index(const cm1e_drive_t *drive, uint16_t index)
 {
     const unsigned channel = drive->config->channel;
-    return (uint16_t)(index + (channel ? (channel - 1) * CM1E_BRIDGE_INDEX_INCREMENT : 0));
+    const bool of_axis = channel != 0 && index >= 0x6000 && index < 0x6000 + CM1E_BRIDGE_INDEX_INCREMENT;
+    return (uint16_t)(index + (of_axis ? (channel - 1) * CM1E_BRIDGE_INDEX_INCREMENT : 0));
 }
 /** The dictionary's entry of an object of this drive, by the index that it has on a first axis; NULL: it has none, or
  *  one that is not available. @rt any */
