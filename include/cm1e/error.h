@@ -50,6 +50,16 @@ extern "C" {
     X(ERROR_DRIVE_MODE_TIMEOUT, -44, "the drive did not confirm the mode of operation in time")                     \
     X(ERROR_DRIVE_MODE_LOST, -45, "the drive left the commanded mode of operation")                                 \
     X(ERROR_DRIVE_RESET_TIMEOUT, -46, "the fault did not clear")                                                    \
+    X(ERROR_CML_STRING, -50, "the string cannot be sent to this motor: empty, too long, cut off, or for another one")\
+    X(ERROR_CML_MOTION, -51, "the CML string may move the motor or change its power, and that is not allowed")      \
+    X(ERROR_CML_TIMEOUT, -52, "no answer to the CML string came in time")                                           \
+    X(ERROR_CML_ANSWER, -53, "an answer of the motor to a CML string is damaged")                                   \
+    X(ERROR_CM_SEARCH, -54, "the motor ended its origin search without an origin")                                  \
+    X(ERROR_CM_SEARCH_TIMEOUT, -55, "the origin search took too long and was aborted")                              \
+    X(ERROR_CM_COMMAND, -56, "the motor did not answer a command of CMD mode")                                      \
+    X(ERROR_CM_MODE, -57, "no way leads from the present mode of operation to this one")                            \
+    X(ERROR_CM_NOT_DISABLED, -58, "only while the axis is Disabled and the motor without torque")                   \
+    X(ERROR_CM_NO_BRIDGE, -59, "the motor is not behind an EtherCAT Cool MUSCLE Bridge")                            \
     X(ERROR_AXIS_STATE, -60, "not allowed in the present state of the axis")                                        \
     X(ERROR_AXIS_NOT_POWERED, -61, "the axis is Disabled: enable it with MC_Power")                                 \
     X(ERROR_AXIS_ERROR_STOP, -62, "the axis is in ErrorStop: remove the cause, then MC_Reset")                      \

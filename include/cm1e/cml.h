@@ -1,0 +1,61 @@
+/**
+ * @file cml.h
+ * CML, the language of the Cool Muscle motors, as the EtherCAT Cool MUSCLE Bridge passes it on (BR 7.2): what a string
+ * can do to a motor, and what an answer says. Pure functions.
+ *
+ * A string has one or more commands between commas: "K53.1=100", "O1.1,O2.1". A command is a sign, mostly a number, and
+ * may name its motor: ".1" is the one at connector 1. The bridge adds CR and LF. An answer is one line, or a list of
+ * lines (?90), each of them "K53.1=100", "Ux.1=8", "Origin.1=0", or another text.
+ */
+#ifndef CM1E_CML_H
+#define CM1E_CML_H
+
+#include "cm1e/bus.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define CM1E_CML_BYTES 64  /**< longest string, and longest answer */
+#define CM1E_CML_LINES 128 /**< most lines of an answer that are kept */
+
+/** What a string can do. */
+typedef enum cm1e_cml_kind {
+    CM1E_CML_QUERY = 0, /**< asks: "?99.1", "K53.1" */
+    CM1E_CML_PARAMETER, /**< writes a K parameter, which the motor keeps without power: "K53.1=100" */
+    CM1E_CML_OUTPUT,    /**< switches an output: "O2.1", "F2.1" */
+    CM1E_CML_MOTION,    /**< may move the motor, change its power or what its positions mean; or is not known */
+} cm1e_cml_kind_t;
+
+/** The kind of its strongest command, in the order above. @rt cycle */
+cm1e_cml_kind_t cm1e_cml_kind(const char *text);
+
+/** NULL: can be sent to the motor at connector `id` (1 ... 4). Otherwise what is wrong, to be read after "the string":
+ *  "is empty", "is longer than 64 bytes" ... Static storage. @rt cycle */
+const char *cm1e_cml_check(const char *text, unsigned id);
+
+typedef enum cm1e_cml_what {
+    CM1E_CML_NOTHING = 0, /**< "Null": no answer has come yet */
+    CM1E_CML_K,           /**< "K53.1=100" */
+    CM1E_CML_STATUS,      /**< "Ux.1=8": the state of the motor, as in object F530:5 ... 8 */
+    CM1E_CML_ORIGIN,      /**< "Origin.1=0": an origin search has ended well */
+    CM1E_CML_VALUE,       /**< another name with a value: "Px.1=-1200" */
+    CM1E_CML_TEXT,        /**< any other line */
+} cm1e_cml_what_t;
+
+typedef struct cm1e_cml_answer {
+    cm1e_cml_what_t what;
+    char name[16];   /**< "K", "Ux", "Origin", "Px" ...; "" of NOTHING and TEXT */
+    unsigned number; /**< of a K parameter */
+    unsigned id;     /**< connector of the motor that says it */
+    int32_t value;
+} cm1e_cml_answer_t;
+
+/** Reads one line with its CR or LF at the end, which is how a line that was cut is known. `bytes` need no final 0, and
+ *  what is behind one does not count. CM1E_ERROR_CML_ANSWER: it is damaged. @rt cycle */
+cm1e_error_t cm1e_cml_parse(cm1e_cml_answer_t *answer, const void *bytes, size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
