@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "command.h"
+#include "device/bridge.h"
 
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
@@ -13,15 +14,34 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     return ARGP_ERR_UNKNOWN;
 }
 
+static const char *model_name(const cm1e_slave_info_t *slave)
+{
+    const char *model = cm1e_bridge_name(slave->model);
+    return model ? model : "of an unknown model";
+}
+
+static const char *motor_name(uint8_t motor)
+{
+    return motor ? cm1e_bridge_motor_name((cm1e_bridge_motor_t)motor) : "unknown";
+}
+
+static json_t *bridge_as_json(const cm1e_slave_info_t *slave)
+{
+    json_t *motors = json_array();
+    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
+        json_array_append_new(motors, json_string(motor_name(slave->motors[i])));
+    return json_pack("{s:s, s:o}", "model", model_name(slave), "motors", motors);
+}
+
 static json_t *slave_as_json(const cm1e_slave_info_t *slave)
 {
     char state[48];
-    return json_pack("{s:i, s:s, s:I, s:I, s:I, s:I, s:i, s:i, s:s, s:b, s:s}", "position", slave->position, "name",
+    return json_pack("{s:i, s:s, s:I, s:I, s:I, s:I, s:i, s:i, s:s, s:b, s:o, s:s}", "position", slave->position, "name",
                      slave->name, "vendor_id", (json_int_t)slave->vendor_id, "product_code",
                      (json_int_t)slave->product_code, "revision", (json_int_t)slave->revision, "serial_number",
                      (json_int_t)slave->serial_number, "alias", slave->alias, "explicit_id", slave->explicit_id,
                      "al_state", al_state_name(slave->al_state, state, sizeof state), "is_cm1e", slave->is_cm1e,
-                     "software_version", slave->software_version);
+                     "bridge", slave->is_bridge ? bridge_as_json(slave) : json_null(), "software_version", slave->software_version);
 }
 
 static void print_table(const cm1e_bus_t *bus)
@@ -35,6 +55,9 @@ static void print_table(const cm1e_bus_t *bus)
                slave->product_code, slave->revision, slave->alias, slave->explicit_id,
                al_state_name(slave->al_state, state, sizeof state),
                slave->software_version[0] ? slave->software_version : "-");
+        if (slave->is_bridge)
+            printf("     bridge %s, motors %s, %s, %s, %s\n", model_name(slave), motor_name(slave->motors[0]),
+                   motor_name(slave->motors[1]), motor_name(slave->motors[2]), motor_name(slave->motors[3]));
     }
 }
 

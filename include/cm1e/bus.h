@@ -41,7 +41,8 @@ typedef struct cm1e_slave_info {
     uint16_t al_state, al_status_code;
     bool is_cm1e;
     bool is_bridge;             /**< an EtherCAT Cool MUSCLE Bridge, by its modular objects (0xF000, 0xF010, 0xF050) */
-    cm1e_device_model_t model;  /**< which one, by 0xF511:1 ... 0xF514:1; meaningless where is_bridge is FALSE */
+    cm1e_device_model_t model;  /**< which one, by its motors; CM1E_DEVICE_CM1E: no bridge, or none that is known */
+    uint8_t motors[4];          /**< of a bridge, by connector (0xF511:1 ... 0xF514:1): 1 CM1, 2 CM2, 0 another */
     char software_version[16]; /**< object 0x100A, "" where it cannot be read */
     uint16_t output_bytes, input_bytes; /**< of the process image, once configured */
 } cm1e_slave_info_t;
@@ -64,9 +65,10 @@ uint32_t cm1e_bus_slave_count(const cm1e_bus_t *bus);
 const cm1e_slave_info_t *cm1e_bus_slave(const cm1e_bus_t *bus, uint32_t position);
 
 /** Matches the scan with the configured axes: a wrong, missing, doubled or extra slave is an error that names what was
- *  expected and what was found. Extra is a CM1-E that no axis is configured for; a device of another kind may stand
- *  between the axes and runs with the process data of its SII. Without any configured axis everything is accepted; a
- *  revision that is not known is no error. @rt init */
+ *  expected and what was found. Extra is a CM1-E, or a bridge, that no axis is configured for; a device of another kind
+ *  may stand between the axes and runs with the process data of its SII. Not every motor behind a bridge needs an axis:
+ *  the others get the controlword 0 and stay free. Without any configured axis everything is accepted; a revision that
+ *  is not known is no error. @rt init */
 cm1e_error_t cm1e_bus_identify(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Position of an axis's slave (axis 0 = first configured); 0: none. @rt any */
 uint16_t cm1e_bus_axis_position(const cm1e_bus_t *bus, uint32_t axis);

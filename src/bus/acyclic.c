@@ -3,12 +3,14 @@
 /* Datagrams beside the process data. Each slave has at most one under way; which of its state machines it serves is
  * noted in `owner`. Nothing here waits unless told so. */
 
-/** Lets the mapping job of a slave have the CoE client when it is free. */
-static void feed_mapping(cm1e_bus_slave_t *slave, int64_t now_ns)
+/** Lets the job of a slave have the CoE client when it is free. */
+static void feed_job(cm1e_bus_slave_t *slave, int64_t now_ns)
 {
-    if (cm1e_mapping_idle(&slave->mapping) || !cm1e_coe_idle(&slave->coe))
+    if (!cm1e_coe_idle(&slave->coe))
         return;
-    cm1e_sdo_t *sdo = cm1e_mapping_next(&slave->mapping);
+    cm1e_sdo_t *sdo = cm1e_recognise_next(&slave->recognition, now_ns);
+    if (!sdo && !cm1e_mapping_idle(&slave->mapping))
+        sdo = cm1e_mapping_next(&slave->mapping);
     if (sdo)
         cm1e_coe_begin(&slave->coe, sdo, now_ns);
 }
@@ -24,7 +26,7 @@ static bool next_datagram(cm1e_bus_slave_t *slave, int64_t now_ns)
         slave->owner = OWNER_AL;
         return cm1e_al_next(&slave->al, &slave->datagram, now_ns);
     }
-    feed_mapping(slave, now_ns);
+    feed_job(slave, now_ns);
     slave->owner = OWNER_COE;
     return cm1e_coe_next(&slave->coe, &slave->datagram, now_ns);
 }
@@ -132,8 +134,8 @@ static bool all_idle(const cm1e_bus_t *bus)
 {
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
-        if (slave->owner != OWNER_NONE || !cm1e_al_idle(&slave->al) || !cm1e_mapping_idle(&slave->mapping) ||
-            !cm1e_coe_idle(&slave->coe))
+        if (slave->owner != OWNER_NONE || !cm1e_al_idle(&slave->al) || !cm1e_coe_idle(&slave->coe) ||
+            !cm1e_recognise_idle(&slave->recognition) || !cm1e_mapping_idle(&slave->mapping))
             return false;
     }
     return true;

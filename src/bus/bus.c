@@ -121,14 +121,26 @@ const cm1e_firmware_info_t *cm1e_bus_slave_firmware(const cm1e_bus_t *bus, uint1
     return slave ? slave->firmware : NULL;
 }
 
+const char *cm1e_bus_kind(const cm1e_bus_slave_t *slave, char kind[CM1E_KIND_LENGTH])
+{
+    const char *model = cm1e_bridge_name(slave->info.model);
+    if (slave->info.is_bridge)
+        snprintf(kind, CM1E_KIND_LENGTH, "bridge %s", model ? model : "of an unknown model");
+    else
+        snprintf(kind, CM1E_KIND_LENGTH, "%s", slave->info.name[0] ? slave->info.name : "no name");
+    return kind;
+}
+
 const char *cm1e_bus_label(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, char label[CM1E_LABEL_LENGTH])
 {
-    const cm1e_axis_config_t *axis = cm1e_bus_axis_of(bus, slave);
-    const char *kind = slave->info.name[0] ? slave->info.name : "no name";
-    if (axis)
-        snprintf(label, CM1E_LABEL_LENGTH, "slave %u (\"%s\", %s)", slave->info.position, axis->name, kind);
-    else
-        snprintf(label, CM1E_LABEL_LENGTH, "slave %u (%s)", slave->info.position, kind);
+    char kind[CM1E_KIND_LENGTH];
+    int used = snprintf(label, CM1E_LABEL_LENGTH, "slave %u (", slave->info.position);
+    for (unsigned channel = 0; channel < CM1E_CHANNELS; channel++) {
+        const cm1e_axis_config_t *axis = cm1e_bus_axis_of(bus, slave, channel);
+        if (axis)
+            used += snprintf(label + used, CM1E_LABEL_LENGTH - (size_t)used, "\"%s\", ", axis->name);
+    }
+    snprintf(label + used, CM1E_LABEL_LENGTH - (size_t)used, "%s)", cm1e_bus_kind(slave, kind));
     return label;
 }
 

@@ -9,13 +9,16 @@
 #include "bus/bus_image.h"
 #include "bus/coe_client.h"
 #include "bus/mapping.h"
+#include "bus/recognise.h"
 #include "bus/recovery.h"
 #include "bus/soem_adapter.h"
 
 enum {
     CM1E_SDO_WAITING_MAX = 64,     /**< transfers that may wait (a power of two) */
     CM1E_DATAGRAMS_PER_CYCLE = 4,  /**< beside the process data and one of supervision */
-    CM1E_LABEL_LENGTH = 112,
+    CM1E_LABEL_LENGTH = 224,       /**< four names of axes */
+    CM1E_KIND_LENGTH = 48,
+    CM1E_CHANNELS = 1 + CM1E_BRIDGE_AXES, /**< 0: the slave itself is the motor; 1 ... 4: connectors of a bridge */
 };
 
 /** Time for one state transition, and for a mailbox answer during start-up (ETG.1020: 200 ms ... 10 s by device). */
@@ -43,12 +46,14 @@ typedef struct cm1e_bus_slave {
     cm1e_slave_info_t info;
     cm1e_slave_facts_t facts;
     const cm1e_firmware_info_t *firmware;    /**< NULL: unreadable */
-    int axis;                                /**< index of the configured axis; -1: none */
+    uint8_t axes[CM1E_CHANNELS];             /**< configured axis of each channel, 1 = first; 0: none */
 
     cm1e_datagram_t datagram;                /**< at most one on its way */
     cm1e_datagram_owner_t owner;
     cm1e_al_machine_t al;
     cm1e_coe_client_t coe;
+    cm1e_recognition_t recognition;
+    cm1e_bridge_facts_t bridge;              /**< as the scan found them; of a bridge only */
     cm1e_mapping_job_t mapping;
     cm1e_recovery_t recovery;
     cm1e_sdo_t version_sdo;                  /**< 0x100A, read by the scan */
@@ -116,9 +121,16 @@ static inline cm1e_bus_slave_t *cm1e_bus_at(const cm1e_bus_t *bus, uint32_t posi
 {
     return bus && position >= 1 && position <= bus->slave_count ? &bus->slaves[position - 1] : NULL;
 }
-static inline const cm1e_axis_config_t *cm1e_bus_axis_of(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
+/** NULL: none is configured there. */
+static inline const cm1e_axis_config_t *cm1e_bus_axis_of(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave,
+                                                         unsigned channel)
 {
-    return slave->axis >= 0 ? &bus->config.axes[slave->axis] : NULL;
+    return slave->axes[channel] ? &bus->config.axes[slave->axes[channel] - 1] : NULL;
+}
+/** It moves something: it is started and brought back with the care that this needs. */
+static inline bool cm1e_bus_has_motors(const cm1e_bus_slave_t *slave)
+{
+    return slave->info.is_cm1e || slave->info.is_bridge;
 }
 
 /** Ordered with the ring of transfers: see cm1e_sdo_submit(). */
@@ -127,7 +139,9 @@ static inline void cm1e_bus_set_phase(cm1e_bus_t *bus, cm1e_bus_phase_t phase)
     __atomic_store_n(&bus->phase, (int)phase, __ATOMIC_SEQ_CST);
 }
 
-/** 'slave 2 ("axis2", CM1-E)': how a slave is named in every diagnosis; at the begin of a sentence with a capital. */
+/** What kind of slave it is: "bridge EB12", else the name in its SII. */
+const char *cm1e_bus_kind(const cm1e_bus_slave_t *slave, char kind[CM1E_KIND_LENGTH]);
+/** 'slave 2 ("axis2", CM1-E)', 'slave 3 ("X", "Y", bridge EB12)': how a slave is named in every diagnosis; at the begin of a sentence with a capital. */
 const char *cm1e_bus_label(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, char label[CM1E_LABEL_LENGTH]);
 const char *cm1e_bus_label_first(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, char label[CM1E_LABEL_LENGTH]);
 /** Makes the bus's clock the one SOEM uses in this thread, and tells the time. */
@@ -141,7 +155,7 @@ void cm1e_acyclic_receive(cm1e_bus_t *bus, int64_t wait_ns);
 void cm1e_acyclic_cancel(cm1e_bus_t *bus);
 /** One round of a blocking phase: a cycle when process data is exchanged, else datagrams at the pump's pace. */
 void cm1e_bus_pump(cm1e_bus_t *bus);
-/** Pumps until every slave's AL machine, mapping job and CoE client is idle; false: not until `deadline_ns`. */
+/** Pumps until every slave's AL machine, jobs and CoE client are idle; false: not until `deadline_ns`. */
 bool cm1e_bus_pump_until_idle(cm1e_bus_t *bus, int64_t deadline_ns);
 
 /** The SDO queue: begins the next transfer for a slave whose client is idle; ends all that wait. */

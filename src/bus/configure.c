@@ -11,17 +11,34 @@
  *  CM1E_DATAGRAMS_PER_CYCLE mailboxes of a CM1-E and the supervision take beside the process data. */
 enum { NS_PER_BYTE = 80, FRAME_OVERHEAD_BYTES = 52, NS_PER_SLAVE = 1000, BESIDE_PROCESS_DATA_NS = 65000 };
 
-static cm1e_mapping_t mapping_of(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
+/** Of a CM1-E those of the configured mapping; of a bridge those of all its axes, configured or not: whether it accepts
+ *  fewer is not in its guide. */
+static cm1e_pdo_choice_t pdos_of(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
 {
-    const cm1e_axis_config_t *axis = cm1e_bus_axis_of(bus, slave);
-    return axis ? axis->mapping : CM1E_MAPPING_DYNAMIC;
+    const cm1e_axis_config_t *axis = cm1e_bus_axis_of(bus, slave, 0);
+    const unsigned mapping = axis ? axis->mapping : CM1E_MAPPING_DYNAMIC;
+    if (!slave->info.is_bridge)
+        return (cm1e_pdo_choice_t){1, {{(uint16_t)(0x1600 + mapping)}, {(uint16_t)(0x1A00 + mapping)}}};
+    cm1e_pdo_choice_t choice = {.count = CM1E_BRIDGE_AXES};
+    for (unsigned i = 0; i < 2 * CM1E_BRIDGE_AXES; i++) {
+        const bool transmit = i >= CM1E_BRIDGE_AXES;
+        cm1e_pdo_t pdo;
+        cm1e_bridge_pdo(&pdo, i % CM1E_BRIDGE_AXES, transmit);
+        choice.pdos[transmit][i % CM1E_BRIDGE_AXES] = pdo.index;
+    }
+    return choice;
 }
 
-/** UG 4.3: four cycle times; before V1.3.2 only 1 ms (UG 10.1). An unreadable version is given the benefit. */
+/** UG 4.3: four cycle times; before V1.3.2 only 1 ms (UG 10.1). An unreadable version is given the benefit. Behind a
+ *  bridge 1 ms (BR 6.3). */
 static cm1e_error_t check_cycle_time(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
 {
     char label[CM1E_LABEL_LENGTH];
     const int64_t cycle_ns = bus->config.cycle_time_ns;
+    if (slave->info.is_bridge && cycle_ns != CM1E_BRIDGE_CYCLE_TIME_NS)
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_CYCLE_TIME, 0,
+                             "%s runs with a cycle time of 1000 us only; configured are %lld us, for all slaves.",
+                             cm1e_bus_label_first(bus, slave, label), (long long)(cycle_ns / 1000));
     bool known = false;
     for (unsigned i = 0; i < 4; i++)
         known = known || cm1e_device_cycle_times_ns[i] == cycle_ns;
@@ -42,15 +59,16 @@ static cm1e_error_t read_mappings(cm1e_bus_t *bus, cm1e_diag_t *diag)
     const int64_t deadline_ns = cm1e_clock_now(bus->clock) + MAPPING_TIMEOUT_NS;
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
-        if (slave->info.is_cm1e)
-            cm1e_mapping_begin(&slave->mapping, slave->info.position, mapping_of(bus, slave));
+        const cm1e_pdo_choice_t choice = pdos_of(bus, slave);
+        if (cm1e_bus_has_motors(slave))
+            cm1e_mapping_begin(&slave->mapping, slave->info.position, &choice);
     }
     const bool ended = cm1e_bus_pump_until_idle(bus, deadline_ns);
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         char label[CM1E_LABEL_LENGTH];
         cm1e_bus_slave_t *slave = &bus->slaves[i];
         cm1e_mapping_job_t *job = &slave->mapping;
-        if (!slave->info.is_cm1e)
+        if (!cm1e_bus_has_motors(slave))
             continue;
         if (!ended && !cm1e_mapping_idle(job)) {
             cm1e_acyclic_cancel(bus);
@@ -59,9 +77,8 @@ static cm1e_error_t read_mappings(cm1e_bus_t *bus, cm1e_diag_t *diag)
         }
         if (job->error == CM1E_ERROR_PDO_MAPPING)
             return cm1e_diag_set(diag, job->error, 0,
-                                 "The PDO mapping 0x%04X/0x%04X of %s cannot be used: %s (object 0x%04X:%02X).",
-                                 job->pdo[0], job->pdo[1], cm1e_bus_label(bus, slave, label), job->reason,
-                                 job->sdo.index, job->sdo.subindex);
+                                 "The PDO mapping of %s cannot be used: %s (object 0x%04X:%02X).",
+                                 cm1e_bus_label(bus, slave, label), job->reason, job->sdo.index, job->sdo.subindex);
         if (job->error != CM1E_OK)
             return cm1e_bus_diagnose_sdo(bus, slave, &job->sdo, "PDO mapping", diag);
         memcpy(slave->mapped, job->mapped, sizeof slave->mapped);
@@ -73,7 +90,7 @@ static cm1e_error_t set_process_data(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
-        const bool ok = slave->info.is_cm1e
+        const bool ok = cm1e_bus_has_motors(slave)
                             ? cm1e_soem_set_process_data(bus->soem, slave->info.position, slave->mapped[0].bits,
                                                          slave->mapped[1].bits)
                             : cm1e_soem_set_process_data_by_sii(bus->soem, slave->info.position);
@@ -144,7 +161,7 @@ static cm1e_error_t set_watchdogs(cm1e_bus_t *bus, cm1e_diag_t *diag)
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         const bool set = write_word(bus, slave, REG_WATCHDOG_DIVIDER, CM1E_WATCHDOG_DIVIDER) &&
                          write_word(bus, slave, REG_WATCHDOG_PROCESS_DATA, CM1E_WATCHDOG_TIME);
-        if (!set && slave->info.is_cm1e) /* another device may have none */
+        if (!set && cm1e_bus_has_motors(slave)) /* another device may have none */
             return cm1e_diag_set(diag, CM1E_ERROR_BUS_WORKING_COUNTER, 0,
                                  "%s does not take the time of its watchdog. Check its cables and its power.",
                                  cm1e_bus_label_first(bus, slave, label));
@@ -161,7 +178,7 @@ cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag)
     cm1e_bus_enter(bus);
     cm1e_error_t error = CM1E_OK;
     for (uint32_t i = 0; i < bus->slave_count && error == CM1E_OK; i++) {
-        if (bus->slaves[i].info.is_cm1e)
+        if (cm1e_bus_has_motors(&bus->slaves[i]))
             error = check_cycle_time(bus, &bus->slaves[i], diag);
     }
     if (error == CM1E_OK)

@@ -31,9 +31,10 @@ static const char *found_text(const cm1e_bus_t *bus, char *text, size_t size)
     text[0] = 0;
     for (uint32_t i = 0; i < bus->slave_count && used + 1 < size; i++) {
         const cm1e_slave_info_t *info = &bus->slaves[i].info;
+        char kind[CM1E_KIND_LENGTH];
         const int n = snprintf(text + used, size - used, "%s%u: %s (0x%08X/0x%08X, alias %u, ID %u)", i ? "; " : "",
-                               info->position, info->name, info->vendor_id, info->product_code, info->alias,
-                               info->explicit_id);
+                               info->position, cm1e_bus_kind(&bus->slaves[i], kind), info->vendor_id,
+                               info->product_code, info->alias, info->explicit_id);
         used += n > 0 ? (size_t)n : 0;
     }
     return text;
@@ -46,25 +47,91 @@ static cm1e_error_t identity_error(const cm1e_bus_t *bus, cm1e_diag_t *diag, con
                          bus->slave_count == 1 ? "" : "s", found_text(bus, found, sizeof found));
 }
 
-static cm1e_error_t check_kind(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
+/** Why a slave is no bridge: in the course of a sentence, behind "found slave 2 of another kind". */
+static const char *no_bridge_text(const cm1e_bus_slave_t *slave, char text[112])
 {
-    char where[32], problem[256];
-    const cm1e_axis_config_t *axis = cm1e_bus_axis_of(bus, slave);
-    if (slave->info.is_cm1e)
+    const cm1e_recognition_t *job = &slave->recognition;
+    if (!slave->facts.coe)
+        snprintf(text, 112, "it has no mailbox for CoE");
+    else if (job->sdo.error != CM1E_OK)
+        snprintf(text, 112, "its object 0x%04X:%02X cannot be read: %s", job->sdo.index, job->sdo.subindex,
+                 cm1e_strerror(job->sdo.error));
+    else
+        snprintf(text, 112, "its object 0x%04X:%02X is 0x%08X, that of a bridge 0x%08X", job->sdo.index,
+                 job->sdo.subindex, job->shown, job->wanted);
+    return text;
+}
+
+/** What the axis asks for, where what stands there is something else; "": it is right. */
+static void wrong_kind(const cm1e_axis_config_t *axis, const cm1e_bus_slave_t *slave, char *text, size_t size)
+{
+    char why[112], kind[CM1E_KIND_LENGTH];
+    const unsigned position = slave->info.position;
+    text[0] = 0;
+    if (axis->channel ? slave->info.is_bridge : slave->info.is_cm1e)
+        return;
+    if (axis->channel && slave->info.is_cm1e)
+        snprintf(text, size, "expected a Cool MUSCLE Bridge, found slave %u, a CM1-E, which is one axis: leave its "
+                 "channel out.", position);
+    else if (axis->channel)
+        snprintf(text, size, "expected a Cool MUSCLE Bridge, found slave %u of another kind: %s.", position,
+                 no_bridge_text(slave, why));
+    else if (slave->info.is_bridge)
+        snprintf(text, size, "expected a CM1-E, found slave %u, the %s: an axis behind it has a channel, 1 ... %d.",
+                 position, cm1e_bus_kind(slave, kind), CM1E_BRIDGE_AXES);
+    else
+        snprintf(text, size, "expected a CM1-E (vendor 0x%08X, product 0x%08X), found slave %u of another kind.",
+                 CM1E_VENDOR_ID, CM1E_PRODUCT_CODE, position);
+}
+
+static cm1e_error_t check_kind(const cm1e_bus_t *bus, const cm1e_axis_config_t *axis, const cm1e_bus_slave_t *slave,
+                               cm1e_diag_t *diag)
+{
+    char where[32], wrong[288], problem[400];
+    wrong_kind(axis, slave, wrong, sizeof wrong);
+    if (!wrong[0])
+        return CM1E_OK;
+    snprintf(problem, sizeof problem, "Axis \"%s\" at %s: %s", axis->name, address_text(axis, where), wrong);
+    return identity_error(bus, diag, problem);
+}
+
+/** A bridge whose motors nobody knows together: neither its dictionary nor its limits are known. */
+static cm1e_error_t check_model(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
+{
+    char problem[320];
+    const uint32_t *motors = slave->bridge.motors;
+    if (!slave->info.is_bridge || cm1e_bridge_name(slave->info.model))
         return CM1E_OK;
     snprintf(problem, sizeof problem,
-             "Axis \"%s\" at %s: expected a CM1-E (vendor 0x%08X, product 0x%08X), found slave %u of another kind.",
-             axis->name, address_text(axis, where), CM1E_VENDOR_ID, CM1E_PRODUCT_CODE, slave->info.position);
+             "Slave %u is a bridge that tells the motors %u, %u, %u, %u (objects 0xF511:01 ... 0xF514:01), which no "
+             "known model has: EB01 has 1, 1, 1, 1 (CM1), EB02 2, 2, 2, 2 (CM2), EB12 1, 1, 2, 2.",
+             slave->info.position, motors[0], motors[1], motors[2], motors[3]);
+    return identity_error(bus, diag, problem);
+}
+
+static cm1e_error_t check_motor(const cm1e_bus_t *bus, const cm1e_axis_config_t *axis, const cm1e_bus_slave_t *slave,
+                                cm1e_diag_t *diag)
+{
+    char problem[320];
+    if (!axis->channel || !axis->motor[0])
+        return CM1E_OK;
+    const char *motor = cm1e_bridge_motor_name(cm1e_bridge_motor(slave->info.model, axis->channel - 1u));
+    if (strcmp(motor, axis->motor) == 0)
+        return CM1E_OK;
+    snprintf(problem, sizeof problem,
+             "Axis \"%s\": the configuration expects the motor %s at channel %u of slave %u, the bridge has a %s there "
+             "(object 0x%04X:01). Correct \"motor\" or leave it out.", axis->name, axis->motor, axis->channel,
+             slave->info.position, motor, OBJ_F511_CONFIG_AXIS_1 + axis->channel - 1u);
     return identity_error(bus, diag, problem);
 }
 
 /** The version without a leading V. */
 static const char *plain_version(const char *version) { return version + (*version == 'V' || *version == 'v'); }
 
-static cm1e_error_t check_firmware(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
+static cm1e_error_t check_firmware(const cm1e_bus_t *bus, const cm1e_axis_config_t *axis,
+                                   const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
 {
     char problem[256];
-    const cm1e_axis_config_t *axis = cm1e_bus_axis_of(bus, slave);
     if (!axis->firmware[0] || !strcmp(plain_version(axis->firmware), plain_version(slave->info.software_version)))
         return CM1E_OK;
     snprintf(problem, sizeof problem,
@@ -74,11 +141,10 @@ static cm1e_error_t check_firmware(const cm1e_bus_t *bus, const cm1e_bus_slave_t
     return identity_error(bus, diag, problem);
 }
 
-/** The one slave of an axis. */
-static cm1e_error_t match_axis(cm1e_bus_t *bus, uint32_t axis_index, cm1e_diag_t *diag)
+/** The one slave at an address; NULL: there is none, or more than one. */
+static cm1e_bus_slave_t *find_slave(cm1e_bus_t *bus, const cm1e_axis_config_t *axis, cm1e_diag_t *diag)
 {
     char where[32], problem[256];
-    const cm1e_axis_config_t *axis = &bus->config.axes[axis_index];
     cm1e_bus_slave_t *match = NULL;
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
@@ -87,24 +153,80 @@ static cm1e_error_t match_axis(cm1e_bus_t *bus, uint32_t axis_index, cm1e_diag_t
         if (match) {
             snprintf(problem, sizeof problem, "Axis \"%s\": %s is doubled, slaves %u and %u both have it.", axis->name,
                      address_text(axis, where), match->info.position, slave->info.position);
-            return identity_error(bus, diag, problem);
+            identity_error(bus, diag, problem);
+            return NULL;
         }
         match = slave;
     }
     if (!match) {
-        snprintf(problem, sizeof problem, "Axis \"%s\": expected a CM1-E at %s, which is missing.", axis->name,
-                 address_text(axis, where));
+        snprintf(problem, sizeof problem, "Axis \"%s\": expected a %s at %s, which is missing.", axis->name,
+                 axis->channel ? "Cool MUSCLE Bridge" : "CM1-E", address_text(axis, where));
+        identity_error(bus, diag, problem);
+    }
+    return match;
+}
+
+/** Two axes are one motor. */
+static cm1e_error_t check_alone(const cm1e_bus_t *bus, const cm1e_axis_config_t *axis, const cm1e_bus_slave_t *slave,
+                                cm1e_diag_t *diag)
+{
+    char problem[256], channel[24] = "";
+    const cm1e_axis_config_t *other = cm1e_bus_axis_of(bus, slave, axis->channel);
+    if (!other)
+        return CM1E_OK;
+    if (axis->channel)
+        snprintf(channel, sizeof channel, "channel %u of ", axis->channel);
+    snprintf(problem, sizeof problem, "Axes \"%s\" and \"%s\" are both %sslave %u.", other->name, axis->name, channel,
+             slave->info.position);
+    return identity_error(bus, diag, problem);
+}
+
+static cm1e_error_t match_axis(cm1e_bus_t *bus, uint32_t axis_index, cm1e_diag_t *diag)
+{
+    const cm1e_axis_config_t *axis = &bus->config.axes[axis_index];
+    if (axis->channel >= CM1E_CHANNELS)
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": its channel is %u; a bridge has 1 ... %d.",
+                             axis->name, axis->channel, CM1E_BRIDGE_AXES);
+    cm1e_bus_slave_t *slave = find_slave(bus, axis, diag);
+    if (!slave)
+        return CM1E_ERROR_BUS_IDENTITY;
+    cm1e_error_t error = check_alone(bus, axis, slave, diag);
+    if (error == CM1E_OK)
+        error = check_kind(bus, axis, slave, diag);
+    if (error == CM1E_OK)
+        error = check_model(bus, slave, diag);
+    if (error == CM1E_OK)
+        error = check_motor(bus, axis, slave, diag);
+    if (error == CM1E_OK)
+        error = check_firmware(bus, axis, slave, diag);
+    slave->axes[axis->channel] = (uint8_t)(axis_index + 1);
+    bus->axis_position[axis_index] = slave->info.position;
+    return error;
+}
+
+static bool is_used(const cm1e_bus_slave_t *slave)
+{
+    for (unsigned channel = 0; channel < CM1E_CHANNELS; channel++)
+        if (slave->axes[channel])
+            return true;
+    return false;
+}
+
+/** A motor that nobody configured could move unexpectedly; a device of another kind may stand between the axes. Beside
+ *  the axes of a bridge its other motors stay free: their controlword is 0. */
+static cm1e_error_t check_extra(const cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
+    for (uint32_t i = 0; i < bus->slave_count && bus->config.axis_count > 0; i++) {
+        char problem[256];
+        const cm1e_bus_slave_t *slave = &bus->slaves[i];
+        if (!cm1e_bus_has_motors(slave) || is_used(slave))
+            continue;
+        snprintf(problem, sizeof problem, "Slave %u is a %s that is extra: %u axes are configured and none is %sit.",
+                 slave->info.position, slave->info.is_cm1e ? "CM1-E" : "Cool MUSCLE Bridge", bus->config.axis_count,
+                 slave->info.is_cm1e ? "" : "behind ");
         return identity_error(bus, diag, problem);
     }
-    if (match->axis >= 0) {
-        snprintf(problem, sizeof problem, "Axes \"%s\" and \"%s\" are both slave %u.",
-                 bus->config.axes[match->axis].name, axis->name, match->info.position);
-        return identity_error(bus, diag, problem);
-    }
-    match->axis = (int)axis_index;
-    bus->axis_position[axis_index] = match->info.position;
-    const cm1e_error_t error = check_kind(bus, match, diag);
-    return error != CM1E_OK ? error : check_firmware(bus, match, diag);
+    return CM1E_OK;
 }
 
 cm1e_error_t cm1e_bus_identify(cm1e_bus_t *bus, cm1e_diag_t *diag)
@@ -114,23 +236,13 @@ cm1e_error_t cm1e_bus_identify(cm1e_bus_t *bus, cm1e_diag_t *diag)
     cm1e_bus_set_phase(bus, BUS_SCANNED);
     memset(bus->axis_position, 0, sizeof bus->axis_position);
     for (uint32_t i = 0; i < bus->slave_count; i++)
-        bus->slaves[i].axis = -1;
-    for (uint32_t axis = 0; axis < bus->config.axis_count; axis++) {
-        const cm1e_error_t error = match_axis(bus, axis, diag);
-        if (error != CM1E_OK)
-            return error;
-    }
-    /* A motor that nobody configured could move unexpectedly; a device of another kind may stand between the axes. */
-    for (uint32_t i = 0; i < bus->slave_count && bus->config.axis_count > 0; i++) {
-        const cm1e_bus_slave_t *slave = &bus->slaves[i];
-        if (slave->info.is_cm1e && slave->axis < 0) {
-            char problem[256];
-            snprintf(problem, sizeof problem,
-                     "Slave %u is a CM1-E that is extra: %u axes are configured and none is it.",
-                     slave->info.position, bus->config.axis_count);
-            return identity_error(bus, diag, problem);
-        }
-    }
-    cm1e_bus_set_phase(bus, BUS_IDENTIFIED);
-    return CM1E_OK;
+        memset(bus->slaves[i].axes, 0, sizeof bus->slaves[i].axes);
+    cm1e_error_t error = CM1E_OK;
+    for (uint32_t axis = 0; axis < bus->config.axis_count && error == CM1E_OK; axis++)
+        error = match_axis(bus, axis, diag);
+    if (error == CM1E_OK)
+        error = check_extra(bus, diag);
+    if (error == CM1E_OK)
+        cm1e_bus_set_phase(bus, BUS_IDENTIFIED);
+    return error;
 }

@@ -3,18 +3,13 @@
 #include <stddef.h>
 
 #include "core/bytes.h"
-#include "device/device.h"
 
 static const uint16_t assign_index[2] = {OBJ_1C12_RXPDO_ASSIGN, OBJ_1C13_TXPDO_ASSIGN};
 enum { SDO_TIMEOUT_NS = 1000000000, DIRECTION_BITS_MAX = 8 * 1024 };
 
-void cm1e_mapping_begin(cm1e_mapping_job_t *job, uint16_t position, cm1e_mapping_t mapping)
+void cm1e_mapping_begin(cm1e_mapping_job_t *job, uint16_t position, const cm1e_pdo_choice_t *choice)
 {
-    *job = (cm1e_mapping_job_t){
-        .step = MAPPING_CLEAR,
-        .pdo = {(uint16_t)(0x1600 + mapping), (uint16_t)(0x1A00 + mapping)},
-        .sdo = {.position = position},
-    };
+    *job = (cm1e_mapping_job_t){.step = MAPPING_CLEAR, .choice = *choice, .sdo = {.position = position}};
 }
 
 static void end(cm1e_mapping_job_t *job, cm1e_error_t error, const char *reason)
@@ -24,15 +19,24 @@ static void end(cm1e_mapping_job_t *job, cm1e_error_t error, const char *reason)
     job->reason = reason;
 }
 
+/** The assignment read back is another one. Where the slave refused to have it written, that says more. */
+static void end_wrong_assignment(cm1e_mapping_job_t *job, const char *reason)
+{
+    if (job->is_refused)
+        job->sdo = job->refused;
+    end(job, job->is_refused ? CM1E_ERROR_SDO_ABORT : CM1E_ERROR_PDO_MAPPING, reason);
+}
+
 /** Fills the transfer of the present step. */
 static cm1e_sdo_t *prepare(cm1e_mapping_job_t *job)
 {
     if (job->step == MAPPING_IDLE)
         return NULL; /* the last transfer stays readable */
-    const uint16_t position = job->sdo.position, pdo = job->pdo[job->direction], assign = assign_index[job->direction];
+    const uint16_t position = job->sdo.position, pdo = job->choice.pdos[job->direction][job->place];
     const bool write = job->step <= MAPPING_COUNT;
-    job->sdo = (cm1e_sdo_t){.position = position, .index = assign, .write = write, .data = job->data,
-                            .size = write ? 1 : sizeof job->data, .timeout_ns = SDO_TIMEOUT_NS, .state = CM1E_SDO_BUSY};
+    job->sdo = (cm1e_sdo_t){.position = position, .index = assign_index[job->direction], .write = write,
+                            .data = job->data, .size = write ? 1 : sizeof job->data, .timeout_ns = SDO_TIMEOUT_NS,
+                            .state = CM1E_SDO_BUSY};
     switch (job->step) {
     case MAPPING_IDLE:
         break;
@@ -41,16 +45,16 @@ static cm1e_sdo_t *prepare(cm1e_mapping_job_t *job)
         break;
     case MAPPING_ASSIGN:
         cm1e_put_u16(job->data, pdo);
-        job->sdo.subindex = 1;
+        job->sdo.subindex = (uint8_t)(job->place + 1);
         job->sdo.size = 2;
         break;
     case MAPPING_COUNT:
-        job->data[0] = 1;
+        job->data[0] = job->choice.count;
         break;
     case MAPPING_READ_COUNT:
         break;
     case MAPPING_READ_PDO:
-        job->sdo.subindex = 1;
+        job->sdo.subindex = (uint8_t)(job->place + 1);
         break;
     case MAPPING_READ_ENTRIES:
         job->sdo.index = pdo;
@@ -62,6 +66,15 @@ static cm1e_sdo_t *prepare(cm1e_mapping_job_t *job)
     }
     job->started = true;
     return &job->sdo;
+}
+
+/** The same step for the next PDO, or `next` with the first one. */
+static void next_pdo(cm1e_mapping_job_t *job, cm1e_mapping_step_t next)
+{
+    if (++job->place < job->choice.count)
+        return;
+    job->place = 0;
+    job->step = next;
 }
 
 static void next_direction(cm1e_mapping_job_t *job)
@@ -90,10 +103,15 @@ static void took_entry(cm1e_mapping_job_t *job)
     mapped->entries[mapped->entry_count++] = (cm1e_mapped_entry_t){
         .index = (uint16_t)(value >> 16), .subindex = (uint8_t)(value >> 8), .bits = bits, .bit_offset = mapped->bits};
     mapped->bits = (uint16_t)(mapped->bits + bits);
-    if (job->entry < job->entries)
+    if (job->entry < job->entries) {
         job->entry++;
-    else
+    } else if (job->place + 1 < job->choice.count) {
+        job->place++;
+        job->step = MAPPING_READ_ENTRIES;
+    } else {
+        job->place = 0;
         next_direction(job);
+    }
 }
 
 /** What each transfer brought. */
@@ -106,20 +124,21 @@ static void took(cm1e_mapping_job_t *job)
         job->step = MAPPING_ASSIGN;
         break;
     case MAPPING_ASSIGN:
-        job->step = MAPPING_COUNT;
+        next_pdo(job, MAPPING_COUNT);
         break;
     case MAPPING_COUNT:
         next_direction(job);
         break;
     case MAPPING_READ_COUNT:
         job->step = MAPPING_READ_PDO;
-        if (job->data[0] != 1)
-            end(job, CM1E_ERROR_PDO_MAPPING, "it does not assign exactly one PDO");
+        if (job->data[0] != job->choice.count)
+            end_wrong_assignment(job, "it assigns another number of PDOs than it was told");
         break;
     case MAPPING_READ_PDO:
-        job->step = MAPPING_READ_ENTRIES;
-        if (cm1e_get_u16(job->data) != job->pdo[job->direction])
-            end(job, CM1E_ERROR_PDO_MAPPING, "it did not keep the assigned PDO");
+        if (cm1e_get_u16(job->data) != job->choice.pdos[job->direction][job->place])
+            end_wrong_assignment(job, "it did not keep the assigned PDO");
+        else
+            next_pdo(job, MAPPING_READ_ENTRIES);
         break;
     case MAPPING_READ_ENTRIES:
         job->entries = job->data[0];
@@ -134,12 +153,23 @@ static void took(cm1e_mapping_job_t *job)
     }
 }
 
+/** A refused write is no error yet: what is read back tells. */
+static bool may_go_on(cm1e_mapping_job_t *job)
+{
+    if (!job->sdo.write || job->sdo.error != CM1E_ERROR_SDO_ABORT)
+        return false;
+    if (!job->is_refused)
+        job->refused = job->sdo;
+    job->is_refused = true;
+    return true;
+}
+
 cm1e_sdo_t *cm1e_mapping_next(cm1e_mapping_job_t *job)
 {
     if (job->started) {
         job->started = false;
         const size_t wanted = job->step == MAPPING_READ_ENTRY ? 4 : job->step == MAPPING_READ_PDO ? 2 : 1;
-        if (cm1e_sdo_state(&job->sdo) == CM1E_SDO_ERROR)
+        if (cm1e_sdo_state(&job->sdo) == CM1E_SDO_ERROR && !may_go_on(job))
             end(job, job->sdo.error, NULL);
         else if (!job->sdo.write && job->sdo.size < wanted)
             end(job, CM1E_ERROR_PDO_MAPPING, "an entry of its PDO mapping is too short");

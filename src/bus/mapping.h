@@ -2,14 +2,23 @@
  * @file mapping.h
  * The PDO mapping of one slave: assigns the chosen PDOs, then reads back what the slave made of it. The layout is
  * always what the device says (the manual gives two orders, UG 4.4 and UG 7.2); gaps (entries of index 0) only take
- * up bits. A list of SDO transfers, one after the other; who runs it owns the CoE client.
+ * up bits. A device that refuses to have its assignment written is right as long as the assignment is the chosen one:
+ * in the bridge's list of objects part of it is read-only (BR appendix 6). A list of SDO transfers, one after the
+ * other; who runs it owns the CoE client.
  */
 #ifndef CM1E_BUS_MAPPING_H
 #define CM1E_BUS_MAPPING_H
 
 #include "cm1e/bus.h"
+#include "device/bridge.h"
 
-enum { CM1E_MAPPED_ENTRIES = 64 };
+enum { CM1E_MAPPED_ENTRIES = 64, CM1E_MAPPED_PDOS = CM1E_BRIDGE_AXES };
+
+/** The PDOs to assign, in order; as many in each direction. */
+typedef struct cm1e_pdo_choice {
+    uint8_t count;
+    uint16_t pdos[2][CM1E_MAPPED_PDOS]; /**< outputs, inputs */
+} cm1e_pdo_choice_t;
 
 typedef struct cm1e_mapped_entry {
     uint16_t index, bit_offset; /**< index 0: a gap */
@@ -26,28 +35,31 @@ typedef struct cm1e_mapped_direction {
 typedef enum cm1e_mapping_step {
     MAPPING_IDLE = 0,
     MAPPING_CLEAR,      /**< write 0 to the number of assigned PDOs */
-    MAPPING_ASSIGN,     /**< write the PDO */
-    MAPPING_COUNT,      /**< write 1 to the number */
-    MAPPING_READ_COUNT, /**< read the number of assigned PDOs: 1 */
-    MAPPING_READ_PDO,   /**< read which: the one written */
-    MAPPING_READ_ENTRIES, /**< read the number of its entries */
-    MAPPING_READ_ENTRY,
+    MAPPING_ASSIGN,     /**< write a PDO, one after the other */
+    MAPPING_COUNT,      /**< write their number */
+    MAPPING_READ_COUNT, /**< read the number of assigned PDOs: the one written */
+    MAPPING_READ_PDO,   /**< read which, one after the other: those written */
+    MAPPING_READ_ENTRIES, /**< read the number of entries of a PDO */
+    MAPPING_READ_ENTRY, /**< read them, one after the other; then on with the next PDO */
 } cm1e_mapping_step_t;
 
 typedef struct cm1e_mapping_job {
     cm1e_mapping_step_t step;
-    uint16_t pdo[2];         /**< to assign */
+    cm1e_pdo_choice_t choice;
     int direction;           /**< 0 outputs, 1 inputs */
-    uint8_t entry, entries;  /**< where the reading is, from 1 */
+    uint8_t place;           /**< which PDO of the choice, from 0 */
+    uint8_t entry, entries;  /**< where the reading of its entries is, from 1 */
     bool started;            /**< `sdo` is in work or done */
     cm1e_sdo_t sdo;
+    cm1e_sdo_t refused;      /**< the first write that the slave refused, where `is_refused`: the result if it matters */
+    bool is_refused;
     uint8_t data[4];
     cm1e_error_t error;      /**< result, valid when idle; foreign code in sdo.abort_code */
     const char *reason;      /**< with CM1E_ERROR_PDO_MAPPING: what is wrong */
     cm1e_mapped_direction_t mapped[2];
 } cm1e_mapping_job_t;
 
-void cm1e_mapping_begin(cm1e_mapping_job_t *job, uint16_t position, cm1e_mapping_t mapping);
+void cm1e_mapping_begin(cm1e_mapping_job_t *job, uint16_t position, const cm1e_pdo_choice_t *choice);
 static inline bool cm1e_mapping_idle(const cm1e_mapping_job_t *job) { return job->step == MAPPING_IDLE; }
 /** The transfer to begin now; NULL: the job has ended (or it is idle). The last one returned must have ended. */
 cm1e_sdo_t *cm1e_mapping_next(cm1e_mapping_job_t *job);

@@ -10,6 +10,7 @@
 /** For one datagram step. */
 #define STEP_NS INT64_C(100000000)
 #define SDO_STEP_NS INT64_C(1000000000)
+#define BRIDGE_STEP_NS INT64_C(3000000000)
 #define MAPPING_STEP_NS INT64_C(10000000000)
 /** Short: a device that is away has no address to give back. */
 #define RELEASE_NS INT64_C(10000000)
@@ -54,15 +55,21 @@ static void advance(cm1e_bus_slave_t *slave, int64_t now_ns)
  *  answer at the same one. */
 static bool must_release(const cm1e_recovery_t *recovery)
 {
-    return recovery->address_given && recovery->step >= RECOVERY_ADDRESS && recovery->step <= RECOVERY_SERIAL;
+    return recovery->address_given && recovery->step >= RECOVERY_ADDRESS && recovery->step <= RECOVERY_BRIDGE;
+}
+
+static void cancel_jobs(cm1e_bus_slave_t *slave)
+{
+    cm1e_al_cancel(&slave->al);
+    cm1e_recognise_cancel(&slave->recognition);
+    slave->mapping.step = MAPPING_IDLE;
 }
 
 static void fail(cm1e_bus_slave_t *slave, int64_t now_ns)
 {
     if (slave->recovery.step != RECOVERY_RELEASE)
         slave->recovery.failed_at = slave->recovery.step;
-    cm1e_al_cancel(&slave->al);
-    slave->mapping.step = MAPPING_IDLE;
+    cancel_jobs(slave);
     cm1e_coe_cancel(&slave->coe, CM1E_ERROR_BUS_LOST);
     enter(slave, must_release(&slave->recovery) ? RECOVERY_RELEASE : RECOVERY_PAUSE, now_ns);
 }
@@ -78,8 +85,7 @@ void cm1e_recovery_begin(cm1e_bus_slave_t *slave)
 void cm1e_recovery_cancel(cm1e_bus_slave_t *slave)
 {
     slave->recovery.step = RECOVERY_IDLE;
-    cm1e_al_cancel(&slave->al);
-    slave->mapping.step = MAPPING_IDLE;
+    cancel_jobs(slave);
 }
 
 /* ---- registers ------------------------------------------------------------------------------------------------- */
@@ -310,17 +316,44 @@ static bool next_serial(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now
     return check_identity(slave, d, now_ns, 4, slave->info.serial_number);
 }
 
-/** The same PDOs again, and the same layout must come out: the image of the running bus cannot change. */
-static bool next_mapping(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+/** Which motors are behind a bridge, no identity tells. */
+static bool next_bridge(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
-    cm1e_mapping_job_t *job = &slave->mapping;
-    if (!slave->info.is_cm1e) {
+    cm1e_recognition_t *job = &slave->recognition;
+    if (!slave->info.is_bridge) {
         advance(slave, now_ns);
         return false;
     }
     if (!slave->recovery.entered) {
         slave->recovery.entered = true;
-        cm1e_mapping_begin(job, slave->info.position, (cm1e_mapping_t)(job->pdo[0] & 3));
+        cm1e_recognise_begin(job, slave->info.position, slave->recovery.deadline_ns);
+    }
+    if (cm1e_coe_idle(&slave->coe)) {
+        cm1e_sdo_t *sdo = cm1e_recognise_next(job, now_ns);
+        if (!sdo) {
+            if (job->is_bridge && memcmp(&job->facts, &slave->bridge, sizeof job->facts) == 0)
+                advance(slave, now_ns);
+            else
+                fail(slave, now_ns);
+            return false;
+        }
+        cm1e_coe_begin(&slave->coe, sdo, now_ns);
+    }
+    return cm1e_coe_next(&slave->coe, d, now_ns);
+}
+
+/** The same PDOs again, and the same layout must come out: the image of the running bus cannot change. */
+static bool next_mapping(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    cm1e_mapping_job_t *job = &slave->mapping;
+    if (!cm1e_bus_has_motors(slave)) {
+        advance(slave, now_ns);
+        return false;
+    }
+    if (!slave->recovery.entered) {
+        slave->recovery.entered = true;
+        const cm1e_pdo_choice_t choice = job->choice;
+        cm1e_mapping_begin(job, slave->info.position, &choice);
     }
     if (cm1e_coe_idle(&slave->coe)) {
         cm1e_sdo_t *sdo = cm1e_mapping_next(job);
@@ -358,6 +391,7 @@ static const cm1e_recovery_action_t actions[] = {
     [RECOVERY_VENDOR] = {SDO_STEP_NS, next_vendor, result_coe},
     [RECOVERY_PRODUCT] = {SDO_STEP_NS, next_product, result_coe},
     [RECOVERY_SERIAL] = {SDO_STEP_NS, next_serial, result_coe},
+    [RECOVERY_BRIDGE] = {BRIDGE_STEP_NS, next_bridge, result_coe},
     [RECOVERY_MAPPING] = {MAPPING_STEP_NS, next_mapping, result_coe},
     [RECOVERY_PROCESS_DATA] = {STEP_NS, next_process_data, result_next_step},
     [RECOVERY_FMMUS] = {STEP_NS, next_fmmus, result_next_step},

@@ -4,6 +4,8 @@
 #include "bus/bus_internal.h"
 #include "core/text.h"
 
+/** For all slaves together. A bridge answers its 15 questions within some milliseconds each. */
+#define RECOGNITION_NS INT64_C(3000000000)
 /** The explicit device ID comes at once or never (ETG.1020: a device without it ignores the request). */
 #define ID_TIMEOUT_NS INT64_C(100000000)
 
@@ -11,7 +13,6 @@ static void set_up_slave(cm1e_bus_t *bus, uint16_t position)
 {
     cm1e_bus_slave_t *slave = &bus->slaves[position - 1];
     memset(slave, 0, sizeof *slave);
-    slave->axis = -1;
     cm1e_slave_facts_t *facts = &slave->facts;
     cm1e_soem_facts(bus->soem, position, facts);
     slave->info = (cm1e_slave_info_t){
@@ -73,6 +74,30 @@ static void read_software_versions(cm1e_bus_t *bus)
     }
 }
 
+/** Of every slave that has a mailbox and is no CM1-E. */
+static void recognise_bridges(cm1e_bus_t *bus)
+{
+    const int64_t deadline_ns = cm1e_clock_now(bus->clock) + RECOGNITION_NS;
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        if (slave->facts.coe && !slave->info.is_cm1e)
+            cm1e_recognise_begin(&slave->recognition, slave->info.position, deadline_ns);
+    }
+    cm1e_bus_pump_until_idle(bus, deadline_ns + CM1E_START_SDO_TIMEOUT_NS);
+    for (uint32_t i = 0; i < bus->slave_count; i++) {
+        cm1e_bus_slave_t *slave = &bus->slaves[i];
+        slave->info.is_bridge = slave->recognition.is_bridge;
+        if (!slave->info.is_bridge)
+            continue;
+        slave->bridge = slave->recognition.facts;
+        cm1e_recognise_model(&slave->bridge, &slave->info.model);
+        for (unsigned axis = 0; axis < CM1E_BRIDGE_AXES; axis++) {
+            const uint32_t motor = slave->bridge.motors[axis];
+            slave->info.motors[axis] = motor == CM1E_BRIDGE_CM1 || motor == CM1E_BRIDGE_CM2 ? (uint8_t)motor : 0;
+        }
+    }
+}
+
 static cm1e_error_t diagnose_scan(const cm1e_bus_t *bus, int result, uint16_t position, cm1e_diag_t *diag)
 {
     const char *name = bus->config.interface_name;
@@ -122,6 +147,7 @@ cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)
         return error;
     read_explicit_ids(bus);
     read_software_versions(bus);
+    recognise_bridges(bus);
     cm1e_bus_set_phase(bus, BUS_SCANNED);
     return CM1E_OK;
 }

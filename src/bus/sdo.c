@@ -67,6 +67,13 @@ static void take_over(cm1e_sdo_queue_t *queue)
     }
 }
 
+/** A recovery that was asked for while nothing is wrong, as far as is known, ends after three datagrams: other axes of
+ *  the slave need not know. */
+static bool may_be_well(const cm1e_bus_slave_t *slave)
+{
+    return cm1e_recovery_idle(&slave->recovery) || slave->watch.al_state == CM1E_AL_OP;
+}
+
 /** Begins a transfer, or ends it at once where the slave cannot answer. False: its slave is at work for another. */
 static bool dispatch(cm1e_bus_t *bus, cm1e_sdo_t *sdo, int64_t now_ns)
 {
@@ -74,9 +81,9 @@ static bool dispatch(cm1e_bus_t *bus, cm1e_sdo_t *sdo, int64_t now_ns)
     cm1e_bus_slave_t *slave = cm1e_bus_at(bus, sdo->position);
     if (error != CM1E_OK)
         cm1e_sdo_finish(sdo, error, 0);
-    else if (slave->watch.lost || !cm1e_recovery_idle(&slave->recovery))
+    else if (slave->watch.lost || cm1e_recovery_mutes(&slave->recovery) || !may_be_well(slave))
         cm1e_sdo_finish(sdo, CM1E_ERROR_BUS_LOST, 0);
-    else if (cm1e_coe_idle(&slave->coe) && cm1e_mapping_idle(&slave->mapping))
+    else if (cm1e_recovery_idle(&slave->recovery) && cm1e_coe_idle(&slave->coe) && cm1e_mapping_idle(&slave->mapping))
         cm1e_coe_begin(&slave->coe, sdo, now_ns);
     else
         return false;

@@ -28,7 +28,7 @@ void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns)
  *  gets zeros as outputs, always; a motor is never brought back unasked. */
 static void recover_unasked(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 {
-    if (slave->axis < 0 && !slave->info.is_cm1e && slave->watch.al_state != CM1E_AL_OP)
+    if (!cm1e_bus_has_motors(slave) && slave->watch.al_state != CM1E_AL_OP)
         cm1e_bus_request_recovery(bus, slave->info.position);
 }
 

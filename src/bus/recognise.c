@@ -1,0 +1,89 @@
+#include "bus/recognise.h"
+
+#include "core/bytes.h"
+
+/** For one answer (ETG.1020: 200 ms ... 10 s by device). */
+#define ANSWER_NS INT64_C(1000000000)
+
+typedef struct question {
+    uint16_t index;
+    uint8_t subindex;
+    uint32_t wanted; /**< the answer of a bridge; 0: whatever it is, it is kept */
+} question_t;
+
+/** BR appendix 6. */
+static const question_t questions[] = {
+    {OBJ_1000_DEVICE_TYPE, 0, CM1E_BRIDGE_DEVICE_TYPE},
+    {OBJ_F000_MODULAR_DEVICE_PROFILE, 1, CM1E_BRIDGE_INDEX_INCREMENT},
+    {OBJ_F010_MODULE_PROFILE_LIST, 1, CM1E_BRIDGE_DEVICE_TYPE},
+    {OBJ_F010_MODULE_PROFILE_LIST, 2, CM1E_BRIDGE_DEVICE_TYPE},
+    {OBJ_F010_MODULE_PROFILE_LIST, 3, CM1E_BRIDGE_DEVICE_TYPE},
+    {OBJ_F010_MODULE_PROFILE_LIST, 4, CM1E_BRIDGE_DEVICE_TYPE},
+    {OBJ_F050_DETECTED_MODULE_IDENT_LIST, 1, CM1E_BRIDGE_MODULE_IDENT},
+    {OBJ_F050_DETECTED_MODULE_IDENT_LIST, 2, CM1E_BRIDGE_MODULE_IDENT},
+    {OBJ_F050_DETECTED_MODULE_IDENT_LIST, 3, CM1E_BRIDGE_MODULE_IDENT},
+    {OBJ_F050_DETECTED_MODULE_IDENT_LIST, 4, CM1E_BRIDGE_MODULE_IDENT},
+    {OBJ_F511_CONFIG_AXIS_1 + 0, 1, 0},
+    {OBJ_F511_CONFIG_AXIS_1 + 1, 1, 0},
+    {OBJ_F511_CONFIG_AXIS_1 + 2, 1, 0},
+    {OBJ_F511_CONFIG_AXIS_1 + 3, 1, 0},
+    {OBJ_1018_IDENTITY, 3, 0},
+};
+enum { QUESTIONS = sizeof questions / sizeof questions[0] };
+
+void cm1e_recognise_begin(cm1e_recognition_t *job, uint16_t position, int64_t deadline_ns)
+{
+    *job = (cm1e_recognition_t){.busy = true, .deadline_ns = deadline_ns, .sdo = {.position = position}};
+}
+
+void cm1e_recognise_cancel(cm1e_recognition_t *job) { job->busy = false; }
+
+/** FALSE: no bridge answers so. */
+static bool took(cm1e_recognition_t *job)
+{
+    const question_t *question = &questions[job->question];
+    const bool failed = cm1e_sdo_state(&job->sdo) == CM1E_SDO_ERROR;
+    const uint32_t value = failed ? 0 : (uint32_t)cm1e_get_uint(job->data, (unsigned)job->sdo.size);
+    job->shown = value;
+    job->wanted = question->wanted;
+    if (question->wanted)
+        return !failed && value == question->wanted;
+    if (question->index == OBJ_1018_IDENTITY)
+        job->facts.revision = value;
+    else
+        job->facts.motors[question->index - OBJ_F511_CONFIG_AXIS_1] = value;
+    return !failed || job->sdo.error == CM1E_ERROR_SDO_ABORT; /* a refusal is an answer, silence is none */
+}
+
+cm1e_sdo_t *cm1e_recognise_next(cm1e_recognition_t *job, int64_t now_ns)
+{
+    if (!job->busy)
+        return NULL;
+    if (job->started && !took(job)) {
+        job->busy = false;
+        return NULL;
+    }
+    job->question = (uint8_t)(job->question + job->started);
+    job->is_bridge = job->question == QUESTIONS;
+    const int64_t left_ns = job->deadline_ns - now_ns;
+    if (job->is_bridge || left_ns <= 0) {
+        job->busy = false;
+        return NULL;
+    }
+    const question_t *question = &questions[job->question];
+    job->started = true;
+    job->sdo = (cm1e_sdo_t){.position = job->sdo.position, .index = question->index, .subindex = question->subindex,
+                            .data = job->data, .size = sizeof job->data, .state = CM1E_SDO_BUSY,
+                            .timeout_ns = left_ns < ANSWER_NS ? left_ns : ANSWER_NS};
+    return &job->sdo;
+}
+
+bool cm1e_recognise_model(const cm1e_bridge_facts_t *facts, cm1e_device_model_t *model)
+{
+    const char *names[CM1E_BRIDGE_AXES];
+    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++) {
+        const bool known = facts->motors[i] == CM1E_BRIDGE_CM1 || facts->motors[i] == CM1E_BRIDGE_CM2;
+        names[i] = known ? cm1e_bridge_motor_name((cm1e_bridge_motor_t)facts->motors[i]) : "?";
+    }
+    return cm1e_bridge_model_with(names, model);
+}
