@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-enum { QUERY_POSITION = 96, QUERY_STATUS = 99, OUTPUTS = 4, MOTORS = 4, DIGITS_MOST = 9 };
+enum { QUERY_PARAMETERS = 90, QUERY_POSITION = 96, QUERY_STATUS = 99, OUTPUTS = 4, MOTORS = 4, DIGITS_MOST = 9 };
 
 /* Written while an input is on, what an input does (manual feed, a jog, a program, motor enable: K26 ... K32) or what
  * pulses do (K36) moves the motor; K37 is how far a count is. (Quick reference of the CM1, RT3.) */
@@ -226,6 +226,7 @@ bool cm1e_cml_answers(const cm1e_cml_command_t *command, const cm1e_cml_answer_t
                                                : answer->what == CM1E_CML_VALUE && strcmp(answer->name, "Px") == 0;
     case CM1E_CML_SEARCH: return answer->what == CM1E_CML_ORIGIN || answer->what == CM1E_CML_STATUS;
     case CM1E_CML_LIST:
+        return command->number == QUERY_PARAMETERS ? answer->what == CM1E_CML_K : answer->what != CM1E_CML_NOTHING;
     case CM1E_CML_UNKNOWN: return answer->what != CM1E_CML_NOTHING;
     case CM1E_CML_SILENT:
     default: return false;

@@ -1,0 +1,259 @@
+/* CML without a cycle: the same steps, with transfers that are waited for, and the flows of appendix 3.2 and 3.3 around
+ * them. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "bus/bus_image.h"
+#include "core/clock.h"
+#include "device/bridge_status.h"
+#include "drive/drive_cml.h"
+
+#define MS_IN_NS INT64_C(1000000)
+
+enum { OWN_MODE = CM1E_BRIDGE_MODE_CSP };
+static const int64_t interval_ns = 5 * MS_IN_NS; /* between switches of mode (BR appendix 3) */
+static const int64_t switch_ns = 1000 * MS_IN_NS;
+static const int64_t step_ns = MS_IN_NS;
+
+typedef struct place {
+    cm1e_bus_t *bus;
+    uint16_t position;
+    uint8_t channel;
+    cm1e_diag_t *diag;
+} place_t;
+
+static void sleep_for(cm1e_bus_t *bus, int64_t time_ns)
+{
+    cm1e_clock_t *clock = cm1e_bus_clock(bus);
+    cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + time_ns);
+}
+
+/* A transfer that has ended when this returns. */
+static cm1e_error_t transfer(void *context, cm1e_sdo_t *sdo)
+{
+    const place_t *at = context;
+    if (sdo->write)
+        sdo->error = cm1e_sdo_write(at->bus, sdo->position, sdo->index, 0, sdo->data, sdo->size, at->diag);
+    else
+        sdo->error = cm1e_sdo_read(at->bus, sdo->position, sdo->index, 0, sdo->data, &sdo->size, at->diag);
+    sdo->abort_code = sdo->error == CM1E_ERROR_SDO_ABORT && at->diag ? at->diag->foreign_code : 0;
+    sdo->state = sdo->error ? CM1E_SDO_ERROR : CM1E_SDO_DONE;
+    return CM1E_OK;
+}
+
+static cm1e_error_t check_place(const place_t *at)
+{
+    const cm1e_slave_info_t *slave = cm1e_bus_slave(at->bus, at->position);
+    if (!slave)
+        return cm1e_diag_set(at->diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "There is no slave %u; %u were found.",
+                             at->position, (unsigned)cm1e_bus_slave_count(at->bus));
+    if (!slave->is_bridge)
+        return cm1e_diag_set(at->diag, CM1E_ERROR_CM_NO_BRIDGE, 0,
+                             "Slave %u, \"%s\", is no EtherCAT Cool MUSCLE Bridge: CML goes to motors behind one only.",
+                             at->position, slave->name);
+    if (at->channel < 1 || at->channel > CM1E_BRIDGE_AXES)
+        return cm1e_diag_set(at->diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
+                             "Slave %u has no connector %u; 1 ... %d is right.", at->position, at->channel,
+                             CM1E_BRIDGE_AXES);
+    return CM1E_OK;
+}
+
+/* ---- mode of operation ------------------------------------------------------------------------------------------- */
+
+static cm1e_error_t read_byte(const place_t *at, uint16_t index, uint8_t subindex, int8_t *value)
+{
+    size_t size = sizeof *value;
+    const cm1e_error_t error = cm1e_sdo_read(at->bus, at->position, index, subindex, value, &size, at->diag);
+    if (error == CM1E_OK && size != sizeof *value)
+        return cm1e_diag_set(at->diag, CM1E_ERROR_BUS_MAILBOX, 0,
+                             "Slave %u: object 0x%04X was read with %zu bytes instead of 1.", at->position, index,
+                             size);
+    return error;
+}
+
+static uint16_t index_of(const place_t *at, uint16_t index)
+{
+    return (uint16_t)(index + (at->channel - 1) * CM1E_BRIDGE_INDEX_INCREMENT);
+}
+
+static cm1e_error_t read_mode(const place_t *at, int8_t *mode)
+{
+    return read_byte(at, index_of(at, OBJ_6061_MODES_OF_OPERATION_DISPLAY), 0, mode);
+}
+
+/* Why a bridge may refuse: it moves, or the motor has an error. */
+static cm1e_error_t not_confirmed(const place_t *at, int8_t wanted, int8_t shown)
+{
+    char words[CM1E_BRIDGE_STATUS_TEXT] = "unknown";
+    int8_t status;
+    const place_t quiet = {at->bus, at->position, at->channel, NULL};
+    const cm1e_device_model_t model = cm1e_bus_slave(at->bus, at->position)->model;
+    if (read_byte(&quiet, OBJ_F530_SYSTEM_INFO, (uint8_t)(4 + at->channel), &status) == CM1E_OK)
+        cm1e_bridge_status_text(cm1e_bridge_motor(model, at->channel - 1u), (uint8_t)status, words, sizeof words);
+    return cm1e_diag_set(at->diag, CM1E_ERROR_DRIVE_MODE_TIMEOUT, 0,
+                         "Slave %u, connector %u: mode of operation %d was asked for, object 0x%04X shows %d. The "
+                         "motor has to stand and to have no error for that; it says: %s.", at->position, at->channel, wanted,
+                         index_of(at, OBJ_6061_MODES_OF_OPERATION_DISPLAY), shown, words);
+}
+
+static cm1e_error_t switch_mode(const place_t *at, int8_t wanted)
+{
+    cm1e_clock_t *clock = cm1e_bus_clock(at->bus);
+    int8_t shown = 0;
+    sleep_for(at->bus, interval_ns);
+    cm1e_error_t error = cm1e_sdo_write(at->bus, at->position, index_of(at, OBJ_6060_MODES_OF_OPERATION), 0, &wanted, 1,
+                                        at->diag);
+    const int64_t deadline_ns = cm1e_clock_now(clock) + switch_ns;
+    while (error == CM1E_OK && shown != wanted && cm1e_clock_now(clock) < deadline_ns) {
+        sleep_for(at->bus, interval_ns);
+        error = read_mode(at, &shown);
+    }
+    return error || shown == wanted ? error : not_confirmed(at, wanted, shown);
+}
+
+static cm1e_error_t enter(const place_t *at)
+{
+    int8_t mode = 0;
+    cm1e_error_t error = read_mode(at, &mode);
+    if (error || mode == CM1E_BRIDGE_MODE_CML)
+        return error;
+    if (mode == CM1E_BRIDGE_MODE_CMD || mode == CM1E_BRIDGE_MODE_CPIO)
+        return cm1e_diag_set(at->diag, CM1E_ERROR_CM_MODE, 0,
+                             "Slave %u, connector %u is in %s mode (%d). From there the way to CML and back ends in "
+                             "abnormal operation (BR 6, note 2): switch the bridge off and on again.", at->position,
+                             at->channel, mode == CM1E_BRIDGE_MODE_CMD ? "CMD" : "CPIO", mode);
+    if (mode != OWN_MODE)
+        error = switch_mode(at, OWN_MODE);
+    return error ? error : switch_mode(at, CM1E_BRIDGE_MODE_CML);
+}
+
+/* ---- strings ----------------------------------------------------------------------------------------------------- */
+
+static cm1e_error_t run(place_t *at, cm1e_drive_cml_t *cml, const char *text, const cm1e_cml_exchange_t *exchange,
+                        uint32_t *ticket)
+{
+    cm1e_clock_t *clock = cm1e_bus_clock(at->bus);
+    cm1e_error_t error = cm1e_drive_cml_send(cml, text, exchange ? exchange->timeout_ns : 0, ticket);
+    while (error == CM1E_OK && !cm1e_drive_cml_idle(cml)) {
+        cm1e_drive_cml_step(cml, cm1e_clock_now(clock), true);
+        if (exchange && exchange->cancelled && exchange->cancelled(exchange->context))
+            cm1e_drive_cml_cancel(cml, *ticket, CM1E_ERROR_CANCELLED);
+        if (!cm1e_drive_cml_idle(cml))
+            sleep_for(at->bus, step_ns);
+    }
+    return error ? error : cm1e_drive_cml_request(cml, *ticket)->error;
+}
+
+static cm1e_error_t describe(const place_t *at, const cm1e_drive_cml_t *cml, const cm1e_drive_cml_request_t *request,
+                             cm1e_error_t error)
+{
+    const char *said = request->first;
+    switch (error) {
+    case CM1E_OK: return CM1E_OK;
+    case CM1E_ERROR_CML_TIMEOUT:
+    case CM1E_ERROR_CM_SEARCH_TIMEOUT:
+        return cm1e_diag_set(at->diag, error, 0,
+                             "Slave %u, connector %u: %s came to \"%s\" within %lld ms%s%s%s. Is the motor switched "
+                             "on, and does it know this command?", at->position, at->channel,
+                             request->lines ? "not every answer" : "no answer", request->text,
+                             (long long)(request->timeout_ns / MS_IN_NS), request->strays ? "; but \"" : "",
+                             cml->stray, request->strays ? "\" did" : "");
+    case CM1E_ERROR_CML_ANSWER:
+        return cm1e_diag_set(at->diag, error, 0,
+                             "Slave %u, connector %u: the answer to \"%s\" is damaged: \"%s\". Check the cable between "
+                             "bridge and motor.", at->position, at->channel, request->text, said);
+    case CM1E_ERROR_CM_SEARCH:
+        return cm1e_diag_set(at->diag, error, 0,
+                             "Slave %u, connector %u: the origin search ended without an origin; the motor says "
+                             "\"%s\".", at->position, at->channel, said);
+    case CM1E_ERROR_CANCELLED:
+        return cm1e_diag_set(at->diag, error, 0, "Slave %u, connector %u: \"%s\" was cancelled.", at->position,
+                             at->channel, request->text);
+    default: return error; /* of a transfer, and described there */
+    }
+}
+
+static cm1e_error_t check_string(const place_t *at, const cm1e_cml_exchange_t *exchange)
+{
+    const char *text = exchange->text, *wrong = text ? cm1e_cml_check(text, at->channel) : "is missing";
+    if (wrong)
+        return cm1e_diag_set(at->diag, CM1E_ERROR_CML_STRING, 0,
+                             "Slave %u, connector %u: the string \"%.80s\" %s.", at->position, at->channel,
+                             text ? text : "", wrong);
+    if (cm1e_cml_kind(text) == CM1E_CML_MOTION && !exchange->allow_motion)
+        return cm1e_diag_set(at->diag, CM1E_ERROR_CML_MOTION, 0,
+                             "Slave %u, connector %u: the string \"%s\" may move the motor, change its power or what "
+                             "its positions mean, or is not known: it is sent only where that is allowed.",
+                             at->position, at->channel, text);
+    return CM1E_OK;
+}
+
+static void copy_answer(cm1e_cml_exchange_t *exchange, const cm1e_drive_cml_t *cml, uint32_t ticket)
+{
+    const cm1e_drive_cml_request_t *request = cm1e_drive_cml_request(cml, ticket);
+    exchange->count = request->lines;
+    exchange->lost = request->lost;
+    exchange->strays = request->strays;
+    for (unsigned i = 0; i < exchange->count; i++)
+        memcpy(exchange->lines[i], cm1e_drive_cml_line(cml, ticket, i), sizeof exchange->lines[i]);
+    memcpy(exchange->stray, cml->stray, sizeof exchange->stray);
+}
+
+/* Whatever went wrong before: said nowhere, because there is a better error already. */
+static void free_motor(const place_t *at, cm1e_drive_cml_t *cml)
+{
+    char text[8];
+    uint32_t ticket;
+    place_t quiet = {at->bus, at->position, at->channel, NULL};
+    cm1e_drive_cml_init(cml, at->position, at->channel, transfer, &quiet);
+    sleep_for(at->bus, 2 * interval_ns); /* behind the string before */
+    run(&quiet, cml, cm1e_drive_cml_motor_free(cml, text), NULL, &ticket);
+    sleep_for(at->bus, 2 * interval_ns); /* and this one arrives */
+}
+
+cm1e_error_t cm1e_cml_exchange(cm1e_bus_t *bus, cm1e_cml_exchange_t *exchange, cm1e_diag_t *diag)
+{
+    uint32_t ticket;
+    exchange->count = exchange->lost = exchange->strays = 0;
+    if (!bus)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_cml_exchange() needs a bus.");
+    place_t at = {bus, exchange->position, exchange->channel, diag};
+    cm1e_error_t error = check_place(&at);
+    if (error == CM1E_OK)
+        error = check_string(&at, exchange);
+    if (error == CM1E_OK)
+        error = enter(&at);
+    if (error)
+        return error;
+    cm1e_drive_cml_t *cml = malloc(sizeof *cml);
+    if (!cml)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "There is no memory for the answer.");
+    cm1e_drive_cml_init(cml, at.position, at.channel, transfer, &at);
+    error = run(&at, cml, exchange->text, exchange, &ticket);
+    const cm1e_drive_cml_request_t *request = cm1e_drive_cml_request(cml, ticket);
+    error = describe(&at, cml, request, error);
+    copy_answer(exchange, cml, ticket);
+    if (error && request->sent && cm1e_cml_kind(exchange->text) == CM1E_CML_MOTION)
+        free_motor(&at, cml);
+    free(cml);
+    return error;
+}
+
+cm1e_error_t cm1e_cml_leave(cm1e_bus_t *bus, uint16_t position, uint8_t channel, bool free_it, cm1e_diag_t *diag)
+{
+    const place_t at = {bus, position, channel, diag};
+    int8_t mode = 0;
+    cm1e_error_t error = bus ? check_place(&at) : CM1E_ERROR_INVALID_ARGUMENT;
+    if (error == CM1E_OK)
+        error = read_mode(&at, &mode);
+    if (error || mode != CM1E_BRIDGE_MODE_CML)
+        return error;
+    if (free_it) {
+        cm1e_drive_cml_t *cml = malloc(sizeof *cml);
+        if (!cml)
+            return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "There is no memory to free the motor.");
+        free_motor(&at, cml);
+        free(cml);
+    }
+    return switch_mode(&at, OWN_MODE);
+}
