@@ -7,6 +7,7 @@
 #ifndef CM1E_DEVICE_BRIDGE_H
 #define CM1E_DEVICE_BRIDGE_H
 
+#include "cm1e/bridge.h"
 #include "device/device.h"
 
 enum {
@@ -18,23 +19,17 @@ enum {
     OBJ_F050_DETECTED_MODULE_IDENT_LIST = 0xF050,
     OBJ_F511_CONFIG_AXIS_1 = 0xF511,
     OBJ_F530_SYSTEM_INFO = 0xF530,
+    OBJ_F540_CONFIG_SYSTEM = 0xF540,
     OBJ_F581_CML_COMMAND_AXIS_1 = 0xF581,
     OBJ_F591_CML_RESPONSE_AXIS_1 = 0xF591,
 };
 
-#define CM1E_BRIDGE_AXES 4
 #define CM1E_BRIDGE_INDEX_INCREMENT 0x800 /**< from an object of one axis to that of the next (F000:1) */
 #define CM1E_BRIDGE_PDO_INCREMENT 0x10    /**< from a mapping object of one axis to that of the next */
 #define CM1E_BRIDGE_DEVICE_TYPE 0x00040192u /**< of the device and of each axis (F010) */
 #define CM1E_BRIDGE_MODULE_IDENT 0x00219800u /**< of each axis, whatever motor is behind it (F030, F050) */
 #define CM1E_BRIDGE_CYCLE_TIME_NS 1000000 /**< the only one (BR 6.3) */
 #define CM1E_BRIDGE_CML_BYTES 64          /**< longest string of F581 ... F594 (BR 7.2.2) */
-
-/** The motor of an axis; the numbers are those of F511:1 ... F514:1 (BR 7.3). */
-typedef enum cm1e_bridge_motor {
-    CM1E_BRIDGE_CM1 = 1,
-    CM1E_BRIDGE_CM2 = 2,
-} cm1e_bridge_motor_t;
 
 /** Values of 0x6060 and 0x6061 (BR 6). */
 typedef enum cm1e_bridge_mode {

@@ -12,7 +12,7 @@ static const struct {
     const char *cure;    /* NULL: no error */
 } rows[] = {
     {SERIAL, {"serial communication error", "serial communication error"},
-     "check the cable between bridge and motor, its connectors, its length, and the motor's supply; then reset the fault"},
+     "check the cable between bridge and motor, its connectors and length, and the supply; then reset the fault"},
     {0x01, {"counter overflow", "position error overflow"},
      "look for a blocked axis, reduce load or acceleration, or retune the motor; then reset the fault"},
     {0x02, {"over speed or regenerative current", "over speed or regenerative voltage"},
@@ -83,6 +83,8 @@ const char *cm1e_bridge_status_cure(cm1e_bridge_motor_t motor, uint32_t status)
             return rows[i].cure;
     return rest ? "look it up in the motor's guide, and reset the fault" : "";
 }
+
+uint32_t cm1e_bridge_bits_per_second(uint32_t baud_rate) { return baud_rate == 6 ? 176800 : 0; }
 
 bool cm1e_bridge_status_is_error(cm1e_bridge_motor_t motor, uint32_t status)
 {

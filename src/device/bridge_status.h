@@ -1,7 +1,7 @@
 /**
  * @file bridge_status.h
- * What a Cool Muscle behind the bridge says of itself, in words: F530:5 ... F530:8, the answer to the query ?99 (Ux), and
- * in CPIO four bits of the statusword. One table for each kind of motor (BR 7.4).
+ * What a Cool Muscle behind the bridge says of itself: F530:5 ... F530:8, the answer to the query ?99 (Ux), and in CPIO
+ * four bits of the statusword. One table for each kind of motor (BR 7.4); its words are in cm1e/bridge.h.
  */
 #ifndef CM1E_DEVICE_BRIDGE_STATUS_H
 #define CM1E_DEVICE_BRIDGE_STATUS_H
@@ -11,14 +11,6 @@
 #include <stdint.h>
 
 #include "device/bridge.h"
-
-#define CM1E_BRIDGE_STATUS_TEXT 240 /**< enough for the longest text */
-
-/** "in position", "counter overflow, overload". What the guide does not list is taken apart bit by bit, and said to be
- *  unlisted: "motor free, unknown bits 0x40 (0x50 is not listed in the guide)". Returns `text`. */
-const char *cm1e_bridge_status_text(cm1e_bridge_motor_t motor, uint32_t status, char *text, size_t size);
-/** What the user does about it: of several errors about the first. "": it is no error. */
-const char *cm1e_bridge_status_cure(cm1e_bridge_motor_t motor, uint32_t status);
 
 /** An error or an alarm of the motor or of the serial line to it. TRUE also for bits that the guide gives no meaning
  *  for this motor. */
@@ -32,8 +24,8 @@ bool cm1e_bridge_status_is_moving(cm1e_bridge_motor_t motor, uint32_t status);
 /** It stands where it was sent; not at the end of a push, where it stands elsewhere. */
 bool cm1e_bridge_status_is_in_position(uint32_t status);
 
-/** The status in a statusword of CPIO, its bits 8 ... 11 (BR 7.1.3): the four lowest bits of F530. Motor free, push modes
- *  and alarms are not among them. */
+/** The status in a statusword of CPIO, its bits 8 ... 11 (BR 7.1.3): the four lowest bits of F530. Motor free, push
+ *  modes and alarms are not among them. */
 static inline uint8_t cm1e_bridge_status_of_cpio(uint16_t statusword) { return statusword >> 8 & 0x0F; }
 
 #endif

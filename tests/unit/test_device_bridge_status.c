@@ -13,7 +13,7 @@ static const char *words(cm1e_bridge_motor_t motor, uint32_t status)
     return cm1e_bridge_status_text(motor, status, text, sizeof text);
 }
 
-/* ---- BR 7.4, typed off the guide with its patterns ---------------------------------------------------------------- */
+/* ---- BR 7.4, typed off the guide with its patterns -------------------------------------------------------------- */
 
 enum { ERROR = 1, FREE = 2, MOVING = 4, THERE = 8, SERIAL = 16 };
 typedef struct pattern {
@@ -180,6 +180,13 @@ static void test_status_of_cpio_is_the_low_half_of_the_same_table(void)
                                  words(CM1E_BRIDGE_CM1, cm1e_bridge_status_of_cpio(cases[i].statusword)));
 }
 
+/* BR 7.3: codes 1 to 5 are "N/A" */
+static void test_only_one_baud_rate_is_known(void)
+{
+    for (uint32_t code = 0; code < 300; code++)
+        TEST_ASSERT_EQUAL(code == 6 ? 176800 : 0, cm1e_bridge_bits_per_second(code));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -188,5 +195,6 @@ int main(void)
     RUN_TEST(test_bits_above_the_eighth_are_unknown_ones);
     RUN_TEST(test_text_in_too_little_room_is_cut);
     RUN_TEST(test_status_of_cpio_is_the_low_half_of_the_same_table);
+    RUN_TEST(test_only_one_baud_rate_is_known);
     return UNITY_END();
 }
