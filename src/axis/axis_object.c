@@ -40,6 +40,11 @@ static const cm1e_axis_objects_t table[] = {
     {1522, 1522, 0x6075, 0, 0},
     {1523, 1523, 0x6076, 0, 0},
     {1524, 1524, OBJ_6502_SUPPORTED_DRIVE_MODES, 0, 0},
+    {1530, 1530, OBJ_F530_SYSTEM_INFO, 5, 0},
+    {1531, 1531, OBJ_F530_SYSTEM_INFO, 1, 0},
+    {1532, 1532, OBJ_F530_SYSTEM_INFO, 9, 0},
+    {1533, 1533, OBJ_F530_SYSTEM_INFO, 13, 0},
+    {1534, 1537, OBJ_F530_SYSTEM_INFO, 17, 0},
     {1600, 1600, OBJ_FF00_LED_BRIGHTNESS, 0, 0},
     {1601, 1601, OBJ_FF01_LED_OVERRIDE, 0, 0},
     {1610, 1610, OBJ_FE00_PDO_TIMING, 1, 0},
@@ -61,13 +66,18 @@ static const cm1e_axis_objects_t *row_of(int number)
     return NULL;
 }
 
+enum { F530_OF_DEVICE = 17 }; /* before it, sub-indexes of the four motors stand side by side (BR 7.4) */
+
 /* NULL: there is no such number, or the drive has no such object. */
 static const cm1e_entry_t *entry_of(const cm1e_axis_t *axis, int number)
 {
     const cm1e_axis_objects_t *row = row_of(number);
     if (!row)
         return NULL;
-    const unsigned first = cm1e_drive_bridged(&axis->drive) && row->bridged ? row->bridged : row->subindex;
+    const unsigned channel = axis->config->channel;
+    unsigned first = channel && row->bridged ? row->bridged : row->subindex;
+    if (channel && row->index == OBJ_F530_SYSTEM_INFO && row->subindex < F530_OF_DEVICE)
+        first += channel - 1;
     return cm1e_drive_entry(&axis->drive, row->index, (uint8_t)(first + (unsigned)(number - row->first)));
 }
 
