@@ -94,7 +94,7 @@ static bool describe(const sim_options_t *options, cm1e_bus_config_t *config)
 static bool add_bridges(cm1e_sim_segment_t *segment, const sim_options_t *options)
 {
     for (uint32_t i = 0; i < options->bridge_count; i++) {
-        cm1e_sim_slave_t *slave = cm1e_sim_bridge_create(options->bridges[i]);
+        cm1e_sim_slave_t *slave = cm1e_sim_bridge_create(options->bridges[i], NULL, 0);
         if (cm1e_sim_segment_add(segment, slave) != CM1E_OK) {
             cm1e_sim_slave_destroy(slave);
             complain("the simulated bridge %u cannot be made: out of memory, or more than %d slaves", i + 1,

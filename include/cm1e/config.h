@@ -58,10 +58,12 @@ typedef enum cm1e_pdo_order {
 
 /** Defaults of MC_Home for one axis; values in axis units (u). */
 typedef struct cm1e_homing_config {
-    int8_t method;       /**< 0 none, -1/-2 hard stop CW/CCW, -3/-4 input 2 CW/CCW, -5/-6 input 3 CW/CCW (UG 6.2.4) */
+    int8_t method;       /**< 0 none, -1/-2 hard stop CW/CCW, -3/-4 input 2 CW/CCW, -5/-6 input 3 CW/CCW (UG 6.2.4);
+                              behind a bridge 1/2 hard stop CW/CCW, 3/4 home switch CW/CCW (BR 6.4.1) */
     double offset;       /**< u; the axis moves there after the reference, then calls it 0; +-3,276,700 counts */
-    double velocity;     /**< u/s; 0: 50,000 counts/s; 1,000 ... 500,000 counts/s */
-    double acceleration; /**< u/s2; 0: 100,000 counts/s2; 1,000 ... 5,000,000 counts/s2 */
+    double velocity;     /**< u/s; 0: 50,000 counts/s; 1,000 ... 500,000 counts/s. Behind a bridge CM1 0: 10,000,
+                              100 ... 500,000; CM2 0: 1,000, 100 ... 3,276,700 */
+    double acceleration; /**< u/s2; 0: 100,000 counts/s2; 1,000 ... 5,000,000 counts/s2, CM2 ... 32,767,000 */
     double torque;       /**< % of rated torque, 10 ... 100; 0: 30 */
     double timeout_s;    /**< s; 0: 60 */
 } cm1e_homing_config_t;

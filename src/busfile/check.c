@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "busfile/busfile.h"
-#include "device/device.h"
+#include "device/bridge.h"
 #include "device/unit.h"
 
 /* Every check returns FALSE with the problem filled. Paths and key names are those of a bus file; a configuration made
@@ -14,7 +14,6 @@ typedef struct check {
     cm1e_busfile_problem_t *problem;
     const cm1e_axis_config_t *axis; /* the axis being checked */
     uint32_t index;
-    const cm1e_motor_t *motor;
     double counts_per_unit;
     double most_velocity; /* counts/s of the axis */
     char name[CM1E_NAME_LENGTH + 8];
@@ -116,6 +115,7 @@ typedef struct number {
     double minimum, maximum;
     uint16_t index;
     uint8_t subindex;
+    double behind_bridge; /* what 1 in the bridge's object means here; 0: the CM1-E's range holds there too */
 } number_t;
 
 #define FIELD(member) offsetof(cm1e_axis_config_t, member)
@@ -123,26 +123,40 @@ typedef struct number {
  * reach its peak speed within one cycle. */
 static const number_t numbers[] = {
     {"limits.acceleration", FIELD(max_acceleration), IN_COUNTS, "counts/s2", CM1E_LEAST_ACCELERATION_COUNTS, 1e11, 0,
-     0},
+     0, 0},
     {"limits.deceleration", FIELD(max_deceleration), IN_COUNTS, "counts/s2", CM1E_LEAST_ACCELERATION_COUNTS, 1e11, 0,
-     0},
-    {"limits.jerk", FIELD(max_jerk), IN_COUNTS, "counts/s3", CM1E_LEAST_JERK_COUNTS, 1e15, 0, 0},
+     0, 0},
+    {"limits.jerk", FIELD(max_jerk), IN_COUNTS, "counts/s3", CM1E_LEAST_JERK_COUNTS, 1e15, 0, 0, 0},
     {"limits.position_lag", FIELD(max_position_lag), IN_COUNTS, "counts", CM1E_LEAST_LAG_COUNTS,
-     CM1E_LARGEST_LAG_COUNTS, 0, 0},
-    {"backlash.gap", FIELD(backlash), IN_COUNTS, "counts", 1, 500000, 0, 0},
-    {"homing.offset", FIELD(homing.offset), IN_COUNTS, "counts", 0, 0, OBJ_607C_HOME_OFFSET, 0},
-    {"homing.velocity", FIELD(homing.velocity), IN_COUNTS, "counts/s", 0, 0, OBJ_6099_HOMING_SPEEDS, 1},
-    {"homing.acceleration", FIELD(homing.acceleration), IN_COUNTS, "counts/s2", 0, 0, OBJ_609A_HOMING_ACCELERATION, 0},
-    {"homing.torque", FIELD(homing.torque), AS_IS, "%", 0, 0, OBJ_60F6_K_PARAMETERS, CM1E_K_PARAMETER_HOMING_TORQUE},
-    {"homing.timeout_s", FIELD(homing.timeout_s), AS_IS, "s", 0.1, 3600, 0, 0},
-    {"sim.load_inertia_kgm2", FIELD(sim.load_inertia), AS_IS, "kg m2", 1e-9, 1, 0, 0},
-    {"sim.friction_nm", FIELD(sim.friction), AS_IS, "Nm", 1e-9, 10, 0, 0},
-    {"sim.viscous_friction_nms", FIELD(sim.viscous_friction), AS_IS, "Nm s/rad", 1e-9, 1, 0, 0},
-    {"sim.stop_negative_counts", FIELD(sim.stop_negative), AS_IS, "counts", -1e12, -1, 0, 0},
-    {"sim.stop_positive_counts", FIELD(sim.stop_positive), AS_IS, "counts", 1, 1e12, 0, 0},
-    {"sim.sensor_input2_counts", FIELD(sim.sensor_input2), AS_IS, "counts", -1e12, 1e12, 0, 0},
-    {"sim.sensor_input3_counts", FIELD(sim.sensor_input3), AS_IS, "counts", -1e12, 1e12, 0, 0},
+     CM1E_LARGEST_LAG_COUNTS, 0, 0, 0},
+    {"backlash.gap", FIELD(backlash), IN_COUNTS, "counts", 1, 500000, 0, 0, 0},
+    {"homing.offset", FIELD(homing.offset), IN_COUNTS, "counts", 0, 0, OBJ_607C_HOME_OFFSET, 0, 100},
+    {"homing.velocity", FIELD(homing.velocity), IN_COUNTS, "counts/s", 0, 0, OBJ_6099_HOMING_SPEEDS, 1, 100},
+    {"homing.acceleration", FIELD(homing.acceleration), IN_COUNTS, "counts/s2", 0, 0, OBJ_609A_HOMING_ACCELERATION, 0,
+     1000},
+    {"homing.torque", FIELD(homing.torque), AS_IS, "%", 0, 0, OBJ_60F6_K_PARAMETERS, CM1E_K_PARAMETER_HOMING_TORQUE,
+     0},
+    {"homing.timeout_s", FIELD(homing.timeout_s), AS_IS, "s", 0.1, 3600, 0, 0, 0},
+    {"sim.load_inertia_kgm2", FIELD(sim.load_inertia), AS_IS, "kg m2", 1e-9, 1, 0, 0, 0},
+    {"sim.friction_nm", FIELD(sim.friction), AS_IS, "Nm", 1e-9, 10, 0, 0, 0},
+    {"sim.viscous_friction_nms", FIELD(sim.viscous_friction), AS_IS, "Nm s/rad", 1e-9, 1, 0, 0, 0},
+    {"sim.stop_negative_counts", FIELD(sim.stop_negative), AS_IS, "counts", -1e12, -1, 0, 0, 0},
+    {"sim.stop_positive_counts", FIELD(sim.stop_positive), AS_IS, "counts", 1, 1e12, 0, 0, 0},
+    {"sim.sensor_input2_counts", FIELD(sim.sensor_input2), AS_IS, "counts", -1e12, 1e12, 0, 0, 0},
+    {"sim.sensor_input3_counts", FIELD(sim.sensor_input3), AS_IS, "counts", -1e12, 1e12, 0, 0, 0},
 };
+
+/* The motor behind the bridge; of one that is left open, the one that can do more. */
+static cm1e_bridge_motor_t motor_of(const cm1e_axis_config_t *axis)
+{
+    return strcmp(axis->motor, cm1e_bridge_motor_name(CM1E_BRIDGE_CM1)) == 0 ? CM1E_BRIDGE_CM1 : CM1E_BRIDGE_CM2;
+}
+
+static const cm1e_entry_t *bridge_entry(const check_t *check, uint16_t index, uint8_t subindex)
+{
+    const bool cm1 = motor_of(check->axis) == CM1E_BRIDGE_CM1;
+    return cm1e_bridge_entry(cm1 ? CM1E_DEVICE_EB01 : CM1E_DEVICE_EB02, index, subindex);
+}
 
 static bool check_range(const check_t *check, const char *key, double value, scale_t scale, double minimum,
                         double maximum, const char *unit)
@@ -169,9 +183,11 @@ static bool check_number(const check_t *check, const number_t *number)
     if (value == 0)
         return true;
     if (number->index) {
-        const cm1e_entry_t *entry = cm1e_device_entry(number->index, number->subindex);
-        minimum = (double)entry->minimum;
-        maximum = (double)entry->maximum;
+        const double factor = check->axis->channel ? number->behind_bridge : 0;
+        const cm1e_entry_t *entry = factor != 0 ? bridge_entry(check, number->index, number->subindex)
+                                                : cm1e_device_entry(number->index, number->subindex);
+        minimum = (double)entry->minimum * (factor != 0 ? factor : 1);
+        maximum = (double)entry->maximum * (factor != 0 ? factor : 1);
     }
     return check_range(check, number->key, value, number->scale, minimum, maximum, number->unit);
 }
@@ -246,7 +262,7 @@ static bool check_modulo(const check_t *check)
 static bool check_velocity(check_t *check)
 {
     const cm1e_axis_config_t *axis = check->axis;
-    const double peak = check->motor->max_velocity_counts_per_s;
+    const double peak = cm1e_unit_peak_velocity(axis);
     double kept = 0;
     if (axis->backlash == 0 && axis->backlash_velocity != 0)
         return axis_wrong(check, "backlash.velocity", "is given without a gap; expected backlash.gap too");
@@ -266,14 +282,21 @@ static bool check_velocity(check_t *check)
                        floor(peak - kept), kept != 0 ? "counts/s beside the compensation of backlash" : "counts/s");
 }
 
-static bool check_motor(check_t *check)
+static bool check_motor(const check_t *check)
 {
-    check->motor = IS_TEXT(check->axis->motor) ? cm1e_device_motor(check->axis->motor) : NULL;
-    if (check->motor)
+    const cm1e_axis_config_t *axis = check->axis;
+    const char *name = IS_TEXT(axis->motor) ? axis->motor : "?";
+    if (axis->channel) {
+        const char *cm1 = cm1e_bridge_motor_name(CM1E_BRIDGE_CM1), *cm2 = cm1e_bridge_motor_name(CM1E_BRIDGE_CM2);
+        if (name[0] == '\0' || strcmp(name, cm1) == 0 || strcmp(name, cm2) == 0)
+            return true;
+        return axis_wrong(check, "motor", "is '%s'; expected %s or %s, which stand behind a bridge", name, cm1, cm2);
+    }
+    if (cm1e_device_motor(name))
         return true;
-    return axis_wrong(check, "motor", "is '%.*s'; expected %s, %s, %s or %s", (int)sizeof check->axis->motor - 1,
-                      IS_TEXT(check->axis->motor) ? check->axis->motor : "?", cm1e_device_motors[0].name,
-                      cm1e_device_motors[1].name, cm1e_device_motors[2].name, cm1e_device_motors[3].name);
+    return axis_wrong(check, "motor", "is '%s'; expected %s, %s, %s or %s (CM1 and CM2 have a channel of a bridge)",
+                      name, cm1e_device_motors[0].name, cm1e_device_motors[1].name, cm1e_device_motors[2].name,
+                      cm1e_device_motors[3].name);
 }
 
 static bool check_firmware(const check_t *check)
@@ -311,6 +334,31 @@ static const struct {
     [CM1E_ADDRESS_EXPLICIT_ID] = {"explicit_id", 254}, /* UG 4.2.3: 0xFF cannot be used */
 };
 
+static bool at_same_address(const check_t *check, uint32_t other)
+{
+    const cm1e_axis_config_t *axis = &check->config->axes[other];
+    return axis->address_kind == check->axis->address_kind &&
+           address_of(axis, other) == address_of(check->axis, check->index);
+}
+
+/* At the address of an earlier entry: only behind the same bridge, each at a connector of its own. */
+static bool may_share(const check_t *check, uint32_t other)
+{
+    const unsigned channel = check->axis->channel, taken = check->config->axes[other].channel;
+    const char *key = addresses[check->axis->address_kind].key;
+    const unsigned address = address_of(check->axis, check->index);
+    if (!channel && !taken)
+        return axis_wrong(check, key, "is %u, which entry %u of the list has already; expected one axis at each "
+                          "address", address, other + 1);
+    if (!channel || !taken)
+        return axis_wrong(check, key, "is %u, as that of entry %u of the list, and only one of the two has a channel; "
+                          "expected a channel for every axis of a bridge", address, other + 1);
+    if (channel == taken)
+        return axis_wrong(check, "channel", "is %u, which entry %u of the list has already on this bridge; expected "
+                          "one axis at each channel", channel, other + 1);
+    return true;
+}
+
 static bool check_address(const check_t *check)
 {
     const unsigned kind = check->axis->address_kind;
@@ -321,9 +369,8 @@ static bool check_address(const check_t *check)
     if (address == 0 || address > addresses[kind].maximum)
         return axis_wrong(check, addresses[kind].key, "is %u; expected 1 ... %u", address, addresses[kind].maximum);
     for (uint32_t i = 0; i < check->index; i++)
-        if (check->config->axes[i].address_kind == kind && address_of(&check->config->axes[i], i) == address)
-            return axis_wrong(check, addresses[kind].key, "is %u, which entry %u of the list has already; expected one "
-                              "axis at each address", address, i + 1);
+        if (at_same_address(check, i) && !may_share(check, i))
+            return false;
     return true;
 }
 
@@ -355,12 +402,15 @@ static bool check_name(check_t *check)
 
 static bool check_software_limits(const check_t *check)
 {
-    const double negative = check->axis->software_limit_negative, positive = check->axis->software_limit_positive;
-    /* The axis keeps positions as doubles: whole counts are exact up to 2^53. Infinite: none on this side. */
+    const cm1e_axis_config_t *axis = check->axis;
+    const double negative = axis->software_limit_negative, positive = axis->software_limit_positive;
+    /* The axis keeps positions as doubles: whole counts are exact up to 2^53. Behind a bridge the motor counts no
+     * further than its K37 allows. Infinite: none on this side. */
+    const double most = axis->channel ? cm1e_bridge_position_limit(motor_of(axis), axis->k37) : 9e15;
     if ((negative != -INFINITY &&
-         !check_range(check, "software_limits.negative", negative, IN_COUNTS, -9e15, 9e15, "counts")) ||
+         !check_range(check, "software_limits.negative", negative, IN_COUNTS, -most, most, "counts")) ||
         (positive != INFINITY &&
-         !check_range(check, "software_limits.positive", positive, IN_COUNTS, -9e15, 9e15, "counts")))
+         !check_range(check, "software_limits.positive", positive, IN_COUNTS, -most, most, "counts")))
         return false;
     if (negative < positive || (negative == 0 && positive == 0))
         return true;
@@ -368,16 +418,20 @@ static bool check_software_limits(const check_t *check)
                       negative);
 }
 
-/* UG 6.2.4, 4a: an offset on the far side of a hard stop drives the load into it. */
+/* UG 6.2.4, 4a, and as true of the bridge: an offset on the far side of a hard stop drives the load into it. */
 static bool check_homing(const check_t *check)
 {
     const cm1e_homing_config_t *homing = &check->axis->homing;
-    const cm1e_entry_t *method = cm1e_device_entry(OBJ_6098_HOMING_METHOD, 0);
-    if (homing->method < method->minimum || homing->method > method->maximum)
-        return axis_wrong(check, "homing.method", "is %d; expected %lld ... %lld", homing->method,
-                          (long long)method->minimum, (long long)method->maximum);
+    const bool bridge = check->axis->channel != 0;
+    const cm1e_entry_t *method = bridge ? bridge_entry(check, OBJ_6098_HOMING_METHOD, 0)
+                                        : cm1e_device_entry(OBJ_6098_HOMING_METHOD, 0);
+    if (homing->method != 0 && (homing->method < method->minimum || homing->method > method->maximum))
+        return axis_wrong(check, "homing.method", bridge ? "is %d; expected 0 (none) or %lld ... %lld behind a bridge"
+                                                         : "is %d; expected %lld ... %lld",
+                          homing->method, (long long)method->minimum, (long long)method->maximum);
     const double offset = check->axis->invert ? -homing->offset : homing->offset;
-    if ((homing->method == -1 && offset > 0) || (homing->method == -2 && offset < 0))
+    const int clockwise = bridge ? 1 : -1, counterclockwise = bridge ? 2 : -2;
+    if ((homing->method == clockwise && offset > 0) || (homing->method == counterclockwise && offset < 0))
         return axis_wrong(check, "homing.offset", "is %.10g, beyond the hard stop that method %d runs against; "
                           "expected an offset of the other sign", homing->offset, homing->method);
     return true;
@@ -394,6 +448,9 @@ static bool check_inputs(const check_t *check)
     for (int i = 0; i < 3; i++)
         if (switches[i].number > 4)
             return axis_wrong(check, switches[i].key, "is %u; expected 1 ... 4", switches[i].number);
+        else if (switches[i].number == 1 && check->axis->channel && motor_of(check->axis) == CM1E_BRIDGE_CM1)
+            return axis_wrong(check, switches[i].key, "is 1, through which a CM1 talks to the bridge; expected 2 ... "
+                              "4");
     if (inputs->limit_negative && inputs->limit_negative == inputs->limit_positive)
         return axis_wrong(check, "inputs.limit_negative", "is %u, the input of the other limit switch too; expected "
                           "an input of its own, or nobody knows which way leads off it", inputs->limit_negative);
@@ -435,10 +492,81 @@ static bool check_motion(const check_t *check)
     return true;
 }
 
+/* ---- behind a bridge --------------------------------------------------------------------------------------------- */
+
+/* The motors at this address, up to this entry. */
+static bool check_model(const check_t *check)
+{
+    const char *motors[CM1E_BRIDGE_AXES] = {"", "", "", ""};
+    cm1e_device_model_t model;
+    for (uint32_t i = 0; i <= check->index; i++)
+        if (at_same_address(check, i))
+            motors[check->config->axes[i].channel - 1] = check->config->axes[i].motor;
+    return cm1e_bridge_model_with(motors, &model) ||
+           axis_wrong(check, "motor", "is %s at channel %u, which no bridge has beside the others; expected CM1 at all "
+                      "channels (EB01), CM2 at all (EB02), or CM1 at 1 and 2 and CM2 at 3 and 4 (EB12)",
+                      check->axis->motor, check->axis->channel);
+}
+
+static bool check_k37(const check_t *check)
+{
+    const cm1e_axis_config_t *axis = check->axis;
+    const cm1e_bridge_motor_t motor = motor_of(axis);
+    if (!axis->k37_stated)
+        return axis_wrong(check, "k37", "is missing; expected the K37 of the motor, by which counts and speeds have "
+                          "their meaning: send it \"K37.%u\" with cm1e cml", axis->channel);
+    if (cm1e_bridge_counts_per_revolution(axis->k37) > 0 && cm1e_bridge_position_limit(motor, axis->k37) > 0)
+        return true;
+    return axis_wrong(check, "k37", "is %u; expected 0 ... 8 or 10, 40 ... 50, the same 20 higher%s", axis->k37,
+                      motor == CM1E_BRIDGE_CM2 ? ", or 80 ... 88 or 90" : "");
+}
+
+/* What only a CM1-E has. */
+static bool check_absent(const check_t *check)
+{
+    const cm1e_axis_config_t *axis = check->axis;
+    const struct {
+        const char *key;
+        bool given;
+        const char *reason;
+    } keys[] = {
+        {"explicit_id", axis->address_kind == CM1E_ADDRESS_EXPLICIT_ID, "it has no rotary switches"},
+        {"firmware", axis->firmware[0] != '\0', "none of it makes a difference"},
+        {"mapping", axis->mapping != CM1E_MAPPING_DYNAMIC, "it has one mapping only"},
+        {"motion", axis->motion != CM1E_MOTION_HOST, "it makes no moves of its own"},
+        {"wire.velocity_unit", axis->velocity_unit_stated, "no velocities go over the wire"},
+        {"wire.acceleration_unit", axis->acceleration_in_kpulses, "no accelerations of a profile go over the wire"},
+    };
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
+        if (keys[i].given)
+            return axis_wrong(check, keys[i].key, "is given, but the axis has a channel of a bridge: %s; expected no "
+                              "such key", keys[i].reason);
+    return true;
+}
+
+static bool check_bridge(const check_t *check)
+{
+    const cm1e_axis_config_t *axis = check->axis;
+    const int64_t cycle_time_ns = check->config->cycle_time_ns;
+    if (axis->channel == 0)
+        return !axis->k37_stated || axis_wrong(check, "k37", "is given without a channel; expected it behind a bridge "
+                                               "only, a CM1-E has 50000 counts in a revolution");
+    if (cycle_time_ns != 0 && cycle_time_ns != CM1E_BRIDGE_CYCLE_TIME_NS)
+        return axis_wrong(check, "channel", "is given, and a bridge runs at 1000 us only; the cycle time is %g us",
+                          (double)cycle_time_ns / 1000);
+    return check_absent(check) && check_model(check) && check_k37(check);
+}
+
+static bool check_channel(const check_t *check)
+{
+    return check->axis->channel <= CM1E_BRIDGE_AXES ||
+           axis_wrong(check, "channel", "is %u; expected 1 ... %d", check->axis->channel, CM1E_BRIDGE_AXES);
+}
+
 static bool check_axis(check_t *check)
 {
-    if (!check_name(check) || !check_address(check) || !check_motor(check) || !check_firmware(check) ||
-        !check_unit(check))
+    if (!check_name(check) || !check_channel(check) || !check_address(check) || !check_motor(check) ||
+        !check_bridge(check) || !check_firmware(check) || !check_unit(check))
         return false;
     if ((unsigned)check->axis->mapping > CM1E_MAPPING_PROFILE)
         return axis_wrong(check, "mapping", "is %d; expected one of the enumeration", (int)check->axis->mapping);

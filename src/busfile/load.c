@@ -74,6 +74,8 @@ static bool convert_axis(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *fr
     axis->velocity_unit_stated = from->velocity_unit != 0;
     axis->velocity_in_counts_per_ms = from->velocity_unit == CM1E_BUSFILE_VELOCITY_COUNTS_PER_MS;
     axis->acceleration_in_kpulses = from->acceleration_unit != 0;
+    axis->k37_stated = from->k37 != NULL;
+    axis->k37 = from->k37 ? *from->k37 : 0;
     convert_software_limits(axis, from);
     return convert_address(axis, from, index, problem);
 }

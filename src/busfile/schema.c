@@ -1,4 +1,5 @@
 #include "busfile/busfile.h"
+#include "device/bridge.h"
 
 /* The keys of a bus file; docs/BUS-FILE.md explains them. A group of keys (limits, homing ...) is no structure of its
  * own in the configuration, so its fields are offsets in the whole axis. */
@@ -127,7 +128,9 @@ static const cyaml_schema_field_t axis_fields[] = {
     CYAML_FIELD_UINT("position", OPTIONAL, cm1e_busfile_axis_t, position),
     CYAML_FIELD_UINT("alias", OPTIONAL, cm1e_busfile_axis_t, alias),
     CYAML_FIELD_UINT("explicit_id", OPTIONAL, cm1e_busfile_axis_t, explicit_id),
+    AXIS_UINT("channel", channel),
     AXIS_STRING("motor", motor),
+    CYAML_FIELD_UINT_PTR("k37", OPTIONAL | CYAML_FLAG_POINTER, cm1e_busfile_axis_t, k37),
     AXIS_STRING("firmware", firmware),
     ENUM_OF("mapping", cm1e_busfile_axis_t, axis.mapping, mappings),
     AXIS_BOOL("table_profiles", table_profiles),
@@ -164,7 +167,9 @@ const cm1e_busfile_integer_range_t cm1e_busfile_integer_ranges[] = {
     {"position", 1, CM1E_MAX_SLAVES},
     {"alias", 1, 65535},
     {"explicit_id", 1, 254}, /* UG 4.2.3 */
-    {"method", -6, 0},       /* UG 6.2.4 */
+    {"channel", 1, CM1E_BRIDGE_AXES},
+    {"k37", 0, 99},
+    {"method", -6, 4},       /* UG 6.2.4, BR 6.4.1 */
     {"gear_numerator", 1, 1000000}, {"gear_denominator", 1, 1000000},
     {"limit_positive", 1, 4}, {"limit_negative", 1, 4}, {"home", 1, 4},
     {NULL, INT32_MIN, INT32_MAX},

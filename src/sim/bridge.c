@@ -153,7 +153,8 @@ const cm1e_sim_app_ops_t cm1e_sim_bridge_ops = {
     .power_on = power_on, .destroy = destroy,
 };
 
-cm1e_sim_bridge_t *cm1e_sim_bridge_create_app(cm1e_device_model_t model)
+cm1e_sim_bridge_t *cm1e_sim_bridge_create_app(cm1e_device_model_t model,
+                                              const cm1e_axis_config_t *const axes[CM1E_BRIDGE_AXES])
 {
     cm1e_sim_bridge_t *bridge = cm1e_bridge_name(model) ? calloc(1, sizeof *bridge) : NULL;
     if (!bridge)
@@ -163,8 +164,9 @@ cm1e_sim_bridge_t *cm1e_sim_bridge_create_app(cm1e_device_model_t model)
         destroy(bridge);
         return NULL;
     }
+    static const cm1e_axis_config_t standard = {0};
     for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
-        cm1e_sim_bridge_axis_create(bridge, i);
+        cm1e_sim_bridge_axis_create(bridge, i, axes && axes[i] ? axes[i] : &standard);
     power_on(bridge, 0);
     bridge->running = false; /* the first advance() tells the time */
     return bridge;
@@ -175,13 +177,14 @@ uint32_t cm1e_sim_bridge_product_code(cm1e_device_model_t model)
     return (uint32_t)strtoul(cm1e_bridge_name(model), NULL, 16);
 }
 
-static size_t write_sii(uint8_t *sii, size_t room, const cm1e_sim_bridge_t *bridge)
+static size_t write_sii(uint8_t *sii, size_t room, const cm1e_sim_bridge_t *bridge, uint16_t alias)
 {
     const cm1e_device_options_t options = {
         .model = bridge->model,
         .vendor_id = CM1E_SIM_BRIDGE_VENDOR_ID,
         .product_code = cm1e_sim_bridge_product_code(bridge->model),
         .revision = CM1E_SIM_BRIDGE_REVISION,
+        .alias = alias,
     };
     cm1e_description_file_t file = {0};
     const size_t size = cm1e_describe(&file, &options, CM1E_ESI_FLAT, NULL) == CM1E_OK
@@ -191,13 +194,14 @@ static size_t write_sii(uint8_t *sii, size_t room, const cm1e_sim_bridge_t *brid
     return size;
 }
 
-cm1e_sim_slave_t *cm1e_sim_bridge_create(cm1e_device_model_t model)
+cm1e_sim_slave_t *cm1e_sim_bridge_create(cm1e_device_model_t model,
+                                         const cm1e_axis_config_t *const axes[CM1E_BRIDGE_AXES], uint16_t alias)
 {
-    cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_create_app(model);
+    cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_create_app(model, axes);
     if (!bridge)
         return NULL;
     uint8_t sii[CM1E_SII_SIZE];
-    const size_t size = write_sii(sii, sizeof sii, bridge);
+    const size_t size = write_sii(sii, sizeof sii, bridge, alias);
     cm1e_sim_slave_t *slave = size > 0 ? cm1e_sim_slave_create(sii, size, &cm1e_sim_bridge_ops, bridge) : NULL;
     if (slave)
         bridge->slave = slave;

@@ -20,6 +20,7 @@
 #include "device/bridge.h"
 #include "sim/search.h"
 #include "sim/segment.h"
+#include "sim/sensors.h"
 #include "sim/slave.h"
 #include "sim/store.h"
 
@@ -73,8 +74,10 @@ typedef struct cm1e_sim_bridge_axis {
     bool armed;              /**< 0007h was there long enough */
     uint8_t answer;          /**< high byte of the statusword */
 
-    /* motion; positions on the scale of the mechanics */
+    /* motion; positions on the scale of the mechanics, which has CM1E_COUNTS_PER_REVOLUTION */
+    double scale;            /**< pulses of the motor, by its K37, for one count of the mechanics */
     cm1e_mechanics_t mechanics;
+    cm1e_sim_sensors_t sensors;
     cm1e_servo_t servo;
     cm1e_sim_line_t line;
     cm1e_sim_search_t search;
@@ -113,7 +116,8 @@ struct cm1e_sim_bridge {
 /* ---- bridge.c --------------------------------------------------------------------------------------------------- */
 extern const cm1e_sim_app_ops_t cm1e_sim_bridge_ops;
 /** The application alone; destroyed by its ops. NULL: no bridge, or no memory. */
-cm1e_sim_bridge_t *cm1e_sim_bridge_create_app(cm1e_device_model_t model);
+cm1e_sim_bridge_t *cm1e_sim_bridge_create_app(cm1e_device_model_t model,
+                                              const cm1e_axis_config_t *const axes[CM1E_BRIDGE_AXES]);
 /** The bridge in a slave; NULL: it is something else. */
 cm1e_sim_bridge_t *cm1e_sim_bridge_of(cm1e_sim_slave_t *slave);
 
@@ -142,7 +146,7 @@ void cm1e_sim_bridge_outputs(void *app, const uint8_t *data, uint16_t size, int6
 void cm1e_sim_bridge_inputs(void *app, uint8_t *data, uint16_t size);
 
 /* ---- bridge_axis.c ---------------------------------------------------------------------------------------------- */
-void cm1e_sim_bridge_axis_create(cm1e_sim_bridge_t *bridge, unsigned number);
+void cm1e_sim_bridge_axis_create(cm1e_sim_bridge_t *bridge, unsigned number, const cm1e_axis_config_t *config);
 /** Control power comes: the motor stands where it stands, which is 0 now. */
 void cm1e_sim_bridge_axis_power_on(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
 /** Initialisation is over. */
@@ -164,6 +168,8 @@ void cm1e_sim_bridge_axis_power(cm1e_sim_bridge_axis_t *axis, bool on);
 /** Limits the torque to so many % of the rated one; 0: to the peak torque. */
 void cm1e_sim_bridge_axis_torque(cm1e_sim_bridge_axis_t *axis, double percent);
 bool cm1e_sim_bridge_axis_stands(const cm1e_sim_bridge_axis_t *axis);
+/** Where it is is 0 now. */
+void cm1e_sim_bridge_axis_zero(cm1e_sim_bridge_axis_t *axis);
 /** The target of the process data holds from now on. */
 void cm1e_sim_bridge_axis_begin_csp(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
 /** Outputs that the motor has: on a CM1 the first is its serial line. */
@@ -177,6 +183,7 @@ uint16_t cm1e_sim_bridge_statusword(const cm1e_sim_bridge_axis_t *axis);
 uint8_t cm1e_sim_bridge_motor_status(const cm1e_sim_bridge_axis_t *axis);
 /** 0x6064 */
 int64_t cm1e_sim_bridge_shown_position(const cm1e_sim_bridge_axis_t *axis);
+/** In pulses. */
 int64_t cm1e_sim_bridge_position(const cm1e_sim_bridge_axis_t *axis);
 
 /* ---- bridge_modes.c --------------------------------------------------------------------------------------------- */

@@ -23,7 +23,12 @@ static double peak_torque(void) { return cm1e_device_motor("")->peak_torque_nm; 
 
 int64_t cm1e_sim_bridge_position(const cm1e_sim_bridge_axis_t *axis)
 {
-    return (int64_t)floor(axis->mechanics.position + 0.5) - axis->zero;
+    return (int64_t)floor((axis->mechanics.position - (double)axis->zero) * axis->scale + 0.5);
+}
+
+void cm1e_sim_bridge_axis_zero(cm1e_sim_bridge_axis_t *axis)
+{
+    axis->zero = (int64_t)floor(axis->mechanics.position + 0.5);
 }
 
 void cm1e_sim_bridge_axis_torque(cm1e_sim_bridge_axis_t *axis, double percent)
@@ -65,7 +70,7 @@ static double target(const cm1e_sim_bridge_t *bridge, const cm1e_sim_bridge_axis
     else if (limit && wanted < -limit)
         wanted = -limit;
     const int64_t actual = cm1e_sim_bridge_position(axis);
-    return (double)(axis->zero + actual + (int32_t)((uint32_t)wanted - (uint32_t)actual));
+    return (double)axis->zero + (double)(actual + (int32_t)((uint32_t)wanted - (uint32_t)actual)) / axis->scale;
 }
 
 static bool follows_targets(const cm1e_sim_bridge_axis_t *axis)
@@ -311,12 +316,27 @@ uint16_t cm1e_sim_bridge_statusword(const cm1e_sim_bridge_axis_t *axis)
 
 /* ---- life ------------------------------------------------------------------------------------------------------- */
 
-void cm1e_sim_bridge_axis_create(cm1e_sim_bridge_t *bridge, unsigned number)
+/* A revolution has as many pulses as K37 says; what is configured in pulses counts in them. */
+static double pulses_per_count(const cm1e_sim_bridge_t *bridge, const cm1e_sim_bridge_axis_t *axis)
 {
-    static const cm1e_sim_axis_config_t load = {0};
+    const int64_t k37 = *cm1e_sim_bridge_k(bridge, axis->number, K_RESOLUTION);
+    return cm1e_bridge_counts_per_revolution((int32_t)k37) / (double)CM1E_COUNTS_PER_REVOLUTION;
+}
+
+void cm1e_sim_bridge_axis_create(cm1e_sim_bridge_t *bridge, unsigned number, const cm1e_axis_config_t *config)
+{
     cm1e_sim_bridge_axis_t *axis = &bridge->axes[number];
+    cm1e_sim_axis_config_t load = config->sim;
     axis->number = (uint8_t)number;
     axis->motor = cm1e_bridge_motor(bridge->model, number);
+    if (config->k37_stated && cm1e_bridge_counts_per_revolution(config->k37) > 0)
+        *cm1e_sim_bridge_k(bridge, number, K_RESOLUTION) = config->k37;
+    axis->scale = pulses_per_count(bridge, axis);
+    load.stop_positive /= axis->scale;
+    load.stop_negative /= axis->scale;
+    load.sensor_input2 /= axis->scale;
+    load.sensor_input3 /= axis->scale;
+    cm1e_sim_sensors_init(&axis->sensors, &load);
     cm1e_mechanics_init(&axis->mechanics, &load, peak_torque() * CM1E_ROTOR_INERTIA_PER_PEAK_TORQUE);
     cm1e_servo_init(&axis->servo, &axis->mechanics);
 }
@@ -324,8 +344,8 @@ void cm1e_sim_bridge_axis_create(cm1e_sim_bridge_t *bridge, unsigned number)
 /* "When transiting to the state A after power is supplied, CM1 will be motor enable and CM2 is settable" (BR 6.1.1). */
 void cm1e_sim_bridge_axis_power_on(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
 {
-    axis->zero = 0;
-    axis->zero = cm1e_sim_bridge_position(axis);
+    axis->scale = pulses_per_count(bridge, axis); /* a new K37 counts from now on */
+    cm1e_sim_bridge_axis_zero(axis);
     axis->error = 0;
     axis->silent_ms = 0;
     axis->sent = axis->received = 0;

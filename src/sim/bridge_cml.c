@@ -6,7 +6,7 @@
 
 /* BR 7.2.2: between two strings, which is also what the motor needs for one; the lines of a list come one by one. */
 enum { LONG_BYTES = 32, SHORT_NS = 4000000, LONG_NS = 8000000, LINE_NS = 8000000 };
-enum { K_FIRST = 21, K_LAST = 99, QUERY_LIST = 90, QUERY_POSITION = 96, QUERY_STATUS = 99 };
+enum { K_FIRST = 21, K_RESOLUTION = 37, K_LAST = 99, QUERY_LIST = 90, QUERY_POSITION = 96, QUERY_STATUS = 99 };
 
 static const char nothing[] = "Null\r\n";
 
@@ -109,7 +109,8 @@ static void take_k(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, int6
     const long wanted = strtol(value + 1, &end, 10);
     const uint16_t index = (uint16_t)(OBJ_60F6_K_PARAMETERS + CM1E_BRIDGE_INDEX_INCREMENT * axis->number);
     const cm1e_entry_t *entry = cm1e_bridge_entry(bridge->model, index, (uint8_t)(number - K_FIRST + 1));
-    if (end != value + 1 && *end == '\0' && cm1e_sim_check_range(entry, wanted) == 0)
+    const bool known = number != K_RESOLUTION || cm1e_bridge_position_limit(axis->motor, (int32_t)wanted) > 0;
+    if (end != value + 1 && *end == '\0' && cm1e_sim_check_range(entry, wanted) == 0 && known)
         *cm1e_sim_bridge_k(bridge, axis->number, (unsigned)number) = wanted;
 }
 

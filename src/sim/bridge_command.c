@@ -39,7 +39,7 @@ static void execute(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, uin
             cm1e_sim_bridge_search_begin(bridge, axis);
         break;
     case RESET_COUNTER:
-        axis->zero += cm1e_sim_bridge_position(axis);
+        cm1e_sim_bridge_axis_zero(axis);
         break;
     case SEARCH_ABORT:
         cm1e_sim_bridge_search_abort(axis);

@@ -1,9 +1,7 @@
 #include "sim/bridge_app.h"
 
 /* The guide does not say where the sensors are: IN2 is that of CW, IN3 that of CCW, as behind the simulated CM1-E. */
-#define SENSOR_EDGE_COUNTS 150000.0
 #define DEFAULT_TORQUE_PERCENT 30
-enum { INPUT_2 = 0x02, INPUT_3 = 0x04 };
 enum { K_SPEED = 42, K_ACCELERATION = 43, K_OFFSET_UNIT = 45, K_TORQUE = 47, K_OFFSET = 48 };
 
 /* BR 6.4.1, in the order of 0x6098. */
@@ -14,15 +12,14 @@ static const struct {
 
 uint8_t cm1e_sim_bridge_inputs_of(const cm1e_sim_bridge_axis_t *axis)
 {
-    const double position = axis->mechanics.position;
-    return (position >= SENSOR_EDGE_COUNTS ? INPUT_2 : 0) | (position <= -SENSOR_EDGE_COUNTS ? INPUT_3 : 0);
+    return cm1e_sim_sensors_inputs(&axis->sensors, axis->mechanics.position);
 }
 
 static void look_at_sensor(cm1e_sim_bridge_axis_t *axis)
 {
-    const int8_t direction = axis->search.direction;
-    axis->search.sensor = (cm1e_sim_bridge_inputs_of(axis) & (direction > 0 ? INPUT_2 : INPUT_3)) != 0;
-    axis->search.edge = direction * SENSOR_EDGE_COUNTS;
+    const uint8_t input = axis->search.direction > 0 ? CM1E_SIM_INPUT_2 : CM1E_SIM_INPUT_3;
+    axis->search.sensor = (cm1e_sim_bridge_inputs_of(axis) & input) != 0;
+    axis->search.edge = cm1e_sim_sensors_edge(&axis->sensors, input);
 }
 
 /* "x100, 10 or 1 pulse, set by 2nd digit of K45" on a CM2. */
@@ -40,9 +37,9 @@ void cm1e_sim_bridge_search_begin(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axi
     const int64_t torque = *cm1e_sim_bridge_k(bridge, n, K_TORQUE);
     axis->search = (cm1e_sim_search_t){
         .direction = methods[method - 1].direction,
-        .speed = 100.0 * (double)*cm1e_sim_bridge_k(bridge, n, K_SPEED),
-        .acceleration = 1000.0 * (double)*cm1e_sim_bridge_k(bridge, n, K_ACCELERATION),
-        .offset = offset_unit(bridge, axis) * (double)*cm1e_sim_bridge_k(bridge, n, K_OFFSET),
+        .speed = 100.0 * (double)*cm1e_sim_bridge_k(bridge, n, K_SPEED) / axis->scale,
+        .acceleration = 1000.0 * (double)*cm1e_sim_bridge_k(bridge, n, K_ACCELERATION) / axis->scale,
+        .offset = offset_unit(bridge, axis) * (double)*cm1e_sim_bridge_k(bridge, n, K_OFFSET) / axis->scale,
     };
     look_at_sensor(axis);
     cm1e_sim_search_begin(&axis->search, methods[method - 1].by_sensor);

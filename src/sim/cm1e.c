@@ -159,8 +159,7 @@ cm1e_sim_cm1e_t *cm1e_sim_cm1e_create_app(const cm1e_axis_config_t *config, cm1e
     drive->rotary_switches = rotary_switches;
     drive->motor_power = true;
     drive->deadline_ns = drive->state_deadline_ns = drive->mode_deadline_ns = INT64_MAX;
-    drive->sensor_edge[0] = config->sim.sensor_input2 != 0 ? config->sim.sensor_input2 : 150000;
-    drive->sensor_edge[1] = config->sim.sensor_input3 != 0 ? config->sim.sensor_input3 : -150000;
+    cm1e_sim_sensors_init(&drive->sensors, &config->sim);
     if (!cm1e_sim_dictionary_create(drive)) {
         destroy(drive);
         return NULL;

@@ -18,6 +18,7 @@
 #include "cia402/cia402.h"
 #include "sim/search.h"
 #include "sim/segment.h"
+#include "sim/sensors.h"
 #include "sim/slave.h"
 #include "sim/store.h"
 
@@ -117,8 +118,7 @@ struct cm1e_sim_cm1e {
     double profile_velocity, profile_acceleration, profile_deceleration;
     bool set_point_acknowledge;
     cm1e_sim_homing_t homing;
-    double sensor_edge[2];   /**< IN2, IN3: counts on the scale of the mechanics, on beyond it, away from 0 */
-    uint16_t forced_inputs, forced_values; /**< bits of 0x60FD that the console holds, and how */
+    cm1e_sim_sensors_t sensors;
 };
 
 /* ---- cm1e.c ----------------------------------------------------------------------------------------------------- */

@@ -3,28 +3,20 @@
 #include "sim/cm1e_app.h"
 
 #define STANDSTILL_WINDOW 100.0     /* counts/s */
-enum { INPUT_2 = 0x0002, INPUT_3 = 0x0004 };
 
 /* UG 6.2.4 */
 static const struct {
     int8_t method, direction;
     uint8_t input;
 } methods[] = {
-    {-1, +1, 0}, {-2, -1, 0}, {-3, +1, INPUT_2}, {-4, -1, INPUT_2}, {-5, +1, INPUT_3}, {-6, -1, INPUT_3},
+    {-1, +1, 0}, {-2, -1, 0}, {-3, +1, CM1E_SIM_INPUT_2}, {-4, -1, CM1E_SIM_INPUT_2}, {-5, +1, CM1E_SIM_INPUT_3},
+    {-6, -1, CM1E_SIM_INPUT_3},
 };
 enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
 
-static bool beyond(double position, double edge) { return edge < 0 ? position <= edge : position >= edge; }
-
 uint16_t cm1e_sim_digital_inputs(const cm1e_sim_cm1e_t *drive)
 {
-    unsigned inputs = 0;
-    if (!drive->config.sim.no_sensors) {
-        const double position = drive->mechanics.position;
-        inputs = (beyond(position, drive->sensor_edge[0]) ? INPUT_2 : 0u) |
-                 (beyond(position, drive->sensor_edge[1]) ? INPUT_3 : 0u);
-    }
-    return (uint16_t)((inputs & ~(unsigned)drive->forced_inputs) | drive->forced_values);
+    return cm1e_sim_sensors_inputs(&drive->sensors, drive->mechanics.position);
 }
 
 bool cm1e_sim_homing_running(const cm1e_sim_cm1e_t *drive)
@@ -54,7 +46,7 @@ static void look_at_sensor(cm1e_sim_cm1e_t *drive)
     const uint8_t input = drive->homing.input;
     cm1e_sim_search_t *search = &drive->homing.search;
     search->sensor = (cm1e_sim_digital_inputs(drive) & input) != 0;
-    search->edge = drive->forced_inputs & input ? NAN : drive->sensor_edge[input == INPUT_2 ? 0 : 1];
+    search->edge = cm1e_sim_sensors_edge(&drive->sensors, input);
 }
 
 static void homing_step(cm1e_sim_cm1e_t *drive, double step_s)

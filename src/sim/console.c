@@ -206,10 +206,7 @@ static cm1e_error_t run_sensor(call_t *call)
         return REFUSE(call, "\"%s\": expected an input, 1 to 4", argument(call, 0));
     if (how < 0)
         return REFUSE(call, "\"%s\": expected on, off or auto", argument(call, 1));
-    cm1e_sim_cm1e_t *drive = call->drive;
-    const uint16_t bit = (uint16_t)(1u << (input - 1));
-    drive->forced_inputs = (uint16_t)(how < 2 ? drive->forced_inputs | bit : drive->forced_inputs & ~bit);
-    drive->forced_values = (uint16_t)(how == 1 ? drive->forced_values | bit : drive->forced_values & ~bit);
+    cm1e_sim_sensors_hold(&call->drive->sensors, (uint8_t)(1u << (input - 1)), how < 2, how == 1);
     say(call, "slave %u: input %ld %s", call->position, input,
         how == 2 ? "follows the axis" : how == 1 ? "held on" : "held off");
     return CM1E_OK;

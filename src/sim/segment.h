@@ -17,8 +17,9 @@ typedef struct cm1e_sim_slave cm1e_sim_slave_t;
 typedef struct cm1e_sim_cm1e cm1e_sim_cm1e_t;
 typedef struct cm1e_sim_bridge cm1e_sim_bridge_t;
 
-/** The network that a configuration describes: one CM1-E per axis, placed by position, alias or explicit ID (aliases
- *  and IDs are set in the simulated devices in the order of the list). NULL and a diagnosis on failure. */
+/** The network that a configuration describes: one CM1-E per axis, or one bridge for all axes that have a channel at the
+ *  same address, placed by position, alias or explicit ID (aliases and IDs are set in the simulated devices in the order
+ *  of the list). NULL and a diagnosis on failure. */
 cm1e_sim_segment_t *cm1e_sim_segment_create(const cm1e_bus_config_t *config, cm1e_diag_t *diag);
 /** An empty segment, to which slaves are added in the order of the line; it owns them. */
 cm1e_sim_segment_t *cm1e_sim_segment_create_empty(void);

@@ -1,45 +1,87 @@
+#include "device/bridge.h"
 #include "sim/segment.h"
 #include "sim/slave.h"
 
 enum { EXPLICIT_ID_MAX = 254 };
 
+/* What stands at one place: a CM1-E, which is one axis, or a bridge with up to four. Empty: an I/O module. */
+typedef struct place {
+    const cm1e_axis_config_t *axis;                        /* the first of the list */
+    const cm1e_axis_config_t *channels[CM1E_BRIDGE_AXES];  /* behind a bridge */
+} place_t;
+
+static uint32_t position_of(const cm1e_axis_config_t *axis, uint32_t index)
+{
+    return axis->address ? axis->address : index + 1;
+}
+
+/* FALSE: somebody is there already, or there is no such connector. */
+static bool take_place(place_t *place, const cm1e_axis_config_t *axis)
+{
+    const bool shared = place->axis && place->axis->channel && axis->channel;
+    if (axis->channel > CM1E_BRIDGE_AXES || (place->axis && !shared))
+        return false;
+    if (!place->axis)
+        place->axis = axis;
+    if (axis->channel == 0)
+        return true;
+    const bool is_free = !place->channels[axis->channel - 1];
+    place->channels[axis->channel - 1] = axis;
+    return is_free;
+}
+
+/* The place of the bridge of which the list has named another axis before; NULL: none. */
+static place_t *place_of_bridge(place_t *places, const cm1e_axis_config_t *axis)
+{
+    for (uint32_t i = 0; axis->channel && i < CM1E_MAX_SLAVES; i++) {
+        const cm1e_axis_config_t *other = places[i].axis;
+        if (other && other->channel && other->address_kind == axis->address_kind && other->address == axis->address)
+            return &places[i];
+    }
+    return NULL;
+}
+
 /* Axes with a position stand there; the others fill the places that are left, in the order of the list. */
-static bool place_axes(const cm1e_bus_config_t *config, const cm1e_axis_config_t **places, cm1e_diag_t *diag)
+static bool place_axes(const cm1e_bus_config_t *config, place_t *places, cm1e_diag_t *diag)
 {
     for (uint32_t i = 0; i < config->axis_count; i++) {
         const cm1e_axis_config_t *axis = &config->axes[i];
         if (axis->address_kind != CM1E_ADDRESS_POSITION)
             continue;
-        const uint32_t position = axis->address ? axis->address : i + 1;
-        if (position > CM1E_MAX_SLAVES || places[position - 1]) {
+        const uint32_t position = position_of(axis, i);
+        if (position > CM1E_MAX_SLAVES || !take_place(&places[position - 1], axis)) {
             cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
                           "the simulated segment has no place for axis %u at position %u: it is %s", i + 1, position,
                           position > CM1E_MAX_SLAVES ? "too far away" : "taken by another axis");
             return false;
         }
-        places[position - 1] = axis;
     }
     uint32_t free_place = 0;
     for (uint32_t i = 0; i < config->axis_count; i++) {
         if (config->axes[i].address_kind == CM1E_ADDRESS_POSITION)
             continue;
-        while (places[free_place])
+        while (places[free_place].axis)
             free_place++;
-        places[free_place] = &config->axes[i];
+        place_t *bridge = place_of_bridge(places, &config->axes[i]);
+        if (!take_place(bridge ? bridge : &places[free_place], &config->axes[i])) {
+            cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "the simulated segment has no place for axis %u at channel %u: "
+                          "it is taken by another axis", i + 1, config->axes[i].channel);
+            return false;
+        }
     }
     return true;
 }
 
 /* An axis at position 3 says that two slaves stand before it: where they are no axes, they are I/O modules. */
-static uint32_t last_place(const cm1e_axis_config_t *const *places)
+static uint32_t last_place(const place_t *places)
 {
     uint32_t count = CM1E_MAX_SLAVES;
-    while (count && !places[count - 1])
+    while (count && !places[count - 1].axis)
         count--;
     return count;
 }
 
-static cm1e_error_t check_axis(const cm1e_axis_config_t *axis, cm1e_diag_t *diag)
+static cm1e_error_t check_cm1e(const cm1e_axis_config_t *axis, cm1e_diag_t *diag)
 {
     if (axis->address_kind == CM1E_ADDRESS_EXPLICIT_ID && axis->address > EXPLICIT_ID_MAX)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "explicit ID %u: the rotary switches give 1 to %d",
@@ -51,16 +93,32 @@ static cm1e_error_t check_axis(const cm1e_axis_config_t *axis, cm1e_diag_t *diag
     return CM1E_OK;
 }
 
-static cm1e_error_t add_place(cm1e_sim_segment_t *segment, const cm1e_bus_config_t *config,
-                              const cm1e_axis_config_t *axis, cm1e_diag_t *diag)
+static cm1e_error_t find_model(const place_t *place, cm1e_device_model_t *model, cm1e_diag_t *diag)
 {
+    const char *motors[CM1E_BRIDGE_AXES];
+    for (int i = 0; i < CM1E_BRIDGE_AXES; i++)
+        motors[i] = place->channels[i] ? place->channels[i]->motor : "";
+    if (cm1e_bridge_model_with(motors, model))
+        return CM1E_OK;
+    return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "no bridge has the motors '%s', '%s', '%s' and '%s'", motors[0],
+                         motors[1], motors[2], motors[3]);
+}
+
+static cm1e_error_t add_place(cm1e_sim_segment_t *segment, const cm1e_bus_config_t *config, const place_t *place,
+                              cm1e_diag_t *diag)
+{
+    const cm1e_axis_config_t *axis = place->axis;
     const uint16_t alias = axis && axis->address_kind == CM1E_ADDRESS_ALIAS ? axis->address : 0;
     const uint16_t id = axis && axis->address_kind == CM1E_ADDRESS_EXPLICIT_ID ? axis->address : 0;
-    if (axis && check_axis(axis, diag) != CM1E_OK)
-        return CM1E_ERROR_CONFIG;
-    cm1e_sim_slave_t *slave = axis ? cm1e_sim_cm1e_create(axis, config->sim_pdo_order, alias, (uint8_t)id)
-                                   : cm1e_sim_io_module_create();
-    const cm1e_error_t error = cm1e_sim_segment_add(segment, slave);
+    const bool bridge = axis && axis->channel;
+    cm1e_device_model_t model = CM1E_DEVICE_CM1E;
+    cm1e_error_t error = bridge ? find_model(place, &model, diag) : axis ? check_cm1e(axis, diag) : CM1E_OK;
+    if (error != CM1E_OK)
+        return error;
+    cm1e_sim_slave_t *slave = bridge ? cm1e_sim_bridge_create(model, place->channels, alias)
+                              : axis ? cm1e_sim_cm1e_create(axis, config->sim_pdo_order, alias, (uint8_t)id)
+                                     : cm1e_sim_io_module_create();
+    error = cm1e_sim_segment_add(segment, slave);
     if (error != CM1E_OK) {
         cm1e_sim_slave_destroy(slave);
         return cm1e_diag_set(diag, error, 0, "the simulated slave %u cannot be made: out of memory",
@@ -71,7 +129,7 @@ static cm1e_error_t add_place(cm1e_sim_segment_t *segment, const cm1e_bus_config
 
 cm1e_sim_segment_t *cm1e_sim_segment_create(const cm1e_bus_config_t *config, cm1e_diag_t *diag)
 {
-    const cm1e_axis_config_t *places[CM1E_MAX_SLAVES] = {NULL};
+    place_t places[CM1E_MAX_SLAVES] = {{0}};
     if (config->axis_count > CM1E_MAX_AXES) {
         cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "%u axes: a bus has %d at most", config->axis_count, CM1E_MAX_AXES);
         return NULL;
@@ -85,7 +143,7 @@ cm1e_sim_segment_t *cm1e_sim_segment_create(const cm1e_bus_config_t *config, cm1
     }
     const uint32_t count = last_place(places);
     for (uint32_t i = 0; i < count; i++)
-        if (add_place(segment, config, places[i], diag) != CM1E_OK) {
+        if (add_place(segment, config, &places[i], diag) != CM1E_OK) {
             cm1e_sim_segment_destroy(segment);
             return NULL;
         }

@@ -22,9 +22,9 @@ static inline cm1e_sim_slave_t *make_device(device_kind_t kind, uint16_t alias)
     case NO_DEVICE: return NULL;
     case A_MOTOR: return cm1e_sim_cm1e_create(&motor, tested_order(), alias, 0);
     case AN_IO_MODULE: return cm1e_sim_io_module_create();
-    case AN_EB01: return cm1e_sim_bridge_create(CM1E_DEVICE_EB01);
-    case AN_EB02: return cm1e_sim_bridge_create(CM1E_DEVICE_EB02);
-    case AN_EB12: return cm1e_sim_bridge_create(CM1E_DEVICE_EB12);
+    case AN_EB01: return cm1e_sim_bridge_create(CM1E_DEVICE_EB01, NULL, alias);
+    case AN_EB02: return cm1e_sim_bridge_create(CM1E_DEVICE_EB02, NULL, alias);
+    case AN_EB12: return cm1e_sim_bridge_create(CM1E_DEVICE_EB12, NULL, alias);
     }
     return NULL;
 }

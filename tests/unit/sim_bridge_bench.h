@@ -32,7 +32,7 @@ typedef struct bench {
 /* The initialisation of the device is over, and it is in Operational, where nothing has been sent yet. */
 static inline void bench_open(bench_t *b, cm1e_device_model_t model)
 {
-    *b = (bench_t){.bridge = cm1e_sim_bridge_create_app(model), .ops = &cm1e_sim_bridge_ops};
+    *b = (bench_t){.bridge = cm1e_sim_bridge_create_app(model, NULL), .ops = &cm1e_sim_bridge_ops};
     TEST_ASSERT_NOT_NULL(b->bridge);
     b->now_ns = 1000 * (int64_t)BENCH_MS;
     b->ops->advance(b->bridge, b->now_ns);

@@ -39,14 +39,17 @@ static char *read_file(const char *path)
     return text;
 }
 
-/* The example in docs/BUS-FILE.md; the caller frees it. */
-static char *documented_example(void)
+/* An example in docs/BUS-FILE.md, 0 the first; the caller frees it. */
+static char *documented_example(int number)
 {
     static const char begin_mark[] = "```yaml\n";
     char *text = read_file(CM1E_SOURCE_DIR "/docs/BUS-FILE.md");
-    char *begin = strstr(text, begin_mark);
-    TEST_ASSERT_NOT_NULL(begin);
-    begin += strlen(begin_mark);
+    char *begin = text;
+    for (int i = 0; i <= number; i++) {
+        begin = strstr(begin, begin_mark);
+        TEST_ASSERT_NOT_NULL(begin);
+        begin += strlen(begin_mark);
+    }
     char *end = strstr(begin, "```");
     TEST_ASSERT_NOT_NULL(end);
     *end = '\0';
@@ -58,7 +61,7 @@ static char *documented_example(void)
 
 static void test_documented_example_fills_every_field_of_the_bus(void)
 {
-    char *text = documented_example();
+    char *text = documented_example(0);
     load(text);
     free(text);
     TEST_ASSERT_EQUAL_STRING("eth1", config.interface_name);
@@ -74,7 +77,7 @@ static void test_documented_example_fills_every_field_of_the_bus(void)
 
 static void test_documented_example_fills_every_field_of_an_axis(void)
 {
-    char *text = documented_example();
+    char *text = documented_example(0);
     load(text);
     free(text);
     const cm1e_axis_config_t *axis = &config.axes[0];
@@ -123,7 +126,7 @@ static void test_documented_example_fills_every_field_of_an_axis(void)
 
 static void test_documented_example_fills_the_other_addresses_and_units(void)
 {
-    char *text = documented_example();
+    char *text = documented_example(0);
     load(text);
     free(text);
     TEST_ASSERT_EQUAL(CM1E_ADDRESS_ALIAS, config.axes[1].address_kind);
@@ -283,11 +286,33 @@ static void test_init_with_too_many_axes_is_refused_by_the_check(void)
     }
 }
 
+static void test_documented_example_of_a_bridge(void)
+{
+    char *text = documented_example(1);
+    load(text);
+    free(text);
+    TEST_ASSERT_EQUAL(3, config.axis_count);
+    for (uint8_t i = 0; i < 3; i++) {
+        TEST_ASSERT_EQUAL(2, config.axes[i].address);
+        TEST_ASSERT_EQUAL(i + 1, config.axes[i].channel);
+        TEST_ASSERT_EQUAL(i < 2 ? 10 : 3, config.axes[i].k37);
+        TEST_ASSERT_TRUE(config.axes[i].k37_stated);
+        TEST_ASSERT_EQUAL_STRING(i < 2 ? "CM1" : "CM2", config.axes[i].motor);
+    }
+    TEST_ASSERT_EQUAL(4, config.axes[2].homing.method);
+    load("axes: [{channel: 1, k37: 0}, {}]");
+    TEST_ASSERT_TRUE(config.axes[0].k37_stated);
+    TEST_ASSERT_EQUAL(0, config.axes[0].k37);
+    TEST_ASSERT_FALSE(config.axes[1].k37_stated);
+    TEST_ASSERT_EQUAL(0, config.axes[1].channel);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_documented_example_fills_every_field_of_the_bus);
     RUN_TEST(test_documented_example_fills_every_field_of_an_axis);
+    RUN_TEST(test_documented_example_of_a_bridge);
     RUN_TEST(test_documented_example_fills_the_other_addresses_and_units);
     RUN_TEST(test_three_axes_example_loads);
     RUN_TEST(test_one_software_limit_leaves_the_other_side_open);

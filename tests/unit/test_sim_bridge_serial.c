@@ -10,7 +10,7 @@ static char answer[1024];
 void setUp(void)
 {
     segment = cm1e_sim_segment_create_empty();
-    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_sim_segment_add(segment, cm1e_sim_bridge_create(CM1E_DEVICE_EB12)));
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_sim_segment_add(segment, cm1e_sim_bridge_create(CM1E_DEVICE_EB12, NULL, 0)));
     TEST_ASSERT_EQUAL(CM1E_OK, cm1e_sim_segment_add(segment, cm1e_sim_io_module_create()));
     b = (bench_t){.bridge = cm1e_sim_bridge_of(cm1e_sim_segment_slave(segment, 1)), .ops = &cm1e_sim_bridge_ops};
     b.now_ns = 1000 * (int64_t)BENCH_MS;

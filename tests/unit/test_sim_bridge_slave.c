@@ -10,7 +10,7 @@ static bench_t b;
 
 static void open_slave(cm1e_device_model_t model)
 {
-    slave = cm1e_sim_bridge_create(model);
+    slave = cm1e_sim_bridge_create(model, NULL, 0);
     b = (bench_t){.bridge = cm1e_sim_bridge_of(slave), .ops = &cm1e_sim_bridge_ops};
     TEST_ASSERT_NOT_NULL(b.bridge);
     b.now_ns = 1000 * (int64_t)BENCH_MS;
@@ -50,7 +50,7 @@ static void test_the_sii_is_that_of_the_model(void)
 
 static void test_a_cm1e_is_no_bridge(void)
 {
-    TEST_ASSERT_NULL(cm1e_sim_bridge_create(CM1E_DEVICE_CM1E));
+    TEST_ASSERT_NULL(cm1e_sim_bridge_create(CM1E_DEVICE_CM1E, NULL, 0));
     TEST_ASSERT_NULL(cm1e_sim_bridge_of(NULL));
     cm1e_sim_slave_t *module = cm1e_sim_io_module_create();
     TEST_ASSERT_NULL(cm1e_sim_bridge_of(module));

@@ -346,11 +346,11 @@ static void test_a_sensor_held_off_or_on_by_hand(void)
 {
     bench_t b;
     open_at(&b, &places[2], 0);
-    b.drive->forced_inputs = 0x2;
+    b.drive->sensors.held = 0x2;
     begin(&b);
     bench_run(&b, 1);
     TEST_ASSERT_EQUAL_HEX16(IN_PROGRESS, b.statusword & BITS);
-    b.drive->forced_values = 0x2;
+    b.drive->sensors.values = 0x2;
     const double here = shaft(&b);
     TEST_ASSERT_TRUE(bench_until(&b, BIT12, BIT12, 0.01));
     TEST_ASSERT_TRUE(bench_until(&b, BITS, DONE, 10));

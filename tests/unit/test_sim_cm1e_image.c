@@ -59,7 +59,7 @@ static void check_inputs(bench_t *b)
     b->drive->mechanics.velocity = 123456;
     b->drive->mechanics.position = -98765;
     b->drive->objects.temperature = -7;
-    b->drive->forced_values = b->drive->forced_inputs = 0x9;
+    b->drive->sensors.values = b->drive->sensors.held = 0x9;
     uint8_t image[BENCH_IMAGE_BYTES];
     uint16_t out, in;
     b->ops->process_data_sizes(b->drive, &out, &in);

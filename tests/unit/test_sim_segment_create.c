@@ -1,4 +1,7 @@
 /* The segment that a configuration describes: who stands where, with which alias and explicit ID. */
+#include <math.h>
+
+#include "sim/bridge_app.h"
 #include "sim_fake_app.h"
 
 static cm1e_bus_config_t config;
@@ -123,6 +126,90 @@ static void test_contradictions_are_refused_in_words(void)
     refuse("axes");
 }
 
+/* ---- bridges ---------------------------------------------------------------------------------------------------- */
+
+static void add_bridge_axis(uint32_t i, uint16_t position, uint8_t channel, const char *motor)
+{
+    config.axes[i].address = position;
+    config.axes[i].channel = channel;
+    snprintf(config.axes[i].motor, sizeof config.axes[i].motor, "%s", motor);
+}
+
+static cm1e_sim_bridge_t *bridge_at(uint32_t position)
+{
+    cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(cm1e_sim_segment_slave(b.segment, position));
+    TEST_ASSERT_NOT_NULL(bridge);
+    return bridge;
+}
+
+static void test_axes_with_channels_share_a_bridge_of_the_model_that_fits(void)
+{
+    open_axes(8);
+    add_bridge_axis(0, 2, 4, "");
+    add_bridge_axis(1, 2, 1, "CM2");
+    add_bridge_axis(2, 4, 1, "CM1");
+    add_bridge_axis(3, 4, 3, "CM1");
+    add_bridge_axis(4, 5, 2, "");
+    config.axes[5].address = 6;
+    add_bridge_axis(6, 77, 1, "");
+    add_bridge_axis(7, 77, 2, "");
+    config.axes[6].address_kind = config.axes[7].address_kind = CM1E_ADDRESS_ALIAS;
+    create(6);
+    TEST_ASSERT_EQUAL_HEX32(0xEB12, product(0)); /* the alias takes the first free place */
+    TEST_ASSERT_EQUAL_HEX16(77, read_u16(&b, 0, 0x0012));
+    TEST_ASSERT_EQUAL_HEX32(0xEB02, product(1));
+    TEST_ASSERT_EQUAL_HEX32(0x808, product(2));
+    TEST_ASSERT_EQUAL_HEX32(0xEB01, product(3));
+    TEST_ASSERT_EQUAL_HEX32(0xEB12, product(4));
+    TEST_ASSERT_EQUAL_HEX32(CM1E_PRODUCT_CODE, product(5));
+}
+
+static void test_k37_and_mechanics_of_an_axis_are_those_of_its_motor(void)
+{
+    open_axes(2);
+    add_bridge_axis(0, 1, 2, "CM1");
+    add_bridge_axis(1, 1, 3, "CM2");
+    config.axes[0].k37 = 3; /* 1000 pulses a revolution: a count of the mechanics is 1/50 */
+    config.axes[0].k37_stated = true;
+    config.axes[0].sim = (cm1e_sim_axis_config_t){.stop_positive = 2000, .stop_negative = -500, .sensor_input2 = 100,
+                                                  .sensor_input3 = -40, .friction = 0.02};
+    config.axes[1].sim = (cm1e_sim_axis_config_t){.no_stops = true, .no_sensors = true, .load_inertia = 1e-5};
+    create(1);
+    const cm1e_sim_bridge_t *bridge = bridge_at(1);
+    const cm1e_sim_bridge_axis_t *axes = bridge->axes;
+    TEST_ASSERT_EQUAL_INT64(3, *cm1e_sim_bridge_k(bridge, 1, 37));
+    TEST_ASSERT_EQUAL_DOUBLE(100000, axes[1].mechanics.stop_positive);
+    TEST_ASSERT_EQUAL_DOUBLE(-25000, axes[1].mechanics.stop_negative);
+    TEST_ASSERT_EQUAL_DOUBLE(0.02, axes[1].mechanics.friction);
+    TEST_ASSERT_EQUAL_DOUBLE(5000, axes[1].sensors.edges[0]);
+    TEST_ASSERT_EQUAL_DOUBLE(-2000, axes[1].sensors.edges[1]);
+    TEST_ASSERT_TRUE(isinf(axes[2].mechanics.stop_positive));
+    TEST_ASSERT_TRUE(axes[2].sensors.none);
+    TEST_ASSERT_TRUE(axes[2].mechanics.gain < axes[1].mechanics.gain);
+    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i += 3) { /* not in the configuration: defaults */
+        TEST_ASSERT_EQUAL_INT64(10, *cm1e_sim_bridge_k(bridge, i, 37));
+        TEST_ASSERT_EQUAL_DOUBLE(250000, axes[i].mechanics.stop_positive);
+        TEST_ASSERT_EQUAL_DOUBLE(150000, axes[i].sensors.edges[0]);
+    }
+}
+
+static void test_contradictions_on_a_bridge_are_refused_in_words(void)
+{
+    open_axes(2);
+    add_bridge_axis(0, 1, 1, "CM2");
+    add_bridge_axis(1, 1, 2, "CM1");
+    refuse("no bridge has the motors 'CM2', 'CM1'");
+    add_bridge_axis(1, 1, 1, "CM2");
+    refuse("taken");
+    add_bridge_axis(1, 1, 0, "");
+    refuse("taken");
+    add_bridge_axis(1, 2, 5, "");
+    refuse("axis 2");
+    config.axes[0].address_kind = config.axes[1].address_kind = CM1E_ADDRESS_ALIAS;
+    add_bridge_axis(1, 1, 1, "CM2");
+    refuse("channel 1");
+}
+
 static void test_the_longest_bus_can_be_made(void)
 {
     open_axes(CM1E_MAX_AXES);
@@ -139,6 +226,9 @@ int main(void)
     RUN_TEST(test_positions_are_kept_and_gaps_filled_with_io_modules);
     RUN_TEST(test_alias_and_id_fill_the_places_between);
     RUN_TEST(test_contradictions_are_refused_in_words);
+    RUN_TEST(test_axes_with_channels_share_a_bridge_of_the_model_that_fits);
+    RUN_TEST(test_k37_and_mechanics_of_an_axis_are_those_of_its_motor);
+    RUN_TEST(test_contradictions_on_a_bridge_are_refused_in_words);
     RUN_TEST(test_the_longest_bus_can_be_made);
     return UNITY_END();
 }
