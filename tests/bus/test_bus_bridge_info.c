@@ -49,7 +49,7 @@ static cm1e_sim_slave_t *make_liar(cm1e_device_model_t model)
     ops = cm1e_sim_bridge_ops;
     ops.sdo_read = read_lie;
     memset(&liar, 0, sizeof liar);
-    cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_create_app(model);
+    cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_create_app(model, NULL);
     bridge->slave = liar.slave = cm1e_sim_slave_create(sii, size, &ops, bridge);
     return liar.slave;
 }
@@ -118,7 +118,7 @@ END_TEST
 
 START_TEST(a_bridge_tells_its_model_and_its_lines)
 {
-    cm1e_bus_t *bus = scanned_bus(cm1e_sim_bridge_create(CM1E_DEVICE_EB12));
+    cm1e_bus_t *bus = scanned_bus(cm1e_sim_bridge_create(CM1E_DEVICE_EB12, NULL, 0));
     simulate(bus, "motor 1 2 unplug");
     simulate(bus, "motor 1 4 error overload");
     cm1e_clock_sleep_until(cm1e_bus_clock(bus), now_of(bus) + 50 * INT64_C(1000000));
