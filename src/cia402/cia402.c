@@ -12,13 +12,42 @@ const cm1e_fsa_row_t cm1e_fsa_table[CM1E_FSA_STATE_COUNT] = {
     {FAULT, 0x004F, 0x0008, "Fault"},
 };
 
-cm1e_fsa_state_t cm1e_fsa_decode(uint16_t statusword)
+/* A state that never shows: no word AND 0 is that. */
+#define NEVER 0x0000, 0xFFFF
+
+/* BR 6.1.3: bits 4 and 5 are "-", so they are no part of the state; there is no quick stop. */
+const cm1e_fsa_row_t cm1e_fsa_bridge_table[CM1E_FSA_STATE_COUNT] = {
+    {NOT_READY_TO_SWITCH_ON, 0x004F, 0x0000, "Not ready to switch on"},
+    {SWITCH_ON_DISABLED, 0x004F, 0x0040, "Switch on disabled"},
+    {READY_TO_SWITCH_ON, 0x004F, 0x0001, "Ready to switch on"},
+    {SWITCHED_ON, 0x004F, 0x0003, "Switched on"},
+    {OPERATION_ENABLED, 0x004F, 0x0007, "Operation enabled"},
+    {QUICK_STOP_ACTIVE, NEVER, "Quick stop active"},
+    {FAULT_REACTION_ACTIVE, 0x004F, 0x000F, "Fault reaction active"},
+    {FAULT, 0x004F, 0x0008, "Fault"},
+};
+
+/* BR 7.1.3, note 3. Bit 6 is an input: Not ready to switch on looks like Switch on disabled. */
+const cm1e_fsa_row_t cm1e_fsa_cpio_table[CM1E_FSA_STATE_COUNT] = {
+    {NOT_READY_TO_SWITCH_ON, NEVER, "Not ready to switch on"},
+    {SWITCH_ON_DISABLED, 0xF00F, 0xC000, "Switch on disabled"},
+    {READY_TO_SWITCH_ON, 0xF00F, 0xC001, "Ready to switch on"},
+    {SWITCHED_ON, 0xF00F, 0xC003, "Switched on"},
+    {OPERATION_ENABLED, 0xF00F, 0xC007, "Operation enabled"},
+    {QUICK_STOP_ACTIVE, NEVER, "Quick stop active"},
+    {FAULT_REACTION_ACTIVE, 0xF00F, 0xC00F, "Fault reaction active"},
+    {FAULT, 0xF00F, 0xC008, "Fault"},
+};
+
+cm1e_fsa_state_t cm1e_fsa_decode_by(const cm1e_fsa_row_t *table, uint16_t statusword)
 {
     for (int i = 0; i < CM1E_FSA_STATE_COUNT; i++)
-        if ((statusword & cm1e_fsa_table[i].mask) == cm1e_fsa_table[i].value)
-            return cm1e_fsa_table[i].state;
+        if ((statusword & table[i].mask) == table[i].value)
+            return table[i].state;
     return CM1E_FSA_UNKNOWN;
 }
+
+cm1e_fsa_state_t cm1e_fsa_decode(uint16_t statusword) { return cm1e_fsa_decode_by(cm1e_fsa_table, statusword); }
 
 const char *cm1e_fsa_name(cm1e_fsa_state_t state)
 {

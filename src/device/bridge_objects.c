@@ -171,6 +171,8 @@ cm1e_bridge_motor_t cm1e_bridge_motor(cm1e_device_model_t model, unsigned axis)
     return motors[model - CM1E_DEVICE_EB01][axis];
 }
 
+uint8_t cm1e_bridge_output_mask(cm1e_bridge_motor_t motor) { return motor == CM1E_BRIDGE_CM1 ? 0x02 : 0x0F; }
+
 const char *cm1e_bridge_motor_name(cm1e_bridge_motor_t motor) { return motor == CM1E_BRIDGE_CM1 ? "CM1" : "CM2"; }
 
 static bool has(cm1e_device_model_t model, const char *const asked[CM1E_BRIDGE_AXES])

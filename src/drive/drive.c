@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "drive/drive_kind.h"
 #include "drive/drive_private.h"
 
 static const int64_t enable_timeout_ns = 2000 * MS_IN_NS;
@@ -34,6 +35,16 @@ static cm1e_error_t velocity_unit(cm1e_drive_t *drive, cm1e_diag_t *diag)
     return CM1E_OK;
 }
 
+cm1e_error_t cm1e_drive_init_cm1e(cm1e_drive_t *drive, cm1e_diag_t *diag)
+{
+    drive->motor = cm1e_device_motor(drive->config->motor);
+    if (!drive->motor)
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": there is no motor \"%s\".",
+                             drive->config->name, drive->config->motor);
+    drive->firmware = cm1e_bus_slave_firmware(drive->bus, drive->position);
+    return velocity_unit(drive, diag);
+}
+
 cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis, cm1e_diag_t *diag)
 {
     memset(drive, 0, sizeof *drive);
@@ -48,32 +59,15 @@ cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis
     if (drive->position == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "Axis \"%s\" has no slave on the bus.",
                              drive->config->name);
-    drive->motor = cm1e_device_motor(drive->config->motor);
-    if (!drive->motor)
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": there is no motor \"%s\".",
-                             drive->config->name, drive->config->motor);
-    drive->firmware = cm1e_bus_slave_firmware(bus, drive->position);
+    drive->kind = cm1e_drive_bridged(drive) ? &cm1e_drive_kind_bridge : &cm1e_drive_kind_cm1e;
     drive->feedback.state = CM1E_FSA_UNKNOWN;
-    cm1e_error_t error = velocity_unit(drive, diag);
+    drive->velocity_unit = 1;
+    drive->position_least = INT32_MIN;
+    drive->position_most = INT32_MAX;
+    cm1e_error_t error = drive->kind->init(drive, diag);
     if (!error)
         error = cm1e_drive_resolve(drive, diag);
     return error ? error : cm1e_drive_mode_init(drive, diag);
-}
-
-bool cm1e_drive_supports(const cm1e_drive_t *drive, cm1e_mode_t mode)
-{
-    switch (mode) {
-    case CM1E_MODE_PP:
-    case CM1E_MODE_CSP:
-        return drive->out_position.bytes > 0;
-    case CM1E_MODE_PV:
-    case CM1E_MODE_CSV:
-        return drive->out_velocity.bytes > 0;
-    case CM1E_MODE_HM: /* UG 6.2.4: needs no special mapping */
-        return true;
-    default:
-        return false;
-    }
 }
 
 const cm1e_entry_t *cm1e_drive_entry(const cm1e_drive_t *drive, uint16_t index, uint8_t subindex)
@@ -93,7 +87,7 @@ void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
             .device_code = drive->feedback.fault ? drive->feedback.error_code : 0,
             .statusword = drive->feedback.statusword,
             .mode_commanded = (int8_t)drive->mode,
-            .mode_shown = drive->feedback.mode,
+            .mode_shown = drive->feedback.mode != CM1E_MODE_NONE ? drive->feedback.mode : drive->mode_read,
         };
     /* Details that arrive after the first sign: the device's code, and what the supervision found out. */
     if (fault->device_code == 0 && drive->feedback.online && drive->feedback.fault)
@@ -108,6 +102,8 @@ void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
     }
 }
 
+static bool operates(const cm1e_drive_feedback_t *f) { return f->state == OPERATION_ENABLED && !f->motor_free; }
+
 /* The cause of what this cycle's inputs show, or CM1E_OK. */
 static cm1e_error_t cause_in_inputs(const cm1e_drive_t *drive)
 {
@@ -119,14 +115,14 @@ static cm1e_error_t cause_in_inputs(const cm1e_drive_t *drive)
     const bool power_stage = f->state == OPERATION_ENABLED || f->state == SWITCHED_ON;
     if (!f->voltage && (power_stage || drive->was_enabled))
         return CM1E_ERROR_DRIVE_POWER;
-    if (drive->was_enabled && f->state != OPERATION_ENABLED)
+    if (drive->was_enabled && !operates(f))
         return CM1E_ERROR_DRIVE_ENABLE_LOST;
     const bool shown = f->mode == (int8_t)drive->mode;
     if (drive->was_enabled && !shown && drive->mode_confirmed)
         return CM1E_ERROR_DRIVE_MODE_LOST;
     if (drive->was_enabled && !shown && drive->now_ns >= drive->mode_deadline_ns)
         return CM1E_ERROR_DRIVE_MODE_TIMEOUT;
-    if (!drive->was_enabled && f->state != OPERATION_ENABLED && drive->now_ns >= drive->enable_deadline_ns)
+    if (!drive->was_enabled && !operates(f) && drive->now_ns >= drive->enable_deadline_ns)
         return !f->voltage ? CM1E_ERROR_DRIVE_POWER
                : !shown    ? CM1E_ERROR_DRIVE_MODE_TIMEOUT : CM1E_ERROR_DRIVE_ENABLE_TIMEOUT;
     return CM1E_OK;
@@ -146,9 +142,9 @@ static void latch_faults(cm1e_drive_t *drive)
 }
 
 /* No mode: under way over SDO, and nobody knows whether the old or the new one acts; a target that stands is right. */
-static bool may_hold_position(int8_t mode)
+static bool may_hold_position(const cm1e_drive_t *drive)
 {
-    return mode == CM1E_MODE_CSP || mode == CM1E_MODE_PP || mode == CM1E_MODE_NONE;
+    return drive->shown ? drive->shown->holds_position : drive->feedback.mode == CM1E_MODE_NONE;
 }
 
 void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
@@ -161,16 +157,18 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
     if (f->fresh)
         cm1e_drive_decode(drive);
     f->online = bus_ok && cm1e_drive_operational(drive);
-    if (f->state != OPERATION_ENABLED || !may_hold_position(f->mode))
+    if (f->state != OPERATION_ENABLED || !may_hold_position(drive))
         drive->target_holds = false;
     else if (f->mode == CM1E_MODE_NONE)
         drive->target_holds = true;
+    if (drive->kind->step)
+        drive->kind->step(drive);
     if (drive->reset_phase != RESET_IDLE) {
         cm1e_drive_reset_step(drive);
         f->enabled = false;
         return;
     }
-    const bool operating = f->state == OPERATION_ENABLED && drive->torque;
+    const bool operating = operates(f) && drive->torque && drive->now_ns >= drive->halted_until_ns;
     const bool shown = f->mode == (int8_t)drive->mode;
     latch_faults(drive);
     if (operating && f->online)
@@ -182,9 +180,31 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
                  (!drive->fault.error || drive_fault_allows_ramp(drive->fault.error));
 }
 
+static bool mode_takes_torque(const cm1e_drive_t *drive)
+{
+    return drive->wanted->torque && drive->words == drive->wanted->words;
+}
+
+static bool in_range(const cm1e_drive_t *drive, int32_t position)
+{
+    return position >= drive->position_least && position <= drive->position_most;
+}
+
+/* Who asks for torque where there will be none hears of it. */
+static void refuse_torque(cm1e_drive_t *drive)
+{
+    const bool asked = drive->command.enable && !drive->torque && drive->seen && drive->feedback.online;
+    if (asked && !in_range(drive, drive->feedback.position)) /* as a target it would be cut: a jump */
+        cm1e_drive_fail(drive, CM1E_ERROR_AXIS_POSITION_RANGE);
+    if (!asked || mode_takes_torque(drive))
+        drive->blocked_ns = drive->now_ns;
+    else if (drive->now_ns - drive->blocked_ns >= enable_timeout_ns)
+        cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_ENABLE_TIMEOUT);
+}
+
 static bool wants_torque(const cm1e_drive_t *drive)
 {
-    if (!drive->command.enable || !drive->seen || drive->reset_phase != RESET_IDLE)
+    if (!drive->command.enable || !drive->seen || drive->reset_phase != RESET_IDLE || !mode_takes_torque(drive))
         return false;
     if (drive->fault.error)
         return drive_fault_allows_ramp(drive->fault.error) && drive->feedback.enabled;
@@ -199,7 +219,7 @@ static uint16_t mode_bits(cm1e_drive_t *drive, bool pass)
     const cm1e_drive_command_t *command = &drive->command;
     const int8_t shown = drive->feedback.mode;
     uint16_t bits = 0;
-    if (command->halt && (shown == CM1E_MODE_PP || shown == CM1E_MODE_PV || shown == CM1E_MODE_HM))
+    if (command->halt && drive->shown && drive->shown->halt == CM1E_DRIVE_HALT_BIT)
         bits |= CONTROLWORD_HALT;
     if (shown == CM1E_MODE_HM && pass && command->homing_start)
         bits |= CONTROLWORD_HOMING_START;
@@ -217,26 +237,56 @@ static uint16_t mode_bits(cm1e_drive_t *drive, bool pass)
     return bits;
 }
 
-/* One command a cycle, from the state seen (UG 6.1.2). */
+/* Words of another coding are on their way to be understood: those of now say nothing meanwhile. */
+static uint16_t no_torque_word(const cm1e_drive_t *drive)
+{
+    const cm1e_drive_words_t *words = drive->words;
+    if (words != drive->wanted->words)
+        return 0;
+    return words->commands ? cm1e_drive_cmd_word(drive) : words->no_torque;
+}
+
+/* Transition 5 leaves Operation enabled, and that is no loss: enabling begins anew when the halt is over. */
+static bool halts_by_disabling(cm1e_drive_t *drive)
+{
+    if (!drive->command.halt || !drive->shown || drive->shown->halt != CM1E_DRIVE_HALT_DISABLE_OPERATION)
+        return false;
+    drive->was_enabled = drive->feedback.enabled = false;
+    drive->halted_until_ns = drive->now_ns + torque_pause_ns;
+    drive->enable_deadline_ns = drive->now_ns + enable_timeout_ns;
+    return true;
+}
+
+/* One command a cycle, from the state seen (UG 6.1.2, BR 6.1.2). */
 static uint16_t controlword(cm1e_drive_t *drive, bool pass)
 {
     const cm1e_drive_feedback_t *f = &drive->feedback;
-    if (drive->reset_phase == RESET_EDGE)
-        return cm1e_fsa_commands[COMMAND_FAULT_RESET].controlword;
-    const uint16_t no_torque = cm1e_fsa_commands[COMMAND_SHUTDOWN].controlword;
+    if (drive->reset_phase == RESET_EDGE && drive->words == drive->wanted->words && !drive->words->commands)
+        return drive->words->fault_reset;
     if (!drive->torque || f->state >= CM1E_FSA_STATE_COUNT)
-        return no_torque;
+        return no_torque_word(drive);
     /* Switched on needs motor power, or the drive faults (UG 6.1.1); and the mode must be the right one by then. */
     const bool ready = f->voltage && f->mode == (int8_t)drive->mode;
     if (!ready && f->state != OPERATION_ENABLED)
-        return no_torque;
-    const cm1e_fsa_command_t command = cm1e_fsa_next_command(f->state, true);
+        return no_torque_word(drive);
+    cm1e_fsa_command_t command = cm1e_fsa_next_command(f->state, true);
     if (command == COMMAND_FAULT_RESET || command >= CM1E_FSA_COMMAND_COUNT)
-        return no_torque;
+        return no_torque_word(drive);
+    if (command == COMMAND_ENABLE_OPERATION && halts_by_disabling(drive))
+        command = COMMAND_SWITCH_ON;
     uint16_t word = cm1e_fsa_commands[command].controlword;
-    if (f->state == OPERATION_ENABLED)
+    if (command == COMMAND_ENABLE_OPERATION && f->state == OPERATION_ENABLED)
         word |= mode_bits(drive, pass);
     return word;
+}
+
+static uint16_t signals(const cm1e_drive_t *drive)
+{
+    const cm1e_drive_words_t *words = drive->words;
+    if (words->mark == 0 || words != drive->wanted->words)
+        return 0;
+    const unsigned outputs = drive->command.digital_outputs & cm1e_drive_output_mask(drive);
+    return (uint16_t)(words->mark | (outputs << CM1E_DRIVE_SIGNALS_AT & words->outputs));
 }
 
 /* Position to write while the caller's does not pass: the actual one; but as long as the drive shows torque in a mode
@@ -253,6 +303,8 @@ void cm1e_drive_write(cm1e_drive_t *drive)
         cm1e_drive_reset_start(drive);
     drive->reset_before = command->reset;
 
+    if (!drive->torque)
+        refuse_torque(drive);
     const bool torque = wants_torque(drive);
     if (torque && !drive->torque)
         drive->enable_deadline_ns = drive->now_ns + enable_timeout_ns;
@@ -270,11 +322,15 @@ void cm1e_drive_write(cm1e_drive_t *drive)
         drive->set_point_bit = false;
         drive->set_point = drive->feedback.position;
     }
-    const bool holding_mode = drive->feedback.mode == CM1E_MODE_CSP || drive->feedback.mode == CM1E_MODE_PP;
+    const bool holding_mode = drive->shown && drive->shown->holds_position;
     /* Targets that ran on while nothing arrived would make the drive jump when it hears again. */
     const bool follow = pass && !drive->fault.slave_deaf;
     drive->target_holds |= follow && holding_mode;
-    const int32_t position = follow && holding_mode ? command->target_position : safe_position(drive);
-    const uint16_t word = controlword(drive, pass);
+    int32_t position = safe_position(drive);
+    if (follow && holding_mode && in_range(drive, command->target_position))
+        position = command->target_position;
+    else if (follow && holding_mode)
+        cm1e_drive_fail(drive, CM1E_ERROR_AXIS_POSITION_RANGE); /* the last target holds until the torque goes */
+    const uint16_t word = controlword(drive, pass) | signals(drive);
     cm1e_drive_encode(drive, word, position, follow ? command->target_velocity : 0);
 }

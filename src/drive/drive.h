@@ -32,7 +32,8 @@ typedef struct cm1e_drive_command {
     int32_t target_position;        /**< counts; CSP, PP. Used only while `enabled` is TRUE */
     int32_t target_velocity;        /**< counts/s; CSV, PV */
     bool homing_start;              /**< HM: rising edge starts, FALSE ends (controlword bit 4) */
-    bool halt;                      /**< PP, PV, HM: controlword bit 8 */
+    bool halt;                      /**< PP, PV, HM: controlword bit 8; behind a bridge, HM: Disable operation: a search
+                                         ends, and the motor holds without being `enabled` until the halt is over */
     uint16_t digital_outputs;       /**< 0x60FE; behind a bridge by SDO, bit 0: output 1 */
     bool mode_insist;               /**< behind a bridge: csp by way of CML after CMD or CPIO, though it "will possibly
                                          result in operating abnormal" (BR 6 note 2) */
@@ -54,8 +55,9 @@ typedef struct cm1e_drive_feedback {
     int16_t temperature;            /**< degrees C */
     int32_t dc_link_decivolt;
     bool enabled;                   /**< Operation enabled and in the commanded mode: set-points act */
-    bool voltage;                   /**< motor power is on (statusword bit 4) */
+    bool voltage;                   /**< motor power is on (statusword bit 4), or the drive does not say */
     bool fault;
+    bool motor_free;                /**< behind a bridge: no torque, whatever the state says (statusword bit 15) */
     bool target_reached, bit12, bit13; /**< per mode: UG 6.2 */
 } cm1e_drive_feedback_t;
 
@@ -72,6 +74,19 @@ typedef struct cm1e_drive_fault {
     bool motor_status_known;        /**< ... where this is TRUE */
 } cm1e_drive_fault_t;
 
+/** Digital signals by SDO (drive_digital.c). */
+typedef struct cm1e_drive_digital {
+    cm1e_sdo_t in_sdo, out_sdo;
+    uint8_t in_data[4], out_data[4];
+    bool reading, writing, writing_mask;
+    bool mask_written;              /**< 60FE:2 says which outputs are ours */
+    bool outputs_known;             /**< 60FE:1 is `outputs` */
+    bool failed;
+    uint16_t outputs, writing_outputs;
+    uint16_t inputs;
+    int64_t wanted_until_ns, read_next_ns, fresh_until_ns, write_next_ns;
+} cm1e_drive_digital_t;
+
 /** In the order of use: first what every cycle looks at. */
 typedef struct cm1e_drive {
     cm1e_bus_t *bus;
@@ -82,6 +97,9 @@ typedef struct cm1e_drive {
     cm1e_drive_feedback_t feedback;
     cm1e_drive_fault_t fault;       /**< latched; cleared by a successful reset */
     /* private: drive_io.c, drive.c, drive_mode.c, drive_reset.c */
+    const struct cm1e_drive_words *words; /**< of the mode that is shown */
+    const struct cm1e_drive_mode *shown;  /**< NULL: 0x6061 is none of its modes, or not known */
+    const struct cm1e_drive_mode *wanted; /**< that of `mode` */
     cm1e_image_slot_t in_statusword, in_error, in_position, in_velocity, in_torque, in_digital, in_temperature, in_dc,
         in_mode;
     cm1e_image_slot_t out_controlword, out_position, out_velocity, out_mode, out_digital, out_profile_velocity,
@@ -91,6 +109,7 @@ typedef struct cm1e_drive {
     uint32_t profile_velocity, profile_acceleration; /**< what 0x6081 and 0x6083 carry where they are mapped */
     int64_t read_ns;
     int32_t target_position;        /**< last one written */
+    int32_t position_least, position_most; /**< what may be a target */
     int32_t set_point;              /**< PP: the target position that bit 4 announced */
     cm1e_mode_t mode;               /**< commanded on the wire; follows `command.mode` once the last switch is shown */
     bool velocity_quarter;          /**< 0x606C is wrong in HM and PP */
@@ -104,14 +123,31 @@ typedef struct cm1e_drive {
     uint8_t reset_phase, mode_phase;
     int8_t mode_data, mode_shown;
 
-    int64_t enable_deadline_ns, mode_deadline_ns, torque_from_ns;
+    const struct cm1e_drive_kind *kind;
+    int64_t enable_deadline_ns, mode_deadline_ns, torque_from_ns, halted_until_ns;
     int64_t reset_until_ns, reset_deadline_ns, reset_settle_ns, recovery_ns, mode_retry_ns;
     cm1e_sdo_t mode_sdo;            /**< 0x6060 and 0x6061 where the mapping lacks them */
+    int64_t mode_write_ns;          /**< when the last 0x6060 was written */
+    int8_t mode_read;               /**< what 0x6061 said last, a switch under way or not */
+    bool mode_known;                /**< 0x6061 was read since the device may have been switched off */
+    bool mode_uncertain;            /**< 0x6060 was written, and 0x6061 has not shown it yet */
+    int64_t mode_from_ns;           /**< 0x6060 may be written from then on */
+    bool abnormal;                  /**< behind a bridge: was in CMD or CPIO since power-on, as far as is known */
+    int64_t blocked_ns;             /**< since when torque is asked for in a mode that has none */
     uint32_t axis;                  /**< index in the configuration */
     const cm1e_axis_config_t *config;
     const cm1e_motor_t *motor;      /**< NULL behind a bridge */
     const cm1e_firmware_info_t *firmware;
-    cm1e_device_model_t bridge;     /**< where the motor stands behind one */
+
+    /* behind a bridge: drive_bridge.c, drive_command.c, drive_digital.c */
+    cm1e_device_model_t bridge;
+    int32_t rest_position;          /**< the motor stands there ... */
+    int64_t rest_since_ns;          /**< ... since then */
+    cm1e_sdo_t status_sdo;          /**< F530:5 ... 8 */
+    uint8_t status_data[4], status_tries;
+    bool status_reading;
+    cm1e_drive_cmd_run_t cmd;
+    cm1e_drive_digital_t digital;
 } cm1e_drive_t;
 
 /** Resolves the objects of the mapping. A mapping that lacks an object the configured use needs is

@@ -34,7 +34,7 @@ typedef enum cm1e_drive_cmd_state {
     CM1E_DRIVE_CMD_DONE,            /**< answered; a search: F8, the origin is found */
     CM1E_DRIVE_CMD_NOT_SENT,        /**< "sending error": no answer in time */
     CM1E_DRIVE_CMD_SEARCH_TIME_OUT, /**< F9: the motor found no origin in its time */
-    CM1E_DRIVE_CMD_GIVEN_UP,        /**< our own time for the search is over; it was aborted */
+    CM1E_DRIVE_CMD_GIVEN_UP,        /**< our own time for the search is over: it is being aborted */
     CM1E_DRIVE_CMD_LOST,            /**< the bus was away or CMD was left meanwhile: nobody knows */
 } cm1e_drive_cmd_state_t;
 
@@ -44,11 +44,12 @@ typedef struct cm1e_drive_cmd_run {
     cm1e_drive_cmd_t command;       /**< what the caller started */
     /* private: drive_command.c */
     cm1e_drive_cmd_t sending;       /**< what is on the wire: the command, or what ends a search */
-    uint8_t phase, words, before;   /**< before: high byte of the statusword ahead of the command */
+    uint8_t phase, cycles, before;  /**< before: high byte of the statusword ahead of the command */
     uint8_t attempts;               /**< to end a search that may be under way */
+    bool ending;                    /**< `sending` is such an attempt */
     bool may_search;                /**< a search may be under way, whatever the state */
-    bool ready;                     /**< 0007h stands on the wire since the first command */
-    int64_t heard_ns, deadline_ns, timeout_ns;
+    bool ready;                     /**< 0007h is the word between commands */
+    int64_t heard_ns, deadline_ns, timeout_ns, release_ns;
 } cm1e_drive_cmd_run_t;
 
 /** Starts a command. CM1E_ERROR_STATE: the motor is not in CMD; CM1E_ERROR_AXIS_OFFLINE: it is not heard;

@@ -2,6 +2,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "device/bridge_status.h"
+#include "drive/drive_kind.h"
 #include "drive/drive_private.h"
 
 typedef struct writer {
@@ -38,10 +40,11 @@ static const advice_t advices[] = {
                                    "whether another tool controls it"},
     {CM1E_ERROR_DRIVE_ENABLE_TIMEOUT, "The drive stayed in the state named here although it was told to go on. Check "
                                       "motor power and whether another tool controls it"},
-    {CM1E_ERROR_DRIVE_MODE_TIMEOUT, "Object 0x6061 does not show the mode that was commanded. Check the mapping and "
-                                    "the firmware"},
+    {CM1E_ERROR_DRIVE_MODE_TIMEOUT, "Object 0x6061 does not show the mode that was commanded"},
     {CM1E_ERROR_DRIVE_MODE_LOST, "Object 0x6061 left the commanded mode by itself. Check whether another tool controls "
                                  "the drive"},
+    {CM1E_ERROR_AXIS_POSITION_RANGE, "The actual position, or a target, is beyond what the resolution of the motor "
+                                     "(K37) allows"},
     {CM1E_ERROR_DRIVE_RESET_TIMEOUT, "The fault came back or stayed. Remove its cause, or switch the drive off and on"},
 };
 
@@ -53,10 +56,47 @@ static const char *advice(cm1e_error_t error)
     return "Remove the cause";
 }
 
-static const char *mode_name(int8_t mode)
+static const char *mode_name(const cm1e_drive_t *drive, int8_t mode)
 {
-    const cm1e_mode_row_t *row = cm1e_mode_find(mode);
+    const cm1e_drive_mode_t *row = cm1e_drive_mode_row(drive->kind, mode);
     return row ? row->abbreviation : "none";
+}
+
+static void say_words(writer_t *w, const cm1e_drive_t *drive)
+{
+    const cm1e_drive_fault_t *fault = &drive->fault;
+    const cm1e_drive_mode_t *row = cm1e_drive_mode_row(drive->kind, fault->mode_shown);
+    const cm1e_fsa_row_t *states = (row ? row : drive->wanted)->words->states;
+    say(w, " Statusword 0x%04X", fault->statusword);
+    if (states)
+        say(w, " (%s)", cm1e_fsa_name(cm1e_fsa_decode_by(states, fault->statusword)));
+    if (fault->mode_commanded != fault->mode_shown)
+        say(w, ", mode %d (%s) commanded, %d (%s) shown", fault->mode_commanded,
+            mode_name(drive, fault->mode_commanded), fault->mode_shown, mode_name(drive, fault->mode_shown));
+}
+
+/* BR 7.4 */
+static void say_status(writer_t *w, const cm1e_drive_t *drive)
+{
+    char text[CM1E_BRIDGE_STATUS_TEXT];
+    const cm1e_bridge_motor_t motor = cm1e_drive_bridge_motor(drive);
+    const uint8_t status = drive->fault.motor_status;
+    const char *cure = cm1e_bridge_status_cure(motor, status);
+    say(w, " The motor (%s) says: %s (F530:%u = 0x%02X).", cm1e_bridge_motor_name(motor),
+        cm1e_bridge_status_text(motor, status, text, sizeof text), drive->config->channel + 4u, status);
+    if (cure[0])
+        say(w, " Cure: %s.", cure);
+}
+
+/* What the user can do about it, where another answer is better than the common one. */
+static const char *further(const cm1e_drive_t *drive)
+{
+    const cm1e_drive_mode_t *row = cm1e_drive_mode_row(drive->kind, drive->fault.mode_shown);
+    const cm1e_error_t error = drive->fault.error;
+    if (error == CM1E_ERROR_DRIVE_MODE_TIMEOUT)
+        return drive->kind->refusal;
+    const bool stays = error == CM1E_ERROR_DRIVE_RESET_TIMEOUT || error == CM1E_ERROR_DRIVE_FAULT;
+    return stays && row ? row->cure : NULL;
 }
 
 void cm1e_drive_fault_text(const cm1e_drive_t *drive, char *text, size_t size)
@@ -80,9 +120,9 @@ void cm1e_drive_fault_text(const cm1e_drive_t *drive, char *text, size_t size)
     else if (fault->al_state)
         say(&w, " EtherCAT state %u, AL status code 0x%04X: %s.", fault->al_state & 0x0Fu, fault->al_status_code,
             cm1e_al_status_text(fault->al_status_code));
-    say(&w, " Statusword 0x%04X (%s)", fault->statusword, cm1e_fsa_name(cm1e_fsa_decode(fault->statusword)));
-    if (fault->mode_commanded != fault->mode_shown)
-        say(&w, ", mode %d (%s) commanded, %d (%s) shown", fault->mode_commanded, mode_name(fault->mode_commanded),
-            fault->mode_shown, mode_name(fault->mode_shown));
-    say(&w, ". %s, then reset the axis with MC_Reset.", advice(fault->error));
+    if (fault->motor_status_known)
+        say_status(&w, drive);
+    say_words(&w, drive);
+    const char *more = further(drive);
+    say(&w, ". %s%s%s, then reset the axis with MC_Reset.", advice(fault->error), more ? ". " : "", more ? more : "");
 }

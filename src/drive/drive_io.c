@@ -1,75 +1,38 @@
 /* The process data of one drive: where the objects lie, and their coding on the wire. */
 #include "core/bytes.h"
+#include "drive/drive_kind.h"
 #include "drive/drive_private.h"
 
-enum { MAPPED_DYNAMIC = 1 << CM1E_MAPPING_DYNAMIC, MAPPED_CSP = 1 << CM1E_MAPPING_CSP,
-       MAPPED_CSV = 1 << CM1E_MAPPING_CSV, MAPPED_PROFILE = 1 << CM1E_MAPPING_PROFILE,
-       MAPPED_ALL = MAPPED_DYNAMIC | MAPPED_CSP | MAPPED_CSV | MAPPED_PROFILE };
-
-/** One object that the drive uses: where its slot is kept, which sizes are understood, which mappings must have it. */
-typedef struct drive_object {
-    size_t slot;
-    bool output;
-    uint16_t index;
-    uint8_t least_bytes, most_bytes;
-    uint8_t needed_in;
-    const char *name;
-} drive_object_t;
-
-#define SLOT(member) offsetof(cm1e_drive_t, member)
-/* Sizes: UG 4.4 and UG 7.2 disagree on 0x6077 (16 or 32 bits), and CiA 402 has digital I/O in 32 bits. */
-static const drive_object_t objects[] = {
-    {SLOT(out_controlword), true, OBJ_6040_CONTROLWORD, 2, 2, MAPPED_ALL, "Controlword"},
-    {SLOT(out_position), true, OBJ_607A_TARGET_POSITION, 4, 4, MAPPED_DYNAMIC | MAPPED_CSP | MAPPED_PROFILE,
-     "Target position"},
-    {SLOT(out_velocity), true, OBJ_60FF_TARGET_VELOCITY, 4, 4, MAPPED_DYNAMIC | MAPPED_CSV | MAPPED_PROFILE,
-     "Target velocity"},
-    {SLOT(out_mode), true, OBJ_6060_MODES_OF_OPERATION, 1, 1, MAPPED_DYNAMIC, "Modes of operation"},
-    {SLOT(out_digital), true, OBJ_60FE_DIGITAL_OUTPUTS, 2, 4, 0, "Digital outputs"},
-    {SLOT(out_profile_velocity), true, OBJ_6081_PROFILE_VELOCITY, 4, 4, 0, "Profile velocity"},
-    {SLOT(out_profile_acceleration), true, OBJ_6083_PROFILE_ACCELERATION, 4, 4, 0, "Profile acceleration"},
-    {SLOT(in_statusword), false, OBJ_6041_STATUSWORD, 2, 2, MAPPED_ALL, "Statusword"},
-    {SLOT(in_error), false, OBJ_603F_ERROR_CODE, 2, 2, 0, "Error code"},
-    {SLOT(in_position), false, OBJ_6064_POSITION_ACTUAL_VALUE, 4, 4, MAPPED_ALL, "Position actual value"},
-    {SLOT(in_velocity), false, OBJ_606C_VELOCITY_ACTUAL_VALUE, 4, 4, 0, "Velocity actual value"},
-    {SLOT(in_torque), false, OBJ_6077_TORQUE_ACTUAL_VALUE, 2, 4, 0, "Torque actual value"},
-    {SLOT(in_digital), false, OBJ_60FD_DIGITAL_INPUTS, 2, 4, 0, "Digital inputs"},
-    {SLOT(in_temperature), false, OBJ_2301_TEMPERATURE, 2, 4, 0, "Drive temperature"},
-    {SLOT(in_dc), false, OBJ_6079_DC_LINK_VOLTAGE, 2, 4, 0, "DC link voltage"},
-    {SLOT(in_mode), false, OBJ_6061_MODES_OF_OPERATION_DISPLAY, 1, 1, MAPPED_DYNAMIC, "Modes of operation display"},
-};
-
-static const char *const mapping_names[] = {
-    [CM1E_MAPPING_DYNAMIC] = "dynamic (0x1600/0x1A00)", [CM1E_MAPPING_CSP] = "CSP (0x1601/0x1A01)",
-    [CM1E_MAPPING_CSV] = "CSV (0x1602/0x1A02)", [CM1E_MAPPING_PROFILE] = "profile (0x1603/0x1A03)",
-};
-
-static cm1e_image_slot_t *slot_of(cm1e_drive_t *drive, const drive_object_t *object)
+static cm1e_image_slot_t *slot_of(cm1e_drive_t *drive, const cm1e_drive_object_t *object)
 {
     return (cm1e_image_slot_t *)(void *)((char *)drive + object->slot);
 }
 
-static cm1e_error_t resolve_object(cm1e_drive_t *drive, const drive_object_t *object, cm1e_diag_t *diag)
+static const char *mapping_name(const cm1e_drive_t *drive)
+{
+    return drive->kind->mappings[drive->config->mapping].name;
+}
+
+static cm1e_error_t resolve_object(cm1e_drive_t *drive, const cm1e_drive_object_t *object, cm1e_diag_t *diag)
 {
     cm1e_image_slot_t *slot = slot_of(drive, object);
-    *slot = object->output ? cm1e_bus_find_output(drive->bus, drive->position, object->index, 0)
-                           : cm1e_bus_find_input(drive->bus, drive->position, object->index, 0);
-    const cm1e_mapping_t mapping = drive->config->mapping;
+    const uint16_t index = cm1e_drive_index(drive, object->index);
+    *slot = object->output ? cm1e_bus_find_output(drive->bus, drive->position, index, 0)
+                           : cm1e_bus_find_input(drive->bus, drive->position, index, 0);
     if (slot->bytes == 0) {
-        if (!(object->needed_in & 1 << mapping))
+        if (!(object->needed_in & 1 << drive->config->mapping))
             return CM1E_OK;
-        return cm1e_diag_set(diag, CM1E_ERROR_PDO_MAPPING, object->index,
+        return cm1e_diag_set(diag, CM1E_ERROR_PDO_MAPPING, index,
                              "Axis \"%s\" (slave %u): the mapping %s that was read from the device lacks object "
                              "0x%04X, %s, which this mapping needs. Choose another mapping or check the firmware.",
-                             drive->config->name, drive->position, mapping_names[mapping], object->index,
-                             object->name);
+                             drive->config->name, drive->position, mapping_name(drive), index, object->name);
     }
     if (slot->bytes < object->least_bytes || slot->bytes > object->most_bytes)
-        return cm1e_diag_set(diag, CM1E_ERROR_PDO_MAPPING, object->index,
+        return cm1e_diag_set(diag, CM1E_ERROR_PDO_MAPPING, index,
                              "Axis \"%s\" (slave %u): the mapping %s has object 0x%04X, %s, with %u bytes; %u ... %u "
-                             "are understood. Is this a CM1-E?",
-                             drive->config->name, drive->position, mapping_names[mapping], object->index,
-                             object->name, slot->bytes, object->least_bytes, object->most_bytes);
+                             "are understood. Is this a %s?",
+                             drive->config->name, drive->position, mapping_name(drive), index, object->name,
+                             slot->bytes, object->least_bytes, object->most_bytes, drive->kind->name);
     return CM1E_OK;
 }
 
@@ -78,9 +41,10 @@ static void profile_objects(cm1e_drive_t *drive)
 {
     const cm1e_axis_config_t *config = drive->config;
     const double counts_per_unit = cm1e_unit_scale(config);
+    const double peak = cm1e_unit_peak_velocity(config);
     double velocity = config->max_velocity * counts_per_unit;
-    if (!(velocity > 0) || velocity > drive->motor->max_velocity_counts_per_s)
-        velocity = drive->motor->max_velocity_counts_per_s;
+    if (!(velocity > 0) || velocity > peak)
+        velocity = peak;
     double kilo = config->max_acceleration > 0 ? config->max_acceleration * counts_per_unit / 1000.0 : 5000.0;
     if (kilo < 1.0)
         kilo = 1.0;
@@ -92,11 +56,12 @@ static void profile_objects(cm1e_drive_t *drive)
 
 cm1e_error_t cm1e_drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
-    if ((unsigned)drive->config->mapping > CM1E_MAPPING_PROFILE)
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": there is no PDO mapping number %d.",
-                             drive->config->name, (int)drive->config->mapping);
-    for (size_t i = 0; i < sizeof objects / sizeof objects[0]; i++) {
-        const cm1e_error_t error = resolve_object(drive, &objects[i], diag);
+    if ((unsigned)drive->config->mapping > CM1E_MAPPING_PROFILE || !mapping_name(drive))
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
+                             "Axis \"%s\": there is no PDO mapping number %d of a %s.", drive->config->name,
+                             (int)drive->config->mapping, drive->kind->name);
+    for (size_t i = 0; i < drive->kind->object_count; i++) {
+        const cm1e_error_t error = resolve_object(drive, &drive->kind->objects[i], diag);
         if (error)
             return error;
     }
@@ -107,10 +72,11 @@ cm1e_error_t cm1e_drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag)
                              out ? OBJ_6060_MODES_OF_OPERATION : OBJ_6061_MODES_OF_OPERATION_DISPLAY,
                              "Axis \"%s\" (slave %u): the mapping %s has object 0x%04X but not 0x%04X: a mode of "
                              "operation could not be switched safely.",
-                             drive->config->name, drive->position, mapping_names[drive->config->mapping],
+                             drive->config->name, drive->position, mapping_name(drive),
                              out ? 0x6061 : 0x6060, out ? 0x6060 : 0x6061);
     }
     profile_objects(drive);
+    drive->feedback.digital_known = drive->in_digital.bytes > 0;
     return CM1E_OK;
 }
 
@@ -167,28 +133,44 @@ static int32_t velocity_of(const cm1e_drive_t *drive, const uint8_t *in, int32_t
     return clamp_i32((int64_t)step * INT64_C(1000000000) / elapsed_ns);
 }
 
-static void take_statusword(cm1e_drive_feedback_t *f, uint16_t statusword)
+/* While a mode is not shown, its words are still those of the last one, unless the next one has others. */
+static void take_mode(cm1e_drive_t *drive, int8_t mode)
 {
+    drive->feedback.mode = mode;
+    drive->shown = cm1e_drive_mode_row(drive->kind, mode);
+    if (drive->shown)
+        drive->words = drive->shown->words;
+    else if (drive->words != drive->wanted->words)
+        drive->words = &cm1e_drive_words_unknown;
+}
+
+static void take_statusword(cm1e_drive_t *drive, uint16_t statusword)
+{
+    cm1e_drive_feedback_t *f = &drive->feedback;
+    const cm1e_drive_words_t *words = drive->words;
     f->statusword = statusword;
-    f->state = cm1e_fsa_decode(statusword);
-    f->voltage = statusword & STATUSWORD_VOLTAGE_ENABLED;
-    f->fault = statusword & STATUSWORD_FAULT;
-    f->target_reached = statusword & STATUSWORD_TARGET_REACHED;
-    f->bit12 = statusword & STATUSWORD_BIT12;
-    f->bit13 = statusword & STATUSWORD_BIT13;
+    f->state = words->states ? cm1e_fsa_decode_by(words->states, statusword) : CM1E_FSA_UNKNOWN;
+    f->voltage = !words->voltage || (statusword & words->voltage);
+    f->fault = statusword & words->fault;
+    f->motor_free = statusword & words->motor_free;
+    f->target_reached = statusword & words->target_reached;
+    f->bit12 = statusword & words->bit12;
+    f->bit13 = statusword & words->bit13;
 }
 
 void cm1e_drive_decode(cm1e_drive_t *drive)
 {
     const uint8_t *in = cm1e_bus_inputs(drive->bus);
     cm1e_drive_feedback_t *f = &drive->feedback;
+    const int8_t mode = drive->in_mode.bytes ? (int8_t)in[drive->in_mode.offset] : drive->mode_shown;
     const uint16_t statusword = get_u16(in, drive->in_statusword);
-    if (statusword != f->statusword || !drive->seen)
-        take_statusword(f, statusword);
+    if (mode != f->mode || statusword != f->statusword || !drive->seen) {
+        take_mode(drive, mode);
+        take_statusword(drive, statusword);
+    }
     f->error_code = get_u16(in, drive->in_error);
-    f->mode = drive->in_mode.bytes ? (int8_t)in[drive->in_mode.offset] : drive->mode_shown;
     const int32_t position = get_i32(in, drive->in_position);
-    f->velocity = velocity_of(drive, in, position, f->mode);
+    f->velocity = velocity_of(drive, in, position, mode);
     f->position = position;
     f->torque = get_i16(in, drive->in_torque);
     f->digital_inputs = (uint16_t)get_signed(in, drive->in_digital);

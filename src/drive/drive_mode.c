@@ -1,110 +1,279 @@
-/* The mode of operation (UG 6.2.1): in the process data where 0x6060 and 0x6061 are mapped, else over SDO. */
+/*
+ * The mode of operation: in the process data where 0x6060 and 0x6061 are mapped, else over SDO (UG 6.2.1; BR 6.2.2 and
+ * appendix 3): 0x6060 written, 0x6061 read until it shows the mode. A kind of drive with ways that cannot be gone back
+ * is asked where it is before anything is written, and gets a write at rest and without an error only.
+ */
+#include "drive/drive_kind.h"
 #include "drive/drive_private.h"
 
-enum { PHASE_IDLE = 0, PHASE_WRITING, PHASE_READING, PHASE_SUBMIT_READ };
+enum { PHASE_IDLE = 0, PHASE_WRITING, PHASE_READING, PHASE_WAIT, PHASE_GIVEN_UP };
 
 static const int64_t mode_timeout_ns = 1000 * MS_IN_NS;
 static const int64_t sdo_timeout_ns = 300 * MS_IN_NS;
-static const int64_t sdo_retry_ns = 50 * MS_IN_NS;
+static const int64_t write_again_ns = 50 * MS_IN_NS;
+static const int64_t read_again_ns = 5 * MS_IN_NS;  /* BR appendix 3 */
+static const int64_t interval_ns = 6 * MS_IN_NS;    /* BR 6.2.2 note 2: more than 5 ms */
+static const int64_t rest_ns = 20 * MS_IN_NS;
+static const int64_t silence_ns = 10 * MS_IN_NS;    /* 0000h for five cycles before words of another coding */
 
-static const cm1e_mode_t mapping_modes[] = {
-    [CM1E_MAPPING_DYNAMIC] = CM1E_MODE_CSP, [CM1E_MAPPING_CSP] = CM1E_MODE_CSP,
-    [CM1E_MAPPING_CSV] = CM1E_MODE_CSV, [CM1E_MAPPING_PROFILE] = CM1E_MODE_CSP,
-};
+static const char abnormal[] = "Since power-on the motor was in CMD or CPIO: by way of CML, CSP \"will possibly result "
+                               "in operating abnormal\" (BR 6 note 2). Switch the bridge off and on, or insist";
 
-cm1e_mode_t cm1e_drive_mapping_mode(cm1e_mapping_t mapping) { return mapping_modes[mapping]; }
+bool cm1e_drive_supports(const cm1e_drive_t *drive, cm1e_mode_t mode)
+{
+    const cm1e_drive_mode_t *row = cm1e_drive_mode_row(drive->kind, (int8_t)mode);
+    if (!row || row->target == CM1E_DRIVE_NO_TARGET)
+        return row != NULL;
+    return ((const cm1e_image_slot_t *)(const void *)((const char *)drive + row->target))->bytes > 0;
+}
+
+/* Where the device is, as far as is known. */
+static const cm1e_drive_mode_t *place(const cm1e_drive_t *drive)
+{
+    const cm1e_drive_mode_t *row = cm1e_drive_mode_row(drive->kind, drive->mode_read);
+    return row && drive->kind->asks_mode_first ? row : drive->wanted;
+}
+
+static bool leads(const cm1e_drive_t *drive, const cm1e_drive_mode_t *from, const cm1e_drive_mode_t *to)
+{
+    return from == to || to->ways >> (from - drive->kind->modes) & 1;
+}
+
+cm1e_error_t cm1e_drive_mode_check(const cm1e_drive_t *drive, cm1e_mode_t mode, bool insist, const char **why)
+{
+    const cm1e_drive_mode_t *to = cm1e_drive_mode_row(drive->kind, (int8_t)mode), *from = place(drive);
+    const char *text = NULL;
+    cm1e_error_t error = CM1E_OK;
+    if (!cm1e_drive_supports(drive, mode)) {
+        error = CM1E_ERROR_UNSUPPORTED;
+        text = "The drive, or the mapping that it runs with, has no such mode of operation";
+    } else if (!leads(drive, from, to)) {
+        error = CM1E_ERROR_STATE;
+        text = drive->kind->no_way;
+    } else if (drive->abnormal && !insist && !from->torque && to->torque && !to->leaves_abnormal) {
+        error = CM1E_ERROR_STATE;
+        text = abnormal;
+    }
+    if (why)
+        *why = text;
+    return error;
+}
+
+/* ---- start-up --------------------------------------------------------------------------------------------------- */
+
+static cm1e_error_t read_first(cm1e_drive_t *drive, int8_t *shown, cm1e_diag_t *diag)
+{
+    size_t size = sizeof *shown;
+    const uint16_t index = cm1e_drive_index(drive, OBJ_6061_MODES_OF_OPERATION_DISPLAY);
+    const cm1e_error_t error = cm1e_sdo_read(drive->bus, drive->position, index, 0, shown, &size, diag);
+    if (!error && size != sizeof *shown)
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_MAILBOX, 0,
+                             "Axis \"%s\" (slave %u): object 0x%04X was read with %zu bytes instead of 1.",
+                             drive->config->name, drive->position, index, size);
+    return error;
+}
+
+/* The cycle switches from here on, where a way leads to the first mode. */
+static cm1e_error_t ask_first(cm1e_drive_t *drive, cm1e_diag_t *diag)
+{
+    const cm1e_error_t error = read_first(drive, &drive->mode_read, diag);
+    if (error)
+        return error;
+    const cm1e_drive_mode_t *row = cm1e_drive_mode_row(drive->kind, drive->mode_read);
+    if (!row || !leads(drive, row, drive->wanted))
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
+                             "Axis \"%s\" (slave %u): object 0x%04X shows mode %d (%s), from which no way leads to %s. "
+                             "%s.", drive->config->name, drive->position,
+                             cm1e_drive_index(drive, OBJ_6061_MODES_OF_OPERATION_DISPLAY), drive->mode_read,
+                             row ? row->abbreviation : "unknown", drive->wanted->abbreviation, drive->kind->no_way);
+    drive->mode_shown = drive->mode_read;
+    drive->mode_known = true;
+    return CM1E_OK;
+}
 
 cm1e_error_t cm1e_drive_mode_init(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
-    drive->mode = cm1e_drive_mapping_mode(drive->config->mapping);
+    drive->mode = drive->kind->mappings[drive->config->mapping].first_mode;
+    drive->wanted = cm1e_drive_mode_row(drive->kind, (int8_t)drive->mode);
+    drive->words = drive->wanted->words;
     drive->command.mode = drive->mode;
     if (drive->out_mode.bytes)
         return CM1E_OK;
+    if (drive->kind->asks_mode_first)
+        return ask_first(drive, diag);
     const int8_t mode = (int8_t)drive->mode;
-    cm1e_error_t error = cm1e_sdo_write(drive->bus, drive->position, OBJ_6060_MODES_OF_OPERATION, 0, &mode, 1, diag);
-    if (error)
-        return error;
+    const uint16_t index = cm1e_drive_index(drive, OBJ_6060_MODES_OF_OPERATION);
+    const cm1e_error_t error = cm1e_sdo_write(drive->bus, drive->position, index, 0, &mode, 1, diag);
     int8_t shown = 0;
-    size_t size = sizeof shown;
-    error = cm1e_sdo_read(drive->bus, drive->position, OBJ_6061_MODES_OF_OPERATION_DISPLAY, 0, &shown, &size, diag);
-    if (error)
-        return error;
-    if (size != sizeof shown)
-        return cm1e_diag_set(diag, CM1E_ERROR_BUS_MAILBOX, 0,
-                             "Axis \"%s\" (slave %u): object 0x6061 was read with %zu bytes instead of 1.",
-                             drive->config->name, drive->position, size);
+    const cm1e_error_t read_error = error ? error : read_first(drive, &shown, diag);
     /* A device that needs its time shows the mode later: the cycle asks again (cm1e_drive_mode_step). */
     drive->mode_shown = shown == mode ? shown : CM1E_MODE_NONE;
-    return CM1E_OK;
+    return read_error;
 }
+
+/* ---- the cycle -------------------------------------------------------------------------------------------------- */
 
 static void submit(cm1e_drive_t *drive, bool write)
 {
     drive->mode_data = (int8_t)drive->mode;
     drive->mode_sdo = (cm1e_sdo_t){
         .position = drive->position, .write = write, .data = &drive->mode_data, .size = 1,
-        .index = write ? OBJ_6060_MODES_OF_OPERATION : OBJ_6061_MODES_OF_OPERATION_DISPLAY,
+        .index = cm1e_drive_index(drive, write ? OBJ_6060_MODES_OF_OPERATION : OBJ_6061_MODES_OF_OPERATION_DISPLAY),
         .timeout_ns = sdo_timeout_ns,
     };
-    drive->mode_shown = CM1E_MODE_NONE; /* uncertain from now on */
-    if (cm1e_sdo_submit(drive->bus, &drive->mode_sdo) == CM1E_OK)
-        drive->mode_phase = write ? PHASE_WRITING : PHASE_READING;
-    else
-        drive->mode_retry_ns = drive->now_ns + sdo_retry_ns;
+    if (cm1e_sdo_submit(drive->bus, &drive->mode_sdo) != CM1E_OK) {
+        drive->mode_phase = PHASE_IDLE;
+        drive->mode_retry_ns = drive->now_ns + write_again_ns;
+        return;
+    }
+    drive->mode_phase = write ? PHASE_WRITING : PHASE_READING;
+    if (!write)
+        return;
+    drive->mode_uncertain = true;
+    drive->mode_shown = CM1E_MODE_NONE;
+    drive->abnormal |= drive->wanted->leaves_abnormal;
 }
 
 static void read_done(cm1e_drive_t *drive)
 {
-    const bool good = drive->mode_sdo.size == 1;
-    drive->mode_shown = good ? drive->mode_data : (int8_t)CM1E_MODE_NONE;
-    drive->mode_phase = PHASE_IDLE;
-    if (drive->mode_shown != (int8_t)drive->mode)
-        drive->mode_retry_ns = drive->now_ns + sdo_retry_ns;
+    const cm1e_drive_mode_t *before = cm1e_drive_mode_row(drive->kind, drive->mode_read);
+    drive->mode_read = drive->mode_sdo.size == 1 ? drive->mode_data : (int8_t)CM1E_MODE_NONE;
+    const cm1e_drive_mode_t *now = cm1e_drive_mode_row(drive->kind, drive->mode_read);
+    /* No way leads there, and it is there all the same: it was switched off and on. */
+    if (before && now && !drive->mode_known && !leads(drive, before, now))
+        drive->abnormal = false;
+    drive->abnormal |= now && now->leaves_abnormal;
+    drive->mode_known = true;
+    if (drive->mode_read == (int8_t)drive->mode)
+        drive->mode_uncertain = false;
+    drive->mode_shown = drive->mode_uncertain ? (int8_t)CM1E_MODE_NONE : drive->mode_read;
+    drive->mode_phase = drive->mode_uncertain ? PHASE_WAIT : PHASE_IDLE;
+    drive->mode_retry_ns = drive->now_ns + (drive->mode_uncertain ? read_again_ns : 0);
+}
+
+static bool may_write(const cm1e_drive_t *drive)
+{
+    const int64_t now_ns = drive->now_ns;
+    if (!leads(drive, place(drive), drive->wanted) || now_ns < drive->mode_from_ns ||
+        now_ns < drive->mode_write_ns + interval_ns)
+        return false;
+    return !drive->wanted->rest ||
+           (now_ns - drive->rest_since_ns >= rest_ns && drive->feedback.fresh && !drive->feedback.fault);
+}
+
+static bool expired(cm1e_drive_t *drive)
+{
+    if (drive->mode_deadline_ns == 0)
+        drive->mode_deadline_ns = drive->now_ns + mode_timeout_ns;
+    return drive->kind->mode_supervised && drive->now_ns >= drive->mode_deadline_ns;
+}
+
+static void give_up(cm1e_drive_t *drive)
+{
+    cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_MODE_TIMEOUT);
+    drive->mode_phase = PHASE_GIVEN_UP;
+    drive->mode_uncertain = false;
+    drive->mode_shown = drive->mode_read;
+}
+
+/* Nothing is under way over SDO. */
+static void go_on(cm1e_drive_t *drive)
+{
+    if (drive->mode_shown == (int8_t)drive->mode || drive->mode_phase == PHASE_GIVEN_UP)
+        return;
+    if (expired(drive)) {
+        give_up(drive);
+        return;
+    }
+    if (drive->now_ns < drive->mode_retry_ns)
+        return;
+    if (drive->mode_phase == PHASE_WAIT && drive->now_ns - drive->mode_write_ns < write_again_ns)
+        submit(drive, false);
+    else if (drive->kind->asks_mode_first && !drive->mode_known)
+        submit(drive, false);
+    else if (may_write(drive))
+        submit(drive, true);
+    else if (drive->mode_phase == PHASE_WAIT)
+        submit(drive, false);
+}
+
+static void written(cm1e_drive_t *drive)
+{
+    drive->mode_write_ns = drive->now_ns;
+    drive->mode_phase = PHASE_WAIT;
+    drive->mode_retry_ns = drive->now_ns;
 }
 
 void cm1e_drive_mode_step(cm1e_drive_t *drive)
 {
     if (drive->out_mode.bytes)
         return;
-    if (drive->mode_phase == PHASE_SUBMIT_READ) {
-        submit(drive, false);
-    } else if (drive->mode_phase == PHASE_IDLE) {
-        if (drive->mode_shown != (int8_t)drive->mode && drive->now_ns >= drive->mode_retry_ns)
-            submit(drive, true);
-    } else {
-        switch (cm1e_sdo_state(&drive->mode_sdo)) {
-        case CM1E_SDO_DONE:
-            if (drive->mode_phase == PHASE_READING)
-                read_done(drive);
-            else
-                drive->mode_phase = PHASE_SUBMIT_READ;
-            break;
-        case CM1E_SDO_ERROR:
-            drive->mode_phase = PHASE_IDLE;
-            drive->mode_retry_ns = drive->now_ns + sdo_retry_ns;
-            break;
-        default:
-            break;
-        }
+    if (drive->mode_phase != PHASE_WRITING && drive->mode_phase != PHASE_READING) {
+        go_on(drive);
+        return;
+    }
+    switch (cm1e_sdo_state(&drive->mode_sdo)) {
+    case CM1E_SDO_DONE:
+        if (drive->mode_phase == PHASE_READING)
+            read_done(drive);
+        else
+            written(drive);
+        break;
+    case CM1E_SDO_ERROR: /* one that was written may have arrived all the same */
+        drive->mode_write_ns = drive->mode_phase == PHASE_WRITING ? drive->now_ns : drive->mode_write_ns;
+        drive->mode_phase = PHASE_IDLE;
+        drive->mode_retry_ns = drive->now_ns + write_again_ns;
+        break;
+    default:
+        break;
     }
 }
 
 void cm1e_drive_mode_forget(cm1e_drive_t *drive)
 {
-    if (drive->mode_phase == PHASE_IDLE)
-        drive->mode_shown = CM1E_MODE_NONE;
+    drive->mode_known = false;
+    drive->mode_deadline_ns = 0;
     drive->mode_retry_ns = drive->now_ns;
+    if (drive->mode_phase == PHASE_WRITING || drive->mode_phase == PHASE_READING)
+        return;
+    drive->mode_phase = PHASE_IDLE;
+    drive->mode_uncertain = false;
+    drive->mode_shown = CM1E_MODE_NONE;
+}
+
+/* A switch that cannot be supervised by the process data is waited for, whatever comes of it. */
+static bool under_way(const cm1e_drive_t *drive)
+{
+    if (drive->kind->asks_mode_first)
+        return drive->mode_shown != (int8_t)drive->mode && drive->mode_phase != PHASE_GIVEN_UP;
+    return drive->was_enabled && drive->feedback.mode != (int8_t)drive->mode;
+}
+
+/* Words of another coding come without torque only. */
+static bool needs_less(const cm1e_drive_t *drive, const cm1e_drive_mode_t *to)
+{
+    const cm1e_fsa_state_t state = drive->feedback.state;
+    if (to->words == drive->words)
+        return false;
+    return drive->torque || state == SWITCHED_ON || state == OPERATION_ENABLED || cm1e_drive_cmd_moves(drive);
 }
 
 /* One switch at a time: until the display shows the last one, nobody knows which mode the next process data meet. */
 void cm1e_drive_mode_choose(cm1e_drive_t *drive)
 {
     const cm1e_mode_t wanted = drive->command.mode;
-    if (wanted == drive->mode || wanted == CM1E_MODE_NONE || !cm1e_mode_find((int8_t)wanted))
+    if (wanted == drive->mode || wanted == CM1E_MODE_NONE)
         return;
-    if (drive->was_enabled && drive->feedback.mode != (int8_t)drive->mode)
+    const cm1e_drive_mode_t *row = cm1e_drive_mode_row(drive->kind, (int8_t)wanted);
+    if (!row || under_way(drive) || needs_less(drive, row))
+        return;
+    if (drive->kind->asks_mode_first && cm1e_drive_mode_check(drive, wanted, drive->command.mode_insist, NULL))
         return;
     drive->mode = wanted;
+    drive->wanted = row;
     drive->mode_confirmed = false;
     drive->mode_deadline_ns = drive->now_ns + mode_timeout_ns;
+    drive->mode_from_ns = drive->now_ns + (row->words == drive->words ? 0 : silence_ns);
+    if (drive->mode_phase == PHASE_GIVEN_UP)
+        drive->mode_phase = PHASE_IDLE;
 }

@@ -19,13 +19,15 @@ static inline bool drive_fault_allows_ramp(cm1e_error_t error)
     return error == CM1E_ERROR_BUS_LOST || error == CM1E_ERROR_BUS_WORKING_COUNTER;
 }
 
+/* drive.c */
+cm1e_error_t cm1e_drive_init_cm1e(cm1e_drive_t *drive, cm1e_diag_t *diag);
+
 /* drive_io.c */
 cm1e_error_t cm1e_drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag);
 void cm1e_drive_decode(cm1e_drive_t *drive);
 void cm1e_drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t position, int32_t velocity);
 
 /* drive_mode.c */
-cm1e_mode_t cm1e_drive_mapping_mode(cm1e_mapping_t mapping);
 cm1e_error_t cm1e_drive_mode_init(cm1e_drive_t *drive, cm1e_diag_t *diag);
 void cm1e_drive_mode_step(cm1e_drive_t *drive);
 /** Takes over `command.mode` when the last switch is confirmed. */
@@ -36,5 +38,25 @@ void cm1e_drive_mode_forget(cm1e_drive_t *drive);
 /* drive_reset.c */
 void cm1e_drive_reset_start(cm1e_drive_t *drive);
 void cm1e_drive_reset_step(cm1e_drive_t *drive);
+
+/* drive_bridge.c: what a motor behind a bridge has beside this, in drive_command.c, drive_digital.c ... */
+cm1e_error_t cm1e_drive_init_bridge(cm1e_drive_t *drive, cm1e_diag_t *diag);
+void cm1e_drive_bridge_step(cm1e_drive_t *drive);
+cm1e_bridge_motor_t cm1e_drive_bridge_motor(const cm1e_drive_t *drive);
+
+/* drive_command.c */
+void cm1e_drive_cmd_step(cm1e_drive_t *drive);
+/** What stands in the controlword in CMD. */
+uint16_t cm1e_drive_cmd_word(const cm1e_drive_t *drive);
+/** A command is under way, or what it began may still move the motor. */
+static inline bool cm1e_drive_cmd_moves(const cm1e_drive_t *drive)
+{
+    return drive->cmd.may_search || cm1e_drive_cmd_busy(drive->cmd.state);
+}
+
+/* drive_digital.c */
+void cm1e_drive_digital_step(cm1e_drive_t *drive);
+/** The device may have been switched off meanwhile: its outputs are not known. */
+void cm1e_drive_digital_forget(cm1e_drive_t *drive);
 
 #endif

@@ -35,6 +35,7 @@ static void finish(cm1e_drive_t *drive, cm1e_error_t error)
     if (error == CM1E_OK) {
         drive->fault = (cm1e_drive_fault_t){0};
         cm1e_drive_mode_forget(drive);
+        cm1e_drive_digital_forget(drive);
         return;
     }
     drive->fault.error = CM1E_OK;

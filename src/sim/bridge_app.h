@@ -172,8 +172,6 @@ bool cm1e_sim_bridge_axis_stands(const cm1e_sim_bridge_axis_t *axis);
 void cm1e_sim_bridge_axis_zero(cm1e_sim_bridge_axis_t *axis);
 /** The target of the process data holds from now on. */
 void cm1e_sim_bridge_axis_begin_csp(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
-/** Outputs that the motor has: on a CM1 the first is its serial line. */
-uint8_t cm1e_sim_bridge_output_mask(const cm1e_sim_bridge_axis_t *axis);
 /** 0x60FD, 0x60FE: in csp, in Switched on and Operation enabled only (BR 6.5). */
 bool cm1e_sim_bridge_io_available(const cm1e_sim_bridge_axis_t *axis);
 /** Bits 0 ... 3 and 6 of the statusword. */

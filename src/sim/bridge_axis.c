@@ -14,9 +14,6 @@ enum { SILENCE_MS = 10 };        /* without a good answer: an error of the seria
 enum { K_RESOLUTION = 37, K_ENABLE_AT_POWER_ON = 68 };
 enum { STATUSWORD_MOTOR_ERROR = 0x4000, STATUSWORD_MOTOR_FREE = 0x8000 };
 
-/* BR 6.5: inputs and outputs that a CM1 shares with its serial line are not there. */
-enum { OUTPUTS_CM1 = 0x02, OUTPUTS_CM2 = 0x0F };
-
 static double peak_torque(void) { return cm1e_device_motor("")->peak_torque_nm; }
 
 /* ---- the motor -------------------------------------------------------------------------------------------------- */
@@ -51,11 +48,6 @@ void cm1e_sim_bridge_axis_power(cm1e_sim_bridge_axis_t *axis, bool on)
     cm1e_sim_bridge_axis_torque(axis, 0);
     cm1e_servo_catch(&axis->servo, &axis->mechanics);
     hold(axis);
-}
-
-uint8_t cm1e_sim_bridge_output_mask(const cm1e_sim_bridge_axis_t *axis)
-{
-    return axis->motor == CM1E_BRIDGE_CM1 ? OUTPUTS_CM1 : OUTPUTS_CM2;
 }
 
 /* 0x607A on the scale of the mechanics, within what the resolution allows (BR appendix 5). It has 32 bits and wraps:

@@ -81,7 +81,7 @@ static void query(cm1e_sim_bridge_axis_t *axis, int64_t due_ns, long number)
 
 static void set_output(cm1e_sim_bridge_axis_t *axis, long number, bool on)
 {
-    const unsigned bit = number >= 1 && number <= 4 ? 1u << (number - 1) & cm1e_sim_bridge_output_mask(axis) : 0;
+    const unsigned bit = number >= 1 && number <= 4 ? 1u << (number - 1) & cm1e_bridge_output_mask(axis->motor) : 0;
     axis->outputs = (uint8_t)(on ? axis->outputs | bit : axis->outputs & ~bit);
 }
 

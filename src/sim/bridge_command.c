@@ -88,7 +88,7 @@ void cm1e_sim_bridge_cpio_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axi
 {
     if (axis->controlword >> 12 != CPIO)
         return;
-    axis->outputs = (uint8_t)(axis->controlword >> 4 & 0x0F & cm1e_sim_bridge_output_mask(axis));
+    axis->outputs = (uint8_t)(axis->controlword >> 4 & 0x0F & cm1e_bridge_output_mask(axis->motor));
     cm1e_sim_bridge_axis_obey(bridge, axis, axis->controlword & CPIO_POSITION_CONTROL);
 }
 

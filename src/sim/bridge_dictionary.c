@@ -169,7 +169,7 @@ static void set_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
 {
     const int64_t wanted = *cm1e_sim_bridge_value(bridge, axis->number, OBJ_60FE_DIGITAL_OUTPUTS, 1);
     const int64_t mask = *cm1e_sim_bridge_value(bridge, axis->number, OBJ_60FE_DIGITAL_OUTPUTS, 2);
-    axis->outputs = (uint8_t)(wanted & mask & cm1e_sim_bridge_output_mask(axis));
+    axis->outputs = (uint8_t)(wanted & mask & cm1e_bridge_output_mask(axis->motor));
 }
 
 static void take_value(cm1e_sim_bridge_t *bridge, const cm1e_sim_cell_t *cell, int64_t value)

@@ -33,6 +33,7 @@ struct cm1e_bus {
     cm1e_pdo_t rx, tx;
     uint8_t outputs[64], inputs[64];
     cm1e_slave_watch_t watch;
+    cm1e_slave_info_t info;
     unsigned recoveries;
 
     /* the device */
@@ -231,6 +232,11 @@ static inline void fake_bus_fault(cm1e_bus_t *bus, uint16_t code)
 uint8_t *cm1e_bus_outputs(cm1e_bus_t *bus) { return bus->outputs; }
 const uint8_t *cm1e_bus_inputs(const cm1e_bus_t *bus) { return bus->inputs; }
 const cm1e_bus_config_t *cm1e_bus_configuration(const cm1e_bus_t *bus) { return &bus->config; }
+const cm1e_slave_info_t *cm1e_bus_slave(const cm1e_bus_t *bus, uint32_t position)
+{
+    (void)position;
+    return &bus->info;
+}
 uint16_t cm1e_bus_axis_position(const cm1e_bus_t *bus, uint32_t axis)
 {
     return axis < bus->config.axis_count ? (uint16_t)(axis + 1) : 0;

@@ -87,7 +87,7 @@ static void check_axis(const cm1e_sim_bridge_axis_t *axis)
     TEST_ASSERT_TRUE(axis->state < CM1E_FSA_STATE_COUNT && axis->state != QUICK_STOP_ACTIVE);
     TEST_ASSERT_TRUE(isfinite(axis->mechanics.position) && fabs(axis->mechanics.position) <= 250001);
     TEST_ASSERT_TRUE(isfinite(axis->servo.reference) && isfinite(axis->servo.torque));
-    TEST_ASSERT_EQUAL_HEX8(0, axis->outputs & ~cm1e_sim_bridge_output_mask(axis));
+    TEST_ASSERT_EQUAL_HEX8(0, axis->outputs & ~cm1e_bridge_output_mask(axis->motor));
     TEST_ASSERT_TRUE(axis->received <= axis->sent);
     if (axis->motor_free)
         TEST_ASSERT_TRUE(axis->servo.torque == 0);
