@@ -24,6 +24,7 @@ cm1e_error_t cm1e_axis_create(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t in
         error = cm1e_diag_set(diag, CM1E_ERROR_FULL, 0, "There are already %d axes in this process.",
                               CM1E_AXIS_HANDLES);
     if (error) {
+        cm1e_drive_free(&axis->drive);
         free(axis->tables);
         free(axis);
         return error;
@@ -43,6 +44,7 @@ void cm1e_axis_destroy(cm1e_axis_t *axis)
     if (!axis)
         return;
     cm1e_axis_handle_give_back(axis->handle);
+    cm1e_drive_free(&axis->drive);
     free(axis->tables);
     free(axis);
 }

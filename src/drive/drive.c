@@ -1,6 +1,7 @@
 /* The drive in the cycle: reading, latching of faults, the way to Operation enabled, and what may pass to the motor. */
 #include "drive/drive.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "drive/drive_kind.h"
@@ -68,6 +69,12 @@ cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis
     if (!error)
         error = cm1e_drive_resolve(drive, diag);
     return error ? error : cm1e_drive_mode_init(drive, diag);
+}
+
+void cm1e_drive_free(cm1e_drive_t *drive)
+{
+    free(drive->behind);
+    drive->behind = NULL;
 }
 
 const cm1e_entry_t *cm1e_drive_entry(const cm1e_drive_t *drive, uint16_t index, uint8_t subindex)
@@ -168,7 +175,7 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
         f->enabled = false;
         return;
     }
-    const bool operating = operates(f) && drive->torque && drive->now_ns >= drive->halted_until_ns;
+    const bool operating = operates(f) && drive->torque;
     const bool shown = f->mode == (int8_t)drive->mode;
     latch_faults(drive);
     if (operating && f->online)
@@ -219,7 +226,7 @@ static uint16_t mode_bits(cm1e_drive_t *drive, bool pass)
     const cm1e_drive_command_t *command = &drive->command;
     const int8_t shown = drive->feedback.mode;
     uint16_t bits = 0;
-    if (command->halt && drive->shown && drive->shown->halt == CM1E_DRIVE_HALT_BIT)
+    if (command->halt && drive->shown && drive->shown->halts)
         bits |= CONTROLWORD_HALT;
     if (shown == CM1E_MODE_HM && pass && command->homing_start)
         bits |= CONTROLWORD_HOMING_START;
@@ -246,17 +253,6 @@ static uint16_t no_torque_word(const cm1e_drive_t *drive)
     return words->commands ? cm1e_drive_cmd_word(drive) : words->no_torque;
 }
 
-/* Transition 5 leaves Operation enabled, and that is no loss: enabling begins anew when the halt is over. */
-static bool halts_by_disabling(cm1e_drive_t *drive)
-{
-    if (!drive->command.halt || !drive->shown || drive->shown->halt != CM1E_DRIVE_HALT_DISABLE_OPERATION)
-        return false;
-    drive->was_enabled = drive->feedback.enabled = false;
-    drive->halted_until_ns = drive->now_ns + torque_pause_ns;
-    drive->enable_deadline_ns = drive->now_ns + enable_timeout_ns;
-    return true;
-}
-
 /* One command a cycle, from the state seen (UG 6.1.2, BR 6.1.2). */
 static uint16_t controlword(cm1e_drive_t *drive, bool pass)
 {
@@ -269,13 +265,11 @@ static uint16_t controlword(cm1e_drive_t *drive, bool pass)
     const bool ready = f->voltage && f->mode == (int8_t)drive->mode;
     if (!ready && f->state != OPERATION_ENABLED)
         return no_torque_word(drive);
-    cm1e_fsa_command_t command = cm1e_fsa_next_command(f->state, true);
+    const cm1e_fsa_command_t command = cm1e_fsa_next_command(f->state, true);
     if (command == COMMAND_FAULT_RESET || command >= CM1E_FSA_COMMAND_COUNT)
         return no_torque_word(drive);
-    if (command == COMMAND_ENABLE_OPERATION && halts_by_disabling(drive))
-        command = COMMAND_SWITCH_ON;
     uint16_t word = cm1e_fsa_commands[command].controlword;
-    if (command == COMMAND_ENABLE_OPERATION && f->state == OPERATION_ENABLED)
+    if (f->state == OPERATION_ENABLED)
         word |= mode_bits(drive, pass);
     return word;
 }

@@ -32,8 +32,7 @@ typedef struct cm1e_drive_command {
     int32_t target_position;        /**< counts; CSP, PP. Used only while `enabled` is TRUE */
     int32_t target_velocity;        /**< counts/s; CSV, PV */
     bool homing_start;              /**< HM: rising edge starts, FALSE ends (controlword bit 4) */
-    bool halt;                      /**< PP, PV, HM: controlword bit 8; behind a bridge, HM: Disable operation: a search
-                                         ends, and the motor holds without being `enabled` until the halt is over */
+    bool halt;                      /**< PP, PV, HM: controlword bit 8; behind a bridge there is none */
     uint16_t digital_outputs;       /**< 0x60FE; behind a bridge by SDO, bit 0: output 1 */
     bool mode_insist;               /**< behind a bridge: csp by way of CML after CMD or CPIO, though it "will possibly
                                          result in operating abnormal" (BR 6 note 2) */
@@ -74,19 +73,6 @@ typedef struct cm1e_drive_fault {
     bool motor_status_known;        /**< ... where this is TRUE */
 } cm1e_drive_fault_t;
 
-/** Digital signals by SDO (drive_digital.c). */
-typedef struct cm1e_drive_digital {
-    cm1e_sdo_t in_sdo, out_sdo;
-    uint8_t in_data[4], out_data[4];
-    bool reading, writing, writing_mask;
-    bool mask_written;              /**< 60FE:2 says which outputs are ours */
-    bool outputs_known;             /**< 60FE:1 is `outputs` */
-    bool failed;
-    uint16_t outputs, writing_outputs;
-    uint16_t inputs;
-    int64_t wanted_until_ns, read_next_ns, fresh_until_ns, write_next_ns;
-} cm1e_drive_digital_t;
-
 /** In the order of use: first what every cycle looks at. */
 typedef struct cm1e_drive {
     cm1e_bus_t *bus;
@@ -124,7 +110,7 @@ typedef struct cm1e_drive {
     int8_t mode_data, mode_shown;
 
     const struct cm1e_drive_kind *kind;
-    int64_t enable_deadline_ns, mode_deadline_ns, torque_from_ns, halted_until_ns;
+    int64_t enable_deadline_ns, mode_deadline_ns, torque_from_ns;
     int64_t reset_until_ns, reset_deadline_ns, reset_settle_ns, recovery_ns, mode_retry_ns;
     cm1e_sdo_t mode_sdo;            /**< 0x6060 and 0x6061 where the mapping lacks them */
     int64_t mode_write_ns;          /**< when the last 0x6060 was written */
@@ -138,22 +124,17 @@ typedef struct cm1e_drive {
     const cm1e_axis_config_t *config;
     const cm1e_motor_t *motor;      /**< NULL behind a bridge */
     const cm1e_firmware_info_t *firmware;
-
-    /* behind a bridge: drive_bridge.c, drive_command.c, drive_digital.c */
-    cm1e_device_model_t bridge;
-    int32_t rest_position;          /**< the motor stands there ... */
-    int64_t rest_since_ns;          /**< ... since then */
-    cm1e_sdo_t status_sdo;          /**< F530:5 ... 8 */
-    uint8_t status_data[4], status_tries;
-    bool status_reading;
-    cm1e_drive_cmd_run_t cmd;
-    cm1e_drive_digital_t digital;
+    cm1e_device_model_t bridge;     /**< where the motor stands behind one ... */
+    struct cm1e_drive_bridge *behind; /**< ... what there is to it; else NULL */
 } cm1e_drive_t;
 
 /** Resolves the objects of the mapping. A mapping that lacks an object the configured use needs is
- *  CM1E_ERROR_PDO_MAPPING naming the object; an unreadable firmware version with no unit stated is CM1E_ERROR_CONFIG.
+ *  CM1E_ERROR_PDO_MAPPING naming the object; an unreadable firmware version with no unit stated is CM1E_ERROR_CONFIG, as
+ *  is a motor behind a bridge without its K37. CM1E_ERROR_STATE: it is found in a mode without a way back to csp.
  *  @rt init */
 cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis, cm1e_diag_t *diag);
+/** Frees what cm1e_drive_init() made, also where it failed. @rt init */
+void cm1e_drive_free(cm1e_drive_t *drive);
 /** Decodes the inputs of this cycle; `bus_ok` FALSE: they are old. Latches faults. @rt cycle */
 void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns);
 /** Encodes the outputs from `command` under the rules above. @rt cycle */

@@ -1,17 +1,24 @@
 /* A motor behind an EtherCAT Cool MUSCLE Bridge: what its configuration has to state, and what of it is asked over SDO
  * beside the cycle. */
+#include "drive/drive_bridge.h"
+
+#include <stdlib.h>
+
 #include "drive/drive_kind.h"
 #include "drive/drive_private.h"
 
 /* 0x6064 of a motor that holds may swing by some pulses. */
 enum { REST_COUNTS = 3 };
 enum { STATUS_OF_AXIS_1 = 5, STATUS_TRIES = 3 };
+static const int64_t rest_ns = 20 * MS_IN_NS;
 static const int64_t status_timeout_ns = 300 * MS_IN_NS;
 
 cm1e_bridge_motor_t cm1e_drive_bridge_motor(const cm1e_drive_t *drive)
 {
     return cm1e_bridge_motor(drive->bridge, drive->config->channel - 1u);
 }
+
+static cm1e_error_t submit_cml(void *bus, cm1e_sdo_t *sdo) { return cm1e_sdo_submit(bus, sdo); }
 
 cm1e_error_t cm1e_drive_init_bridge(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
@@ -37,17 +44,27 @@ cm1e_error_t cm1e_drive_init_bridge(cm1e_drive_t *drive, cm1e_diag_t *diag)
                              "Axis \"%s\" (slave %u, channel %u): a %s knows no K37 of %u (BR appendix 5). Ask the motor "
                              "with the CML string \"K37.%u\".", config->name, drive->position, config->channel,
                              cm1e_bridge_motor_name(motor), config->k37, config->channel);
+    drive->behind = calloc(1, sizeof *drive->behind);
+    if (!drive->behind)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for axis \"%s\".", config->name);
+    cm1e_drive_cml_init(&drive->behind->cml, drive->position, config->channel, submit_cml, drive->bus);
     return CM1E_OK;
+}
+
+bool cm1e_drive_rests(const cm1e_drive_t *drive)
+{
+    return drive->behind && drive->now_ns - drive->behind->rest_since_ns >= rest_ns;
 }
 
 static void watch_rest(cm1e_drive_t *drive)
 {
+    cm1e_drive_bridge_t *behind = drive->behind;
     const int32_t position = drive->feedback.position;
-    const int64_t way = (int64_t)position - drive->rest_position;
+    const int64_t way = (int64_t)position - behind->rest_position;
     if (!drive->feedback.fresh || (way <= REST_COUNTS && way >= -REST_COUNTS))
         return;
-    drive->rest_position = position;
-    drive->rest_since_ns = drive->now_ns;
+    behind->rest_position = position;
+    behind->rest_since_ns = drive->now_ns;
 }
 
 /* BR 6.1.3, note: the statusword shows that there is an error, F530 which. One question, asked again where the answer
@@ -55,34 +72,39 @@ static void watch_rest(cm1e_drive_t *drive)
 static void ask_status(cm1e_drive_t *drive)
 {
     cm1e_drive_fault_t *fault = &drive->fault;
-    if (drive->status_reading) {
-        const cm1e_sdo_state_t state = cm1e_sdo_state(&drive->status_sdo);
+    cm1e_drive_bridge_t *behind = drive->behind;
+    if (behind->status_reading) {
+        const cm1e_sdo_state_t state = cm1e_sdo_state(&behind->status_sdo);
         if (state == CM1E_SDO_BUSY)
             return;
-        drive->status_reading = false;
-        if (state == CM1E_SDO_DONE && drive->status_sdo.size > 0 && fault->error) {
-            fault->motor_status = drive->status_data[0]; /* UDINT, of which the guide uses eight bits */
+        behind->status_reading = false;
+        if (state == CM1E_SDO_DONE && behind->status_sdo.size > 0 && fault->error) {
+            fault->motor_status = behind->status_data[0]; /* UDINT, of which the guide uses eight bits */
             fault->motor_status_known = true;
         }
         return;
     }
     if (fault->error == CM1E_OK)
-        drive->status_tries = 0;
-    else if (!fault->motor_status_known && drive->status_tries < STATUS_TRIES && drive->feedback.online) {
-        drive->status_tries++;
-        drive->status_sdo = (cm1e_sdo_t){
+        behind->status_tries = 0;
+    else if (!fault->motor_status_known && behind->status_tries < STATUS_TRIES && drive->feedback.online) {
+        behind->status_tries++;
+        behind->status_sdo = (cm1e_sdo_t){
             .position = drive->position, .index = OBJ_F530_SYSTEM_INFO,
-            .subindex = (uint8_t)(STATUS_OF_AXIS_1 + drive->config->channel - 1), .data = drive->status_data,
-            .size = sizeof drive->status_data, .timeout_ns = status_timeout_ns,
+            .subindex = (uint8_t)(STATUS_OF_AXIS_1 + drive->config->channel - 1), .data = behind->status_data,
+            .size = sizeof behind->status_data, .timeout_ns = status_timeout_ns,
         };
-        drive->status_reading = cm1e_sdo_submit(drive->bus, &drive->status_sdo) == CM1E_OK;
+        behind->status_reading = cm1e_sdo_submit(drive->bus, &behind->status_sdo) == CM1E_OK;
     }
 }
 
 void cm1e_drive_bridge_step(cm1e_drive_t *drive)
 {
+    cm1e_drive_bridge_t *behind = drive->behind;
     watch_rest(drive);
     ask_status(drive);
     cm1e_drive_cmd_step(drive);
     cm1e_drive_digital_step(drive);
+    /* The switch to CML itself was made after five cycles of 0000h, which stays while it is shown (BR appendix 2). */
+    const bool cml = drive->feedback.mode == CM1E_BRIDGE_MODE_CML && drive->words == drive->wanted->words;
+    cm1e_drive_cml_step(&behind->cml, drive->now_ns, cml && drive->feedback.online);
 }

@@ -22,14 +22,14 @@ static bool in_cmd(const cm1e_drive_t *drive)
 
 uint16_t cm1e_drive_cmd_word(const cm1e_drive_t *drive)
 {
-    const cm1e_drive_cmd_run_t *run = &drive->cmd;
+    const cm1e_drive_cmd_run_t *run = &drive->behind->cmd;
     const bool command = run->phase == PHASE_COMMAND || run->phase == PHASE_ANSWER || run->phase == PHASE_SEARCH;
     return (uint16_t)((command ? run->sending << 8 : 0) | (run->ready ? READY : 0));
 }
 
 static void send(cm1e_drive_t *drive, cm1e_drive_cmd_t command, bool ending)
 {
-    cm1e_drive_cmd_run_t *run = &drive->cmd;
+    cm1e_drive_cmd_run_t *run = &drive->behind->cmd;
     run->sending = command;
     run->ending = ending;
     run->phase = PHASE_READY;
@@ -40,9 +40,9 @@ static void send(cm1e_drive_t *drive, cm1e_drive_cmd_t command, bool ending)
 
 static void begin(cm1e_drive_t *drive, cm1e_drive_cmd_t command)
 {
-    drive->cmd.command = command;
-    drive->cmd.state = CM1E_DRIVE_CMD_SENDING;
-    drive->cmd.attempts = 0;
+    drive->behind->cmd.command = command;
+    drive->behind->cmd.state = CM1E_DRIVE_CMD_SENDING;
+    drive->behind->cmd.attempts = 0;
     send(drive, command, false);
 }
 
@@ -66,15 +66,18 @@ cm1e_error_t cm1e_drive_cmd_start(cm1e_drive_t *drive, cm1e_drive_cmd_t command,
         return CM1E_ERROR_STATE;
     if (!drive->feedback.online)
         return CM1E_ERROR_AXIS_OFFLINE;
-    if (drive->cmd.phase != PHASE_IDLE && !stops(command))
+    if (drive->behind->cmd.phase != PHASE_IDLE && !stops(command))
         return CM1E_ERROR_BUSY;
-    drive->cmd.timeout_ns = timeout_ns ? timeout_ns : search_ns;
-    drive->cmd.release_ns = 0;
+    drive->behind->cmd.timeout_ns = timeout_ns ? timeout_ns : search_ns;
+    drive->behind->cmd.release_ns = 0;
     begin(drive, command);
     return CM1E_OK;
 }
 
-cm1e_drive_cmd_state_t cm1e_drive_cmd_state(const cm1e_drive_t *drive) { return drive->cmd.state; }
+cm1e_drive_cmd_state_t cm1e_drive_cmd_state(const cm1e_drive_t *drive)
+{
+    return drive->behind ? drive->behind->cmd.state : CM1E_DRIVE_CMD_IDLE;
+}
 
 /* What is told of an attempt to end a search is how the search itself went. */
 static void end(cm1e_drive_cmd_run_t *run, cm1e_drive_cmd_state_t state)
@@ -86,7 +89,7 @@ static void end(cm1e_drive_cmd_run_t *run, cm1e_drive_cmd_state_t state)
 
 static void answered(cm1e_drive_t *drive)
 {
-    cm1e_drive_cmd_run_t *run = &drive->cmd;
+    cm1e_drive_cmd_run_t *run = &drive->behind->cmd;
     if (run->sending == CM1E_DRIVE_CMD_ORIGIN_SEARCH) {
         run->phase = PHASE_SEARCH;
         run->state = CM1E_DRIVE_CMD_SEARCHING;
@@ -100,7 +103,7 @@ static void answered(cm1e_drive_t *drive)
 
 static void search_step(cm1e_drive_t *drive, uint8_t shown)
 {
-    cm1e_drive_cmd_run_t *run = &drive->cmd;
+    cm1e_drive_cmd_run_t *run = &drive->behind->cmd;
     if (shown == SEARCH_COMPLETED || shown == SEARCH_TIMED_OUT) {
         run->may_search = false;
         end(run, shown == SEARCH_COMPLETED ? CM1E_DRIVE_CMD_DONE : CM1E_DRIVE_CMD_SEARCH_TIME_OUT);
@@ -113,7 +116,7 @@ static void search_step(cm1e_drive_t *drive, uint8_t shown)
  * one. */
 static void answer_step(cm1e_drive_t *drive, uint8_t shown)
 {
-    cm1e_drive_cmd_run_t *run = &drive->cmd;
+    cm1e_drive_cmd_run_t *run = &drive->behind->cmd;
     const bool over = run->sending == CM1E_DRIVE_CMD_ORIGIN_SEARCH && shown != run->before &&
                       (shown == SEARCH_COMPLETED || shown == SEARCH_TIMED_OUT);
     if (shown == run->sending || over)
@@ -127,7 +130,7 @@ static void answer_step(cm1e_drive_t *drive, uint8_t shown)
 /* The inputs of another cycle are here: so the outputs of one more have arrived. */
 static void count(cm1e_drive_t *drive)
 {
-    cm1e_drive_cmd_run_t *run = &drive->cmd;
+    cm1e_drive_cmd_run_t *run = &drive->behind->cmd;
     if (++run->cycles < CYCLES)
         return;
     run->cycles = 0;
@@ -143,7 +146,7 @@ static void count(cm1e_drive_t *drive)
 
 static void lose(cm1e_drive_t *drive)
 {
-    cm1e_drive_cmd_run_t *run = &drive->cmd;
+    cm1e_drive_cmd_run_t *run = &drive->behind->cmd;
     if (cm1e_drive_cmd_busy(run->state))
         run->state = CM1E_DRIVE_CMD_LOST;
     run->phase = PHASE_IDLE;
@@ -153,14 +156,14 @@ static void lose(cm1e_drive_t *drive)
 static void leave(cm1e_drive_t *drive)
 {
     lose(drive);
-    drive->cmd.ready = false;
+    drive->behind->cmd.ready = false;
     if (drive->shown) /* another mode is shown: nothing of CMD is under way any more */
-        drive->cmd.may_search = false;
+        drive->behind->cmd.may_search = false;
 }
 
 void cm1e_drive_cmd_step(cm1e_drive_t *drive)
 {
-    cm1e_drive_cmd_run_t *run = &drive->cmd;
+    cm1e_drive_cmd_run_t *run = &drive->behind->cmd;
     if (!in_cmd(drive)) {
         if (run->ready)
             leave(drive);
@@ -183,8 +186,10 @@ void cm1e_drive_cmd_step(cm1e_drive_t *drive)
 
 bool cm1e_drive_cmd_release(cm1e_drive_t *drive)
 {
-    cm1e_drive_cmd_run_t *run = &drive->cmd;
-    if (!in_cmd(drive) || !run->ready || !cm1e_drive_operational(drive))
+    if (!in_cmd(drive) || !cm1e_drive_operational(drive))
+        return true;
+    cm1e_drive_cmd_run_t *run = &drive->behind->cmd;
+    if (!run->ready)
         return true;
     if (run->release_ns == 0)
         run->release_ns = drive->now_ns;

@@ -14,7 +14,11 @@ static const int64_t error_again_ns = 100 * MS_IN_NS;
 static const int64_t fresh_ns = 100 * MS_IN_NS;
 static const int64_t timeout_ns = 300 * MS_IN_NS;
 
-void cm1e_drive_want_inputs(cm1e_drive_t *drive) { drive->digital.wanted_until_ns = drive->now_ns + wanted_ns; }
+void cm1e_drive_want_inputs(cm1e_drive_t *drive)
+{
+    if (drive->behind)
+        drive->behind->digital.wanted_until_ns = drive->now_ns + wanted_ns;
+}
 
 uint16_t cm1e_drive_input_mask(const cm1e_drive_t *drive)
 {
@@ -49,7 +53,7 @@ static bool submit(cm1e_drive_t *drive, cm1e_sdo_t *sdo, cm1e_sdo_t transfer)
 
 static void read_ended(cm1e_drive_t *drive, cm1e_sdo_state_t state)
 {
-    cm1e_drive_digital_t *d = &drive->digital;
+    cm1e_drive_digital_t *d = &drive->behind->digital;
     d->reading = false;
     const bool good = state == CM1E_SDO_DONE && d->in_sdo.size > 0 && d->in_sdo.size <= sizeof d->in_data;
     d->read_next_ns = drive->now_ns + (good ? read_again_ns : error_again_ns);
@@ -61,7 +65,7 @@ static void read_ended(cm1e_drive_t *drive, cm1e_sdo_state_t state)
 
 static void step_inputs(cm1e_drive_t *drive)
 {
-    cm1e_drive_digital_t *d = &drive->digital;
+    cm1e_drive_digital_t *d = &drive->behind->digital;
     const bool reached = reachable(drive);
     if (d->reading && cm1e_sdo_state(&d->in_sdo) != CM1E_SDO_BUSY)
         read_ended(drive, cm1e_sdo_state(&d->in_sdo));
@@ -75,7 +79,7 @@ static void step_inputs(cm1e_drive_t *drive)
 static void show(cm1e_drive_t *drive)
 {
     cm1e_drive_feedback_t *f = &drive->feedback;
-    const cm1e_drive_digital_t *d = &drive->digital;
+    const cm1e_drive_digital_t *d = &drive->behind->digital;
     if (drive->words->inputs) {
         const unsigned inputs = (unsigned)(f->statusword & drive->words->inputs) >> CM1E_DRIVE_SIGNALS_AT;
         f->digital_inputs = (uint16_t)(inputs & cm1e_drive_input_mask(drive));
@@ -95,7 +99,7 @@ static uint16_t wanted(const cm1e_drive_t *drive)
 
 static void write_ended(cm1e_drive_t *drive, bool good)
 {
-    cm1e_drive_digital_t *d = &drive->digital;
+    cm1e_drive_digital_t *d = &drive->behind->digital;
     d->writing = false;
     d->failed = !good;
     if (!good)
@@ -110,7 +114,7 @@ static void write_ended(cm1e_drive_t *drive, bool good)
 
 static void step_outputs(cm1e_drive_t *drive)
 {
-    cm1e_drive_digital_t *d = &drive->digital;
+    cm1e_drive_digital_t *d = &drive->behind->digital;
     if (d->writing) {
         const cm1e_sdo_state_t state = cm1e_sdo_state(&d->out_sdo);
         if (state == CM1E_SDO_BUSY)
@@ -134,9 +138,9 @@ static void step_outputs(cm1e_drive_t *drive)
 
 cm1e_drive_outputs_t cm1e_drive_outputs(const cm1e_drive_t *drive)
 {
-    const cm1e_drive_digital_t *d = &drive->digital;
-    if (drive->words->outputs || drive->out_digital.bytes)
+    if (drive->words->outputs || !drive->behind)
         return drive->feedback.online ? CM1E_DRIVE_OUTPUTS_SET : CM1E_DRIVE_OUTPUTS_WAITING;
+    const cm1e_drive_digital_t *d = &drive->behind->digital;
     if (d->outputs_known && d->outputs == wanted(drive))
         return CM1E_DRIVE_OUTPUTS_SET;
     if (!reachable(drive))
@@ -153,5 +157,6 @@ void cm1e_drive_digital_step(cm1e_drive_t *drive)
 
 void cm1e_drive_digital_forget(cm1e_drive_t *drive)
 {
-    drive->digital.mask_written = drive->digital.outputs_known = false;
+    if (drive->behind)
+        drive->behind->digital.mask_written = drive->behind->digital.outputs_known = false;
 }

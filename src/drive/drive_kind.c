@@ -47,11 +47,11 @@ static const cm1e_drive_words_t cm1e_words = {
 /* UG 6.2; homing needs no special mapping (UG 6.2.4). */
 static const cm1e_drive_mode_t cm1e_mode_rows[] = {
     {.mode = CM1E_MODE_PP, .abbreviation = "PP", .words = &cm1e_words, .target = SLOT(out_position), .torque = true,
-     .holds_position = true, .halt = CM1E_DRIVE_HALT_BIT, .ways = WAYS_ALL},
+     .holds_position = true, .halts = true, .ways = WAYS_ALL},
     {.mode = CM1E_MODE_PV, .abbreviation = "PV", .words = &cm1e_words, .target = SLOT(out_velocity), .torque = true,
-     .halt = CM1E_DRIVE_HALT_BIT, .ways = WAYS_ALL},
+     .halts = true, .ways = WAYS_ALL},
     {.mode = CM1E_MODE_HM, .abbreviation = "HM", .words = &cm1e_words, .target = NO_TARGET, .torque = true,
-     .halt = CM1E_DRIVE_HALT_BIT, .ways = WAYS_ALL},
+     .halts = true, .ways = WAYS_ALL},
     {.mode = CM1E_MODE_CSP, .abbreviation = "CSP", .words = &cm1e_words, .target = SLOT(out_position), .torque = true,
      .holds_position = true, .ways = WAYS_ALL},
     {.mode = CM1E_MODE_CSV, .abbreviation = "CSV", .words = &cm1e_words, .target = SLOT(out_velocity), .torque = true,
@@ -105,7 +105,7 @@ static const cm1e_drive_mode_t bridge_mode_rows[] = {
              .target = SLOT(out_position), .torque = true, .holds_position = true, .rest = true,
              .ways = 1 << HM | 1 << CML},
     [HM] = {.mode = CM1E_BRIDGE_MODE_HM, .abbreviation = "HM", .words = &profile_words, .target = NO_TARGET,
-            .torque = true, .halt = CM1E_DRIVE_HALT_DISABLE_OPERATION, .rest = true, .ways = 1 << CSP},
+            .torque = true, .rest = true, .ways = 1 << CSP},
     [CML] = {.mode = CM1E_BRIDGE_MODE_CML, .abbreviation = "CML", .words = &cml_words, .target = NO_TARGET,
              .rest = true, .ways = 1 << CSP | 1 << CMD | 1 << CPIO,
              .cure = "In CML the bridge takes no controlword: end the error with a CML string (\"(\") or switch the "

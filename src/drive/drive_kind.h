@@ -7,7 +7,7 @@
 #ifndef CM1E_DRIVE_DRIVE_KIND_H
 #define CM1E_DRIVE_DRIVE_KIND_H
 
-#include "drive/drive.h"
+#include "drive/drive_bridge.h"
 
 /** One object that the drive uses: where its slot is kept, which sizes are understood, which mappings must have it. */
 typedef struct cm1e_drive_object {
@@ -39,13 +39,6 @@ typedef struct cm1e_drive_words {
 } cm1e_drive_words_t;
 enum { CM1E_DRIVE_SIGNALS_AT = 4 };
 
-/** What controlword stops the drive's own motion. */
-typedef enum cm1e_drive_halt {
-    CM1E_DRIVE_HALT_NONE = 0,
-    CM1E_DRIVE_HALT_BIT,               /**< bit 8; it stays in Operation enabled */
-    CM1E_DRIVE_HALT_DISABLE_OPERATION, /**< transition 5: the motor holds in Switched on */
-} cm1e_drive_halt_t;
-
 /** One mode of operation. */
 typedef struct cm1e_drive_mode {
     int8_t mode;                    /**< 0x6060, 0x6061 */
@@ -54,7 +47,7 @@ typedef struct cm1e_drive_mode {
     size_t target;                  /**< slot without which the mode is of no use; CM1E_DRIVE_NO_TARGET */
     bool torque;                    /**< Operation enabled is for this mode, too */
     bool holds_position;            /**< the target position acts */
-    cm1e_drive_halt_t halt;
+    bool halts;                     /**< by bit 8 of the controlword */
     uint8_t ways;                   /**< rows of the table from which it can be reached: 1 << row; WAYS_ALL */
     bool rest;                      /**< reached at rest and without an error only (BR appendix 3) */
     bool leaves_abnormal;           /**< csp "will possibly result in operating abnormal" after it (BR 6 note 2) */

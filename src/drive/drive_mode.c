@@ -13,7 +13,6 @@ static const int64_t sdo_timeout_ns = 300 * MS_IN_NS;
 static const int64_t write_again_ns = 50 * MS_IN_NS;
 static const int64_t read_again_ns = 5 * MS_IN_NS;  /* BR appendix 3 */
 static const int64_t interval_ns = 6 * MS_IN_NS;    /* BR 6.2.2 note 2: more than 5 ms */
-static const int64_t rest_ns = 20 * MS_IN_NS;
 static const int64_t silence_ns = 10 * MS_IN_NS;    /* 0000h for five cycles before words of another coding */
 
 static const char abnormal[] = "Since power-on the motor was in CMD or CPIO: by way of CML, CSP \"will possibly result "
@@ -158,7 +157,7 @@ static bool may_write(const cm1e_drive_t *drive)
         now_ns < drive->mode_write_ns + interval_ns)
         return false;
     return !drive->wanted->rest ||
-           (now_ns - drive->rest_since_ns >= rest_ns && drive->feedback.fresh && !drive->feedback.fault);
+           (cm1e_drive_rests(drive) && drive->feedback.fresh && !drive->feedback.fault);
 }
 
 static bool expired(cm1e_drive_t *drive)

@@ -6,7 +6,7 @@
 #define CM1E_DRIVE_DRIVE_PRIVATE_H
 
 #include "device/unit.h"
-#include "drive/drive.h"
+#include "drive/drive_bridge.h"
 
 #define MS_IN_NS INT64_C(1000000)
 
@@ -43,6 +43,8 @@ void cm1e_drive_reset_step(cm1e_drive_t *drive);
 cm1e_error_t cm1e_drive_init_bridge(cm1e_drive_t *drive, cm1e_diag_t *diag);
 void cm1e_drive_bridge_step(cm1e_drive_t *drive);
 cm1e_bridge_motor_t cm1e_drive_bridge_motor(const cm1e_drive_t *drive);
+/** It has stood for some time, as far as 0x6064 shows. */
+bool cm1e_drive_rests(const cm1e_drive_t *drive);
 
 /* drive_command.c */
 void cm1e_drive_cmd_step(cm1e_drive_t *drive);
@@ -51,7 +53,7 @@ uint16_t cm1e_drive_cmd_word(const cm1e_drive_t *drive);
 /** A command is under way, or what it began may still move the motor. */
 static inline bool cm1e_drive_cmd_moves(const cm1e_drive_t *drive)
 {
-    return drive->cmd.may_search || cm1e_drive_cmd_busy(drive->cmd.state);
+    return drive->behind && (drive->behind->cmd.may_search || cm1e_drive_cmd_busy(drive->behind->cmd.state));
 }
 
 /* drive_digital.c */
