@@ -25,6 +25,7 @@ int command_home(int argc, char **argv);
 int command_sim(int argc, char **argv);
 int command_generate(int argc, char **argv);
 int command_sii(int argc, char **argv);
+int command_cml(int argc, char **argv);
 int command_diff(int argc, char **argv);
 int command_check(int argc, char **argv);
 

@@ -11,6 +11,7 @@ static const struct {
     {"scan", "list the slaves of a network", command_scan},
     {"status", "show every drive's state, error and measurements in words", command_status},
     {"sdo", "read or write an object of a slave", command_sdo},
+    {"cml", "send strings to a motor behind a Cool MUSCLE bridge", command_cml},
     {"sii", "read, write or show the EEPROM of a slave", command_sii},
     {"home", "home one axis", command_home},
     {"move", "move one axis", command_move},

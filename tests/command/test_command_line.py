@@ -87,6 +87,7 @@ def check_files(folder):
     check_lost_output(folder)
     check_kept_files(folder)
     check_dictionary()
+    check_cml(folder)
     check_sii(folder)
     check_diff(folder)
 
@@ -205,6 +206,57 @@ def check_dictionary():
     expect(text.returncode == 0 and "0x6064  VAR" in text.stdout and " = " not in text.stdout, "sdo list", text)
 
 
+NETWORK_WITH_BRIDGE = """bus: {interface: sim}
+axes:
+  - {name: solo, position: 1}
+  - {name: left, position: 2, channel: 1, motor: CM1, k37: 10}
+  - {name: up, position: 2, channel: 3, motor: CM2, k37: 10}
+"""
+
+
+def check_cml(folder):
+    """Strings to motors behind a bridge, named by axis, by connector or in the string; what may move one is refused."""
+    bus = os.path.join(folder, "bridge.yaml")
+    with open(bus, "w", encoding="utf-8") as file:
+        file.write(NETWORK_WITH_BRIDGE)
+    cml = lambda *words, **more: run("cm1e", "cml", "-b", bus, *words, **more)
+    state = cml("?99.3")
+    expect(state.returncode == 0 and state.stdout == "Ux.3=16  motor free\n", "cml ?99.3", state)
+    kept = cml("-a", "left", "K53", "K53=77", "K53,?96", "O2")
+    expect(kept.returncode == 0 and kept.stdout == "K53.1=0\nsent\nK53.1=77\nPx.1=0\nsent\n", "cml of an axis", kept)
+    listed = cml("--channel", "3", "--json", "?90")
+    lines = json.loads(listed.stdout)[0]["lines"]
+    expect(lines[0] == "K21.3=0" and lines[-1] == "K82.3=0" and "K37.3=10" in lines, "cml ?90", listed)
+    moved = cml("--allow-motion", "(.1", "|.1", ").1", "?99.1", "--json")
+    answers = json.loads(moved.stdout)
+    expect(moved.returncode == 0 and answers[1]["lines"] == ["Origin.1=0"] and answers[3]["state"] == "motor free",
+           "cml with motion", moved)
+    several = cml("--slave", "2", stdin="?99.1\n\n^.1\nK37.3\n")
+    expect(several.returncode == FAILED and several.stdout == "Ux.1=8  in position\nK37.3=10\n" and
+           "--allow-motion" in several.stderr and "cml>" not in several.stdout, "cml line by line", several)
+    told = cml("--json", stdin="?99.1\n*\n^.1\n?99.3")
+    objects = [json.loads(part + "}") for part in told.stdout.split("}\n") if part]
+    expect([entry["lines"] for entry in objects] == [["Ux.1=8"], [], ["Ux.3=16"]] and
+           "may move" in objects[1]["error"] and "to which motor" in told.stderr, "cml line by line as JSON", told)
+    late = cml("--timeout", "0.05", "?1234.1")
+    expect(late.returncode == FAILED and "within 50 ms" in late.stderr, "cml without an answer", late)
+    for words, status, word in (
+            (["?99"], WRONG_USE, "--channel"), (["?99.9"], FAILED, "1 ... 4"), (["-a", "solo", "?99"], FAILED, "CM1-E"),
+            (["-a", "left", "?99.3"], FAILED, "another motor"), (["--slave", "1", "?99.1"], FAILED, "no EtherCAT Cool"),
+            (["--slave", "9", "?99.1"], FAILED, "no slave 9"),
+            (["-a", "left", "--slave", "2", "?99"], WRONG_USE, "--axis"),
+            (["-a", "left", ""], FAILED, "is empty"), (["-a", "left", "K53="], FAILED, "cut off"),
+            (["-a", "left", "K53\r\n"], FAILED, "CR or LF"), (["-a", "left", "?" * 65], FAILED, "64 bytes"),
+            (["-a", "left", "\x1b[2J"], FAILED, "printable"), (["(.1"], FAILED, "--allow-motion"),
+            (["K37.1=30"], FAILED, "--allow-motion"), (["--channel", "5", "?99"], WRONG_USE, "1 ... 4"),
+            (["--timeout", "0", "?99.1"], WRONG_USE, "above 0"), (["-a", "middle", "?99"], FAILED, "no axis")):
+        refused = cml(*words)
+        expect(refused.returncode == status and word in refused.stderr and refused.stdout == "" and
+               "\x1b" not in refused.stderr, f"cml {words}: \"{word}\"", refused)
+    none = run("cm1e", "cml", "-i", "sim", "?99.1")
+    expect(none.returncode == FAILED and "no EtherCAT Cool MUSCLE Bridge" in none.stderr, "cml without a bridge", none)
+
+
 def check_sii(folder):
     image, backup = os.path.join(folder, "slave.sii"), os.path.join(folder, "backup.sii")
     read = run("cm1e", "sii", "-i", "sim", "read", "1", image)
@@ -297,6 +349,7 @@ WRONG = [
     (["sim"], WRONG_USE, "-i"),
     (["sim", "-i", "no-such-interface"], FAILED, "no-such-interface"),
     (["sim", "-i", "lo", "--pdo-order", "up"], WRONG_USE, "ug-4.4"),
+    (["cml", "?99.1"], WRONG_USE, "-i"),
     (["sii", "-i", "sim"], WRONG_USE, "read POSITION FILE"),
     (["sii", "-i", "sim", "read", "0", "x"], WRONG_USE, "position"),
     (["sii", "-i", "sim", "read", "2", "x"], FAILED, "no slave 2"),

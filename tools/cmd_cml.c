@@ -1,0 +1,330 @@
+/** cm1e cml: strings in CML to a motor behind a bridge, from the command line or line by line. */
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cm1e/cml.h"
+#include "command.h"
+#include "device/bridge_status.h"
+#include "device/cml.h"
+
+enum { KEY_SLAVE = 0x400, KEY_CHANNEL, KEY_TIMEOUT, KEY_ALLOW, KEY_STAY, MAX_STRINGS = 64 };
+
+typedef struct cml_options {
+    common_options_t common;
+    const char *axis_word;
+    long long slave, channel;  /**< 0: not stated */
+    double timeout_s;
+    bool allow_motion, stay;
+    const char *strings[MAX_STRINGS];
+    int count;
+} cml_options_t;
+
+/** What the strings go to, and what is to be put right at the end. */
+typedef struct session {
+    const cml_options_t *options;
+    cm1e_bus_t *bus;
+    uint16_t slave;
+    unsigned channel; /**< 0: each string says it */
+    bool used[CM1E_BRIDGE_AXES], moved[CM1E_BRIDGE_AXES];
+} session_t;
+
+static volatile sig_atomic_t interrupted;
+
+static void on_signal(int number)
+{
+    (void)number;
+    interrupted = 1;
+}
+
+static bool is_interrupted(void *context)
+{
+    (void)context;
+    return interrupted != 0;
+}
+
+static error_t parse_count(char *arg, const char *what, long long maximum, long long *value)
+{
+    return parse_number(arg, what, 1, maximum, value) ? 0 : EINVAL;
+}
+
+static error_t parse_timeout(char *arg, struct argp_state *state, double *value)
+{
+    if (!parse_real(arg, "the timeout", value))
+        return EINVAL;
+    if (!(*value > 0.0 && *value <= 3600.0))
+        argp_error(state, "the timeout is %s s; above 0, up to 3600 is right", arg);
+    return 0;
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    cml_options_t *options = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case 'a': options->axis_word = arg; return 0;
+    case KEY_SLAVE: return parse_count(arg, "the position of the slave", CM1E_MAX_SLAVES, &options->slave);
+    case KEY_CHANNEL: return parse_count(arg, "the connector", CM1E_BRIDGE_AXES, &options->channel);
+    case KEY_TIMEOUT: return parse_timeout(arg, state, &options->timeout_s);
+    case KEY_ALLOW: options->allow_motion = true; return 0;
+    case KEY_STAY: options->stay = true; return 0;
+    case ARGP_KEY_ARG:
+        if (options->count == MAX_STRINGS)
+            argp_error(state, "more than %d strings", MAX_STRINGS);
+        options->strings[options->count++] = arg;
+        return 0;
+    case ARGP_KEY_END:
+        if (options->axis_word && (options->slave || options->channel))
+            argp_error(state, "--axis says slave and connector already");
+        return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+/* ---- to whom ----------------------------------------------------------------------------------------------------- */
+
+static bool choose_axis(session_t *session, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
+{
+    const int axis = find_axis(config, session->options->axis_word);
+    if (axis < 0)
+        return false;
+    session->channel = config->axes[axis].channel;
+    if (session->channel == 0) {
+        complain("axis \"%s\" is a CM1-E, which has no CML; it is for motors behind a bridge",
+                 session->options->axis_word);
+        return false;
+    }
+    if (cm1e_bus_identify(session->bus, diag) != CM1E_OK) {
+        fail(diag);
+        return false;
+    }
+    session->slave = cm1e_bus_axis_position(session->bus, (uint32_t)axis);
+    return true;
+}
+
+/* The only bridge, where none is named. */
+static bool choose_slave(session_t *session)
+{
+    unsigned bridges = 0;
+    session->channel = (unsigned)session->options->channel;
+    session->slave = (uint16_t)session->options->slave;
+    if (session->slave)
+        return true;
+    for (uint32_t position = 1; position <= cm1e_bus_slave_count(session->bus); position++)
+        if (cm1e_bus_slave(session->bus, position)->is_bridge && bridges++ == 0)
+            session->slave = (uint16_t)position;
+    if (bridges == 1)
+        return true;
+    complain(bridges ? "there are %u bridges: say which with --slave, or --axis" : "there is no EtherCAT Cool MUSCLE "
+             "Bridge: CML is for motors behind one", bridges);
+    return false;
+}
+
+/* The connector that a string names, of its first command that does; 0: none does. */
+static unsigned named_channel(const char *text)
+{
+    do {
+        const cm1e_cml_command_t command = cm1e_cml_next(&text);
+        if (command.sign && command.id)
+            return command.id;
+    } while (text);
+    return 0;
+}
+
+/* ---- one string -------------------------------------------------------------------------------------------------- */
+
+/* "in position" for the state in an answer; "" for other answers. */
+static const char *state_in_words(const session_t *session, const char *line, char *text, size_t size)
+{
+    char whole[CM1E_CML_BYTES + 2];
+    cm1e_cml_answer_t answer;
+    snprintf(whole, sizeof whole, "%.*s\n", CM1E_CML_BYTES - 1, line);
+    if (cm1e_cml_parse(&answer, whole, strlen(whole)) != CM1E_OK || answer.what != CM1E_CML_STATUS)
+        return "";
+    const cm1e_device_model_t model = cm1e_bus_slave(session->bus, session->slave)->model;
+    return cm1e_bridge_status_text(cm1e_bridge_motor(model, answer.id - 1), (uint32_t)answer.value, text, size);
+}
+
+static json_t *as_json(const session_t *session, const cm1e_cml_exchange_t *exchange, const cm1e_diag_t *diag)
+{
+    char words[CM1E_BRIDGE_STATUS_TEXT];
+    json_t *lines = json_array();
+    json_t *object = json_pack("{s:o, s:i, s:i, s:o}", "sent", text_as_json(exchange->text), "slave",
+                               exchange->position, "channel", exchange->channel, "lines", lines);
+    for (unsigned i = 0; i < exchange->count; i++) {
+        const char *state = state_in_words(session, exchange->lines[i], words, sizeof words);
+        json_array_append_new(lines, text_as_json(exchange->lines[i]));
+        if (state[0])
+            json_object_set_new(object, "state", text_as_json(state));
+    }
+    json_object_set_new(object, "strays", json_integer(exchange->strays));
+    if (exchange->strays)
+        json_object_set_new(object, "stray", text_as_json(exchange->stray));
+    if (diag->error)
+        json_object_set_new(object, "error", text_as_json(diag->text));
+    return object;
+}
+
+static void print_text(const session_t *session, const cm1e_cml_exchange_t *exchange, const cm1e_diag_t *diag)
+{
+    char words[CM1E_BRIDGE_STATUS_TEXT];
+    for (unsigned i = 0; i < exchange->count; i++) {
+        const char *state = state_in_words(session, exchange->lines[i], words, sizeof words);
+        printf("%s%s%s\n", exchange->lines[i], state[0] ? "  " : "", state);
+    }
+    if (exchange->count == 0 && !diag->error)
+        puts("sent");
+    if (exchange->lost)
+        complain("%u more lines were dropped", exchange->lost);
+    if (exchange->strays)
+        complain("%u %s that %s nothing asked now: \"%s\"", exchange->strays, exchange->strays == 1 ? "line" : "lines",
+                 exchange->strays == 1 ? "answers" : "answer", exchange->stray);
+}
+
+/* Before anything is sent to the slave, its mode among that. */
+static bool refused_here(cm1e_error_t error)
+{
+    return error == CM1E_ERROR_INVALID_ARGUMENT || error == CM1E_ERROR_CM_NO_BRIDGE ||
+           error == CM1E_ERROR_CML_STRING || error == CM1E_ERROR_CML_MOTION;
+}
+
+/** Sends a string and shows what came back, in `results` where that is not NULL. */
+static int send_string(session_t *session, const char *text, json_t *results)
+{
+    static cm1e_cml_exchange_t exchange;
+    cm1e_diag_t diag = {0};
+    const unsigned channel = session->channel ? session->channel : named_channel(text);
+    if (channel == 0) {
+        complain("to which motor? Name its connector in the string (\"?99.1\"), or by --channel or --axis");
+        return EXIT_WRONG_USE;
+    }
+    exchange = (cm1e_cml_exchange_t){
+        .position = session->slave, .channel = (uint8_t)(channel <= UINT8_MAX ? channel : 0), .text = text,
+        .timeout_ns = (int64_t)(session->options->timeout_s * 1e9), .cancelled = is_interrupted,
+        .allow_motion = session->options->allow_motion,
+    };
+    const cm1e_error_t error = cm1e_cml_exchange(session->bus, &exchange, &diag);
+    if (!refused_here(error)) {
+        session->used[channel - 1] = true;
+        session->moved[channel - 1] |= cm1e_cml_kind(text) == CM1E_CML_MOTION;
+    }
+    if (session->options->common.json)
+        json_array_append_new(results, as_json(session, &exchange, &diag));
+    else
+        print_text(session, &exchange, &diag);
+    if (error == CM1E_ERROR_CML_MOTION && !session->options->common.json)
+        complain("%s With --allow-motion it is sent.", diag.text);
+    else if (error)
+        fail(&diag);
+    return error ? EXIT_FAILED : EXIT_OK;
+}
+
+/* ---- all strings ------------------------------------------------------------------------------------------------- */
+
+static int send_arguments(session_t *session)
+{
+    json_t *results = json_array();
+    int status = EXIT_OK;
+    for (int i = 0; i < session->options->count && status == EXIT_OK && !interrupted; i++)
+        status = send_string(session, session->options->strings[i], results);
+    if (session->options->common.json)
+        print_json(results);
+    else
+        json_decref(results);
+    return status;
+}
+
+/* Line by line until the end of the input; a line that fails does not end it, but shows in the exit status. */
+static int send_lines(session_t *session)
+{
+    const bool prompts = isatty(STDIN_FILENO) && isatty(STDOUT_FILENO);
+    char *line = NULL;
+    size_t room = 0;
+    int status = EXIT_OK;
+    while (!interrupted) {
+        if (prompts)
+            fputs("cml> ", stdout);
+        fflush(stdout);
+        const ssize_t size = getline(&line, &room, stdin);
+        if (size < 0)
+            break;
+        line[strcspn(line, "\r\n")] = '\0';
+        if (line[0] == '\0')
+            continue;
+        json_t *results = json_array();
+        const int result = send_string(session, line, results);
+        status = result == EXIT_OK ? status : result;
+        if (session->options->common.json && json_array_size(results) > 0)
+            print_json(json_incref(json_array_get(results, 0)));
+        json_decref(results);
+    }
+    if (prompts)
+        putchar('\n');
+    free(line);
+    return status;
+}
+
+/* Back to csp, without torque after what may have moved a motor: nobody watches it from here on. */
+static int leave(session_t *session)
+{
+    int status = EXIT_OK;
+    for (unsigned i = 0; i < CM1E_BRIDGE_AXES && !session->options->stay; i++) {
+        cm1e_diag_t diag = {0};
+        if (session->used[i] && cm1e_cml_leave(session->bus, session->slave, (uint8_t)(i + 1), session->moved[i],
+                                               &diag) != CM1E_OK)
+            status = fail(&diag);
+    }
+    return status;
+}
+
+static int run_session(session_t *session, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
+{
+    if (!(session->options->axis_word ? choose_axis(session, config, diag) : choose_slave(session)))
+        return EXIT_FAILED;
+    const int sent = session->options->count > 0 ? send_arguments(session) : send_lines(session);
+    const int left = leave(session);
+    return sent != EXIT_OK ? sent : left;
+}
+
+int command_cml(int argc, char **argv)
+{
+    static const struct argp_option table[] = {
+        {"axis", 'a', "AXIS", 0, "The motor, by the name or number of its axis in the bus file", 0},
+        {"slave", KEY_SLAVE, "POSITION", 0, "... or by the position of its bridge; default: the only one", 0},
+        {"channel", KEY_CHANNEL, "ID", 0, "... and its connector, 1 ... 4; default: the one that the string names", 0},
+        {"timeout", KEY_TIMEOUT, "SECONDS", 0, "For an answer; default: 1, of an origin search 70", 0},
+        {"allow-motion", KEY_ALLOW, NULL, 0, "Send also what may move the motor or change its power", 0},
+        {"stay", KEY_STAY, NULL, 0, "Leave the motor in CML mode, and with its torque", 0},
+        {0}};
+    static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+    static const struct argp argp = {
+        table, parse, "[STRING...]",
+        "Sends strings in CML, the language of the Cool Muscle motors, to a motor behind an EtherCAT Cool MUSCLE "
+        "Bridge, and shows its answers, e.g. `cm1e cml -i eth1 \"?99.1\"`; without strings, the lines of standard "
+        "input.\v"
+        "Queries (?90.1, ?96.1, ?99.1, K37.1), parameters (K53.1=100, which the motor keeps without power) and outputs "
+        "(O2.1, F2.1) are sent as they are. Everything else may move the motor: it needs --allow-motion, and at the "
+        "end the motor is freed. No other master may run the bridge meanwhile.",
+        children, NULL, NULL};
+    cml_options_t options = {0};
+    if (argp_parse(&argp, argc, argv, 0, NULL, &options) != 0)
+        return EXIT_WRONG_USE;
+    static cm1e_bus_config_t config;
+    if (!load_configuration(&options.common, &config))
+        return EXIT_WRONG_USE;
+    const struct sigaction action = {.sa_handler = on_signal};
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    cm1e_diag_t diag = {0};
+    session_t session = {.options = &options};
+    if (cm1e_bus_open(&session.bus, &config, &diag) != CM1E_OK || cm1e_bus_scan(session.bus, &diag) != CM1E_OK) {
+        cm1e_bus_close(session.bus);
+        return fail(&diag);
+    }
+    const int status = run_session(&session, &config, &diag);
+    cm1e_bus_close(session.bus);
+    return status;
+}
