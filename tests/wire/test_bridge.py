@@ -233,7 +233,7 @@ def check_signals(bus):
 
 
 def check_cml(bus):
-    """BR appendix 2.1 and 2.3: 0000h for five cycles, the string, an answer, and then none. Other axes stand enabled."""
+    """BR appendix 2.1 and 2.3: 0000h for five cycles, the string, an answer, then none. The others stand enabled."""
     bus.words[1] = 0
     bus.switch(1, CML)
     for text, answer in ((b"?99.2", b"Ux.2=16\r\n"), (b"K42.2", b"K42.2=5000\r\n")):
@@ -299,8 +299,8 @@ def run_master():
     wire.check(bus.bad_cycles == 0, f"{bus.bad_cycles} of {bus.cycles_run} cycles had a wrong working counter")
     bus.master.read_state()
     wire.check(slave.state == pysoem.OP_STATE, f"Op left: {slave.state:#x}, AL status code {slave.al_status:#x}")
-    print(f"pysoem: identity, objects with their aborts, 24 + 24 bytes, {bus.cycles_run} good cycles; four axes enabled, "
-          "moved and homed; signals, a CML query, F530, dead ends")
+    print(f"pysoem: identity, objects with their aborts, 24 + 24 bytes, {bus.cycles_run} good cycles; four axes "
+          "enabled, moved and homed; signals, a CML query, F530, dead ends")
     bus.stop()
 
 
