@@ -6,7 +6,6 @@
 #ifndef CM1E_TESTS_BRIDGE_SEGMENT_H
 #define CM1E_TESTS_BRIDGE_SEGMENT_H
 
-#include "bus/bus_internal.h"
 #include "bus_support.h"
 #include "device/bridge.h"
 #include "sim/bridge_app.h"
@@ -38,10 +37,11 @@ static inline cm1e_bus_t *open_bus_on_devices(const device_kind_t *devices, size
     sim_config(1);
     cm1e_bus_t *bus = open_bus();
     config = kept;
-    memcpy(bus->config.axes, config.axes, sizeof config.axes);
-    bus->config.axis_count = config.axis_count;
+    cm1e_bus_config_t *own = (void *)(uintptr_t)cm1e_bus_configuration(bus);
+    memcpy(own->axes, config.axes, sizeof config.axes);
+    own->axis_count = config.axis_count;
     if (config.cycle_time_ns)
-        bus->config.cycle_time_ns = config.cycle_time_ns;
+        own->cycle_time_ns = config.cycle_time_ns;
     cm1e_sim_segment_t *segment = cm1e_sim_segment_create_empty();
     for (size_t i = 0; i < count && devices[i] != NO_DEVICE; i++)
         ck_assert_int_eq(cm1e_sim_segment_add(segment, make_device(devices[i], 0)), CM1E_OK);
