@@ -36,12 +36,13 @@ static json_t *bridge_as_json(const cm1e_slave_info_t *slave)
 static json_t *slave_as_json(const cm1e_slave_info_t *slave)
 {
     char state[48];
-    return json_pack("{s:i, s:s, s:I, s:I, s:I, s:I, s:i, s:i, s:s, s:b, s:o, s:s}", "position", slave->position, "name",
-                     slave->name, "vendor_id", (json_int_t)slave->vendor_id, "product_code",
+    return json_pack("{s:i, s:s, s:I, s:I, s:I, s:I, s:i, s:i, s:s, s:b, s:o, s:s}", "position", slave->position,
+                     "name", slave->name, "vendor_id", (json_int_t)slave->vendor_id, "product_code",
                      (json_int_t)slave->product_code, "revision", (json_int_t)slave->revision, "serial_number",
                      (json_int_t)slave->serial_number, "alias", slave->alias, "explicit_id", slave->explicit_id,
                      "al_state", al_state_name(slave->al_state, state, sizeof state), "is_cm1e", slave->is_cm1e,
-                     "bridge", slave->is_bridge ? bridge_as_json(slave) : json_null(), "software_version", slave->software_version);
+                     "bridge", slave->is_bridge ? bridge_as_json(slave) : json_null(), "software_version",
+                     slave->software_version);
 }
 
 static void print_table(const cm1e_bus_t *bus)

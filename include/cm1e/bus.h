@@ -67,8 +67,8 @@ const cm1e_slave_info_t *cm1e_bus_slave(const cm1e_bus_t *bus, uint32_t position
 /** Matches the scan with the configured axes: a wrong, missing, doubled or extra slave is an error that names what was
  *  expected and what was found. Extra is a CM1-E, or a bridge, that no axis is configured for; a device of another kind
  *  may stand between the axes and runs with the process data of its SII. Not every motor behind a bridge needs an axis:
- *  the others get the controlword 0 and stay free. Without any configured axis everything is accepted; a revision that
- *  is not known is no error. @rt init */
+ *  the others get the controlword 0 and stay as they are from power-on, a CM1 holding its position (BR 6.1.1). Without
+ *  any configured axis everything is accepted; a revision that is not known is no error. @rt init */
 cm1e_error_t cm1e_bus_identify(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Position of an axis's slave (axis 0 = first configured); 0: none. @rt any */
 uint16_t cm1e_bus_axis_position(const cm1e_bus_t *bus, uint32_t axis);

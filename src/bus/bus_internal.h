@@ -46,7 +46,8 @@ typedef struct cm1e_bus_slave {
     cm1e_slave_info_t info;
     cm1e_slave_facts_t facts;
     const cm1e_firmware_info_t *firmware;    /**< NULL: unreadable */
-    uint8_t axes[CM1E_CHANNELS];             /**< configured axis of each channel, 1 = first; 0: none */
+    uint8_t axes[CM1E_CHANNELS];             /**< configured axis of each channel, 1 = first; 0: none. No channel is
+                                                  beyond: cm1e_bus_config_check() */
 
     cm1e_datagram_t datagram;                /**< at most one on its way */
     cm1e_datagram_owner_t owner;
@@ -141,7 +142,8 @@ static inline void cm1e_bus_set_phase(cm1e_bus_t *bus, cm1e_bus_phase_t phase)
 
 /** What kind of slave it is: "bridge EB12", else the name in its SII. */
 const char *cm1e_bus_kind(const cm1e_bus_slave_t *slave, char kind[CM1E_KIND_LENGTH]);
-/** 'slave 2 ("axis2", CM1-E)', 'slave 3 ("X", "Y", bridge EB12)': how a slave is named in every diagnosis; at the begin of a sentence with a capital. */
+/** 'slave 2 ("axis2", CM1-E)', 'slave 3 ("X", "Y", bridge EB12)': how a slave is named in every diagnosis; at the begin
+ *  of a sentence with a capital. */
 const char *cm1e_bus_label(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, char label[CM1E_LABEL_LENGTH]);
 const char *cm1e_bus_label_first(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, char label[CM1E_LABEL_LENGTH]);
 /** Makes the bus's clock the one SOEM uses in this thread, and tells the time. */

@@ -184,9 +184,6 @@ static cm1e_error_t check_alone(const cm1e_bus_t *bus, const cm1e_axis_config_t 
 static cm1e_error_t match_axis(cm1e_bus_t *bus, uint32_t axis_index, cm1e_diag_t *diag)
 {
     const cm1e_axis_config_t *axis = &bus->config.axes[axis_index];
-    if (axis->channel >= CM1E_CHANNELS)
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": its channel is %u; a bridge has 1 ... %d.",
-                             axis->name, axis->channel, CM1E_BRIDGE_AXES);
     cm1e_bus_slave_t *slave = find_slave(bus, axis, diag);
     if (!slave)
         return CM1E_ERROR_BUS_IDENTITY;

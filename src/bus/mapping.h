@@ -51,7 +51,7 @@ typedef struct cm1e_mapping_job {
     uint8_t entry, entries;  /**< where the reading of its entries is, from 1 */
     bool started;            /**< `sdo` is in work or done */
     cm1e_sdo_t sdo;
-    cm1e_sdo_t refused;      /**< the first write that the slave refused, where `is_refused`: the result if it matters */
+    cm1e_sdo_t refused;      /**< the first write that was refused, where `is_refused`; the result if it matters */
     bool is_refused;
     uint8_t data[4];
     cm1e_error_t error;      /**< result, valid when idle; foreign code in sdo.abort_code */

@@ -13,7 +13,7 @@
 
 /** What is kept of the answers of a bridge. */
 typedef struct cm1e_bridge_facts {
-    uint32_t motors[CM1E_BRIDGE_AXES]; /**< F511:1 ... F514:1: cm1e_bridge_motor_t, or anything; 0: unreadable */
+    uint32_t motors[CM1E_BRIDGE_AXES]; /**< F511:1 ... F514:1: cm1e_bridge_motor_t or anything; 0: unreadable */
     uint32_t revision;                 /**< 0x1018:3; 0: unreadable */
 } cm1e_bridge_facts_t;
 
@@ -25,7 +25,7 @@ typedef struct cm1e_recognition {
     cm1e_sdo_t sdo;          /**< the last transfer: where it is no bridge, the one that showed it */
     uint8_t data[4];
     bool is_bridge;          /**< result, valid when idle */
-    uint32_t shown, wanted;  /**< where it is no bridge and the transfer did not fail: what it answered, and must have */
+    uint32_t shown, wanted;  /**< where it is no bridge: what it answered, and what a bridge does */
     cm1e_bridge_facts_t facts;
 } cm1e_recognition_t;
 

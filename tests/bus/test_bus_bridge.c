@@ -1,11 +1,11 @@
 /* The Cool MUSCLE Bridge on the bus: recognised, matched with its axes, mapped, in Operational beside other devices. */
 #include "bridge_segment.h"
-#include "sim/esc.h"
+#include "sdo_harm.h"
 
 /* What a row of a table leaves out is 0. */
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 
-/* ---- scan ------------------------------------------------------------------------------------------------------- */
+/* ---- scan -------------------------------------------------------------------------------------------------------- */
 
 START_TEST(scan_knows_every_model_and_its_motors)
 {
@@ -31,88 +31,7 @@ START_TEST(scan_knows_every_model_and_its_motors)
 }
 END_TEST
 
-/* ---- answers that are not what the bridge said ------------------------------------------------------------------- */
-
-typedef enum harm_kind { NO_HARM = 0, ABORT, OTHER_VALUE, STRANGER, LONG, GARBAGE, LATE, HARMS } harm_kind_t;
-
-/** Which SDO answers of which slave (by station address; 0: of every one) arrive as something else. */
-typedef struct harm {
-    harm_kind_t kind;
-    uint16_t station, index;   /**< index 0: by number */
-    uint8_t subindex;
-    unsigned at, seen;
-    cm1e_bus_t *bus;
-    int64_t asked_ns;          /**< LATE: the last request */
-} harm_t;
-
-enum { SDO_DATA = 12, ABORT_READ_ONLY = 0x06010002, ANSWER_AT = 0x1080, QUESTION_AT = 0x1000 };
-
-static void spoil(const harm_t *harm, uint8_t *mailbox)
-{
-    switch (harm->kind) {
-    case ABORT:
-        cm1e_put_u16(mailbox, 10);
-        cm1e_put_u16(mailbox + 6, 2 << 12);
-        mailbox[8] = 0x80;
-        cm1e_put_u32(mailbox + SDO_DATA, ABORT_READ_ONLY);
-        break;
-    case OTHER_VALUE:
-        mailbox[SDO_DATA] ^= 0x40;
-        break;
-    case STRANGER: /* answers something that nobody asked */
-        mailbox[9] ^= 0x55;
-        break;
-    case LONG:     /* so many bytes are to come */
-        mailbox[8] = 0x41;
-        cm1e_put_u32(mailbox + SDO_DATA, 0x00FFFFFF);
-        break;
-    case GARBAGE:
-        for (unsigned i = 8; i < SDO_DATA + 4; i++)
-            mailbox[i] = (uint8_t)rand();
-        break;
-    case NO_HARM:
-    case LATE:
-    case HARMS:
-        break;
-    }
-}
-
-/** Lets nothing be read of the mailbox until an answer is nearly too late. */
-static cm1e_tap_verdict_t hold_back(harm_t *harm, const cm1e_tap_frame_t *frame)
-{
-    const uint16_t offset = cm1e_get_u16(frame->bytes + 20);
-    if (frame->bytes[16] == 5 && offset == QUESTION_AT)
-        harm->asked_ns = now_of(harm->bus);
-    const bool read = frame->bytes[16] == 4 && offset >= 0x0808;
-    return read && now_of(harm->bus) - harm->asked_ns < 900000000 ? CM1E_TAP_DROP : CM1E_TAP_PASS;
-}
-
-static cm1e_tap_verdict_t do_harm(void *context, cm1e_tap_frame_t *frame)
-{
-    harm_t *harm = context;
-    uint8_t *mailbox = frame->bytes + 26;
-    const bool ours = frame->length > 60 && (!harm->station || cm1e_get_u16(frame->bytes + 18) == harm->station);
-    if (harm->kind == LATE && cm1e_get_u16(frame->bytes + 18) == harm->station)
-        return hold_back(harm, frame);
-    const bool answer = frame->direction == CM1E_TAP_RECEIVED && frame->bytes[16] == 4 &&
-                        cm1e_get_u16(frame->bytes + 20) == ANSWER_AT;
-    if (!ours || !answer || (mailbox[5] & 0x0F) != 3 || cm1e_get_u16(mailbox + 6) >> 12 != 3)
-        return CM1E_TAP_PASS;
-    const unsigned number = ++harm->seen;
-    const bool meant = harm->index ? harm->index == cm1e_get_u16(mailbox + 9) && harm->subindex == mailbox[11]
-                                   : number == harm->at;
-    if (meant)
-        spoil(harm, mailbox);
-    return CM1E_TAP_PASS;
-}
-
-static void set_harm(cm1e_bus_t *bus, harm_t *harm)
-{
-    harm->bus = bus;
-    cm1e_nic_set_tap(cm1e_bus_nic(bus), harm && harm->kind ? do_harm : NULL, harm);
-}
-
-/* ---- scan, once more ---------------------------------------------------------------------------------------------- */
+/* ---- scan, of others --------------------------------------------------------------------------------------------- */
 
 static const struct {
     uint16_t index;
@@ -175,10 +94,10 @@ START_TEST(slave_that_answers_late_does_not_hold_up_the_scan)
 }
 END_TEST
 
-/* ---- identify ----------------------------------------------------------------------------------------------------- */
+/* ---- identify ---------------------------------------------------------------------------------------------------- */
 
 typedef struct expected {
-    uint16_t position;
+    uint16_t position; /**< from 100 on: an alias */
     uint8_t channel;
     const char *motor;
 } expected_t;
@@ -197,24 +116,25 @@ static const struct {
     {"in any order, two bridges", {AN_EB01, A_MOTOR, AN_EB02}, 4, {{3, 4, ""}, {2, 0, ""}, {1, 2, ""}, {3, 1, ""}},
      CM1E_OK, {0}},
     {"none configured at all", {AN_EB01, AN_EB02}, 0, {{0}}, CM1E_OK, {0}},
-    {"missing", {AN_EB01}, 2, {{1, 1, ""}, {2, 1, ""}}, WRONG, {"\"axis2\"", "Cool MUSCLE Bridge at position 2", "missing"}},
-    {"the same channel twice", {AN_EB01}, 2, {{1, 2, ""}, {1, 2, ""}}, WRONG,
+    {"missing", {AN_EB01}, 2, {{1, 1, ""}, {2, 1, ""}}, WRONG,
+     {"\"axis2\"", "Cool MUSCLE Bridge at position 2", "missing"}},
+    {"the same channel twice", {AN_EB01}, 2, {{1, 2, ""}, {101, 2, ""}}, WRONG,
      {"\"axis1\"", "\"axis2\"", "channel 2 of slave 1"}},
     {"a CM1-E where a bridge should be", {A_MOTOR}, 1, {{1, 1, ""}}, WRONG,
      {"expected a Cool MUSCLE Bridge", "a CM1-E", "channel out"}},
     {"a bridge where a CM1-E should be", {AN_EB12}, 1, {{1, 0, ""}}, WRONG,
      {"expected a CM1-E", "slave 1, the bridge EB12", "channel, 1 ... 4"}},
-    {"an axis with and one without channel", {AN_EB12}, 2, {{1, 1, ""}, {1, 0, ""}}, WRONG, {"\"axis2\"", "channel"}},
+    {"an axis with and one without channel", {AN_EB12}, 2, {{1, 1, ""}, {101, 0, ""}}, WRONG, {"\"axis2\"", "channel"}},
+    {"by alias", {AN_IO_MODULE, AN_EB02}, 2, {{102, 1, ""}, {102, 4, "CM2"}}, CM1E_OK, {0}},
     {"an I/O module where a bridge should be", {AN_IO_MODULE}, 1, {{1, 1, ""}}, WRONG,
      {"expected a Cool MUSCLE Bridge", "another kind", "no mailbox"}},
-    {"a CM2 where a CM1 is", {AN_EB12}, 2, {{1, 1, "CM1"}, {1, 2, "CM2"}}, WRONG,
-     {"\"axis2\"", "motor CM2 at channel 2", "a CM1 there", "0xF512:01"}},
+    {"a CM1 where a CM2 is, beside a right one", {AN_EB12}, 2, {{1, 1, "CM1"}, {1, 3, "CM1"}}, WRONG,
+     {"\"axis2\"", "motor CM1 at channel 3", "a CM2 there", "0xF513:01"}},
+    {"a CM2 where a CM1 is", {AN_EB01}, 1, {{1, 2, "CM2"}}, WRONG, {"\"axis1\"", "a CM1 there", "0xF512:01"}},
     {"a CM1 where a CM2 is", {AN_EB02}, 1, {{1, 4, "CM1"}}, WRONG, {"\"axis1\"", "a CM2 there", "0xF514:01"}},
     {"an extra bridge", {A_MOTOR, AN_EB01}, 1, {{1, 0, ""}}, WRONG, {"Slave 2", "Bridge that is extra", "behind it"}},
     {"an extra CM1-E", {AN_EB01, A_MOTOR}, 1, {{1, 1, ""}}, WRONG, {"Slave 2", "CM1-E that is extra"}},
     {"an I/O module between", {AN_EB01, AN_IO_MODULE, AN_EB02}, 2, {{1, 1, ""}, {3, 1, ""}}, CM1E_OK, {0}},
-    {"a channel that is none", {AN_EB01}, 1, {{1, 5, ""}}, CM1E_ERROR_CONFIG, {"\"axis1\"", "channel is 5", "1 ... 4"}},
-    {"a channel far beyond", {AN_EB01}, 1, {{1, 255, ""}}, CM1E_ERROR_CONFIG, {"channel is 255"}},
 };
 
 static void expect_axes(const expected_t *expected, uint32_t count)
@@ -226,6 +146,8 @@ static void expect_axes(const expected_t *expected, uint32_t count)
             expect_bridged(i, expected[i].position, expected[i].channel, expected[i].motor);
         else
             config.axes[i].address = expected[i].position;
+        if (expected[i].position >= alias_at(0))
+            config.axes[i].address_kind = CM1E_ADDRESS_ALIAS;
     }
 }
 
@@ -240,7 +162,7 @@ START_TEST(identity_of_every_axis_is_checked_in_words)
         ck_assert_msg(strstr(diag.text, cases[_i].words[i]) != NULL, "%s: \"%s\" lacks \"%s\"", cases[_i].name,
                       diag.text, cases[_i].words[i]);
     for (uint32_t axis = 0; axis < cases[_i].axes && error == CM1E_OK; axis++)
-        ck_assert_uint_eq(cm1e_bus_axis_position(bus, axis), cases[_i].expected[axis].position);
+        ck_assert_uint_eq(cm1e_bus_axis_position(bus, axis), cases[_i].expected[axis].position % alias_at(0));
     if (error == CM1E_OK)
         ck_assert_msg(cm1e_bus_configure(bus, &diag) == CM1E_OK, "%s: %s", cases[_i].name, diag.text);
     else
@@ -268,33 +190,13 @@ START_TEST(bridge_of_no_model_and_no_bridge_say_what_they_showed)
     set_harm(bus, &harm);
     ck_assert_int_eq(cm1e_bus_start(bus, &diag), CM1E_ERROR_BUS_IDENTITY);
     for (int i = 0; i < 3 && lies[_i].words[i]; i++)
-        ck_assert_msg(strstr(diag.text, lies[_i].words[i]) != NULL, "\"%s\" lacks \"%s\"", diag.text, lies[_i].words[i]);
+        ck_assert_msg(strstr(diag.text, lies[_i].words[i]) != NULL, "\"%s\" lacks \"%s\"", diag.text,
+                      lies[_i].words[i]);
     cm1e_bus_close(bus);
 }
 END_TEST
 
-/* ---- start ------------------------------------------------------------------------------------------------------ */
-
-static const device_kind_t mixed[] = {A_MOTOR, AN_EB12, AN_IO_MODULE, AN_EB01};
-
-/** The CM1-E, three motors of the EB12, one of the EB01; in no order. */
-static void expect_mixed(void)
-{
-    sim_config(5);
-    expect_bridged(0, 2, 4, "CM2");
-    expect_bridged(1, 4, 2, "");
-    config.axes[2].address = 1;
-    expect_bridged(3, 2, 1, "CM1");
-    expect_bridged(4, 2, 2, "");
-}
-
-static cm1e_bus_t *start_mixed(void)
-{
-    expect_mixed();
-    cm1e_bus_t *bus = open_bus_on_devices(mixed, 4);
-    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
-    return bus;
-}
+/* ---- start ------------------------------------------------------------------------------------------------------- */
 
 START_TEST(mixed_network_runs_with_the_process_data_of_all)
 {
@@ -368,21 +270,21 @@ START_TEST(bridge_runs_at_1_ms_only)
 {
     static const int64_t times_us[] = {200, 250, 500, 1000};
     for (unsigned i = 0; i < 4; i++) {
-        expect_mixed();
+        static const device_kind_t devices[] = {AN_IO_MODULE, AN_EB12};
+        sim_config(0); /* with an axis behind a bridge the configuration itself is refused */
         config.cycle_time_ns = times_us[i] * 1000;
-        cm1e_bus_t *bus = open_bus_on_devices(mixed, 4);
+        cm1e_bus_t *bus = open_bus_on_devices(devices, 2);
         const cm1e_error_t error = cm1e_bus_start(bus, &diag);
         const bool right = times_us[i] == 1000;
-        const bool motor = cm1e_firmware_from_version(tested_firmware())->all_cycle_times;
         ck_assert_msg(error == (right ? CM1E_OK : CM1E_ERROR_BUS_CYCLE_TIME), "%s", diag.text);
-        ck_assert_msg(right || !motor || (strstr(diag.text, "Slave 2 (\"axis4\", \"axis5\", \"axis1\", bridge EB12)") &&
-                                          strstr(diag.text, "1000 us only")), "%s", diag.text);
+        ck_assert_msg(right || (strstr(diag.text, "Slave 2 (bridge EB12)") && strstr(diag.text, "1000 us only")), "%s",
+                      diag.text);
         cm1e_bus_close(bus);
     }
 }
 END_TEST
 
-/* ---- mapping ------------------------------------------------------------------------------------------------------ */
+/* ---- mapping ----------------------------------------------------------------------------------------------------- */
 
 /** Up to the configuration everything is right. */
 static cm1e_bus_t *identified_bus(void)
@@ -480,202 +382,9 @@ START_TEST(bridge_that_does_not_take_its_watchdog_is_refused)
     cm1e_bus_t *bus = identified_bus();
     cm1e_nic_set_tap(cm1e_bus_nic(bus), lose_watchdog, &station);
     ck_assert_int_eq(cm1e_bus_configure(bus, &diag), CM1E_ERROR_BUS_WORKING_COUNTER);
-    ck_assert_msg(strstr(diag.text, "watchdog") && strstr(diag.text, "bridge EB12"), "%s", diag.text);
-    cm1e_bus_close(bus);
-}
-END_TEST
-
-/* ---- recovery ----------------------------------------------------------------------------------------------------- */
-
-/** Every axis asks for its slave, every cycle, as blind programs would; cycles until all run again; 0: never. */
-static unsigned cycles_until_recovered(cm1e_bus_t *bus, unsigned limit)
-{
-    for (unsigned n = 1; n <= limit; n++) {
-        bool all = cycle(bus) == CM1E_OK && cm1e_bus_health(bus) == CM1E_OK;
-        for (uint16_t position = 1; position <= cm1e_bus_slave_count(bus); position++) {
-            const cm1e_slave_watch_t watch = cm1e_bus_slave_watch(bus, position);
-            all = all && !watch.lost && watch.al_state == CM1E_AL_OP;
-        }
-        for (uint32_t axis = 0; axis < cm1e_bus_configuration(bus)->axis_count; axis++)
-            if (cm1e_bus_slave_watch(bus, cm1e_bus_axis_position(bus, axis)).al_state != CM1E_AL_OP)
-                cm1e_bus_request_recovery(bus, cm1e_bus_axis_position(bus, axis));
-        if (all)
-            return n;
-    }
-    return 0;
-}
-
-static void command_all(cm1e_bus_t *bus, uint16_t position, uint16_t controlword)
-{
-    for (unsigned channel = 1; channel <= CM1E_BRIDGE_AXES; channel++)
-        cm1e_put_u16(cm1e_bus_outputs(bus) + cm1e_bus_find_output(bus, position, on_channel(channel, 0x6040), 0).offset,
-                     controlword);
-}
-
-/** What the bridge is sent while nobody knows it in Operational. */
-typedef struct muted {
-    cm1e_bus_t *bus;
-    unsigned zeros, too_early;
-} muted_t;
-
-static cm1e_tap_verdict_t watch_words(void *context, cm1e_tap_frame_t *frame)
-{
-    muted_t *muted = context;
-    if (frame->direction != CM1E_TAP_SENT || frame->bytes[16] != 12)
-        return CM1E_TAP_PASS;
-    const unsigned state = cm1e_sim_slave_al_state(cm1e_sim_segment_slave(segment_of(muted->bus), 2));
-    const bool known = cm1e_bus_slave_watch(muted->bus, 2).al_state == CM1E_AL_OP;
-    for (unsigned channel = 1; channel <= CM1E_BRIDGE_AXES && !known && state == CM1E_AL_OP; channel++) {
-        const uint32_t at = cm1e_bus_find_output(muted->bus, 2, on_channel(channel, 0x6040), 0).offset;
-        const bool zero = cm1e_get_u16(frame->bytes + 26 + at) == 0;
-        muted->zeros += zero;
-        muted->too_early += !zero;
-    }
-    return CM1E_TAP_PASS;
-}
-
-static const char *const strikes[] = {"power-cycle 2 50", "unplug 2"};
-
-START_TEST(bridge_comes_back_for_all_its_axes_with_zeros_until_operational)
-{
-    cm1e_bus_t *bus = start_mixed();
-    command_all(bus, 2, 0x0006);
-    cycles(bus, 50);
-    simulate(bus, strikes[_i]);
-    for (int n = 0; n < 300; n++)
-        cycle(bus);
-    ck_assert(cm1e_bus_slave_watch(bus, 2).lost);
-    ck_assert(!cm1e_bus_slave_watch(bus, 1).lost);
-    simulate(bus, "replug 2");
-    for (int n = 0; n < 30; n++)
-        cycle(bus);
-    if (_i == 1) { /* it was not without power: its watchdog told it */
-        ck_assert_uint_eq(cm1e_bus_slave_watch(bus, 2).al_state, CM1E_AL_SAFE_OP | CM1E_AL_ERROR);
-        ck_assert_uint_eq(cm1e_bus_slave_watch(bus, 2).al_status_code, 0x001B);
-    }
-    muted_t muted = {.bus = bus};
-    cm1e_nic_set_tap(cm1e_bus_nic(bus), watch_words, &muted);
-    const unsigned n = cycles_until_recovered(bus, 4000);
-    ck_assert_uint_gt(n, 0);
-    ck_assert_uint_lt(n, 2000);
-    ck_assert_uint_ge(muted.zeros, CM1E_BRIDGE_AXES);
-    ck_assert_uint_eq(muted.too_early, 0);
-    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
-    cycles(bus, 300);
-    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
-        ck_assert_uint_eq(bridge_at(bus, 2)->axes[i].controlword, 6);
-    cm1e_bus_close(bus);
-}
-END_TEST
-
-START_TEST(bridge_is_not_brought_back_unasked)
-{
-    cm1e_bus_t *bus = start_mixed();
-    cycles(bus, 20);
-    simulate(bus, "power-cycle 2 20");
-    for (int n = 0; n < 1000; n++)
-        cycle(bus);
-    ck_assert_uint_eq(cm1e_sim_slave_al_state(cm1e_sim_segment_slave(segment_of(bus), 2)), CM1E_AL_INIT);
-    ck_assert_uint_eq(cm1e_bus_slave_watch(bus, 4).al_state, CM1E_AL_OP);
-    cm1e_bus_close(bus);
-}
-END_TEST
-
-/** One axis asks for its slave, which is well: the set-points and the SDO transfers of the others go on. */
-START_TEST(request_of_one_axis_does_not_disturb_the_others)
-{
-    cm1e_bus_t *bus = start_mixed();
-    command_all(bus, 2, 0x0006);
-    cycles(bus, 20);
-    unsigned transfers = 0;
-    uint8_t data[8];
-    cm1e_sdo_t sdo = {.position = 2, .index = 0x6861, .data = data, .size = sizeof data};
-    for (int n = 0; n < 400; n++) {
-        if (n % 2 == 0)
-            cm1e_bus_request_recovery(bus, 2);
-        if (cm1e_sdo_state(&sdo) != CM1E_SDO_BUSY) {
-            ck_assert_msg(cm1e_sdo_state(&sdo) != CM1E_SDO_ERROR, "%s", cm1e_strerror(sdo.error));
-            transfers += cm1e_sdo_state(&sdo) == CM1E_SDO_DONE;
-            sdo.size = sizeof data;
-            ck_assert_int_eq(cm1e_sdo_submit(bus, &sdo), CM1E_OK);
-        }
-        ck_assert_int_eq(cycle(bus), CM1E_OK);
-        for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
-            ck_assert_uint_eq(bridge_at(bus, 2)->axes[i].controlword, 6);
-    }
-    ck_assert_uint_gt(transfers, 5);
-    cm1e_bus_close(bus);
-}
-END_TEST
-
-/** While the bridge was away, another device took its place, or it became another. */
-static const struct {
-    const char *name;
-    device_kind_t device;
-    harm_t harm;
-} strangers[] = {
-    {"another model", AN_EB01, {0}},
-    {"a CM1-E", A_MOTOR, {0}},
-    {"an I/O module", AN_IO_MODULE, {0}},
-    {"one with other motors", AN_EB12, {.kind = OTHER_VALUE, .index = 0xF513, .subindex = 1}},
-    {"one of another revision", AN_EB12, {.kind = OTHER_VALUE, .index = 0x1018, .subindex = 3}},
-    {"one of another product", AN_EB12, {.kind = OTHER_VALUE, .index = 0x1018, .subindex = 2}},
-    {"one of another vendor", AN_EB12, {.kind = OTHER_VALUE, .index = 0x1018, .subindex = 1}},
-    {"one that detects no module", AN_EB12, {.kind = OTHER_VALUE, .index = 0xF050, .subindex = 4}},
-    {"one with another mapping", AN_EB12, {.kind = OTHER_VALUE, .index = 0x1A11, .subindex = 2}},
-};
-enum { STRANGERS = sizeof strangers / sizeof strangers[0] };
-
-static cm1e_sim_segment_t *mixed_segment(device_kind_t second)
-{
-    cm1e_sim_segment_t *segment = cm1e_sim_segment_create_empty();
-    for (unsigned i = 0; i < 4; i++)
-        ck_assert_int_eq(cm1e_sim_segment_add(segment, make_device(i == 1 ? second : mixed[i], 0)), CM1E_OK);
-    return segment;
-}
-
-START_TEST(stranger_in_the_place_of_a_bridge_is_not_taken_for_it)
-{
-    cm1e_bus_t *bus = start_mixed();
-    harm_t harm = strangers[_i].harm;
-    cycles(bus, 20);
-    cm1e_nic_replace_segment(cm1e_bus_nic(bus), mixed_segment(strangers[_i].device)); /* all without power meanwhile */
-    harm.station = 0x1002;
-    set_harm(bus, &harm);
-    for (int n = 0; n < 20; n++)
-        cycle(bus);
-    unsigned without_address = 0;
-    for (int n = 0; n < 4000; n++) {
-        ck_assert_msg(cycles_until_recovered(bus, 1) == 0, "%s", strangers[_i].name);
-        const cm1e_sim_slave_t *foreign = cm1e_sim_segment_slave(segment_of(bus), 2);
-        without_address += cm1e_get_u16(foreign->memory + ESC_STATION_ADDRESS) == 0;
-        ck_assert_msg(cm1e_sim_slave_al_state(foreign) <= CM1E_AL_PRE_OP, "%s", strangers[_i].name);
-    }
-    ck_assert_uint_eq(cm1e_bus_slave_watch(bus, 4).al_state, CM1E_AL_OP); /* the other bridge is back */
-    if (strangers[_i].harm.index != 0x1A11) /* which is ours, but cannot run in this image */
-        ck_assert_msg(without_address > 100, "%s: %u", strangers[_i].name, without_address);
-    harm_t none = {.kind = NO_HARM};
-    set_harm(bus, &none);
-    cm1e_nic_replace_segment(cm1e_bus_nic(bus), mixed_segment(AN_EB12));
-    for (int n = 0; n < 20; n++)
-        cycle(bus);
-    ck_assert_uint_gt(cycles_until_recovered(bus, 5000), 0);
-    cycles(bus, 100);
-    cm1e_bus_close(bus);
-}
-END_TEST
-
-START_TEST(power_cycle_at_every_moment_of_a_recovery_ends_in_operational)
-{
-    cm1e_bus_t *bus = start_mixed();
-    simulate(bus, "power-cycle 2 10");
-    for (int n = 0; n < 20 + _i * 10; n++)
-        cycles_until_recovered(bus, 1);
-    simulate(bus, "power-cycle 2 10");
-    for (int n = 0; n < 60; n++)
-        cycle(bus);
-    ck_assert_uint_gt(cycles_until_recovered(bus, 8000), 0);
-    cycles(bus, 100);
+    ck_assert_msg(strstr(diag.text, "watchdog") &&
+                  strstr(diag.text, "Slave 1 (\"axis1\", \"axis2\", \"axis3\", \"axis4\", bridge EB12)"),
+                  "%s", diag.text);
     cm1e_bus_close(bus);
 }
 END_TEST
@@ -696,11 +405,6 @@ int main(void)
     tcase_add_loop_test(tests, mapping_damaged_at_any_transfer_ends_defined, 1, MAPPING_TRANSFERS + 2);
     tcase_add_test(tests, assignment_that_is_refused_is_judged_by_what_it_is);
     tcase_add_test(tests, bridge_that_does_not_take_its_watchdog_is_refused);
-    tcase_add_loop_test(tests, bridge_comes_back_for_all_its_axes_with_zeros_until_operational, 0, 2);
-    tcase_add_test(tests, bridge_is_not_brought_back_unasked);
-    tcase_add_test(tests, request_of_one_axis_does_not_disturb_the_others);
-    tcase_add_loop_test(tests, stranger_in_the_place_of_a_bridge_is_not_taken_for_it, 0, STRANGERS);
-    tcase_add_loop_test(tests, power_cycle_at_every_moment_of_a_recovery_ends_in_operational, 0, 40);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }

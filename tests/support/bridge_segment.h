@@ -15,37 +15,31 @@ typedef enum device_kind { NO_DEVICE = 0, A_MOTOR, AN_IO_MODULE, AN_EB01, AN_EB0
 static inline cm1e_sim_slave_t *make_device(device_kind_t kind, uint16_t alias)
 {
     static cm1e_axis_config_t motor;
+    static const cm1e_axis_config_t *const channels[CM1E_BRIDGE_AXES];
     memset(&motor, 0, sizeof motor);
     strcpy(motor.firmware, tested_firmware());
-    switch (kind) {
-    case NO_DEVICE: return NULL;
-    case A_MOTOR: return cm1e_sim_cm1e_create(&motor, tested_order(), alias, 0);
-    case AN_IO_MODULE: return cm1e_sim_io_module_create();
-    case AN_EB01: return cm1e_sim_bridge_create(CM1E_DEVICE_EB01, NULL, alias);
-    case AN_EB02: return cm1e_sim_bridge_create(CM1E_DEVICE_EB02, NULL, alias);
-    case AN_EB12: return cm1e_sim_bridge_create(CM1E_DEVICE_EB12, NULL, alias);
-    }
-    return NULL;
+    if (kind >= AN_EB01)
+        return cm1e_sim_bridge_create((cm1e_device_model_t)(CM1E_DEVICE_EB01 + (kind - AN_EB01)), channels, alias);
+    return kind == A_MOTOR ? cm1e_sim_cm1e_create(&motor, tested_order(), alias, 0) : cm1e_sim_io_module_create();
+}
+
+/** The alias of the slave at a position, where it has one. */
+static inline uint16_t alias_at(uint16_t position) { return (uint16_t)(100 + position); }
+
+/** Up to `count` devices, in the order of the line. */
+static inline cm1e_sim_segment_t *make_segment(const device_kind_t *devices, size_t count)
+{
+    cm1e_sim_segment_t *segment = cm1e_sim_segment_create_empty();
+    for (size_t i = 0; i < count && devices[i] != NO_DEVICE; i++)
+        ck_assert_int_eq(cm1e_sim_segment_add(segment, make_device(devices[i], alias_at((uint16_t)(i + 1)))), CM1E_OK);
+    return segment;
 }
 
 /** A bus that expects `config`, on these devices. */
 static inline cm1e_bus_t *open_bus_on_devices(const device_kind_t *devices, size_t count)
 {
-    /* The segment that the nic makes of the configuration is replaced, so it must not depend on it. */
-    static cm1e_bus_config_t kept;
-    kept = config;
-    sim_config(1);
     cm1e_bus_t *bus = open_bus();
-    config = kept;
-    cm1e_bus_config_t *own = (void *)(uintptr_t)cm1e_bus_configuration(bus);
-    memcpy(own->axes, config.axes, sizeof config.axes);
-    own->axis_count = config.axis_count;
-    if (config.cycle_time_ns)
-        own->cycle_time_ns = config.cycle_time_ns;
-    cm1e_sim_segment_t *segment = cm1e_sim_segment_create_empty();
-    for (size_t i = 0; i < count && devices[i] != NO_DEVICE; i++)
-        ck_assert_int_eq(cm1e_sim_segment_add(segment, make_device(devices[i], 0)), CM1E_OK);
-    cm1e_nic_replace_segment(cm1e_bus_nic(bus), segment);
+    cm1e_nic_replace_segment(cm1e_bus_nic(bus), make_segment(devices, count));
     return bus;
 }
 
@@ -72,6 +66,28 @@ static inline cm1e_sim_bridge_t *bridge_at(cm1e_bus_t *bus, uint32_t position)
     cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(cm1e_sim_segment_slave(segment_of(bus), position));
     ck_assert_ptr_nonnull(bridge);
     return bridge;
+}
+
+/** A network of everything. */
+static const device_kind_t mixed[4] = {A_MOTOR, AN_EB12, AN_IO_MODULE, AN_EB01};
+
+/** The CM1-E, three motors of the EB12, one of the EB01; in no order. */
+static inline void expect_mixed(void)
+{
+    sim_config(5);
+    expect_bridged(0, 2, 4, "CM2");
+    expect_bridged(1, 4, 2, "");
+    config.axes[2].address = 1;
+    expect_bridged(3, 2, 1, "CM1");
+    expect_bridged(4, 2, 2, "");
+}
+
+static inline cm1e_bus_t *start_mixed(void)
+{
+    expect_mixed();
+    cm1e_bus_t *bus = open_bus_on_devices(mixed, 4);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    return bus;
 }
 
 #endif

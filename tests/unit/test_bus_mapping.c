@@ -236,7 +236,7 @@ static void test_harm_at_every_transfer_ends_defined(void)
                 /* The number that was to be cleared was 0 already: nothing was lost. */
                 const bool cleared = device.harm_at == 1 || device.harm_at == 7;
                 TEST_ASSERT_EQUAL_MESSAGE(cleared ? CM1E_OK : CM1E_ERROR_SDO_ABORT, job.error, message);
-            } else if (job.error == CM1E_OK) { /* another entry is what the device says; another value of anything else */
+            } else if (job.error == CM1E_OK) { /* another entry: the layout is what the device says */
                 TEST_ASSERT_TRUE_MESSAGE(device.harm == OTHER_VALUE, message);
             } else {
                 TEST_ASSERT_NOT_NULL_MESSAGE(job.reason, message);
