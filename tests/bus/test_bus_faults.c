@@ -1,6 +1,7 @@
 /* Start-up with a fault at every single frame: it succeeds or ends with an error in words, in bounded time, and no
  * motor moves. And what a slave can refuse is reported in its own words. */
 #include "bus_support.h"
+#include "effort.h"
 #include "sim/esc.h"
 
 typedef enum fault_kind {
@@ -104,7 +105,8 @@ START_TEST(start_with_a_fault_at_every_frame_ends_defined)
     unsigned failed = 0;
     srand(1);
     const uint64_t frames = frames_of_a_start();
-    for (uint64_t at = 0; at < frames; at++) {
+    const int stride = slowness();
+    for (uint64_t at = (uint64_t)sweep_first(_i, stride); at < frames; at += (uint64_t)stride) {
         single_fault_t fault = {.kind = kind, .at = at, .in_a_row = 1};
         const cm1e_error_t error = start_with(&fault);
         failed += error != CM1E_OK;
@@ -119,7 +121,7 @@ END_TEST
 START_TEST(start_that_loses_the_bus_at_any_frame_ends_with_an_error)
 {
     const uint64_t frames = frames_of_a_start();
-    for (uint64_t at = 0; at + 12 < frames; at += 3) { /* the last ones belong to the cycles after it */
+    for (uint64_t at = 0; at + 12 < frames; at += (uint64_t)sweep_stride(3, 12)) { /* the last ones belong to the cycles after it */
         single_fault_t fault = {.kind = LOSE_BACK, .at = at, .in_a_row = 1000000};
         sim_config(1);
         cm1e_bus_t *bus = open_bus();

@@ -11,6 +11,7 @@
 #include "bus/bus_image.h"
 #include "cm1e/plcopen.h"
 #include "cm1e/scheduler.h"
+#include "effort.h"
 #include "nic/nic.h"
 
 enum { CYCLE_NS = 1000000, SETTLE_CYCLES = 400, MAX_CYCLES = 4000 };
@@ -279,15 +280,20 @@ static void sweep(fault_kind_t kind)
     static run_t run;
     int phases[PHASE_COUNT] = {0};
     const int cycles = clean_run_cycles();
-    const char *stride_word = getenv("CM1E_SWEEP_STRIDE");
-    const int given = stride_word ? atoi(stride_word) : 1, stride = given > 0 ? given : 1;
-    for (int cycle = 0; cycle < cycles; cycle += stride) {
+    const int stride = slowness(), first = sweep_first(device * 3 + (int)kind, stride);
+    int runs = 0;
+    phase_t phase = PHASE_ENABLE; /* so short that none of its cycles is left out */
+    for (int cycle = 0; cycle < cycles; cycle++) {
+        if (phase != PHASE_ENABLE && cycle % stride != first)
+            continue;
         start(&run, kind, cycle);
         finish(&run);
-        phases[run.fault_phase]++;
+        phase = run.fault_phase;
+        phases[phase]++;
+        runs++;
     }
     printf("%s, order %d, %-28s %4d runs: %d in enable, %d in homing, %d in the move\n",
-           devices[device].firmware, devices[device].pdo_order, faults[kind].name, cycles / stride,
+           devices[device].firmware, devices[device].pdo_order, faults[kind].name, runs,
            phases[PHASE_ENABLE], phases[PHASE_HOME], phases[PHASE_MOVE]);
     ck_assert_int_gt(phases[PHASE_ENABLE], 0);
     ck_assert_int_gt(phases[PHASE_HOME], 0);
@@ -373,7 +379,8 @@ START_TEST(test_fault_at_every_frame_of_start_up_ends_defined)
     printf("start-up: %llu frames, %s at each\n", (unsigned long long)frames, faults[kind].name);
     ck_assert_uint_gt(frames, 50);
     /* A fault at the very last frames is left to the cycle to notice. */
-    for (uint64_t frame = 0; frame + 6 < frames; frame++)
+    const int stride = slowness();
+    for (uint64_t frame = (uint64_t)sweep_first(device * 3 + (int)kind, stride); frame + 6 < frames; frame += (uint64_t)stride)
         start_with_fault(kind, frame);
 }
 END_TEST

@@ -143,7 +143,7 @@ START_TEST(test_bus_away_for_a_while_makes_nothing_jump)
         const char *firmware;
     } variants[] = {{CM1E_MAPPING_DYNAMIC, "1.3.5"}, {CM1E_MAPPING_CSP, "1.3.0"}, {CM1E_MAPPING_CSV, "1.3.5"},
                     {CM1E_MAPPING_CSV, "1.3.2"}, {CM1E_MAPPING_DYNAMIC, "1.2.0"}};
-    const int step = SLOWNESS > 1 ? 13 : 1;
+    const int step = sweep_stride(1, 13);
     for (int cycles = 1; cycles < 160; cycles += cycles < 6 ? 1 : 4 + step)
         run(_i % BREAKS == BREAK_SECOND ? 3 : 2, variants[_i / BREAKS].mapping, variants[_i / BREAKS].firmware, (break_kind_t)(_i % BREAKS), cycles);
 }
@@ -182,7 +182,7 @@ static void blocked_program(bench_t *b)
 START_TEST(test_blocked_motor_does_not_jump_when_it_is_freed)
 {
     static const cm1e_mapping_t mappings[] = {CM1E_MAPPING_DYNAMIC, CM1E_MAPPING_CSP, CM1E_MAPPING_CSV};
-    for (freed_after = 1; freed_after < FREED_LATEST; freed_after += 1 + freed_after / 8 * SLOWNESS) {
+    for (freed_after = 1; freed_after < FREED_LATEST; freed_after += 1 + freed_after / 8 * slowness()) {
         cm1e_diag_t diag = {0};
         memset(&bench, 0, sizeof bench);
         bench_describe(&bench, 1);

@@ -226,7 +226,7 @@ START_TEST(test_a_turning_shaft_is_caught_where_it_is)
     static const int cycles[] = {10, 30, 61};
     for (size_t t = 0; t < sizeof torques_nm / sizeof torques_nm[0]; t++)
         for (size_t c = 0; c < sizeof cycles / sizeof cycles[0]; c++) {
-            if (SLOWNESS > 1 && (t + c) % 3)
+            if ((t + c) % (size_t)sweep_stride(1, 3))
                 continue;
             prepare_variant(_i);
             bench_open(&bench);
@@ -262,7 +262,7 @@ enum { TROUBLE_LOADS = 3, ENABLE_AT = 40, ENABLE_WAY = 20 };
 
 static void sweep_trouble(int variant, double torque_nm, int cycles)
 {
-    for (int cycle = ENABLE_AT - 2; cycle < ENABLE_AT + ENABLE_WAY; cycle += SLOWNESS > 1 ? 3 : 1) {
+    for (int cycle = ENABLE_AT - 2; cycle < ENABLE_AT + ENABLE_WAY; cycle += sweep_stride(1, 3)) {
         prepare_variant(variant);
         bench.fault = trouble_fault;
         trouble_cycle = cycle;
@@ -283,7 +283,7 @@ START_TEST(test_trouble_with_frames_while_enabling_moves_nothing)
     trouble = (trouble_t)(_i % TROUBLES);
     const double torque_nm = trouble_loads_nm[_i / TROUBLES];
     static const int variants[] = {0, 1, 2, 3, VARIANTS - 4, VARIANTS - 3, VARIANTS - 2, VARIANTS - 1};
-    for (size_t v = 0; v < sizeof variants / sizeof variants[0]; v += SLOWNESS > 1 ? 3 : 1)
+    for (size_t v = 0; v < sizeof variants / sizeof variants[0]; v += (size_t)sweep_stride(1, 3))
         for (int cycles = 1; cycles <= 4; cycles += cycles == 2 ? 2 : 1) /* 1, 2, 4: above the limit of 3 */
             sweep_trouble(variants[v], torque_nm, cycles);
 }

@@ -94,7 +94,7 @@ START_TEST(test_pause_at_every_phase_of_a_motion_makes_no_step)
     motion = (motion_t)(_i % MOTIONS);
     for (int mapping = CM1E_MAPPING_DYNAMIC; mapping <= CM1E_MAPPING_CSV; mapping += CM1E_MAPPING_CSV)
         for (size_t p = 0; p < sizeof pauses / sizeof pauses[0]; p++)
-            for (pause_at = 20; pause_at < 420; pause_at += 13 * SLOWNESS) {
+            for (pause_at = 20; pause_at < 420; pause_at += 13 * slowness()) {
                 memset(&bench, 0, sizeof bench);
                 bench_describe(&bench, 1);
                 bench.config.axes[0].mapping = (cm1e_mapping_t)mapping;

@@ -137,7 +137,7 @@ static cm1e_error_t run(cm1e_diag_t *diag)
 START_TEST(test_stop_at_every_cycle_ramps_down_and_disables)
 {
     int runs = 0;
-    const int stride = SLOWNESS > 1 ? 29 : _i ? 3 : 1;
+    const int stride = sweep_stride(_i ? 3 : 1, 29);
     for (int cycle = 0; !finished || runs == 0; cycle += stride, runs++) {
         cm1e_diag_t diag = {0};
         prepare(&variants[_i], cycle, stop);
@@ -197,7 +197,7 @@ START_TEST(test_disturbed_stop_still_ends_without_torque)
 {
     const variant_t *variant = &variants[_i / DISORDERS];
     const bool watchdog = strcmp(variant->firmware, "1.2.0") != 0;
-    const int stride = SLOWNESS > 1 ? 23 : 3;
+    const int stride = sweep_stride(3, 23);
     disorder = (disorder_t)(_i % DISORDERS);
     for (int phase = 0; phase < 2; phase++) /* in the middle of homing, and of the move */
         for (disorder_frame = 0; disorder_frame < 160; disorder_frame += (uint64_t)stride) {
@@ -273,7 +273,7 @@ START_TEST(test_master_that_stands_still_for_a_while_makes_nothing_jump)
 {
     static const int64_t stalls_ms[] = {2, 7, 40, 98, 105, 150, 600, 5000};
     const variant_t *variant = &variants[_i];
-    const int stride = SLOWNESS > 1 ? 101 : 17;
+    const int stride = sweep_stride(17, 101);
     for (size_t s = 0; s < sizeof stalls_ms / sizeof stalls_ms[0]; s++)
         for (int cycle = 3 + (int)s; cycle < 900; cycle += stride) {
             cm1e_diag_t diag = {0};
@@ -368,7 +368,7 @@ static void start_next_master(void)
 START_TEST(test_master_dies_at_every_cycle_and_the_next_one_starts)
 {
     const variant_t *variant = &variants[_i];
-    const int stride = SLOWNESS > 1 ? 67 : 5;
+    const int stride = sweep_stride(5, 67);
     for (volatile int cycle = 0; cycle < 900; cycle += stride) {
         cm1e_diag_t diag = {0};
         prepare(variant, cycle, die);

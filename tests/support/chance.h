@@ -10,11 +10,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-enum { SLOWNESS = 12 }; /* sanitizers: fewer and shorter runs */
-#else
-enum { SLOWNESS = 1 };
-#endif
+#include "effort.h"
 
 static uint64_t chance_state;
 
@@ -43,7 +39,7 @@ static inline int pick(int count) { return (int)((chance() >> 11) % (unsigned)co
 /** Runs of a random test: all seeds, or the one that the environment names. */
 static inline int seed_count(int count)
 {
-    const int all = count / SLOWNESS;
+    const int all = count / slowness();
     return getenv("CM1E_TEST_SEED") ? 1 : all > 0 ? all : 1;
 }
 

@@ -353,7 +353,7 @@ static char long_name[400];
 
 static void too_many_names(cm1e_description_t *device)
 {
-    static char names[300][8];
+    static char names[300][16];
     for (int i = 0; i < 300; i++) {
         cm1e_described_pdo_entry_t *entry = CM1E_APPEND(&file.arena, &device->pdos.at[i / 100].entries);
         snprintf(names[i], sizeof names[i], "n%d", i);

@@ -246,7 +246,7 @@ static void test_names_of_the_device_are_the_manuals(void)
 static void test_k_parameters_number_is_subindex_plus_20(void)
 {
     for (int sub = 1; sub <= 0x51; sub++) {
-        char name[8];
+        char name[16];
         snprintf(name, sizeof name, "K%d", sub + 20);
         TEST_ASSERT_EQUAL_STRING(name, cm1e_device_entry(0x60F6, (uint8_t)sub)->name);
     }

@@ -207,8 +207,9 @@ static void test_damaged_files_are_read_or_refused(void)
     TEST_ASSERT_EQUAL(CM1E_OK, cm1e_eni_write(&good, &made, &diag));
     char *bytes = malloc(good.size);
     TEST_ASSERT_NOT_NULL(bytes);
-    for (size_t i = 0; i < CUTS / SLOWNESS; i++)
-        try_bytes((const char *)good.bytes, good.size * i / (CUTS / SLOWNESS));
+    const size_t cuts = CUTS / (size_t)slowness();
+    for (size_t i = 0; i < cuts; i++)
+        try_bytes((const char *)good.bytes, good.size * i / cuts);
     for (int run = 0; run < seed_count(RUNS); run++) {
         chance_seed(seed_of(run));
         snprintf(attempt, sizeof attempt, "CM1E_TEST_SEED=%u", seed_of(run));
