@@ -254,8 +254,10 @@ static void check_words(const generate_options_t *options, struct argp_state *st
         argp_error(state, "only an ENI describes a network; leave out -i and -b");
     if (format == CM1E_FILE_ENI && options->mapping_given && !options->common.interface_name)
         argp_error(state, "the mapping of a configured axis stands in its bus file");
-    if (format == CM1E_FILE_ENI && options->what.devices)
-        argp_error(state, "the devices of an ENI come from the network, not from --device");
+    for (size_t i = 0; format == CM1E_FILE_ENI && options->what.devices && i < options->what.device_count; i++)
+        if (options->devices[i].model == CM1E_DEVICE_CM1E || options->common.interface_name)
+            argp_error(state, "the devices of an ENI come from the network; with a bus file alone, --device eb01 "
+                       "(eb02, eb12) states the identity of its bridges");
 }
 
 static error_t parse(int key, char *arg, struct argp_state *state)
@@ -303,7 +305,8 @@ static const struct argp_option table[] = {
     {"firmware", KEY_FIRMWARE, "VERSION", 0, "1.2.0 ... 1.3.5 (default)", 3},
     {"mapping", KEY_MAPPING, "MAPPING", 0, "dynamic (default), csp, csv or profile: the PDOs that the file chooses", 3},
     {"pdo-order", KEY_ORDER, "ORDER", 0, "ug-4.4 (default) or ug-7.2", 3},
-    {"vendor", KEY_VENDOR, "NUMBER", 0, "Bridge: vendor ID, needed; its guide does not state it", 3},
+    {"vendor", KEY_VENDOR, "NUMBER", 0,
+     "Bridge: vendor ID, needed, for an ENI of a bus file too; its guide does not state it", 3},
     {"product", KEY_PRODUCT, "NUMBER", 0, "Bridge: product code, needed", 3},
     {"revision", KEY_REVISION, "NUMBER", 0, "Bridge: revision, needed", 3},
     {"axes", KEY_AXES, "N", 0, "Bridge: 1 ... 4 (default)", 3},

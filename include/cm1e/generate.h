@@ -56,9 +56,10 @@ typedef struct cm1e_device_options {
 typedef struct cm1e_generate_options {
     cm1e_file_format_t format;
     cm1e_esi_layout_t layout;              /**< ESI */
-    const cm1e_device_options_t *devices;  /**< ESI, EC_EXTEND: one or more; SII: one; NULL: one CM1-E of defaults */
+    const cm1e_device_options_t *devices;  /**< ESI, EC_EXTEND: one or more; SII: one; NULL: one CM1-E of defaults.
+                                                ENI: the identity of its bridges, a device for each model */
     size_t device_count;
-    const cm1e_bus_config_t *network;      /**< ENI: the axes in the order of their positions; needed */
+    const cm1e_bus_config_t *network;      /**< ENI: where the axes stand; needed */
     uint16_t dc_mode;                      /**< EC_EXTEND Dc/Mode; 0: 0x0300 */
     uint16_t mailbox_rate;                 /**< EC_EXTEND MbxRate; 0: 100 */
 } cm1e_generate_options_t;
@@ -82,8 +83,8 @@ cm1e_error_t cm1e_generate(cm1e_file_t *file, const cm1e_generate_options_t *opt
 cm1e_error_t cm1e_generate_trio_program(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag);
 
 /** Writes the ENI of the network that a scan found. A CM1-E that is a configured axis has its name and mapping; the
- *  others run with `mapping`; devices of another kind by their SII. The bus has been scanned and does not operate; the
- *  caller owns it. CM1E_ERROR_STATE: it knows no slave; CM1E_ERROR_UNSUPPORTED: a CM1-E does not tell its firmware.
+ *  others run with `mapping`; a bridge has the names of its axes; devices of another kind by their SII. The bus has been
+ *  scanned and does not operate; the caller owns it. CM1E_ERROR_STATE: it knows no slave; CM1E_ERROR_UNSUPPORTED: a CM1-E does not tell its firmware.
  *  @rt block */
 cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_mapping_t mapping, cm1e_diag_t *diag);
 

@@ -6,6 +6,7 @@
 #include "description/describe.h"
 #include "description/expand.h"
 #include "description/sii.h"
+#include "device/bridge.h"
 #include "generate/ec_extend.h"
 #include "generate/eni.h"
 #include "generate/esi.h"
@@ -122,41 +123,105 @@ static cm1e_error_t generate_ec_extend(cm1e_file_t *file, const cm1e_generate_op
 
 /* ---- ENI of a configuration ------------------------------------------------------------------------------------- */
 
-/* Place on the wire (0 = first) of an axis; false: the configuration does not say. */
-static bool place_of(const cm1e_bus_config_t *network, uint32_t axis, uint32_t *place)
+/* A slave of the network: an axis, or the bridge that up to four of them stand behind. */
+typedef struct node {
+    const cm1e_axis_config_t *axis;       /* the first of them; NULL: nothing is known to stand there */
+    const char *motors[CM1E_BRIDGE_AXES]; /* as configured, "": any */
+    char name[CM1E_SLAVE_NAME];
+} node_t;
+
+/* The same bridge: the check of the configuration has seen to it that the channels differ. */
+static bool is_behind(const node_t *node, const cm1e_axis_config_t *axis)
 {
-    const cm1e_axis_config_t *config = &network->axes[axis];
-    if (config->address_kind == CM1E_ADDRESS_EXPLICIT_ID)
-        return false;
-    *place = config->address_kind == CM1E_ADDRESS_POSITION && config->address > 0 ? config->address - 1u : axis;
-    return *place < network->axis_count;
+    return node->axis && axis->channel && axis->address && node->axis->address_kind == axis->address_kind &&
+           node->axis->address == axis->address;
 }
 
-static cm1e_error_t describe_axis(cm1e_description_file_t *described, const cm1e_bus_config_t *network, uint32_t axis,
-                                  cm1e_diag_t *diag)
+/* Place on the wire (0 = first) of the slave of an axis, `count` are known before it; where the configuration does not
+ * say, one that there is not. */
+static uint32_t place_of(const cm1e_bus_config_t *network, uint32_t axis, const node_t *nodes, uint32_t count)
 {
     const cm1e_axis_config_t *config = &network->axes[axis];
-    cm1e_device_options_t options = {.mapping = config->mapping, .order = network->sim_pdo_order};
-    snprintf(options.firmware, sizeof options.firmware, "%s", config->firmware);
-    return cm1e_describe(described, &options, CM1E_ESI_FLAT, diag);
+    for (uint32_t place = 0; place < network->axis_count; place++)
+        if (is_behind(&nodes[place], config))
+            return place;
+    switch (config->address_kind) {
+    case CM1E_ADDRESS_POSITION: return config->address > 0 ? config->address - 1u : axis;
+    case CM1E_ADDRESS_ALIAS: return count;
+    default: return UINT32_MAX;
+    }
 }
 
-/* The slaves in the order of the wire; devices of `described` are in the order of the axes. */
-static cm1e_error_t order_slaves(cm1e_eni_slave_t *slaves, const cm1e_description_file_t *described,
-                                 const cm1e_bus_config_t *network, cm1e_diag_t *diag)
+static cm1e_error_t place_unknown(const cm1e_bus_config_t *network, const cm1e_axis_config_t *axis, cm1e_diag_t *diag)
+{
+    return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
+                         "axis %td (%s): where it stands on the wire does not follow from the configuration, or "
+                         "another device stands between the axes; make the ENI from a scan of the network",
+                         axis - network->axes + 1, axis->name);
+}
+
+/* The slaves in the order of the wire, in room for as many as there are axes. */
+static cm1e_error_t find_nodes(node_t *nodes, uint32_t *count, const cm1e_bus_config_t *network, cm1e_diag_t *diag)
 {
     for (uint32_t axis = 0; axis < network->axis_count; axis++) {
         const cm1e_axis_config_t *config = &network->axes[axis];
-        uint32_t place;
-        if (!place_of(network, axis, &place) || slaves[place].device)
-            return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                                 "axis %u (%s): where it stands on the wire does not follow from the configuration, "
-                                 "or another device stands between the axes; make the ENI from a scan of the network",
-                                 axis + 1, config->name);
-        slaves[place] = (cm1e_eni_slave_t){.device = &described->devices.at[axis], .name = config->name,
-                                           .alias = config->address_kind == CM1E_ADDRESS_ALIAS ? config->address : 0};
+        const uint32_t place = place_of(network, axis, nodes, *count);
+        node_t *node = place < network->axis_count ? &nodes[place] : NULL;
+        if (!node || (node->axis && !is_behind(node, config)))
+            return place_unknown(network, config, diag);
+        *count += !node->axis;
+        node->axis = node->axis ? node->axis : config;
+        cm1e_slave_name_add(node->name, config);
+        if (config->channel)
+            node->motors[config->channel - 1] = config->motor;
     }
+    for (uint32_t place = *count; place < network->axis_count; place++)
+        if (nodes[place].axis)
+            return place_unknown(network, nodes[place].axis, diag);
     return CM1E_OK;
+}
+
+static bool has_motors(cm1e_device_model_t model, const node_t *node)
+{
+    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
+        if (node->motors[i] && node->motors[i][0] &&
+            strcmp(node->motors[i], cm1e_bridge_motor_name(cm1e_bridge_motor(model, i))) != 0)
+            return false;
+    return true;
+}
+
+/* The bridge's guide states no identity: it has to be one of those that the user states. */
+static cm1e_error_t describe_bridge(cm1e_description_file_t *described, const node_t *node,
+                                    const cm1e_generate_options_t *options, cm1e_diag_t *diag)
+{
+    const cm1e_device_options_t *found = NULL;
+    for (size_t i = 0; options->devices && i < options->device_count; i++) {
+        const cm1e_device_options_t *device = &options->devices[i];
+        if (!cm1e_bridge_name(device->model) || !has_motors(device->model, node))
+            continue;
+        if (found)
+            return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
+                                 "%s: an %s and an %s can both be the bridge there; the motor of each of its axes says "
+                                 "which", node->name, cm1e_bridge_name(found->model), cm1e_bridge_name(device->model));
+        found = device;
+    }
+    if (!found)
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
+                             "%s: behind a bridge, whose guide states no identity, and no device is given that has "
+                             "these motors: state model (eb01, eb02, eb12), vendor, product code and revision, as "
+                             "`cm1e scan` shows them; or make the ENI from a scan of the network", node->name);
+    return cm1e_describe(described, found, CM1E_ESI_FLAT, diag);
+}
+
+static cm1e_error_t describe_node(cm1e_description_file_t *described, const node_t *node,
+                                  const cm1e_generate_options_t *options, cm1e_diag_t *diag)
+{
+    const cm1e_axis_config_t *config = node->axis;
+    if (config->channel)
+        return describe_bridge(described, node, options, diag);
+    cm1e_device_options_t device = {.mapping = config->mapping, .order = options->network->sim_pdo_order};
+    snprintf(device.firmware, sizeof device.firmware, "%s", config->firmware);
+    return cm1e_describe(described, &device, CM1E_ESI_FLAT, diag);
 }
 
 cm1e_error_t cm1e_file_of_eni(cm1e_file_t *file, const cm1e_eni_slave_t *slaves, size_t count, int64_t cycle_time_ns,
@@ -170,24 +235,42 @@ cm1e_error_t cm1e_file_of_eni(cm1e_file_t *file, const cm1e_eni_slave_t *slaves,
     return error;
 }
 
-static cm1e_error_t generate_eni(cm1e_file_t *file, const cm1e_bus_config_t *network, cm1e_diag_t *diag)
+static cm1e_error_t describe_nodes(cm1e_eni_slave_t *slaves, cm1e_description_file_t *described, const node_t *nodes,
+                                   uint32_t count, const cm1e_generate_options_t *options, cm1e_diag_t *diag)
 {
+    cm1e_error_t error = CM1E_OK;
+    for (uint32_t i = 0; i < count && error == CM1E_OK; i++)
+        error = describe_node(described, &nodes[i], options, diag);
+    for (uint32_t i = 0; i < count && error == CM1E_OK; i++) { /* only now: the list of devices moved while it grew */
+        const cm1e_axis_config_t *config = nodes[i].axis;
+        slaves[i] = (cm1e_eni_slave_t){.device = &described->devices.at[i], .name = nodes[i].name,
+                                       .alias = config->address_kind == CM1E_ADDRESS_ALIAS ? config->address : 0};
+    }
+    return error;
+}
+
+static cm1e_error_t generate_eni(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag)
+{
+    const cm1e_bus_config_t *network = options->network;
     if (!network || network->axis_count == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "an ENI describes a network: which axes are there?");
     cm1e_error_t error = cm1e_bus_config_check(network, diag);
     cm1e_eni_slave_t *slaves = calloc(network->axis_count, sizeof *slaves);
+    node_t *nodes = calloc(network->axis_count, sizeof *nodes);
     cm1e_description_file_t described = {0};
-    if (!slaves)
+    uint32_t count = 0;
+    if (!slaves || !nodes)
         error = cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
-    for (uint32_t axis = 0; error == CM1E_OK && axis < network->axis_count; axis++)
-        error = describe_axis(&described, network, axis, diag);
     if (error == CM1E_OK)
-        error = order_slaves(slaves, &described, network, diag);
+        error = find_nodes(nodes, &count, network, diag);
     if (error == CM1E_OK)
-        error = cm1e_file_of_eni(file, slaves, network->axis_count,
-                                 network->cycle_time_ns > 0 ? network->cycle_time_ns : 1000000, diag);
+        error = describe_nodes(slaves, &described, nodes, count, options, diag);
+    if (error == CM1E_OK)
+        error = cm1e_file_of_eni(file, slaves, count, network->cycle_time_ns > 0 ? network->cycle_time_ns : 1000000,
+                                 diag);
     cm1e_description_file_free(&described);
     free(slaves);
+    free(nodes);
     return error;
 }
 
@@ -211,7 +294,7 @@ cm1e_error_t cm1e_generate(cm1e_file_t *file, const cm1e_generate_options_t *opt
         return generate_described(file, options, diag);
     case CM1E_FILE_ESI: return generate_described(file, options, diag);
     case CM1E_FILE_EC_EXTEND: return generate_ec_extend(file, options, diag);
-    case CM1E_FILE_ENI: return generate_eni(file, options->network, diag);
+    case CM1E_FILE_ENI: return generate_eni(file, options, diag);
     default: return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "there is no such file format");
     }
 }

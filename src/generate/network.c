@@ -2,14 +2,20 @@
 #include <stdlib.h>
 
 #include "description/describe.h"
+#include "device/bridge.h"
 #include "generate/file.h"
 #include "generate/live.h"
 
-/* What the tables say of a CM1-E of this firmware with the chosen mapping: start-up commands, sync managers, PDOs. */
+/* What the tables say of a CM1-E of this firmware with the chosen mapping, or of a bridge of this model: start-up
+ * commands, sync managers, PDOs. */
 static cm1e_error_t describe_by_tables(cm1e_description_file_t *file, const cm1e_slave_info_t *slave,
                                        cm1e_mapping_t mapping, cm1e_diag_t *diag)
 {
     cm1e_device_options_t options = {.mapping = mapping};
+    const cm1e_device_options_t bridge = {.model = slave->model, .vendor_id = slave->vendor_id,
+                                          .product_code = slave->product_code, .revision = slave->revision};
+    if (slave->is_bridge)
+        return cm1e_describe(file, &bridge, CM1E_ESI_FLAT, diag);
     const cm1e_firmware_info_t *firmware = cm1e_firmware_from_version(slave->software_version);
     if (!firmware)
         return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0,
@@ -19,18 +25,30 @@ static cm1e_error_t describe_by_tables(cm1e_description_file_t *file, const cm1e
     return cm1e_describe(file, &options, CM1E_ESI_FLAT, diag);
 }
 
-/* The configured axis that this slave is; NULL: none. */
-static const cm1e_axis_config_t *axis_of(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave)
+/* The tables know it. The guide states no identity of a bridge: one with zeros in it goes by its SII. */
+static bool is_in_tables(const cm1e_slave_info_t *slave)
 {
+    return slave->is_cm1e || (slave->is_bridge && cm1e_bridge_name(slave->model) && slave->vendor_id &&
+                              slave->product_code && slave->revision);
+}
+
+/* The configured axis that this slave is, or the first behind it; NULL: none. `name`: of all of them. */
+static const cm1e_axis_config_t *axis_of(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave,
+                                         char name[CM1E_SLAVE_NAME])
+{
+    const cm1e_axis_config_t *first = NULL;
+    name[0] = 0;
     for (uint32_t i = 0; i < config->axis_count; i++) {
         const cm1e_axis_config_t *axis = &config->axes[i];
         const uint16_t address = axis->address_kind == CM1E_ADDRESS_ALIAS         ? slave->alias
                                  : axis->address_kind == CM1E_ADDRESS_EXPLICIT_ID ? slave->explicit_id
                                                                                   : slave->position;
-        if (axis->address == address && address != 0)
-            return axis;
+        if (axis->address != address || address == 0)
+            continue;
+        first = first ? first : axis;
+        cm1e_slave_name_add(name, axis);
     }
-    return NULL;
+    return first;
 }
 
 /* An entry of the live mapping with the name and type that the tables have for it. */
@@ -63,12 +81,12 @@ static void take_mappings(cm1e_arena_t *arena, cm1e_description_t *device, const
     device->revision = live->revision;
 }
 
-/* Appends what stands at `position`: a CM1-E with the chosen mapping, another device as its SII has it. */
+/* Appends what stands at `position`: a CM1-E with the chosen mapping, a bridge, another device as its SII has it. */
 static cm1e_error_t describe_slave(cm1e_description_file_t *file, cm1e_bus_t *bus, const cm1e_slave_info_t *slave,
                                    cm1e_mapping_t mapping, cm1e_findings_t *findings, cm1e_diag_t *diag)
 {
     cm1e_error_t error = cm1e_live_describe(file, bus, slave->position, findings, diag);
-    if (error != CM1E_OK || !slave->is_cm1e)
+    if (error != CM1E_OK || !is_in_tables(slave))
         return error;
     error = describe_by_tables(file, slave, mapping, diag);
     if (error != CM1E_OK)
@@ -93,12 +111,14 @@ cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_m
                                             : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
     for (uint32_t position = 1; error == CM1E_OK && position <= count; position++) {
         const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, position);
-        const cm1e_axis_config_t *axis = axis_of(cm1e_bus_configuration(bus), slave);
+        char name[CM1E_SLAVE_NAME];
+        const cm1e_axis_config_t *axis = axis_of(cm1e_bus_configuration(bus), slave, name);
         error = describe_slave(&described, bus, slave, axis ? axis->mapping : mapping, findings, diag);
         if (error == CM1E_OK)
             slaves[position - 1].name =
-                axis ? axis->name : cm1e_arena_format(&described.arena, "%s %u", slave->name[0] ? slave->name : "Slave",
-                                                      (unsigned)position);
+                axis ? cm1e_arena_text(&described.arena, name)
+                     : cm1e_arena_format(&described.arena, "%s %u", slave->name[0] ? slave->name : "Slave",
+                                         (unsigned)position);
     }
     if (error == CM1E_OK && described.arena.failed)
         error = cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");

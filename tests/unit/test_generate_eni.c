@@ -63,6 +63,92 @@ static void test_a_bus_file_gives_the_network_of_its_axes(void)
     golden_compare(eni_networks[ENI_THREE].file, file.bytes, file.size);
 }
 
+/* ---- axes behind bridges ---------------------------------------------------------------------------------------- */
+
+static cm1e_bus_config_t configured;
+
+/* Axes by place: 0 a CM1-E, else the channel of a bridge. */
+static void set_network(size_t count, const uint16_t (*axes)[2])
+{
+    cm1e_bus_config_init(&configured, "sim", (uint32_t)count);
+    for (size_t i = 0; i < count; i++) {
+        snprintf(configured.axes[i].name, sizeof configured.axes[i].name, "A%zu", i + 1);
+        configured.axes[i].address = axes[i][0];
+        configured.axes[i].channel = (uint8_t)axes[i][1];
+        configured.axes[i].k37 = 10;
+        configured.axes[i].k37_stated = axes[i][1] != 0;
+    }
+}
+
+static cm1e_error_t generate_network(const cm1e_device_options_t *devices, size_t count)
+{
+    const cm1e_generate_options_t options = {.format = CM1E_FILE_ENI, .network = &configured, .devices = devices,
+                                             .device_count = count};
+    cm1e_file_free(&file);
+    return cm1e_generate(&file, &options, &diag);
+}
+
+#define BRIDGE(model_, product) {.model = model_, .vendor_id = 0xAA77, .product_code = product, .revision = 1}
+static const cm1e_device_options_t eb12[] = {BRIDGE(CM1E_DEVICE_EB12, 0x12)};
+static const cm1e_device_options_t two_bridges[] = {BRIDGE(CM1E_DEVICE_EB01, 0x01), BRIDGE(CM1E_DEVICE_EB02, 0x02)};
+static const uint16_t mixed_axes[][2] = {{1, 0}, {2, 3}, {2, 1}, {3, 0}};
+
+static void test_axes_behind_a_bridge_are_one_slave(void)
+{
+    static const uint32_t products[] = {0x44412002, 0x12, 0x44412002};
+    static const char *const names[] = {"A1", "A2, A3", "A4"};
+    set_network(4, mixed_axes);
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, generate_network(eb12, 1), diag.text);
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_eni_read(&document, file.bytes, file.size, &diag));
+    TEST_ASSERT_EQUAL(3, document.devices.count);
+    for (int i = 0; i < 3; i++) {
+        TEST_ASSERT_EQUAL_HEX32(products[i], document.devices.at[i].product_code);
+        TEST_ASSERT_EQUAL_STRING(names[i], document.devices.at[i].name);
+    }
+    TEST_ASSERT_EQUAL(24 * 8, document.devices.at[1].send.length); /* all four motors, whoever has an axis */
+}
+
+static void test_the_bridge_is_the_stated_one_that_has_the_motors(void)
+{
+    static const uint16_t axes[][2] = {{1, 1}, {2, 4}};
+    set_network(2, axes);
+    strcpy(configured.axes[0].motor, "CM2");
+    strcpy(configured.axes[1].motor, "CM1");
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, generate_network(two_bridges, 2), diag.text);
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_eni_read(&document, file.bytes, file.size, &diag));
+    TEST_ASSERT_EQUAL_HEX32(0x02, document.devices.at[0].product_code);
+    TEST_ASSERT_EQUAL_HEX32(0x01, document.devices.at[1].product_code);
+}
+
+static void bridge_refused(const cm1e_device_options_t *devices, size_t count, const char *what)
+{
+    TEST_ASSERT_EQUAL(CM1E_ERROR_CONFIG, generate_network(devices, count));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, what), diag.text);
+}
+
+static void test_identity_of_a_bridge_has_to_be_stated(void)
+{
+    static const cm1e_device_options_t incomplete[] = {{.model = CM1E_DEVICE_EB12, .vendor_id = 0xAA77}};
+    static const cm1e_device_options_t a_motor[] = {{.model = CM1E_DEVICE_CM1E}};
+    set_network(4, mixed_axes);
+    bridge_refused(NULL, 0, "A2, A3: behind a bridge, whose guide states no identity");
+    bridge_refused(a_motor, 1, "whose guide states no identity");
+    bridge_refused(incomplete, 1, "missing");
+    bridge_refused(two_bridges, 2, "an EB01 and an EB02 can both be the bridge there");
+    strcpy(configured.axes[1].motor, "CM1");
+    strcpy(configured.axes[2].motor, "CM1");
+    bridge_refused(&two_bridges[1], 1, "no device is given that has these motors");
+}
+
+static void test_places_that_do_not_follow_are_refused(void)
+{
+    static const uint16_t gap[][2] = {{1, 1}, {1, 2}, {3, 0}}, first_missing[][2] = {{2, 1}, {2, 2}};
+    set_network(3, gap);
+    bridge_refused(eb12, 1, "axis 3 (A3): where it stands");
+    set_network(2, first_missing);
+    bridge_refused(eb12, 1, "axis 1 (A1): where it stands");
+}
+
 /* ---- what is in it ---------------------------------------------------------------------------------------------- */
 
 static const cm1e_eni_command_t *find_command(const cm1e_eni_device_t *device, const char *comment, uint16_t transition)
@@ -279,6 +365,10 @@ int main(void)
     RUN_TEST(test_variables_lie_where_their_slaves_data_do);
     RUN_TEST(test_the_alias_is_asked_for);
     RUN_TEST(test_more_than_a_frame_holds_goes_into_the_next);
+    RUN_TEST(test_axes_behind_a_bridge_are_one_slave);
+    RUN_TEST(test_the_bridge_is_the_stated_one_that_has_the_motors);
+    RUN_TEST(test_identity_of_a_bridge_has_to_be_stated);
+    RUN_TEST(test_places_that_do_not_follow_are_refused);
     RUN_TEST(test_networks_that_no_file_can_describe_are_refused);
     RUN_TEST(test_the_same_names_of_entries_get_numbers);
     return UNITY_END();
