@@ -99,7 +99,7 @@ static error_t parse_home(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
     case KEY_METHOD:
         options->homing_given = true;
-        if (!parse_number(arg, "the homing method", -6, 0, &method))
+        if (!parse_number(arg, "the homing method", -6, 4, &method))
             return EINVAL;
         options->homing.method = (int8_t)method;
         return 0;
@@ -324,7 +324,8 @@ int command_home(int argc, char **argv)
 {
     static const struct argp_option table[] = {
         {"method", KEY_METHOD, "METHOD", 0, "-1/-2 hard stop CW/CCW, -3/-4 input 2 CW/CCW, -5/-6 input 3 CW/CCW; "
-                                            "default: the bus file's homing", 0},
+                                            "behind a bridge 1/2 hard stop, 3/4 switch CW/CCW; default: the bus "
+                                            "file's homing", 0},
         {"velocity", 'v', "VELOCITY", 0, "Units/s", 0},
         {"acceleration", 'a', "ACCELERATION", 0, "Units/s2", 0},
         {"offset", KEY_OFFSET, "OFFSET", 0, "Units from the reference to the home position", 0},

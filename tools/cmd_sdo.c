@@ -1,5 +1,5 @@
-/** cm1e sdo read|write|list: one object of one slave, by its type in the device tables where the slave is a CM1-E; or
- *  the dictionary that the slave tells of itself. */
+/** cm1e sdo read|write|list: one object of one slave, by its type in the device tables where the slave is a CM1-E or a
+ *  bridge; or the dictionary that the slave tells of itself. */
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -79,7 +79,7 @@ static bool parse_object(const char *word, uint16_t *index, uint8_t *subindex)
 }
 
 /** Row of the type to use: the one asked for, else the device table's; -1: unknown (raw bytes); -2: complained. */
-static int find_type(const char *name, const cm1e_slave_info_t *slave, uint16_t index, uint8_t subindex)
+static int find_type(const char *name, const cm1e_entry_t *entry)
 {
     if (name) {
         for (int i = 0; i < TYPE_COUNT; i++)
@@ -88,7 +88,6 @@ static int find_type(const char *name, const cm1e_slave_info_t *slave, uint16_t 
         complain("there is no type \"%s\"; there are SINT INT DINT USINT UINT UDINT STRING", name);
         return -2;
     }
-    const cm1e_entry_t *entry = slave->is_cm1e ? cm1e_device_entry(index, subindex) : NULL;
     for (int i = 0; entry && i < TYPE_COUNT; i++)
         if (types[i].type == entry->type)
             return i;
@@ -101,7 +100,7 @@ static int64_t sign_extend(uint64_t value, unsigned bytes)
     return (int64_t)(value << shift) >> shift;
 }
 
-static void print_value(const uint8_t *data, size_t size, int type, bool json)
+static void print_value(const uint8_t *data, size_t size, int type, const cm1e_entry_t *entry, bool json)
 {
     char hex[3 * 64 + 4] = "", text[MAX_SDO_BYTES + 1];
     snprintf(text, sizeof text, "%.*s", (int)size, (const char *)data);
@@ -114,6 +113,8 @@ static void print_value(const uint8_t *data, size_t size, int type, bool json)
     const int64_t number = is_number && types[type].is_signed ? sign_extend(bits, (unsigned)size) : (int64_t)bits;
     if (json) {
         json_t *object = json_pack("{s:s, s:s}", "type", type >= 0 ? types[type].name : "raw", "bytes", hex);
+        if (entry)
+            json_object_set_new(object, "name", json_string(entry->name));
         if (is_text)
             json_object_set_new(object, "value", text_as_json(text));
         else if (is_number)
@@ -150,6 +151,18 @@ static size_t encode_value(const char *word, int type, uint8_t *data)
     return types[type].bytes;
 }
 
+/** Why a refusal was to be expected. */
+static int fail_at(const cm1e_entry_t *entry, const cm1e_diag_t *diag)
+{
+    const int status = fail(diag);
+    const char *mark = availability_mark(entry);
+    if (mark[0])
+        complain("0x%04X:%02X \"%s\" is marked \"%s\" in the guide: %s", entry->index, entry->subindex, entry->name,
+                 mark, entry->availability == CM1E_NO_PARAMETER ? "the motor has no such parameter"
+                                                                 : "it is listed, and there is no access to it");
+    return status;
+}
+
 static int transfer(cm1e_bus_t *bus, const sdo_options_t *options, cm1e_diag_t *diag)
 {
     long long position;
@@ -165,16 +178,17 @@ static int transfer(cm1e_bus_t *bus, const sdo_options_t *options, cm1e_diag_t *
         return EXIT_FAILED;
     }
     if (list)
-        return list_dictionary(bus, (uint16_t)position, options->values, options->common.json);
-    const int type = find_type(options->type_name, slave, index, subindex);
+        return list_dictionary(bus, slave, options->values, options->common.json);
+    const cm1e_entry_t *entry = find_entry(slave, index, subindex);
+    const int type = find_type(options->type_name, entry);
     if (type == -2)
         return EXIT_WRONG_USE;
     static uint8_t data[MAX_SDO_BYTES];
     size_t size = sizeof data;
     if (options->word_count == 3) {
         if (cm1e_sdo_read(bus, (uint16_t)position, index, subindex, data, &size, diag) != CM1E_OK)
-            return fail(diag);
-        print_value(data, size, type, options->common.json);
+            return fail_at(entry, diag);
+        print_value(data, size, type, entry, options->common.json);
         return EXIT_OK;
     }
     if (type < 0) {
@@ -184,7 +198,8 @@ static int transfer(cm1e_bus_t *bus, const sdo_options_t *options, cm1e_diag_t *
     size = encode_value(options->words[3], type, data);
     if (size == 0)
         return EXIT_WRONG_USE;
-    return cm1e_sdo_write(bus, (uint16_t)position, index, subindex, data, size, diag) == CM1E_OK ? EXIT_OK : fail(diag);
+    const cm1e_error_t error = cm1e_sdo_write(bus, (uint16_t)position, index, subindex, data, size, diag);
+    return error == CM1E_OK ? EXIT_OK : fail_at(entry, diag);
 }
 
 /** A negative value looks like an option: such a word goes to the end, behind a "--". */

@@ -1,4 +1,5 @@
-/** cm1e status: every drive's state, error and measurements in words, read over SDO without touching the motor. */
+/** cm1e status: every drive's state, error and measurements in words, read over SDO without touching the motor. Of
+ *  bridges: status_bridge.c. */
 #include <stdio.h>
 #include <string.h>
 
@@ -6,6 +7,7 @@
 #include "command.h"
 #include "core/bytes.h"
 #include "device/device.h"
+#include "status_bridge.h"
 
 /** What is read, in the order of the printed lines; values as the device has them. */
 static const struct {
@@ -101,6 +103,30 @@ static json_t *drive_as_json(const cm1e_slave_info_t *slave, const drive_status_
     return object;
 }
 
+/** Appends to `all`, or prints where that is NULL. FALSE: the statusword cannot be read. */
+static bool show_drive(cm1e_bus_t *bus, const cm1e_slave_info_t *slave, json_t *all, cm1e_diag_t *diag)
+{
+    drive_status_t drive = {0};
+    read_drive(bus, slave->position, &drive, diag);
+    if (all)
+        json_array_append_new(all, drive_as_json(slave, &drive));
+    else
+        print_drive(slave, &drive);
+    return drive.valid[STATUSWORD];
+}
+
+static bool show_bridge(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave, json_t *all,
+                        cm1e_diag_t *diag)
+{
+    bridge_status_t bridge = {0};
+    const bool readable = read_bridge(bus, slave->position, &bridge, diag);
+    if (all)
+        json_array_append_new(all, bridge_status_as_json(config, slave, &bridge));
+    else
+        print_bridge(config, slave, &bridge);
+    return readable;
+}
+
 int command_status(int argc, char **argv)
 {
     static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
@@ -120,24 +146,17 @@ int command_status(int argc, char **argv)
         cm1e_bus_close(bus);
         return fail(&diag);
     }
-    json_t *all = json_array();
+    json_t *all = options.json ? json_array() : NULL;
     bool readable = true;
     for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++) {
         const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, i);
-        drive_status_t drive = {0};
-        if (!slave->is_cm1e)
-            continue;
-        read_drive(bus, slave->position, &drive, &diag);
-        readable = readable && drive.valid[STATUSWORD];
-        if (options.json)
-            json_array_append_new(all, drive_as_json(slave, &drive));
-        else
-            print_drive(slave, &drive);
+        if (slave->is_cm1e)
+            readable = show_drive(bus, slave, all, &diag) && readable;
+        else if (slave->is_bridge)
+            readable = show_bridge(bus, &config, slave, all, &diag) && readable;
     }
-    if (options.json)
+    if (all)
         print_json(all);
-    else
-        json_decref(all);
     cm1e_bus_close(bus);
     return readable ? EXIT_OK : fail(&diag);
 }

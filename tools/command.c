@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cm1e/bridge.h"
 #include "core/text.h"
 
 enum { KEY_PCAP = 0x100, KEY_JSON };
@@ -82,6 +83,50 @@ bool load_configuration(const common_options_t *options, cm1e_bus_config_t *conf
            || copy_word(config->pcap_file, sizeof config->pcap_file, options->pcap_file, "the name of the pcap file");
 }
 
+static const cm1e_slave_info_t *first_bridge(const cm1e_bus_t *bus)
+{
+    for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++)
+        if (cm1e_bus_slave(bus, position)->is_bridge)
+            return cm1e_bus_slave(bus, position);
+    return NULL;
+}
+
+/** What to ask the motors of a bridge for. */
+static void print_questions(const cm1e_bus_t *bus, const char *interface_name)
+{
+    for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++)
+        for (int id = 1; cm1e_bus_slave(bus, position)->is_bridge && id <= CM1E_BRIDGE_AXES; id++)
+            fprintf(stderr, "  cm1e cml -i %s --slave %u \"K37.%d\"\n", interface_name, (unsigned)position, id);
+}
+
+/** A bus file that the loader takes when K37 stands in it. */
+static void print_bus_file(const cm1e_bus_t *bus, const char *interface_name)
+{
+    unsigned axis = 0;
+    fprintf(stderr, "bus:\n  interface: %s\naxes:\n", interface_name);
+    for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++) {
+        const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, position);
+        if (slave->is_cm1e)
+            fprintf(stderr, "  - {name: axis%u, position: %u}\n", ++axis, (unsigned)position);
+        for (int id = 1; slave->is_bridge && id <= CM1E_BRIDGE_AXES; id++)
+            fprintf(stderr, "  - {name: axis%u, position: %u, channel: %d, k37: ANSWER-TO-K37.%d}\n", ++axis,
+                    (unsigned)position, id, id);
+    }
+}
+
+static bool refuse_bridge(const cm1e_bus_t *bus, const char *interface_name)
+{
+    const cm1e_slave_info_t *bridge = first_bridge(bus);
+    if (!bridge)
+        return true;
+    complain("slave %u is a bridge: how far a motor behind it turns by a count depends on its K37, which no scan shows. "
+             "Ask each motor", bridge->position);
+    print_questions(bus, interface_name);
+    fprintf(stderr, "and put the answers into a bus file, which you give with -b:\n");
+    print_bus_file(bus, interface_name);
+    return false;
+}
+
 bool load_axes(const common_options_t *options, cm1e_bus_config_t *config)
 {
     if (!load_configuration(options, config))
@@ -100,7 +145,10 @@ bool load_axes(const common_options_t *options, cm1e_bus_config_t *config)
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++)
         if (cm1e_bus_slave(bus, position)->is_cm1e && config->axis_count < CM1E_MAX_AXES)
             config->axes[config->axis_count++].address = (uint16_t)position;
+    const bool known = refuse_bridge(bus, config->interface_name);
     cm1e_bus_close(bus);
+    if (!known)
+        return false;
     if (config->axis_count == 0)
         complain("there is no CM1-E on %s", config->interface_name);
     return config->axis_count > 0;
@@ -117,6 +165,19 @@ int find_axis(const cm1e_bus_config_t *config, const char *word)
         return (int)number - 1;
     complain("there is no axis \"%s\"; there are 1 ... %u%s", word, config->axis_count,
              config->axes[0].name[0] ? ", or their names in the bus file" : "");
+    return -1;
+}
+
+int find_axis_at(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave, uint8_t channel)
+{
+    const uint32_t addresses[] = {[CM1E_ADDRESS_POSITION] = slave->position, [CM1E_ADDRESS_ALIAS] = slave->alias,
+                                  [CM1E_ADDRESS_EXPLICIT_ID] = slave->explicit_id};
+    for (uint32_t i = 0; i < config->axis_count; i++) {
+        const cm1e_axis_config_t *axis = &config->axes[i];
+        const uint32_t address = axis->address ? axis->address : i + 1; /* the default is the place in the list */
+        if (axis->channel == channel && addresses[axis->address_kind] == address)
+            return (int)i;
+    }
     return -1;
 }
 

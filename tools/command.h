@@ -43,11 +43,15 @@ extern const struct argp common_argp;
 bool load_configuration(const common_options_t *options, cm1e_bus_config_t *config);
 
 /** As load_configuration(), but without a bus file the network is scanned and every CM1-E found becomes an axis with
- *  default settings (unit: revolution). */
+ *  default settings (unit: revolution). Of a motor behind a bridge no scan shows how far a count is: where there is a
+ *  bridge, it complains and writes a bus file to be completed. */
 bool load_axes(const common_options_t *options, cm1e_bus_config_t *config);
 
 /** Finds an axis of the configuration by name or number (1 = first); -1 and a complaint: there is none. */
 int find_axis(const cm1e_bus_config_t *config, const char *word);
+
+/** The axis of the configuration at a slave, and behind a bridge at a connector (1 ... 4; else 0); -1: none. */
+int find_axis_at(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave, uint8_t channel);
 
 /** A whole decimal or 0x number within [minimum, maximum]; false and a complaint that names `what` otherwise. */
 bool parse_number(const char *word, const char *what, long long minimum, long long maximum, long long *value);

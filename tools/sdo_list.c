@@ -8,17 +8,34 @@
 #include "command.h"
 #include "core/bytes.h"
 #include "description/description.h"
+#include "device/bridge.h"
 
 enum { OBJECTS_MAX = 0x10000, VALUE_BYTES = 256, VALUE_TEXT = 300 };
 
 typedef struct list {
     cm1e_bus_t *bus;
+    const cm1e_slave_info_t *slave;
     uint16_t position;
     bool values;
     json_t *json;        /* array; NULL: print */
     cm1e_arena_t arena;  /* names of types */
     cm1e_diag_t diag;
 } list_t;
+
+/* ---- what the tables know --------------------------------------------------------------------------------------- */
+
+const cm1e_entry_t *find_entry(const cm1e_slave_info_t *slave, uint16_t index, uint8_t subindex)
+{
+    return slave->is_cm1e     ? cm1e_device_entry(index, subindex)
+           : slave->is_bridge ? cm1e_bridge_entry(slave->model, index, subindex)
+                              : NULL;
+}
+
+const char *availability_mark(const cm1e_entry_t *entry)
+{
+    static const char *const marks[] = {[CM1E_AVAILABLE] = "", [CM1E_NOT_AVAILABLE] = "N/A", [CM1E_NO_PARAMETER] = "-"};
+    return marks[entry ? entry->availability : CM1E_AVAILABLE];
+}
 
 /** A refusal concerns one object; everything else would concern the next one, too. */
 static bool goes_on(cm1e_error_t error) { return error == CM1E_OK || error == CM1E_ERROR_SDO_ABORT; }
@@ -75,7 +92,7 @@ static char access_letter(uint16_t access, uint16_t preop, uint16_t others, char
     return (access & others) ? letter : (access & preop) ? 'p' : '-';
 }
 
-static void print_entry(const cm1e_entry_info_t *entry, const char *type, const json_t *value)
+static void print_entry(const cm1e_entry_info_t *entry, const char *type, const char *mark, const json_t *value)
 {
     const char access[] = {
         access_letter(entry->access, CM1E_INFO_READ_PREOP, CM1E_INFO_READ_SAFEOP | CM1E_INFO_READ_OP, 'r'),
@@ -89,6 +106,8 @@ static void print_entry(const cm1e_entry_info_t *entry, const char *type, const 
         printf(" = %" JSON_INTEGER_FORMAT, json_integer_value(value));
     else if (value)
         printf(" = \"%s\"", json_string_value(value));
+    if (mark[0])
+        printf("  (%s)", mark);
     putchar('\n');
 }
 
@@ -98,7 +117,7 @@ static void set_told(json_t *object, const char *key, const char *type, const cm
         json_object_set_new(object, key, value_as_json(type, value->bytes, value->size));
 }
 
-static json_t *entry_as_json(const cm1e_entry_info_t *entry, const char *type, json_t *value)
+static json_t *entry_as_json(const cm1e_entry_info_t *entry, const char *type, const char *mark, json_t *value)
 {
     const uint16_t access = entry->access;
     json_t *object = json_pack(
@@ -111,6 +130,8 @@ static json_t *entry_as_json(const cm1e_entry_info_t *entry, const char *type, j
     set_told(object, "maximum", type, &entry->maximum);
     if (value)
         json_object_set(object, "value", value);
+    if (mark[0])
+        json_object_set_new(object, "availability", json_string(mark));
     return object;
 }
 
@@ -124,11 +145,12 @@ static cm1e_error_t list_entry(list_t *list, uint16_t index, uint8_t subindex, j
     char number[16];
     snprintf(number, sizeof number, "type 0x%04X", entry.data_type);
     const char *type = known ? known : number;
+    const char *mark = availability_mark(find_entry(list->slave, index, subindex));
     json_t *value = read_value(list, &entry, type);
     if (entries)
-        json_array_append_new(entries, entry_as_json(&entry, type, value));
+        json_array_append_new(entries, entry_as_json(&entry, type, mark, value));
     else
-        print_entry(&entry, type, value);
+        print_entry(&entry, type, mark, value);
     json_decref(value);
     return CM1E_OK;
 }
@@ -162,9 +184,11 @@ static cm1e_error_t list_object(list_t *list, uint16_t index)
     return error;
 }
 
-int list_dictionary(cm1e_bus_t *bus, uint16_t position, bool values, bool json)
+int list_dictionary(cm1e_bus_t *bus, const cm1e_slave_info_t *slave, bool values, bool json)
 {
-    list_t list = {.bus = bus, .position = position, .values = values, .json = json ? json_array() : NULL};
+    const uint16_t position = slave->position;
+    list_t list = {.bus = bus, .slave = slave, .position = position, .values = values,
+                   .json = json ? json_array() : NULL};
     uint16_t *indexes = calloc(OBJECTS_MAX, sizeof *indexes);
     size_t count = OBJECTS_MAX;
     cm1e_error_t error = indexes ? cm1e_sdo_info_list(bus, position, CM1E_OBJECTS_ALL, indexes, &count, &list.diag)

@@ -40,6 +40,9 @@ typedef enum cm1e_bridge_mode {
     CM1E_BRIDGE_MODE_CPIO = 121,
 } cm1e_bridge_mode_t;
 
+/** "csp", "hm", "CML", "CMD", "CPIO"; NULL: it is none of these. */
+const char *cm1e_bridge_mode_name(int8_t mode);
+
 /** "EB01"; NULL: the model is no bridge. */
 const char *cm1e_bridge_name(cm1e_device_model_t model);
 /** EB01: four CM1, EB02: four CM2, EB12: CM1 on axes 0 and 1, CM2 on axes 2 and 3 (BR 1.4). */

@@ -84,6 +84,18 @@ const char *cm1e_bridge_status_cure(cm1e_bridge_motor_t motor, uint32_t status)
     return rest ? "look it up in the motor's guide, and reset the fault" : "";
 }
 
+const char *cm1e_bridge_mode_name(int8_t mode)
+{
+    switch (mode) {
+    case CM1E_BRIDGE_MODE_CSP: return "csp";
+    case CM1E_BRIDGE_MODE_HM: return "hm";
+    case CM1E_BRIDGE_MODE_CML: return "CML";
+    case CM1E_BRIDGE_MODE_CMD: return "CMD";
+    case CM1E_BRIDGE_MODE_CPIO: return "CPIO";
+    default: return NULL;
+    }
+}
+
 uint32_t cm1e_bridge_bits_per_second(uint32_t baud_rate) { return baud_rate == 6 ? 176800 : 0; }
 
 bool cm1e_bridge_status_is_error(cm1e_bridge_motor_t motor, uint32_t status)

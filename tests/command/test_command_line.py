@@ -6,6 +6,7 @@ test_command_line.py BIN-DIRECTORY SOURCE-DIRECTORY
 """
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -306,6 +307,70 @@ def check_networks(folder):
     expect(plain.returncode == 0 and "<Pdo>5633</Pdo>" in plain.stdout, "ENI of a scan with a mapping", plain)
 
 
+BRIDGED = """\
+bus:
+  interface: sim
+axes:
+  - {name: first, position: 1}
+  - {name: left, position: 2, channel: 1, motor: CM1, k37: 10}
+  - {name: lift, position: 2, channel: 3, motor: CM2, k37: 3}
+"""
+
+
+def check_bridge(folder):
+    """A bridge behind a motor: its axes by name, its objects by the bridge's dictionary, one slave in the ENI."""
+    bus = os.path.join(folder, "bridge.yaml")
+    with open(bus, "w", encoding="utf-8") as file:
+        file.write(BRIDGED)
+    status = run("cm1e", "status", "-b", bus, "--json")
+    drives = json.loads(status.stdout)
+    expect(len(drives) == 2 and "dc_link_volt" in drives[0] and drives[1]["bridge"] == "EB12", "status", status)
+    motors = drives[1]["motors"]
+    expect([motor["axis"] for motor in motors] == ["left", None, "lift", None], "axes of a bridge", status)
+    expect([motor["status_text"] for motor in motors] == ["in position"] * 2 + ["motor free"] * 2, "words", status)
+    expect(all(motor["state"] == "Switch on disabled" and motor["mode_name"] == "csp" for motor in motors), "states",
+           status)
+    text = run("cm1e", "status", "-b", bus)
+    expect("motor 3: CM2, axis \"lift\"" in text.stdout and "176800 bit/s, every 1 ms" in text.stdout, "status", text)
+    k24 = run("cm1e", "sdo", "-b", bus, "read", "2", "0x70F6:4", "--json")
+    expect(json.loads(k24.stdout)["name"] == "K24" and json.loads(k24.stdout)["type"] == "DINT", "sdo read", k24)
+    for index, mark in (("0x603F", '"N/A"'), ("0x60F6:42", '"-"')):
+        refused = run("cm1e", "sdo", "-b", bus, "read", "2", index)
+        expect(refused.returncode == FAILED and f"marked {mark} in the guide" in refused.stderr, index, refused)
+    objects = json.loads(run("cm1e", "sdo", "-b", bus, "list", "2", "--json").stdout)
+    marks = {(row["index"], entry["subindex"]): entry.get("availability") for row in objects for entry in row["entries"]}
+    expect((marks[0x603F, 0], marks[0x60F6, 42], marks[0x6041, 0]) == ("N/A", "-", None), "sdo list", text)
+    move = run("cm1e", "move", "-b", bus, "left", "--by", "0.5", "--json")
+    expect(move.returncode == 0 and json.loads(move.stdout)["axis"] == "left", "move behind a bridge", move)
+    check_unknown_bridge(folder, bus)
+    refused = run("cm1e", "generate", "eni", "-b", bus, "-o", "-")
+    expect(refused.returncode == WRONG_USE and "left, lift: behind a bridge" in refused.stderr, "ENI", refused)
+    configured = run("cm1e", "generate", "eni", "-b", bus, "-o", "-", "--device", "eb12", "--vendor", "0xAA77",
+                     "--product", "0xEB12", "--revision", "0x10000")
+    path = os.path.join(folder, "bridge.eni")
+    scanned = run("cm1e", "generate", "eni", "-b", bus, "-i", "sim", "-o", path)
+    with open(path, encoding="utf-8") as file:
+        expect(configured.returncode == scanned.returncode == 0 and configured.stdout == file.read(), "ENI of a scan",
+               configured)
+    expect(run("cm1e", "check", path).returncode == 0, "check of it", scanned)
+    beside = run("cm1e", "diff", path, "-b", bus)
+    expect(beside.returncode == 0 and "slave 2, 0 errors, 0 warnings" in beside.stdout, "diff of it", beside)
+
+
+def check_unknown_bridge(folder, bus):
+    """Without a bus file nothing is guessed; the one that is printed holds when K37 is filled in."""
+    refused = run("cm1e", "move", "-i", f"sim:{bus}", "--by", "1")
+    expect(refused.returncode == FAILED and f"cm1e cml -i sim:{bus} --slave 2 \"K37.3\"" in refused.stderr,
+           "move without a bus file", refused)
+    printed = refused.stderr[refused.stderr.index("bus:\n"):]
+    path = os.path.join(folder, "printed.yaml")
+    for text, status in ((printed, WRONG_USE), (re.sub(r"ANSWER-TO-K37\.\d", "10", printed), 0)):
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        scan = run("cm1e", "scan", "-b", path)
+        expect(scan.returncode == status and (status == 0 or "k37" in scan.stderr), "the printed bus file", scan)
+
+
 def check_examples(folder):
     for words in (["01_scan"], ["02_move_one_axis"],
                   ["03_plc_program", "-b", f"{SOURCE}/examples/three_axes.yaml", "--seconds", "6",
@@ -398,6 +463,8 @@ WRONG = [
      "bus file"),
     (["generate", "eni", "-o", "x", "-b", "/no/such/file"], WRONG_USE, "/no/such/file"),
     (["generate", "eni", "-o", "x", "-i", "sim", "--device", "eb01"], WRONG_USE, "network"),
+    (["generate", "eni", "-o", "x", "-b", f"{SOURCE}/examples/three_axes.yaml", "--vendor", "1"], WRONG_USE,
+     "identity of its bridges"),
     (["generate", "esi", "-o", "x", "--from", "/no/such/file"], FAILED, "/no/such/file"),
     (["generate", "esi", "-o", "x", "--from", f"{SOURCE}/README.md"], FAILED, "no file of a known format"),
     (["check"], WRONG_USE, "which file"),
@@ -423,6 +490,7 @@ def check_wrong():
 def main():
     with tempfile.TemporaryDirectory() as folder:
         check_good(folder)
+        check_bridge(folder)
         check_examples(folder)
     check_wrong()
     print("\n".join(faults) or f"the command line: good use and {len(WRONG)} kinds of wrong use")

@@ -187,6 +187,21 @@ static void test_only_one_baud_rate_is_known(void)
         TEST_ASSERT_EQUAL(code == 6 ? 176800 : 0, cm1e_bridge_bits_per_second(code));
 }
 
+/* BR 6 */
+static void test_five_modes_have_names(void)
+{
+    static const struct {
+        int8_t mode;
+        const char *name;
+    } modes[] = {{6, "hm"}, {8, "csp"}, {101, "CML"}, {120, "CMD"}, {121, "CPIO"}};
+    int named = 0;
+    for (int mode = INT8_MIN; mode <= INT8_MAX; mode++)
+        named += cm1e_bridge_mode_name((int8_t)mode) != NULL;
+    TEST_ASSERT_EQUAL(5, named);
+    for (int i = 0; i < 5; i++)
+        TEST_ASSERT_EQUAL_STRING(modes[i].name, cm1e_bridge_mode_name(modes[i].mode));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -196,5 +211,6 @@ int main(void)
     RUN_TEST(test_text_in_too_little_room_is_cut);
     RUN_TEST(test_status_of_cpio_is_the_low_half_of_the_same_table);
     RUN_TEST(test_only_one_baud_rate_is_known);
+    RUN_TEST(test_five_modes_have_names);
     return UNITY_END();
 }

@@ -6,6 +6,7 @@ second master is killed while its motors turn, and the watchdog of the bridge fr
 
 test_bridge.py CM1E PYTHON: starts the segment and runs itself with --master or --killed in the master's namespace.
 """
+import json
 import os
 import re
 import signal
@@ -348,6 +349,31 @@ def kill_master(segment, python):
     print(f"killed master: {free}")
 
 
+def check_words(segment, cm1e):
+    """`cm1e status` of a bridge with two motors in dead ends, one without its cable, and one in overload."""
+    segment.console("motor 1 2 unplug")
+    segment.console("motor 1 4 error overload")
+    time.sleep(0.1)
+    result = segment.run([cm1e, "status", "-i", wire.MASTER_INTERFACE, "--json"])
+    wire.check(result.returncode == 0, f"cm1e status: {result.stdout}{result.stderr}")
+    motors = json.loads(result.stdout)[0]["motors"]
+    modes = [motor["mode_name"] for motor in motors]
+    wire.check("CMD" in modes and "CPIO" in modes, f"cm1e status: modes {modes}")
+    for motor in motors:
+        wire.check((motor["state"] == "none in CMD mode") == (motor["mode_name"] == "CMD"), f"cm1e status: {motor}")
+        wire.check(motor["state"] != "unknown state", f"cm1e status: {motor}")
+    for motor, words, cure in ((motors[1], "serial communication error", "cable"), (motors[3], "overload", "load")):
+        wire.check(motor["status_text"] == words and cure in motor["what_to_do"], f"cm1e status: {motor}")
+    wire.check(motors[1]["receive_errors"] > 50 and motors[1]["sent"] - motors[1]["received"] > 50,
+               f"cm1e status: {motors[1]}")
+    wire.check(motors[0]["bits_per_second"] == 176800 and motors[0]["receive_errors"] == 0,
+               f"cm1e status: {motors[0]}")
+    text = segment.run([cm1e, "status", "-i", wire.MASTER_INTERFACE]).stdout
+    for words in ("0x0F serial communication error", "what to do       check the cable", "only power-off leads back"):
+        wire.check(words in text, f"cm1e status lacks \"{words}\":\n{text}")
+    segment.console("motor 1 2 replug")
+
+
 def main(cm1e, python):
     with wire.segment(cm1e, "--bridge", "eb12") as segment:
         found = segment.run([cm1e, "scan", "-i", wire.MASTER_INTERFACE])
@@ -356,6 +382,7 @@ def main(cm1e, python):
         result = segment.run([python, os.path.abspath(__file__), "--master"])
         print(result.stdout + result.stderr, end="")
         wire.check(result.returncode == 0, f"the master ended with {result.returncode}; {segment.console('status 1')}")
+        check_words(segment, cm1e)
         segment.console("power-cycle 1 100")  # two motors are in modes from which nothing else leads to csp
         time.sleep(0.3)
         kill_master(segment, python)
