@@ -84,8 +84,8 @@ cm1e_error_t cm1e_generate_trio_program(cm1e_file_t *file, const cm1e_generate_o
 
 /** Writes the ENI of the network that a scan found. A CM1-E that is a configured axis has its name and mapping; the
  *  others run with `mapping`; a bridge has the names of its axes; devices of another kind by their SII. The bus has
- *  been scanned and does not operate; the caller owns it. CM1E_ERROR_STATE: it knows no slave; CM1E_ERROR_UNSUPPORTED: a
- *  CM1-E does not tell its firmware. @rt block */
+ *  been scanned and does not operate; the caller owns it. CM1E_ERROR_STATE: it knows no slave; CM1E_ERROR_UNSUPPORTED:
+ *  a CM1-E does not tell its firmware. @rt block */
 cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_mapping_t mapping, cm1e_diag_t *diag);
 
 /** Reads a file of any of the formats and writes it anew in `format`: the same one, or ESI and SII out of each other.
