@@ -1,6 +1,6 @@
 /* Start-up with a fault at every single frame: it succeeds or ends with an error in words, in bounded time, and no
  * motor moves. And what a slave can refuse is reported in its own words. */
-#include "bus_support.h"
+#include "bridge_segment.h"
 #include "effort.h"
 #include "sim/esc.h"
 
@@ -61,9 +61,26 @@ static cm1e_tap_verdict_t strike(void *context, cm1e_tap_frame_t *frame)
     return CM1E_TAP_PASS;
 }
 
+/** One CM1-E, or four motors behind a bridge. */
+static bool with_bridge;
+
+static void configure_network(void)
+{
+    sim_config(with_bridge ? CM1E_BRIDGE_AXES : 1);
+    for (uint8_t i = 0; i < CM1E_BRIDGE_AXES && with_bridge; i++)
+        expect_bridged(i, 1, (uint8_t)(i + 1), i < 2 ? "CM1" : "CM2");
+}
+
 static void check_nothing_moved(cm1e_bus_t *bus)
 {
     cm1e_sim_probe_t probe;
+    for (unsigned i = 0; i < CM1E_BRIDGE_AXES && with_bridge; i++) {
+        const cm1e_sim_bridge_axis_t *axis = &bridge_at(bus, 1)->axes[i];
+        ck_assert_int_ne(axis->state, OPERATION_ENABLED);
+        ck_assert_double_eq(axis->mechanics.position, 0);
+    }
+    if (with_bridge)
+        return;
     cm1e_sim_probe(segment_of(bus), 1, &probe);
     ck_assert(!probe.torque_on);
     ck_assert_double_eq(probe.travel_counts, 0);
@@ -72,7 +89,7 @@ static void check_nothing_moved(cm1e_bus_t *bus)
 /** Runs a start with the fault. Returns its result. */
 static cm1e_error_t start_with(single_fault_t *fault)
 {
-    sim_config(1);
+    configure_network();
     cm1e_bus_t *bus = open_bus();
     cm1e_nic_set_tap(cm1e_bus_nic(bus), strike, fault);
     const cm1e_error_t error = cm1e_bus_start(bus, &diag);
@@ -98,9 +115,8 @@ static uint64_t frames_of_a_start(void)
     return fault.seen;
 }
 
-START_TEST(start_with_a_fault_at_every_frame_ends_defined)
+static void sweep_a_start(fault_kind_t kind)
 {
-    const fault_kind_t kind = (fault_kind_t)_i;
     const bool harmless = kind == LOSE_THERE || kind == LOSE_BACK || kind == TWICE || kind == LATE || kind == CUT;
     unsigned failed = 0;
     srand(1);
@@ -116,14 +132,29 @@ START_TEST(start_with_a_fault_at_every_frame_ends_defined)
     ck_assert_uint_gt(frames, 200);
     printf("%s: %u of %u starts failed\n", kind_names[kind], failed, (unsigned)frames);
 }
+
+START_TEST(start_with_a_fault_at_every_frame_ends_defined) { sweep_a_start((fault_kind_t)_i); }
+END_TEST
+
+START_TEST(start_of_a_bridge_with_a_fault_at_every_frame_ends_defined)
+{
+    if (getenv("CM1E_TEST_FIRMWARE"))
+        return; /* there is no other bridge */
+    with_bridge = true;
+    sweep_a_start((fault_kind_t)_i);
+}
 END_TEST
 
 START_TEST(start_that_loses_the_bus_at_any_frame_ends_with_an_error)
 {
+    with_bridge = _i == 1;
+    if (with_bridge && getenv("CM1E_TEST_FIRMWARE"))
+        return;
     const uint64_t frames = frames_of_a_start();
-    for (uint64_t at = 0; at + 12 < frames; at += (uint64_t)sweep_stride(3, 12)) { /* the last ones belong to the cycles after it */
+    const uint64_t stride = (uint64_t)sweep_stride(3, 12);
+    for (uint64_t at = 0; at + 12 < frames; at += stride) { /* the last ones belong to the cycles after it */
         single_fault_t fault = {.kind = LOSE_BACK, .at = at, .in_a_row = 1000000};
-        sim_config(1);
+        configure_network();
         cm1e_bus_t *bus = open_bus();
         cm1e_nic_set_tap(cm1e_bus_nic(bus), strike, &fault);
         const cm1e_error_t error = cm1e_bus_start(bus, &diag);
@@ -349,7 +380,8 @@ int main(void)
     Suite *suite = suite_create("bus_faults");
     TCase *tests = tcase_create("faults");
     tcase_add_loop_test(tests, start_with_a_fault_at_every_frame_ends_defined, 0, KINDS);
-    tcase_add_test(tests, start_that_loses_the_bus_at_any_frame_ends_with_an_error);
+    tcase_add_loop_test(tests, start_of_a_bridge_with_a_fault_at_every_frame_ends_defined, 0, KINDS);
+    tcase_add_loop_test(tests, start_that_loses_the_bus_at_any_frame_ends_with_an_error, 0, 2);
     tcase_add_loop_test(tests, mapping_that_cannot_be_is_refused_in_words, 0, sizeof lies / sizeof lies[0]);
     tcase_add_loop_test(tests, refused_transition_is_told_with_the_al_status_code, 0,
                         sizeof refusals / sizeof refusals[0]);
