@@ -122,7 +122,7 @@ static void sweep_a_start(fault_kind_t kind)
     srand(1);
     const uint64_t frames = frames_of_a_start();
     const int stride = slowness();
-    for (uint64_t at = (uint64_t)sweep_first(_i, stride); at < frames; at += (uint64_t)stride) {
+    for (uint64_t at = (uint64_t)sweep_first((int)kind, stride); at < frames; at += (uint64_t)stride) {
         single_fault_t fault = {.kind = kind, .at = at, .in_a_row = 1};
         const cm1e_error_t error = start_with(&fault);
         failed += error != CM1E_OK;

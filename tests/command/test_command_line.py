@@ -27,6 +27,26 @@ def expect(condition, what, result):
         faults.append(f"{what}: exit status {result.returncode}\n{result.stdout}{result.stderr}")
 
 
+def check_bridge_found(folder):
+    """Two motors behind a bridge, a CM1-E before it; a bus file that expects another motor."""
+    path = os.path.join(folder, "bridge.yaml")
+    lines = ["axes:", "  - {position: 1}", "  - {position: 2, channel: 1, motor: CM1, k37: 10}",
+             "  - {position: 2, channel: 4, motor: CM2, k37: 10}"]
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("\n".join(lines) + "\n")
+    scan = run("cm1e", "scan", "-i", f"sim:{path}", "--json")
+    slaves = json.loads(scan.stdout)
+    bridge = {"model": "EB12", "motors": ["CM1", "CM1", "CM2", "CM2"]}
+    expect([slave["bridge"] for slave in slaves] == [None, bridge], "scan of a bridge", scan)
+    table = run("cm1e", "scan", "-b", path, "-i", "sim")
+    expect(table.returncode == 0 and "bridge EB12, motors CM1, CM1, CM2, CM2" in table.stdout, "scan of a bridge", table)
+    other = os.path.join(folder, "other.yaml")
+    with open(other, "w", encoding="utf-8") as file:
+        file.write("\n".join(lines[:-1]).replace("CM1", "CM2") + "\n")
+    wrong = run("cm1e", "scan", "-b", other, "-i", f"sim:{path}")
+    expect(wrong.returncode == FAILED and "a CM1 there (object 0xF511:01)" in wrong.stderr, "another motor", wrong)
+
+
 def check_good(folder):
     scan = run("cm1e", "scan", "-i", "sim", "--json")
     slaves = json.loads(scan.stdout)
@@ -34,6 +54,7 @@ def check_good(folder):
            scan)
     bus = run("cm1e", "scan", "-i", "sim", "-b", f"{SOURCE}/examples/three_axes.yaml")
     expect(bus.returncode == 0 and bus.stdout.count("CM1-E") == 3, "scan of a bus file", bus)
+    check_bridge_found(folder)
     status = run("cm1e", "status", "-i", "sim", "--json")
     expect(json.loads(status.stdout)[0]["dc_link_volt"] > 20, "status", status)
     for index, value in (("0x1018:1", 0x4441), ("0x6502", 0x1A5), ("0x607C", 0)):

@@ -377,7 +377,8 @@ def check_words(segment, cm1e):
 def main(cm1e, python):
     with wire.segment(cm1e, "--bridge", "eb12") as segment:
         found = segment.run([cm1e, "scan", "-i", wire.MASTER_INTERFACE])
-        wire.check(found.returncode == 0 and "EB12" in found.stdout, f"cm1e scan: {found.stdout}{found.stderr}")
+        wire.check(found.returncode == 0 and "bridge EB12, motors CM1, CM1, CM2, CM2" in found.stdout,
+                   f"cm1e scan: {found.stdout}{found.stderr}")
         print(found.stdout, end="")
         result = segment.run([python, os.path.abspath(__file__), "--master"])
         print(result.stdout + result.stderr, end="")
