@@ -16,7 +16,7 @@
 #include "cia402/cia402.h"
 #include "core/bytes.h"
 
-enum { FAKE_SDO_LOG = 64 };
+enum { FAKE_SDO_LOG = 64, FAKE_SDO_WAITING = 8 };
 
 typedef struct fake_sdo_entry {
     uint16_t index;
@@ -60,7 +60,12 @@ struct cm1e_bus {
     int64_t sdo_read_value;      /**< what other objects hold ... */
     unsigned sdo_read_bytes;     /**< ... and how long they are; 0: reads leave the buffer alone */
     uint16_t sdo_abort_index;    /**< transfers of this object are aborted */
-    cm1e_sdo_t *sdo;
+    cm1e_sdo_t *sdo, *sdo_waiting[FAKE_SDO_WAITING];
+
+    /* another device instead of the CM1-E above; see fake_bridge.h */
+    void *device;
+    void (*device_cycle)(struct cm1e_bus *bus);
+    void (*device_sdo)(struct cm1e_bus *bus, cm1e_sdo_t *sdo);
 };
 
 static inline void fake_bus_init(cm1e_bus_t *bus, cm1e_mapping_t mapping, cm1e_pdo_order_t order,
@@ -159,16 +164,34 @@ static void fake_follow_mode(cm1e_bus_t *bus)
         bus->mode = wanted;
 }
 
+static void fake_log_sdo(cm1e_bus_t *bus, const cm1e_sdo_t *sdo)
+{
+    if (bus->sdo_count >= FAKE_SDO_LOG || sdo->size == 0 || sdo->size > 8)
+        return;
+    const uint64_t raw = cm1e_get_uint(sdo->data, (unsigned)sdo->size);
+    const uint64_t sign = UINT64_C(1) << (8 * sdo->size - 1);
+    bus->sdo_log[bus->sdo_count++] = (fake_sdo_entry_t){sdo->index, sdo->subindex, sdo->write,
+                                                        (int64_t)(raw ^ sign) - (int64_t)sign};
+}
+
 static void fake_serve_sdo(cm1e_bus_t *bus)
 {
     if (!bus->sdo || bus->sdo_wait-- > 0)
         return;
     cm1e_sdo_t *sdo = bus->sdo;
-    bus->sdo = NULL;
+    bus->sdo = bus->sdo_waiting[0];
+    memmove(bus->sdo_waiting, bus->sdo_waiting + 1, sizeof bus->sdo_waiting - sizeof bus->sdo_waiting[0]);
+    bus->sdo_waiting[FAKE_SDO_WAITING - 1] = NULL;
+    bus->sdo_wait = bus->sdo_delay;
     if (sdo->index == bus->sdo_abort_index) {
         sdo->error = CM1E_ERROR_SDO_ABORT;
         sdo->abort_code = 0x06090030;
         sdo->state = CM1E_SDO_ERROR;
+        return;
+    }
+    if (bus->device_sdo) {
+        bus->device_sdo(bus, sdo);
+        fake_log_sdo(bus, sdo);
         return;
     }
     uint8_t *data = sdo->data;
@@ -181,12 +204,7 @@ static void fake_serve_sdo(cm1e_bus_t *bus)
     }
     if (sdo->write && sdo->index == OBJ_6060_MODES_OF_OPERATION)
         bus->sdo_mode = (int8_t)data[0];
-    if (bus->sdo_count < FAKE_SDO_LOG) {
-        const uint64_t raw = cm1e_get_uint(data, (unsigned)sdo->size);
-        const uint64_t sign = UINT64_C(1) << (8 * sdo->size - 1);
-        bus->sdo_log[bus->sdo_count++] = (fake_sdo_entry_t){sdo->index, sdo->subindex, sdo->write,
-                                                            (int64_t)(raw ^ sign) - (int64_t)sign};
-    }
+    fake_log_sdo(bus, sdo);
     sdo->state = CM1E_SDO_DONE;
 }
 
@@ -195,6 +213,10 @@ static inline void fake_bus_cycle(cm1e_bus_t *bus, int64_t cycle_ns)
 {
     bus->clock.virtual_now_ns += cycle_ns;
     fake_serve_sdo(bus);
+    if (bus->device_cycle) {
+        bus->device_cycle(bus);
+        return;
+    }
     const uint16_t before = bus->controlword;
     bus->controlword = (uint16_t)fake_output(bus, OBJ_6040_CONTROLWORD, 0);
     bus->target_position = (int32_t)fake_output(bus, OBJ_607A_TARGET_POSITION, 0);
@@ -273,9 +295,16 @@ const char *cm1e_sdo_abort_text(uint32_t abort_code) { return abort_code ? "an a
 cm1e_sdo_state_t cm1e_sdo_state(const cm1e_sdo_t *sdo) { return (cm1e_sdo_state_t)sdo->state; }
 cm1e_error_t cm1e_sdo_submit(cm1e_bus_t *bus, cm1e_sdo_t *sdo)
 {
-    if (bus->sdo_full || bus->sdo)
+    unsigned waiting = 0;
+    while (waiting < FAKE_SDO_WAITING && bus->sdo_waiting[waiting])
+        waiting++;
+    if (bus->sdo_full || waiting == FAKE_SDO_WAITING)
         return CM1E_ERROR_FULL;
     sdo->state = CM1E_SDO_BUSY;
+    if (bus->sdo) {
+        bus->sdo_waiting[waiting] = sdo;
+        return CM1E_OK;
+    }
     bus->sdo = sdo;
     bus->sdo_wait = bus->sdo_delay;
     return CM1E_OK;
