@@ -56,14 +56,20 @@ bool cm1e_drive_rests(const cm1e_drive_t *drive)
     return drive->behind && drive->now_ns - drive->behind->rest_since_ns >= rest_ns;
 }
 
+static bool near(int32_t a, int32_t b)
+{
+    const int64_t way = (int64_t)a - b;
+    return way <= REST_COUNTS && way >= -REST_COUNTS;
+}
+
+/* A target that was just written moves the motor in a moment. */
 static void watch_rest(cm1e_drive_t *drive)
 {
     cm1e_drive_bridge_t *behind = drive->behind;
-    const int32_t position = drive->feedback.position;
-    const int64_t way = (int64_t)position - behind->rest_position;
-    if (!drive->feedback.fresh || (way <= REST_COUNTS && way >= -REST_COUNTS))
+    if (near(drive->feedback.position, behind->rest_position) && near(drive->target_position, behind->rest_target))
         return;
-    behind->rest_position = position;
+    behind->rest_position = drive->feedback.position;
+    behind->rest_target = drive->target_position;
     behind->rest_since_ns = drive->now_ns;
 }
 

@@ -22,7 +22,7 @@ typedef struct cm1e_drive_digital {
 } cm1e_drive_digital_t;
 
 typedef struct cm1e_drive_bridge {
-    int32_t rest_position;          /**< the motor stands there ... */
+    int32_t rest_position, rest_target; /**< the motor stands there, its target too ... */
     int64_t rest_since_ns;          /**< ... since then */
     cm1e_sdo_t status_sdo;          /**< F530:5 ... 8 */
     uint8_t status_data[4], status_tries;

@@ -58,6 +58,13 @@ cm1e_error_t cm1e_drive_mode_check(const cm1e_drive_t *drive, cm1e_mode_t mode, 
     return error;
 }
 
+/* The device is in a mode that nobody has commanded since it may have been switched off: from there it goes on. */
+static void adopt(cm1e_drive_t *drive, const cm1e_drive_mode_t *row)
+{
+    drive->mode = (cm1e_mode_t)row->mode;
+    drive->wanted = row;
+}
+
 /* ---- start-up --------------------------------------------------------------------------------------------------- */
 
 static cm1e_error_t read_first(cm1e_drive_t *drive, int8_t *shown, cm1e_diag_t *diag)
@@ -85,6 +92,7 @@ static cm1e_error_t ask_first(cm1e_drive_t *drive, cm1e_diag_t *diag)
                              "%s.", drive->config->name, drive->position,
                              cm1e_drive_index(drive, OBJ_6061_MODES_OF_OPERATION_DISPLAY), drive->mode_read,
                              row ? row->abbreviation : "unknown", drive->wanted->abbreviation, drive->kind->no_way);
+    adopt(drive, row);
     drive->mode_shown = drive->mode_read;
     drive->mode_known = true;
     return CM1E_OK;
@@ -142,6 +150,8 @@ static void read_done(cm1e_drive_t *drive)
     if (before && now && !drive->mode_known && !leads(drive, before, now))
         drive->abnormal = false;
     drive->abnormal |= now && now->leaves_abnormal;
+    if (now && drive->kind->asks_mode_first && !drive->mode_known && !drive->mode_uncertain)
+        adopt(drive, now);
     drive->mode_known = true;
     if (drive->mode_read == (int8_t)drive->mode)
         drive->mode_uncertain = false;

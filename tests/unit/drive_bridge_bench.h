@@ -25,10 +25,15 @@ static inline void bench_close(void)
     fake_bridge_close();
 }
 
+/* As the axis does it: the first set-point of an enabled drive is where the motor stands. */
 static inline void bench_cycle(void)
 {
+    static bool enabled;
     fake_bus_cycle(&bus, CYCLE_NS);
     cm1e_drive_read(&drive, bus_ok && !fake_bridge.lost, bus.clock.virtual_now_ns);
+    if (drive.feedback.enabled && !enabled)
+        drive.command.target_position = drive.feedback.position;
+    enabled = drive.feedback.enabled;
     cm1e_drive_write(&drive);
 }
 
