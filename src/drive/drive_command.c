@@ -66,7 +66,7 @@ cm1e_error_t cm1e_drive_cmd_start(cm1e_drive_t *drive, cm1e_drive_cmd_t command,
         return CM1E_ERROR_STATE;
     if (!drive->feedback.online)
         return CM1E_ERROR_AXIS_OFFLINE;
-    if (drive->behind->cmd.phase != PHASE_IDLE && !stops(command))
+    if ((drive->behind->cmd.phase != PHASE_IDLE || drive->behind->cmd.may_search) && !stops(command))
         return CM1E_ERROR_BUSY;
     drive->behind->cmd.timeout_ns = timeout_ns ? timeout_ns : search_ns;
     drive->behind->cmd.release_ns = 0;
