@@ -1,8 +1,8 @@
 /**
  * @file safety_bench.h
- * A bus of simulated axes with a witness who believes nobody: every process data frame is decoded by the device's own
- * tables, not by what the bus resolved, and what goes to a drive is judged before the drive gets it. Include it once in
- * a test program.
+ * A bus of simulated axes, CM1-Es and motors behind bridges, with a witness who believes nobody: every process data frame
+ * is decoded by the device's own tables, not by what the bus resolved, and what goes to a drive is judged before the
+ * drive gets it. Include it once in a test program.
  */
 #ifndef CM1E_TESTS_SAFETY_BENCH_H
 #define CM1E_TESTS_SAFETY_BENCH_H
@@ -18,11 +18,13 @@
 #include "chance.h"
 #include "cm1e/plcopen.h"
 #include "cm1e/scheduler.h"
+#include "device/unit.h"
 #include "nic/nic.h"
+#include "sim/bridge_app.h"
 #include "sim/cm1e_app.h"
 #include "sim/esc.h"
 
-enum { BENCH_AXES = 3, LRW = 12, LRW_DATA = 26, SLAVE_WORKING_COUNTER = 3 };
+enum { BENCH_AXES = 3, BENCH_MOST = 8, LRW = 12, LRW_DATA = 26, SLAVE_WORKING_COUNTER = 3 };
 
 typedef struct bench bench_t;
 
@@ -30,6 +32,7 @@ typedef struct bench bench_t;
 
 /** One axis, as the frames show it. Offsets into the data of the LRW datagram; -1: not mapped. */
 typedef struct witness {
+    bool bridged;
     int out_controlword, out_position, out_velocity, out_mode;
     int in_statusword, in_position, in_mode;
     double velocity_unit;              /**< counts/s of one unit of 0x60FF */
@@ -57,9 +60,9 @@ struct bench {
     cm1e_bus_t *bus;
     cm1e_scheduler_t *scheduler;
     cm1e_sim_segment_t *segment;
-    AXIS_REF_t axis[BENCH_AXES];
-    witness_t witness[BENCH_AXES];
-    int image_bytes, output_bytes;
+    AXIS_REF_t axis[BENCH_MOST];
+    witness_t witness[BENCH_MOST];
+    int image_bytes, output_bytes, slaves;
     uint8_t last_index;
     uint8_t last_outputs[256];
     /** What happens to a process data frame; NULL: nothing. Called before the witness looks at what is sent. */
@@ -112,49 +115,95 @@ static int pdo_bytes(const cm1e_pdo_t *pdo)
 
 static double or_else(double value, double otherwise) { return value > 0 ? value : otherwise; }
 
+static uint32_t bench_position(const bench_t *bench, uint32_t n)
+{
+    return bench->config.axes[n].address ? bench->config.axes[n].address : n + 1;
+}
+
+/** An axis of the slave at a position, by its connector (0: a CM1-E has none); -1: none is configured. */
+static int axis_at(const bench_t *bench, uint32_t position, unsigned channel)
+{
+    for (uint32_t n = 0; n < bench->config.axis_count; n++)
+        if (bench_position(bench, n) == position && bench->config.axes[n].channel == channel)
+            return (int)n;
+    return -1;
+}
+
+static const cm1e_firmware_info_t *bench_firmware(const cm1e_axis_config_t *axis)
+{
+    return cm1e_firmware_from_version(axis->firmware[0] ? axis->firmware : "1.3.5");
+}
+
 static void witness_limits(const bench_t *bench, uint32_t n, witness_t *w)
 {
     const cm1e_axis_config_t *axis = &bench->config.axes[n];
-    const cm1e_firmware_info_t *firmware = cm1e_firmware_from_version(axis->firmware[0] ? axis->firmware : "1.3.5");
-    const double unit = or_else(axis->counts_per_unit, CM1E_COUNTS_PER_REVOLUTION);
-    const double peak = cm1e_device_motor(axis->motor)->max_velocity_counts_per_s;
+    const double count = cm1e_unit_counts_per_revolution(axis) / CM1E_COUNTS_PER_REVOLUTION;
+    const double unit = or_else(axis->counts_per_unit, CM1E_COUNTS_PER_REVOLUTION * count);
+    const double peak = cm1e_unit_peak_velocity(axis);
     const double cycle_s = (double)bench->config.cycle_time_ns * 1e-9;
-    const double gain = or_else(axis->max_acceleration * unit, 5e6);
+    const double gain = or_else(axis->max_acceleration * unit, 5e6 * count);
+    w->bridged = axis->channel != 0;
     w->max_step = fmin(or_else(axis->max_velocity * unit, peak), peak) * cycle_s;
     w->max_gain = gain * cycle_s * cycle_s;
     w->max_loss = or_else(axis->max_deceleration * unit, gain) * cycle_s * cycle_s;
-    w->max_lag = or_else(axis->max_position_lag * unit, 25000);
-    w->velocity_unit = firmware->velocity_in_counts_per_ms ? 1000.0 : 1.0;
+    w->max_lag = or_else(axis->max_position_lag * unit, 25000 * count);
+    w->velocity_unit = !w->bridged && bench_firmware(axis)->velocity_in_counts_per_ms ? 1000.0 : 1.0;
     w->mode = axis->mapping == CM1E_MAPPING_CSV ? CM1E_MODE_CSV : CM1E_MODE_CSP;
+}
+
+/** One direction of one axis at `base`; returns its bytes. `n` < 0: a motor behind a bridge that nobody uses. */
+static int locate_axis(bench_t *bench, int n, unsigned channel, bool transmit, int base)
+{
+    cm1e_pdo_t pdo;
+    const cm1e_axis_config_t *axis = n < 0 ? NULL : &bench->config.axes[n];
+    const uint16_t offset = (uint16_t)(channel ? (channel - 1) * CM1E_BRIDGE_INDEX_INCREMENT : 0);
+    if (channel)
+        cm1e_bridge_pdo(&pdo, channel - 1, transmit);
+    else
+        cm1e_device_pdo(&pdo, axis->mapping, transmit, bench->config.sim_pdo_order, bench_firmware(axis)->firmware);
+    witness_t nobody, *w = n < 0 ? &nobody : &bench->witness[n];
+    if (transmit) {
+        locate(&pdo, base, (uint16_t)(OBJ_6041_STATUSWORD + offset), &w->in_statusword);
+        locate(&pdo, base, (uint16_t)(OBJ_6064_POSITION_ACTUAL_VALUE + offset), &w->in_position);
+        locate(&pdo, base, (uint16_t)(OBJ_6061_MODES_OF_OPERATION_DISPLAY + offset), &w->in_mode);
+    } else {
+        locate(&pdo, base, (uint16_t)(OBJ_6040_CONTROLWORD + offset), &w->out_controlword);
+        locate(&pdo, base, (uint16_t)(OBJ_607A_TARGET_POSITION + offset), &w->out_position);
+        locate(&pdo, base, (uint16_t)(OBJ_60FF_TARGET_VELOCITY + offset), &w->out_velocity);
+        locate(&pdo, base, (uint16_t)(OBJ_6060_MODES_OF_OPERATION + offset), &w->out_mode);
+    }
+    return pdo_bytes(&pdo);
+}
+
+static bool is_bridge(const bench_t *bench, uint32_t position)
+{
+    for (unsigned channel = 1; channel <= CM1E_BRIDGE_AXES; channel++)
+        if (axis_at(bench, position, channel) >= 0)
+            return true;
+    return false;
 }
 
 /** All outputs, then all inputs, each in the order of the slaves. */
 static void witness_layout(bench_t *bench)
 {
-    cm1e_pdo_t pdo[BENCH_AXES][2];
     int at = 0;
+    bench->slaves = 0;
     for (uint32_t n = 0; n < bench->config.axis_count; n++) {
-        const cm1e_axis_config_t *axis = &bench->config.axes[n];
-        const cm1e_firmware_info_t *firmware = cm1e_firmware_from_version(axis->firmware[0] ? axis->firmware : "1.3.5");
-        witness_t *w = &bench->witness[n];
-        *w = (witness_t){0};
-        witness_limits(bench, n, w);
-        for (int transmit = 0; transmit < 2; transmit++)
-            cm1e_device_pdo(&pdo[n][transmit], axis->mapping, transmit, bench->config.sim_pdo_order,
-                            firmware->firmware);
-        locate(&pdo[n][0], at, OBJ_6040_CONTROLWORD, &w->out_controlword);
-        locate(&pdo[n][0], at, OBJ_607A_TARGET_POSITION, &w->out_position);
-        locate(&pdo[n][0], at, OBJ_60FF_TARGET_VELOCITY, &w->out_velocity);
-        locate(&pdo[n][0], at, OBJ_6060_MODES_OF_OPERATION, &w->out_mode);
-        at += pdo_bytes(&pdo[n][0]);
+        bench->witness[n] = (witness_t){0};
+        witness_limits(bench, n, &bench->witness[n]);
+        if ((int)bench_position(bench, n) > bench->slaves)
+            bench->slaves = (int)bench_position(bench, n);
     }
-    bench->output_bytes = at;
-    for (uint32_t n = 0; n < bench->config.axis_count; n++) {
-        witness_t *w = &bench->witness[n];
-        locate(&pdo[n][1], at, OBJ_6041_STATUSWORD, &w->in_statusword);
-        locate(&pdo[n][1], at, OBJ_6064_POSITION_ACTUAL_VALUE, &w->in_position);
-        locate(&pdo[n][1], at, OBJ_6061_MODES_OF_OPERATION_DISPLAY, &w->in_mode);
-        at += pdo_bytes(&pdo[n][1]);
+    for (int transmit = 0; transmit < 2; transmit++) {
+        for (uint32_t position = 1; position <= (uint32_t)bench->slaves; position++) {
+            if (!is_bridge(bench, position))
+                at += locate_axis(bench, axis_at(bench, position, 0), 0, transmit, at);
+            else
+                for (unsigned channel = 1; channel <= CM1E_BRIDGE_AXES; channel++)
+                    at += locate_axis(bench, axis_at(bench, position, channel), channel, transmit, at);
+        }
+        if (!transmit)
+            bench->output_bytes = at;
     }
     bench->image_bytes = at;
 }
@@ -174,7 +223,21 @@ static bool is_process_data(const bench_t *bench, const cm1e_tap_frame_t *frame)
 
 static cm1e_sim_cm1e_t *bench_drive(const bench_t *bench, uint32_t n)
 {
-    return cm1e_sim_cm1e_of(cm1e_sim_segment_slave(bench->segment, n + 1));
+    return cm1e_sim_cm1e_of(cm1e_sim_segment_slave(bench->segment, bench_position(bench, n)));
+}
+
+/** NULL: not behind a bridge. */
+static cm1e_sim_bridge_axis_t *bench_motor(const bench_t *bench, uint32_t n)
+{
+    cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(cm1e_sim_segment_slave(bench->segment, bench_position(bench, n)));
+    return bridge ? &bridge->axes[bench->config.axes[n].channel - 1] : NULL;
+}
+
+/** As the device has it. */
+static int8_t true_mode(const bench_t *bench, uint32_t n)
+{
+    return bench->witness[n].bridged ? bench_motor(bench, n)->mode
+                                     : (int8_t)bench_drive(bench, n)->objects.mode_display;
 }
 
 /** Inputs that the master may believe: of the frame it sent last, with every slave's part in it. */
@@ -183,7 +246,7 @@ static void witness_received(bench_t *bench, const cm1e_tap_frame_t *frame)
     const uint8_t *data = frame->bytes + LRW_DATA;
     const uint32_t count = bench->config.axis_count;
     if (frame->bytes[17] != bench->last_index || frame->delay_ns > 0 ||
-        word_at(data, bench->image_bytes) != SLAVE_WORKING_COUNTER * count ||
+        word_at(data, bench->image_bytes) != SLAVE_WORKING_COUNTER * bench->slaves ||
         memcmp(data, bench->last_outputs, (size_t)bench->output_bytes) != 0)
         return;
     for (uint32_t n = 0; n < count; n++) {
@@ -191,7 +254,7 @@ static void witness_received(bench_t *bench, const cm1e_tap_frame_t *frame)
         w->statusword = word_at(data, w->in_statusword);
         w->position_before = w->shown ? w->position : long_at(data, w->in_position);
         w->position = long_at(data, w->in_position);
-        w->mode_shown = w->in_mode < 0 ? (int8_t)bench_drive(bench, n)->objects.mode_display : (int8_t)data[w->in_mode];
+        w->mode_shown = w->in_mode < 0 ? true_mode(bench, n) : (int8_t)data[w->in_mode];
         w->shown = true;
     }
 }
@@ -252,6 +315,31 @@ static void judge_end_of_torque(const bench_t *bench, uint32_t n, const witness_
          "axis %u, %s: torque is taken away at %.0f counts a cycle", n, cm1e_axis_state_name(info.state), w->step);
 }
 
+/** Operation enabled in a mode that takes targets (UG 6.1.3; BR 6.1.3, 7.1.3). */
+static bool takes_targets(const witness_t *w)
+{
+    if (!w->bridged)
+        return (w->statusword & 0x6F) == 0x27 && w->mode_shown == w->mode;
+    return w->mode_shown == CM1E_BRIDGE_MODE_CPIO ? (w->statusword & 0x0F) == 0x07
+                                                  : (w->statusword & 0x4F) == 0x07 && w->mode_shown == w->mode;
+}
+
+/** Behind a bridge the same word is another command in another mode (BR 6.1.2, 7.1.2). 0000h is none in any. */
+static void judge_word(const bench_t *bench, uint32_t n, uint16_t word)
+{
+    const int8_t mode = true_mode(bench, n);
+    const unsigned high = word >> 8;
+    bool right = false;
+    switch (mode) {
+    case CM1E_BRIDGE_MODE_CSP: right = high == 0 && !(word & 0x10); break;
+    case CM1E_BRIDGE_MODE_HM: right = high == 0; break;
+    case CM1E_BRIDGE_MODE_CMD: right = (word & 0xFF) == 0x07 && (high == 0 || (high >= 0xF1 && high <= 0xF6)); break;
+    case CM1E_BRIDGE_MODE_CPIO: right = word >> 12 == 0xC; break;
+    default: break;
+    }
+    MUST(bench, right || word == 0, "axis %u: controlword %04Xh in mode %d", n, word, mode);
+}
+
 static void witness_sent_axis(bench_t *bench, uint32_t n, const uint8_t *data)
 {
     witness_t *w = &bench->witness[n];
@@ -265,7 +353,9 @@ static void witness_sent_axis(bench_t *bench, uint32_t n, const uint8_t *data)
     w->enabling = (w->controlword & 0x08) != 0;
     w->target = w->out_position < 0 ? w->position : long_at(data, w->out_position);
     w->velocity = w->out_velocity < 0 ? 0 : long_at(data, w->out_velocity) * w->velocity_unit;
-    w->holding = w->enabling && (w->statusword & 0x6F) == 0x27 && w->mode_shown == w->mode;
+    w->holding = w->enabling && takes_targets(w);
+    if (w->bridged)
+        judge_word(bench, n, w->controlword);
     const double most = w->max_step * 1e9 / (double)bench->config.cycle_time_ns;
     MUST(bench, fabs(w->velocity) <= most + w->velocity_unit, "axis %u: target velocity %.0f, limit %.0f", n,
          w->velocity, most);
@@ -379,11 +469,35 @@ static void bench_start(bench_t *bench)
         bench->axis[n] = cm1e_scheduler_axis(bench->scheduler, n);
 }
 
+/** What the shaft does, whatever anybody is told. */
 static cm1e_sim_probe_t bench_probe(const bench_t *bench, uint32_t n)
 {
-    cm1e_sim_probe_t probe;
-    cm1e_sim_probe(bench->segment, n + 1, &probe);
+    cm1e_sim_probe_t probe = {0};
+    const cm1e_sim_bridge_axis_t *motor = bench_motor(bench, n);
+    if (!motor) {
+        cm1e_sim_probe(bench->segment, bench_position(bench, n), &probe);
+        return probe;
+    }
+    probe.position_counts = motor->mechanics.position * motor->scale;
+    probe.velocity_counts_per_s = motor->mechanics.velocity * motor->scale;
+    probe.peak_velocity_counts_per_s = motor->mechanics.peak_velocity * motor->scale;
+    probe.travel_counts = motor->mechanics.travel * motor->scale;
+    probe.torque_on = !motor->motor_free;
+    probe.mode = motor->mode;
+    probe.controlword = motor->controlword;
+    probe.statusword = cm1e_sim_bridge_statusword(motor);
     return probe;
+}
+
+static inline void bench_probe_reset(const bench_t *bench, uint32_t n)
+{
+    cm1e_sim_bridge_axis_t *motor = bench_motor(bench, n);
+    if (!motor) {
+        cm1e_sim_probe_reset(bench->segment, bench_position(bench, n));
+        return;
+    }
+    motor->mechanics.peak_velocity = fabs(motor->mechanics.velocity);
+    motor->mechanics.travel = 0;
 }
 
 static cm1e_axis_info_t bench_info(const bench_t *bench, uint32_t n)
