@@ -1,8 +1,8 @@
 /**
  * @file safety_bench.h
- * A bus of simulated axes, CM1-Es and motors behind bridges, with a witness who believes nobody: every process data frame
- * is decoded by the device's own tables, not by what the bus resolved, and what goes to a drive is judged before the
- * drive gets it. Include it once in a test program.
+ * A bus of simulated axes, CM1-Es and motors behind bridges, with a witness who believes nobody: every process data
+ * frame is decoded by the device's own tables, not by what the bus resolved, and what goes to a drive is judged before
+ * the drive gets it. Include it once in a test program.
  */
 #ifndef CM1E_TESTS_SAFETY_BENCH_H
 #define CM1E_TESTS_SAFETY_BENCH_H
