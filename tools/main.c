@@ -25,7 +25,7 @@ enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 static void print_usage(FILE *file)
 {
     fputs("Usage: cm1e COMMAND [OPTION...]\n"
-          "Drives Myostat CM1-E servo motors over EtherCAT.\n\n", file);
+          "Drives Myostat CM1-E servo motors, and Cool Muscle motors behind a bridge, over EtherCAT.\n\n", file);
     for (int i = 0; i < COMMAND_COUNT; i++)
         fprintf(file, "  %-10s %s\n", commands[i].name, commands[i].summary);
     fputs("\n`cm1e COMMAND --help` shows a command's options. `-i sim` is a simulated network in this process,\n"
