@@ -165,7 +165,7 @@ void cm1e_drive_cmd_step(cm1e_drive_t *drive)
 {
     cm1e_drive_cmd_run_t *run = &drive->behind->cmd;
     if (!in_cmd(drive)) {
-        if (run->ready)
+        if (run->ready || run->may_search)
             leave(drive);
         return;
     }

@@ -133,14 +133,15 @@ static int32_t velocity_of(const cm1e_drive_t *drive, const uint8_t *in, int32_t
     return clamp_i32((int64_t)step * INT64_C(1000000000) / elapsed_ns);
 }
 
-/* While a mode is not shown, its words are still those of the last one, unless the next one has others. */
+/* While a mode is not shown, its words are still those of the last one, unless those, or the next ones, are of another
+ * coding: 0007h in CMD would be Switch on in csp. */
 static void take_mode(cm1e_drive_t *drive, int8_t mode)
 {
     drive->feedback.mode = mode;
     drive->shown = cm1e_drive_mode_row(drive->kind, mode);
     if (drive->shown)
         drive->words = drive->shown->words;
-    else if (drive->words != drive->wanted->words)
+    else if (drive->words != drive->wanted->words || drive->words->own_coding)
         drive->words = &cm1e_drive_words_unknown;
 }
 

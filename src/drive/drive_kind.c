@@ -90,12 +90,13 @@ static const cm1e_drive_words_t profile_words = {PROFILE_STATUSWORD, .no_torque 
 /* Strings go over the serial line only while no controlword does (BR appendix 2). */
 static const cm1e_drive_words_t cml_words = {PROFILE_STATUSWORD, .no_torque = 0x0000};
 /* BR 7.1.3: no state. */
-static const cm1e_drive_words_t cmd_words = {.commands = true};
+static const cm1e_drive_words_t cmd_words = {.commands = true, .own_coding = true};
 /* BR 7.1.2, 7.1.3: the state in four bits, what the motor says in bits 8 to 11: 1, 2, 4 and 1111b are errors, 1000b is
  * in position. Bit 7 is an output here: there is no fault reset. */
 static const cm1e_drive_words_t cpio_words = {
     .states = cm1e_fsa_cpio_table, .fault = 0x0700 | STATUSWORD_FAULT, .target_reached = 0x0800,
     .inputs = 0x00F0, .outputs = 0x00F0, .mark = 0xC000, .no_torque = 0x0006, .fault_reset = 0x0006,
+    .own_coding = true,
 };
 
 /* The drawing of BR 6: three arrows lead into each of CMD, CML and CPIO, two into csp, one into hm. */

@@ -36,6 +36,7 @@ typedef struct cm1e_drive_words {
     uint16_t mark;                  /**< always in the controlword */
     uint16_t no_torque, fault_reset; /**< controlwords; fault_reset as no_torque: there is no such command */
     bool commands;                  /**< the words are those of drive_command.h */
+    bool own_coding;                /**< in other modes they would be something else */
 } cm1e_drive_words_t;
 enum { CM1E_DRIVE_SIGNALS_AT = 4 };
 

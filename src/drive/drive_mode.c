@@ -206,35 +206,38 @@ static void go_on(cm1e_drive_t *drive)
         submit(drive, false);
 }
 
-static void written(cm1e_drive_t *drive)
+/* One that ended in an error may have arrived all the same; one that the device has forgotten meanwhile says nothing. */
+static void written(cm1e_drive_t *drive, bool good)
 {
+    const bool forgotten = drive->kind->asks_mode_first && !drive->mode_known;
     drive->mode_write_ns = drive->now_ns;
-    drive->mode_phase = PHASE_WAIT;
-    drive->mode_retry_ns = drive->now_ns;
+    drive->mode_phase = good && !forgotten ? PHASE_WAIT : PHASE_IDLE;
+    drive->mode_uncertain &= !forgotten;
+    drive->mode_retry_ns = drive->now_ns + (good ? 0 : write_again_ns);
 }
 
 void cm1e_drive_mode_step(cm1e_drive_t *drive)
 {
     if (drive->out_mode.bytes)
         return;
+    const bool away = drive->kind->asks_mode_first && !cm1e_drive_operational(drive);
+    if (away && drive->mode_known) /* it may come back from a power-off */
+        cm1e_drive_mode_forget(drive);
     if (drive->mode_phase != PHASE_WRITING && drive->mode_phase != PHASE_READING) {
-        go_on(drive);
+        if (!away)
+            go_on(drive);
         return;
     }
-    switch (cm1e_sdo_state(&drive->mode_sdo)) {
-    case CM1E_SDO_DONE:
-        if (drive->mode_phase == PHASE_READING)
-            read_done(drive);
-        else
-            written(drive);
-        break;
-    case CM1E_SDO_ERROR: /* one that was written may have arrived all the same */
-        drive->mode_write_ns = drive->mode_phase == PHASE_WRITING ? drive->now_ns : drive->mode_write_ns;
+    const cm1e_sdo_state_t state = cm1e_sdo_state(&drive->mode_sdo);
+    if (state == CM1E_SDO_BUSY)
+        return;
+    if (drive->mode_phase == PHASE_WRITING) {
+        written(drive, state == CM1E_SDO_DONE);
+    } else if (state == CM1E_SDO_DONE) {
+        read_done(drive);
+    } else {
         drive->mode_phase = PHASE_IDLE;
         drive->mode_retry_ns = drive->now_ns + write_again_ns;
-        break;
-    default:
-        break;
     }
 }
 
