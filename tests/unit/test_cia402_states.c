@@ -84,6 +84,29 @@ static void test_name_of_no_state_is_a_text(void)
     TEST_ASSERT_EQUAL_STRING("unknown state", cm1e_fsa_name((cm1e_fsa_state_t)1000));
 }
 
+/* BR 6.1.3: bits 6 and 3 ... 0, in the order of the states; there is no quick stop. */
+static const int bridge_bits[CM1E_FSA_STATE_COUNT] = {0x00, 0x40, 0x01, 0x03, 0x07, -1, 0x0F, 0x08};
+
+static void test_every_statusword_of_the_bridge_decodes_as_its_guide_says(void)
+{
+    for (uint32_t word = 0; word <= 0xFFFF; word++) {
+        cm1e_fsa_state_t csp = CM1E_FSA_UNKNOWN, cpio = CM1E_FSA_UNKNOWN;
+        for (int i = 0; i < CM1E_FSA_STATE_COUNT; i++) {
+            if ((int)(word & 0x4F) == bridge_bits[i])
+                csp = (cm1e_fsa_state_t)i;
+            /* BR 7.1.3: the lower four bits, behind 1100b; 0 is Switch on disabled */
+            if (word >> 12 == 0xC && i != NOT_READY_TO_SWITCH_ON && (int)(word & 0x0F) == (bridge_bits[i] & ~0x40))
+                cpio = (cm1e_fsa_state_t)i;
+        }
+        TEST_ASSERT_EQUAL(csp, cm1e_fsa_decode_by(cm1e_fsa_bridge_table, (uint16_t)word));
+        TEST_ASSERT_EQUAL(cpio, cm1e_fsa_decode_by(cm1e_fsa_cpio_table, (uint16_t)word));
+    }
+    for (int i = 0; i < CM1E_FSA_STATE_COUNT; i++) {
+        TEST_ASSERT_EQUAL(i, cm1e_fsa_bridge_table[i].state);
+        TEST_ASSERT_EQUAL(i, cm1e_fsa_cpio_table[i].state);
+    }
+}
+
 /* What a drive shows: UG 7.5's screenshot and common values. */
 static void test_statuswords_seen_on_drives_decode(void)
 {
@@ -100,6 +123,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_every_statusword_decodes_as_the_manual_says);
     RUN_TEST(test_table_is_in_order_of_states_with_the_manuals_names);
+    RUN_TEST(test_every_statusword_of_the_bridge_decodes_as_its_guide_says);
     RUN_TEST(test_name_of_no_state_is_a_text);
     RUN_TEST(test_statuswords_seen_on_drives_decode);
     return UNITY_END();
