@@ -10,6 +10,8 @@
 enum { KEY_TO = 0x300, KEY_BY, KEY_SPEED, KEY_FOR, KEY_JERK, KEY_METHOD, KEY_OFFSET, KEY_TORQUE, KEY_POSITION, KEY_CSV,
        KEY_SVG, KEY_RESET };
 
+#define DETAILS_NS INT64_C(200000000)
+
 typedef enum motion_kind { MOTION_NONE = 0, MOTION_TO, MOTION_BY, MOTION_SPEED, MOTION_HOME } motion_kind_t;
 
 typedef struct motion_options {
@@ -202,8 +204,9 @@ static void program(void *context)
         if (!p->power.Status)
             p->step = STEP_END;
         break;
-    case STEP_END:
-        cm1e_scheduler_stop(p->scheduler);
+    case STEP_END: /* what a failure was shows some ms later, where a bridge has to ask its motor */
+        if (!p->failed || cm1e_scheduler_time_ns(p->scheduler) - p->ended_ns > DETAILS_NS)
+            cm1e_scheduler_stop(p->scheduler);
         break;
     }
 }

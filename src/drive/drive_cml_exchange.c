@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "bus/bus_image.h"
+#include "core/bytes.h"
 #include "core/clock.h"
 #include "device/bridge_status.h"
 #include "drive/drive_cml.h"
@@ -85,11 +86,12 @@ static cm1e_error_t read_mode(const place_t *at, int8_t *mode)
 static cm1e_error_t not_confirmed(const place_t *at, int8_t wanted, int8_t shown)
 {
     char words[CM1E_BRIDGE_STATUS_TEXT] = "unknown";
-    int8_t status;
-    const place_t quiet = {at->bus, at->position, at->channel, NULL};
+    uint8_t status[4];
+    size_t size = sizeof status;
     const cm1e_device_model_t model = cm1e_bus_slave(at->bus, at->position)->model;
-    if (read_byte(&quiet, OBJ_F530_SYSTEM_INFO, (uint8_t)(4 + at->channel), &status) == CM1E_OK)
-        cm1e_bridge_status_text(cm1e_bridge_motor(model, at->channel - 1u), (uint8_t)status, words, sizeof words);
+    if (cm1e_sdo_read(at->bus, at->position, OBJ_F530_SYSTEM_INFO, (uint8_t)(4 + at->channel), status, &size, NULL)
+            == CM1E_OK && size == sizeof status)
+        cm1e_bridge_status_text(cm1e_bridge_motor(model, at->channel - 1u), cm1e_get_u32(status), words, sizeof words);
     return cm1e_diag_set(at->diag, CM1E_ERROR_DRIVE_MODE_TIMEOUT, 0,
                          "Slave %u, connector %u: mode of operation %d was asked for, object 0x%04X shows %d. The "
                          "motor has to stand and to have no error for that; it says: %s.", at->position, at->channel, wanted,

@@ -374,6 +374,33 @@ def check_words(segment, cm1e):
     segment.console("motor 1 2 replug")
 
 
+BUS = """\
+bus: {{interface: {interface}, lost_cycles_limit: 50}}
+axes:
+  - {{name: left, position: 1, channel: 1, k37: 10}}
+  - {{name: right, position: 1, channel: 4, k37: 10}}
+"""
+
+
+def check_refusals(segment, cm1e):
+    """What refuses a motor with an error says which error it is."""
+    path = os.path.join(segment.folder, "bridge.yaml")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(BUS.format(interface=wire.MASTER_INTERFACE))
+    segment.console("motor 1 4 error overload")
+    segment.console("motor 1 1 unplug")
+    time.sleep(0.1)
+    for axis, says, words in (("right", "The motor (CM2) says: overload", ["move", "--by", "0.1"]),
+                              ("left", "The motor (CM1) says: serial communication error", ["move", "--by", "0.1"]),
+                              ("left", "it says: serial communication error", ["cml", "?99.1", "--axis"])):
+        result = segment.run([cm1e, *words, axis, "-b", path])
+        wire.check(result.returncode == 1 and says in result.stderr, f"cm1e {words[0]} {axis}: {result.stderr}")
+    segment.console("motor 1 1 replug")
+    for axis in ("left", "right"):
+        result = segment.run([cm1e, "move", axis, "-b", path, "--by", "0.1", "--reset"])
+        wire.check(result.returncode == 0, f"cm1e move --reset {axis}: {result.stderr}")
+
+
 def main(cm1e, python):
     with wire.segment(cm1e, "--bridge", "eb12") as segment:
         found = segment.run([cm1e, "scan", "-i", wire.MASTER_INTERFACE])
@@ -385,6 +412,9 @@ def main(cm1e, python):
         wire.check(result.returncode == 0, f"the master ended with {result.returncode}; {segment.console('status 1')}")
         check_words(segment, cm1e)
         segment.console("power-cycle 1 100")  # two motors are in modes from which nothing else leads to csp
+        time.sleep(0.3)
+        check_refusals(segment, cm1e)
+        segment.console("power-cycle 1 100")
         time.sleep(0.3)
         kill_master(segment, python)
 
