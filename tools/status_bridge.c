@@ -30,10 +30,13 @@ static cm1e_error_t read_value(cm1e_bus_t *bus, uint16_t position, unsigned chan
 bool read_bridge(cm1e_bus_t *bus, uint16_t position, bridge_status_t *status, cm1e_diag_t *diag)
 {
     cm1e_diag_t other;
-    bool readable = cm1e_bridge_read(bus, position, &status->info, diag) == CM1E_OK;
-    for (unsigned i = 0; i < CM1E_BRIDGE_AXES && readable; i++) {
+    bool readable = true;
+    if (cm1e_bridge_read(bus, position, &status->info, diag) != CM1E_OK)
+        return false; /* silent: so it would be for each of these */
+    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++) {
         bridge_motor_reading_t *motor = &status->motors[i];
-        readable = read_value(bus, position, i, OBJ_6041_STATUSWORD, 2, &motor->statusword, diag) == CM1E_OK;
+        if (read_value(bus, position, i, OBJ_6041_STATUSWORD, 2, &motor->statusword, diag) != CM1E_OK)
+            readable = false;
         read_value(bus, position, i, OBJ_6061_MODES_OF_OPERATION_DISPLAY, 1, &motor->mode, &other);
         read_value(bus, position, i, OBJ_6064_POSITION_ACTUAL_VALUE, 4, &motor->position, &other);
     }
@@ -142,19 +145,18 @@ static const char *text_of(const cm1e_bridge_value_t *value, char *text, size_t 
         snprintf(text, size, "refused (0x%08X, %s)", (unsigned)value->abort_code,
                  cm1e_sdo_abort_text(value->abort_code));
     else
-        snprintf(text, size, "not readable (%s)", cm1e_strerror(value->error));
+        snprintf(text, size, "not readable (%s)", value->error ? cm1e_strerror(value->error) : "not asked for");
     return text;
 }
 
 static void print_line(const cm1e_bridge_channel_t *channel)
 {
-    char baud_rate[120], cycle[120], sent[120], received[120], errors[120];
+    char baud_rate[140], cycle[120], sent[120], received[120], errors[120];
     const uint32_t bits = channel->baud_rate.known ? cm1e_bridge_bits_per_second(channel->baud_rate.value) : 0;
     if (bits)
         snprintf(baud_rate, sizeof baud_rate, "%" PRIu32 " bit/s", bits);
     else
-        snprintf(baud_rate + snprintf(baud_rate, sizeof baud_rate, "baud rate "), sizeof baud_rate - 10, "%s",
-                 text_of(&channel->baud_rate, cycle, sizeof cycle));
+        snprintf(baud_rate, sizeof baud_rate, "baud rate %s", text_of(&channel->baud_rate, cycle, sizeof cycle));
     printf("    %-16s %s, every %s ms; sent %s, received %s, receive errors %s\n", "serial line", baud_rate,
            text_of(&channel->cycle_time_ms, cycle, sizeof cycle), text_of(&channel->sent, sent, sizeof sent),
            text_of(&channel->received, received, sizeof received),

@@ -6,6 +6,7 @@
 #include "cm1e/generate.h"
 #include "cm1e/sii.h"
 #include "description/check.h"
+#include "device/bridge.h"
 #include "generate/live.h"
 #include "sim/esc.h"
 
@@ -93,6 +94,69 @@ START_TEST(the_sii_of_the_device_itself_differs_in_nothing)
     ck_assert_int_eq(cm1e_sii_read_device(bus, 1, image, &size, &diag), CM1E_OK);
     compare(bus, 1, image, size);
     check_no_finding();
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+/* Bridges that no file describes wrongly: every model in every format, and in both layouts of an ESI. */
+static cm1e_bus_t *bridged_bus(cm1e_device_model_t model)
+{
+    sim_config(CM1E_BRIDGE_AXES);
+    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++) {
+        cm1e_axis_config_t *axis = &config.axes[i];
+        axis->firmware[0] = 0;
+        axis->address = 1;
+        axis->channel = (uint8_t)(i + 1);
+        axis->k37 = 10;
+        axis->k37_stated = true;
+        snprintf(axis->motor, sizeof axis->motor, "%s", cm1e_bridge_motor_name(cm1e_bridge_motor(model, i)));
+    }
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    return bus;
+}
+
+static void generate_for_bridge(cm1e_file_t *file, cm1e_device_model_t model, cm1e_file_format_t format,
+                                cm1e_esi_layout_t layout)
+{
+    const cm1e_device_options_t device = {.model = model, .vendor_id = CM1E_SIM_BRIDGE_VENDOR_ID,
+                                          .product_code = cm1e_sim_bridge_product_code(model),
+                                          .revision = CM1E_SIM_BRIDGE_REVISION};
+    const cm1e_generate_options_t options = {.format = format, .layout = layout, .devices = &device,
+                                             .device_count = 1, .network = &config};
+    ck_assert_msg(cm1e_generate(file, &options, &diag) == CM1E_OK, "%s", diag.text);
+}
+
+START_TEST(a_file_of_every_format_that_is_made_for_a_bridge_differs_in_nothing)
+{
+    const cm1e_device_model_t model = (cm1e_device_model_t)(CM1E_DEVICE_EB01 + _i);
+    cm1e_bus_t *bus = bridged_bus(model);
+    cm1e_file_t file = {0};
+    for (size_t f = 0; f < sizeof formats / sizeof formats[0]; f++) {
+        generate_for_bridge(&file, model, formats[f], CM1E_ESI_FLAT);
+        compare(bus, 1, file.bytes, file.size);
+        check_no_finding();
+        cm1e_file_free(&file);
+    }
+    generate_for_bridge(&file, model, CM1E_FILE_ESI, CM1E_ESI_MDP);
+    compare(bus, 1, file.bytes, file.size);
+    check_no_finding();
+    cm1e_file_free(&file);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(the_eni_of_a_scan_is_that_of_the_configuration_of_a_bridge)
+{
+    const cm1e_device_model_t model = (cm1e_device_model_t)(CM1E_DEVICE_EB01 + _i);
+    cm1e_bus_t *bus = bridged_bus(model);
+    cm1e_file_t configured = {0}, scanned = {0};
+    generate_for_bridge(&configured, model, CM1E_FILE_ENI, CM1E_ESI_FLAT);
+    ck_assert_int_eq(cm1e_generate_eni_of_bus(&scanned, bus, CM1E_MAPPING_DYNAMIC, &diag), CM1E_OK);
+    ck_assert_uint_eq(scanned.size, configured.size);
+    ck_assert(!memcmp(scanned.bytes, configured.bytes, scanned.size));
+    cm1e_file_free(&configured);
+    cm1e_file_free(&scanned);
     cm1e_bus_close(bus);
 }
 END_TEST
@@ -447,6 +511,8 @@ int main(void)
     tcase_add_loop_test(equal, a_file_of_every_format_that_is_made_for_the_device_differs_in_nothing, 0,
                         sizeof formats / sizeof formats[0]);
     tcase_add_test(equal, the_esi_of_every_firmware_differs_in_nothing);
+    tcase_add_loop_test(equal, a_file_of_every_format_that_is_made_for_a_bridge_differs_in_nothing, 0, 3);
+    tcase_add_loop_test(equal, the_eni_of_a_scan_is_that_of_the_configuration_of_a_bridge, 0, 3);
     tcase_add_test(equal, the_sii_of_the_device_itself_differs_in_nothing);
     tcase_add_test(equal, a_modular_file_differs_in_nothing);
     tcase_add_test(equal, a_lost_frame_changes_no_finding);
