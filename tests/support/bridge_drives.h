@@ -53,6 +53,8 @@ static inline void open_drives(void)
 
 static inline void close_drives(void)
 {
+    for (int n = 0; n < DRIVES; n++)
+        cm1e_drive_free(&drives[n]);
     cm1e_bus_stop(bus);
     cm1e_bus_close(bus);
     bus = NULL;
