@@ -36,6 +36,7 @@ static void step(cm1e_sim_bridge_t *bridge, double step_s)
         cm1e_sim_bridge_command_step(axis);
         cm1e_sim_bridge_cml_step(bridge, axis);
     }
+    cm1e_sim_bridge_deliver(bridge);
 }
 
 static void advance(void *app, int64_t now_ns)
@@ -104,6 +105,7 @@ static void outputs(void *app, const uint8_t *data, uint16_t size, int64_t now_n
 static void disable(void *app)
 {
     cm1e_sim_bridge_t *bridge = app;
+    bridge->serial.count = 0;
     for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
         cm1e_sim_bridge_axis_disable(&bridge->axes[i]);
 }
@@ -127,8 +129,7 @@ static uint16_t state_change(void *app, uint8_t from, uint8_t to)
 static void power_on(void *app, int64_t now_ns)
 {
     cm1e_sim_bridge_t *bridge = app;
-    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
-        cm1e_sim_bridge_axis_disable(&bridge->axes[i]); /* until now they ran out without torque */
+    disable(bridge); /* until now they ran out without torque */
     advance(bridge, now_ns);
     bridge->al_state = CM1E_AL_INIT;
     bridge->ready_ns = bridge->now_ns + READY_NS;

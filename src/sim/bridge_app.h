@@ -52,7 +52,7 @@ typedef struct cm1e_sim_bridge_axis {
     uint8_t number;          /**< 0 ... 3 */
     cm1e_bridge_motor_t motor;
 
-    /* process data */
+    /* process data, as it has come over the serial line */
     uint16_t controlword, last_controlword;
     int32_t target_position;
 
@@ -76,6 +76,7 @@ typedef struct cm1e_sim_bridge_axis {
 
     /* motion; positions on the scale of the mechanics, which has CM1E_COUNTS_PER_REVOLUTION */
     double scale;            /**< pulses of the motor, by its K37, for one count of the mechanics */
+    int32_t limit;           /**< greatest position, pulses (BR appendix 5) */
     cm1e_mechanics_t mechanics;
     cm1e_sim_sensors_t sensors;
     cm1e_servo_t servo;
@@ -85,12 +86,26 @@ typedef struct cm1e_sim_bridge_axis {
     int64_t zero;            /**< where 0x6064 is 0 */
     double lag_s, overload;  /**< how long the lag is too large; sum of the overload, s */
 
+    unsigned broken_rules;   /**< by the master: cm1e_sim_broken_rule */
+
     bool unplugged;
     uint32_t broken_answers; /**< so many to come arrive broken */
     unsigned silent_ms;      /**< since the last good answer */
     int64_t known_position;  /**< 0x6064 while nothing is heard of the motor */
     uint32_t sent, received; /**< over the serial line (F530:9 ... F530:16) */
 } cm1e_sim_bridge_axis_t;
+
+/** Process data on its way over the serial lines: of every axis in the order of the IDs. */
+enum { SERIAL_LINE_CYCLES = 8 };
+typedef struct cm1e_sim_serial {
+    struct {
+        int64_t due_ns;
+        uint8_t present;       /**< bit 0: ID1 is among the assigned PDOs */
+        uint16_t controlwords[CM1E_BRIDGE_AXES];
+        int32_t targets[CM1E_BRIDGE_AXES];
+    } cycles[SERIAL_LINE_CYCLES];
+    unsigned first, count;
+} cm1e_sim_serial_t;
 
 struct cm1e_sim_bridge {
     cm1e_sim_slave_t *slave; /**< NULL: no slave controller below (unit tests) */
@@ -101,6 +116,7 @@ struct cm1e_sim_bridge {
     /* PDO assignment: 0x1C12, 0x1C13 */
     uint8_t assigned[2];                  /**< sub-index 0 */
     uint16_t pdos[2][CM1E_BRIDGE_AXES];   /**< sub-indexes 1 ... 4 */
+    cm1e_sim_serial_t serial;
 
     /* time */
     bool running;            /**< now_ns is known */
@@ -143,6 +159,8 @@ uint32_t cm1e_sim_bridge_assign_read(const cm1e_sim_bridge_t *bridge, uint16_t i
 void cm1e_sim_bridge_assign_default(cm1e_sim_bridge_t *bridge);
 void cm1e_sim_bridge_sizes(void *app, uint16_t *output_bytes, uint16_t *input_bytes);
 void cm1e_sim_bridge_outputs(void *app, const uint8_t *data, uint16_t size, int64_t now_ns);
+/** Process data that has come over the serial lines by now. */
+void cm1e_sim_bridge_deliver(cm1e_sim_bridge_t *bridge);
 void cm1e_sim_bridge_inputs(void *app, uint8_t *data, uint16_t size);
 
 /* ---- bridge_axis.c ---------------------------------------------------------------------------------------------- */
@@ -151,7 +169,7 @@ void cm1e_sim_bridge_axis_create(cm1e_sim_bridge_t *bridge, unsigned number, con
 void cm1e_sim_bridge_axis_power_on(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
 /** Initialisation is over. */
 void cm1e_sim_bridge_axis_ready(cm1e_sim_bridge_axis_t *axis);
-/** New process data has come. */
+/** New process data has come over the serial line. */
 void cm1e_sim_bridge_axis_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
 /** No more process data comes: motor free, Switch on disabled. */
 void cm1e_sim_bridge_axis_disable(cm1e_sim_bridge_axis_t *axis);
@@ -163,7 +181,7 @@ void cm1e_sim_bridge_axis_plug(cm1e_sim_bridge_axis_t *axis, bool plugged);
 /** An error of the motor, or of the serial line to it: one of BRIDGE_STATUS_... */
 void cm1e_sim_bridge_axis_error(cm1e_sim_bridge_axis_t *axis, uint8_t status);
 /** What the low four bits of a controlword ask for (BR 6.1.2). */
-void cm1e_sim_bridge_axis_obey(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, unsigned controlword);
+void cm1e_sim_bridge_axis_obey(cm1e_sim_bridge_axis_t *axis, unsigned controlword);
 void cm1e_sim_bridge_axis_power(cm1e_sim_bridge_axis_t *axis, bool on);
 /** Limits the torque to so many % of the rated one; 0: to the peak torque. */
 void cm1e_sim_bridge_axis_torque(cm1e_sim_bridge_axis_t *axis, double percent);
@@ -171,7 +189,11 @@ bool cm1e_sim_bridge_axis_stands(const cm1e_sim_bridge_axis_t *axis);
 /** Where it is is 0 now. */
 void cm1e_sim_bridge_axis_zero(cm1e_sim_bridge_axis_t *axis);
 /** The target of the process data holds from now on. */
-void cm1e_sim_bridge_axis_begin_csp(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
+void cm1e_sim_bridge_axis_begin_csp(cm1e_sim_bridge_axis_t *axis);
+/** The guide states none: that of the smallest CM1-E. */
+double cm1e_sim_bridge_peak_torque(void);
+/** Bit 0: input 1. Those that the motor has: on a CM1 the first is its serial line. */
+uint8_t cm1e_sim_bridge_inputs_of(const cm1e_sim_bridge_axis_t *axis);
 /** 0x60FD, 0x60FE: in csp, in Switched on and Operation enabled only (BR 6.5). */
 bool cm1e_sim_bridge_io_available(const cm1e_sim_bridge_axis_t *axis);
 /** Bits 0 ... 3 and 6 of the statusword. */
@@ -196,8 +218,6 @@ void cm1e_sim_bridge_search_begin(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axi
 /** Does nothing where none is under way. */
 void cm1e_sim_bridge_search_abort(cm1e_sim_bridge_axis_t *axis);
 void cm1e_sim_bridge_search_step(cm1e_sim_bridge_axis_t *axis, double step_s);
-/** Bit 0: input 1. */
-uint8_t cm1e_sim_bridge_inputs_of(const cm1e_sim_bridge_axis_t *axis);
 
 /* ---- bridge_cml.c ----------------------------------------------------------------------------------------------- */
 /** F581 ... F584; 0 or an abort code. */
@@ -215,7 +235,7 @@ bool cm1e_sim_bridge_line_is_free(const cm1e_sim_bridge_axis_t *axis);
 void cm1e_sim_bridge_command_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
 void cm1e_sim_bridge_command_step(cm1e_sim_bridge_axis_t *axis);
 uint16_t cm1e_sim_bridge_command_status(const cm1e_sim_bridge_axis_t *axis);
-void cm1e_sim_bridge_cpio_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
+void cm1e_sim_bridge_cpio_outputs(cm1e_sim_bridge_axis_t *axis);
 uint16_t cm1e_sim_bridge_cpio_status(const cm1e_sim_bridge_axis_t *axis);
 
 #endif

@@ -14,7 +14,7 @@ enum { SILENCE_MS = 10 };        /* without a good answer: an error of the seria
 enum { K_RESOLUTION = 37, K_ENABLE_AT_POWER_ON = 68 };
 enum { STATUSWORD_MOTOR_ERROR = 0x4000, STATUSWORD_MOTOR_FREE = 0x8000 };
 
-static double peak_torque(void) { return cm1e_device_motor("")->peak_torque_nm; }
+double cm1e_sim_bridge_peak_torque(void) { return cm1e_device_motor("")->peak_torque_nm; }
 
 /* ---- the motor -------------------------------------------------------------------------------------------------- */
 
@@ -30,7 +30,7 @@ void cm1e_sim_bridge_axis_zero(cm1e_sim_bridge_axis_t *axis)
 
 void cm1e_sim_bridge_axis_torque(cm1e_sim_bridge_axis_t *axis, double percent)
 {
-    axis->servo.torque_limit = percent > 0 ? peak_torque() / PEAK_TO_RATED_TORQUE * percent / 100 : peak_torque();
+    axis->servo.torque_limit = percent > 0 ? cm1e_sim_bridge_peak_torque() / PEAK_TO_RATED_TORQUE * percent / 100 : cm1e_sim_bridge_peak_torque();
 }
 
 int64_t cm1e_sim_bridge_shown_position(const cm1e_sim_bridge_axis_t *axis)
@@ -50,20 +50,30 @@ void cm1e_sim_bridge_axis_power(cm1e_sim_bridge_axis_t *axis, bool on)
     hold(axis);
 }
 
+/* BR 6.5.1: a CM1's input 1 is its serial line, and it has four. */
+uint8_t cm1e_sim_bridge_inputs_of(const cm1e_sim_bridge_axis_t *axis)
+{
+    enum { INPUTS_CM1 = 0x0E, INPUTS_CM2 = 0x3F };
+    const uint8_t inputs = cm1e_sim_sensors_inputs(&axis->sensors, axis->mechanics.position);
+    return inputs & (axis->motor == CM1E_BRIDGE_CM1 ? INPUTS_CM1 : INPUTS_CM2);
+}
+
 /* 0x607A on the scale of the mechanics, within what the resolution allows (BR appendix 5). It has 32 bits and wraps:
  * the nearest turn of the wheel is meant. */
-static double target(const cm1e_sim_bridge_t *bridge, const cm1e_sim_bridge_axis_t *axis)
+static double target(const cm1e_sim_bridge_axis_t *axis)
 {
-    const int32_t limit = cm1e_bridge_position_limit(
-        axis->motor, (int32_t)*cm1e_sim_bridge_k(bridge, axis->number, K_RESOLUTION));
     int32_t wanted = axis->target_position;
-    if (limit && wanted > limit)
-        wanted = limit;
-    else if (limit && wanted < -limit)
-        wanted = -limit;
+    if (wanted > axis->limit)
+        wanted = axis->limit;
+    else if (wanted < -axis->limit)
+        wanted = -axis->limit;
     const int64_t actual = cm1e_sim_bridge_position(axis);
     return (double)axis->zero + (double)(actual + (int32_t)((uint32_t)wanted - (uint32_t)actual)) / axis->scale;
 }
+
+/* Further than any motor goes in a cycle, with a little for cycles that come late. */
+#define STEP_IN_CYCLE_COUNTS 2750.0
+#define STEP_AT_START_COUNTS 100.0
 
 static bool follows_targets(const cm1e_sim_bridge_axis_t *axis)
 {
@@ -73,7 +83,7 @@ static bool follows_targets(const cm1e_sim_bridge_axis_t *axis)
 static void supervise(cm1e_sim_bridge_axis_t *axis, double step_s)
 {
     const double lag = fabs(axis->servo.reference - axis->mechanics.position);
-    const double load = axis->servo.torque * PEAK_TO_RATED_TORQUE / peak_torque();
+    const double load = axis->servo.torque * PEAK_TO_RATED_TORQUE / cm1e_sim_bridge_peak_torque();
     axis->lag_s = lag > LAG_LIMIT_COUNTS ? axis->lag_s + step_s : 0;
     axis->overload = fmax(0, axis->overload + step_s * (load * load - 1));
     if (axis->lag_s > LAG_TIME_S)
@@ -151,16 +161,30 @@ static void switch_on(cm1e_sim_bridge_axis_t *axis)
 }
 
 /* The target is taken as it is: one that is not the actual position makes the motor jump. */
-void cm1e_sim_bridge_axis_begin_csp(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
+void cm1e_sim_bridge_axis_begin_csp(cm1e_sim_bridge_axis_t *axis)
 {
-    if (follows_targets(axis))
-        cm1e_sim_line_begin(&axis->line, &axis->servo, target(bridge, axis));
+    if (!follows_targets(axis)) {
+        axis->broken_rules |= axis->abnormal && axis->mode == CM1E_BRIDGE_MODE_CSP ? CM1E_SIM_MODE_NO_WAY : 0u;
+        return;
+    }
+    const double goal = target(axis);
+    if (fabs(goal - axis->mechanics.position) > STEP_AT_START_COUNTS)
+        axis->broken_rules |= CM1E_SIM_STEP_AT_START;
+    cm1e_sim_line_begin(&axis->line, &axis->servo, goal);
 }
 
-static void enable_operation(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
+static void follow(cm1e_sim_bridge_axis_t *axis)
+{
+    const double goal = target(axis);
+    if (fabs(goal - axis->line.goal) > STEP_IN_CYCLE_COUNTS)
+        axis->broken_rules |= CM1E_SIM_STEP_IN_CYCLE;
+    cm1e_sim_line_target(&axis->line, goal, CYCLE_S);
+}
+
+static void enable_operation(cm1e_sim_bridge_axis_t *axis)
 {
     axis->state = OPERATION_ENABLED;
-    cm1e_sim_bridge_axis_begin_csp(bridge, axis);
+    cm1e_sim_bridge_axis_begin_csp(axis);
 }
 
 void cm1e_sim_bridge_axis_error(cm1e_sim_bridge_axis_t *axis, uint8_t status)
@@ -201,10 +225,12 @@ static cm1e_fsa_command_t command_of(unsigned controlword)
 }
 
 /* One transition each cycle; the numbers are those of BR 6.1.1. */
-void cm1e_sim_bridge_axis_obey(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, unsigned controlword)
+void cm1e_sim_bridge_axis_obey(cm1e_sim_bridge_axis_t *axis, unsigned controlword)
 {
     const cm1e_fsa_command_t command = command_of(controlword);
     const bool wants_power = command == COMMAND_SWITCH_ON || command == COMMAND_ENABLE_OPERATION;
+    if (command == COMMAND_QUICK_STOP)
+        axis->broken_rules |= CM1E_SIM_QUICK_STOP;
     switch (axis->state) {
     case SWITCH_ON_DISABLED:
         if (command == COMMAND_SHUTDOWN)
@@ -219,7 +245,7 @@ void cm1e_sim_bridge_axis_obey(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t
     case SWITCHED_ON:
     case OPERATION_ENABLED:
         if (command == COMMAND_ENABLE_OPERATION && axis->state == SWITCHED_ON)
-            enable_operation(bridge, axis); /* 4 */
+            enable_operation(axis); /* 4 */
         else if (command == COMMAND_SWITCH_ON)
             switch_on(axis); /* 5 */
         else if (command == COMMAND_SHUTDOWN)
@@ -246,10 +272,12 @@ static void drive_profile_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axi
     if (axis->state == FAULT && (rising & CONTROLWORD_FAULT_RESET))
         reset_fault(axis);
     else if (!(axis->controlword & CONTROLWORD_FAULT_RESET))
-        cm1e_sim_bridge_axis_obey(bridge, axis, axis->controlword);
+        cm1e_sim_bridge_axis_obey(axis, axis->controlword);
     const bool may_search = axis->mode == CM1E_BRIDGE_MODE_HM && axis->state == OPERATION_ENABLED;
     if (may_search && (rising & CONTROLWORD_HOMING_START) && !cm1e_sim_search_running(&axis->search))
         cm1e_sim_bridge_search_begin(bridge, axis);
+    if (may_search && !(axis->controlword & CONTROLWORD_HOMING_START))
+        cm1e_sim_bridge_search_abort(axis);
 }
 
 void cm1e_sim_bridge_axis_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
@@ -260,11 +288,11 @@ void cm1e_sim_bridge_axis_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axi
     else if (axis->mode == CM1E_BRIDGE_MODE_CMD)
         cm1e_sim_bridge_command_outputs(bridge, axis);
     else if (axis->mode == CM1E_BRIDGE_MODE_CPIO)
-        cm1e_sim_bridge_cpio_outputs(bridge, axis);
+        cm1e_sim_bridge_cpio_outputs(axis);
     else if (axis->mode != CM1E_BRIDGE_MODE_CML) /* there the controlword says nothing */
         drive_profile_outputs(bridge, axis);
     if (axis->state == OPERATION_ENABLED && follows_targets(axis))
-        cm1e_sim_line_target(&axis->line, target(bridge, axis), CYCLE_S);
+        follow(axis);
     axis->last_controlword = axis->controlword;
 }
 
@@ -308,11 +336,12 @@ uint16_t cm1e_sim_bridge_statusword(const cm1e_sim_bridge_axis_t *axis)
 
 /* ---- life ------------------------------------------------------------------------------------------------------- */
 
-/* A revolution has as many pulses as K37 says; what is configured in pulses counts in them. */
-static double pulses_per_count(const cm1e_sim_bridge_t *bridge, const cm1e_sim_bridge_axis_t *axis)
+/* A revolution has as many pulses as K37 says. */
+static void take_resolution(const cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
 {
-    const int64_t k37 = *cm1e_sim_bridge_k(bridge, axis->number, K_RESOLUTION);
-    return cm1e_bridge_counts_per_revolution((int32_t)k37) / (double)CM1E_COUNTS_PER_REVOLUTION;
+    const int32_t k37 = (int32_t)*cm1e_sim_bridge_k(bridge, axis->number, K_RESOLUTION);
+    axis->scale = cm1e_bridge_counts_per_revolution(k37) / (double)CM1E_COUNTS_PER_REVOLUTION;
+    axis->limit = cm1e_bridge_position_limit(axis->motor, k37);
 }
 
 void cm1e_sim_bridge_axis_create(cm1e_sim_bridge_t *bridge, unsigned number, const cm1e_axis_config_t *config)
@@ -321,22 +350,22 @@ void cm1e_sim_bridge_axis_create(cm1e_sim_bridge_t *bridge, unsigned number, con
     cm1e_sim_axis_config_t load = config->sim;
     axis->number = (uint8_t)number;
     axis->motor = cm1e_bridge_motor(bridge->model, number);
-    if (config->k37_stated && cm1e_bridge_counts_per_revolution(config->k37) > 0)
+    if (config->k37_stated && cm1e_bridge_position_limit(axis->motor, config->k37) > 0)
         *cm1e_sim_bridge_k(bridge, number, K_RESOLUTION) = config->k37;
-    axis->scale = pulses_per_count(bridge, axis);
+    take_resolution(bridge, axis);
     load.stop_positive /= axis->scale;
     load.stop_negative /= axis->scale;
     load.sensor_input2 /= axis->scale;
     load.sensor_input3 /= axis->scale;
     cm1e_sim_sensors_init(&axis->sensors, &load);
-    cm1e_mechanics_init(&axis->mechanics, &load, peak_torque() * CM1E_ROTOR_INERTIA_PER_PEAK_TORQUE);
+    cm1e_mechanics_init(&axis->mechanics, &load, cm1e_sim_bridge_peak_torque() * CM1E_ROTOR_INERTIA_PER_PEAK_TORQUE);
     cm1e_servo_init(&axis->servo, &axis->mechanics);
 }
 
 /* "When transiting to the state A after power is supplied, CM1 will be motor enable and CM2 is settable" (BR 6.1.1). */
 void cm1e_sim_bridge_axis_power_on(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
 {
-    axis->scale = pulses_per_count(bridge, axis); /* a new K37 counts from now on */
+    take_resolution(bridge, axis); /* a new K37 counts from now on */
     cm1e_sim_bridge_axis_zero(axis);
     axis->error = 0;
     axis->silent_ms = 0;

@@ -155,7 +155,11 @@ uint32_t cm1e_sim_bridge_cml_write(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_ax
     const bool busy = bridge->now_ns < axis->cml.free_ns;
     axis->cml.free_ns = bridge->now_ns + (size < LONG_BYTES ? SHORT_NS : LONG_NS);
     memcpy(text, data, size);
-    if (busy || axis->unplugged || !cm1e_sim_bridge_line_is_free(axis) || strpbrk(text, "\r\n"))
+    const unsigned broken = (busy ? CM1E_SIM_CML_TOO_SOON : 0u) |
+                            (cm1e_sim_bridge_line_is_free(axis) ? 0u : CM1E_SIM_CML_LINE_BUSY) |
+                            (strpbrk(text, "\r\n") ? CM1E_SIM_CML_LINE_END : 0u);
+    axis->broken_rules |= broken;
+    if (broken || axis->unplugged)
         return 0;
     for (char *next, *command = text; command; command = next) {
         next = strchr(command, ',');

@@ -1,7 +1,8 @@
 #include "sim/bridge_app.h"
 
-/* "Wait for 5 Cycles of PDO Sending" (BR appendix 1): a controlword counts when it has come this often. */
-enum { SENT_CYCLES = 4 };
+/* "Wait for 5 Cycles of PDO Sending" (BR appendix 1): a controlword counts when it has come this often, and it is a
+ * cycle on the way. */
+enum { SENT_CYCLES = 3 };
 #define SEARCH_LIMIT_S 60.0 /* the guide names a time-out and no time */
 
 /* The high byte of the controlword, and of the statusword (BR 7.1.2, 7.1.3). */
@@ -84,12 +85,12 @@ uint16_t cm1e_sim_bridge_command_status(const cm1e_sim_bridge_axis_t *axis) { re
 /* ---- CPIO ------------------------------------------------------------------------------------------------------- */
 
 /* A word that is none of this mode is ignored. Bits 4 to 7 are outputs here, not a new set-point or a fault reset. */
-void cm1e_sim_bridge_cpio_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
+void cm1e_sim_bridge_cpio_outputs(cm1e_sim_bridge_axis_t *axis)
 {
     if (axis->controlword >> 12 != CPIO)
         return;
     axis->outputs = (uint8_t)(axis->controlword >> 4 & 0x0F & cm1e_bridge_output_mask(axis->motor));
-    cm1e_sim_bridge_axis_obey(bridge, axis, axis->controlword & CPIO_POSITION_CONTROL);
+    cm1e_sim_bridge_axis_obey(axis, axis->controlword & CPIO_POSITION_CONTROL);
 }
 
 uint16_t cm1e_sim_bridge_cpio_status(const cm1e_sim_bridge_axis_t *axis)

@@ -121,7 +121,7 @@ static int64_t value_of_axis(const cm1e_sim_bridge_t *bridge, const cm1e_sim_bri
     case OBJ_6064_POSITION_ACTUAL_VALUE: return cm1e_sim_bridge_shown_position(axis);
     case OBJ_607A_TARGET_POSITION: return axis->target_position;
     case OBJ_60FD_DIGITAL_INPUTS:
-        return cm1e_sim_bridge_io_available(axis) ? cm1e_sim_bridge_inputs_of(axis) & cell->entry->maximum : 0;
+        return cm1e_sim_bridge_io_available(axis) ? cm1e_sim_bridge_inputs_of(axis) : 0;
     default: return k ? *cm1e_sim_bridge_k(bridge, axis->number, k) : *cell->value;
     }
 }
@@ -146,7 +146,8 @@ static cm1e_sim_bridge_axis_t *axis_of_string(cm1e_sim_bridge_t *bridge, uint16_
 static const char *present_text(cm1e_sim_bridge_t *bridge, const cm1e_entry_t *entry)
 {
     cm1e_sim_bridge_axis_t *axis = axis_of_string(bridge, entry->index, OBJ_F591_CML_RESPONSE_AXIS_1);
-    return axis ? cm1e_sim_bridge_cml_read(bridge, axis) : entry->default_string;
+    const bool is_version = entry->index == OBJ_1009_HARDWARE_VERSION || entry->index == OBJ_100A_SOFTWARE_VERSION;
+    return axis ? cm1e_sim_bridge_cml_read(bridge, axis) : is_version ? "simulated" : entry->default_string;
 }
 
 uint32_t cm1e_sim_bridge_sdo_read(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, uint8_t *data,
@@ -189,8 +190,12 @@ static void take_value(cm1e_sim_bridge_t *bridge, const cm1e_sim_cell_t *cell, i
         *(k ? cm1e_sim_bridge_k(bridge, (unsigned)axis, k) : cell->value) = value;
     if (first == OBJ_6060_MODES_OF_OPERATION)
         cm1e_sim_bridge_request_mode(bridge, &bridge->axes[axis], (int8_t)value);
-    if (first == OBJ_60FE_DIGITAL_OUTPUTS && cm1e_sim_bridge_io_available(&bridge->axes[axis]))
+    if (first != OBJ_60FE_DIGITAL_OUTPUTS)
+        return;
+    if (cm1e_sim_bridge_io_available(&bridge->axes[axis]))
         set_outputs(bridge, &bridge->axes[axis]);
+    else if (cell->entry->subindex == 1)
+        bridge->axes[axis].broken_rules |= CM1E_SIM_OUTPUT_IN_VAIN;
 }
 
 uint32_t cm1e_sim_bridge_sdo_write(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, const uint8_t *data,

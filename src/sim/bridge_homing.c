@@ -10,11 +10,6 @@ static const struct {
     bool by_sensor;
 } methods[] = {{+1, false}, {-1, false}, {+1, true}, {-1, true}};
 
-uint8_t cm1e_sim_bridge_inputs_of(const cm1e_sim_bridge_axis_t *axis)
-{
-    return cm1e_sim_sensors_inputs(&axis->sensors, axis->mechanics.position);
-}
-
 static void look_at_sensor(cm1e_sim_bridge_axis_t *axis)
 {
     const uint8_t input = axis->search.direction > 0 ? CM1E_SIM_INPUT_2 : CM1E_SIM_INPUT_3;

@@ -3,6 +3,8 @@
 
 /* Each axis has one mapping in each direction, 16 and 32 bits (BR 6.3.1). */
 enum { AXIS_BYTES = 6, POSITION_AT = 2 };
+/* What a cycle brings is with the motors after one exchange of the serial lines (F511:3 ... F514:3). */
+enum { ON_THE_WAY_NS = 1000000 };
 
 /* ---- assignment ------------------------------------------------------------------------------------------------- */
 
@@ -67,22 +69,44 @@ void cm1e_sim_bridge_sizes(void *app, uint16_t *output_bytes, uint16_t *input_by
 
 /* ---- process data ----------------------------------------------------------------------------------------------- */
 
-static cm1e_sim_bridge_axis_t *axis_at(cm1e_sim_bridge_t *bridge, bool transmit, unsigned place)
+static unsigned axis_at(const cm1e_sim_bridge_t *bridge, bool transmit, unsigned place)
 {
-    return &bridge->axes[cm1e_bridge_axis_of(bridge->pdos[transmit][place])];
+    return (unsigned)cm1e_bridge_axis_of(bridge->pdos[transmit][place]);
 }
 
+/* Cycles that come faster than the lines carry them are lost; far too fast they are an error anyway (bridge.c). */
 void cm1e_sim_bridge_outputs(void *app, const uint8_t *data, uint16_t size, int64_t now_ns)
 {
-    (void)now_ns;
     cm1e_sim_bridge_t *bridge = app;
-    if (size < bridge->assigned[0] * AXIS_BYTES)
+    cm1e_sim_serial_t *serial = &bridge->serial;
+    if (size < bridge->assigned[0] * AXIS_BYTES || serial->count == SERIAL_LINE_CYCLES)
         return;
+    const unsigned at = (serial->first + serial->count++) % SERIAL_LINE_CYCLES;
+    serial->cycles[at].due_ns = now_ns + ON_THE_WAY_NS;
+    serial->cycles[at].present = 0;
     for (unsigned place = 0; place < bridge->assigned[0]; place++, data += AXIS_BYTES) {
-        cm1e_sim_bridge_axis_t *axis = axis_at(bridge, false, place);
-        axis->controlword = cm1e_get_u16(data);
-        axis->target_position = (int32_t)cm1e_get_u32(data + POSITION_AT);
-        cm1e_sim_bridge_axis_outputs(bridge, axis);
+        const unsigned axis = axis_at(bridge, false, place);
+        serial->cycles[at].present |= (uint8_t)(1u << axis);
+        serial->cycles[at].controlwords[axis] = cm1e_get_u16(data);
+        serial->cycles[at].targets[axis] = (int32_t)cm1e_get_u32(data + POSITION_AT);
+    }
+}
+
+void cm1e_sim_bridge_deliver(cm1e_sim_bridge_t *bridge)
+{
+    cm1e_sim_serial_t *serial = &bridge->serial;
+    while (serial->count > 0 && bridge->now_ns >= serial->cycles[serial->first].due_ns) {
+        const unsigned at = serial->first;
+        serial->first = (at + 1) % SERIAL_LINE_CYCLES;
+        serial->count--;
+        for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++) {
+            cm1e_sim_bridge_axis_t *axis = &bridge->axes[i];
+            if (!(serial->cycles[at].present & 1u << i))
+                continue;
+            axis->controlword = serial->cycles[at].controlwords[i];
+            axis->target_position = serial->cycles[at].targets[i];
+            cm1e_sim_bridge_axis_outputs(bridge, axis);
+        }
     }
 }
 
@@ -92,7 +116,7 @@ void cm1e_sim_bridge_inputs(void *app, uint8_t *data, uint16_t size)
     if (size < bridge->assigned[1] * AXIS_BYTES)
         return;
     for (unsigned place = 0; place < bridge->assigned[1]; place++, data += AXIS_BYTES) {
-        const cm1e_sim_bridge_axis_t *axis = axis_at(bridge, true, place);
+        const cm1e_sim_bridge_axis_t *axis = &bridge->axes[axis_at(bridge, true, place)];
         cm1e_put_u16(data, cm1e_sim_bridge_statusword(axis));
         cm1e_put_u32(data + POSITION_AT, (uint32_t)cm1e_sim_bridge_shown_position(axis));
     }

@@ -19,22 +19,28 @@ static bool leads_to(int8_t from, int8_t to)
     }
 }
 
-/* Appendix 3: in position, and no error, which the flow to CMD does not ask for. */
-static bool may_switch(const cm1e_sim_bridge_axis_t *axis, int8_t to)
+static bool moves(const cm1e_sim_bridge_axis_t *axis)
 {
-    if (!leads_to(axis->mode, to))
-        return false;
+    return !cm1e_sim_bridge_axis_stands(axis) || cm1e_sim_search_running(&axis->search);
+}
+
+/* Appendix 3: in position, and no error, which the flow to CMD does not ask for. */
+static unsigned obstacles(const cm1e_sim_bridge_axis_t *axis, int8_t to)
+{
+    const unsigned way = leads_to(axis->mode, to) ? 0 : CM1E_SIM_MODE_NO_WAY;
     if (to == CM1E_BRIDGE_MODE_CMD)
-        return true;
-    return axis->error == 0 && cm1e_sim_bridge_axis_stands(axis) && !cm1e_sim_search_running(&axis->search);
+        return way;
+    return way | (axis->error ? CM1E_SIM_MODE_IN_ERROR : 0u) | (moves(axis) ? CM1E_SIM_MODE_IN_MOTION : 0u);
 }
 
 void cm1e_sim_bridge_request_mode(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, int8_t value)
 {
     const int8_t to = is_mode(value) ? value : CM1E_BRIDGE_MODE_CSP; /* BR 6.2.2 note 3 */
     const bool too_soon = bridge->now_ns < axis->mode_request_ns + INTERVAL_NS;
+    const unsigned broken = obstacles(axis, to) | (too_soon ? CM1E_SIM_MODE_TOO_SOON : 0u);
     axis->mode_request_ns = bridge->now_ns;
-    if (too_soon || !may_switch(axis, to))
+    axis->broken_rules |= broken;
+    if (broken)
         return;
     axis->next_mode = to;
     axis->mode_due_ns = bridge->now_ns + SWITCH_NS;
@@ -56,7 +62,7 @@ void cm1e_sim_bridge_mode_due(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t 
     if (axis->mode == CM1E_BRIDGE_MODE_CMD || axis->mode == CM1E_BRIDGE_MODE_CPIO)
         axis->abnormal = true;
     if (axis->mode == CM1E_BRIDGE_MODE_CSP && axis->state == OPERATION_ENABLED)
-        cm1e_sim_bridge_axis_begin_csp(bridge, axis);
+        cm1e_sim_bridge_axis_begin_csp(axis);
 }
 
 void cm1e_sim_bridge_mode_reset(cm1e_sim_bridge_axis_t *axis)

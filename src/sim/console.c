@@ -119,6 +119,8 @@ static void say_bridge(call_t *call, uint32_t position, const cm1e_sim_bridge_t 
         const cm1e_sim_bridge_axis_t *axis = &bridge->axes[i];
         say(call, "; ID%u %s, mode %d, position %d, motor 0x%02X", i + 1, cm1e_fsa_name(axis->state), axis->mode,
             (int)cm1e_sim_bridge_shown_position(axis), cm1e_sim_bridge_motor_status(axis));
+        if (axis->broken_rules)
+            say(call, ", broken rules 0x%03X", axis->broken_rules);
     }
 }
 
@@ -197,30 +199,37 @@ static cm1e_error_t run_switches(call_t *call)
     return CM1E_OK;
 }
 
-static cm1e_error_t run_sensor(call_t *call)
+/* The n-th argument is the input, the next one what becomes of it. */
+static cm1e_error_t hold_input(call_t *call, cm1e_sim_sensors_t *sensors, int n, long least, long most)
 {
     static const char *const words[] = {"off", "on", "auto", NULL};
     long input;
-    const int how = choice(argument(call, 1), words);
-    if (!parse_whole(argument(call, 0), 10, 1, 4, &input))
-        return REFUSE(call, "\"%s\": expected an input, 1 to 4", argument(call, 0));
+    const int how = choice(argument(call, n + 1), words);
+    if (!parse_whole(argument(call, n), 10, least, most, &input))
+        return REFUSE(call, "\"%s\": expected an input, %ld to %ld", argument(call, n), least, most);
     if (how < 0)
-        return REFUSE(call, "\"%s\": expected on, off or auto", argument(call, 1));
-    cm1e_sim_sensors_hold(&call->drive->sensors, (uint8_t)(1u << (input - 1)), how < 2, how == 1);
+        return REFUSE(call, "\"%s\": expected on, off or auto", argument(call, n + 1));
+    cm1e_sim_sensors_hold(sensors, (uint8_t)(1u << (input - 1)), how < 2, how == 1);
     say(call, "slave %u: input %ld %s", call->position, input,
         how == 2 ? "follows the axis" : how == 1 ? "held on" : "held off");
     return CM1E_OK;
 }
 
-static cm1e_error_t run_load(call_t *call)
+static cm1e_error_t run_sensor(call_t *call) { return hold_input(call, &call->drive->sensors, 0, 1, 4); }
+
+static cm1e_error_t set_load(call_t *call, cm1e_mechanics_t *mechanics, int n, double peak_torque)
 {
     double torque;
-    if (!parse_real(argument(call, 0), -10, 10, &torque))
-        return REFUSE(call, "\"%s\": expected a torque in Nm, -10 to 10", argument(call, 0));
-    call->drive->mechanics.load_torque = torque;
-    say(call, "slave %u: load torque %g Nm (peak torque of the motor: %g Nm)", call->position, torque,
-        call->drive->motor->peak_torque_nm);
+    if (!parse_real(argument(call, n), -10, 10, &torque))
+        return REFUSE(call, "\"%s\": expected a torque in Nm, -10 to 10", argument(call, n));
+    mechanics->load_torque = torque;
+    say(call, "slave %u: load torque %g Nm (peak torque of the motor: %g Nm)", call->position, torque, peak_torque);
     return CM1E_OK;
+}
+
+static cm1e_error_t run_load(call_t *call)
+{
+    return set_load(call, &call->drive->mechanics, 0, call->drive->motor->peak_torque_nm);
 }
 
 static cm1e_error_t run_temperature(call_t *call)
@@ -331,23 +340,34 @@ static cm1e_error_t break_answers(call_t *call, cm1e_sim_bridge_axis_t *axis)
     return CM1E_OK;
 }
 
+static cm1e_error_t hold_motor_input(call_t *call, cm1e_sim_bridge_axis_t *axis)
+{
+    const bool cm1 = axis->motor == CM1E_BRIDGE_CM1;
+    return hold_input(call, &axis->sensors, 2, cm1 ? 2 : 1, cm1 ? 4 : 6); /* BR 6.5.1 */
+}
+
 static cm1e_error_t run_motor(call_t *call)
 {
-    enum { UNPLUG, REPLUG, BROKEN, ERROR };
-    static const char *const words[] = {"unplug", "replug", "broken", "error", NULL};
+    enum { UNPLUG, REPLUG, BROKEN, ERROR, SENSOR, LOAD };
+    static const char *const words[] = {"unplug", "replug", "broken", "error", "sensor", "load", NULL};
     const int what = choice(argument(call, 1), words);
     long id;
     if (!parse_whole(argument(call, 0), 10, 1, CM1E_BRIDGE_AXES, &id))
         return REFUSE(call, "\"%s\": expected the ID of a motor, 1 to %d", argument(call, 0), CM1E_BRIDGE_AXES);
     if (what < 0)
-        return REFUSE(call, "\"%s\": expected unplug, replug, broken or error", argument(call, 1));
+        return REFUSE(call, "\"%s\": expected unplug, replug, broken, error, sensor or load", argument(call, 1));
     cm1e_sim_bridge_axis_t *axis = &cm1e_sim_bridge_of(call->slave)->axes[id - 1];
+    const int most = what == SENSOR ? 2 : what >= BROKEN ? 1 : 0;
+    if (argument(call, 2 + most)[0])
+        return REFUSE(call, "\"%s\" is too much behind %s", argument(call, 2 + most), words[what]);
     if (what == BROKEN)
         return break_answers(call, axis);
     if (what == ERROR)
         return motor_error(call, axis);
-    if (argument(call, 2)[0])
-        return REFUSE(call, "\"%s\" is too much behind %s", argument(call, 2), words[what]);
+    if (what == SENSOR)
+        return hold_motor_input(call, axis);
+    if (what == LOAD)
+        return set_load(call, &axis->mechanics, 2, cm1e_sim_bridge_peak_torque());
     cm1e_sim_bridge_axis_plug(axis, what == REPLUG);
     say(call, "slave %u: cable to motor %ld %s", call->position, id, what == REPLUG ? "plugged in" : "unplugged");
     return CM1E_OK;
@@ -417,8 +437,9 @@ static const command_t commands[] = {
     {"error", DRIVE, 1, 2, run_error, "<slave> <code>|clear [hold]",
      "an error code of the guide's 7.3.1; hold: its cause stays until clear"},
     {"power-up-fault", DRIVE, 1, 1, run_power_up_fault, "<slave> <times>|always", "error 7510 at the next power-ups"},
-    {"motor", BRIDGE, 2, 3, run_motor, "<slave> <1...4> unplug|replug|broken <n>|error <which>",
-     "a bridge's motor: its cable, its next answers, an error"},
+    {"motor", BRIDGE, 2, 4, run_motor,
+     "<slave> <1...4> unplug|replug|broken|error|sensor|load ...",
+     "a bridge's motor: cable, answers, error, input, load"},
     {"power-cycle", ANY_SLAVE, 0, 1, run_power_cycle, "<slave> [ms]", "control power off and on again"},
     {"unplug", ANY_SLAVE, 0, 0, run_unplug, "<slave>", "pull the cable before it"},
     {"replug", ANY_SLAVE, 0, 0, run_replug, "<slave>", "plug the cable in again"},
@@ -431,7 +452,7 @@ enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 static cm1e_error_t run_help(call_t *call)
 {
     for (int i = 0; i < COMMAND_COUNT; i++) {
-        char left[64];
+        char left[80];
         snprintf(left, sizeof left, "%s %s", commands[i].word, commands[i].usage);
         say(call, "%s%-36s %s", i ? "\n" : "", left, commands[i].help);
     }

@@ -1,5 +1,6 @@
 #include <math.h>
 
+#include "sim/bridge_app.h"
 #include "sim/cm1e_app.h"
 
 static cm1e_sim_cm1e_t *drive_at(cm1e_sim_segment_t *segment, uint32_t position)
@@ -7,14 +8,14 @@ static cm1e_sim_cm1e_t *drive_at(cm1e_sim_segment_t *segment, uint32_t position)
     return segment ? cm1e_sim_cm1e_of(cm1e_sim_segment_slave(segment, position)) : NULL;
 }
 
-void cm1e_sim_probe(cm1e_sim_segment_t *segment, uint32_t position, cm1e_sim_probe_t *probe)
+static cm1e_sim_bridge_axis_t *motor_at(cm1e_sim_segment_t *segment, uint32_t position, unsigned channel)
 {
-    if (!probe)
-        return;
-    *probe = (cm1e_sim_probe_t){0};
-    cm1e_sim_cm1e_t *drive = drive_at(segment, position);
-    if (!drive)
-        return;
+    cm1e_sim_bridge_t *bridge = segment ? cm1e_sim_bridge_of(cm1e_sim_segment_slave(segment, position)) : NULL;
+    return bridge && channel >= 1 && channel <= CM1E_BRIDGE_AXES ? &bridge->axes[channel - 1] : NULL;
+}
+
+static void probe_drive(cm1e_sim_cm1e_t *drive, cm1e_sim_probe_t *probe)
+{
     cm1e_sim_refresh(drive);
     *probe = (cm1e_sim_probe_t){
         .position_counts = drive->mechanics.position,
@@ -32,11 +33,57 @@ void cm1e_sim_probe(cm1e_sim_segment_t *segment, uint32_t position, cm1e_sim_pro
     };
 }
 
+static void probe_motor(const cm1e_sim_bridge_axis_t *axis, cm1e_sim_probe_t *probe)
+{
+    *probe = (cm1e_sim_probe_t){
+        .position_counts = axis->mechanics.position * axis->scale,
+        .velocity_counts_per_s = axis->mechanics.velocity * axis->scale,
+        .torque_nm = axis->motor_free ? 0 : axis->servo.torque,
+        .torque_on = !axis->motor_free,
+        .statusword = cm1e_sim_bridge_statusword(axis),
+        .controlword = axis->controlword,
+        .error_code = axis->error,
+        .mode = axis->mode,
+        .digital_inputs = cm1e_sim_bridge_inputs_of(axis),
+        .digital_outputs = axis->outputs,
+        .peak_velocity_counts_per_s = axis->mechanics.peak_velocity * axis->scale,
+        .travel_counts = axis->mechanics.travel * axis->scale,
+        .broken_rules = axis->broken_rules,
+    };
+}
+
+void cm1e_sim_probe_channel(cm1e_sim_segment_t *segment, uint32_t position, unsigned channel, cm1e_sim_probe_t *probe)
+{
+    cm1e_sim_cm1e_t *drive = channel == 0 ? drive_at(segment, position) : NULL;
+    const cm1e_sim_bridge_axis_t *motor = motor_at(segment, position, channel);
+    if (!probe)
+        return;
+    *probe = (cm1e_sim_probe_t){0};
+    if (drive)
+        probe_drive(drive, probe);
+    else if (motor)
+        probe_motor(motor, probe);
+}
+
+void cm1e_sim_probe_reset_channel(cm1e_sim_segment_t *segment, uint32_t position, unsigned channel)
+{
+    cm1e_sim_cm1e_t *drive = channel == 0 ? drive_at(segment, position) : NULL;
+    cm1e_sim_bridge_axis_t *motor = motor_at(segment, position, channel);
+    cm1e_mechanics_t *mechanics = drive ? &drive->mechanics : motor ? &motor->mechanics : NULL;
+    if (!mechanics)
+        return;
+    if (motor)
+        motor->broken_rules = 0;
+    mechanics->peak_velocity = fabs(mechanics->velocity);
+    mechanics->travel = 0;
+}
+
+void cm1e_sim_probe(cm1e_sim_segment_t *segment, uint32_t position, cm1e_sim_probe_t *probe)
+{
+    cm1e_sim_probe_channel(segment, position, 0, probe);
+}
+
 void cm1e_sim_probe_reset(cm1e_sim_segment_t *segment, uint32_t position)
 {
-    cm1e_sim_cm1e_t *drive = drive_at(segment, position);
-    if (!drive)
-        return;
-    drive->mechanics.peak_velocity = fabs(drive->mechanics.velocity);
-    drive->mechanics.travel = 0;
+    cm1e_sim_probe_reset_channel(segment, position, 0);
 }

@@ -65,19 +65,44 @@ void cm1e_sim_segment_set_frame_fault(cm1e_sim_segment_t *segment, cm1e_frame_fa
  *  from `cm1e sim`, tests and cm1e_bus_simulate(). Returns CM1E_OK, or an error whose reason is the answer. */
 cm1e_error_t cm1e_sim_console(cm1e_sim_segment_t *segment, const char *line, char *answer, size_t size);
 
-/* ---- what tests measure behind a drive (NULL-safe; position 1 = first; not a CM1-E: zeros) ---------------------- */
+/* ---- what tests measure behind a drive (NULL-safe; position 1 = first; no motor there: zeros) ------------------- */
+
+/** Rules of the bridge's guide that a master broke. What a real bridge makes of it nobody knows, so a good master breaks
+ *  none: tests look at it. */
+enum cm1e_sim_broken_rule {
+    CM1E_SIM_MODE_TOO_SOON = 0x001,   /**< 0x6060 within 5 ms of the last time (BR 6.2.2, note 2) */
+    CM1E_SIM_MODE_IN_MOTION = 0x002,  /**< ... while the motor moved (note 1) */
+    CM1E_SIM_MODE_IN_ERROR = 0x004,   /**< ... with an error of the motor (BR appendix 3) */
+    CM1E_SIM_MODE_NO_WAY = 0x008,     /**< ... where the drawing of BR 6 has no way, or the motor has been in CMD or CPIO
+                                           and is to follow targets in csp (note 2) */
+    CM1E_SIM_QUICK_STOP = 0x010,      /**< "Do not send Quick Stop command" (BR 6.1.1) */
+    CM1E_SIM_STEP_AT_START = 0x020,   /**< the target was not the actual position when the motor began to follow it */
+    CM1E_SIM_STEP_IN_CYCLE = 0x040,   /**< further from one target to the next than the motor's peak speed carries */
+    CM1E_SIM_CML_LINE_BUSY = 0x080,   /**< a string without 0000h for five cycles before it (BR appendix 2) */
+    CM1E_SIM_CML_TOO_SOON = 0x100,    /**< a string less than 4 or 8 ms after the last (BR 7.2.2) */
+    CM1E_SIM_CML_LINE_END = 0x200,    /**< a string with CR or LF (BR 7.2.2) */
+    CM1E_SIM_OUTPUT_IN_VAIN = 0x400,  /**< 0x60FE where it does nothing: not in csp, or no power (BR 6.5) */
+};
+
 typedef struct cm1e_sim_probe {
-    double position_counts;   /**< of the shaft, exact, since power-on (homing does not change it) */
+    double position_counts;   /**< of the shaft, exact, since the start (homing does not change it); behind a bridge
+                                   pulses by the motor's K37 */
     double velocity_counts_per_s;
     double torque_nm;         /**< motor torque */
-    bool torque_on;           /**< the output stage is on (Section C, UG 6.1.1) */
-    uint16_t statusword, controlword, error_code;
+    bool torque_on;           /**< the output stage is on (Section C, UG 6.1.1); behind a bridge: not motor free */
+    uint16_t statusword, controlword;
+    uint16_t error_code;      /**< 0x603F; behind a bridge the motor's error as in F530:5 ... 8, 0: none */
     int8_t mode;
     uint16_t digital_inputs, digital_outputs;
     double peak_velocity_counts_per_s; /**< largest absolute value since the last cm1e_sim_probe_reset() */
     double travel_counts;     /**< sum of absolute movement since the last reset */
+    unsigned broken_rules;    /**< behind a bridge: cm1e_sim_broken_rule since the last reset */
 } cm1e_sim_probe_t;
+/** Of a CM1-E. */
 void cm1e_sim_probe(cm1e_sim_segment_t *segment, uint32_t position, cm1e_sim_probe_t *probe);
 void cm1e_sim_probe_reset(cm1e_sim_segment_t *segment, uint32_t position);
+/** Of the motor at channel 1 ... 4 of a bridge; channel 0: of a CM1-E. */
+void cm1e_sim_probe_channel(cm1e_sim_segment_t *segment, uint32_t position, unsigned channel, cm1e_sim_probe_t *probe);
+void cm1e_sim_probe_reset_channel(cm1e_sim_segment_t *segment, uint32_t position, unsigned channel);
 
 #endif

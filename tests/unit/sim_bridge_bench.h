@@ -54,21 +54,28 @@ static inline void bench_wait(bench_t *b, int64_t ns)
     b->ops->advance(b->bridge, b->now_ns);
 }
 
+/* What the inputs are now. */
+static inline void bench_look(bench_t *b)
+{
+    uint8_t in[BENCH_BYTES];
+    b->ops->inputs(b->bridge, in, sizeof in);
+    for (int i = 0; i < CM1E_BRIDGE_AXES; i++) {
+        b->axes[i].statusword = cm1e_get_u16(in + 6 * i);
+        b->axes[i].position = (int32_t)cm1e_get_u32(in + 6 * i + 2);
+    }
+}
+
 /* One exchange of process data, after so long. */
 static inline void bench_cycle_after(bench_t *b, int64_t ns)
 {
-    uint8_t out[BENCH_BYTES], in[BENCH_BYTES];
+    uint8_t out[BENCH_BYTES];
     for (int i = 0; i < CM1E_BRIDGE_AXES; i++) {
         cm1e_put_u16(out + 6 * i, b->axes[i].controlword);
         cm1e_put_u32(out + 6 * i + 2, (uint32_t)b->axes[i].target);
     }
     bench_wait(b, ns);
     b->ops->outputs(b->bridge, out, sizeof out, b->now_ns);
-    b->ops->inputs(b->bridge, in, sizeof in);
-    for (int i = 0; i < CM1E_BRIDGE_AXES; i++) {
-        b->axes[i].statusword = cm1e_get_u16(in + 6 * i);
-        b->axes[i].position = (int32_t)cm1e_get_u32(in + 6 * i + 2);
-    }
+    bench_look(b);
 }
 
 static inline void bench_cycles(bench_t *b, int count)

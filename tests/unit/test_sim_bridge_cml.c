@@ -149,11 +149,15 @@ static void test_a_string_that_comes_too_soon_is_lost(void)
 static void test_controlwords_keep_the_line_busy(void)
 {
     b.axes[0].controlword = 0x0F;
-    bench_cycles(&b, 1);
-    ask(0, "?99.1", "Null\r\n");
-    b.axes[0].controlword = 0;
     bench_cycles(&b, 2);
     ask(0, "?99.1", "Null\r\n");
+    b.axes[0].controlword = 0;
+    bench_cycles(&b, 3);
+    TEST_ASSERT_EQUAL_HEX32(0, send(0, "?99.1")); /* the third is on its way */
+    b.axes[0].controlword = 0x0F;
+    bench_cycles(&b, 10);
+    check(0, "Null\r\n");
+    b.axes[0].controlword = 0;
     bench_cycles(&b, FIVE_CYCLES);
     ask(0, "?99.1", "Ux.1=8\r\n");
     b.ops->state_change(b.bridge, BENCH_OP, BENCH_PREOP); /* no controlwords at all */

@@ -210,6 +210,7 @@ static void test_an_assignment_is_written_as_coe_has_it(void)
     cm1e_put_u32(out + 2, 4444);
     cm1e_put_u32(out + 8, 2222);
     b.ops->outputs(b.bridge, out, sizeof out, b.now_ns);
+    bench_wait(&b, BENCH_MS);
     TEST_ASSERT_EQUAL(4444, bench_read(&b, 0x787A, 0));
     TEST_ASSERT_EQUAL(2222, bench_read(&b, 0x687A, 0));
     b.ops->state_change(b.bridge, BENCH_PREOP, BENCH_SAFEOP);

@@ -106,6 +106,24 @@ static void test_a_start_is_an_edge_in_operation_enabled(void)
     TEST_ASSERT_EQUAL_HEX16(0, b.axes[0].statusword & BITS);
 }
 
+/* Bit 4 says "search", so 0 says "do not": the motor stands, and homing is neither attained nor failed. */
+static void test_without_bit_4_a_search_ends(void)
+{
+    prepare(0, 1);
+    b.axes[0].controlword = 0x1F;
+    bench_cycles(&b, 200);
+    TEST_ASSERT_TRUE(b.bridge->axes[0].mechanics.velocity > 50000);
+    b.axes[0].controlword = 0x0F;
+    bench_cycles(&b, 50);
+    TEST_ASSERT_EQUAL_HEX16(REACHED, b.axes[0].statusword & BITS);
+    TEST_ASSERT_FALSE(b.bridge->axes[0].motor_free);
+    const double stopped = shaft(0);
+    b.axes[0].controlword = 0x0F;
+    bench_cycles(&b, 100);
+    TEST_ASSERT_DOUBLE_WITHIN(30, stopped, shaft(0));
+    TEST_ASSERT_TRUE(monitor(0, 8000)); /* and it can begin again */
+}
+
 static void test_without_power_a_search_ends(void)
 {
     prepare(0, 1);
@@ -144,6 +162,7 @@ int main(void)
     RUN_TEST(test_the_offset_has_the_unit_of_the_motor);
     RUN_TEST(test_the_speed_is_that_of_k42);
     RUN_TEST(test_a_start_is_an_edge_in_operation_enabled);
+    RUN_TEST(test_without_bit_4_a_search_ends);
     RUN_TEST(test_without_power_a_search_ends);
     RUN_TEST(test_an_error_of_the_motor_is_a_homing_error);
     RUN_TEST(test_no_other_mode_while_searching);

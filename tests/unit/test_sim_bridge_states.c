@@ -36,7 +36,9 @@ static void check(int axis, cm1e_fsa_state_t state, bool motor_free)
 static void command(int axis, uint16_t controlword)
 {
     b.axes[axis].controlword = controlword;
-    bench_cycles(&b, 1);
+    bench_cycle_after(&b, BENCH_MS);
+    bench_wait(&b, BENCH_MS); /* on the serial line */
+    bench_look(&b);
 }
 
 static void test_after_power_on_a_cm1_holds_and_a_cm2_is_free_unless_k68_says_otherwise(void)
