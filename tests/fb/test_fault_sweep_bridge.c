@@ -7,7 +7,7 @@
 #include "safety_bench.h"
 
 enum { A = 0, B, C, AXES }; /* CM1 at ID1, CM2 at ID3, CM1-E behind the bridge */
-enum { FAULT_CYCLES = 250, SETTLED = 400, HEALED = 450, RESET = 1700, END = 2400, MAX_CYCLES = 6000 };
+enum { FAULT_CYCLES = 250, SETTLED = 400, HEALED = 450, RESET = 1700, AGAIN = 1900, END = 2400, MAX_CYCLES = 6000 };
 enum { FIRST_CYCLES = 15, STRIDE = 7, SAMPLED_STRIDE = 61 };
 
 /* ---- faults ------------------------------------------------------------------------------------------------------ */
@@ -225,6 +225,9 @@ static void recover(bench_t *b)
             power[n].Enable = TRUE;
             reset[n].Execute = TRUE;
         }
+    /* An axis that was off meanwhile learns of it when it is enabled: its reset had nothing to do. */
+    for (uint32_t n = 0; (since == AGAIN || since == AGAIN + 1) && n < AXES; n++)
+        reset[n].Execute = since == AGAIN + 1 && in_error(b, n);
     for (uint32_t n = 0; since > SETTLED && n < AXES; n++)
         travel_after[n] = bench_probe(b, n).travel_counts - travel_settled[n];
     if (since == END)

@@ -1,13 +1,28 @@
 /**
  * The random programs of test_fb_random.c on the simulated segment, with real frames and a simulated drive behind them:
  * the same rules, and the simulated motor follows the set-point. Faults come from the simulator's console and are those
- * that test_safety_random.c makes, which judges what is sent to the drives.
+ * that test_safety_random.c makes, which judges what is sent to the drives. The axis is a CM1-E alone, or a motor
+ * behind a bridge (EB01, EB02, EB12; any K37) among up to three others there and a CM1-E, which move to and fro: what
+ * happens to one motor is nothing to them.
  *
  * CM1E_TEST_SEED=<n> repeats one run, CM1E_TEST_RUNS=<n> makes more of them.
  */
 #include "block_judge.h"
 #include "bus/bus_image.h"
+#include "device/unit.h"
 #include "nic/nic.h"
+#include "sim/bridge_app.h"
+
+enum { MOST_OTHERS = 4 };
+
+/** An axis that is not judged call by call, and moves to and fro. */
+typedef struct other {
+    cm1e_axis_t *axis;
+    AXIS_REF_t reference;
+    MC_Power_t power;
+    MC_Reset_t reset;
+    MC_MoveRelative_t move;
+} other_t;
 
 static struct bench {
     cm1e_bus_t *bus;
@@ -16,7 +31,14 @@ static struct bench {
     cm1e_axis_info_t info;
     int64_t start_ns, disturbed_until;
     bool faulty;                    /**< a fault has not been healed yet */
+    uint32_t position;              /**< of the slave of the judged axis */
+    unsigned channel;               /**< 0: a CM1-E */
+    other_t others[MOST_OTHERS];
+    int other_count;
+    int64_t bus_disturbed_until;    /**< by what concerns all axes */
 } bench;
+
+static void play_others(void);
 
 static void cycle_begin(void)
 {
@@ -24,14 +46,19 @@ static void cycle_begin(void)
     cm1e_clock_sleep_until(cm1e_bus_clock(bench.bus), planned_ns);
     const cm1e_error_t received = cm1e_bus_receive(bench.bus);
     cm1e_axis_inputs(judged.axis, received, cm1e_bus_health(bench.bus), planned_ns);
+    for (int i = 0; i < bench.other_count; i++)
+        cm1e_axis_inputs(bench.others[i].axis, received, cm1e_bus_health(bench.bus), planned_ns);
     judge_cycle();
     MC_Power(&bench.power);
     judged.state = judged.axis->state;
+    play_others();
 }
 
 static void cycle_end(void)
 {
     cm1e_axis_outputs(judged.axis);
+    for (int i = 0; i < bench.other_count; i++)
+        cm1e_axis_outputs(bench.others[i].axis);
     cm1e_bus_send(bench.bus);
     judge_cycle();
     watch_set_point();
@@ -41,13 +68,13 @@ static void cycle_end(void)
 
 #include "random_program.h"
 
-enum { CYCLES = 20000, RUNS = 32, BATCHES = 4 };
+enum { CYCLES = 20000, RUNS = 32, BRIDGE_RUNS = 24, BATCHES = 4 };
 
-static cm1e_sim_probe_t probe(void)
+/** NULL: not behind a bridge. */
+static cm1e_sim_bridge_axis_t *motor(void)
 {
-    cm1e_sim_probe_t now;
-    cm1e_sim_probe(bench.segment, 1, &now);
-    return now;
+    cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(cm1e_sim_segment_slave(bench.segment, bench.position));
+    return bridge ? &bridge->axes[bench.channel - 1] : NULL;
 }
 
 static void time_passes(int64_t time_ns)
@@ -55,9 +82,18 @@ static void time_passes(int64_t time_ns)
     cm1e_clock_t *clock = cm1e_bus_clock(bench.bus);
     bench.start_ns += time_ns;
     cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + time_ns);
+    for (int i = 0; i < bench.other_count; i++)
+        cm1e_axis_after_pause(bench.others[i].axis, time_ns);
 }
 
-static bool has_torque(void) { return probe().torque_on; }
+/** A CM1 holds by itself until it was enabled once (BR 6.1.1): that is nobody's torque. */
+static bool has_torque(void)
+{
+    const cm1e_sim_bridge_axis_t *m = motor();
+    cm1e_sim_probe_t probe;
+    cm1e_sim_probe(bench.segment, bench.position, &probe);
+    return m ? (m->state == OPERATION_ENABLED || m->state == SWITCHED_ON) && !m->motor_free : probe.torque_on;
+}
 static bool is_deaf(void) { return cm1e_bus_health(bench.bus) != CM1E_OK; }
 
 /* ---- faults ------------------------------------------------------------------------------------------------------ */
@@ -72,27 +108,61 @@ __attribute__((format(printf, 1, 2))) static void console(const char *format, ..
     MUST(cm1e_bus_simulate(bench.bus, line, answer, sizeof answer) == CM1E_OK, "%s: %s", line, answer);
 }
 
+static void make_fault_of_motor(void)
+{
+    switch (pick(5)) {
+    case 0: console("power %u off", bench.position); break;
+    case 1:
+        console("error %u %04X", bench.position,
+                cm1e_device_errors[(size_t)pick((int)cm1e_device_error_count)].code);
+        break;
+    case 2: console("over-torque %u", bench.position); break;
+    case 3: console("load %u %g", bench.position, uniform(-0.5, 0.5)); break;
+    default: console("sensor %u %d on", bench.position, 1 + pick(4)); break;
+    }
+}
+
+static void make_fault_behind_bridge(void)
+{
+    static const char *const errors[] = {"position", "over-speed", "overload", "temperature"};
+    switch (pick(3)) {
+    case 0: console("motor %u %u unplug", bench.position, bench.channel); break;
+    case 1: console("motor %u %u error %s", bench.position, bench.channel, errors[pick(4)]); break;
+    default: console("motor %u %u broken %d", bench.position, bench.channel, 1 + pick(40)); break;
+    }
+}
+
 static void make_fault(void)
 {
-    switch (pick(7)) {
-    case 0: console("power 1 off"); break;
-    case 1: console("error 1 %04X", cm1e_device_errors[(size_t)pick((int)cm1e_device_error_count)].code); break;
-    case 2: console("over-torque 1"); break;
-    case 3: console("load 1 %g", uniform(-0.5, 0.5)); break;
-    case 4: console("lose %d", 1 + pick(3)); break;
-    case 5: console("sensor 1 %d on", 1 + pick(4)); break;
-    default: console("unplug 1"); break;
-    }
+    const int which = pick(7 + (bench.channel != 0));
+    if (which == 5)
+        console("lose %d", 1 + pick(3));
+    else if (which == 6)
+        console("unplug %u", bench.position);
+    else if (which == 7)
+        console("power-cycle %u %d", bench.position, 1 + pick(1000));
+    else if (bench.channel)
+        make_fault_behind_bridge();
+    else
+        make_fault_of_motor();
+    if (which >= 5)
+        bench.bus_disturbed_until = INT64_MAX;
 }
 
 static void heal(void)
 {
-    console("power 1 on");
-    console("error 1 clear");
-    console("load 1 0");
-    console("replug 1");
+    console("replug %u", bench.position);
+    if (bench.bus_disturbed_until == INT64_MAX)
+        bench.bus_disturbed_until = judged.number + 8000;
+    if (bench.channel) {
+        console("motor %u %u replug", bench.position, bench.channel);
+        return;
+    }
+    console("power %u on", bench.position);
+    console("error %u clear", bench.position);
+    console("load %u 0", bench.position);
     for (int input = 1; input <= 4; input++)
-        console("sensor 1 %d auto", input);
+        console("sensor %u %d auto", bench.position, input);
 }
 
 static void act_on_device(void)
@@ -121,35 +191,123 @@ static void judge_motor(void)
     if (judged.number < bench.disturbed_until)
         return;
     const double counts = fabs(judged.axis->scale), cycle_s = (double)judged.cycle_ns * 1e-9;
-    const double allowed = 300 + 4 * watch.most.velocity * counts * cycle_s;
+    const double allowed = 300 * judged.axis->count + 4 * watch.most.velocity * counts * cycle_s;
     MUST(fabs(bench.info.position_lag) * counts <= allowed, "%s: the motor lags by %.0f counts, %.0f allowed",
          cm1e_axis_state_name(judged.axis->state), bench.info.position_lag * counts, allowed);
 }
 
+/* ---- the others -------------------------------------------------------------------------------------------------- */
+
+static void play_other(other_t *o)
+{
+    MC_Power(&o->power);
+    MC_Reset(&o->reset);
+    MC_MoveRelative(&o->move);
+    cm1e_axis_info_t info;
+    cm1e_axis_get(o->axis, &info);
+    const bool in_error = info.state == CM1E_AXIS_ERROR_STOP;
+    if (in_error && judged.number >= bench.bus_disturbed_until) {
+        char text[512];
+        cm1e_axis_error_text(o->reference, text, sizeof text);
+        MUST(false, "an axis that nothing happened to is in ErrorStop: %s", text);
+    }
+    o->reset.Execute = in_error && !o->reset.Execute;
+    if (o->move.Execute)
+        o->move.Execute = o->move.Busy;
+    else if (info.state == CM1E_AXIS_STANDSTILL) {
+        o->move.Distance = -o->move.Distance;
+        o->move.Execute = TRUE;
+    }
+}
+
+static void play_others(void)
+{
+    for (int i = 0; i < bench.other_count; i++)
+        play_other(&bench.others[i]);
+}
+
+static void make_other(uint32_t index)
+{
+    cm1e_diag_t diag = {0};
+    other_t *o = &bench.others[bench.other_count++];
+    MUST(cm1e_axis_create(&o->axis, bench.bus, index, &diag) == CM1E_OK, "%s", diag.text);
+    o->reference = cm1e_axis_reference(o->axis);
+    o->power = (MC_Power_t){.Axis = &o->reference, .Enable = TRUE, .EnablePositive = TRUE, .EnableNegative = TRUE};
+    o->reset = (MC_Reset_t){.Axis = &o->reference};
+    o->move = (MC_MoveRelative_t){.Axis = &o->reference, .Distance = 0.5, .Velocity = 2};
+}
+
 /* ---- a run ------------------------------------------------------------------------------------------------------- */
 
-static void prepare(unsigned seed)
+static cm1e_bus_config_t config;
+
+static void choose_alone(void)
 {
-    static cm1e_bus_config_t config;
+    cm1e_bus_config_init(&config, "sim", 1);
+    config.sim_pdo_order = (cm1e_pdo_order_t)pick(2);
+    config.cycle_time_ns = one_in(3) ? cm1e_device_cycle_times_ns[pick(4)] : 1000000;
+    random_axis(&config.axes[0]);
+    bench.position = 1;
+}
+
+static void choose_motor(cm1e_axis_config_t *axis, cm1e_device_model_t model, unsigned channel)
+{
+    const cm1e_bridge_motor_t kind = cm1e_bridge_motor(model, channel - 1);
+    axis->address = (uint16_t)bench.position;
+    axis->channel = (uint8_t)channel;
+    snprintf(axis->motor, sizeof axis->motor, "%s", cm1e_bridge_motor_name(kind));
+    do
+        axis->k37 = (uint8_t)pick(91);
+    while (cm1e_bridge_position_limit(kind, axis->k37) == 0 || cm1e_bridge_counts_per_revolution(axis->k37) < 10000);
+    axis->k37_stated = true;
+    axis->homing.method = (int8_t)(1 + pick(4));
+    axis->inputs = (cm1e_input_config_t){.limit_positive = 4, .limit_negative = 2, .home = 3};
+}
+
+/** The judged axis is the first of the list; a CM1-E before or behind the bridge is the last, if there is one. */
+static void choose_bridge(void)
+{
+    const cm1e_device_model_t model = (cm1e_device_model_t)(CM1E_DEVICE_EB01 + pick(3));
+    const unsigned first = 1 + (unsigned)pick(4), motors = 1 + (unsigned)pick(4);
+    const bool cm1e = one_in(2);
+    cm1e_bus_config_init(&config, "sim", motors + cm1e);
+    config.cycle_time_ns = 1000000;
+    bench.position = cm1e && one_in(2) ? 2 : 1;
+    bench.channel = first;
+    for (unsigned i = 0; i < motors; i++)
+        choose_motor(&config.axes[i], model, (first - 1 + i) % CM1E_BRIDGE_AXES + 1);
+    if (cm1e)
+        config.axes[motors].address = (uint16_t)(3 - bench.position);
+    const int8_t method = config.axes[0].homing.method;
+    const cm1e_input_config_t inputs = config.axes[0].inputs;
+    random_axis(&config.axes[0]);
+    config.axes[0].homing.method = method;
+    config.axes[0].inputs = inputs;
+}
+
+static void prepare(unsigned seed, bool bridge)
+{
     cm1e_diag_t diag = {0};
-    snprintf(judged.scene, sizeof judged.scene, "seed %u", seed);
+    snprintf(judged.scene, sizeof judged.scene, "%s, seed %u", bridge ? "bridge" : "CM1-E", seed);
     chance_seed(seed);
     memset(&bench, 0, sizeof bench);
-    cm1e_bus_config_init(&config, "sim", 1);
+    if (bridge)
+        choose_bridge();
+    else
+        choose_alone();
     config.virtual_time = true;
-    config.sim_pdo_order = (cm1e_pdo_order_t)pick(2);
-    config.cycle_time_ns = judged.cycle_ns = one_in(3) ? cm1e_device_cycle_times_ns[pick(4)] : 1000000;
+    judged.cycle_ns = config.cycle_time_ns;
     cm1e_axis_config_t *axis = &config.axes[0];
-    random_axis(axis);
-    const double counts = axis->counts_per_unit > 0
-                              ? axis->counts_per_unit
-                              : CM1E_COUNTS_PER_REVOLUTION / 360.0 * axis->gear_numerator / axis->gear_denominator;
-    axis->max_velocity = 1e6 / counts;
-    axis->max_acceleration = axis->max_deceleration = 0; /* 5e6 counts/s2, which every motor can do */
+    axis->max_velocity = 20 * cm1e_unit_counts_per_revolution(axis) / cm1e_unit_scale(axis);
+    axis->max_acceleration = axis->max_deceleration = 0; /* 100 revolutions/s2, which every motor can do */
     axis->sim.no_stops = true;
+    for (uint32_t i = 1; i < config.axis_count; i++)
+        config.axes[i].sim.no_stops = true;
     MUST(cm1e_bus_open(&bench.bus, &config, &diag) == CM1E_OK, "%s", diag.text);
     MUST(cm1e_bus_start(bench.bus, &diag) == CM1E_OK, "%s", diag.text);
     MUST(cm1e_axis_create(&judged.axis, bench.bus, 0, &diag) == CM1E_OK, "%s", diag.text);
+    for (uint32_t i = 1; i < config.axis_count; i++)
+        make_other(i);
     bench.segment = cm1e_nic_segment(cm1e_bus_nic(bench.bus));
     judged.reference = cm1e_axis_reference(judged.axis);
     judged.state = CM1E_AXIS_DISABLED;
@@ -162,9 +320,9 @@ static void prepare(unsigned seed)
     begin_program();
 }
 
-static void run(unsigned seed)
+static void run(unsigned seed, bool bridge)
 {
-    prepare(seed);
+    prepare(seed, bridge);
     const int length = CYCLES / 2 + pick(CYCLES);
     for (int i = 0; i < length; i++)
         one_cycle();
@@ -172,30 +330,40 @@ static void run(unsigned seed)
     cm1e_bus_stop(bench.bus);
     MUST(!has_torque() || judged.number < bench.disturbed_until, "torque after the end");
     cm1e_axis_destroy(judged.axis);
+    for (int i = 0; i < bench.other_count; i++)
+        cm1e_axis_destroy(bench.others[i].axis);
     cm1e_bus_close(bench.bus);
 }
 
-START_TEST(test_random_programs_on_the_segment_keep_every_rule)
+static void run_seeds(int batch, int wanted, bool bridge)
 {
     const char *more = getenv("CM1E_TEST_RUNS");
-    const int runs = more ? atoi(more) : seed_count(RUNS);
-    for (int i = _i; i < runs; i += BATCHES)
-        run(seed_of(i));
-    printf("batch %d: %llu cycles, %llu of them moving, %llu edges, %llu times Done\n", _i, cycles_total, watch.moving,
-           edges_total, done_total);
-    if (!getenv("CM1E_TEST_SEED") && runs >= RUNS)
+    const int runs = more ? atoi(more) : seed_count(wanted);
+    for (int i = batch; i < runs; i += BATCHES)
+        run(seed_of(i), bridge);
+    printf("%s, batch %d: %llu cycles, %llu of them moving, %llu edges, %llu times Done\n",
+           bridge ? "bridge" : "CM1-E", batch, cycles_total, watch.moving, edges_total, done_total);
+    if (!getenv("CM1E_TEST_SEED") && runs >= wanted)
         MUST(watch.moving > cycles_total / 8, "too wild to test anything");
 }
+
+START_TEST(test_random_programs_on_the_segment_keep_every_rule) { run_seeds(_i, RUNS, false); }
+END_TEST
+
+START_TEST(test_random_programs_behind_a_bridge_keep_every_rule) { run_seeds(_i, BRIDGE_RUNS, true); }
 END_TEST
 
 int main(void)
 {
+    const int batches = getenv("CM1E_TEST_SEED") ? 1 : BATCHES;
     Suite *suite = suite_create("random programs on the segment");
-    TCase *all = tcase_create("all");
+    TCase *all = tcase_create("CM1-E"), *bridge = tcase_create("bridge");
     tcase_set_timeout(all, 250);
-    tcase_add_loop_test(all, test_random_programs_on_the_segment_keep_every_rule, 0,
-                        getenv("CM1E_TEST_SEED") ? 1 : BATCHES);
+    tcase_set_timeout(bridge, 250);
+    tcase_add_loop_test(all, test_random_programs_on_the_segment_keep_every_rule, 0, batches);
+    tcase_add_loop_test(bridge, test_random_programs_behind_a_bridge_keep_every_rule, 0, batches);
     suite_add_tcase(suite, all);
+    suite_add_tcase(suite, bridge);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);
     const int failed = srunner_ntests_failed(runner);
