@@ -286,6 +286,24 @@ static void test_init_with_too_many_axes_is_refused_by_the_check(void)
     }
 }
 
+static void test_example_files_are_loaded(void)
+{
+    static const struct {
+        const char *name;
+        uint32_t axes, behind_bridges;
+    } examples[] = {{"three_axes", 3, 0}, {"bridge", 4, 4}, {"mixed", 4, 2}};
+    for (size_t i = 0; i < sizeof examples / sizeof examples[0]; i++) {
+        char path[200];
+        snprintf(path, sizeof path, CM1E_SOURCE_DIR "/examples/%s.yaml", examples[i].name);
+        TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_bus_config_load(&config, path, &diag), diag.text);
+        uint32_t behind_bridges = 0;
+        for (uint32_t n = 0; n < config.axis_count; n++)
+            behind_bridges += config.axes[n].channel != 0;
+        TEST_ASSERT_EQUAL(examples[i].axes, config.axis_count);
+        TEST_ASSERT_EQUAL(examples[i].behind_bridges, behind_bridges);
+    }
+}
+
 static void test_documented_example_of_a_bridge(void)
 {
     char *text = documented_example(1);
@@ -313,6 +331,7 @@ int main(void)
     RUN_TEST(test_documented_example_fills_every_field_of_the_bus);
     RUN_TEST(test_documented_example_fills_every_field_of_an_axis);
     RUN_TEST(test_documented_example_of_a_bridge);
+    RUN_TEST(test_example_files_are_loaded);
     RUN_TEST(test_documented_example_fills_the_other_addresses_and_units);
     RUN_TEST(test_three_axes_example_loads);
     RUN_TEST(test_one_software_limit_leaves_the_other_side_open);
