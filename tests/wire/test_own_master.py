@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Our master over a veth pair against `cm1e sim`: homes and moves an axis at 1 ms and at 250 us, and axes behind a bridge
-beside a CM1-E.
+"""Our master over a veth pair against `cm1e sim`: homes and moves an axis at 1 ms and at 250 us, and axes behind a
+bridge beside a CM1-E.
 
 test_own_master.py CM1E
 """
@@ -38,7 +38,8 @@ def move_behind_a_bridge(cm1e):
         with open(bus_file, "w", encoding="utf-8") as file:
             file.write(wire.BUS.format(interface=wire.MASTER_INTERFACE, cycle_time_us=1000,
                                        lost_cycles_limit=wire.PAUSE_US // 1000))
-            file.write("  - {name: left, position: 2, channel: 2, motor: CM1, k37: 10, homing: {method: 2, velocity: 5}}\n")
+            file.write("  - {name: left, position: 2, channel: 2, motor: CM1, k37: 10,\n"
+                       "     homing: {method: 2, velocity: 5}}\n")
             file.write("  - {name: right, position: 2, channel: 3, motor: CM2, k37: 10}\n")
         with wire.segment(cm1e, bus_file) as segment:
             home = run(segment, cm1e, bus_file, "home", "left")
