@@ -6,6 +6,8 @@ WIDTH = 120
 
 def c_type(name):
     """The standard's names stay; handles and what is ours follow the house's names."""
+    if name == "STRING(80)":
+        return "STRING80"
     return name + "_t" if name == "AXIS_REF" or name.startswith("cm1e_") else name
 
 

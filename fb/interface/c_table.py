@@ -32,6 +32,7 @@ def layout(variables, sizes):
 
 def sizes_of(files):
     sizes = {name: (size, size) for name, size in st.ELEMENTARY.items()}
+    sizes["STRING(80)"] = (st.ELEMENTARY["STRING(80)"], 1)
     for declaration in (item for file in files for item in file.declarations):
         if declaration.kind == "enum":
             sizes[declaration.name] = (4, 4)
@@ -48,7 +49,7 @@ def member_type(variable, files):
     if c_header.is_pointer(variable):
         return "POINTER"
     if variable.type in st.ELEMENTARY:
-        return variable.type
+        return variable.type.removesuffix("(80)")
     kinds = {item.name: item.kind for file in files for item in file.declarations}
     return "STRUCT" if kinds.get(variable.type) == "struct" else "ENUM"
 

@@ -9,6 +9,7 @@ CHAPTERS = {
     "mc_motion.h": "Motion",
     "mc_administrative.h": "Parameters, signals, what the axis shows",
     "mc_homing.h": "Homing in steps",
+    "cm_bridge.h": "Motors behind a Cool MUSCLE bridge",
     "iec.h": "Standard blocks of IEC 61131-3",
 }
 
@@ -70,7 +71,7 @@ def variable_row(variable, block, tables):
 def zero(variable):
     if variable.reference:
         return "NULL"
-    return {"BOOL": "FALSE", "TIME": "0"}.get(variable.type, "0")
+    return {"BOOL": "FALSE", "TIME": "0", "STRING(80)": "''"}.get(variable.type, "0")
 
 
 def variables_text(block, tables):

@@ -15,6 +15,7 @@ typedef uint16_t WORD;
 typedef uint32_t DWORD;
 typedef double LREAL;
 typedef int64_t TIME;
+typedef char STRING80[81]; /**< STRING(80): up to 80 bytes and a 0 */
 
 #ifndef TRUE
 #define TRUE 1

@@ -1,6 +1,7 @@
 /**
  * @file plcopen.h
- * The function blocks of PLCopen Motion Control, Part 1 v2.0 and Part 5 v2.0, as far as they concern one axis. Each
+ * The function blocks of PLCopen Motion Control, Part 1 v2.0 and Part 5 v2.0, as far as they concern one axis, and
+ * those of ours for motors behind a bridge (CM_...). Each
  * block is a plain struct, valid when zeroed (see the defaults beside the inputs), and a function of the same name that
  * a program calls once a scan, also while nothing happens:
  *
@@ -20,6 +21,7 @@
 #ifndef CM1E_PLCOPEN_H
 #define CM1E_PLCOPEN_H
 
+#include "cm1e/cm_bridge.h"
 #include "cm1e/mc_administrative.h"
 #include "cm1e/mc_homing.h"
 #include "cm1e/mc_motion.h"

@@ -20,18 +20,21 @@ cm1e_error_t cm1e_axis_create(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t in
     }
     if (!error)
         error = cm1e_axis_table_init(axis, diag);
+    axis->mode = !error && !cm1e_drive_supports(&axis->drive, CM1E_MODE_CSP) ? CM1E_MODE_CSV : CM1E_MODE_CSP;
+    if (!error)
+        error = cm1e_axis_cool_muscle_init(axis, diag);
     if (!error && !cm1e_axis_handle_take(axis, &axis->handle))
         error = cm1e_diag_set(diag, CM1E_ERROR_FULL, 0, "There are already %d axes in this process.",
                               CM1E_AXIS_HANDLES);
     if (error) {
         cm1e_drive_free(&axis->drive);
         free(axis->tables);
+        free(axis->muscle);
         free(axis);
         return error;
     }
     const int64_t cycle_ns = cm1e_bus_configuration(bus)->cycle_time_ns;
     axis->cycle_s = (double)(cycle_ns > 0 ? cycle_ns : MS_IN_NS) * 1e-9;
-    axis->mode = cm1e_drive_supports(&axis->drive, CM1E_MODE_CSP) ? CM1E_MODE_CSP : CM1E_MODE_CSV;
     axis->drive.command.mode = axis->mode;
     axis->positive_before = true;
     axis->reset_state = CM1E_COMMAND_DONE;
@@ -46,6 +49,7 @@ void cm1e_axis_destroy(cm1e_axis_t *axis)
     cm1e_axis_handle_give_back(axis->handle);
     cm1e_drive_free(&axis->drive);
     free(axis->tables);
+    free(axis->muscle);
     free(axis);
 }
 
@@ -135,8 +139,10 @@ void cm1e_axis_advance(cm1e_axis_t *axis)
     if (axis->kept != 0 || axis->drive.command.digital_outputs != 0)
         cm1e_axis_signals_step(axis);
     const bool undisturbed = moves_on(axis);
-    if (!undisturbed)
+    if (!undisturbed) {
+        cm1e_axis_cool_muscle_step(axis);
         cm1e_axis_power_step(axis);
+    }
     cm1e_axis_motion_step(axis);
     if (axis->backlash.gap > 0.0)
         cm1e_axis_backlash_step(axis);

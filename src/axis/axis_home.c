@@ -200,6 +200,8 @@ cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t
     position_t position;
     if (!cm1e_axis_position_from_units(axis, command->position, &position))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
+    if (cm1e_axis_cool_muscle_refuses_homing(axis))
+        return CM1E_ERROR_CM_MODE;
     if (!(axis->enable_positive && axis->enable_negative))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED; /* every method moves both ways */
     if (c->method > kind->last_method || c->method < kind->first_method) /* 0 is "no home routine selected" */

@@ -16,7 +16,8 @@ static const int64_t brake_ns = 20 * MS_IN_NS;
 
 bool cm1e_axis_wants_enable(const cm1e_axis_t *axis)
 {
-    return axis->power_enable && !axis->shutting_down && axis->state != CM1E_AXIS_ERROR_STOP;
+    return axis->power_enable && !axis->shutting_down && axis->state != CM1E_AXIS_ERROR_STOP &&
+           cm1e_axis_cool_muscle_at_home(axis);
 }
 
 void cm1e_axis_become_free(cm1e_axis_t *axis)
@@ -107,7 +108,7 @@ cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, 
         cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
         cm1e_axis_home_abort(axis, HOME_GOAL_HOLD); /* every method moves both ways */
     }
-    return CM1E_OK;
+    return enable ? cm1e_axis_cool_muscle_refuses_power(axis) : CM1E_OK;
 }
 
 bool cm1e_axis_power_stands(AXIS_REF_t reference, const void *owner, bool enable_positive, bool enable_negative)
@@ -205,7 +206,7 @@ bool cm1e_axis_shut_down(cm1e_axis_t *axis)
 {
     axis->shutting_down = true;
     power_off(axis);
-    if (axis->activity != ACTIVITY_FREE || axis->drive.torque)
+    if (axis->activity != ACTIVITY_FREE || axis->drive.torque || !cm1e_axis_cool_muscle_released(axis))
         return false;
     cm1e_axis_outputs_off(axis); /* not before: a brake on it must not fall on a moving load */
     const bool gone = axis->now_ns - axis->free_ns >= gone_after_ns;

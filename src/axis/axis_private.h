@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "axis/axis.h"
+#include "cm1e/cml.h"
 #include "device/unit.h"
 #include "motion/profile.h"
 #include "motion/table_profile.h"
@@ -305,6 +306,28 @@ typedef struct stepping {
     bool finishing;                 /**< positions are valid again: software limits hold */
 } stepping_t;
 
+/** Something that a block asked for and polls. */
+typedef struct asked {
+    uint32_t ticket;            /**< of the last one; 0: none yet */
+    cm1e_command_state_t state;
+    cm1e_error_t error;
+} asked_t;
+
+/** What a motor behind a bridge does beside motion (axis_cool_muscle.c). */
+typedef struct cool_muscle {
+    int8_t mode, next;          /**< commanded while the axis is Disabled, and what is to be so as soon as it can */
+    bool insist;
+    bool moved;                 /**< since CML was entered, a string was taken that may have moved the motor */
+    bool must_free;             /**< it is to lose its torque before anything else */
+    bool failed;                /**< ErrorStop, as of the last cycle */
+    uint32_t freeing;           /**< ticket of the string that does that; 0: none is under way */
+    uint32_t last;              /**< ticket of the last string that a block sent; its end is not told yet; 0: it is */
+    int64_t release_ns;         /**< shut down is waited for since then; 0: it is not */
+    asked_t switching, command;
+    const char *why;            /**< of the last refusal, for the text: a sentence; NULL: none */
+    char text[CM1E_CML_BYTES + 1]; /**< ... and the string */
+} cool_muscle_t;
+
 struct cm1e_axis {
     /* what every cycle of a motion looks at */
     cm1e_drive_t drive;
@@ -405,6 +428,7 @@ struct cm1e_axis {
     double kept_deceleration, kept_jerk; /**< of that halt */
 
     stepping_t stepping;
+    cool_muscle_t *muscle;          /**< NULL: the motor is a CM1-E */
 };
 
 /** Counts of this motor that are as far as so many of a CM1-E; two at least, as one is rounding. */
@@ -667,6 +691,25 @@ void cm1e_axis_home_wrong_text(const cm1e_axis_t *axis, char *text, size_t size)
 void cm1e_axis_home_begin(cm1e_axis_t *axis);
 void cm1e_axis_home_abort(cm1e_axis_t *axis, home_goal_t goal);
 void cm1e_axis_home_step(cm1e_axis_t *axis);
+
+/* axis_cool_muscle.c; they do nothing where the motor is a CM1-E */
+cm1e_error_t cm1e_axis_cool_muscle_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init; after its mode is set */
+/** Between the programs and what is done about power. */
+void cm1e_axis_cool_muscle_step(cm1e_axis_t *axis);
+/** The motor is in the axis's own mode, or on its way there: it may be enabled. */
+static inline bool cm1e_axis_cool_muscle_at_home(const cm1e_axis_t *axis)
+{
+    const cool_muscle_t *muscle = axis->muscle;
+    return !muscle || (muscle->mode == (int8_t)axis->mode && muscle->next == (int8_t)axis->mode);
+}
+/** CM1E_OK, or why MC_Power cannot enable the motor, however long it waits. */
+cm1e_error_t cm1e_axis_cool_muscle_refuses_power(cm1e_axis_t *axis);
+/** CM1E_OK, or why MC_Home cannot be. */
+cm1e_error_t cm1e_axis_cool_muscle_refuses_homing(cm1e_axis_t *axis);
+/** At the end of a run: nothing of CML or CMD moves the motor any more; never later than 2 s after the first call. */
+bool cm1e_axis_cool_muscle_released(cm1e_axis_t *axis);
+/** What was refused or has failed; FALSE: this error is not one of those. */
+bool cm1e_axis_cool_muscle_text(const cm1e_axis_t *axis, cm1e_error_t error, char *text, size_t size);
 
 /* axis_probe.c */
 void cm1e_axis_probe_step(cm1e_axis_t *axis); /* with fresh inputs, while probes are armed */

@@ -187,6 +187,13 @@ static void stand_as_base(cm1e_axis_t *axis)
     axis->stands = true;
 }
 
+/* In Standstill it begins at once or never: there is no base to wait for. */
+static bool can_begin_alone(const cm1e_axis_t *axis, const move_t *move)
+{
+    superimposed_t trial = {.move = *move, .alone = true, .share = axis->maximum};
+    return plan(axis, &trial);
+}
+
 static cm1e_error_t superimpose(cm1e_axis_t *axis, const move_t *move, cm1e_command_id_t *id)
 {
     superimposed_t *on_top = &axis->superimposed;
@@ -196,6 +203,8 @@ static cm1e_error_t superimpose(cm1e_axis_t *axis, const move_t *move, cm1e_comm
     const cm1e_error_t error = check(axis, move, alone, &limits);
     if (error)
         return error;
+    if (alone && !replaces && !can_begin_alone(axis, move))
+        return CM1E_ERROR_AXIS_DYNAMICS_RANGE; /* with factors of MC_SetOverride that leave next to nothing */
     if (axis->activity == ACTIVITY_HOLD)
         stand_as_base(axis);
     if (on_top->id)

@@ -206,6 +206,8 @@ static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
             refusal_texts[i].text(axis, text, size);
             return;
         }
+    if (cm1e_axis_cool_muscle_text(axis, axis->refusal, text, size))
+        return;
     snprintf(text, size, "Axis \"%s\", %s: %s.", axis->config->name, cm1e_axis_state_name(axis->state),
              cm1e_strerror(axis->refusal));
 }

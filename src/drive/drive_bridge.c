@@ -112,5 +112,5 @@ void cm1e_drive_bridge_step(cm1e_drive_t *drive)
     cm1e_drive_digital_step(drive);
     /* The switch to CML itself was made after five cycles of 0000h, which stays while it is shown (BR appendix 2). */
     const bool cml = drive->feedback.mode == CM1E_BRIDGE_MODE_CML && drive->words == drive->wanted->words;
-    cm1e_drive_cml_step(&behind->cml, drive->now_ns, cml && drive->feedback.online);
+    cm1e_drive_cml_step(&behind->cml, drive->now_ns, cml && cm1e_drive_operational(drive));
 }

@@ -142,6 +142,7 @@ static void put(instance_t *fb, const char *name, double value)
     case BLOCK_TIME: memcpy(place, &time, sizeof time); break;
     case BLOCK_DWORD:
     case BLOCK_ENUM: memcpy(place, &choice, sizeof choice); break;
+    case BLOCK_STRING:
     case BLOCK_STRUCT:
     case BLOCK_POINTER: bench_fail("%s.%s cannot be put", name_of(fb), name);
     }

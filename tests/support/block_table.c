@@ -690,6 +690,41 @@ AT(MC_AbortPassiveHoming, CommandAborted, 11);
 AT(MC_AbortPassiveHoming, Error, 12);
 AT(MC_AbortPassiveHoming, ErrorID, 14);
 AT(MC_AbortPassiveHoming, Private, 16);
+_Static_assert(sizeof(CM_SendCML_t) == 216, "CM_SendCML");
+AT(CM_SendCML, Axis, 0);
+AT(CM_SendCML, Execute, 8);
+AT(CM_SendCML, Command, 9);
+AT(CM_SendCML, Timeout, 96);
+AT(CM_SendCML, AllowMotion, 104);
+AT(CM_SendCML, Line, 106);
+AT(CM_SendCML, Done, 108);
+AT(CM_SendCML, Busy, 109);
+AT(CM_SendCML, Error, 110);
+AT(CM_SendCML, ErrorID, 112);
+AT(CM_SendCML, Response, 114);
+AT(CM_SendCML, Lines, 196);
+AT(CM_SendCML, Strays, 198);
+AT(CM_SendCML, Private, 200);
+_Static_assert(sizeof(CM_SetMode_t) == 40, "CM_SetMode");
+AT(CM_SetMode, Axis, 0);
+AT(CM_SetMode, Execute, 8);
+AT(CM_SetMode, Mode, 12);
+AT(CM_SetMode, Insist, 16);
+AT(CM_SetMode, Done, 17);
+AT(CM_SetMode, Busy, 18);
+AT(CM_SetMode, Error, 19);
+AT(CM_SetMode, ErrorID, 20);
+AT(CM_SetMode, Private, 24);
+_Static_assert(sizeof(CM_Command_t) == 48, "CM_Command");
+AT(CM_Command, Axis, 0);
+AT(CM_Command, Execute, 8);
+AT(CM_Command, Command, 12);
+AT(CM_Command, Timeout, 16);
+AT(CM_Command, Done, 24);
+AT(CM_Command, Busy, 25);
+AT(CM_Command, Error, 26);
+AT(CM_Command, ErrorID, 28);
+AT(CM_Command, Private, 32);
 _Static_assert(sizeof(TON_t) == 48, "TON");
 AT(TON, IN, 0);
 AT(TON, PT, 8);
@@ -2146,6 +2181,97 @@ static const cm1e_error_t errors_of_MC_AbortPassiveHoming[] = {
     CM1E_ERROR_UNSUPPORTED,
     CM1E_OK,
 };
+static const block_member_t members_of_CM_SendCML[] = {
+    MEMBER(CM_SendCML, Axis, IN_OUT, POINTER),
+    MEMBER(CM_SendCML, Execute, INPUT, BOOL),
+    MEMBER(CM_SendCML, Command, INPUT, STRING),
+    MEMBER(CM_SendCML, Timeout, INPUT, TIME),
+    MEMBER(CM_SendCML, AllowMotion, INPUT, BOOL),
+    MEMBER(CM_SendCML, Line, INPUT, INT),
+    MEMBER(CM_SendCML, Done, OUTPUT, BOOL),
+    MEMBER(CM_SendCML, Busy, OUTPUT, BOOL),
+    MEMBER(CM_SendCML, Error, OUTPUT, BOOL),
+    MEMBER(CM_SendCML, ErrorID, OUTPUT, WORD),
+    MEMBER(CM_SendCML, Response, OUTPUT, STRING),
+    MEMBER(CM_SendCML, Lines, OUTPUT, INT),
+    MEMBER(CM_SendCML, Strays, OUTPUT, INT),
+};
+static void call_CM_SendCML(void *fb) { CM_SendCML(fb); }
+static const cm1e_error_t errors_of_CM_SendCML[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_OFFLINE,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_CM_NO_BRIDGE,
+    CM1E_ERROR_CM_NOT_DISABLED,
+    CM1E_ERROR_CM_MODE,
+    CM1E_ERROR_CM_SEARCH_TIMEOUT,
+    CM1E_ERROR_CM_SEARCH,
+    CM1E_ERROR_CML_ANSWER,
+    CM1E_ERROR_CML_TIMEOUT,
+    CM1E_ERROR_CML_MOTION,
+    CM1E_ERROR_CML_STRING,
+    CM1E_ERROR_DRIVE_MODE_LOST,
+    CM1E_ERROR_DRIVE_MODE_TIMEOUT,
+    CM1E_ERROR_SDO_ABORT,
+    CM1E_ERROR_BUS_MAILBOX,
+    CM1E_ERROR_BUS_LOST,
+    CM1E_ERROR_CANCELLED,
+    CM1E_ERROR_STATE,
+    CM1E_ERROR_FULL,
+    CM1E_ERROR_INVALID_ARGUMENT,
+    CM1E_OK,
+};
+static const block_member_t members_of_CM_SetMode[] = {
+    MEMBER(CM_SetMode, Axis, IN_OUT, POINTER),
+    MEMBER(CM_SetMode, Execute, INPUT, BOOL),
+    MEMBER(CM_SetMode, Mode, INPUT, ENUM),
+    MEMBER(CM_SetMode, Insist, INPUT, BOOL),
+    MEMBER(CM_SetMode, Done, OUTPUT, BOOL),
+    MEMBER(CM_SetMode, Busy, OUTPUT, BOOL),
+    MEMBER(CM_SetMode, Error, OUTPUT, BOOL),
+    MEMBER(CM_SetMode, ErrorID, OUTPUT, WORD),
+};
+static void call_CM_SetMode(void *fb) { CM_SetMode(fb); }
+static const cm1e_error_t errors_of_CM_SetMode[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_OFFLINE,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_CM_NO_BRIDGE,
+    CM1E_ERROR_CM_NOT_DISABLED,
+    CM1E_ERROR_CM_MODE,
+    CM1E_ERROR_DRIVE_MODE_TIMEOUT,
+    CM1E_ERROR_DRIVE_FAULT,
+    CM1E_ERROR_CANCELLED,
+    CM1E_ERROR_INVALID_ARGUMENT,
+    CM1E_OK,
+};
+static const block_member_t members_of_CM_Command[] = {
+    MEMBER(CM_Command, Axis, IN_OUT, POINTER),
+    MEMBER(CM_Command, Execute, INPUT, BOOL),
+    MEMBER(CM_Command, Command, INPUT, ENUM),
+    MEMBER(CM_Command, Timeout, INPUT, TIME),
+    MEMBER(CM_Command, Done, OUTPUT, BOOL),
+    MEMBER(CM_Command, Busy, OUTPUT, BOOL),
+    MEMBER(CM_Command, Error, OUTPUT, BOOL),
+    MEMBER(CM_Command, ErrorID, OUTPUT, WORD),
+};
+static void call_CM_Command(void *fb) { CM_Command(fb); }
+static const cm1e_error_t errors_of_CM_Command[] = {
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_OFFLINE,
+    CM1E_ERROR_CM_NO_BRIDGE,
+    CM1E_ERROR_CM_MODE,
+    CM1E_ERROR_CM_COMMAND,
+    CM1E_ERROR_CM_SEARCH_TIMEOUT,
+    CM1E_ERROR_CM_SEARCH,
+    CM1E_ERROR_CANCELLED,
+    CM1E_ERROR_BUSY,
+    CM1E_ERROR_INVALID_ARGUMENT,
+    CM1E_OK,
+};
 static const block_member_t members_of_TON[] = {
     MEMBER(TON, IN, INPUT, BOOL),
     MEMBER(TON, PT, INPUT, TIME),
@@ -2296,6 +2422,9 @@ const block_t block_table[] = {
     BLOCK(MC_StepReferenceFlyingSwitch, rules_unsupported),
     BLOCK(MC_StepReferenceFlyingRefPulse, rules_no_such_signal),
     BLOCK(MC_AbortPassiveHoming, rules_unsupported),
+    BLOCK(CM_SendCML, NULL),
+    BLOCK(CM_SetMode, NULL),
+    BLOCK(CM_Command, NULL),
     BLOCK(TON, NULL),
     BLOCK(TOF, NULL),
     BLOCK(TP, NULL),

@@ -16,7 +16,7 @@ typedef enum block_section { BLOCK_IN_OUT = 0, BLOCK_INPUT, BLOCK_OUTPUT } block
 
 typedef enum block_type {
     BLOCK_BOOL = 0, BLOCK_INT, BLOCK_UINT, BLOCK_WORD, BLOCK_DWORD, BLOCK_LREAL, BLOCK_TIME, BLOCK_ENUM, BLOCK_STRUCT,
-    BLOCK_POINTER,
+    BLOCK_POINTER, BLOCK_STRING,
 } block_type_t;
 
 typedef struct block_member {

@@ -56,6 +56,8 @@ static int random_enum(const char *name)
         return pick(2) ? pick(12) - 2 : (int)(chance() >> 33);
     if (strstr(name, "Direction"))
         return direction[pick(5)];
+    if (strcmp(name, "Mode") == 0 && !one_in(20))
+        return pick(2); /* CMD and CPIO are dead ends */
     if (strcmp(name, "BufferMode") == 0)
         return one_in(2) ? mcAborting : pick(6);
     return pick(3);
@@ -66,6 +68,17 @@ static INT random_integer(const char *name)
     if (one_in(40))
         return (INT)(chance() >> 40);
     return strcmp(name, "ParameterNumber") == 0 ? (INT)(1 + pick(18)) : (INT)pick(5);
+}
+
+/* Strings in CML, and others: longer than they may be, without an end. */
+static void random_text(char *text, size_t size)
+{
+    static const char *const strings[] = {"?99.1", "K53.1", "K53.1=100", "?90.1", "O2", "|.1", "(.1", ").1", "", "K37=1",
+                                          "?99.2", "K53.1,?96.1"};
+    snprintf(text, size, "%s", strings[pick(12)]);
+    if (one_in(8))
+        for (size_t i = 0; i < size; i++)
+            text[i] = (char)chance();
 }
 
 static void random_member(instance_t *fb, const block_member_t *m, const ranges_t *axis)
@@ -81,6 +94,7 @@ static void random_member(instance_t *fb, const block_member_t *m, const ranges_
     case BLOCK_INT: memcpy(place, &small, sizeof small); break;
     case BLOCK_TIME: memcpy(place, &time, sizeof time); break;
     case BLOCK_BOOL: *(BOOL *)place = one_in(3); break;
+    case BLOCK_STRING: random_text(place, m->size); break;
     case BLOCK_DWORD: *(DWORD *)place = (DWORD)chance(); break;
     default: break;
     }

@@ -161,6 +161,8 @@ static void tell(const instance_t *fb, const from_t *from)
             fprintf(stderr, " %s %.17g", m->name, real_of(fb, m->name));
         else if (m->type == BLOCK_ENUM && m->section == BLOCK_INPUT)
             fprintf(stderr, " %s %d", m->name, *(const int *)(const void *)(fb->memory + m->offset));
+        else if (m->type == BLOCK_INT && m->section == BLOCK_INPUT)
+            fprintf(stderr, " %s %d", m->name, *(const INT *)(const void *)(fb->memory + m->offset));
     }
     fputc('\n', stderr);
 }

@@ -236,7 +236,7 @@ void trace_end(void)
 int main(int argument_count, char **arguments)
 {
     const scenario_t *const files[] = {motion_scenarios, administrative_scenarios, homing_scenarios,
-                                       standard_scenarios};
+                                       bridge_scenarios, standard_scenarios};
     if (argument_count < 2) {
         fprintf(stderr, "usage: %s FOLDER [BLOCK]\nDraws the timing diagrams of docs/blocks/ there.\n", *arguments);
         return EXIT_FAILURE;

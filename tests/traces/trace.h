@@ -58,7 +58,8 @@ typedef struct scenario {
     const char *name;
     void (*run)(void);
 } scenario_t;
-extern const scenario_t motion_scenarios[], administrative_scenarios[], homing_scenarios[], standard_scenarios[];
+extern const scenario_t motion_scenarios[], administrative_scenarios[], homing_scenarios[], bridge_scenarios[],
+    standard_scenarios[];
 
 /* ---- the parts that only the recording and the drawing share ---------------------------------------------------- */
 

@@ -299,6 +299,17 @@ static void test_continuous_update_and_override(void)
 }
 
 /* Anything on top of anything: no limit is exceeded by the sum in any cycle, and the software limits hold. */
+/* It would wait for ever for what cannot be computed. */
+static void test_an_override_that_leaves_nothing_refuses_it_in_standstill(void)
+{
+    cm1e_command_id_t id;
+    const cm1e_axis_command_t c = {.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = 1.0, .velocity = 1.0};
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_override(axis, 0.75, 1e-300, 0.8));
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DYNAMICS_RANGE, cm1e_axis_start(axis, &c, &id));
+    watch_cycles(10);
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, axis->state);
+}
+
 static void test_random_programs_keep_all_limits(void)
 {
     unsigned on_top = 0;
@@ -354,6 +365,7 @@ int main(void)
     RUN_TEST(test_refusals);
     RUN_TEST(test_a_limit_has_to_leave_room_for_both);
     RUN_TEST(test_continuous_update_and_override);
+    RUN_TEST(test_an_override_that_leaves_nothing_refuses_it_in_standstill);
     RUN_TEST(test_random_programs_keep_all_limits);
     return UNITY_END();
 }

@@ -1,0 +1,44 @@
+#include "axis/axis_cool_muscle.h"
+#include "edge.h"
+
+static const cm1e_drive_cmd_t commands[] = {
+    [cmMotorFree] = CM1E_DRIVE_CMD_MOTOR_FREE, [cmMotorEnable] = CM1E_DRIVE_CMD_MOTOR_ENABLE,
+    [cmOriginSearch] = CM1E_DRIVE_CMD_ORIGIN_SEARCH, [cmResetCounter] = CM1E_DRIVE_CMD_RESET_COUNTER,
+    [cmOriginSearchAbort] = CM1E_DRIVE_CMD_ORIGIN_SEARCH_ABORT,
+};
+
+static cm1e_error_t start(CM_Command_t *fb, cm1e_axis_t *axis)
+{
+    uint32_t ticket = 0;
+    const cm1e_error_t error = (unsigned)fb->Command > cmOriginSearchAbort
+                                   ? CM1E_ERROR_INVALID_ARGUMENT
+                                   : cm1e_axis_motor_command(axis, commands[fb->Command], fb->Timeout, &ticket);
+    fb->Private.command = ticket;
+    return error;
+}
+
+/** The block has no CommandAborted: a command that another one has taken the place of is an error. */
+static void poll(CM_Command_t *fb, const cm1e_axis_t *axis)
+{
+    cm1e_error_t error;
+    const cm1e_command_state_t state = cm1e_axis_motor_command_state(axis, fb->Private.command, &error);
+    if (state == CM1E_COMMAND_ABORTED)
+        fb_fail(&fb->Private, CM1E_ERROR_CANCELLED);
+    else
+        fb_polled(&fb->Private, state, error);
+}
+
+void CM_Command(CM_Command_t *fb)
+{
+    cm1e_axis_t *axis = NULL;
+    switch (fb_execute(&fb->Private, fb->Axis, fb->Execute, &axis)) {
+    case FB_STEP_START: fb_started(&fb->Private, start(fb, axis)); break;
+    case FB_STEP_POLL: poll(fb, axis); break;
+    case FB_STEP_NONE: break;
+    }
+    const fb_outputs_t out = fb_outputs(&fb->Private);
+    fb->Done = out.done;
+    fb->Busy = out.busy;
+    fb->Error = out.error;
+    fb->ErrorID = out.error_id;
+}

@@ -1,0 +1,43 @@
+#include "axis/axis_cool_muscle.h"
+#include "edge.h"
+
+static const cm1e_bridge_mode_t modes[] = {
+    [cmCSP] = CM1E_BRIDGE_MODE_CSP, [cmCML] = CM1E_BRIDGE_MODE_CML, [cmCMD] = CM1E_BRIDGE_MODE_CMD,
+    [cmCPIO] = CM1E_BRIDGE_MODE_CPIO,
+};
+
+static cm1e_error_t start(CM_SetMode_t *fb, cm1e_axis_t *axis)
+{
+    uint32_t ticket = 0;
+    const cm1e_error_t error = (unsigned)fb->Mode > cmCPIO
+                                   ? CM1E_ERROR_INVALID_ARGUMENT
+                                   : cm1e_axis_set_mode(axis, modes[fb->Mode], fb->Insist != FALSE, &ticket);
+    fb->Private.command = ticket;
+    return error;
+}
+
+/** The block has no CommandAborted: a switch that another one has taken the place of is an error. */
+static void poll(CM_SetMode_t *fb, const cm1e_axis_t *axis)
+{
+    cm1e_error_t error;
+    const cm1e_command_state_t state = cm1e_axis_set_mode_state(axis, fb->Private.command, &error);
+    if (state == CM1E_COMMAND_ABORTED)
+        fb_fail(&fb->Private, CM1E_ERROR_CANCELLED);
+    else
+        fb_polled(&fb->Private, state, error);
+}
+
+void CM_SetMode(CM_SetMode_t *fb)
+{
+    cm1e_axis_t *axis = NULL;
+    switch (fb_execute(&fb->Private, fb->Axis, fb->Execute, &axis)) {
+    case FB_STEP_START: fb_started(&fb->Private, start(fb, axis)); break;
+    case FB_STEP_POLL: poll(fb, axis); break;
+    case FB_STEP_NONE: break;
+    }
+    const fb_outputs_t out = fb_outputs(&fb->Private);
+    fb->Done = out.done;
+    fb->Busy = out.busy;
+    fb->Error = out.error;
+    fb->ErrorID = out.error_id;
+}

@@ -1,0 +1,427 @@
+/*
+ * What a motor behind a bridge does beside motion: strings in CML, modes of operation, commands of CMD. Only while the
+ * axis is Disabled and nobody asks for torque. MC_Power leads from CML back to the axis's own mode, CSP or CPIO; from CMD
+ * no way leads there (BR 6).
+ *
+ * A string or a command may move the motor, without a set-point of ours. So it is freed when that is left behind, when
+ * the axis fails, when the slave was away, and at the end of the run. And its counts may mean another place afterwards.
+ */
+#include "axis/axis_cool_muscle.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "axis/axis_private.h"
+#include "device/cml.h"
+#include "drive/drive_bridge.h"
+
+enum { K37 = 37 };
+static const int64_t release_ns = 2000 * MS_IN_NS;
+static const int64_t longest_ns = INT64_C(1000000000) * 1000000; /* of a timeout: so that times can be added to it */
+
+static const char abnormal[] = "In CMD and CPIO the way to CML and back ends in abnormal operation (BR 6 note 2): "
+                               "CM_SetMode with Insist goes it all the same";
+static const char no_way_to_power[] = "From CMD no way leads to a mode of motion: switch the bridge off and on, or insist "
+                                      "on the way by CML with CM_SetMode";
+static const char not_in_cmd[] = "Commands are for CMD mode: CM_SetMode leads there, and no way back but switching the "
+                                 "bridge off and on";
+static const char not_in_cpio[] = "Homing begins in CSP only: home first, then switch to CPIO";
+static const char keeps_k37[] = "writes K37: counts would mean another way under a running axis. Write it with cm1e cml "
+                                "while nothing runs, and state it in the bus file";
+
+static cm1e_drive_cml_t *cml_of(const cm1e_axis_t *axis)
+{
+    return axis->drive.behind ? &axis->drive.behind->cml : NULL;
+}
+
+cm1e_error_t cm1e_axis_cool_muscle_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
+{
+    if (!axis->drive.behind)
+        return CM1E_OK;
+    axis->muscle = calloc(1, sizeof *axis->muscle);
+    if (!axis->muscle)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for axis \"%s\".", axis->config->name);
+    axis->muscle->mode = axis->muscle->next = (int8_t)axis->mode;
+    return CM1E_OK;
+}
+
+/* ---- what may be asked for --------------------------------------------------------------------------------------- */
+
+static cm1e_error_t refuse(cm1e_axis_t *axis, cm1e_error_t error, const char *why, const char *text)
+{
+    axis->refusal = error;
+    if (axis->muscle) {
+        axis->muscle->why = why;
+        snprintf(axis->muscle->text, sizeof axis->muscle->text, "%s", text ? text : "");
+    }
+    return error;
+}
+
+static bool is_quiet(const cm1e_axis_t *axis)
+{
+    return axis->state == CM1E_AXIS_DISABLED && axis->activity == ACTIVITY_FREE && !axis->power_enable &&
+           !axis->drive.torque && !axis->shutting_down;
+}
+
+/* In ErrorStop nothing is switched; but a motor that is in CML already can be asked what is the matter. */
+static cm1e_error_t check(const cm1e_axis_t *axis, bool string)
+{
+    if (!axis->muscle)
+        return CM1E_ERROR_CM_NO_BRIDGE;
+    const bool shown = axis->drive.feedback.mode == CM1E_BRIDGE_MODE_CML && axis->muscle->mode == axis->muscle->next;
+    if (axis->state == CM1E_AXIS_ERROR_STOP && !(string && shown && axis->activity == ACTIVITY_FREE))
+        return CM1E_ERROR_AXIS_ERROR_STOP;
+    if (axis->state != CM1E_AXIS_ERROR_STOP && !is_quiet(axis))
+        return CM1E_ERROR_CM_NOT_DISABLED;
+    return cm1e_drive_operational(&axis->drive) ? CM1E_OK : CM1E_ERROR_AXIS_OFFLINE;
+}
+
+static cm1e_error_t check_mode(const cm1e_axis_t *axis, cm1e_bridge_mode_t mode, bool insist, const char **why)
+{
+    const cm1e_error_t error = cm1e_drive_mode_check(&axis->drive, (cm1e_mode_t)mode, insist, why);
+    return error == CM1E_ERROR_STATE ? CM1E_ERROR_CM_MODE : error;
+}
+
+static bool writes_k37(const char *text)
+{
+    do {
+        const cm1e_cml_command_t command = cm1e_cml_next(&text);
+        if (command.sign == 'K' && command.valued && command.number == K37)
+            return true;
+    } while (text);
+    return false;
+}
+
+static cm1e_error_t check_string(const cm1e_axis_t *axis, const char *text, bool allow_motion, const char **why)
+{
+    *why = cm1e_cml_check(text, axis->config->channel);
+    if (!*why && writes_k37(text))
+        *why = keeps_k37;
+    if (*why)
+        return CM1E_ERROR_CML_STRING;
+    if (cm1e_cml_kind(text) == CM1E_CML_MOTION && !allow_motion)
+        return CM1E_ERROR_CML_MOTION;
+    if (axis->muscle->next == CM1E_BRIDGE_MODE_CML)
+        return CM1E_OK;
+    const bool dead_end = axis->muscle->next == CM1E_BRIDGE_MODE_CMD || axis->muscle->next == CM1E_BRIDGE_MODE_CPIO;
+    *why = abnormal;
+    return dead_end ? CM1E_ERROR_CM_MODE : check_mode(axis, CM1E_BRIDGE_MODE_CML, false, why);
+}
+
+/* ---- CML --------------------------------------------------------------------------------------------------------- */
+
+static void end_switching(cool_muscle_t *muscle, cm1e_command_state_t state, cm1e_error_t error)
+{
+    if (muscle->switching.state == CM1E_COMMAND_ACTIVE) {
+        muscle->switching.state = state;
+        muscle->switching.error = error;
+    }
+}
+
+cm1e_error_t cm1e_axis_cml_send(cm1e_axis_t *axis, const char *text, size_t size, int64_t timeout_ns, bool allow_motion,
+                                uint32_t *ticket)
+{
+    char copy[CM1E_CML_BYTES + 2] = ""; /* one more than may be, so that too long a one is seen to be so */
+    const char *why = NULL;
+    *ticket = 0;
+    memcpy(copy, text, strnlen(text, size < sizeof copy - 1 ? size : sizeof copy - 1));
+    cm1e_error_t error = check(axis, true);
+    if (!error && (timeout_ns < 0 || timeout_ns > longest_ns))
+        error = CM1E_ERROR_INVALID_ARGUMENT;
+    if (!error)
+        error = check_string(axis, copy, allow_motion, &why);
+    if (!error)
+        error = cm1e_drive_cml_send(cml_of(axis), copy, timeout_ns, ticket);
+    if (error)
+        return refuse(axis, error, why, copy);
+    cool_muscle_t *muscle = axis->muscle;
+    axis->refusal = CM1E_OK;
+    muscle->last = *ticket;
+    if (muscle->next != CM1E_BRIDGE_MODE_CML)
+        end_switching(muscle, CM1E_COMMAND_ABORTED, CM1E_OK);
+    muscle->next = CM1E_BRIDGE_MODE_CML;
+    if (cm1e_cml_kind(copy) == CM1E_CML_MOTION) {
+        muscle->moved = true;
+        axis->homed = false;
+    }
+    return CM1E_OK;
+}
+
+cm1e_axis_cml_t cm1e_axis_cml_state(const cm1e_axis_t *axis, uint32_t ticket)
+{
+    static const cm1e_command_state_t states[] = {
+        [CM1E_DRIVE_CML_FORGOTTEN] = CM1E_COMMAND_UNKNOWN, [CM1E_DRIVE_CML_WAITING] = CM1E_COMMAND_BUFFERED,
+        [CM1E_DRIVE_CML_ACTIVE] = CM1E_COMMAND_ACTIVE, [CM1E_DRIVE_CML_DONE] = CM1E_COMMAND_DONE,
+        [CM1E_DRIVE_CML_ERROR] = CM1E_COMMAND_ERROR,
+    };
+    const cm1e_drive_cml_t *cml = cml_of(axis);
+    const cm1e_drive_cml_request_t *request = cml ? cm1e_drive_cml_request(cml, ticket) : NULL;
+    if (!request)
+        return (cm1e_axis_cml_t){.state = CM1E_COMMAND_UNKNOWN};
+    return (cm1e_axis_cml_t){states[request->state], request->error, request->lines, request->strays};
+}
+
+const char *cm1e_axis_cml_line(const cm1e_axis_t *axis, uint32_t ticket, unsigned line)
+{
+    const cm1e_drive_cml_t *cml = cml_of(axis);
+    const cm1e_drive_cml_request_t *request = cml ? cm1e_drive_cml_request(cml, ticket) : NULL;
+    if (request && request->error == CM1E_ERROR_CML_ANSWER && line == 0)
+        return request->first;
+    return request ? cm1e_drive_cml_line(cml, ticket, line) : NULL;
+}
+
+/* ---- modes ------------------------------------------------------------------------------------------------------- */
+
+cm1e_error_t cm1e_axis_set_mode(cm1e_axis_t *axis, cm1e_bridge_mode_t mode, bool insist, uint32_t *ticket)
+{
+    const char *why = NULL;
+    *ticket = 0;
+    cm1e_error_t error = check(axis, false);
+    if (!error)
+        error = check_mode(axis, mode, insist, &why);
+    if (error)
+        return refuse(axis, error, why, NULL);
+    cool_muscle_t *muscle = axis->muscle;
+    axis->refusal = CM1E_OK;
+    muscle->next = (int8_t)mode;
+    muscle->insist = insist;
+    *ticket = ++muscle->switching.ticket;
+    muscle->switching.state = CM1E_COMMAND_ACTIVE;
+    return CM1E_OK;
+}
+
+/* What another one has taken the place of is aborted. */
+static cm1e_command_state_t state_of(const asked_t *asked, uint32_t ticket, cm1e_error_t *error)
+{
+    const bool mine = ticket != 0 && asked->ticket == ticket;
+    *error = mine ? asked->error : CM1E_OK;
+    return mine ? asked->state : CM1E_COMMAND_ABORTED;
+}
+
+cm1e_command_state_t cm1e_axis_set_mode_state(const cm1e_axis_t *axis, uint32_t ticket, cm1e_error_t *error)
+{
+    return state_of(&axis->muscle->switching, ticket, error);
+}
+
+static bool is_mode(int8_t mode)
+{
+    return mode == CM1E_BRIDGE_MODE_CSP || mode == CM1E_BRIDGE_MODE_CML || mode == CM1E_BRIDGE_MODE_CMD ||
+           mode == CM1E_BRIDGE_MODE_CPIO;
+}
+
+/* Shown, or given up: then the motor is where it is shown, and nothing asks it to go anywhere. */
+static void follow_switch(cm1e_axis_t *axis)
+{
+    cool_muscle_t *muscle = axis->muscle;
+    const int8_t shown = axis->drive.feedback.mode;
+    if (axis->state == CM1E_AXIS_ERROR_STOP && muscle->switching.state == CM1E_COMMAND_ACTIVE) {
+        end_switching(muscle, CM1E_COMMAND_ERROR, axis->error);
+        muscle->next = muscle->mode = is_mode(shown) ? shown : muscle->mode;
+    }
+    if (shown != muscle->next || muscle->mode != muscle->next)
+        return;
+    if (shown == CM1E_BRIDGE_MODE_CSP || shown == CM1E_BRIDGE_MODE_CPIO)
+        axis->mode = (cm1e_mode_t)shown;
+    end_switching(muscle, CM1E_COMMAND_DONE, CM1E_OK);
+}
+
+/* ---- CMD --------------------------------------------------------------------------------------------------------- */
+
+cm1e_error_t cm1e_axis_motor_command(cm1e_axis_t *axis, cm1e_drive_cmd_t command, int64_t timeout_ns, uint32_t *ticket)
+{
+    *ticket = 0;
+    cm1e_error_t error = !axis->muscle       ? CM1E_ERROR_CM_NO_BRIDGE
+                         : timeout_ns > longest_ns ? CM1E_ERROR_INVALID_ARGUMENT
+                                                   : cm1e_drive_cmd_start(&axis->drive, command, timeout_ns);
+    if (error == CM1E_ERROR_STATE)
+        error = CM1E_ERROR_CM_MODE;
+    if (error)
+        return refuse(axis, error, error == CM1E_ERROR_CM_MODE ? not_in_cmd : NULL, NULL);
+    axis->refusal = CM1E_OK;
+    axis->homed = axis->homed && command != CM1E_DRIVE_CMD_ORIGIN_SEARCH && command != CM1E_DRIVE_CMD_RESET_COUNTER;
+    *ticket = ++axis->muscle->command.ticket;
+    axis->muscle->command.state = CM1E_COMMAND_ACTIVE;
+    return CM1E_OK;
+}
+
+cm1e_command_state_t cm1e_axis_motor_command_state(const cm1e_axis_t *axis, uint32_t ticket, cm1e_error_t *error)
+{
+    return state_of(&axis->muscle->command, ticket, error);
+}
+
+static void follow_command(cm1e_axis_t *axis)
+{
+    asked_t *command = &axis->muscle->command;
+    const cm1e_drive_cmd_state_t state = cm1e_drive_cmd_state(&axis->drive);
+    if (command->state != CM1E_COMMAND_ACTIVE || cm1e_drive_cmd_busy(state))
+        return;
+    command->error = state == CM1E_DRIVE_CMD_DONE              ? CM1E_OK
+                     : state == CM1E_DRIVE_CMD_NOT_SENT        ? CM1E_ERROR_CM_COMMAND
+                     : state == CM1E_DRIVE_CMD_SEARCH_TIME_OUT ? CM1E_ERROR_CM_SEARCH
+                     : state == CM1E_DRIVE_CMD_GIVEN_UP        ? CM1E_ERROR_CM_SEARCH_TIMEOUT
+                                                               : CM1E_ERROR_AXIS_OFFLINE;
+    command->state = command->error ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE;
+    if (command->error)
+        refuse(axis, command->error, NULL, NULL);
+}
+
+/* ---- every cycle ------------------------------------------------------------------------------------------------- */
+
+static void end_strings(cm1e_axis_t *axis, cm1e_error_t error)
+{
+    cool_muscle_t *muscle = axis->muscle;
+    cm1e_drive_cml_cancel_all(cml_of(axis), error);
+    muscle->must_free = muscle->moved;
+    muscle->freeing = 0;
+}
+
+/* A bridge that is in another mode has no CML motion any more. */
+static void free_step(cm1e_axis_t *axis)
+{
+    cool_muscle_t *muscle = axis->muscle;
+    char text[8];
+    const int8_t shown = axis->drive.feedback.mode;
+    if (!muscle->must_free)
+        return;
+    const cm1e_drive_cml_request_t *request = cm1e_drive_cml_request(cml_of(axis), muscle->freeing);
+    if (muscle->freeing == 0) {
+        if (cm1e_drive_operational(&axis->drive))
+            cm1e_drive_cml_send(cml_of(axis), cm1e_drive_cml_motor_free(cml_of(axis), text), 0, &muscle->freeing);
+    } else if (!request || request->state == CM1E_DRIVE_CML_ERROR) {
+        muscle->freeing = 0; /* again */
+    } else if (request->state == CM1E_DRIVE_CML_DONE) {
+        muscle->must_free = muscle->moved = false;
+    }
+    if (shown != CM1E_BRIDGE_MODE_CML && is_mode(shown))
+        muscle->must_free = muscle->moved = false;
+}
+
+/* The end of the last string is told; where it was one that may have moved the motor, and failed, that is freed. */
+static void follow_string(cm1e_axis_t *axis)
+{
+    cool_muscle_t *muscle = axis->muscle;
+    const cm1e_drive_cml_request_t *request = cm1e_drive_cml_request(cml_of(axis), muscle->last);
+    if (muscle->last == 0 || (request && request->state < CM1E_DRIVE_CML_DONE))
+        return;
+    muscle->last = 0;
+    if (!request || request->state != CM1E_DRIVE_CML_ERROR)
+        return;
+    const bool said = request->error == CM1E_ERROR_CML_ANSWER || request->error == CM1E_ERROR_CM_SEARCH;
+    refuse(axis, request->error, said ? request->first : NULL, request->text);
+    if (request->sent && cm1e_cml_kind(request->text) == CM1E_CML_MOTION)
+        end_strings(axis, CM1E_ERROR_CANCELLED);
+}
+
+static bool leads_home(const cm1e_axis_t *axis)
+{
+    return cm1e_drive_mode_check(&axis->drive, axis->mode, axis->muscle->insist, NULL) == CM1E_OK;
+}
+
+void cm1e_axis_cool_muscle_step(cm1e_axis_t *axis)
+{
+    cool_muscle_t *muscle = axis->muscle;
+    const int8_t cml = CM1E_BRIDGE_MODE_CML;
+    const bool failed = axis->state == CM1E_AXIS_ERROR_STOP;
+    if (!axis->muscle)
+        return;
+    follow_command(axis);
+    follow_string(axis);
+    muscle->release_ns = axis->shutting_down ? muscle->release_ns : 0;
+    if ((axis->power_enable || axis->shutting_down) && !failed && muscle->next == cml && leads_home(axis)) {
+        end_switching(muscle, CM1E_COMMAND_ABORTED, CM1E_OK);
+        muscle->next = (int8_t)axis->mode;
+    }
+    const bool away = muscle->moved && !muscle->must_free && !cm1e_drive_operational(&axis->drive);
+    const bool leaves = muscle->mode == cml && muscle->next != cml && !muscle->must_free;
+    if ((failed && !muscle->failed) || away || (leaves && (muscle->moved || !cm1e_drive_cml_idle(cml_of(axis)))))
+        end_strings(axis, failed ? axis->error : away ? CM1E_ERROR_BUS_LOST : CM1E_ERROR_CANCELLED);
+    muscle->failed = failed;
+    free_step(axis);
+    if (muscle->mode != cml || (!muscle->must_free && cm1e_drive_cml_idle(cml_of(axis))))
+        muscle->mode = muscle->next;
+    follow_switch(axis);
+    if (axis->activity == ACTIVITY_FREE && !drive_moves(axis)) {
+        axis->drive.command.mode = (cm1e_mode_t)muscle->mode;
+        axis->drive.command.mode_insist = muscle->insist;
+    }
+}
+
+cm1e_error_t cm1e_axis_cool_muscle_refuses_power(cm1e_axis_t *axis)
+{
+    if (axis->state != CM1E_AXIS_DISABLED || cm1e_axis_cool_muscle_at_home(axis))
+        return CM1E_OK;
+    const int8_t next = axis->muscle->next;
+    if (next == CM1E_BRIDGE_MODE_CMD || (next == CM1E_BRIDGE_MODE_CML && !leads_home(axis)))
+        return refuse(axis, CM1E_ERROR_CM_MODE, no_way_to_power, NULL);
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_axis_cool_muscle_refuses_homing(cm1e_axis_t *axis)
+{
+    if (!axis->muscle || (int8_t)axis->mode != CM1E_BRIDGE_MODE_CPIO)
+        return CM1E_OK;
+    axis->muscle->why = not_in_cpio;
+    return CM1E_ERROR_CM_MODE;
+}
+
+bool cm1e_axis_cool_muscle_released(cm1e_axis_t *axis)
+{
+    cool_muscle_t *muscle = axis->muscle;
+    if (!axis->muscle)
+        return true;
+    if (muscle->release_ns == 0)
+        muscle->release_ns = axis->now_ns;
+    const bool commands = cm1e_drive_cmd_release(&axis->drive);
+    const bool strings = !muscle->must_free && !muscle->moved && cm1e_drive_cml_idle(cml_of(axis));
+    return (commands && strings) || axis->now_ns - muscle->release_ns >= release_ns ||
+           !cm1e_drive_operational(&axis->drive);
+}
+
+/* ---- words ------------------------------------------------------------------------------------------------------- */
+
+static const char *mode_name(int8_t mode)
+{
+    switch (mode) {
+    case CM1E_BRIDGE_MODE_CSP: return "CSP";
+    case CM1E_BRIDGE_MODE_CML: return "CML";
+    case CM1E_BRIDGE_MODE_CMD: return "CMD";
+    case CM1E_BRIDGE_MODE_CPIO: return "CPIO";
+    default: return "another mode";
+    }
+}
+
+bool cm1e_axis_cool_muscle_text(const cm1e_axis_t *axis, cm1e_error_t error, char *text, size_t size)
+{
+    const cool_muscle_t *muscle = axis->muscle;
+    if (!muscle)
+        return false;
+    const char *const name = axis->config->name, *const why = muscle->why ? muscle->why : "";
+    switch (error) {
+    case CM1E_ERROR_CML_STRING:
+        snprintf(text, size, "Axis \"%s\": the CML string \"%s\" %s.", name, muscle->text, why);
+        return true;
+    case CM1E_ERROR_CML_MOTION:
+        snprintf(text, size, "Axis \"%s\": the CML string \"%s\" may move the motor, change its power or what its "
+                 "positions mean, or is not known: it is sent where AllowMotion is TRUE.", name, muscle->text);
+        return true;
+    case CM1E_ERROR_CML_TIMEOUT:
+    case CM1E_ERROR_CM_SEARCH_TIMEOUT:
+        snprintf(text, size, "Axis \"%s\": %s%s%s%s.", name, cm1e_strerror(error), muscle->text[0] ? ": \"" : "",
+                 muscle->text, muscle->text[0] ? "\"" : "");
+        return true;
+    case CM1E_ERROR_CML_ANSWER:
+    case CM1E_ERROR_CM_SEARCH:
+        snprintf(text, size, "Axis \"%s\": %s%s%s%s.", name, cm1e_strerror(error), why[0] ? "; it said \"" : "", why,
+                 why[0] ? "\"" : "");
+        return true;
+    case CM1E_ERROR_CM_MODE:
+        snprintf(text, size, "Axis \"%s\": the motor is in %s. %s.", name, mode_name(axis->drive.feedback.mode), why);
+        return true;
+    case CM1E_ERROR_CM_NOT_DISABLED:
+        snprintf(text, size, "Axis \"%s\", %s: %s. MC_Power.Enable FALSE leads there.", name,
+                 cm1e_axis_state_name(axis->state), cm1e_strerror(error));
+        return true;
+    default: return false;
+    }
+}
