@@ -61,6 +61,14 @@ static void open_axes(void)
     cm1e_nic_set_tap(cm1e_bus_nic(bus), wire_tap, NULL);
 }
 
+static void close_axes(void)
+{
+    for (int n = 0; n < DRIVES; n++)
+        ck_assert_msg(motor(n)->broken_rules == 0, "ID%d: rules of the guide are broken: 0x%03X", n + 1,
+                      motor(n)->broken_rules);
+    close_segment();
+}
+
 static void enable_axis(int n)
 {
     ck_assert_int_eq(cm1e_axis_power(axes[n], &owners[n], true, true, true), CM1E_OK);
@@ -140,7 +148,7 @@ START_TEST(test_homing_completes)
     ck_assert_double_eq_tol(info_of(n).actual_position, 2.5, 0.002);
     cycles(100);
     ck_assert_msg(abs(wire.position[n]) < 30, "ID%d: at %d after homing", n + 1, wire.position[n]);
-    close_segment();
+    close_axes();
 }
 END_TEST
 
@@ -168,7 +176,7 @@ START_TEST(test_homing_error_ends_the_search)
     ck_assert_msg(strstr(text_of(n), "oming"), "%s", text_of(n));
     ck_assert_msg(!searching(n) && motor(n)->motor_free, "ID%d goes on", n + 1);
     branches[FAILED].taken++;
-    close_segment();
+    close_axes();
 }
 END_TEST
 
@@ -196,7 +204,7 @@ START_TEST(test_error_of_the_motor_ends_the_search)
     ck_assert_msg(!searching(n) && motor(n)->motor_free, "ID%d goes on", n + 1);
     ck_assert_msg(info_of(other).state == CM1E_AXIS_STANDSTILL, "ID%d: %s", other + 1, text_of(other));
     branches[FAILED].taken++;
-    close_segment();
+    close_axes();
 }
 END_TEST
 
@@ -218,7 +226,7 @@ START_TEST(test_homing_that_never_ends_is_given_up)
     branches[NOT_ATTAINED].taken++;
     cycles(500);
     ck_assert_msg(!searching(n), "ID%d searches on", n + 1);
-    close_segment();
+    close_axes();
 }
 END_TEST
 

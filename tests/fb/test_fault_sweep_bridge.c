@@ -127,8 +127,20 @@ static void stall(bench_t *b, int ms)
     b->paused = true;
 }
 
+/** The bridge survives what its guide forbids, a motor might not. An SDO that is on its way when a fault comes cannot be
+ *  held back. */
+static void judge_rules(const bench_t *b)
+{
+    const unsigned allowed = (kind == FAULT_NONE ? 0u : CM1E_SIM_OUTPUT_IN_VAIN) |
+                             (faults[kind].one_motor ? CM1E_SIM_MODE_IN_ERROR : 0u);
+    for (uint32_t n = 0; n < AXES; n++)
+        MUST(b, (bench_probe(b, n).broken_rules & ~allowed) == 0, "%s: axis %u: rules of the guide are broken: 0x%03X",
+             phase_names[fault_phase], n, bench_probe(b, n).broken_rules);
+}
+
 static void inject(bench_t *b)
 {
+    judge_rules(b);
     fault_phase = phase;
     armed_cycles = FAULT_CYCLES;
     for (uint32_t n = 0; n < AXES; n++)
@@ -339,6 +351,7 @@ static void program_and_judge(bench_t *b)
         return;
     for (uint32_t n = 0; n < AXES; n++)
         judge_axis(n);
+    judge_rules(b);
     cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(cm1e_sim_segment_slave(b->segment, 1));
     for (int id = 1; id < CM1E_BRIDGE_AXES; id += 2)
         MUST(b, bridge->axes[id].mechanics.travel < 5, "ID%d moved by %.0f, and nobody uses it", id + 1,

@@ -18,6 +18,7 @@ enum { MOST_OTHERS = 4 };
 /** An axis that is not judged call by call, and moves to and fro. */
 typedef struct other {
     cm1e_axis_t *axis;
+    const cm1e_axis_config_t *config;
     AXIS_REF_t reference;
     MC_Power_t power;
     MC_Reset_t reset;
@@ -36,6 +37,7 @@ static struct bench {
     other_t others[MOST_OTHERS];
     int other_count;
     int64_t bus_disturbed_until;    /**< by what concerns all axes */
+    int64_t gap_until;              /**< targets are missing */
 } bench;
 
 static void play_others(void);
@@ -77,10 +79,18 @@ static cm1e_sim_bridge_axis_t *motor(void)
     return bridge ? &bridge->axes[bench.channel - 1] : NULL;
 }
 
+static cm1e_sim_probe_t probe(void)
+{
+    cm1e_sim_probe_t now;
+    cm1e_sim_probe_channel(bench.segment, bench.position, bench.channel, &now);
+    return now;
+}
+
 static void time_passes(int64_t time_ns)
 {
     cm1e_clock_t *clock = cm1e_bus_clock(bench.bus);
     bench.start_ns += time_ns;
+    bench.gap_until = judged.number + 5;
     cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + time_ns);
     for (int i = 0; i < bench.other_count; i++)
         cm1e_axis_after_pause(bench.others[i].axis, time_ns);
@@ -90,9 +100,7 @@ static void time_passes(int64_t time_ns)
 static bool has_torque(void)
 {
     const cm1e_sim_bridge_axis_t *m = motor();
-    cm1e_sim_probe_t probe;
-    cm1e_sim_probe(bench.segment, bench.position, &probe);
-    return m ? (m->state == OPERATION_ENABLED || m->state == SWITCHED_ON) && !m->motor_free : probe.torque_on;
+    return probe().torque_on && (!m || m->state == OPERATION_ENABLED || m->state == SWITCHED_ON);
 }
 static bool is_deaf(void) { return cm1e_bus_health(bench.bus) != CM1E_OK; }
 
@@ -181,11 +189,27 @@ static void act_on_device(void)
 
 /* ---- what must hold ---------------------------------------------------------------------------------------------- */
 
+/** Those of the bridge's guide. An SDO that is on its way when the power goes or a motor fails cannot be held back; nor
+ *  do targets come that were in lost frames, or in a pause. */
+static void judge_rules(const cm1e_sim_probe_t *shaft, const cm1e_axis_config_t *axis)
+{
+    const bool gap = judged.number < bench.gap_until || judged.number < bench.bus_disturbed_until;
+    const unsigned allowed = CM1E_SIM_OUTPUT_IN_VAIN | (bench.faulty ? CM1E_SIM_MODE_IN_ERROR : 0u) |
+                             (gap ? CM1E_SIM_STEP_IN_CYCLE : 0u);
+    MUST((shaft->broken_rules & ~allowed) == 0, "ID%u: rules of the bridge's guide are broken: 0x%03X", axis->channel,
+         shaft->broken_rules);
+    cm1e_sim_probe_reset_channel(bench.segment, axis->address, axis->channel);
+}
+
 /** A motor that nobody disturbs follows closely: what the servo lags by at its acceleration, and two cycles of way. */
 static void judge_motor(void)
 {
     const bool moved_by_us = set_point_is_ours() && cm1e_axis_powered(judged.axis) && bench.info.mode == CM1E_MODE_CSP;
     const int64_t soon = judged.number + 200;
+    const cm1e_sim_probe_t shaft = probe();
+    judge_rules(&shaft, cm1e_axis_configuration(judged.axis));
+    if (fabs(shaft.velocity_counts_per_s) > 1.3 * judged.axis->maximum.velocity * fabs(judged.axis->scale))
+        bench.disturbed_until = judged.number + 1000; /* somebody has turned it; it is braked */
     if ((!moved_by_us || judged.axis->state == CM1E_AXIS_ERROR_STOP) && bench.disturbed_until < soon)
         bench.disturbed_until = soon;
     if (judged.number < bench.disturbed_until)
@@ -211,6 +235,9 @@ static void play_other(other_t *o)
         cm1e_axis_error_text(o->reference, text, sizeof text);
         MUST(false, "an axis that nothing happened to is in ErrorStop: %s", text);
     }
+    cm1e_sim_probe_t shaft;
+    cm1e_sim_probe_channel(bench.segment, o->config->address, o->config->channel, &shaft);
+    judge_rules(&shaft, o->config);
     o->reset.Execute = in_error && !o->reset.Execute;
     if (o->move.Execute)
         o->move.Execute = o->move.Busy;
@@ -231,6 +258,7 @@ static void make_other(uint32_t index)
     cm1e_diag_t diag = {0};
     other_t *o = &bench.others[bench.other_count++];
     MUST(cm1e_axis_create(&o->axis, bench.bus, index, &diag) == CM1E_OK, "%s", diag.text);
+    o->config = cm1e_axis_configuration(o->axis);
     o->reference = cm1e_axis_reference(o->axis);
     o->power = (MC_Power_t){.Axis = &o->reference, .Enable = TRUE, .EnablePositive = TRUE, .EnableNegative = TRUE};
     o->reset = (MC_Reset_t){.Axis = &o->reference};

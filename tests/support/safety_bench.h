@@ -472,32 +472,14 @@ static void bench_start(bench_t *bench)
 /** What the shaft does, whatever anybody is told. */
 static cm1e_sim_probe_t bench_probe(const bench_t *bench, uint32_t n)
 {
-    cm1e_sim_probe_t probe = {0};
-    const cm1e_sim_bridge_axis_t *motor = bench_motor(bench, n);
-    if (!motor) {
-        cm1e_sim_probe(bench->segment, bench_position(bench, n), &probe);
-        return probe;
-    }
-    probe.position_counts = motor->mechanics.position * motor->scale;
-    probe.velocity_counts_per_s = motor->mechanics.velocity * motor->scale;
-    probe.peak_velocity_counts_per_s = motor->mechanics.peak_velocity * motor->scale;
-    probe.travel_counts = motor->mechanics.travel * motor->scale;
-    probe.torque_on = !motor->motor_free;
-    probe.mode = motor->mode;
-    probe.controlword = motor->controlword;
-    probe.statusword = cm1e_sim_bridge_statusword(motor);
+    cm1e_sim_probe_t probe;
+    cm1e_sim_probe_channel(bench->segment, bench_position(bench, n), bench->config.axes[n].channel, &probe);
     return probe;
 }
 
 static inline void bench_probe_reset(const bench_t *bench, uint32_t n)
 {
-    cm1e_sim_bridge_axis_t *motor = bench_motor(bench, n);
-    if (!motor) {
-        cm1e_sim_probe_reset(bench->segment, bench_position(bench, n));
-        return;
-    }
-    motor->mechanics.peak_velocity = fabs(motor->mechanics.velocity);
-    motor->mechanics.travel = 0;
+    cm1e_sim_probe_reset_channel(bench->segment, bench_position(bench, n), bench->config.axes[n].channel);
 }
 
 static cm1e_axis_info_t bench_info(const bench_t *bench, uint32_t n)
