@@ -28,7 +28,7 @@
 enum {
     BRIDGE_STATUS_RUNNING = 0x00, BRIDGE_STATUS_POSITION_OVERFLOW = 0x01, BRIDGE_STATUS_OVER_SPEED = 0x02,
     BRIDGE_STATUS_OVERLOAD = 0x04, BRIDGE_STATUS_IN_POSITION = 0x08, BRIDGE_STATUS_SERIAL_ERROR = 0x0F,
-    BRIDGE_STATUS_MOTOR_FREE = 0x10, BRIDGE_STATUS_TEMPERATURE = 0x80,
+    BRIDGE_STATUS_MOTOR_FREE = 0x10, BRIDGE_STATUS_OVER_CURRENT = 0x40, BRIDGE_STATUS_TEMPERATURE = 0x80,
 };
 
 /** Answers of the motor that wait in the mailbox. */
@@ -83,6 +83,8 @@ typedef struct cm1e_sim_bridge_axis {
     cm1e_sim_line_t line;
     cm1e_sim_search_t search;
     double search_s;         /**< since the search began */
+    bool search_failed;      /**< it found nothing in time */
+    int64_t settings_ns;     /**< when an object of homing was written last */
     int64_t zero;            /**< where 0x6064 is 0 */
     double lag_s, overload;  /**< how long the lag is too large; sum of the overload, s */
 
@@ -215,6 +217,8 @@ void cm1e_sim_bridge_mode_reset(cm1e_sim_bridge_axis_t *axis);
 
 /* ---- bridge_homing.c -------------------------------------------------------------------------------------------- */
 void cm1e_sim_bridge_search_begin(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
+/** As if none had been: neither done nor failed. */
+void cm1e_sim_bridge_search_reset(cm1e_sim_bridge_axis_t *axis);
 /** Does nothing where none is under way. */
 void cm1e_sim_bridge_search_abort(cm1e_sim_bridge_axis_t *axis);
 void cm1e_sim_bridge_search_step(cm1e_sim_bridge_axis_t *axis, double step_s);

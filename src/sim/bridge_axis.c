@@ -11,6 +11,7 @@
 #define PEAK_TO_RATED_TORQUE 1.25
 #define STANDSTILL_COUNTS_PER_S 100.0
 enum { SILENCE_MS = 10 };        /* without a good answer: an error of the serial line */
+enum { SETTING_NS = 100000000 }; /* until a setting of homing is done (BR appendix 4.1) */
 enum { K_RESOLUTION = 37, K_ENABLE_AT_POWER_ON = 68 };
 enum { STATUSWORD_MOTOR_ERROR = 0x4000, STATUSWORD_MOTOR_FREE = 0x8000 };
 
@@ -120,6 +121,8 @@ void cm1e_sim_bridge_axis_plug(cm1e_sim_bridge_axis_t *axis, bool plugged)
 void cm1e_sim_bridge_axis_exchange(cm1e_sim_bridge_axis_t *axis)
 {
     const bool heard = !axis->unplugged && axis->broken_answers == 0;
+    if (axis->state == FAULT_REACTION_ACTIVE)
+        axis->state = FAULT; /* 14 */
     axis->sent++;
     axis->received += heard;
     axis->broken_answers -= axis->broken_answers > 0;
@@ -274,8 +277,11 @@ static void drive_profile_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axi
     else if (!(axis->controlword & CONTROLWORD_FAULT_RESET))
         cm1e_sim_bridge_axis_obey(axis, axis->controlword);
     const bool may_search = axis->mode == CM1E_BRIDGE_MODE_HM && axis->state == OPERATION_ENABLED;
-    if (may_search && (rising & CONTROLWORD_HOMING_START) && !cm1e_sim_search_running(&axis->search))
+    if (may_search && (rising & CONTROLWORD_HOMING_START) && !cm1e_sim_search_running(&axis->search)) {
+        if (bridge->now_ns < axis->settings_ns + SETTING_NS)
+            axis->broken_rules |= CM1E_SIM_HOMING_TOO_SOON;
         cm1e_sim_bridge_search_begin(bridge, axis);
+    }
     if (may_search && !(axis->controlword & CONTROLWORD_HOMING_START))
         cm1e_sim_bridge_search_abort(axis);
 }
@@ -283,9 +289,7 @@ static void drive_profile_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axi
 void cm1e_sim_bridge_axis_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
 {
     axis->same_words = axis->controlword == axis->last_controlword ? axis->same_words + 1 : 1;
-    if (axis->state == FAULT_REACTION_ACTIVE)
-        axis->state = FAULT; /* 14 */
-    else if (axis->mode == CM1E_BRIDGE_MODE_CMD)
+    if (axis->mode == CM1E_BRIDGE_MODE_CMD)
         cm1e_sim_bridge_command_outputs(bridge, axis);
     else if (axis->mode == CM1E_BRIDGE_MODE_CPIO)
         cm1e_sim_bridge_cpio_outputs(axis);
@@ -319,7 +323,7 @@ static unsigned mode_bits(const cm1e_sim_bridge_axis_t *axis)
     if (axis->mode == CM1E_BRIDGE_MODE_HM)
         return (cm1e_sim_search_running(&axis->search) ? 0u : STATUSWORD_TARGET_REACHED) |
                (axis->search.phase == SEARCH_DONE ? STATUSWORD_HOMING_ATTAINED : 0u) |
-               (axis->error ? STATUSWORD_HOMING_ERROR : 0u);
+               (axis->error || axis->search_failed ? STATUSWORD_HOMING_ERROR : 0u);
     const bool follows = axis->state == OPERATION_ENABLED && follows_targets(axis) && lag <= FOLLOWING_WINDOW_COUNTS;
     return follows ? STATUSWORD_BIT12 : 0u;
 }
@@ -378,7 +382,8 @@ void cm1e_sim_bridge_axis_power_on(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_ax
     axis->answer = 0;
     axis->same_words = UINT16_MAX; /* none has come yet */
     axis->cml = (cm1e_sim_cml_t){0};
-    axis->search = (cm1e_sim_search_t){0};
+    cm1e_sim_bridge_search_reset(axis);
+    axis->settings_ns = INT64_MIN / 2;
     cm1e_sim_bridge_mode_reset(axis);
     release(axis, NOT_READY_TO_SWITCH_ON);
     if (axis->motor == CM1E_BRIDGE_CM1 || *cm1e_sim_bridge_k(bridge, axis->number, K_ENABLE_AT_POWER_ON) == 1)

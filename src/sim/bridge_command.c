@@ -3,7 +3,6 @@
 /* "Wait for 5 Cycles of PDO Sending" (BR appendix 1): a controlword counts when it has come this often, and it is a
  * cycle on the way. */
 enum { SENT_CYCLES = 3 };
-#define SEARCH_LIMIT_S 60.0 /* the guide names a time-out and no time */
 
 /* The high byte of the controlword, and of the statusword (BR 7.1.2, 7.1.3). */
 enum {
@@ -64,7 +63,8 @@ void cm1e_sim_bridge_command_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_
             axis->answer = 0;
     } else if (axis->armed && (is_free || (word & 0xFF) == READY)) {
         axis->armed = false;
-        execute(bridge, axis, (uint8_t)(word >> 8));
+        if (!axis->unplugged)
+            execute(bridge, axis, (uint8_t)(word >> 8));
     }
 }
 
@@ -74,8 +74,7 @@ void cm1e_sim_bridge_command_step(cm1e_sim_bridge_axis_t *axis)
         return;
     if (axis->search.phase == SEARCH_DONE) {
         axis->answer = SEARCH_COMPLETED;
-    } else if (axis->search_s > SEARCH_LIMIT_S || axis->error) {
-        cm1e_sim_bridge_search_abort(axis);
+    } else if (axis->search_failed || axis->error) {
         axis->answer = SEARCH_TIME_OUT;
     }
 }

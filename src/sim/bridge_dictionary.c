@@ -190,6 +190,8 @@ static void take_value(cm1e_sim_bridge_t *bridge, const cm1e_sim_cell_t *cell, i
         *(k ? cm1e_sim_bridge_k(bridge, (unsigned)axis, k) : cell->value) = value;
     if (first == OBJ_6060_MODES_OF_OPERATION)
         cm1e_sim_bridge_request_mode(bridge, &bridge->axes[axis], (int8_t)value);
+    if (k || first == OBJ_6098_HOMING_METHOD)
+        bridge->axes[axis].settings_ns = bridge->now_ns;
     if (first != OBJ_60FE_DIGITAL_OUTPUTS)
         return;
     if (cm1e_sim_bridge_io_available(&bridge->axes[axis]))

@@ -2,6 +2,7 @@
 
 /* The guide does not say where the sensors are: IN2 is that of CW, IN3 that of CCW, as behind the simulated CM1-E. */
 #define DEFAULT_TORQUE_PERCENT 30
+#define SEARCH_LIMIT_S 60.0 /* the guide names a time-out (BR 7.1.3) and no time */
 enum { K_SPEED = 42, K_ACCELERATION = 43, K_OFFSET_UNIT = 45, K_TORQUE = 47, K_OFFSET = 48 };
 
 /* BR 6.4.1, in the order of 0x6098. */
@@ -27,6 +28,8 @@ static double offset_unit(const cm1e_sim_bridge_t *bridge, const cm1e_sim_bridge
 
 void cm1e_sim_bridge_search_begin(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
 {
+    if (axis->unplugged) /* it does not hear */
+        return;
     const unsigned n = axis->number;
     const int64_t method = *cm1e_sim_bridge_value(bridge, n, OBJ_6098_HOMING_METHOD, 0);
     const int64_t torque = *cm1e_sim_bridge_k(bridge, n, K_TORQUE);
@@ -40,6 +43,13 @@ void cm1e_sim_bridge_search_begin(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axi
     cm1e_sim_search_begin(&axis->search, methods[method - 1].by_sensor);
     cm1e_sim_bridge_axis_torque(axis, torque > 0 && torque <= 100 ? (double)torque : DEFAULT_TORQUE_PERCENT);
     axis->search_s = 0;
+    axis->search_failed = false;
+}
+
+void cm1e_sim_bridge_search_reset(cm1e_sim_bridge_axis_t *axis)
+{
+    axis->search = (cm1e_sim_search_t){0};
+    axis->search_failed = false;
 }
 
 void cm1e_sim_bridge_search_abort(cm1e_sim_bridge_axis_t *axis)
@@ -60,4 +70,7 @@ void cm1e_sim_bridge_search_step(cm1e_sim_bridge_axis_t *axis, double step_s)
     cm1e_sim_search_step(&axis->search, &motor, step_s);
     if (axis->search.phase == SEARCH_DONE)
         cm1e_sim_bridge_axis_torque(axis, 0);
+    axis->search_failed = cm1e_sim_search_running(&axis->search) && axis->search_s > SEARCH_LIMIT_S;
+    if (axis->search_failed)
+        cm1e_sim_bridge_search_abort(axis);
 }

@@ -58,7 +58,7 @@ void cm1e_sim_bridge_mode_due(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t 
     if (axis->mode != CM1E_BRIDGE_MODE_CPIO)
         axis->servo.reference_velocity = 0; /* nothing moves it on any more */
     if (axis->mode == CM1E_BRIDGE_MODE_HM)
-        axis->search = (cm1e_sim_search_t){0};
+        cm1e_sim_bridge_search_reset(axis);
     if (axis->mode == CM1E_BRIDGE_MODE_CMD || axis->mode == CM1E_BRIDGE_MODE_CPIO)
         axis->abnormal = true;
     if (axis->mode == CM1E_BRIDGE_MODE_CSP && axis->state == OPERATION_ENABLED)

@@ -318,12 +318,13 @@ static cm1e_error_t run_power_up_fault(call_t *call)
 
 static cm1e_error_t motor_error(call_t *call, cm1e_sim_bridge_axis_t *axis)
 {
-    static const char *const names[] = {"position", "over-speed", "overload", "temperature", NULL};
+    static const char *const names[] = {"position", "over-speed", "overload", "temperature", "over-current", NULL};
     static const uint8_t codes[] = {BRIDGE_STATUS_POSITION_OVERFLOW, BRIDGE_STATUS_OVER_SPEED, BRIDGE_STATUS_OVERLOAD,
-                                    BRIDGE_STATUS_TEMPERATURE};
+                                    BRIDGE_STATUS_TEMPERATURE, BRIDGE_STATUS_OVER_CURRENT};
     const int n = choice(argument(call, 2), names);
-    if (n < 0)
-        return REFUSE(call, "\"%s\": expected position, over-speed, overload or temperature", argument(call, 2));
+    if (n < 0 || (codes[n] == BRIDGE_STATUS_OVER_CURRENT && axis->motor == CM1E_BRIDGE_CM1)) /* BR 7.4 */
+        return REFUSE(call, "\"%s\": expected position, over-speed, overload, temperature, or over-current of a CM2",
+                      argument(call, 2));
     cm1e_sim_bridge_axis_error(axis, codes[n]);
     say(call, "slave %u: motor %u has the error %s (0x%02X)", call->position, axis->number + 1u, names[n], codes[n]);
     return CM1E_OK;

@@ -82,6 +82,7 @@ enum cm1e_sim_broken_rule {
     CM1E_SIM_CML_TOO_SOON = 0x100,    /**< a string less than 4 or 8 ms after the last (BR 7.2.2) */
     CM1E_SIM_CML_LINE_END = 0x200,    /**< a string with CR or LF (BR 7.2.2) */
     CM1E_SIM_OUTPUT_IN_VAIN = 0x400,  /**< 0x60FE where it does nothing: not in csp, or no power (BR 6.5) */
+    CM1E_SIM_HOMING_TOO_SOON = 0x800, /**< homing within 100 ms of its last setting (BR appendix 4.1) */
 };
 
 typedef struct cm1e_sim_probe {

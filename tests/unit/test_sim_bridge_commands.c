@@ -71,6 +71,17 @@ static void test_what_is_not_sent_long_enough_or_not_after_0007h_has_no_answer(v
     TEST_ASSERT_EQUAL_HEX8(0xF1, b.axes[0].statusword >> 8);
 }
 
+static void test_an_unplugged_motor_does_not_answer(void)
+{
+    static const uint16_t words[] = {0xF107, 0xF207, 0xF307, 0xF407, 0xF607};
+    enter(0, CMD);
+    cm1e_sim_bridge_axis_plug(&b.bridge->axes[0], false);
+    for (int i = 0; i < 5; i++)
+        TEST_ASSERT_EQUAL_HEX8(0, answer_to(0, words[i]));
+    cm1e_sim_bridge_axis_plug(&b.bridge->axes[0], true);
+    TEST_ASSERT_EQUAL_HEX8(0xF1, answer_to(0, 0xF107));
+}
+
 static void test_reset_counter(void)
 {
     bench_enable(&b, 0);
@@ -192,6 +203,7 @@ int main(void)
     RUN_TEST(test_motor_free_and_enable);
     RUN_TEST(test_motor_enable_ends_an_error);
     RUN_TEST(test_what_is_not_sent_long_enough_or_not_after_0007h_has_no_answer);
+    RUN_TEST(test_an_unplugged_motor_does_not_answer);
     RUN_TEST(test_reset_counter);
     RUN_TEST(test_origin_search_completes);
     RUN_TEST(test_origin_search_times_out);

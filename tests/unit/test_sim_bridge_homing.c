@@ -135,6 +135,17 @@ static void test_without_power_a_search_ends(void)
     TEST_ASSERT_TRUE(b.bridge->axes[0].motor_free);
 }
 
+static void test_what_is_not_found_in_time_is_a_homing_error(void)
+{
+    prepare(1, 3);
+    bench_write(&b, 0x6899, 1, 1); /* 100 pulses/s */
+    TEST_ASSERT_FALSE(monitor(1, 60100));
+    TEST_ASSERT_EQUAL_HEX16(ERROR | REACHED, b.axes[1].statusword & BITS);
+    TEST_ASSERT_EQUAL_HEX16(0x07, b.axes[1].statusword & 0x4F); /* and no fault */
+    bench_write(&b, 0x6899, 1, 1000);
+    TEST_ASSERT_TRUE(monitor(1, 8000));
+}
+
 static void test_an_error_of_the_motor_is_a_homing_error(void)
 {
     prepare(3, 2);
@@ -164,6 +175,7 @@ int main(void)
     RUN_TEST(test_a_start_is_an_edge_in_operation_enabled);
     RUN_TEST(test_without_bit_4_a_search_ends);
     RUN_TEST(test_without_power_a_search_ends);
+    RUN_TEST(test_what_is_not_found_in_time_is_a_homing_error);
     RUN_TEST(test_an_error_of_the_motor_is_a_homing_error);
     RUN_TEST(test_no_other_mode_while_searching);
     return UNITY_END();

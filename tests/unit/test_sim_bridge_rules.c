@@ -139,6 +139,7 @@ static void begin(const departure_t *departure)
     if (departure->mode != CSP)
         enter(0, departure->mode);
     bench_write(&b, 0x6099, 1, 500);
+    bench_cycles(&b, 100);
     for (int i = 0; i < 3 && departure->words[i]; i++) {
         b.axes[0].controlword = departure->words[i];
         bench_cycles(&b, FIVE_CYCLES);
@@ -248,6 +249,23 @@ static void test_strings_against_the_rules(void)
     TEST_ASSERT_EQUAL_HEX32(CM1E_SIM_CML_LINE_BUSY, broken(0));
 }
 
+/* "Wait 100msec (Until setting is done)" */
+static void test_a_search_right_behind_its_settings(void)
+{
+    bench_enable(&b, 0);
+    enter(0, HM);
+    bench_cycles(&b, 100);
+    for (int wait_ms = 97; wait_ms <= 100; wait_ms += 3) {
+        bench_write(&b, 0x6098, 0, 2);
+        bench_cycles(&b, wait_ms);
+        b.axes[0].controlword = 0x1F;
+        bench_cycles(&b, 2);
+        TEST_ASSERT_EQUAL_HEX32(wait_ms < 100 ? CM1E_SIM_HOMING_TOO_SOON : 0, broken(0));
+        b.axes[0].controlword = 0x0F;
+        bench_cycles(&b, 2);
+    }
+}
+
 static void test_words_and_outputs_against_the_rules(void)
 {
     bench_write(&b, 0x60FE, 2, 2);
@@ -274,6 +292,7 @@ int main(void)
     RUN_TEST(test_a_target_elsewhere_makes_an_enabled_motor_jump);
     RUN_TEST(test_switches_of_mode_against_the_rules);
     RUN_TEST(test_strings_against_the_rules);
+    RUN_TEST(test_a_search_right_behind_its_settings);
     RUN_TEST(test_words_and_outputs_against_the_rules);
     return UNITY_END();
 }

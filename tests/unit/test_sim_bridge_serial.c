@@ -134,6 +134,13 @@ static void test_errors_of_the_motor(void)
         const char *name;
         uint8_t status;
     } rows[] = {{"position", 0x01}, {"over-speed", 0x02}, {"overload", 0x04}, {"temperature", 0x80}};
+    refuse("motor 1 2 error over-current", "over-current of a CM2");
+    accept("motor 1 3 error over-current");
+    bench_wait(&b, 2 * BENCH_MS); /* no process data needed */
+    TEST_ASSERT_EQUAL_HEX8(0x40, bench_read(&b, 0xF530, 7));
+    TEST_ASSERT_EQUAL_HEX16(FAULT_BITS, bench_read(&b, 0x7041, 0) & STATE_BITS);
+    b.axes[2].controlword = 0x80;
+    bench_cycles(&b, 2);
     for (int i = 0; i < 4; i++) {
         char line[60];
         bench_enable(&b, i);
