@@ -31,6 +31,9 @@ enum {
 #define CM1E_BRIDGE_CYCLE_TIME_NS 1000000 /**< the only one (BR 6.3) */
 #define CM1E_BRIDGE_CML_BYTES 64          /**< longest string of F581 ... F594 (BR 7.2.2) */
 
+/** Bits of the statusword in csp and hm that CiA 402 leaves to the manufacturer (BR 6.1.3). */
+enum { CM1E_BRIDGE_STATUSWORD_ERROR = 0x4000, CM1E_BRIDGE_STATUSWORD_FREE = 0x8000 };
+
 /** Values of 0x6060 and 0x6061 (BR 6). */
 typedef enum cm1e_bridge_mode {
     CM1E_BRIDGE_MODE_HM = 6,

@@ -63,6 +63,7 @@ cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis
     drive->kind = cm1e_drive_bridged(drive) ? &cm1e_drive_kind_bridge : &cm1e_drive_kind_cm1e;
     drive->feedback.state = CM1E_FSA_UNKNOWN;
     drive->velocity_unit = 1;
+    drive->step = drive->kind->step;
     drive->position_least = INT32_MIN;
     drive->position_most = INT32_MAX;
     cm1e_error_t error = drive->kind->init(drive, diag);
@@ -109,8 +110,6 @@ void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
     }
 }
 
-static bool operates(const cm1e_drive_feedback_t *f) { return f->state == OPERATION_ENABLED && !f->motor_free; }
-
 /* The cause of what this cycle's inputs show, or CM1E_OK. */
 static cm1e_error_t cause_in_inputs(const cm1e_drive_t *drive)
 {
@@ -122,14 +121,14 @@ static cm1e_error_t cause_in_inputs(const cm1e_drive_t *drive)
     const bool power_stage = f->state == OPERATION_ENABLED || f->state == SWITCHED_ON;
     if (!f->voltage && (power_stage || drive->was_enabled))
         return CM1E_ERROR_DRIVE_POWER;
-    if (drive->was_enabled && !operates(f))
+    if (drive->was_enabled && !drive->operates)
         return CM1E_ERROR_DRIVE_ENABLE_LOST;
     const bool shown = f->mode == (int8_t)drive->mode;
     if (drive->was_enabled && !shown && drive->mode_confirmed)
         return CM1E_ERROR_DRIVE_MODE_LOST;
     if (drive->was_enabled && !shown && drive->now_ns >= drive->mode_deadline_ns)
         return CM1E_ERROR_DRIVE_MODE_TIMEOUT;
-    if (!drive->was_enabled && !operates(f) && drive->now_ns >= drive->enable_deadline_ns)
+    if (!drive->was_enabled && !drive->operates && drive->now_ns >= drive->enable_deadline_ns)
         return !f->voltage ? CM1E_ERROR_DRIVE_POWER
                : !shown    ? CM1E_ERROR_DRIVE_MODE_TIMEOUT : CM1E_ERROR_DRIVE_ENABLE_TIMEOUT;
     return CM1E_OK;
@@ -148,12 +147,6 @@ static void latch_faults(cm1e_drive_t *drive)
         cm1e_drive_fail(drive, error);
 }
 
-/* No mode: under way over SDO, and nobody knows whether the old or the new one acts; a target that stands is right. */
-static bool may_hold_position(const cm1e_drive_t *drive)
-{
-    return drive->shown ? drive->shown->holds_position : drive->feedback.mode == CM1E_MODE_NONE;
-}
-
 void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
 {
     cm1e_drive_feedback_t *f = &drive->feedback;
@@ -164,18 +157,18 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
     if (f->fresh)
         cm1e_drive_decode(drive);
     f->online = bus_ok && cm1e_drive_operational(drive);
-    if (f->state != OPERATION_ENABLED || !may_hold_position(drive))
+    if (f->state != OPERATION_ENABLED || !drive->may_hold)
         drive->target_holds = false;
     else if (f->mode == CM1E_MODE_NONE)
         drive->target_holds = true;
-    if (drive->kind->step)
-        drive->kind->step(drive);
+    if (drive->step)
+        drive->step(drive);
     if (drive->reset_phase != RESET_IDLE) {
         cm1e_drive_reset_step(drive);
         f->enabled = false;
         return;
     }
-    const bool operating = operates(f) && drive->torque;
+    const bool operating = drive->operates && drive->torque;
     const bool shown = f->mode == (int8_t)drive->mode;
     latch_faults(drive);
     if (operating && f->online)
@@ -185,11 +178,6 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
     /* A frame lost now and then changes nothing: the last picture holds until the supervision calls the bus lost. */
     f->enabled = operating && shown && drive->was_enabled &&
                  (!drive->fault.error || drive_fault_allows_ramp(drive->fault.error));
-}
-
-static bool mode_takes_torque(const cm1e_drive_t *drive)
-{
-    return drive->wanted->torque && drive->words == drive->wanted->words;
 }
 
 static bool in_range(const cm1e_drive_t *drive, int32_t position)
@@ -203,7 +191,7 @@ static void refuse_torque(cm1e_drive_t *drive)
     const bool asked = drive->command.enable && !drive->torque && drive->seen && drive->feedback.online;
     if (asked && !in_range(drive, drive->feedback.position)) /* as a target it would be cut: a jump */
         cm1e_drive_fail(drive, CM1E_ERROR_AXIS_POSITION_RANGE);
-    if (!asked || mode_takes_torque(drive))
+    if (!asked || drive->takes_torque)
         drive->blocked_ns = drive->now_ns;
     else if (drive->now_ns - drive->blocked_ns >= enable_timeout_ns)
         cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_ENABLE_TIMEOUT);
@@ -211,7 +199,7 @@ static void refuse_torque(cm1e_drive_t *drive)
 
 static bool wants_torque(const cm1e_drive_t *drive)
 {
-    if (!drive->command.enable || !drive->seen || drive->reset_phase != RESET_IDLE || !mode_takes_torque(drive))
+    if (!drive->command.enable || !drive->seen || drive->reset_phase != RESET_IDLE || !drive->takes_torque)
         return false;
     if (drive->fault.error)
         return drive_fault_allows_ramp(drive->fault.error) && drive->feedback.enabled;
@@ -277,8 +265,6 @@ static uint16_t controlword(cm1e_drive_t *drive, bool pass)
 static uint16_t signals(const cm1e_drive_t *drive)
 {
     const cm1e_drive_words_t *words = drive->words;
-    if (words->mark == 0 || words != drive->wanted->words)
-        return 0;
     const unsigned outputs = drive->command.digital_outputs & cm1e_drive_output_mask(drive);
     return (uint16_t)(words->mark | (outputs << CM1E_DRIVE_SIGNALS_AT & words->outputs));
 }
@@ -316,15 +302,14 @@ void cm1e_drive_write(cm1e_drive_t *drive)
         drive->set_point_bit = false;
         drive->set_point = drive->feedback.position;
     }
-    const bool holding_mode = drive->shown && drive->shown->holds_position;
     /* Targets that ran on while nothing arrived would make the drive jump when it hears again. */
     const bool follow = pass && !drive->fault.slave_deaf;
-    drive->target_holds |= follow && holding_mode;
+    drive->target_holds |= follow && drive->holds;
     int32_t position = safe_position(drive);
-    if (follow && holding_mode && in_range(drive, command->target_position))
+    if (follow && drive->holds && in_range(drive, command->target_position))
         position = command->target_position;
-    else if (follow && holding_mode)
+    else if (follow && drive->holds)
         cm1e_drive_fail(drive, CM1E_ERROR_AXIS_POSITION_RANGE); /* the last target holds until the torque goes */
-    const uint16_t word = controlword(drive, pass) | signals(drive);
+    const uint16_t word = controlword(drive, pass) | (drive->marked ? signals(drive) : 0);
     cm1e_drive_encode(drive, word, position, follow ? command->target_velocity : 0);
 }

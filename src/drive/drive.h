@@ -83,9 +83,6 @@ typedef struct cm1e_drive {
     cm1e_drive_feedback_t feedback;
     cm1e_drive_fault_t fault;       /**< latched; cleared by a successful reset */
     /* private: drive_io.c, drive.c, drive_mode.c, drive_reset.c */
-    const struct cm1e_drive_words *words; /**< of the mode that is shown */
-    const struct cm1e_drive_mode *shown;  /**< NULL: 0x6061 is none of its modes, or not known */
-    const struct cm1e_drive_mode *wanted; /**< that of `mode` */
     cm1e_image_slot_t in_statusword, in_error, in_position, in_velocity, in_torque, in_digital, in_temperature, in_dc,
         in_mode;
     cm1e_image_slot_t out_controlword, out_position, out_velocity, out_mode, out_digital, out_profile_velocity,
@@ -96,10 +93,15 @@ typedef struct cm1e_drive {
     int64_t read_ns;
     int32_t target_position;        /**< last one written */
     int32_t position_least, position_most; /**< what may be a target */
+    void (*step)(struct cm1e_drive *drive); /**< of the kind; NULL: nothing */
     int32_t set_point;              /**< PP: the target position that bit 4 announced */
     cm1e_mode_t mode;               /**< commanded on the wire; follows `command.mode` once the last switch is shown */
     bool velocity_quarter;          /**< 0x606C is wrong in HM and PP */
     bool target_holds;              /**< it was the caller's, and the drive is still seen holding a position */
+    bool may_hold, holds;           /**< of the mode shown: a target position may act, acts */
+    bool takes_torque;              /**< the commanded mode does, and its words are those of the mode shown */
+    bool marked;                    /**< the controlword carries more than the state: words->mark, outputs */
+    bool operates;                  /**< Operation enabled, and the motor is not free */
     bool seen;                      /**< inputs were valid at least once */
     bool torque;                    /**< the last write asked for torque */
     bool was_enabled;               /**< Operation enabled was seen since torque is asked for */
@@ -110,6 +112,9 @@ typedef struct cm1e_drive {
     int8_t mode_data, mode_shown;
 
     const struct cm1e_drive_kind *kind;
+    const struct cm1e_drive_words *words; /**< of the mode that is shown */
+    const struct cm1e_drive_mode *shown;  /**< NULL: 0x6061 is none of its modes, or not known */
+    const struct cm1e_drive_mode *wanted; /**< that of `mode` */
     int64_t enable_deadline_ns, mode_deadline_ns, torque_from_ns;
     int64_t reset_until_ns, reset_deadline_ns, reset_settle_ns, recovery_ns, mode_retry_ns;
     cm1e_sdo_t mode_sdo;            /**< 0x6060 and 0x6061 where the mapping lacks them */
@@ -129,8 +134,8 @@ typedef struct cm1e_drive {
 } cm1e_drive_t;
 
 /** Resolves the objects of the mapping. A mapping that lacks an object the configured use needs is
- *  CM1E_ERROR_PDO_MAPPING naming the object; an unreadable firmware version with no unit stated is CM1E_ERROR_CONFIG, as
- *  is a motor behind a bridge without its K37. CM1E_ERROR_STATE: it is found in a mode without a way back to csp.
+ *  CM1E_ERROR_PDO_MAPPING naming the object; an unreadable firmware version with no unit stated is CM1E_ERROR_CONFIG,
+ *  as is a motor behind a bridge without its K37. CM1E_ERROR_STATE: it is found in a mode without a way back to csp.
  *  @rt init */
 cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis, cm1e_diag_t *diag);
 /** Frees what cm1e_drive_init() made, also where it failed. @rt init */
@@ -166,8 +171,8 @@ const cm1e_entry_t *cm1e_drive_entry(const cm1e_drive_t *drive, uint16_t index, 
  *  @rt cycle */
 bool cm1e_drive_supports(const cm1e_drive_t *drive, cm1e_mode_t mode);
 /** Whether the device can be switched to `mode` from the one it was last told. CM1E_ERROR_UNSUPPORTED: it has no such
- *  mode; CM1E_ERROR_STATE: no way leads there. `*why` (may be NULL) is a sentence then. A command for a mode that no way
- *  leads to is not carried out: the caller asks here first. @rt cycle */
+ *  mode; CM1E_ERROR_STATE: no way leads there. `*why` (may be NULL) is a sentence then. A command for a mode that no
+ *  way leads to is not carried out: the caller asks here first. @rt cycle */
 cm1e_error_t cm1e_drive_mode_check(const cm1e_drive_t *drive, cm1e_mode_t mode, bool insist, const char **why);
 
 /** Behind a bridge digital signals go by SDO, in csp, while the motor is enabled (BR 6.5). Who reads inputs says so, as

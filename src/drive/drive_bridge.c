@@ -33,16 +33,16 @@ cm1e_error_t cm1e_drive_init_bridge(cm1e_drive_t *drive, cm1e_diag_t *diag)
     if (!config->k37_stated)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
                              "Axis \"%s\" (slave %u, channel %u): K37 of the motor, its resolution, is not stated, and "
-                             "counts have no meaning without it. Ask the motor with the CML string \"K37.%u\" and state "
-                             "k37 in the configuration of the axis.", config->name, drive->position, config->channel,
-                             config->channel);
+                             "counts have no meaning without it. Ask the motor with the CML string \"K37.%u\" and "
+                             "state k37 in the configuration of the axis.", config->name, drive->position,
+                             config->channel, config->channel);
     const cm1e_bridge_motor_t motor = cm1e_drive_bridge_motor(drive);
     drive->position_most = cm1e_bridge_position_limit(motor, config->k37);
     drive->position_least = -drive->position_most;
     if (drive->position_most == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                             "Axis \"%s\" (slave %u, channel %u): a %s knows no K37 of %u (BR appendix 5). Ask the motor "
-                             "with the CML string \"K37.%u\".", config->name, drive->position, config->channel,
+                             "Axis \"%s\" (slave %u, channel %u): a %s knows no K37 of %u (BR appendix 5). Ask the "
+                             "motor with the CML string \"K37.%u\".", config->name, drive->position, config->channel,
                              cm1e_bridge_motor_name(motor), config->k37, config->channel);
     drive->behind = calloc(1, sizeof *drive->behind);
     if (!drive->behind)
@@ -73,6 +73,12 @@ static void watch_rest(cm1e_drive_t *drive)
     behind->rest_since_ns = drive->now_ns;
 }
 
+/* It is the motor that has something to say, not the bus. */
+static bool is_of_motor(cm1e_error_t error)
+{
+    return error <= CM1E_ERROR_DRIVE_FAULT && error >= CM1E_ERROR_DRIVE_RESET_TIMEOUT;
+}
+
 /* BR 6.1.3, note: the statusword shows that there is an error, F530 which. One question, asked again where the answer
  * fails; it is not worth more than that. */
 static void ask_status(cm1e_drive_t *drive)
@@ -92,7 +98,8 @@ static void ask_status(cm1e_drive_t *drive)
     }
     if (fault->error == CM1E_OK)
         behind->status_tries = 0;
-    else if (!fault->motor_status_known && behind->status_tries < STATUS_TRIES && drive->feedback.online) {
+    const bool missing = is_of_motor(fault->error) && !fault->motor_status_known;
+    if (missing && behind->status_tries < STATUS_TRIES && drive->feedback.online) {
         behind->status_tries++;
         behind->status_sdo = (cm1e_sdo_t){
             .position = drive->position, .index = OBJ_F530_SYSTEM_INFO,

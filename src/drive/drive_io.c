@@ -133,6 +133,26 @@ static int32_t velocity_of(const cm1e_drive_t *drive, const uint8_t *in, int32_t
     return clamp_i32((int64_t)step * INT64_C(1000000000) / elapsed_ns);
 }
 
+static void derive(cm1e_drive_t *drive)
+{
+    const bool same = drive->words == drive->wanted->words;
+    drive->takes_torque = same && drive->wanted->torque;
+    drive->marked = same && drive->words->mark != 0;
+    drive->holds = drive->shown && drive->shown->holds_position;
+    /* No mode: a switch over SDO is under way, and nobody knows whether the old or the new one acts; a target that
+     * stands is right. */
+    drive->may_hold = drive->holds || drive->feedback.mode == CM1E_MODE_NONE;
+}
+
+void cm1e_drive_want_mode(cm1e_drive_t *drive, const cm1e_drive_mode_t *row)
+{
+    drive->mode = (cm1e_mode_t)row->mode;
+    drive->wanted = row;
+    if (!drive->words)
+        drive->words = row->words;
+    derive(drive);
+}
+
 /* While a mode is not shown, its words are still those of the last one, unless those, or the next ones, are of another
  * coding: 0007h in CMD would be Switch on in csp. */
 static void take_mode(cm1e_drive_t *drive, int8_t mode)
@@ -143,6 +163,7 @@ static void take_mode(cm1e_drive_t *drive, int8_t mode)
         drive->words = drive->shown->words;
     else if (drive->words != drive->wanted->words || drive->words->own_coding)
         drive->words = &cm1e_drive_words_unknown;
+    derive(drive);
 }
 
 static void take_statusword(cm1e_drive_t *drive, uint16_t statusword)
@@ -154,6 +175,7 @@ static void take_statusword(cm1e_drive_t *drive, uint16_t statusword)
     f->voltage = !words->voltage || (statusword & words->voltage);
     f->fault = statusword & words->fault;
     f->motor_free = statusword & words->motor_free;
+    drive->operates = f->state == OPERATION_ENABLED && !f->motor_free;
     f->target_reached = statusword & words->target_reached;
     f->bit12 = statusword & words->bit12;
     f->bit13 = statusword & words->bit13;

@@ -84,7 +84,8 @@ static const cm1e_drive_object_t bridge_objects[] = {
 
 /* BR 6.1.2, 6.1.3: an error shows as bit 14, and as a state with bit 3. */
 #define PROFILE_STATUSWORD                                                                                          \
-    .states = cm1e_fsa_bridge_table, .fault = 0x4000 | STATUSWORD_FAULT, .motor_free = 0x8000,                      \
+    .states = cm1e_fsa_bridge_table, .fault = CM1E_BRIDGE_STATUSWORD_ERROR | STATUSWORD_FAULT,                      \
+    .motor_free = CM1E_BRIDGE_STATUSWORD_FREE,                                                                      \
     .target_reached = STATUSWORD_TARGET_REACHED, .bit12 = STATUSWORD_BIT12, .bit13 = STATUSWORD_BIT13
 static const cm1e_drive_words_t profile_words = {PROFILE_STATUSWORD, .no_torque = 0x0006, .fault_reset = 0x0086};
 /* Strings go over the serial line only while no controlword does (BR appendix 2). */

@@ -58,13 +58,6 @@ cm1e_error_t cm1e_drive_mode_check(const cm1e_drive_t *drive, cm1e_mode_t mode, 
     return error;
 }
 
-/* The device is in a mode that nobody has commanded since it may have been switched off: from there it goes on. */
-static void adopt(cm1e_drive_t *drive, const cm1e_drive_mode_t *row)
-{
-    drive->mode = (cm1e_mode_t)row->mode;
-    drive->wanted = row;
-}
-
 /* ---- start-up --------------------------------------------------------------------------------------------------- */
 
 static cm1e_error_t read_first(cm1e_drive_t *drive, int8_t *shown, cm1e_diag_t *diag)
@@ -92,7 +85,7 @@ static cm1e_error_t ask_first(cm1e_drive_t *drive, cm1e_diag_t *diag)
                              "%s.", drive->config->name, drive->position,
                              cm1e_drive_index(drive, OBJ_6061_MODES_OF_OPERATION_DISPLAY), drive->mode_read,
                              row ? row->abbreviation : "unknown", drive->wanted->abbreviation, drive->kind->no_way);
-    adopt(drive, row);
+    cm1e_drive_want_mode(drive, row);
     drive->mode_shown = drive->mode_read;
     drive->mode_known = true;
     return CM1E_OK;
@@ -100,10 +93,9 @@ static cm1e_error_t ask_first(cm1e_drive_t *drive, cm1e_diag_t *diag)
 
 cm1e_error_t cm1e_drive_mode_init(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
-    drive->mode = drive->kind->mappings[drive->config->mapping].first_mode;
-    drive->wanted = cm1e_drive_mode_row(drive->kind, (int8_t)drive->mode);
-    drive->words = drive->wanted->words;
-    drive->command.mode = drive->mode;
+    const cm1e_mode_t first = drive->kind->mappings[drive->config->mapping].first_mode;
+    cm1e_drive_want_mode(drive, cm1e_drive_mode_row(drive->kind, (int8_t)first));
+    drive->command.mode = first;
     if (drive->out_mode.bytes)
         return CM1E_OK;
     if (drive->kind->asks_mode_first)
@@ -150,8 +142,9 @@ static void read_done(cm1e_drive_t *drive)
     if (before && now && !drive->mode_known && !leads(drive, before, now))
         drive->abnormal = false;
     drive->abnormal |= now && now->leaves_abnormal;
+    /* A mode that nobody has commanded since it may have been switched off: from there it goes on. */
     if (now && drive->kind->asks_mode_first && !drive->mode_known && !drive->mode_uncertain)
-        adopt(drive, now);
+        cm1e_drive_want_mode(drive, now);
     drive->mode_known = true;
     if (drive->mode_read == (int8_t)drive->mode)
         drive->mode_uncertain = false;
@@ -206,7 +199,7 @@ static void go_on(cm1e_drive_t *drive)
         submit(drive, false);
 }
 
-/* One that ended in an error may have arrived all the same; one that the device has forgotten meanwhile says nothing. */
+/* One that ended in an error may have arrived all the same; one that the device has forgotten says nothing. */
 static void written(cm1e_drive_t *drive, bool good)
 {
     const bool forgotten = drive->kind->asks_mode_first && !drive->mode_known;
@@ -281,8 +274,7 @@ void cm1e_drive_mode_choose(cm1e_drive_t *drive)
         return;
     if (drive->kind->asks_mode_first && cm1e_drive_mode_check(drive, wanted, drive->command.mode_insist, NULL))
         return;
-    drive->mode = wanted;
-    drive->wanted = row;
+    cm1e_drive_want_mode(drive, row);
     drive->mode_confirmed = false;
     drive->mode_deadline_ns = drive->now_ns + mode_timeout_ns;
     drive->mode_from_ns = drive->now_ns + (row->words == drive->words ? 0 : silence_ns);

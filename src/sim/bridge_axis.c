@@ -13,7 +13,6 @@
 enum { SILENCE_MS = 10 };        /* without a good answer: an error of the serial line */
 enum { SETTING_NS = 100000000 }; /* until a setting of homing is done (BR appendix 4.1) */
 enum { K_RESOLUTION = 37, K_ENABLE_AT_POWER_ON = 68 };
-enum { STATUSWORD_MOTOR_ERROR = 0x4000, STATUSWORD_MOTOR_FREE = 0x8000 };
 
 double cm1e_sim_bridge_peak_torque(void) { return cm1e_device_motor("")->peak_torque_nm; }
 
@@ -335,7 +334,7 @@ uint16_t cm1e_sim_bridge_statusword(const cm1e_sim_bridge_axis_t *axis)
     if (axis->mode == CM1E_BRIDGE_MODE_CPIO)
         return cm1e_sim_bridge_cpio_status(axis);
     return (uint16_t)(cm1e_sim_bridge_state_bits(axis) | STATUSWORD_REMOTE | mode_bits(axis) |
-                      (axis->error ? STATUSWORD_MOTOR_ERROR : 0) | (axis->motor_free ? STATUSWORD_MOTOR_FREE : 0));
+                      (axis->error ? CM1E_BRIDGE_STATUSWORD_ERROR : 0) | (axis->motor_free ? CM1E_BRIDGE_STATUSWORD_FREE : 0));
 }
 
 /* ---- life ------------------------------------------------------------------------------------------------------- */

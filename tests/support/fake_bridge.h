@@ -78,7 +78,7 @@ static inline void fake_bridge_sdo(cm1e_bus_t *bus, cm1e_sdo_t *sdo)
     sdo->state = code ? CM1E_SDO_ERROR : CM1E_SDO_DONE;
 }
 
-/** A bridge in Operational, its motor standing and in csp; the drive's is at connector `channel`. Ends the one before. */
+/** A bridge in Operational, its motors standing, in csp; the drive's is at connector `channel`. Ends the one before. */
 static inline void fake_bridge_open(cm1e_bus_t *bus, cm1e_device_model_t model, unsigned channel)
 {
     if (fake_bridge.app)
