@@ -1,7 +1,7 @@
 /*
  * What a motor behind a bridge does beside motion: strings in CML, modes of operation, commands of CMD. Only while the
- * axis is Disabled and nobody asks for torque. MC_Power leads from CML back to the axis's own mode, CSP or CPIO; from CMD
- * no way leads there (BR 6).
+ * axis is Disabled and nobody asks for torque. MC_Power leads from CML back to the axis's own mode, CSP or CPIO; from
+ * CMD no way leads there (BR 6).
  *
  * A string or a command may move the motor, without a set-point of ours. So it is freed when that is left behind, when
  * the axis fails, when the slave was away, and at the end of the run. And its counts may mean another place afterwards.
@@ -22,13 +22,13 @@ static const int64_t longest_ns = INT64_C(1000000000) * 1000000; /* of a timeout
 
 static const char abnormal[] = "In CMD and CPIO the way to CML and back ends in abnormal operation (BR 6 note 2): "
                                "CM_SetMode with Insist goes it all the same";
-static const char no_way_to_power[] = "From CMD no way leads to a mode of motion: switch the bridge off and on, or insist "
-                                      "on the way by CML with CM_SetMode";
+static const char no_way_to_power[] = "From CMD no way leads to a mode of motion: switch the bridge off and on, or "
+                                      "insist on the way by CML with CM_SetMode";
 static const char not_in_cmd[] = "Commands are for CMD mode: CM_SetMode leads there, and no way back but switching the "
                                  "bridge off and on";
 static const char not_in_cpio[] = "Homing begins in CSP only: home first, then switch to CPIO";
-static const char keeps_k37[] = "writes K37: counts would mean another way under a running axis. Write it with cm1e cml "
-                                "while nothing runs, and state it in the bus file";
+static const char keeps_k37[] = "writes K37: counts would mean another way under a running axis. Write it with cm1e "
+                                "cml while nothing runs, and state it in the bus file";
 
 static cm1e_drive_cml_t *cml_of(const cm1e_axis_t *axis)
 {

@@ -94,8 +94,8 @@ static cm1e_error_t not_confirmed(const place_t *at, int8_t wanted, int8_t shown
         cm1e_bridge_status_text(cm1e_bridge_motor(model, at->channel - 1u), cm1e_get_u32(status), words, sizeof words);
     return cm1e_diag_set(at->diag, CM1E_ERROR_DRIVE_MODE_TIMEOUT, 0,
                          "Slave %u, connector %u: mode of operation %d was asked for, object 0x%04X shows %d. The "
-                         "motor has to stand and to have no error for that; it says: %s.", at->position, at->channel, wanted,
-                         index_of(at, OBJ_6061_MODES_OF_OPERATION_DISPLAY), shown, words);
+                         "motor has to stand and to have no error for that; it says: %s.", at->position, at->channel,
+                         wanted, index_of(at, OBJ_6061_MODES_OF_OPERATION_DISPLAY), shown, words);
 }
 
 static cm1e_error_t switch_mode(const place_t *at, int8_t wanted)
@@ -143,6 +143,7 @@ static cm1e_error_t run(place_t *at, cm1e_drive_cml_t *cml, const char *text, co
         if (!cm1e_drive_cml_idle(cml))
             sleep_for(at->bus, step_ns);
     }
+    cm1e_clock_sleep_until(clock, cml->free_ns); /* of the string that may come next, which knows nothing of this one */
     return error ? error : cm1e_drive_cml_request(cml, *ticket)->error;
 }
 
@@ -208,7 +209,6 @@ static void free_motor(const place_t *at, cm1e_drive_cml_t *cml)
     uint32_t ticket;
     place_t quiet = {at->bus, at->position, at->channel, NULL};
     cm1e_drive_cml_init(cml, at->position, at->channel, transfer, &quiet);
-    sleep_for(at->bus, 2 * interval_ns); /* behind the string before */
     run(&quiet, cml, cm1e_drive_cml_motor_free(cml, text), NULL, &ticket);
     sleep_for(at->bus, 2 * interval_ns); /* and this one arrives */
 }

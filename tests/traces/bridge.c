@@ -19,8 +19,8 @@ static void send_cml(void)
     CM_SendCML_t query = {AXIS, .Command = "?99.1"}, list = {AXIS, .Command = "?90.1"};
     CM_SendCML_t motion = {AXIS, .Command = "|.1"};
     trace_configure(behind_a_bridge);
-    trace_begin_disabled("CM_SendCML", "The state; the list of K parameters; an origin search without AllowMotion. MC_Power "
-                                       "leaves CML.");
+    trace_begin_disabled("CM_SendCML", "The state; the list of K parameters; an origin search without AllowMotion. "
+                                       "MC_Power leaves CML.");
     trace_block("CM_SendCML", "CM_SendCML, ?99.1", &query);
     trace_block("CM_SendCML", "CM_SendCML, ?90.1", &list);
     trace_block("CM_SendCML", "CM_SendCML, |.1", &motion);
