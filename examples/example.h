@@ -19,6 +19,7 @@ typedef struct example {
     const char *interface_name, *csv_file, *svg_file;
     bool virtual_time;
     void (*describe)(cm1e_axis_config_t *axis); /**< what is special about the axis; NULL: nothing */
+    void (*describe_network)(cm1e_bus_config_t *config); /**< instead of one axis: all of them; NULL: one */
     cm1e_bus_t *bus;
     cm1e_scheduler_t *scheduler;
     AXIS_REF_t axis;
@@ -50,13 +51,15 @@ static inline void example_options(example_t *e, int argc, char **argv, const ch
     argp_parse(&argp, argc, argv, 0, NULL, e);
 }
 
-/** Bus and scheduler stand afterwards, and e->axis is its only axis. */
+/** Bus and scheduler stand afterwards, and e->axis is the first axis, or the only one. */
 static inline cm1e_error_t example_open(example_t *e, cm1e_bus_config_t *config, cm1e_diag_t *why)
 {
     const cm1e_scheduler_config_t scheduler = {
         .trace_capacity = e->csv_file || e->svg_file ? EXAMPLE_TRACE_SAMPLES : 0,
     };
     cm1e_bus_config_init(config, e->interface_name, 1);
+    if (e->describe_network)
+        e->describe_network(config);
     config->virtual_time = e->virtual_time;
     if (e->describe)
         e->describe(&config->axes[0]);
@@ -95,12 +98,13 @@ static inline int example_end(example_t *e, cm1e_error_t error, const cm1e_diag_
     return error == CM1E_OK && well ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
-/** The sentences about the axis, where something went wrong. In the program's end, not in the cycle. */
-static inline void example_tell_error(const example_t *e, WORD error_id)
+/** The sentences about an axis on which something went wrong. In the program's end, not in the cycle. */
+static inline void example_tell_error_of(AXIS_REF_t axis, WORD error_id)
 {
-    char text[512];
-    cm1e_axis_error_text(e->axis, text, sizeof text);
+    char text[CM1E_AXIS_ERROR_TEXT_BYTES];
+    cm1e_axis_error_text(axis, text, sizeof text);
     fprintf(stderr, "%s. %s\n", cm1e_strerror(cm1e_error_from_id(error_id)), text);
 }
+static inline void example_tell_error(const example_t *e, WORD error_id) { example_tell_error_of(e->axis, error_id); }
 
 #endif

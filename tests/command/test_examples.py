@@ -189,8 +189,35 @@ def check_homing_steps():
     expect(abs(trace[-1]["set_position"] - 2.5) < 0.01, f"07_homing_steps: ends at {trace[-1]['set_position']}")
 
 
+def check_cool_muscle_bridge():
+    """All four arrive in the same cycle, and the first one moves while the fourth answers."""
+    printed, trace, _ = run("08_cool_muscle_bridge")
+    rows = re.findall(r"^(\w+) +([\d.]+) s +([-+][\d.]+) rev +([\d.]+) s$", printed, re.MULTILINE)
+    expect([row[0] for row in rows] == ["left", "right", "feed", "lift"], f"08_cool_muscle_bridge: {printed}")
+    expect(len({row[3] for row in rows}) == 1, f"08_cool_muscle_bridge: they arrive one after the other: {rows}")
+    expect(all(0 < float(row[1]) < float(row[3]) for row in rows), f"08_cool_muscle_bridge: homed when? {rows}")
+    farthest = min(sample["set_position"] for sample in trace)
+    expect(abs(farthest + 3) < 1e-6, f"08_cool_muscle_bridge: left is at {farthest} at most, not at -3")
+    answer = re.search(r"^lift answers K37\.4=10 and Ux\.4=16; left moves with ([\d.]+) rev/s just then$", printed,
+                       re.MULTILINE)
+    expect(answer and float(answer[1]) > 0.01, f"08_cool_muscle_bridge: {printed}")
+    expect(not any(sample["state"] == "ErrorStop" for sample in trace), "08_cool_muscle_bridge: ErrorStop")
+
+
+def check_mixed_network():
+    printed, trace, _ = run("09_mixed_network")
+    rows = re.findall(r"^(\w+) +(-[\d.]+) rev +(.+)$", printed, re.MULTILINE)
+    expect([row[0] for row in rows] == ["cm1e", "cm1", "cm2"], f"09_mixed_network: {printed}")
+    expect(all(abs(float(row[1]) + 2) < 0.01 for row in rows), f"09_mixed_network: not at -2 rev: {rows}")
+    expect("%" in rows[0][2] and all("mapping lacks" in row[2] for row in rows[1:]),
+           f"09_mixed_network: a CM1-E tells its torque, a bridge does not: {rows}")
+    expect(abs(trace[-1]["set_position"] + 1) < 0.01, f"09_mixed_network: ends at {trace[-1]['set_position']}")
+
+
 def main():
     check_buffer_modes()
+    check_cool_muscle_bridge()
+    check_mixed_network()
     check_touch_probe()
     check_homing_steps()
     check_jog_panel()
