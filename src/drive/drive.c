@@ -63,6 +63,7 @@ cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis
     drive->kind = cm1e_drive_bridged(drive) ? &cm1e_drive_kind_bridge : &cm1e_drive_kind_cm1e;
     drive->feedback.state = CM1E_FSA_UNKNOWN;
     drive->velocity_unit = 1;
+    drive->velocity_believed = (int64_t)(2.0 * cm1e_unit_peak_velocity(drive->config));
     drive->step = drive->kind->step;
     drive->position_least = INT32_MIN;
     drive->position_most = INT32_MAX;

@@ -89,6 +89,7 @@ typedef struct cm1e_drive {
         out_profile_acceleration;
     int32_t velocity_unit;          /**< counts/s per unit of 0x60FF and 0x606C */
     int32_t velocity_most;          /**< of 0x60FF, in that unit */
+    int64_t velocity_believed;      /**< counts/s: the largest that is measured from positions */
     uint32_t profile_velocity, profile_acceleration; /**< what 0x6081 and 0x6083 carry where they are mapped */
     int64_t read_ns;
     int32_t target_position;        /**< last one written */

@@ -130,7 +130,11 @@ static int32_t velocity_of(const cm1e_drive_t *drive, const uint8_t *in, int32_t
     if (!drive->seen || elapsed_ns <= 0)
         return 0;
     const int32_t step = (int32_t)((uint32_t)position - (uint32_t)drive->feedback.position);
-    return clamp_i32((int64_t)step * INT64_C(1000000000) / elapsed_ns);
+    const int64_t velocity = (int64_t)step * INT64_C(1000000000) / elapsed_ns;
+    /* Faster than any motor is no way but a new origin: the end of a homing, a counter that was reset. */
+    if (velocity > drive->velocity_believed || velocity < -drive->velocity_believed)
+        return drive->feedback.velocity;
+    return clamp_i32(velocity);
 }
 
 static void derive(cm1e_drive_t *drive)

@@ -417,6 +417,16 @@ static void test_a_motor_beyond_k37_is_not_enabled(void)
 
 /* ---- away ------------------------------------------------------------------------------------------------------- */
 
+static void test_a_new_origin_is_no_velocity(void)
+{
+    fake_bridge_axis()->zero += 100000; /* the counter of the motor is another one from one cycle to the next */
+    for (int i = 0; i < 5; i++) {
+        bench_cycle();
+        TEST_ASSERT_INT_WITHIN(1000, 0, drive.feedback.velocity);
+    }
+    TEST_ASSERT_INT_WITHIN(10, -100000, drive.feedback.position);
+}
+
 static void test_a_slave_that_left_takes_the_torque_with_it(void)
 {
     bench_enable();
@@ -468,6 +478,7 @@ int main(void)
     RUN_TEST(test_an_error_that_stays_is_a_reset_timeout);
     RUN_TEST(test_a_target_beyond_k37_is_never_written);
     RUN_TEST(test_a_motor_beyond_k37_is_not_enabled);
+    RUN_TEST(test_a_new_origin_is_no_velocity);
     RUN_TEST(test_a_slave_that_left_takes_the_torque_with_it);
     RUN_TEST(test_the_longest_text_fits_the_size_that_is_promised);
     return UNITY_END();
