@@ -132,6 +132,8 @@ const cm1e_drive_kind_t cm1e_drive_kind_bridge = {
                "every other one: look at its state with cm1e status; from CMD and CPIO there is no way back but "
                "switching it off and on",
     .asks_mode_first = true, .mode_supervised = true,
+    /* A motor that does not answer is missed after some exchanges only; until then 0x6064 is where it was once. */
+    .reset_settle_ns = 100 * MS_IN_NS,
     .init = cm1e_drive_init_bridge, .step = cm1e_drive_bridge_step,
 };
 

@@ -68,6 +68,7 @@ typedef struct cm1e_drive_kind {
     const char *refusal;            /**< a sentence: why a switch of mode is not confirmed */
     bool asks_mode_first;           /**< 0x6061 is read before 0x6060 is written: not every way can be gone back */
     bool mode_supervised;           /**< an unconfirmed switch is a fault without torque, too */
+    int64_t reset_settle_ns;        /**< an error that a reset has cleared may come back by itself until then */
     cm1e_error_t (*init)(cm1e_drive_t *drive, cm1e_diag_t *diag); /**< what the configuration has to state */
     void (*step)(cm1e_drive_t *drive); /**< in every cycle, after the inputs; NULL: nothing */
 } cm1e_drive_kind_t;

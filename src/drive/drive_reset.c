@@ -3,6 +3,7 @@
  * fault bit to go. From V1.3.5 on clearing a power-up fault 0x7510 resets the device (UG 10.1): it leaves the bus,
  * comes back, and would do so again and again while the bit stayed set. So the bit is set once and never for long.
  */
+#include "drive/drive_kind.h"
 #include "drive/drive_private.h"
 
 static const int64_t online_timeout_ns = 10000 * MS_IN_NS;
@@ -79,7 +80,7 @@ static void edge(cm1e_drive_t *drive)
     drive->reset_phase = RESET_RELEASED;
     drive->reset_deadline_ns = drive->now_ns + (device_resets(drive) ? online_timeout_ns : clear_timeout_ns);
     /* The fault bit of a device that is about to reset may go before the device does. */
-    drive->reset_settle_ns = drive->now_ns + (device_resets(drive) ? settle_ns : 0);
+    drive->reset_settle_ns = drive->now_ns + (device_resets(drive) ? settle_ns : drive->kind->reset_settle_ns);
 }
 
 static void released(cm1e_drive_t *drive)

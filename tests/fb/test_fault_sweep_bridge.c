@@ -127,8 +127,8 @@ static void stall(bench_t *b, int ms)
     b->paused = true;
 }
 
-/** The bridge survives what its guide forbids, a motor might not. An SDO that is on its way when a fault comes cannot be
- *  held back. */
+/** The bridge survives what its guide forbids, a motor might not. An SDO on its way when a fault comes cannot be held
+ *  back. */
 static void judge_rules(const bench_t *b)
 {
     const unsigned allowed = (kind == FAULT_NONE ? 0u : CM1E_SIM_OUTPUT_IN_VAIN) |

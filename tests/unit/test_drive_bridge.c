@@ -339,7 +339,7 @@ static void test_errors_of_the_motor_are_told_in_its_own_words(void)
             bench_text_has(channel <= 2 ? "CM1" : "CM2");
             bench_text_has("MC_Reset");
             drive.command.enable = false;
-            TEST_ASSERT_TRUE(bench_reset(100));
+            TEST_ASSERT_TRUE(bench_reset(250));
             TEST_ASSERT_EQUAL_HEX8(0, fake_bridge_axis()->error);
             TEST_ASSERT_TRUE(bench_mode(CM1E_MODE_CSP, 50));
             fake_bridge.largest_step = 0;

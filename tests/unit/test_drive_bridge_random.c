@@ -149,7 +149,7 @@ static void test_any_inputs_and_commands_keep_the_rules(void)
         enabled_cycles += run(shown);
     printf("%u of 600000 cycles enabled; csp %u, hm %u, CML %u, CMD %u, CPIO %u\n", enabled_cycles, shown[8], shown[6],
            shown[101], shown[120], shown[121]);
-    TEST_ASSERT_GREATER_THAN_UINT(20000, enabled_cycles); /* else the lies were too thick to test anything */
+    TEST_ASSERT_GREATER_THAN_UINT(10000, enabled_cycles); /* else the lies were too thick to test anything */
     for (int i = 0; i < 7; i++)
         TEST_ASSERT_GREATER_THAN_UINT(3000, shown[modes[i]]);
 }
