@@ -53,7 +53,10 @@ static cm1e_error_t refuse(cm1e_axis_t *axis, cm1e_error_t error, const char *wh
     axis->refusal = error;
     if (axis->muscle) {
         axis->muscle->why = why;
-        snprintf(axis->muscle->text, sizeof axis->muscle->text, "%s", text ? text : "");
+        const size_t size = text ? strnlen(text, sizeof axis->muscle->text - 1) : 0;
+        if (text)
+            memcpy(axis->muscle->text, text, size); /* texts are made when they are asked for, not in the cycle */
+        axis->muscle->text[size] = '\0';
     }
     return error;
 }

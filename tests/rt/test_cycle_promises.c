@@ -339,6 +339,57 @@ START_TEST(test_cycle_calls_nothing_that_allocates_locks_formats_or_sleeps)
 }
 END_TEST
 
+/* ---- behind a bridge --------------------------------------------------------------------------------------------- */
+
+static struct bridged {
+    CM_SendCML_t cml;
+    CM_SetMode_t mode;
+    CM_Command_t command;
+    MC_Power_t power;
+    unsigned sent, refused, switched, powered;
+} bridged;
+
+/* Strings without an answer alone: the simulated bridge writes answers with what is counted here. */
+static void bridge_program(void *context)
+{
+    static const char *const strings[] = {"K53.1=1", "^.1", "", "K37.1=3", "?99.2", "O2.1,F2.1"};
+    const int64_t phase = cycle_number++ % 1000;
+    (void)context;
+    bridged.cml.Execute = phase < 600 && phase % 60 > 5;
+    memcpy(bridged.cml.Command, strings[phase / 60 % 6], strlen(strings[phase / 60 % 6]) + 1);
+    bridged.mode.Execute = phase > 620 && phase < 680;
+    bridged.power.Enable = phase > 700 && phase < 900;
+    bridged.command.Execute = phase > 950;
+    CM_SendCML(&bridged.cml);
+    CM_SetMode(&bridged.mode);
+    CM_Command(&bridged.command);
+    MC_Power(&bridged.power);
+    bridged.sent += bridged.cml.Done;
+    bridged.refused += bridged.cml.Error;
+    bridged.switched += bridged.mode.Done;
+    bridged.powered += bridged.power.Status;
+}
+
+START_TEST(test_blocks_behind_a_bridge_call_nothing_of_that)
+{
+    machine = (machine_t){.axis_count = 2, .bridged = true};
+    machine_open(&machine);
+    AXIS_REF_t *axis = &machine.axis[0];
+    bridged = (struct bridged){.cml.Axis = axis, .mode.Axis = axis, .command.Axis = axis, .power.Axis = axis};
+    machine_add(&machine, "", 0, 1, bridge_program, NULL);
+    cycle_number = 0;
+    violations = 0;
+    running = true;
+    machine_run(&machine, 4000 * MS);
+    ck_assert_msg(violations == 0, "%u calls in the cycle; the first: %s from %p", violations, violator, caller);
+    ck_assert_uint_ge(bridged.sent, 100);
+    ck_assert_uint_ge(bridged.refused, 500);
+    ck_assert_uint_ge(bridged.switched, 50);
+    ck_assert_uint_ge(bridged.powered, 300);
+    machine_close(&machine);
+}
+END_TEST
+
 START_TEST(test_wrapping_works)
 {
     in_cycle = true;
@@ -358,6 +409,7 @@ int main(void)
     tcase_set_timeout(all, 60);
     tcase_add_test(all, test_wrapping_works);
     tcase_add_test(all, test_cycle_calls_nothing_that_allocates_locks_formats_or_sleeps);
+    tcase_add_test(all, test_blocks_behind_a_bridge_call_nothing_of_that);
     suite_add_tcase(suite, all);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);

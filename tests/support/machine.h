@@ -20,6 +20,7 @@ typedef struct machine {
     uint32_t axis_count;
     bool real_time;                      /**< FALSE: virtual time */
     int64_t cycle_time_ns;               /**< 0: 1 ms */
+    bool bridged;                        /**< all axes are CM1 behind one bridge */
     cm1e_scheduler_config_t config;
     cm1e_bus_t *bus;
     cm1e_scheduler_t *scheduler;
@@ -32,6 +33,10 @@ static void machine_open(machine_t *machine)
     static cm1e_bus_config_t config;
     cm1e_diag_t diag = {0};
     describe_axes(&config, machine->axis_count);
+    for (uint32_t i = 0; i < machine->axis_count && machine->bridged; i++) {
+        config.axes[i] = (cm1e_axis_config_t){.address = 1, .channel = (uint8_t)(i + 1), .motor = "CM1", .k37 = 10,
+                                              .k37_stated = true};
+    }
     config.virtual_time = !machine->real_time;
     config.cycle_time_ns = machine->cycle_time_ns;
     ck_assert_msg(cm1e_bus_open(&machine->bus, &config, &diag) == CM1E_OK, "%s", diag.text);
