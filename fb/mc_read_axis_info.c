@@ -8,6 +8,7 @@ void MC_ReadAxisInfo(MC_ReadAxisInfo_t *fb)
     cm1e_axis_condition_t condition = {0};
     const cm1e_axis_t *axis = fb_enable(&fb->Private, fb->Axis, fb->Enable);
     if (axis) {
+        cm1e_axis_want_switches(fb_axis(&fb->Private));
         cm1e_axis_get(axis, &info);
         condition = cm1e_axis_condition(axis);
     }

@@ -7,8 +7,10 @@ void MC_ReadDigitalInput(MC_ReadDigitalInput_t *fb)
     bool value = false;
     cm1e_error_t error = CM1E_OK;
     if (axis)
-        error = cm1e_axis_read_input(axis, fb->InputNumber ? fb->InputNumber : fb->Input->Number, &value);
-    const fb_reading_t out = fb_reading(&fb->Private, axis, error);
+        error = cm1e_axis_read_input(fb_axis(&fb->Private), fb->InputNumber ? fb->InputNumber : fb->Input->Number,
+                                     &value);
+    fb_reading_t out = fb_reading(&fb->Private, axis, error == CM1E_ERROR_BUSY ? CM1E_OK : error);
+    out.valid = out.valid && error == CM1E_OK; /* behind a bridge it comes some cycles later */
     fb->Valid = out.valid;
     fb->Busy = out.busy;
     fb->Error = out.error;

@@ -8,13 +8,20 @@ static cm1e_error_t write_output(const MC_WriteDigitalOutput_t *fb, cm1e_axis_t 
     return error ? error : cm1e_axis_write_output(axis, number, fb->Value != FALSE);
 }
 
-/** Done in the call after the edge: the value has left with the cycle of the edge. */
+static void poll(MC_WriteDigitalOutput_t *fb, const cm1e_axis_t *axis)
+{
+    cm1e_error_t error;
+    const cm1e_command_state_t state = cm1e_axis_output_state(axis, &error);
+    fb_polled(&fb->Private, state, error);
+}
+
+/** Done in the call after the edge: the value has left with the cycle of the edge. Behind a bridge an SDO brings it. */
 void MC_WriteDigitalOutput(MC_WriteDigitalOutput_t *fb)
 {
     cm1e_axis_t *axis = NULL;
     switch (fb_execute(&fb->Private, fb->Output ? &fb->Output->Axis : NULL, fb->Execute, &axis)) {
     case FB_STEP_START: fb_started(&fb->Private, write_output(fb, axis)); break;
-    case FB_STEP_POLL: fb_polled(&fb->Private, CM1E_COMMAND_DONE, CM1E_OK); break;
+    case FB_STEP_POLL: poll(fb, axis); break;
     case FB_STEP_NONE: break;
     }
     const fb_outputs_t out = fb_outputs(&fb->Private);

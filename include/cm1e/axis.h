@@ -44,6 +44,9 @@ typedef struct cm1e_axis_info {
     double actual_position, actual_velocity, actual_torque;
     double position_lag;
     bool powered, homed, online;
+    /* FALSE: not in the process data of this motor, the value is 0. Behind a bridge torque, temperature and DC link
+     * never are, and digital inputs are known while somebody has read them within the last second. */
+    bool torque_known, digital_known, temperature_known, dc_link_known;
     cm1e_error_t error;        /**< why the axis is in ErrorStop; CM1E_OK otherwise */
     uint16_t device_error;     /**< 0x603F with it */
     uint16_t digital_inputs;   /**< bit 0 = IN1 ... bit 3 = IN4 */

@@ -7,6 +7,46 @@
 
 int64_t cm1e_axis_time(const cm1e_axis_t *axis) { return axis->now_ns; }
 
+/* ---- behind a bridge --------------------------------------------------------------------------------------------- */
+
+/* Longer than any poll that is well. */
+static const int64_t input_timeout_ns = 1000 * MS_IN_NS;
+/* So long the torque waits at the end for outputs to go off. */
+static const int64_t output_timeout_ns = 500 * MS_IN_NS;
+
+static bool in_process_data(const cm1e_axis_t *axis)
+{
+    return !cm1e_drive_bridged(&axis->drive) || axis->drive.feedback.mode == CM1E_BRIDGE_MODE_CPIO;
+}
+
+/* BR 6.5: in csp, while the motor is enabled. */
+static cm1e_error_t reachable(const cm1e_axis_t *axis)
+{
+    if (in_process_data(axis) || axis_acts(axis))
+        return CM1E_OK;
+    return axis->activity == ACTIVITY_HOMING ? CM1E_ERROR_AXIS_HOMING : CM1E_ERROR_AXIS_NOT_POWERED;
+}
+
+const char *cm1e_axis_signals_advice(const cm1e_axis_t *axis, cm1e_error_t error)
+{
+    const cm1e_drive_t *drive = &axis->drive;
+    if (!cm1e_drive_bridged(drive))
+        return "";
+    switch (error) {
+    case CM1E_ERROR_AXIS_SIGNAL:
+        return cm1e_bridge_motor(drive->bridge, drive->config->channel - 1u) == CM1E_BRIDGE_CM1
+                   ? " Of a CM1 behind a bridge these can be reached: inputs 2 ... 4, output 2."
+                   : " Of a CM2 behind a bridge these can be reached: inputs 1 ... 6, outputs 1 ... 4.";
+    case CM1E_ERROR_PDO_MAPPING:
+        return " Behind a bridge torque is not known, and digital signals go by SDO, too late for what follows a "
+               "position: only in CPIO mode they are in the process data.";
+    case CM1E_ERROR_AXIS_NOT_POWERED:
+        return " Behind a bridge digital signals are reached while the motor is enabled in csp.";
+    default:
+        return "";
+    }
+}
+
 /* ---- inputs ------------------------------------------------------------------------------------------------------ */
 
 static bool input_bit(const cm1e_axis_t *axis, int number)
@@ -14,15 +54,53 @@ static bool input_bit(const cm1e_axis_t *axis, int number)
     return axis->drive.feedback.digital_inputs >> (number - 1) & 1;
 }
 
-cm1e_error_t cm1e_axis_read_input(const cm1e_axis_t *axis, int number, bool *value)
+/* Of so many signals those in `there` are the drive's, those in `mask` can be reached. */
+static cm1e_error_t check_signal(int number, int most, unsigned there, unsigned mask)
+{
+    if (number < 1 || number > most || !(there >> (number - 1) & 1))
+        return CM1E_ERROR_AXIS_SIGNAL;
+    return mask >> (number - 1) & 1 ? CM1E_OK : CM1E_ERROR_PDO_MAPPING;
+}
+
+cm1e_error_t cm1e_axis_check_input(const cm1e_axis_t *axis, int number)
+{
+    const unsigned mask = cm1e_drive_input_mask(&axis->drive);
+    return check_signal(number, CM1E_AXIS_INPUTS, cm1e_drive_bridged(&axis->drive) ? mask : 0x0F, mask);
+}
+
+bool cm1e_axis_sees_inputs(const cm1e_axis_t *axis)
+{
+    return cm1e_drive_input_mask(&axis->drive) != 0 && in_process_data(axis);
+}
+
+/* An input that SDOs bring has been asked for, now and without a pause since inputs_since_ns. */
+static cm1e_error_t ask(cm1e_axis_t *axis)
+{
+    const int64_t before_ns = axis->inputs_asked_ns;
+    cm1e_drive_want_inputs(&axis->drive);
+    axis->inputs_asked_ns = axis->now_ns;
+    if (axis->drive.feedback.digital_known || axis->now_ns - before_ns >= input_timeout_ns)
+        axis->inputs_since_ns = axis->now_ns;
+    if (axis->drive.feedback.digital_known)
+        return CM1E_OK;
+    const cm1e_error_t error = reachable(axis);
+    if (error) {
+        axis->inputs_since_ns = axis->now_ns;
+        return error;
+    }
+    return axis->now_ns - axis->inputs_since_ns >= input_timeout_ns ? CM1E_ERROR_TIMEOUT : CM1E_ERROR_BUSY;
+}
+
+cm1e_error_t cm1e_axis_read_input(cm1e_axis_t *axis, int number, bool *value)
 {
     *value = false;
-    if (number < 1 || number > CM1E_AXIS_INPUTS)
-        return CM1E_ERROR_AXIS_SIGNAL;
-    if (axis->drive.in_digital.bytes == 0)
-        return CM1E_ERROR_PDO_MAPPING;
+    const cm1e_error_t error = cm1e_axis_check_input(axis, number);
+    if (error)
+        return error;
     *value = input_bit(axis, number);
-    return axis->drive.feedback.online ? CM1E_OK : CM1E_ERROR_AXIS_OFFLINE;
+    if (!axis->drive.feedback.online)
+        return CM1E_ERROR_AXIS_OFFLINE;
+    return in_process_data(axis) ? CM1E_OK : ask(axis);
 }
 
 static int input_of(const cm1e_axis_t *axis, cm1e_axis_switch_t which, bool *normally_closed)
@@ -37,32 +115,44 @@ bool cm1e_axis_has_switch(const cm1e_axis_t *axis, cm1e_axis_switch_t which)
 {
     bool normally_closed;
     const int number = input_of(axis, which, &normally_closed);
-    return number >= 1 && number <= CM1E_AXIS_INPUTS && axis->drive.in_digital.bytes > 0;
+    return cm1e_axis_check_input(axis, number) == CM1E_OK;
+}
+
+void cm1e_axis_want_switches(cm1e_axis_t *axis)
+{
+    bool any = false;
+    for (int which = 0; which < CM1E_SWITCH_COUNT; which++)
+        any = any || cm1e_axis_has_switch(axis, (cm1e_axis_switch_t)which);
+    if (any && !in_process_data(axis))
+        (void)ask(axis);
 }
 
 bool cm1e_axis_switch_active(const cm1e_axis_t *axis, cm1e_axis_switch_t which)
 {
     bool normally_closed;
     const int number = input_of(axis, which, &normally_closed);
-    return cm1e_axis_has_switch(axis, which) && input_bit(axis, number) != normally_closed;
+    const bool known = in_process_data(axis) || axis->drive.feedback.digital_known;
+    return known && cm1e_axis_has_switch(axis, which) && input_bit(axis, number) != normally_closed;
 }
 
 /* ---- output ------------------------------------------------------------------------------------------------------ */
 
 static cm1e_error_t check_output(const cm1e_axis_t *axis, int number)
 {
-    if (number < 1 || number > CM1E_AXIS_OUTPUTS)
-        return CM1E_ERROR_AXIS_SIGNAL;
-    return axis->drive.out_digital.bytes == 0 ? CM1E_ERROR_PDO_MAPPING : CM1E_OK;
+    const unsigned mask = cm1e_drive_output_mask(&axis->drive);
+    return check_signal(number, CM1E_AXIS_OUTPUTS, cm1e_drive_bridged(&axis->drive) ? mask : 0x01, mask);
 }
 
 static cm1e_error_t set_output(cm1e_axis_t *axis, int number, bool value, int64_t until_ns)
 {
-    const cm1e_error_t error = check_output(axis, number);
+    cm1e_error_t error = check_output(axis, number);
+    if (!error && !cm1e_drive_operational(&axis->drive))
+        error = CM1E_ERROR_AXIS_OFFLINE;
+    if (!error)
+        error = reachable(axis);
+    cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_OUTPUT, .number = number});
     if (error)
         return error;
-    if (!cm1e_drive_operational(&axis->drive))
-        return CM1E_ERROR_AXIS_OFFLINE;
     const uint16_t bit = (uint16_t)(1u << (number - 1));
     uint16_t *outputs = &axis->drive.command.digital_outputs;
     *outputs = (uint16_t)(value ? *outputs | bit : *outputs & ~bit);
@@ -75,8 +165,29 @@ cm1e_error_t cm1e_axis_write_output(cm1e_axis_t *axis, int number, bool value)
     return set_output(axis, number, value, INT64_MAX);
 }
 
+cm1e_command_state_t cm1e_axis_output_state(const cm1e_axis_t *axis, cm1e_error_t *error)
+{
+    *error = CM1E_OK;
+    switch (cm1e_drive_outputs(&axis->drive)) {
+    case CM1E_DRIVE_OUTPUTS_SET:
+        return CM1E_COMMAND_DONE;
+    case CM1E_DRIVE_OUTPUTS_FAILED:
+        *error = CM1E_ERROR_BUS_MAILBOX;
+        break;
+    case CM1E_DRIVE_OUTPUTS_WAITING:
+        *error = reachable(axis);
+        break;
+    case CM1E_DRIVE_OUTPUTS_UNDER_WAY:
+        break;
+    }
+    return *error ? CM1E_COMMAND_ERROR : CM1E_COMMAND_ACTIVE;
+}
+
 cm1e_error_t cm1e_axis_hold_output(cm1e_axis_t *axis, int number, bool value, int64_t keep_ns)
 {
+    const cm1e_error_t error = check_output(axis, number);
+    if (error || !in_process_data(axis))
+        return error ? error : CM1E_ERROR_PDO_MAPPING;
     return set_output(axis, number, value, axis->now_ns + keep_ns);
 }
 
@@ -85,6 +196,16 @@ cm1e_error_t cm1e_axis_read_output(const cm1e_axis_t *axis, int number, bool *va
     const cm1e_error_t error = check_output(axis, number);
     *value = !error && (axis->drive.command.digital_outputs >> (number - 1) & 1);
     return error;
+}
+
+/* ---- torque ------------------------------------------------------------------------------------------------------ */
+
+cm1e_error_t cm1e_axis_read_torque(const cm1e_axis_t *axis, double *percent)
+{
+    *percent = axis->drive.feedback.torque * (axis->scale < 0.0 ? -0.1 : 0.1);
+    if (axis->drive.in_torque.bytes == 0)
+        return CM1E_ERROR_PDO_MAPPING;
+    return axis->drive.feedback.online ? CM1E_OK : CM1E_ERROR_AXIS_OFFLINE;
 }
 
 /* ---- condition --------------------------------------------------------------------------------------------------- */
@@ -100,13 +221,15 @@ cm1e_axis_condition_t cm1e_axis_condition(const cm1e_axis_t *axis)
 {
     const cm1e_drive_feedback_t *f = &axis->drive.feedback;
     const char *name = cm1e_bus_configuration(axis->drive.bus)->interface_name;
+    /* Behind a bridge bit 7 never warns (BR 6.1.3), but is an input in CPIO; and this is where CML leaves it. */
+    const bool bridged = cm1e_drive_bridged(&axis->drive), rests = bridged && f->state == SWITCH_ON_DISABLED;
     return (cm1e_axis_condition_t){
         .simulation = name[0] == '\0' || strcmp(name, "sim") == 0 || strncmp(name, "sim:", 4) == 0,
         .communication = f->online,
         .ready_for_power_on = axis->state == CM1E_AXIS_DISABLED && f->online && f->voltage && !f->fault &&
-                              (f->state == READY_TO_SWITCH_ON || f->state == SWITCHED_ON),
-        .warning = !f->fault && (f->statusword & STATUSWORD_WARNING ||
-                                 (f->error_code != 0 && !tells_only_that_it_is_off(f))),
+                              (f->state == READY_TO_SWITCH_ON || f->state == SWITCHED_ON || rests),
+        .warning = !f->fault && !bridged && (f->statusword & STATUSWORD_WARNING ||
+                                             (f->error_code != 0 && !tells_only_that_it_is_off(f))),
     };
 }
 
@@ -155,3 +278,13 @@ void cm1e_axis_signals_step(cm1e_axis_t *axis)
 }
 
 void cm1e_axis_outputs_off(cm1e_axis_t *axis) { axis->drive.command.digital_outputs = 0; }
+
+bool cm1e_axis_outputs_off_first(cm1e_axis_t *axis)
+{
+    if (in_process_data(axis))
+        return true;
+    if (axis->drive.command.digital_outputs != 0 || axis->output_until_ns == INT64_MAX)
+        axis->output_until_ns = axis->now_ns + output_timeout_ns;
+    axis->drive.command.digital_outputs = 0;
+    return cm1e_drive_outputs(&axis->drive) == CM1E_DRIVE_OUTPUTS_SET || axis->now_ns >= axis->output_until_ns;
+}

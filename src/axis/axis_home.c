@@ -5,7 +5,8 @@
  * drives, the order of the steps first of all, is the table of kinds.
  *
  * A CM1-E stops by its halt bit. The bridge has none (BR 6.1.2), nor does its guide say what ends an origin search: the
- * start bit is taken away, which interrupts a homing by CiA 402, and where the motor does not come to rest, its torque.
+ * start bit is taken away, which interrupts a homing by CiA 402. Where bit 10 goes on saying "during homing", or the
+ * motor does not come to rest, its torque goes: "motor free" is the one end that the guide knows (BR 6.1.1).
  */
 #include <math.h>
 #include <stdio.h>
@@ -89,6 +90,12 @@ bool cm1e_axis_homes_by_switch(const cm1e_axis_t *axis, int method)
     return cm1e_drive_bridged(&axis->drive) ? method >= 3 : method <= -3;
 }
 
+/* "x100, 10 or 1 pulse, set by 2nd digit of K45" (BR 6.4.1, note 3). */
+enum { OFFSET_UNITS = 3 };
+static const double offset_units[OFFSET_UNITS] = {100.0, 10.0, 1.0};
+
+static bool k45_is_known(const homing_t *home) { return home->k45 / 10 % 10 < OFFSET_UNITS; }
+
 /* The object of a parameter for a method, and what its range is: of K47 behind a bridge that of a CM1-E, as the guide
  * has none. */
 static homing_object_t object_of(const cm1e_axis_t *axis, int which, int method)
@@ -97,8 +104,8 @@ static homing_object_t object_of(const cm1e_axis_t *axis, int which, int method)
     homing_object_t object = kind->objects[which];
     if (which == SPEED && kind->subindex_by_stop && !cm1e_axis_homes_by_switch(axis, method))
         object.subindex = kind->subindex_by_stop;
-    if (which == OFFSET && axis->home.offset_unit > 0.0)
-        object.unit = axis->home.offset_unit;
+    if (which == OFFSET && axis->home.k45 >= 0)
+        object.unit = offset_units[axis->home.k45 / 10 % 10 % OFFSET_UNITS];
     return object;
 }
 
@@ -150,7 +157,7 @@ void cm1e_axis_home_wrong_text(const cm1e_axis_t *axis, char *text, size_t size)
     static const char *const units[] = {" u", "", " u/s", " u/s2", " %", " s"};
     const int which = axis->home.wrong;
     double least = kind_of(axis)->first_method, most = kind_of(axis)->last_method;
-    if (which == OFFSET && axis->home.offset_unit < 0.0) {
+    if (which == OFFSET && !k45_is_known(&axis->home)) {
         snprintf(text, size, "Axis \"%s\": homing was not started: the second digit of the motor's K45 = %d says in "
                  "which unit homing.offset is; 0, 1 or 2 is right (100, 10 or 1 pulses). Set K45, parameter 1045, or "
                  "leave the offset out.", axis->config->name, (int)axis->home.k45);
@@ -183,7 +190,7 @@ static cm1e_error_t take_parameters(cm1e_axis_t *axis, const cm1e_homing_config_
         [TORQUE] = c->torque,
     };
     const double asked[HOMING_PARAMETERS] = {c->offset, c->method, c->velocity, c->acceleration, c->torque};
-    axis->home.offset_unit = 0.0; /* until it is read: the largest one */
+    axis->home.k45 = -1; /* until it is read: the largest unit */
     axis->home.offset = values[OFFSET];
     axis->home.raw[METHOD] = c->method;
     for (int i = 0; i < HOMING_PARAMETERS; i++)
@@ -359,18 +366,14 @@ static void step_write(cm1e_axis_t *axis)
         next_step(axis);
 }
 
-/* "x100, 10 or 1 pulse, set by 2nd digit of K45" (BR 6.4.1, note 3). Without an offset its unit is of no matter. */
+/* Without an offset its unit is of no matter. */
 static void take_offset_unit(cm1e_axis_t *axis)
 {
-    static const double units[] = {100.0, 10.0, 1.0};
     homing_t *home = &axis->home;
-    home->k45 = (int32_t)cm1e_get_u32(home->data);
-    const int32_t digit = home->k45 / 10 % 10;
-    const bool known = digit >= 0 && digit <= 2;
-    home->offset_unit = known ? units[digit] : -1.0;
+    home->k45 = (int32_t)(cm1e_get_u32(home->data) & INT32_MAX);
     if (home->offset == 0.0)
         next_step(axis);
-    else if (known && parameter(axis, OFFSET, home->raw[METHOD], home->offset))
+    else if (k45_is_known(home) && parameter(axis, OFFSET, home->raw[METHOD], home->offset))
         next_step(axis);
     else
         refuse(axis, wrong(home, OFFSET, home->offset / axis->scale));
@@ -495,8 +498,8 @@ static void step_run(cm1e_axis_t *axis)
         timed_out(axis);
 }
 
-/* Behind a bridge the end of the homing and its position come over the serial line of the motor, perhaps not in the same
- * cycle: they count when the motor stands. */
+/* Behind a bridge the end of the homing and its position come over the serial line of the motor, perhaps not in the
+ * same cycle: they count when the motor stands. */
 static void step_settle(cm1e_axis_t *axis)
 {
     cm1e_axis_set_to_actual(axis);
@@ -507,8 +510,8 @@ static void step_settle(cm1e_axis_t *axis)
 }
 
 /* How long the stop may take: the speed over the deceleration (UG 6.2.4: that of 0x609A). Who sees a motor with a halt
- * bit gives it twice that and a second more; one that may not stop at all gets no more than it needs, and so does one
- * that nobody sees, because the bus is gone. */
+ * bit gives it twice that and a second more; one that may not stop at all gets little more than it needs, and so does
+ * one that nobody sees, because the bus is gone. */
 static int64_t halt_bound_ns(const cm1e_axis_t *axis)
 {
     const homing_kind_t *kind = kind_of(axis);
@@ -517,8 +520,8 @@ static int64_t halt_bound_ns(const cm1e_axis_t *axis)
     const double braking_s = fmin(speed / acceleration, 1e-9 * (double)longest_halt_ns);
     const int64_t braking_ns = (int64_t)(1e9 * braking_s);
     const bool blind = axis->drive.fault.error != CM1E_OK;
-    const int64_t bound_ns = !kind->halts ? braking_ns + 2 * standing_ns
-                             : blind      ? braking_ns + standing_ns : 2 * braking_ns + 1000 * MS_IN_NS;
+    const int64_t bound_ns = blind         ? braking_ns + standing_ns
+                             : kind->halts ? 2 * braking_ns + 1000 * MS_IN_NS : braking_ns + 3 * standing_ns;
     return bound_ns < longest_halt_ns ? bound_ns : longest_halt_ns;
 }
 
@@ -527,13 +530,15 @@ static void step_halt(cm1e_axis_t *axis)
 {
     homing_t *home = &axis->home;
     cm1e_axis_set_to_actual(axis);
-    const bool at_rest = stands(axis), expired = axis->now_ns - home->step_ns >= halt_bound_ns(axis);
+    const bool searching = !kind_of(axis)->halts && meanings[bits(axis)] == IN_PROGRESS;
+    const bool at_rest = stands(axis) && !searching;
+    const bool expired = axis->now_ns - home->step_ns >= halt_bound_ns(axis);
     if (!expired && !at_rest)
         return;
     if (off(axis))
         return;
     if (expired) {
-        home->unstoppable = !kind_of(axis)->halts;
+        home->unstoppable = true;
         fail(axis, CM1E_ERROR_AXIS_HOMING_FAILED);
         return;
     }

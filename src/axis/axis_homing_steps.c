@@ -38,13 +38,11 @@ static cm1e_axis_switch_t limit_switch(double way)
 /* What a step looks for: a configured switch, or an input as it is. */
 static bool level_of(const cm1e_axis_t *axis, const stepping_t *s)
 {
-    bool level;
     if (s->step.kind == CM1E_STEP_LIMIT_SWITCH)
         return cm1e_axis_switch_active(axis, limit_switch(s->search));
     if (s->step.input == 0)
         return cm1e_axis_switch_active(axis, CM1E_SWITCH_HOME);
-    cm1e_axis_read_input(axis, s->step.input, &level);
-    return level;
+    return axis->drive.feedback.digital_inputs >> (s->step.input - 1) & 1;
 }
 
 /* ---- check ------------------------------------------------------------------------------------------------------- */
@@ -91,8 +89,10 @@ static bool position_valid(const cm1e_axis_t *axis, double position)
 static cm1e_error_t check_signal(const cm1e_axis_t *axis, const cm1e_homing_step_t *step)
 {
     const bool torque = step->torque_limit > 0.0;
-    if ((torque && axis->drive.in_torque.bytes == 0) || (by_switch(step->kind) && axis->drive.in_digital.bytes == 0))
+    if ((torque && axis->drive.in_torque.bytes == 0) || (by_switch(step->kind) && !cm1e_axis_sees_inputs(axis)))
         return CM1E_ERROR_PDO_MAPPING;
+    if (step->kind == CM1E_STEP_ABSOLUTE_SWITCH && step->input != 0)
+        return cm1e_axis_check_input(axis, step->input) ? CM1E_ERROR_AXIS_STEP_INPUT : CM1E_OK;
     if (step->kind == CM1E_STEP_LIMIT_SWITCH)
         return cm1e_axis_has_switch(axis, limit_switch(search_direction(step))) ? CM1E_OK
                                                                                 : CM1E_ERROR_AXIS_STEP_SWITCH;
@@ -215,7 +215,8 @@ static bool presses(const cm1e_axis_t *axis)
 
 static bool held_up(const cm1e_axis_t *axis)
 {
-    return axis->drive.feedback.fresh && (fabs(lag_counts(axis)) > cm1e_axis_few(axis, few_counts) || presses_by_torque(axis));
+    const bool away = fabs(lag_counts(axis)) > cm1e_axis_few(axis, few_counts);
+    return axis->drive.feedback.fresh && (away || presses_by_torque(axis));
 }
 
 static double pushed_way(const cm1e_axis_t *axis)

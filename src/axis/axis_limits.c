@@ -66,31 +66,13 @@ static void take_software_limits(cm1e_axis_t *axis)
     cm1e_axis_apply_limits(axis);
 }
 
-/* Behind a bridge (BR 6.2, 6.3): csp alone, and counts whose number and range are those of K37. */
-static cm1e_error_t init_bridged(cm1e_axis_t *axis, cm1e_diag_t *diag)
-{
-    const cm1e_axis_config_t *c = axis->config;
-    const cm1e_bridge_motor_t motor = cm1e_bridge_motor(axis->drive.bridge, c->channel - 1u);
-    if (c->motion == CM1E_MOTION_DRIVE)
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": motion: drive is not possible behind a bridge, "
-                             "whose motors have no profile modes; leave it out.", c->name);
-    axis->counts_limit = c->k37_stated ? cm1e_bridge_position_limit(motor, c->k37) : 0;
-    if (axis->counts_limit == 0)
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": K37, the resolution of the %s at connector %u, "
-                             "is %s; state the value that the motor answers to the CML string \"K37.%u\".", c->name,
-                             cm1e_bridge_motor_name(motor), c->channel,
-                             c->k37_stated ? "none that it knows" : "not stated", c->channel);
-    return CM1E_OK;
-}
-
 cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {
     const cm1e_axis_config_t *c = axis->config;
-    cm1e_error_t error = check_configuration(axis, diag);
-    if (!error && cm1e_drive_bridged(&axis->drive))
-        error = init_bridged(axis, diag);
+    const cm1e_error_t error = check_configuration(axis, diag);
     if (error)
         return error;
+    axis->counts_limit = cm1e_drive_bridged(&axis->drive) ? axis->drive.position_most : 0;
     const double counts = cm1e_unit_scale(c), count = cm1e_unit_counts_per_revolution(c) / CM1E_COUNTS_PER_REVOLUTION;
     const double backlash_velocity = c->backlash == 0.0 ? 0.0
                                      : or_default(c->backlash_velocity, cm1e_unit_backlash_velocity(c) / counts);

@@ -210,6 +210,12 @@ void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size)
     } else if (refused->what == NOT_SET_POSITION) {
         snprintf(text, size, "Axis \"%s\": MC_SetPosition to %.6g u: %s.", name, refused->value,
                  cm1e_strerror(refused->error));
+    } else if (refused->what == NOT_SET_OUTPUT) {
+        snprintf(text, size, "Axis \"%s\": digital output %d was not written: %s.%s", name, refused->number,
+                 cm1e_strerror(refused->error), cm1e_axis_signals_advice(axis, refused->error));
+    } else if (refused->what == NOT_SET_PROBE) {
+        snprintf(text, size, "Axis \"%s\": no touch probe at input %d: %s.%s", name, refused->number,
+                 cm1e_strerror(refused->error), cm1e_axis_signals_advice(axis, refused->error));
     } else if (refused->number >= CM1E_PARAMETER_VENDOR) {
         cm1e_axis_object_text(axis, text, size);
     } else if (!known(refused->number)) {

@@ -53,8 +53,8 @@ const cm1e_axis_objects_t *cm1e_axis_object_table(size_t *count);
 
 /** Asks for a transfer of a vendor parameter; transfers of an axis are worked on one after the other. The value is the
  *  object's own number: a whole one, within the range of the dictionary. CM1E_ERROR_FULL: 7 wait already;
- *  CM1E_ERROR_UNSUPPORTED: the drive, its firmware or the motor behind a bridge does not have the object; _PARAMETER, _READ_ONLY (also while the object
- *  is process data), _RANGE as above. @rt cycle */
+ *  CM1E_ERROR_UNSUPPORTED: the drive, its firmware or the motor behind a bridge does not have the object; _PARAMETER,
+ *  _READ_ONLY (also while the object is process data), _RANGE as above. @rt cycle */
 cm1e_error_t cm1e_axis_object_start(cm1e_axis_t *axis, int number, bool write, double value, uint32_t *ticket);
 /** BUFFERED or ACTIVE, DONE with the value, ERROR; UNKNOWN: 7 or more others were asked for since. @rt cycle */
 cm1e_command_state_t cm1e_axis_object_state(const cm1e_axis_t *axis, uint32_t ticket, double *value,

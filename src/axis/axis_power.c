@@ -143,7 +143,7 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
     if (axis->state == CM1E_AXIS_DISABLED && wanted && acting && still)
         take_over(axis);
     else if (axis->activity == ACTIVITY_HOLD && !wanted && axis->now_ns >= axis->brake_until_ns &&
-             cm1e_axis_backlash_at_rest(axis))
+             cm1e_axis_backlash_at_rest(axis) && (!axis->shutting_down || cm1e_axis_outputs_off_first(axis)))
         cm1e_axis_become_free(axis); /* a ramp has ended, and its last set-point is out */
     else if (axis->activity != ACTIVITY_FREE && !drive_moves(axis) && !acting)
         cm1e_axis_become_free(axis); /* the torque went in the middle of a ramp */

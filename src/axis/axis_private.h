@@ -162,16 +162,15 @@ typedef enum home_goal { HOME_GOAL_DONE = 0, HOME_GOAL_HOLD, HOME_GOAL_OFF } hom
 typedef struct homing {
     home_step_t step;
     home_goal_t goal;
-    uint8_t place;         /**< of the step in the order of its kind */
-    bool away;             /**< the axis's own mode is left */
-    bool unstoppable;      /**< for the text: it went on without its start bit */
     double position;       /**< u, at the reference */
     double offset;         /**< counts, as asked for */
-    double offset_unit;    /**< counts of one of the object; 0: as its kind says; < 0: K45 says none that is known */
-    int32_t k45;
     int32_t raw[HOMING_PARAMETERS]; /**< in the order of homing_objects (axis_home.c) */
+    int32_t k45;           /**< of a CM2: its second digit says what the offset counts in; < 0: not read */
     uint8_t next;          /**< parameter to write next */
+    uint8_t place;         /**< of the step in the order of its kind */
     bool submitted;
+    bool away;             /**< the axis's own mode is left */
+    bool unstoppable;      /**< for the text: it did not stop in time */
     cm1e_sdo_t sdo;
     uint8_t data[4];
     int64_t timeout_ns, deadline_ns, step_ns; /**< step_ns: when the step began */
@@ -184,7 +183,7 @@ typedef struct homing {
     double wrong_value;
 } homing_t;
 
-enum { PROBES = 2 * 4 }; /* every input, both edges */
+enum { PROBES = 2 * 6 }; /* every input, both edges */
 
 /** A touch probe: what it waits for stands in its place in the list. */
 typedef struct probe {
@@ -256,6 +255,8 @@ typedef enum not_set_what {
     NOT_SET_PARAMETER = 0, /**< `number` */
     NOT_SET_POSITION,      /**< MC_SetPosition */
     NOT_SET_OVERRIDE,      /**< MC_SetOverride; see override_refused */
+    NOT_SET_OUTPUT,        /**< digital output `number` */
+    NOT_SET_PROBE,         /**< a touch probe at input `number` */
     NOT_FINISHED,          /**< a command, of the kind `number`, that was taken and ended with the error */
 } not_set_what_t;
 
@@ -424,6 +425,7 @@ struct cm1e_axis {
     probe_t probes[PROBES];
     probe_sample_t probe_sample;    /**< the last one, while probes are armed */
     int64_t output_until_ns;        /**< the digital output goes off then unless it is written again */
+    int64_t inputs_asked_ns, inputs_since_ns; /**< where SDOs bring them: last, and without an answer since */
     int64_t kept_until_ns;
     double kept_deceleration, kept_jerk; /**< of that halt */
 
@@ -505,7 +507,8 @@ bool cm1e_axis_limits_contain_way(const cm1e_axis_t *axis, const from_t *from, d
 bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
 /** The same, and no disabled direction in it. */
 cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
-/** Whether the emergency ramp from `next` (its position counted from `base`, u) would end inside the software limits. */
+/** Whether the emergency ramp from `next` (its position counted from `base`, u) would end inside the software
+ *  limits. */
 static inline bool cm1e_axis_limits_can_stop(const cm1e_axis_t *axis, double base, cm1e_motion_state_t next)
 {
     if (!axis->software_limits)
@@ -715,9 +718,15 @@ bool cm1e_axis_cool_muscle_text(const cm1e_axis_t *axis, cm1e_error_t error, cha
 void cm1e_axis_probe_step(cm1e_axis_t *axis); /* with fresh inputs, while probes are armed */
 
 /* axis_digital.c */
+/** CM1E_ERROR_AXIS_SIGNAL, CM1E_ERROR_PDO_MAPPING as cm1e_axis_read_input(). */
+cm1e_error_t cm1e_axis_check_input(const cm1e_axis_t *axis, int number);
 /** What was not renewed goes off or halts, before the set-point of the cycle. Called while there is something. */
 void cm1e_axis_signals_step(cm1e_axis_t *axis);
 void cm1e_axis_outputs_off(cm1e_axis_t *axis);
+/** Behind a bridge: a sentence on what it has to do with such an error of a signal, after a space; "" elsewhere. */
+const char *cm1e_axis_signals_advice(const cm1e_axis_t *axis, cm1e_error_t error);
+/** Behind a bridge outputs are reached while there is torque only. TRUE: they are off, or have had their time. */
+bool cm1e_axis_outputs_off_first(cm1e_axis_t *axis);
 
 /* axis_table.c */
 cm1e_error_t cm1e_axis_table_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */

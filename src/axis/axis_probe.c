@@ -13,9 +13,10 @@ static uint16_t bit_of(cm1e_axis_trigger_t trigger) { return (uint16_t)(1u << (t
 static cm1e_error_t probe_of(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, probe_t **probe)
 {
     *probe = NULL;
-    if (trigger.input < 1 || trigger.input > CM1E_AXIS_INPUTS)
-        return CM1E_ERROR_AXIS_SIGNAL;
-    if (axis->drive.in_digital.bytes == 0)
+    const cm1e_error_t error = cm1e_axis_check_input(axis, trigger.input);
+    if (error)
+        return error;
+    if (!cm1e_axis_sees_inputs(axis)) /* SDOs are much later than half the way between two samples */
         return CM1E_ERROR_PDO_MAPPING;
     *probe = &axis->probes[2 * (trigger.input - 1) + trigger.falling];
     return CM1E_OK;
@@ -57,8 +58,8 @@ static bool in_window(const cm1e_axis_t *axis, const probe_t *probe, double posi
 
 /* ---- triggers ---------------------------------------------------------------------------------------------------- */
 
-cm1e_error_t cm1e_axis_probe(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, bool window, double first, double last,
-                             uint32_t *id)
+static cm1e_error_t arm(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, bool window, double first, double last,
+                        uint32_t *id)
 {
     *id = 0;
     probe_t *probe;
@@ -73,13 +74,19 @@ cm1e_error_t cm1e_axis_probe(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, boo
         axis->probe_sample = sample(axis);
     if (probe->state != CM1E_COMMAND_ACTIVE)
         axis->probes_armed++;
-    /* The number tells the probe, so that it is found again; the eighth part of a number never comes back. */
-    axis->probe_count = (axis->probe_count + 1) & (UINT32_MAX / PROBES);
-    if (axis->probe_count == 0)
-        axis->probe_count = 1;
+    /* The number tells the probe, so that it is found again; a PROBES-th part of all numbers never comes back. */
+    axis->probe_count = axis->probe_count % (UINT32_MAX / PROBES - 1) + 1;
     *id = axis->probe_count * PROBES + (uint32_t)(probe - axis->probes);
     *probe = (probe_t){.id = *id, .state = CM1E_COMMAND_ACTIVE, .window = window, .first = first, .last = last};
     return CM1E_OK;
+}
+
+cm1e_error_t cm1e_axis_probe(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, bool window, double first, double last,
+                             uint32_t *id)
+{
+    const cm1e_error_t error = arm(axis, trigger, window, first, last, id);
+    cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_PROBE, .number = trigger.input});
+    return error;
 }
 
 cm1e_probe_status_t cm1e_axis_probe_status(const cm1e_axis_t *axis, uint32_t id)

@@ -9,30 +9,44 @@
 
 #include "axis/axis.h"
 
-/** UG 7.3.24, 7.3.25: what the bus reaches. Output 2 is the motor's own (K34). */
-enum { CM1E_AXIS_INPUTS = 4, CM1E_AXIS_OUTPUTS = 1 };
+/** The greatest numbers. Of a CM1-E the bus reaches inputs 1 ... 4 and output 1, output 2 is the motor's own (UG
+ *  7.3.24, 7.3.25, K34); behind a bridge of a CM1 inputs 2 ... 4 and output 2, of a CM2 inputs 1 ... 6 and outputs
+ *  1 ... 4 (BR 6.5), by SDO and only while the motor is enabled in csp, in CPIO in every cycle. */
+enum { CM1E_AXIS_INPUTS = 6, CM1E_AXIS_OUTPUTS = 4 };
 
 /** Planned time of this cycle, ns; the clock of what follows. @rt cycle */
 int64_t cm1e_axis_time(const cm1e_axis_t *axis);
 
-/** IN1 ... IN4 as last seen. CM1E_ERROR_AXIS_SIGNAL: no such number; CM1E_ERROR_PDO_MAPPING: inputs are not mapped;
- *  CM1E_ERROR_AXIS_OFFLINE: the value is old (and returned). @rt cycle */
-cm1e_error_t cm1e_axis_read_input(const cm1e_axis_t *axis, int number, bool *value);
-/** Output 1, 0x60FE bit 0. It keeps its value over modes, MC_Power and ErrorStop, and is switched off when the slave
+/** An input as last seen. CM1E_ERROR_AXIS_SIGNAL: no such number; CM1E_ERROR_PDO_MAPPING: inputs are not mapped;
+ *  CM1E_ERROR_AXIS_OFFLINE: the value is old (and returned). Where SDOs bring it: CM1E_ERROR_BUSY: asked for, ask again
+ *  in the next cycle; CM1E_ERROR_AXIS_NOT_POWERED, CM1E_ERROR_AXIS_HOMING: it cannot be read now; CM1E_ERROR_TIMEOUT:
+ *  it should have come. @rt cycle */
+cm1e_error_t cm1e_axis_read_input(cm1e_axis_t *axis, int number, bool *value);
+/** An output, of 0x60FE. It keeps its value over modes, MC_Power and ErrorStop, and is switched off when the slave
  *  leaves Operational (it must not come on again by itself) and by cm1e_axis_shut_down(). Errors as above, then nothing
  *  has changed. @rt cycle */
 cm1e_error_t cm1e_axis_write_output(cm1e_axis_t *axis, int number, bool value);
-/** The same for a value that goes off by itself unless it is written again within `keep_ns`. @rt cycle */
+/** Whether what was written is with the motor: ACTIVE while an SDO brings it, DONE, ERROR. @rt cycle */
+cm1e_command_state_t cm1e_axis_output_state(const cm1e_axis_t *axis, cm1e_error_t *error);
+/** The same for a value that goes off by itself unless it is written again within `keep_ns`. CM1E_ERROR_PDO_MAPPING
+ *  also where it would go by SDO, too late for what follows a position. @rt cycle */
 cm1e_error_t cm1e_axis_hold_output(cm1e_axis_t *axis, int number, bool value, int64_t keep_ns);
 /** What is commanded. @rt cycle */
 cm1e_error_t cm1e_axis_read_output(const cm1e_axis_t *axis, int number, bool *value);
+/** The inputs are in the process data: what happens at them is seen in the cycle. @rt cycle */
+bool cm1e_axis_sees_inputs(const cm1e_axis_t *axis);
+/** Actual torque, % of rated torque. CM1E_ERROR_PDO_MAPPING: it is not in the process data; CM1E_ERROR_AXIS_OFFLINE.
+ *  @rt cycle */
+cm1e_error_t cm1e_axis_read_torque(const cm1e_axis_t *axis, double *percent);
 
 typedef enum cm1e_axis_switch {
     CM1E_SWITCH_LIMIT_POSITIVE = 0, CM1E_SWITCH_LIMIT_NEGATIVE, CM1E_SWITCH_HOME, CM1E_SWITCH_COUNT,
 } cm1e_axis_switch_t;
-/** Whether the configuration names an input for it, and the mapping has the inputs. @rt cycle */
+/** Whether the configuration names an input for it that the bus reaches. @rt cycle */
 bool cm1e_axis_has_switch(const cm1e_axis_t *axis, cm1e_axis_switch_t which);
-/** As last seen, FALSE without one. @rt cycle */
+/** Who shows the switches calls it in every cycle: behind a bridge they are asked for by SDO then. @rt cycle */
+void cm1e_axis_want_switches(cm1e_axis_t *axis);
+/** As last seen; FALSE without one, or where SDOs bring it and none has, lately. @rt cycle */
 bool cm1e_axis_switch_active(const cm1e_axis_t *axis, cm1e_axis_switch_t which);
 
 /** The rest of what MC_ReadAxisInfo shows (3.29). */
@@ -58,7 +72,7 @@ cm1e_axis_measures_t cm1e_axis_measures(const cm1e_axis_t *axis);
 
 /** A trigger is an input and an edge of it; each has at most one probe. */
 typedef struct cm1e_axis_trigger {
-    int input;     /**< 1 ... 4 */
+    int input;     /**< 1 ... CM1E_AXIS_INPUTS */
     bool falling;  /**< the edge from on to off instead of from off to on */
 } cm1e_axis_trigger_t;
 

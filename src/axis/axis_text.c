@@ -19,8 +19,8 @@ static void add_counts_limit(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const size_t used = strlen(text);
     if (axis->counts_limit && used < size)
-        snprintf(text + used, size - used, " Behind the bridge the motor's own counts end at +-%d, by its K37 = %u: that "
-                 "is %.6g ... %.6g u%s.", (int)axis->counts_limit, axis->config->k37, axis->counts_lower,
+        snprintf(text + used, size - used, " Behind the bridge the motor's own counts end at +-%d, by its K37 = %u: "
+                 "that is %.6g ... %.6g u%s.", (int)axis->counts_limit, axis->config->k37, axis->counts_lower,
                  axis->counts_upper, axis->modulo_range > 0.0 ? " of this modulo axis, turns counted" : "");
 }
 
@@ -37,6 +37,11 @@ static void homing_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const unsigned bits = (unsigned)axis->error_value;
     const homing_t *home = &axis->home;
+    if (home->unstoppable) {
+        snprintf(text, size, "Axis \"%s\": homing was to stop, the motor did not come to rest, and has no torque now. "
+                 "Reset the axis with MC_Reset, and home it again.", axis->config->name);
+        return;
+    }
     snprintf(text, size,
              "Axis \"%s\": %s. Method %d; statusword bits 13 (error), 12 (attained), 10 (reached) were %u %u %u; "
              "homing began with %u %u %u. Check that the %s is reached in this direction, speed, torque limit and "
@@ -56,7 +61,17 @@ static void refused_homing_text(const cm1e_axis_t *axis, char *text, size_t size
 {
     const cm1e_sdo_t *sdo = &axis->home.sdo;
     const int value = (int)axis->home.raw[axis->home.next];
-    if (axis->home.refused == CM1E_ERROR_SDO_ABORT)
+    if (axis->home.refused == CM1E_ERROR_AXIS_HOMING_PARAMETER)
+        cm1e_axis_home_wrong_text(axis, text, size);
+    else if (axis->home.refused == CM1E_ERROR_AXIS_NOT_AT_REST)
+        snprintf(text, size, "Axis \"%s\": homing was not started: %s. Behind a bridge the mode is switched at rest: "
+                 "look for a load that moves the motor, or a servo that swings.", axis->config->name,
+                 cm1e_strerror(axis->home.refused));
+    else if (!sdo->write)
+        snprintf(text, size, "Axis \"%s\": homing was not started: object 0x%04X:%02X, which tells the unit of the "
+                 "offset, could not be read: %s.", axis->config->name, sdo->index, sdo->subindex,
+                 cm1e_strerror(axis->home.refused));
+    else if (axis->home.refused == CM1E_ERROR_SDO_ABORT)
         snprintf(text, size,
                  "Axis \"%s\": homing was not started: the drive refused %d for object 0x%04X:%02X with SDO abort code "
                  "0x%08X (%s).",
@@ -208,8 +223,9 @@ static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
         }
     if (cm1e_axis_cool_muscle_text(axis, axis->refusal, text, size))
         return;
-    snprintf(text, size, "Axis \"%s\", %s: %s.", axis->config->name, cm1e_axis_state_name(axis->state),
-             cm1e_strerror(axis->refusal));
+    snprintf(text, size, "Axis \"%s\", %s: %s.%s", axis->config->name, cm1e_axis_state_name(axis->state),
+             cm1e_strerror(axis->refusal),
+             axis->refusal == CM1E_ERROR_PDO_MAPPING ? cm1e_axis_signals_advice(axis, axis->refusal) : "");
 }
 
 static const struct {

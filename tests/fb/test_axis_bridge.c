@@ -1,0 +1,679 @@
+/*
+ * Axes behind the simulated bridge, an EB12: CM1 at connectors 1 and 2, CM2 at 3 and 4. Power, moves, homing by every
+ * method with what may go wrong in it, errors of one motor that are none of the others, signals by SDO. Through the real
+ * bus and the real frames, on virtual time.
+ */
+#include "axis/axis_parameters.h"
+#include "axis/axis_private.h"
+#include "axis/axis_signals.h"
+#include "sim/bridge_app.h"
+
+#include "../support/axis_segment.h" /* behind the others: it makes a macro of `axis` */
+
+enum { AXES = CM1E_BRIDGE_AXES, CM1 = 0, CM2 = 2 }; /* an axis with each kind of motor */
+
+static void describe_bridge(void)
+{
+    cm1e_bus_config_init(&config, "sim", AXES);
+    config.virtual_time = true;
+    config.cycle_time_ns = CM1E_BRIDGE_CYCLE_TIME_NS;
+    for (int i = 0; i < AXES; i++) {
+        cm1e_axis_config_t *a = &config.axes[i];
+        a->address = 1;
+        a->channel = (uint8_t)(i + 1);
+        snprintf(a->motor, sizeof a->motor, "%s", i < CM2 ? "CM1" : "CM2");
+        a->k37 = 10;
+        a->k37_stated = true;
+        a->homing = (cm1e_homing_config_t){.method = 3, .velocity = 4.0, .acceleration = 40.0};
+    }
+}
+
+static cm1e_sim_bridge_axis_t *motor(int n)
+{
+    cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(cm1e_sim_segment_slave(cm1e_nic_segment(cm1e_bus_nic(bus)), 1));
+    return &bridge->axes[n];
+}
+
+static double shaft(int n) { return motor(n)->mechanics.position; }
+
+static void power_of(int n, bool on) { ck_assert_int_eq(cm1e_axis_power(axes[n], &owner, on, true, true), CM1E_OK); }
+
+static void enable_all(void)
+{
+    for (int n = 0; n < AXES; n++)
+        power_of(n, true);
+    cycles(500);
+    for (int n = 0; n < AXES; n++)
+        ck_assert_msg(info_of(n).state == CM1E_AXIS_STANDSTILL, "axis %d: %s %s", n,
+                      cm1e_axis_state_name(info_of(n).state), text_of(n));
+}
+
+static void open_enabled(void)
+{
+    open_segment();
+    enable_all();
+}
+
+static cm1e_command_id_t start_of(int n, const cm1e_axis_command_t *c)
+{
+    cm1e_command_id_t id;
+    const cm1e_error_t error = cm1e_axis_start(axes[n], c, &id);
+    ck_assert_msg(error == CM1E_OK, "axis %d: %s: %s", n, cm1e_strerror(error), text_of(n));
+    return id;
+}
+
+static cm1e_command_status_t status_of(int n, cm1e_command_id_t id) { return cm1e_axis_command_status(axes[n], id); }
+
+static cm1e_command_status_t wait_for(int n, cm1e_command_id_t id, double seconds)
+{
+    for (int i = cycles_of(seconds); i > 0 && status_of(n, id).state == CM1E_COMMAND_ACTIVE; i--)
+        cycles(1);
+    return status_of(n, id);
+}
+
+static void finish(int n, cm1e_command_id_t id, double seconds)
+{
+    const cm1e_command_status_t status = wait_for(n, id, seconds);
+    ck_assert_msg(status.state == CM1E_COMMAND_DONE, "axis %d: command %d, %s: %s", n, status.state,
+                  cm1e_strerror(status.error), text_of(n));
+}
+
+static cm1e_command_id_t move_of(int n, double position, double velocity)
+{
+    return start_of(n, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = position,
+                                              .velocity = velocity});
+}
+
+static cm1e_command_id_t home_of(int n, double position, const cm1e_homing_config_t *homing)
+{
+    return start_of(n, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HOME, .position = position, .homing = homing});
+}
+
+static void told(int n, const char *words) { ck_assert_msg(strstr(text_of(n), words) != NULL, "%s", text_of(n)); }
+
+static const char *const faults[] = {"motor 1 %d unplug", "motor 1 %d error overload", "motor 1 %d error position",
+                                     "motor 1 %d error temperature", "motor 1 %d broken 60"};
+enum { FAULTS = sizeof faults / sizeof faults[0] };
+
+static void fault_of(int n, int fault)
+{
+    char line[60];
+    snprintf(line, sizeof line, faults[fault], n + 1);
+    simulate(line);
+}
+
+static void repair(int n, int fault)
+{
+    char line[60];
+    if (fault == 0) {
+        snprintf(line, sizeof line, "motor 1 %d replug", n + 1);
+        simulate(line);
+        cycles(50);
+    }
+    ck_assert_int_eq(cm1e_axis_reset(axes[n]), CM1E_OK);
+    cm1e_error_t error = CM1E_OK;
+    for (int i = 0; i < 3000 && cm1e_axis_reset_state(axes[n], &error) == CM1E_COMMAND_ACTIVE; i++)
+        cycles(1);
+    ck_assert_msg(error == CM1E_OK, "%s: %s", cm1e_strerror(error), text_of(n));
+    cycles(500);
+    ck_assert_msg(info_of(n).state == CM1E_AXIS_STANDSTILL, "%s %s", cm1e_axis_state_name(info_of(n).state),
+                  text_of(n));
+}
+
+/* ---- power and moves --------------------------------------------------------------------------------------------- */
+
+START_TEST(test_four_motors_are_enabled_and_moved_side_by_side)
+{
+    describe_bridge();
+    open_segment();
+    cycles(50);
+    double before[AXES];
+    for (int n = 0; n < AXES; n++)
+        before[n] = shaft(n);
+    enable_all();
+    for (int n = 0; n < AXES; n++)
+        ck_assert_double_eq_tol(shaft(n), before[n], 2.0);
+    cm1e_command_id_t ids[AXES];
+    for (int n = 0; n < AXES; n++)
+        ids[n] = move_of(n, n % 2 ? -1.0 - n : 1.0 + n, 10.0);
+    for (int n = 0; n < AXES; n++)
+        finish(n, ids[n], 5.0);
+    cycles(300);
+    for (int n = 0; n < AXES; n++) {
+        ck_assert_double_eq_tol(shaft(n), 50000.0 * (n % 2 ? -1.0 - n : 1.0 + n), 60.0);
+        ck_assert_double_eq_tol(info_of(n).actual_position, info_of(n).set_position, 0.01);
+        power_of(n, false);
+    }
+    cycles(100);
+    for (int n = 0; n < AXES; n++) {
+        ck_assert_int_eq(info_of(n).state, CM1E_AXIS_DISABLED);
+        ck_assert(motor(n)->motor_free);
+    }
+    close_segment();
+}
+END_TEST
+
+/* ---- homing ------------------------------------------------------------------------------------------------------ */
+
+/* Stops at 250,000 counts to either side, switches at 150,000; a stop is left by two teeth. */
+static const struct {
+    int8_t method;
+    double reference, tolerance;
+} methods[] = {{1, 248500, 1500}, {2, -248500, 1500}, {3, 150000, 30}, {4, -150000, 30}};
+enum { METHODS = 4 };
+
+START_TEST(test_every_method_homes_both_kinds_of_motor)
+{
+    const int n = _i / METHODS % 2 ? CM2 + 1 : CM1 + 1, method = _i % METHODS;
+    const bool invert = _i >= 2 * METHODS;
+    describe_bridge();
+    config.axes[n].invert = invert;
+    open_enabled();
+    const double there = shaft(n);
+    const cm1e_homing_config_t homing = {.method = methods[method].method, .velocity = 2.0, .acceleration = 40.0,
+                                         .torque = 50.0};
+    for (int round = 0; round < 2; round++) {
+        finish(n, home_of(n, 33.0, &homing), 20.0);
+        ck_assert(info_of(n).homed && info_of(n).powered);
+        ck_assert_int_eq(info_of(n).state, CM1E_AXIS_STANDSTILL);
+        ck_assert_int_eq(info_of(n).mode, CM1E_MODE_CSP);
+        ck_assert_double_eq_tol(info_of(n).actual_position, 33.0, 0.01);
+        cycles(200);
+        ck_assert_msg(fabs(shaft(n) - methods[method].reference) <= methods[method].tolerance, "the shaft is at %.0f",
+                      shaft(n));
+        ck_assert_int_le(llabs(cm1e_sim_bridge_position(motor(n))), 10); /* "the drive's end position is 0" */
+    }
+    const double reference = shaft(n), way = there > reference ? 1.0 : -1.0;
+    finish(n, move_of(n, 33.0 + (invert ? -way : way), 2.0), 5.0);
+    cycles(200);
+    ck_assert_double_eq_tol(shaft(n), reference + way * 50000.0, 60.0);
+    for (int other = 0; other < AXES; other++)
+        if (other != n)
+            ck_assert_double_eq_tol(shaft(other), 0.0, 2.0);
+    close_segment();
+}
+END_TEST
+
+/* K42 in 100 pulses/s, K43 in 1000 pulses/s2, by the sub-index of the method; defaults by the motor. */
+START_TEST(test_parameters_are_written_in_the_units_of_the_motor)
+{
+    static const struct {
+        int axis_number;
+        cm1e_homing_config_t homing;
+        int64_t speed, acceleration, torque, offset;
+    } rows[] = {
+        {CM1, {.method = 3}, 100, 100, 30, 0},
+        {CM2, {.method = 1}, 10, 100, 30, 0},
+        {CM1, {.method = 2, .velocity = 2.0, .acceleration = 20.0, .torque = 55.0, .offset = 0.5}, 1000, 1000, 55, 250},
+        {CM2, {.method = 4, .velocity = 1.0012, .acceleration = 30.009, .offset = 0.1}, 501, 1500, 30, 50},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const int n = rows[i].axis_number;
+        describe_bridge();
+        open_enabled();
+        const cm1e_command_id_t id = home_of(n, 0.0, &rows[i].homing);
+        while (status_of(n, id).state == CM1E_COMMAND_ACTIVE && axes[n]->home.step != HOME_RUN)
+            cycles(1);
+        ck_assert_msg(axes[n]->home.step == HOME_RUN, "%s", text_of(n));
+        const cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(
+            cm1e_sim_segment_slave(cm1e_nic_segment(cm1e_bus_nic(bus)), 1));
+        ck_assert_int_eq(*cm1e_sim_bridge_value(bridge, (unsigned)n, 0x6098, 0), rows[i].homing.method);
+        ck_assert_int_eq(*cm1e_sim_bridge_k(bridge, (unsigned)n, 42), rows[i].speed);
+        ck_assert_int_eq(*cm1e_sim_bridge_k(bridge, (unsigned)n, 43), rows[i].acceleration);
+        ck_assert_int_eq(*cm1e_sim_bridge_k(bridge, (unsigned)n, 47), rows[i].torque);
+        ck_assert_int_eq(*cm1e_sim_bridge_k(bridge, (unsigned)n, 48), rows[i].offset);
+        close_segment();
+    }
+}
+END_TEST
+
+static void set_k45(int n, double value)
+{
+    uint32_t ticket;
+    cm1e_error_t error = cm1e_axis_object_start(axes[n], 1045, true, value, &ticket);
+    ck_assert_int_eq(error, CM1E_OK);
+    double written;
+    while (cm1e_axis_object_state(axes[n], ticket, &written, &error) < CM1E_COMMAND_DONE)
+        cycles(1);
+    ck_assert_int_eq(error, CM1E_OK);
+}
+
+/* The offset of a CM2 counts in 100, 10 or 1 pulses by the second digit of its K45; a CM1's always in 100. */
+START_TEST(test_the_offset_goes_by_k45_of_a_cm2)
+{
+    static const struct {
+        int axis_number;
+        double k45, asked, moved; /* counts */
+    } rows[] = {{CM1, 0, -1249, -1200}, {CM1, 10, -1249, -1200}, {CM2, 0, -1249, -1200}, {CM2, 11, -1249, -1250},
+                {CM2, 120, -1249, -1249}, {CM2, 30, 0, 0}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const int n = rows[i].axis_number;
+        describe_bridge();
+        open_enabled();
+        set_k45(n, rows[i].k45);
+        cm1e_homing_config_t homing = config.axes[n].homing;
+        homing.offset = rows[i].asked / 50000.0;
+        finish(n, home_of(n, 0.0, &homing), 20.0);
+        ck_assert_double_eq_tol(shaft(n), 150000.0 + rows[i].moved, 6.0);
+        close_segment();
+    }
+}
+END_TEST
+
+static void refused_homing(int n, cm1e_homing_config_t homing, cm1e_error_t error, const char *words)
+{
+    cm1e_command_id_t id;
+    const cm1e_axis_command_t command = {.kind = CM1E_COMMAND_HOME, .homing = &homing};
+    ck_assert_int_eq(cm1e_axis_start(axes[n], &command, &id), error);
+    told(n, words);
+    ck_assert_int_eq(info_of(n).state, CM1E_AXIS_STANDSTILL);
+}
+
+START_TEST(test_what_is_wrong_with_a_homing_is_told_before_it_begins)
+{
+    describe_bridge();
+    open_enabled();
+    for (int n = 0; n < AXES; n++) {
+        refused_homing(n, (cm1e_homing_config_t){.method = 0}, CM1E_ERROR_AXIS_HOMING_METHOD, "1 ... 4 is right");
+        refused_homing(n, (cm1e_homing_config_t){.method = -1}, CM1E_ERROR_AXIS_HOMING_METHOD, "1 ... 4 is right");
+        refused_homing(n, (cm1e_homing_config_t){.method = 5}, CM1E_ERROR_AXIS_HOMING_METHOD, "1 ... 4 is right");
+        refused_homing(n, (cm1e_homing_config_t){.method = 1, .torque = 101.0}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+                       "10 ... 100 %");
+        refused_homing(n, (cm1e_homing_config_t){.method = 1, .velocity = 0.0009}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+                       "0.002 ... ");
+        refused_homing(n, (cm1e_homing_config_t){.method = 1, .acceleration = 0.009},
+                       CM1E_ERROR_AXIS_HOMING_PARAMETER, "0.02 ... ");
+        refused_homing(n, (cm1e_homing_config_t){.method = 1, .offset = 65.6}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+                       "-65.534 ... 65.534 u");
+    }
+    /* 5000 and 32767 times 100 pulses/s and 1000 pulses/s2 */
+    refused_homing(CM1, (cm1e_homing_config_t){.method = 1, .velocity = 10.01}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+                   "0.002 ... 10 u/s");
+    refused_homing(CM2, (cm1e_homing_config_t){.method = 1, .velocity = 65.6}, CM1E_ERROR_AXIS_HOMING_PARAMETER,
+                   "0.002 ... 65.534 u/s");
+    refused_homing(CM1, (cm1e_homing_config_t){.method = 1, .acceleration = 100.1},
+                   CM1E_ERROR_AXIS_HOMING_PARAMETER, "0.02 ... 100 u/s2");
+    refused_homing(CM2, (cm1e_homing_config_t){.method = 1, .acceleration = 656.0},
+                   CM1E_ERROR_AXIS_HOMING_PARAMETER, "0.02 ... 655.34 u/s2");
+    for (int n = 0; n < AXES; n++)
+        ck_assert_double_eq_tol(shaft(n), 0.0, 2.0);
+    close_segment();
+}
+END_TEST
+
+/* What K45 says is known only when it has been read: the homing ends in an error, without having left csp. */
+START_TEST(test_an_offset_that_k45_does_not_allow_ends_the_homing)
+{
+    static const struct {
+        double k45, offset;
+        const char *words;
+    } rows[] = {{20, 1.0, "-0.65534 ... 0.65534 u"}, {10, 7.0, "-6.5534 ... 6.5534 u"}, {30, 1.0, "K45 = 30"}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        describe_bridge();
+        open_enabled();
+        set_k45(CM2, rows[i].k45);
+        cm1e_homing_config_t homing = config.axes[CM2].homing;
+        homing.offset = rows[i].offset;
+        const cm1e_command_status_t end = wait_for(CM2, home_of(CM2, 0.0, &homing), 5.0);
+        ck_assert_int_eq(end.state, CM1E_COMMAND_ERROR);
+        ck_assert_int_eq(end.error, CM1E_ERROR_AXIS_HOMING_PARAMETER);
+        told(CM2, rows[i].words);
+        ck_assert_int_eq(info_of(CM2).state, CM1E_AXIS_STANDSTILL);
+        ck_assert_double_eq_tol(shaft(CM2), 0.0, 2.0);
+        finish(CM2, home_of(CM2, 0.0, NULL), 20.0); /* and is no reason not to home without it */
+        close_segment();
+    }
+}
+END_TEST
+
+/* ---- the end of a homing, at any time ---------------------------------------------------------------------------- */
+
+enum ending { BY_STOP = 0, BY_POWER, BY_DIRECTION, BY_SHUT_DOWN, ENDINGS };
+
+static void end_homing(int n, int ending)
+{
+    cm1e_command_id_t stop;
+    switch (ending) {
+    case BY_STOP:
+        stop = start_of(n, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_STOP});
+        finish(n, stop, 3.0);
+        cm1e_axis_hold_stop(axes[n], stop, false);
+        cycles(3);
+        break;
+    case BY_POWER:
+        power_of(n, false);
+        cycles(1500);
+        ck_assert_int_eq(info_of(n).state, CM1E_AXIS_DISABLED);
+        power_of(n, true);
+        cycles(300);
+        break;
+    case BY_DIRECTION:
+        ck_assert_int_eq(cm1e_axis_power(axes[n], &owner, true, true, false), CM1E_OK);
+        cycles(1500);
+        power_of(n, true);
+        cycles(300);
+        break;
+    default:
+        for (int i = 0; i < 2000; i++) {
+            inputs();
+            (void)cm1e_axis_shut_down(axes[n]);
+            outputs();
+        }
+        ck_assert(cm1e_axis_shut_down(axes[n]));
+        ck_assert(motor(n)->motor_free);
+        power_of(n, true);
+        cycles(300);
+        break;
+    }
+}
+
+/* Every part of the sequence is hit: transfers, switches, the search at speed, its end, the way back. */
+START_TEST(test_a_homing_is_ended_at_every_moment)
+{
+    const int ending = _i % ENDINGS, n = _i / ENDINGS ? CM2 : CM1;
+    describe_bridge();
+    open_enabled();
+    bool seen[HOME_RETURN + 1] = {0};
+    const cm1e_homing_config_t homing = {.method = 3, .velocity = 8.0, .acceleration = 90.0};
+    for (int after = 0; after < 900; after += after < 300 ? 2 : 29) {
+        finish(n, move_of(n, info_of(n).actual_position + (100000.0 - shaft(n)) / 50000.0, 10.0), 10.0);
+        cycles(100);
+        const cm1e_command_id_t id = home_of(n, 5.0, &homing);
+        for (int i = 0; i < after && status_of(n, id).state == CM1E_COMMAND_ACTIVE; i++)
+            cycles(1);
+        const bool ended = status_of(n, id).state != CM1E_COMMAND_ACTIVE;
+        seen[axes[n]->home.step] = true;
+        end_homing(n, ending);
+        ck_assert_msg(info_of(n).state == CM1E_AXIS_STANDSTILL, "after %d: %s %s", after,
+                      cm1e_axis_state_name(info_of(n).state), text_of(n));
+        ck_assert(ended || status_of(n, id).state != CM1E_COMMAND_DONE);
+        const double before = shaft(n);
+        cycles(60);
+        ck_assert_msg(fabs(shaft(n) - before) < 5.0, "after %d it moves on from %.0f to %.0f", after, before, shaft(n));
+        ck_assert_int_eq(info_of(n).mode, CM1E_MODE_CSP);
+        ck_assert_double_eq_tol(info_of(n).set_position, info_of(n).actual_position, 0.01);
+    }
+    for (int step = n == CM2 ? HOME_READ : HOME_REST; step <= HOME_RUN; step++)
+        ck_assert_msg(seen[step], "step %d was not hit", step);
+    close_segment();
+}
+END_TEST
+
+/* ---- errors of one motor ----------------------------------------------------------------------------------------- */
+
+START_TEST(test_an_error_of_one_motor_stops_that_axis_alone)
+{
+    const int n = _i % 2 ? CM2 : CM1, fault = _i / 2;
+    describe_bridge();
+    open_enabled();
+    cm1e_command_id_t ids[AXES];
+    for (int other = 0; other < AXES; other++)
+        ids[other] = move_of(other, 3.0, 2.0);
+    cycles(500);
+    fault_of(n, fault);
+    cycles(100);
+    ck_assert_int_eq(info_of(n).state, CM1E_AXIS_ERROR_STOP);
+    ck_assert_int_eq(status_of(n, ids[n]).state, CM1E_COMMAND_ERROR);
+    for (int other = 0; other < AXES; other++)
+        if (other != n) {
+            finish(other, ids[other], 5.0);
+            ck_assert_int_eq(info_of(other).error, CM1E_OK);
+        }
+    repair(n, fault);
+    const double there = shaft(n);
+    cycles(100);
+    ck_assert_double_eq_tol(shaft(n), there, 3.0);
+    finish(n, move_of(n, info_of(n).actual_position + 0.5, 2.0), 5.0);
+    close_segment();
+}
+END_TEST
+
+START_TEST(test_an_error_of_the_motor_ends_its_homing_at_any_time)
+{
+    const int n = _i % 2 ? CM2 : CM1, fault = _i / 2;
+    describe_bridge();
+    open_enabled();
+    for (int after = 1; after < 700; after += 41) {
+        const cm1e_command_id_t move = move_of(AXES - 1 - n, after % 2 ? 2.0 : 0.0, 1.0);
+        const cm1e_command_id_t id = home_of(n, 0.0, NULL);
+        for (int i = 0; i < after && status_of(n, id).state == CM1E_COMMAND_ACTIVE; i++)
+            cycles(1);
+        fault_of(n, fault);
+        cycles(200);
+        ck_assert_msg(info_of(n).state == CM1E_AXIS_ERROR_STOP, "after %d", after);
+        ck_assert(status_of(n, id).state != CM1E_COMMAND_ACTIVE);
+        finish(AXES - 1 - n, move, 5.0);
+        repair(n, fault);
+        const double there = shaft(n);
+        cycles(50);
+        ck_assert_double_eq_tol(shaft(n), there, 3.0);
+        finish(n, move_of(n, info_of(n).actual_position + (0.0 - there) / 50000.0, 10.0), 10.0);
+    }
+    close_segment();
+}
+END_TEST
+
+START_TEST(test_a_bridge_that_is_lost_stops_all_its_axes)
+{
+    describe_bridge();
+    open_enabled();
+    for (int n = 0; n < AXES; n++)
+        move_of(n, 3.0, 2.0);
+    cycles(300);
+    simulate("unplug 1");
+    cycles(500);
+    for (int n = 0; n < AXES; n++) {
+        ck_assert_int_eq(info_of(n).state, CM1E_AXIS_ERROR_STOP);
+        ck_assert(!info_of(n).homed);
+        ck_assert(motor(n)->motor_free);
+    }
+    close_segment();
+}
+END_TEST
+
+/* ---- signals ----------------------------------------------------------------------------------------------------- */
+
+static cm1e_error_t input_of(int n, int number, bool *value)
+{
+    cm1e_error_t error = cm1e_axis_read_input(axes[n], number, value);
+    for (int i = 0; i < 200 && error == CM1E_ERROR_BUSY; i++) {
+        cycles(1);
+        error = cm1e_axis_read_input(axes[n], number, value);
+    }
+    return error;
+}
+
+START_TEST(test_inputs_come_by_sdo_while_somebody_reads_them)
+{
+    describe_bridge();
+    open_enabled();
+    for (int n = 0; n < AXES; n++)
+        for (int number = 0; number <= 7; number++) {
+            const bool there = n < CM2 ? number >= 2 && number <= 4 : number >= 1 && number <= 6;
+            bool value;
+            ck_assert_int_eq(input_of(n, number, &value), there ? CM1E_OK : CM1E_ERROR_AXIS_SIGNAL);
+            ck_assert(!value);
+        }
+    finish(CM1, move_of(CM1, 3.1, 10.0), 5.0);
+    cycles(300);
+    bool value;
+    ck_assert_int_eq(input_of(CM1, 2, &value), CM1E_OK);
+    ck_assert(value); /* beyond 150,000 counts */
+    ck_assert(info_of(CM1).digital_known);
+    cycles(1500);
+    ck_assert(!info_of(CM1).digital_known);
+    power_of(CM1, false);
+    cycles(200);
+    ck_assert_int_eq(cm1e_axis_read_input(axes[CM1], 2, &value), CM1E_ERROR_AXIS_NOT_POWERED);
+    close_segment();
+}
+END_TEST
+
+static cm1e_error_t write_output(int n, int number, bool value)
+{
+    cm1e_error_t error = cm1e_axis_write_output(axes[n], number, value);
+    cm1e_command_state_t state = CM1E_COMMAND_ACTIVE;
+    for (int i = 0; i < 200 && !error && state == CM1E_COMMAND_ACTIVE; i++) {
+        cycles(1);
+        state = cm1e_axis_output_state(axes[n], &error);
+    }
+    ck_assert(error || state == CM1E_COMMAND_DONE);
+    return error;
+}
+
+START_TEST(test_outputs_go_by_sdo_and_are_done_when_they_are_there)
+{
+    describe_bridge();
+    open_enabled();
+    for (int n = 0; n < AXES; n++)
+        for (int number = 0; number <= 5; number++) {
+            const bool there = n < CM2 ? number == 2 : number >= 1 && number <= 4;
+            for (int on = 1; on >= 0; on--) {
+                ck_assert_int_eq(write_output(n, number, on), there ? CM1E_OK : CM1E_ERROR_AXIS_SIGNAL);
+                ck_assert_int_eq(motor(n)->outputs, there && on ? 1 << (number - 1) : 0);
+            }
+            if (!there)
+                told(n, n < CM2 ? "output 2" : "outputs 1 ... 4");
+        }
+    ck_assert_int_eq(write_output(CM2, 3, true), CM1E_OK);
+    for (int i = 0; i < 1000; i++) { /* the end of a run: off before the torque goes */
+        inputs();
+        for (int n = 0; n < AXES; n++)
+            (void)cm1e_axis_shut_down(axes[n]);
+        outputs();
+        ck_assert(!motor(CM2)->motor_free || motor(CM2)->outputs == 0);
+    }
+    ck_assert(motor(CM2)->motor_free);
+    ck_assert_int_eq(cm1e_axis_write_output(axes[CM2], 1, true), CM1E_ERROR_AXIS_NOT_POWERED);
+    told(CM2, "while the motor is enabled in csp");
+    close_segment();
+}
+END_TEST
+
+START_TEST(test_what_needs_signals_in_the_cycle_is_refused)
+{
+    describe_bridge();
+    for (int n = 0; n < AXES; n++)
+        config.axes[n].inputs = (cm1e_input_config_t){.limit_positive = 2, .limit_negative = 3, .home = 4};
+    open_enabled();
+    for (int n = 0; n < AXES; n++) {
+        uint32_t id;
+        double torque;
+        const cm1e_axis_trigger_t trigger = {.input = 2};
+        ck_assert_int_eq(cm1e_axis_probe(axes[n], trigger, false, 0, 0, &id), CM1E_ERROR_PDO_MAPPING);
+        told(n, "CPIO");
+        ck_assert_int_eq(cm1e_axis_hold_output(axes[n], 2, true, 1000), CM1E_ERROR_PDO_MAPPING);
+        ck_assert_int_eq(cm1e_axis_read_torque(axes[n], &torque), CM1E_ERROR_PDO_MAPPING);
+        ck_assert(!info_of(n).torque_known && !info_of(n).temperature_known && !info_of(n).dc_link_known);
+        const cm1e_homing_step_t steps[] = {
+            {.kind = CM1E_STEP_ABSOLUTE_SWITCH, .direction = mcPositiveDirection},
+            {.kind = CM1E_STEP_LIMIT_SWITCH, .direction = mcPositiveDirection},
+            {.kind = CM1E_STEP_BLOCK, .direction = mcPositiveDirection, .torque_limit = 30.0},
+        };
+        for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
+            cm1e_command_id_t unused;
+            const cm1e_axis_command_t c = {.kind = CM1E_COMMAND_HOMING_STEP, .velocity = 1.0, .step = &steps[i]};
+            ck_assert_int_eq(cm1e_axis_start(axes[n], &c, &unused), CM1E_ERROR_PDO_MAPPING);
+            told(n, "CPIO");
+        }
+    }
+    close_segment();
+}
+END_TEST
+
+/* By lag: without torque, against the stop at 250,000 counts. */
+START_TEST(test_a_step_against_a_stop_needs_no_signal)
+{
+    describe_bridge();
+    config.axes[CM2].max_position_lag = 0.2;
+    open_enabled();
+    const cm1e_homing_step_t step = {.kind = CM1E_STEP_BLOCK, .direction = mcPositiveDirection,
+                                       .time_limit_ns = 20000000000};
+    finish(CM2, start_of(CM2, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HOMING_STEP, .position = 4.0, .velocity = 1.0,
+                                                      .step = &step}), 20.0);
+    ck_assert_double_eq_tol(shaft(CM2), 250000.0, 3000.0);
+    const cm1e_homing_step_t last = {.kind = CM1E_STEP_FINISH};
+    finish(CM2, start_of(CM2, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HOMING_STEP, .position = -1.0,
+                                                     .velocity = 1.0, .step = &last}), 20.0);
+    ck_assert_double_eq_tol(info_of(CM2).actual_position, 3.0, 0.1);
+    ck_assert(info_of(CM2).homed);
+    close_segment();
+}
+END_TEST
+
+/* ---- parameters -------------------------------------------------------------------------------------------------- */
+
+static cm1e_error_t transfer(int n, int number, bool write, double *value)
+{
+    uint32_t ticket;
+    cm1e_error_t error = cm1e_axis_object_start(axes[n], number, write, *value, &ticket);
+    while (!error && cm1e_axis_object_state(axes[n], ticket, value, &error) < CM1E_COMMAND_DONE)
+        cycles(1);
+    return error;
+}
+
+/* Whatever has a number is read, or is not there in the dictionary of the motor; then the words say so. */
+START_TEST(test_every_number_is_an_object_of_the_motor_or_lacks_in_words)
+{
+    describe_bridge();
+    open_enabled();
+    for (int n = CM1; n <= CM2; n += CM2)
+        for (int number = 1000; number < 1800; number++) {
+            double value = 0.0;
+            const cm1e_error_t error = transfer(n, number, false, &value);
+            ck_assert_msg(error == CM1E_OK || error == CM1E_ERROR_UNSUPPORTED || error == CM1E_ERROR_AXIS_PARAMETER,
+                          "%d: %s: %s", number, cm1e_strerror(error), text_of(n));
+            if (error == CM1E_ERROR_UNSUPPORTED)
+                told(n, n < CM2 ? "behind the bridge a CM1 has no " : "behind the bridge a CM2 has no ");
+        }
+    double value = 0.0;
+    ck_assert_int_eq(transfer(CM1, 1062, false, &value), CM1E_ERROR_UNSUPPORTED);
+    told(CM1, "a CM1 has no K62");
+    ck_assert_int_eq(transfer(CM1, 1200, false, &value), CM1E_ERROR_UNSUPPORTED);
+    ck_assert_int_eq(transfer(CM1, 1502, false, &value), CM1E_ERROR_UNSUPPORTED);
+    told(CM1, "no object 0x6077");
+    value = 7.0;
+    ck_assert_int_eq(transfer(CM2, 1200, true, &value), CM1E_OK);
+    value = 0.0;
+    ck_assert_int_eq(transfer(CM2, 1200, false, &value), CM1E_OK);
+    ck_assert_double_eq(value, 7.0);
+    value = 6000.0;
+    ck_assert_int_eq(transfer(CM1, 1042, true, &value), CM1E_ERROR_AXIS_PARAMETER_RANGE);
+    told(CM1, "1 ... 5000");
+    value = 6000.0;
+    ck_assert_int_eq(transfer(CM2, 1042, true, &value), CM1E_OK); /* its own object, not that of the first motor */
+    ck_assert_int_eq(transfer(CM2, 1402, false, &value), CM1E_OK);
+    ck_assert_double_eq(value, 6000.0);
+    value = 1.0;
+    ck_assert_int_eq(transfer(CM2, 1510, true, &value), CM1E_ERROR_AXIS_PARAMETER_READ_ONLY);
+    close_segment();
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("axes behind a bridge");
+    TCase *tcase = tcase_create("all");
+    suite_add_tcase(suite, tcase);
+    tcase_set_timeout(tcase, 120);
+    tcase_add_test(tcase, test_four_motors_are_enabled_and_moved_side_by_side);
+    tcase_add_loop_test(tcase, test_every_method_homes_both_kinds_of_motor, 0, 4 * METHODS);
+    tcase_add_test(tcase, test_parameters_are_written_in_the_units_of_the_motor);
+    tcase_add_test(tcase, test_the_offset_goes_by_k45_of_a_cm2);
+    tcase_add_test(tcase, test_what_is_wrong_with_a_homing_is_told_before_it_begins);
+    tcase_add_test(tcase, test_an_offset_that_k45_does_not_allow_ends_the_homing);
+    tcase_add_loop_test(tcase, test_a_homing_is_ended_at_every_moment, 0, 2 * ENDINGS);
+    tcase_add_loop_test(tcase, test_an_error_of_one_motor_stops_that_axis_alone, 0, 2 * FAULTS);
+    tcase_add_loop_test(tcase, test_an_error_of_the_motor_ends_its_homing_at_any_time, 0, 2 * FAULTS);
+    tcase_add_test(tcase, test_a_bridge_that_is_lost_stops_all_its_axes);
+    tcase_add_test(tcase, test_inputs_come_by_sdo_while_somebody_reads_them);
+    tcase_add_test(tcase, test_outputs_go_by_sdo_and_are_done_when_they_are_there);
+    tcase_add_test(tcase, test_what_needs_signals_in_the_cycle_is_refused);
+    tcase_add_test(tcase, test_a_step_against_a_stop_needs_no_signal);
+    tcase_add_test(tcase, test_every_number_is_an_object_of_the_motor_or_lacks_in_words);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_ENV);
+    const int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
