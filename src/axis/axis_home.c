@@ -399,7 +399,7 @@ static bool stands(cm1e_axis_t *axis)
 {
     homing_t *home = &axis->home;
     const int32_t moved = (int32_t)((uint32_t)axis->raw - (uint32_t)home->quiet_position);
-    if (!axis->drive.feedback.online || abs(moved) > cm1e_axis_few(axis, standing_counts)) {
+    if (!axis->drive.feedback.online || llabs(moved) > cm1e_axis_few(axis, standing_counts)) {
         home->quiet_ns = axis->now_ns;
         home->quiet_position = axis->raw;
     }
