@@ -58,7 +58,8 @@ static void make_unit(unit_t *u, uint32_t index)
     u->axis = cm1e_scheduler_axis(example.scheduler, index);
     u->power = (MC_Power_t){.Axis = &u->axis, .EnablePositive = TRUE, .EnableNegative = TRUE};
     u->home = (MC_Home_t){.Axis = &u->axis};
-    u->out = (MC_MoveAbsolute_t){.Axis = &u->axis, .Position = -2, .Velocity = 4, .Acceleration = 20, .Deceleration = 20};
+    u->out = (MC_MoveAbsolute_t){.Axis = &u->axis, .Position = -2, .Velocity = 4, .Acceleration = 20,
+                                 .Deceleration = 20};
     u->back = (MC_MoveAbsolute_t){.Axis = &u->axis, .Position = -1, .Velocity = 2};
     u->torque = (MC_ReadActualTorque_t){.Axis = &u->axis};
 }

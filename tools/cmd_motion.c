@@ -315,8 +315,8 @@ int command_move(int argc, char **argv)
         {0}};
     static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
     static const struct argp argp = {table, parse_move, "[AXIS]",
-                                     "Enables one axis (name or number, default 1), moves it, disables it. Without a bus "
-                                     "file the unit is the revolution.", children, NULL, NULL};
+                                     "Enables one axis (name or number, default 1), moves it, disables it. Without a "
+                                     "bus file the unit is the revolution.", children, NULL, NULL};
     motion_options_t options = {0};
     if (argp_parse(&argp, argc, argv, 0, NULL, &options))
         return EXIT_WRONG_USE;

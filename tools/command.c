@@ -119,8 +119,8 @@ static bool refuse_bridge(const cm1e_bus_t *bus, const char *interface_name)
     const cm1e_slave_info_t *bridge = first_bridge(bus);
     if (!bridge)
         return true;
-    complain("slave %u is a bridge: how far a motor behind it turns by a count depends on its K37, which no scan shows. "
-             "Ask each motor", bridge->position);
+    complain("slave %u is a bridge: how far a motor behind it turns by a count depends on its K37, which no scan "
+             "shows. Ask each motor", bridge->position);
     print_questions(bus, interface_name);
     fprintf(stderr, "and put the answers into a bus file, which you give with -b:\n");
     print_bus_file(bus, interface_name);

@@ -104,6 +104,7 @@ typedef struct cm1e_command_status {
 
 /** Makes the axis of drive `index` and registers its handle. @rt init */
 cm1e_error_t cm1e_axis_create(cm1e_axis_t **axis, cm1e_bus_t *bus, uint32_t index, cm1e_diag_t *diag);
+/** After cm1e_bus_stop(): transfers of the axis that wait in the bus would end in its memory. @rt init */
 void cm1e_axis_destroy(cm1e_axis_t *axis);
 AXIS_REF_t cm1e_axis_reference(const cm1e_axis_t *axis);
 /** NULL: the handle names no axis. @rt cycle */

@@ -210,7 +210,7 @@ static bool is_used(const cm1e_bus_slave_t *slave)
 }
 
 /** A motor that nobody configured could move unexpectedly; a device of another kind may stand between the axes. Beside
- *  the axes of a bridge its other motors stay free: their controlword is 0. */
+ *  the axes of a bridge its other motors stay as they are from power-on: their controlword is 0. */
 static cm1e_error_t check_extra(const cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     for (uint32_t i = 0; i < bus->slave_count && bus->config.axis_count > 0; i++) {

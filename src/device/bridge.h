@@ -71,7 +71,7 @@ int32_t cm1e_bridge_position_limit(cm1e_bridge_motor_t motor, int32_t k37);
 /** Counts in one revolution by K37; 0: no motor knows such a value. */
 int32_t cm1e_bridge_counts_per_revolution(int32_t k37);
 
-/** Digital outputs that the motor leaves to its user, bit 0: output 1. On a CM1 that one is its serial line (BR 6.5.2). */
+/** Digital outputs that the motor leaves to its user, bit 0: output 1. A CM1 has its serial line there (BR 6.5.2). */
 uint8_t cm1e_bridge_output_mask(cm1e_bridge_motor_t motor);
 
 /** "CM1", "CM2". */

@@ -1,8 +1,8 @@
 #include "device/bridge.h"
 
 /* BR appendix 5. Resolutions 0 ... 10 and 40 ... 50 repeat 20 higher with a finer unit of speed (10 pps), and with a
- * CM2 the first ones once more at 80 (1 pps). Of its two tables the first is taken for the CM1's, as its headings stand;
- * in the second one speeds in 1 pps occur, which no page mentions for a CM1. */
+ * CM2 the first ones once more at 80 (1 pps). Of its two tables the first is taken for the CM1's, as its headings
+ * stand; in the second one speeds in 1 pps occur, which no page mentions for a CM1. */
 enum { RESOLUTIONS = 11, REPEATED = 20, OTHER_RESOLUTIONS = 40, FINEST = 80 };
 
 static const int32_t common[RESOLUTIONS] = {8589934,   17179869,  21474836,  42949672, 85899345, 107374182,

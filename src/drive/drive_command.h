@@ -54,8 +54,7 @@ typedef struct cm1e_drive_cmd_run {
 
 /** Starts a command. CM1E_ERROR_STATE: the motor is not in CMD; CM1E_ERROR_AXIS_OFFLINE: it is not heard;
  *  CM1E_ERROR_BUSY: another one is under way, or a search that has not ended (Motor free and Origin search abort take
- *  the place of any). `timeout_ns`:
- *  of an origin search; 0: 90 s. @rt cycle */
+ *  the place of any). `timeout_ns`: of an origin search; 0: 90 s. @rt cycle */
 cm1e_error_t cm1e_drive_cmd_start(struct cm1e_drive *drive, cm1e_drive_cmd_t command, int64_t timeout_ns);
 /** @rt cycle */
 cm1e_drive_cmd_state_t cm1e_drive_cmd_state(const struct cm1e_drive *drive);

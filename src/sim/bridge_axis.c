@@ -30,7 +30,8 @@ void cm1e_sim_bridge_axis_zero(cm1e_sim_bridge_axis_t *axis)
 
 void cm1e_sim_bridge_axis_torque(cm1e_sim_bridge_axis_t *axis, double percent)
 {
-    axis->servo.torque_limit = percent > 0 ? cm1e_sim_bridge_peak_torque() / PEAK_TO_RATED_TORQUE * percent / 100 : cm1e_sim_bridge_peak_torque();
+    const double peak = cm1e_sim_bridge_peak_torque();
+    axis->servo.torque_limit = percent > 0 ? peak / PEAK_TO_RATED_TORQUE * percent / 100 : peak;
 }
 
 int64_t cm1e_sim_bridge_shown_position(const cm1e_sim_bridge_axis_t *axis)
@@ -333,8 +334,9 @@ uint16_t cm1e_sim_bridge_statusword(const cm1e_sim_bridge_axis_t *axis)
         return cm1e_sim_bridge_command_status(axis);
     if (axis->mode == CM1E_BRIDGE_MODE_CPIO)
         return cm1e_sim_bridge_cpio_status(axis);
-    return (uint16_t)(cm1e_sim_bridge_state_bits(axis) | STATUSWORD_REMOTE | mode_bits(axis) |
-                      (axis->error ? CM1E_BRIDGE_STATUSWORD_ERROR : 0) | (axis->motor_free ? CM1E_BRIDGE_STATUSWORD_FREE : 0));
+    const unsigned error = axis->error ? CM1E_BRIDGE_STATUSWORD_ERROR : 0;
+    const unsigned no_torque = axis->motor_free ? CM1E_BRIDGE_STATUSWORD_FREE : 0;
+    return (uint16_t)(cm1e_sim_bridge_state_bits(axis) | STATUSWORD_REMOTE | mode_bits(axis) | error | no_torque);
 }
 
 /* ---- life ------------------------------------------------------------------------------------------------------- */

@@ -17,9 +17,9 @@ typedef struct cm1e_sim_slave cm1e_sim_slave_t;
 typedef struct cm1e_sim_cm1e cm1e_sim_cm1e_t;
 typedef struct cm1e_sim_bridge cm1e_sim_bridge_t;
 
-/** The network that a configuration describes: one CM1-E per axis, or one bridge for all axes that have a channel at the
- *  same address, placed by position, alias or explicit ID (aliases and IDs are set in the simulated devices in the order
- *  of the list). NULL and a diagnosis on failure. */
+/** The network that a configuration describes: one CM1-E per axis, or one bridge for all axes that have a channel at
+ *  the same address, placed by position, alias or explicit ID (aliases and IDs are set in the simulated devices in the
+ *  order of the list). NULL and a diagnosis on failure. */
 cm1e_sim_segment_t *cm1e_sim_segment_create(const cm1e_bus_config_t *config, cm1e_diag_t *diag);
 /** An empty segment, to which slaves are added in the order of the line; it owns them. */
 cm1e_sim_segment_t *cm1e_sim_segment_create_empty(void);
@@ -67,14 +67,14 @@ cm1e_error_t cm1e_sim_console(cm1e_sim_segment_t *segment, const char *line, cha
 
 /* ---- what tests measure behind a drive (NULL-safe; position 1 = first; no motor there: zeros) ------------------- */
 
-/** Rules of the bridge's guide that a master broke. What a real bridge makes of it nobody knows, so a good master breaks
- *  none: tests look at it. */
+/** Rules of the bridge's guide that a master broke. What a real bridge makes of it nobody knows, so a good master
+ *  breaks none: tests look at it. */
 enum cm1e_sim_broken_rule {
     CM1E_SIM_MODE_TOO_SOON = 0x001,   /**< 0x6060 within 5 ms of the last time (BR 6.2.2, note 2) */
     CM1E_SIM_MODE_IN_MOTION = 0x002,  /**< ... while the motor moved (note 1) */
     CM1E_SIM_MODE_IN_ERROR = 0x004,   /**< ... with an error of the motor (BR appendix 3) */
-    CM1E_SIM_MODE_NO_WAY = 0x008,     /**< ... where the drawing of BR 6 has no way, or the motor has been in CMD or CPIO
-                                           and is to follow targets in csp (note 2) */
+    CM1E_SIM_MODE_NO_WAY = 0x008,     /**< ... where the drawing of BR 6 has no way, or the motor has been in CMD or
+                                           CPIO and is to follow targets in csp (note 2) */
     CM1E_SIM_QUICK_STOP = 0x010,      /**< "Do not send Quick Stop command" (BR 6.1.1) */
     CM1E_SIM_STEP_AT_START = 0x020,   /**< the target was not the actual position when the motor began to follow it */
     CM1E_SIM_STEP_IN_CYCLE = 0x040,   /**< further from one target to the next than the motor's peak speed carries */

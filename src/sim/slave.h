@@ -89,8 +89,8 @@ uint8_t cm1e_sim_slave_al_state(const cm1e_sim_slave_t *slave);
 cm1e_sim_slave_t *cm1e_sim_cm1e_create(const cm1e_axis_config_t *config, cm1e_pdo_order_t order, uint16_t alias,
                                        uint8_t rotary_switches);
 cm1e_sim_slave_t *cm1e_sim_io_module_create(void);
-/** A Cool MUSCLE Bridge (CM1E_DEVICE_EB01 ... EB12) with its four motors. Of the axis at each connector K37 and `sim` are
- *  played; NULL, one or all of them: the defaults of cm1e/config.h, and K37 = 10. NULL: no bridge, or no memory. */
+/** A Cool MUSCLE Bridge (CM1E_DEVICE_EB01 ... EB12) with its four motors. Of the axis at each connector K37 and `sim`
+ *  are played; NULL, one or all of them: the defaults of cm1e/config.h, and K37 = 10. NULL: no bridge, or no memory. */
 cm1e_sim_slave_t *cm1e_sim_bridge_create(cm1e_device_model_t model,
                                          const cm1e_axis_config_t *const axes[CM1E_BRIDGE_AXES], uint16_t alias);
 /** Its guide states no identity. The vendor is Muscle Corporation in ETG's list, the rest is the simulator's own. */
