@@ -218,10 +218,10 @@ static void follow_switch(cm1e_axis_t *axis)
 {
     cool_muscle_t *muscle = axis->muscle;
     const int8_t shown = axis->drive.feedback.mode;
-    if (axis->state == CM1E_AXIS_ERROR_STOP && muscle->switching.state == CM1E_COMMAND_ACTIVE) {
+    if (axis->state == CM1E_AXIS_ERROR_STOP && muscle->switching.state == CM1E_COMMAND_ACTIVE)
         end_switching(muscle, CM1E_COMMAND_ERROR, axis->error);
-        muscle->next = muscle->mode = is_mode(shown) ? shown : muscle->mode;
-    }
+    if (axis->state == CM1E_AXIS_ERROR_STOP && is_mode(shown))
+        muscle->next = muscle->mode = shown;
     if (shown != muscle->next || muscle->mode != muscle->next)
         return;
     if (shown == CM1E_BRIDGE_MODE_CSP || shown == CM1E_BRIDGE_MODE_CPIO)

@@ -58,6 +58,8 @@ static void wait_online(cm1e_drive_t *drive)
 {
     if (drive->feedback.online && !drive->feedback.fault) {
         finish(drive, CM1E_OK);
+    } else if (drive->feedback.online && drive->words != drive->wanted->words) {
+        /* A switch of mode that the error has stopped is given up first: until then no word has a meaning. */
     } else if (drive->feedback.online) {
         drive->reset_phase = RESET_EDGE;
         drive->reset_until_ns = drive->now_ns + edge_ns;
