@@ -41,7 +41,7 @@ typedef struct story {
 static story_t stories[BLOCKS_MOST];
 static bool edge_in_cycle; /* who lost the axis by it may have been called before */
 enum { STUCK = 3000 };
-static int at_rest, off_cycles, still_cycles;
+static int calls_in_turn, at_rest, off_cycles, still_cycles;
 
 static bool is(const instance_t *fb, const char *name) { return strcmp(name_of(fb), name) == 0; }
 static bool is_superimposed(const instance_t *fb) { return strstr(name_of(fb), "Superimposed") != NULL; }
@@ -106,6 +106,7 @@ static void begin_program(void)
         }
     }
     memset(stories, 0, sizeof stories);
+    calls_in_turn = 0;
     at_rest = off_cycles = still_cycles = 0;
 }
 
@@ -192,8 +193,6 @@ static void play(int n)
     if (fb->now.done && busy)
         judge_arrival(n);
 }
-
-static int calls_in_turn;
 
 /** An idle block needs no call; now and then it gets one. */
 static void play_all(void)
