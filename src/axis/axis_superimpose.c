@@ -187,10 +187,11 @@ static void stand_as_base(cm1e_axis_t *axis)
     axis->stands = true;
 }
 
-/* In Standstill it begins at once or never: there is no base to wait for. */
-static bool can_begin_alone(const cm1e_axis_t *axis, const move_t *move)
+/* From how it goes now; asked before anything is changed, as what goes cannot end on the spot. */
+static bool can_go_on_as(const cm1e_axis_t *axis, const move_t *move, bool alone, const cm1e_motion_limits_t *share)
 {
-    superimposed_t trial = {.move = *move, .alone = true, .share = axis->maximum};
+    superimposed_t trial = {.move = *move, .alone = alone, .share = *share, .now = axis->superimposed.now};
+    trial.now.position = 0.0;
     return plan(axis, &trial);
 }
 
@@ -203,8 +204,10 @@ static cm1e_error_t superimpose(cm1e_axis_t *axis, const move_t *move, cm1e_comm
     const cm1e_error_t error = check(axis, move, alone, &limits);
     if (error)
         return error;
-    if (alone && !replaces && !can_begin_alone(axis, move))
-        return CM1E_ERROR_AXIS_DYNAMICS_RANGE; /* with factors of MC_SetOverride that leave next to nothing */
+    /* One that replaces another keeps to what the base has left for that. */
+    const cm1e_motion_limits_t share = replaces ? on_top->share : alone ? axis->maximum : share_of(axis, &limits);
+    if (!can_go_on_as(axis, move, alone, &share))
+        return CM1E_ERROR_AXIS_DYNAMICS_RANGE; /* next to nothing, perhaps by factors of MC_SetOverride */
     if (axis->activity == ACTIVITY_HOLD)
         stand_as_base(axis);
     if (on_top->id)
@@ -213,14 +216,10 @@ static cm1e_error_t superimpose(cm1e_axis_t *axis, const move_t *move, cm1e_comm
     *id = on_top->id = cm1e_axis_next_id(axis);
     on_top->move = *move;
     on_top->alone = alone;
-    if (!replaces) /* one that replaces another keeps to what the base has left for that */
-        on_top->share = alone ? axis->maximum : share_of(axis, &limits);
+    on_top->share = share;
     on_top->lowest = fmin(move->position, 0.0);
     on_top->highest = fmax(move->position, 0.0);
-    if (!replaces)
-        (void)begin(axis);
-    else if (!plan(axis, on_top))
-        finish(axis);
+    (void)(replaces ? plan(axis, on_top) : begin(axis));
     return CM1E_OK;
 }
 
@@ -232,6 +231,8 @@ static cm1e_error_t halt(cm1e_axis_t *axis, const move_t *move, cm1e_command_id_
     const cm1e_error_t error = cm1e_axis_limits_of(axis, &rest, move, &limits);
     if (error)
         return error;
+    if (on_top->moving && !can_go_on_as(axis, move, on_top->alone, &on_top->share))
+        return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
     *id = cm1e_axis_next_id(axis);
     if (!on_top->id) {
         cm1e_axis_record(axis, *id, CM1E_COMMAND_DONE, CM1E_OK); /* nothing is superimposed */
@@ -241,7 +242,9 @@ static cm1e_error_t halt(cm1e_axis_t *axis, const move_t *move, cm1e_command_id_
     give_to_base(axis);
     on_top->id = *id;
     on_top->move = *move;
-    if (!on_top->moving || !plan(axis, on_top))
+    if (on_top->moving)
+        (void)plan(axis, on_top);
+    else
         finish(axis);
     return CM1E_OK;
 }
@@ -266,7 +269,7 @@ cm1e_error_t cm1e_axis_superimpose_update(cm1e_axis_t *axis, const move_t *input
         return error;
     superimposed_t next = *on_top;
     next.move = *inputs;
-    if (next.moving && !plan(axis, &next))
+    if (!plan(axis, &next))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     *on_top = next;
     return CM1E_OK;

@@ -298,7 +298,6 @@ static void test_continuous_update_and_override(void)
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_update(axis, id, &inputs)); /* ended: nothing happens */
 }
 
-/* Anything on top of anything: no limit is exceeded by the sum in any cycle, and the software limits hold. */
 /* It would wait for ever for what cannot be computed. */
 static void test_an_override_that_leaves_nothing_refuses_it_in_standstill(void)
 {
@@ -310,6 +309,47 @@ static void test_an_override_that_leaves_nothing_refuses_it_in_standstill(void)
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, axis->state);
 }
 
+/* What goes on top cannot end on the spot for a command that nobody can compute: it goes on, and so does its base. */
+static void test_dynamics_of_next_to_nothing_are_refused_and_change_nothing(void)
+{
+    static const cm1e_axis_command_t commands[] = {
+        {.kind = CM1E_COMMAND_HALT_SUPERIMPOSED, .deceleration = 1e-300, .jerk = 1600.0},
+        {.kind = CM1E_COMMAND_HALT_SUPERIMPOSED, .jerk = 1e-300},
+        {.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = 2.0, .velocity = 5.0, .acceleration = 1e-300},
+        {.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = 2.0, .velocity = 1e-300},
+    };
+    for (int i = 0; i < 4; i++)
+        for (int moves = 0; moves < 2; moves++) {
+            setUp();
+            const cm1e_command_id_t base = moves ? bench_move_to(20.0, 10.0) : 0;
+            watch_cycles(300);
+            const cm1e_command_id_t first = superimpose(4.0, 5.0);
+            watch_cycles(300);
+            cm1e_command_id_t id = 1;
+            TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DYNAMICS_RANGE, cm1e_axis_start(axis, &commands[i], &id));
+            TEST_ASSERT_EQUAL_UINT32(0, id);
+            wait_for(first, CM1E_COMMAND_DONE);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12, 4.0, covered(first));
+            if (moves)
+                wait_for(base, CM1E_COMMAND_DONE);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, moves ? 24.0 : 4.0, bench_info().set_position);
+        }
+}
+
+/* On top of a move it would have waited until that stood, and then for ever. */
+static void test_dynamics_of_next_to_nothing_do_not_wait(void)
+{
+    const cm1e_command_id_t base = bench_move_to(20.0, 10.0);
+    watch_cycles(300);
+    const cm1e_axis_command_t command = {.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = 2.0, .velocity = 5.0,
+                                         .acceleration = 1e-300, .deceleration = 1e-300};
+    cm1e_command_id_t id;
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DYNAMICS_RANGE, cm1e_axis_start(axis, &command, &id));
+    wait_for(base, CM1E_COMMAND_DONE);
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, axis->state);
+}
+
+/* Anything on top of anything: no limit is exceeded by the sum in any cycle, and the software limits hold. */
 static void test_random_programs_keep_all_limits(void)
 {
     unsigned on_top = 0;
@@ -366,6 +406,8 @@ int main(void)
     RUN_TEST(test_a_limit_has_to_leave_room_for_both);
     RUN_TEST(test_continuous_update_and_override);
     RUN_TEST(test_an_override_that_leaves_nothing_refuses_it_in_standstill);
+    RUN_TEST(test_dynamics_of_next_to_nothing_are_refused_and_change_nothing);
+    RUN_TEST(test_dynamics_of_next_to_nothing_do_not_wait);
     RUN_TEST(test_random_programs_keep_all_limits);
     return UNITY_END();
 }
