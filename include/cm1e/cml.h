@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-#define CM1E_CML_BYTES 64  /**< longest string, and longest answer */
+#define CM1E_CML_BYTES 64  /**< longest string, and longest answer (BR 7.2.2) */
 #define CM1E_CML_LINES 128 /**< most lines of an answer that are kept */
 
 /** What a string can do. */

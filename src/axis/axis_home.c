@@ -46,10 +46,10 @@ typedef struct homing_kind {
     HOME_REST, HOME_SWITCH, HOME_WRITE, HOME_TAKEN, HOME_START, HOME_RUN, HOME_SETTLE, HOME_RETURN
 #define OBJECTS_BEHIND_BRIDGE                                                                                       \
     {                                                                                                               \
-        [OFFSET] = {OBJ_607C_HOME_OFFSET, 0, 100.0},             /* K48 */                                          \
+        [OFFSET] = {OBJ_607C_HOME_OFFSET, 0, CM1E_BRIDGE_OFFSET_UNIT},                                              \
         [METHOD] = {OBJ_6098_HOMING_METHOD, 0, 1.0},                                                                \
-        [SPEED] = {OBJ_6099_HOMING_SPEEDS, 1, 100.0},            /* K42 */                                          \
-        [ACCELERATION] = {OBJ_609A_HOMING_ACCELERATION, 0, 1e3}, /* K43 */                                          \
+        [SPEED] = {OBJ_6099_HOMING_SPEEDS, 1, CM1E_BRIDGE_SPEED_UNIT},                                              \
+        [ACCELERATION] = {OBJ_609A_HOMING_ACCELERATION, 0, CM1E_BRIDGE_ACCELERATION_UNIT},                          \
         [TORQUE] = {OBJ_60F6_K_PARAMETERS, CM1E_K_PARAMETER_HOMING_TORQUE, 1.0},                                    \
     }
 

@@ -29,7 +29,19 @@ enum {
 #define CM1E_BRIDGE_DEVICE_TYPE 0x00040192u /**< of the device and of each axis (F010) */
 #define CM1E_BRIDGE_MODULE_IDENT 0x00219800u /**< of each axis, whatever motor is behind it (F030, F050) */
 #define CM1E_BRIDGE_CYCLE_TIME_NS 1000000 /**< the only one (BR 6.3) */
-#define CM1E_BRIDGE_CML_BYTES 64          /**< longest string of F581 ... F594 (BR 7.2.2) */
+#define CM1E_BRIDGE_MODE_INTERVAL_NS 5000000 /**< between writes of 0x6060: more than that (BR 6.2.2 note 2) */
+#define CM1E_BRIDGE_STATUS_SUBINDEX 5     /**< of F530: what the motor at ID1 says of itself; then those of the others */
+
+/** Between one CML string and the next: the shorter time after one of less than so many bytes (BR 7.2.2). */
+#define CM1E_BRIDGE_CML_LONG_BYTES 32
+#define CM1E_BRIDGE_CML_SHORT_NS 4000000
+#define CM1E_BRIDGE_CML_LONG_NS 8000000
+
+/** What 1 in the objects of homing is: counts, counts/s, counts/s2 (BR 6.4.1; K48, K42, K43). The offset's is the
+ *  coarsest: a CM2 may be set to finer ones by its K45. */
+#define CM1E_BRIDGE_OFFSET_UNIT 100
+#define CM1E_BRIDGE_SPEED_UNIT 100
+#define CM1E_BRIDGE_ACCELERATION_UNIT 1000
 
 /** Bits of the statusword in csp and hm that CiA 402 leaves to the manufacturer (BR 6.1.3). */
 enum { CM1E_BRIDGE_STATUSWORD_ERROR = 0x4000, CM1E_BRIDGE_STATUSWORD_FREE = 0x8000 };

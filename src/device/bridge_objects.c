@@ -1,5 +1,6 @@
 #include <string.h>
 
+#include "cm1e/cml.h"
 #include "device/bridge_tables.h"
 
 /*
@@ -67,7 +68,7 @@
     {.index = (index_), .object_code = CM1E_OBJECT_VAR, .name = (name_), .entry_count = 1,                          \
      .entries = ENTRIES({.index = (index_), .access = (access_), .type = CM1E_TYPE_STRING, .bits = 8 * (bytes_),    \
                          .name = (name_), .unit = "", .default_string = "", available})}
-#define CML_TEXT(index, name, access) TEXT(index, name, access, CM1E_BRIDGE_CML_BYTES, YES)
+#define CML_TEXT(index, name, access) TEXT(index, name, access, CM1E_CML_BYTES, YES)
 /* Of these the guide gives no length either: this one is ours. */
 enum { TEXT_BYTES = 16 };
 

@@ -2,7 +2,7 @@
 
 #include <stdio.h>
 
-enum { ERRORS = 0x07, ARRIVED = 0x08, SERIAL = 0x0F, MOTOR_FREE = 0x10, PUSH = 0x20 };
+enum { ERRORS = BRIDGE_STATUS_POSITION_OVERFLOW | BRIDGE_STATUS_OVER_SPEED | BRIDGE_STATUS_OVERLOAD };
 
 /* BR 7.4. A status is taken apart from the top: a row with several bits is one thing when all of them are there, and
  * explains them. The cures are ours. */
@@ -11,21 +11,21 @@ static const struct {
     const char *name[2]; /* CM1, CM2; NULL: not in its table */
     const char *cure;    /* NULL: no error */
 } rows[] = {
-    {SERIAL, {"serial communication error", "serial communication error"},
+    {BRIDGE_STATUS_SERIAL_ERROR, {"serial communication error", "serial communication error"},
      "check the cable between bridge and motor, its connectors and length, and the supply; then reset the fault"},
-    {0x01, {"counter overflow", "position error overflow"},
+    {BRIDGE_STATUS_POSITION_OVERFLOW, {"counter overflow", "position error overflow"},
      "look for a blocked axis, reduce load or acceleration, or retune the motor; then reset the fault"},
-    {0x02, {"over speed or regenerative current", "over speed or regenerative voltage"},
+    {BRIDGE_STATUS_OVER_SPEED, {"over speed or regenerative current", "over speed or regenerative voltage"},
      "command less speed and less deceleration, and check for a load that drives the motor; then reset the fault"},
-    {0x04, {"overload", "overload"},
+    {BRIDGE_STATUS_OVERLOAD, {"overload", "overload"},
      "reduce load, friction or acceleration, or use a larger motor; then reset the fault"},
-    {PUSH | ARRIVED, {"end of push mode", "push motion completed"}, NULL},
-    {ARRIVED, {"in position", "in position"}, NULL},
-    {MOTOR_FREE, {"motor free", "motor free"}, NULL},
-    {PUSH, {"in push mode", "in push motion"}, NULL},
-    {0x40, {NULL, "power module over-current"},
+    {BRIDGE_STATUS_PUSH | BRIDGE_STATUS_IN_POSITION, {"end of push mode", "push motion completed"}, NULL},
+    {BRIDGE_STATUS_IN_POSITION, {"in position", "in position"}, NULL},
+    {BRIDGE_STATUS_MOTOR_FREE, {"motor free", "motor free"}, NULL},
+    {BRIDGE_STATUS_PUSH, {"in push mode", "in push motion"}, NULL},
+    {BRIDGE_STATUS_OVER_CURRENT, {NULL, "power module over-current"},
      "switch the motor's power off and look for a short circuit; if it comes back, replace the motor"},
-    {0x80, {"temperature alarm", "temperature alarm"},
+    {BRIDGE_STATUS_TEMPERATURE, {"temperature alarm", "temperature alarm"},
      "let the motor cool down, improve the cooling or reduce the load; then reset the fault"},
 };
 enum { ROWS = sizeof rows / sizeof *rows };
@@ -103,13 +103,8 @@ bool cm1e_bridge_status_is_error(cm1e_bridge_motor_t motor, uint32_t status)
     return cm1e_bridge_status_cure(motor, status)[0] != 0;
 }
 
-bool cm1e_bridge_status_is_serial(uint32_t status) { return (status & SERIAL) == SERIAL; }
-
-bool cm1e_bridge_status_is_free(uint32_t status) { return (status & MOTOR_FREE) != 0; }
-
 bool cm1e_bridge_status_is_moving(cm1e_bridge_motor_t motor, uint32_t status)
 {
-    return !cm1e_bridge_status_is_error(motor, status) && (status & (ARRIVED | MOTOR_FREE)) == 0;
+    return !cm1e_bridge_status_is_error(motor, status) &&
+           (status & (BRIDGE_STATUS_IN_POSITION | BRIDGE_STATUS_MOTOR_FREE)) == 0;
 }
-
-bool cm1e_bridge_status_is_in_position(uint32_t status) { return status == ARRIVED; }

@@ -1,7 +1,7 @@
 /**
  * @file bridge_status.h
- * What a Cool Muscle behind the bridge says of itself: F530:5 ... F530:8, the answer to the query ?99 (Ux), and in CPIO
- * four bits of the statusword. One table for each kind of motor (BR 7.4); its words are in cm1e/bridge.h.
+ * What a Cool Muscle behind the bridge says of itself: F530:5 ... F530:8, and the answer to the query ?99 (Ux). One
+ * table for each kind of motor (BR 7.4); its words are in cm1e/bridge.h.
  */
 #ifndef CM1E_DEVICE_BRIDGE_STATUS_H
 #define CM1E_DEVICE_BRIDGE_STATUS_H
@@ -12,20 +12,19 @@
 
 #include "device/bridge.h"
 
+/** Several of the first three can be there together, and as one number are all that is known of a motor whose serial
+ *  line is broken. */
+enum {
+    BRIDGE_STATUS_RUNNING = 0x00, BRIDGE_STATUS_POSITION_OVERFLOW = 0x01, BRIDGE_STATUS_OVER_SPEED = 0x02,
+    BRIDGE_STATUS_OVERLOAD = 0x04, BRIDGE_STATUS_IN_POSITION = 0x08, BRIDGE_STATUS_SERIAL_ERROR = 0x0F,
+    BRIDGE_STATUS_MOTOR_FREE = 0x10, BRIDGE_STATUS_PUSH = 0x20, BRIDGE_STATUS_OVER_CURRENT = 0x40,
+    BRIDGE_STATUS_TEMPERATURE = 0x80,
+};
+
 /** An error or an alarm of the motor or of the serial line to it. TRUE also for bits that the guide gives no meaning
  *  for this motor. */
 bool cm1e_bridge_status_is_error(cm1e_bridge_motor_t motor, uint32_t status);
-/** The error is that of the serial line: of the motor itself nothing is known. */
-bool cm1e_bridge_status_is_serial(uint32_t status);
-/** It holds no torque. */
-bool cm1e_bridge_status_is_free(uint32_t status);
 /** It moves or pushes: has neither arrived nor an error, nor is it free. */
 bool cm1e_bridge_status_is_moving(cm1e_bridge_motor_t motor, uint32_t status);
-/** It stands where it was sent; not at the end of a push, where it stands elsewhere. */
-bool cm1e_bridge_status_is_in_position(uint32_t status);
-
-/** The status in a statusword of CPIO, its bits 8 ... 11 (BR 7.1.3): the four lowest bits of F530. Motor free, push
- *  modes and alarms are not among them. */
-static inline uint8_t cm1e_bridge_status_of_cpio(uint16_t statusword) { return statusword >> 8 & 0x0F; }
 
 #endif

@@ -9,7 +9,7 @@
 
 /* 0x6064 of a motor that holds may swing by some pulses. */
 enum { REST_COUNTS = 3 };
-enum { STATUS_OF_AXIS_1 = 5, STATUS_TRIES = 3 };
+enum { STATUS_TRIES = 3 };
 static const int64_t rest_ns = 20 * MS_IN_NS;
 static const int64_t status_timeout_ns = 300 * MS_IN_NS;
 
@@ -103,7 +103,7 @@ static void ask_status(cm1e_drive_t *drive)
         behind->status_tries++;
         behind->status_sdo = (cm1e_sdo_t){
             .position = drive->position, .index = OBJ_F530_SYSTEM_INFO,
-            .subindex = (uint8_t)(STATUS_OF_AXIS_1 + drive->config->channel - 1), .data = behind->status_data,
+            .subindex = (uint8_t)(CM1E_BRIDGE_STATUS_SUBINDEX + drive->config->channel - 1), .data = behind->status_data,
             .size = sizeof behind->status_data, .timeout_ns = status_timeout_ns,
         };
         behind->status_reading = cm1e_sdo_submit(drive->bus, &behind->status_sdo) == CM1E_OK;

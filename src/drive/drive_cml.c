@@ -7,9 +7,8 @@
 
 #define MS_IN_NS INT64_C(1000000)
 
-enum { LONG_BYTES = 32, DRAIN_MOST = 64 };
+enum { DRAIN_MOST = 64 };
 
-static const int64_t short_ns = 4 * MS_IN_NS, long_ns = 8 * MS_IN_NS; /* between strings (BR 7.2.2) */
 static const int64_t look_ns = 2 * MS_IN_NS;  /* "more than 1 msec" (BR appendix 2.1) */
 static const int64_t line_ns = 10 * MS_IN_NS; /* between the lines of a list (2.5) */
 static const int64_t unknown_ns = 50 * MS_IN_NS; /* without a word then, a motor has nothing to say to a command */
@@ -285,7 +284,8 @@ static void drained(cm1e_drive_cml_t *cml)
 static void sent(cm1e_drive_cml_t *cml)
 {
     const cm1e_drive_cml_request_t *request = request_of(cml, cml->head);
-    const int64_t pace_ns = strlen(request->text) < LONG_BYTES ? short_ns : long_ns;
+    const int64_t pace_ns = strlen(request->text) < CM1E_BRIDGE_CML_LONG_BYTES ? CM1E_BRIDGE_CML_SHORT_NS
+                                                                                     : CM1E_BRIDGE_CML_LONG_NS;
     cml->free_ns = cml->now_ns + pace_ns;
     cml->deadline_ns = cml->now_ns + request->timeout_ns;
     if (cml->open == 0)
@@ -300,7 +300,7 @@ static void transferred(cm1e_drive_cml_t *cml)
     const bool failed = cm1e_sdo_state(&cml->sdo) == CM1E_SDO_ERROR;
     cml->submitted = false;
     if (cml->phase == CML_IDLE) { /* cancelled meanwhile */
-        cml->free_ns = cml->sdo.write ? cml->now_ns + long_ns : cml->free_ns;
+        cml->free_ns = cml->sdo.write ? cml->now_ns + CM1E_BRIDGE_CML_LONG_NS : cml->free_ns;
         return;
     }
     if (failed)

@@ -12,7 +12,6 @@
 #define MS_IN_NS INT64_C(1000000)
 
 enum { OWN_MODE = CM1E_BRIDGE_MODE_CSP };
-static const int64_t interval_ns = 5 * MS_IN_NS; /* between switches of mode (BR appendix 3) */
 static const int64_t switch_ns = 1000 * MS_IN_NS;
 static const int64_t step_ns = MS_IN_NS;
 
@@ -89,7 +88,7 @@ static cm1e_error_t not_confirmed(const place_t *at, int8_t wanted, int8_t shown
     uint8_t status[4];
     size_t size = sizeof status;
     const cm1e_device_model_t model = cm1e_bus_slave(at->bus, at->position)->model;
-    if (cm1e_sdo_read(at->bus, at->position, OBJ_F530_SYSTEM_INFO, (uint8_t)(4 + at->channel), status, &size, NULL)
+    if (cm1e_sdo_read(at->bus, at->position, OBJ_F530_SYSTEM_INFO, (uint8_t)(CM1E_BRIDGE_STATUS_SUBINDEX + at->channel - 1), status, &size, NULL)
             == CM1E_OK && size == sizeof status)
         cm1e_bridge_status_text(cm1e_bridge_motor(model, at->channel - 1u), cm1e_get_u32(status), words, sizeof words);
     return cm1e_diag_set(at->diag, CM1E_ERROR_DRIVE_MODE_TIMEOUT, 0,
@@ -102,12 +101,12 @@ static cm1e_error_t switch_mode(const place_t *at, int8_t wanted)
 {
     cm1e_clock_t *clock = cm1e_bus_clock(at->bus);
     int8_t shown = 0;
-    sleep_for(at->bus, interval_ns);
+    sleep_for(at->bus, CM1E_BRIDGE_MODE_INTERVAL_NS);
     cm1e_error_t error = cm1e_sdo_write(at->bus, at->position, index_of(at, OBJ_6060_MODES_OF_OPERATION), 0, &wanted, 1,
                                         at->diag);
     const int64_t deadline_ns = cm1e_clock_now(clock) + switch_ns;
     while (error == CM1E_OK && shown != wanted && cm1e_clock_now(clock) < deadline_ns) {
-        sleep_for(at->bus, interval_ns);
+        sleep_for(at->bus, CM1E_BRIDGE_MODE_INTERVAL_NS);
         error = read_mode(at, &shown);
     }
     return error || shown == wanted ? error : not_confirmed(at, wanted, shown);
@@ -210,7 +209,7 @@ static void free_motor(const place_t *at, cm1e_drive_cml_t *cml)
     place_t quiet = {at->bus, at->position, at->channel, NULL};
     cm1e_drive_cml_init(cml, at->position, at->channel, transfer, &quiet);
     run(&quiet, cml, cm1e_drive_cml_motor_free(cml, text), NULL, &ticket);
-    sleep_for(at->bus, 2 * interval_ns); /* and this one arrives */
+    sleep_for(at->bus, 2 * CM1E_BRIDGE_MODE_INTERVAL_NS); /* and this one arrives */
 }
 
 cm1e_error_t cm1e_cml_exchange(cm1e_bus_t *bus, cm1e_cml_exchange_t *exchange, cm1e_diag_t *diag)

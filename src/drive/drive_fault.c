@@ -83,7 +83,8 @@ static void say_status(writer_t *w, const cm1e_drive_t *drive)
     const uint8_t status = drive->fault.motor_status;
     const char *cure = cm1e_bridge_status_cure(motor, status);
     say(w, " The motor (%s) says: %s (F530:%u = 0x%02X).", cm1e_bridge_motor_name(motor),
-        cm1e_bridge_status_text(motor, status, text, sizeof text), drive->config->channel + 4u, status);
+        cm1e_bridge_status_text(motor, status, text, sizeof text),
+        CM1E_BRIDGE_STATUS_SUBINDEX + drive->config->channel - 1u, status);
     if (cure[0])
         say(w, " Cure: %s.", cure);
 }

@@ -11,8 +11,8 @@ enum { PHASE_IDLE = 0, PHASE_WRITING, PHASE_READING, PHASE_WAIT, PHASE_GIVEN_UP 
 static const int64_t mode_timeout_ns = 1000 * MS_IN_NS;
 static const int64_t sdo_timeout_ns = 300 * MS_IN_NS;
 static const int64_t write_again_ns = 50 * MS_IN_NS;
-static const int64_t read_again_ns = 5 * MS_IN_NS;  /* BR appendix 3 */
-static const int64_t interval_ns = 6 * MS_IN_NS;    /* BR 6.2.2 note 2: more than 5 ms */
+static const int64_t read_again_ns = CM1E_BRIDGE_MODE_INTERVAL_NS; /* BR appendix 3 */
+static const int64_t interval_ns = CM1E_BRIDGE_MODE_INTERVAL_NS + MS_IN_NS;
 static const int64_t silence_ns = 10 * MS_IN_NS;    /* 0000h for five cycles before words of another coding */
 
 static const char abnormal[] = "Since power-on the motor was in CMD or CPIO: by way of CML, CSP \"will possibly result "

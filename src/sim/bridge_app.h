@@ -17,25 +17,20 @@
 #define CM1E_SIM_BRIDGE_APP_H
 
 #include "cia402/cia402.h"
+#include "cm1e/cml.h"
 #include "device/bridge.h"
+#include "device/bridge_status.h"
 #include "sim/search.h"
 #include "sim/segment.h"
 #include "sim/sensors.h"
 #include "sim/slave.h"
 #include "sim/store.h"
 
-/** What a motor says of itself (BR 7.4): F530:5 ... F530:8. */
-enum {
-    BRIDGE_STATUS_RUNNING = 0x00, BRIDGE_STATUS_POSITION_OVERFLOW = 0x01, BRIDGE_STATUS_OVER_SPEED = 0x02,
-    BRIDGE_STATUS_OVERLOAD = 0x04, BRIDGE_STATUS_IN_POSITION = 0x08, BRIDGE_STATUS_SERIAL_ERROR = 0x0F,
-    BRIDGE_STATUS_MOTOR_FREE = 0x10, BRIDGE_STATUS_OVER_CURRENT = 0x40, BRIDGE_STATUS_TEMPERATURE = 0x80,
-};
-
 /** Answers of the motor that wait in the mailbox. */
 enum { CML_LINES = 8 };
 typedef struct cml_line {
     int64_t due_ns;          /**< when it has come */
-    char text[CM1E_BRIDGE_CML_BYTES];
+    char text[CM1E_CML_BYTES];
 } cml_line_t;
 
 typedef struct cm1e_sim_cml {

@@ -4,8 +4,7 @@
 
 #include "sim/bridge_app.h"
 
-/* BR 7.2.2: between two strings, which is also what the motor needs for one; the lines of a list come one by one. */
-enum { LONG_BYTES = 32, SHORT_NS = 4000000, LONG_NS = 8000000, LINE_NS = 8000000 };
+enum { LINE_NS = 8000000 }; /* the lines of a list come one by one */
 enum { K_FIRST = 21, K_RESOLUTION = 37, K_LAST = 99, QUERY_LIST = 90, QUERY_POSITION = 96, QUERY_STATUS = 99 };
 
 static const char nothing[] = "Null\r\n";
@@ -147,13 +146,15 @@ static void execute(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, int
 uint32_t cm1e_sim_bridge_cml_write(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, const uint8_t *data,
                                    size_t size)
 {
-    char text[CM1E_BRIDGE_CML_BYTES + 1] = "";
-    if (size > CM1E_BRIDGE_CML_BYTES)
+    char text[CM1E_CML_BYTES + 1] = "";
+    if (size > CM1E_CML_BYTES)
         return SDO_ABORT_TOO_LONG;
     if (axis->mode != CM1E_BRIDGE_MODE_CML)
         return SDO_ABORT_STATE;
     const bool busy = bridge->now_ns < axis->cml.free_ns;
-    axis->cml.free_ns = bridge->now_ns + (size < LONG_BYTES ? SHORT_NS : LONG_NS);
+    /* Between two strings, which is also what the motor needs for one. */
+    axis->cml.free_ns = bridge->now_ns + (size < CM1E_BRIDGE_CML_LONG_BYTES ? CM1E_BRIDGE_CML_SHORT_NS
+                                                                            : CM1E_BRIDGE_CML_LONG_NS);
     memcpy(text, data, size);
     const unsigned broken = (busy ? CM1E_SIM_CML_TOO_SOON : 0u) |
                             (cm1e_sim_bridge_line_is_free(axis) ? 0u : CM1E_SIM_CML_LINE_BUSY) |

@@ -21,7 +21,7 @@ static void look_at_sensor(cm1e_sim_bridge_axis_t *axis)
 /* "x100, 10 or 1 pulse, set by 2nd digit of K45" on a CM2. */
 static double offset_unit(const cm1e_sim_bridge_t *bridge, const cm1e_sim_bridge_axis_t *axis)
 {
-    static const double units[] = {100, 10, 1};
+    static const double units[] = {CM1E_BRIDGE_OFFSET_UNIT, 10, 1};
     const int64_t digit = *cm1e_sim_bridge_k(bridge, axis->number, K_OFFSET_UNIT) / 10 % 10;
     return axis->motor == CM1E_BRIDGE_CM2 && (digit == 1 || digit == 2) ? units[digit] : units[0];
 }
@@ -35,8 +35,8 @@ void cm1e_sim_bridge_search_begin(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axi
     const int64_t torque = *cm1e_sim_bridge_k(bridge, n, K_TORQUE);
     axis->search = (cm1e_sim_search_t){
         .direction = methods[method - 1].direction,
-        .speed = 100.0 * (double)*cm1e_sim_bridge_k(bridge, n, K_SPEED) / axis->scale,
-        .acceleration = 1000.0 * (double)*cm1e_sim_bridge_k(bridge, n, K_ACCELERATION) / axis->scale,
+        .speed = CM1E_BRIDGE_SPEED_UNIT * (double)*cm1e_sim_bridge_k(bridge, n, K_SPEED) / axis->scale,
+        .acceleration = CM1E_BRIDGE_ACCELERATION_UNIT * (double)*cm1e_sim_bridge_k(bridge, n, K_ACCELERATION) / axis->scale,
         .offset = offset_unit(bridge, axis) * (double)*cm1e_sim_bridge_k(bridge, n, K_OFFSET) / axis->scale,
     };
     look_at_sensor(axis);

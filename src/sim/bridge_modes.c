@@ -1,7 +1,6 @@
 #include "sim/bridge_app.h"
 
-/* "Switch the mode with an interval at least more than 5 msec" (BR 6.2.2); how long a switch takes is not stated. */
-enum { INTERVAL_NS = 5000000, SWITCH_NS = 2000000 };
+enum { SWITCH_NS = 2000000 }; /* how long a switch takes is not stated */
 
 static bool is_mode(int8_t mode)
 {
@@ -36,7 +35,7 @@ static unsigned obstacles(const cm1e_sim_bridge_axis_t *axis, int8_t to)
 void cm1e_sim_bridge_request_mode(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, int8_t value)
 {
     const int8_t to = is_mode(value) ? value : CM1E_BRIDGE_MODE_CSP; /* BR 6.2.2 note 3 */
-    const bool too_soon = bridge->now_ns < axis->mode_request_ns + INTERVAL_NS;
+    const bool too_soon = bridge->now_ns < axis->mode_request_ns + CM1E_BRIDGE_MODE_INTERVAL_NS;
     const unsigned broken = obstacles(axis, to) | (too_soon ? CM1E_SIM_MODE_TOO_SOON : 0u);
     axis->mode_request_ns = bridge->now_ns;
     axis->broken_rules |= broken;

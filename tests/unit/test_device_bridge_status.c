@@ -15,7 +15,7 @@ static const char *words(cm1e_bridge_motor_t motor, uint32_t status)
 
 /* ---- BR 7.4, typed off the guide with its patterns -------------------------------------------------------------- */
 
-enum { ERROR = 1, FREE = 2, MOVING = 4, THERE = 8, SERIAL = 16 };
+enum { ERROR = 1, MOVING = 2 };
 typedef struct pattern {
     const char *bits; /* 7 ... 0 */
     const char *name;
@@ -26,10 +26,10 @@ static const pattern_t cm1[] = {
     {"00000xx1", "counter overflow", ERROR},
     {"00000x1x", "over speed or regenerative current", ERROR},
     {"000001xx", "overload", ERROR},
-    {"00001111", "serial communication error", ERROR | SERIAL},
+    {"00001111", "serial communication error", ERROR},
     {"00000000", "running", MOVING},
-    {"00001000", "in position", THERE},
-    {"00010000", "motor free", FREE},
+    {"00001000", "in position", 0},
+    {"00010000", "motor free", 0},
     {"00100000", "in push mode", MOVING},
     {"00101000", "end of push mode", 0},
     {"10000000", "temperature alarm", ERROR},
@@ -39,10 +39,10 @@ static const pattern_t cm2[] = {
     {"00000xx1", "position error overflow", ERROR},
     {"00000x1x", "over speed or regenerative voltage", ERROR},
     {"000001xx", "overload", ERROR},
-    {"00001111", "serial communication error", ERROR | SERIAL},
+    {"00001111", "serial communication error", ERROR},
     {"00000000", "running", MOVING},
-    {"00001000", "in position", THERE},
-    {"00010000", "motor free", FREE},
+    {"00001000", "in position", 0},
+    {"00010000", "motor free", 0},
     {"00100000", "in push motion", MOVING},
     {"00101000", "push motion completed", 0},
     {"01000000", "power module over-current", ERROR},
@@ -61,10 +61,8 @@ static bool fits(const pattern_t *pattern, unsigned status)
 
 static int predicates(cm1e_bridge_motor_t motor, uint32_t status)
 {
-    return (cm1e_bridge_status_is_error(motor, status) ? ERROR : 0) | (cm1e_bridge_status_is_free(status) ? FREE : 0)
-           | (cm1e_bridge_status_is_moving(motor, status) ? MOVING : 0)
-           | (cm1e_bridge_status_is_in_position(status) ? THERE : 0)
-           | (cm1e_bridge_status_is_serial(status) ? SERIAL : 0);
+    return (cm1e_bridge_status_is_error(motor, status) ? ERROR : 0) |
+           (cm1e_bridge_status_is_moving(motor, status) ? MOVING : 0);
 }
 
 /* Of all values those that the guide lists, with the names of every pattern that fits and of no other. */
@@ -125,8 +123,6 @@ static void check_unlisted(cm1e_bridge_motor_t motor, unsigned status)
     TEST_ASSERT_EQUAL_MESSAGE((status & 0xC7) != 0, cm1e_bridge_status_is_error(motor, status), text);
     if (status & 0xC7)
         TEST_ASSERT_TRUE_MESSAGE(cm1e_bridge_status_cure(motor, status)[0], text);
-    TEST_ASSERT_EQUAL_MESSAGE((status & 0x10) != 0, cm1e_bridge_status_is_free(status), text);
-    TEST_ASSERT_FALSE_MESSAGE(cm1e_bridge_status_is_in_position(status), text);
     TEST_ASSERT_FALSE_MESSAGE(cm1e_bridge_status_is_moving(motor, status) && (status & 0xDF), text);
 }
 
@@ -164,22 +160,6 @@ static void test_text_in_too_little_room_is_cut(void)
     }
 }
 
-/* BR 7.1.3 */
-static void test_status_of_cpio_is_the_low_half_of_the_same_table(void)
-{
-    static const struct {
-        uint16_t statusword;
-        const char *name;
-    } cases[] = {
-        {0xC1F7, "counter overflow"}, {0xC207, "over speed or regenerative current"}, {0xC4A7, "overload"},
-        {0xCF07, "serial communication error"}, {0xC0F7, "running"}, {0xC807, "in position"},
-        {0xC507, "counter overflow, overload"},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
-        TEST_ASSERT_EQUAL_STRING(cases[i].name,
-                                 words(CM1E_BRIDGE_CM1, cm1e_bridge_status_of_cpio(cases[i].statusword)));
-}
-
 /* BR 7.3: codes 1 to 5 are "N/A" */
 static void test_only_one_baud_rate_is_known(void)
 {
@@ -209,7 +189,6 @@ int main(void)
     RUN_TEST(test_every_other_value_is_named_as_unlisted);
     RUN_TEST(test_bits_above_the_eighth_are_unknown_ones);
     RUN_TEST(test_text_in_too_little_room_is_cut);
-    RUN_TEST(test_status_of_cpio_is_the_low_half_of_the_same_table);
     RUN_TEST(test_only_one_baud_rate_is_known);
     RUN_TEST(test_five_modes_have_names);
     return UNITY_END();

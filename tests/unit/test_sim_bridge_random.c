@@ -45,7 +45,7 @@ static void random_cml(void)
     b.ops->sdo_write(b.bridge, (uint16_t)(0xF581 + pick(4)), 0, BENCH_OP, text, size);
     size = sizeof text;
     TEST_ASSERT_EQUAL_HEX32(0, b.ops->sdo_read(b.bridge, (uint16_t)(0xF591 + pick(4)), 0, BENCH_OP, text, &size));
-    TEST_ASSERT_TRUE(size > 2 && size <= CM1E_BRIDGE_CML_BYTES && text[size - 2] == '\r' && text[size - 1] == '\n');
+    TEST_ASSERT_TRUE(size > 2 && size <= CM1E_CML_BYTES && text[size - 2] == '\r' && text[size - 1] == '\n');
 }
 
 static void random_sdo(void)
