@@ -61,7 +61,7 @@ typedef struct cm1e_cml_exchange {
     uint16_t position;   /**< slave, 1 = first */
     uint8_t channel;     /**< connector, 1 ... 4 */
     const char *text;
-    int64_t timeout_ns;  /**< until an answer; 0: 1 s, for an origin search 70 s */
+    int64_t timeout_ns;  /**< until an answer, up to 1e6 s; 0: 1 s, for an origin search 70 s */
     bool allow_motion;   /**< strings of the kind CM1E_CML_MOTION are sent too */
     bool (*cancelled)(void *context); /**< asked every few ms; NULL: nobody cancels */
     void *context;       /**< of `cancelled` */

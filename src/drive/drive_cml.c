@@ -45,13 +45,15 @@ static bool is_search(const char *text)
 cm1e_error_t cm1e_drive_cml_send(cm1e_drive_cml_t *cml, const char *text, int64_t timeout_ns, uint32_t *ticket)
 {
     *ticket = 0;
+    if (timeout_ns < 0 || timeout_ns > CM1E_DRIVE_LONGEST_NS)
+        return CM1E_ERROR_INVALID_ARGUMENT;
     if (cm1e_cml_check(text, cml->channel))
         return CM1E_ERROR_CML_STRING;
     if (cml->next - cml->head >= CM1E_DRIVE_CML_QUEUE)
         return CM1E_ERROR_FULL;
     cm1e_drive_cml_request_t *request = request_of(cml, cml->next);
     *request = (cm1e_drive_cml_request_t){.ticket = cml->next, .state = CM1E_DRIVE_CML_WAITING};
-    request->timeout_ns = timeout_ns > 0 ? timeout_ns : is_search(text) ? search_ns : answer_ns;
+    request->timeout_ns = timeout_ns ? timeout_ns : is_search(text) ? search_ns : answer_ns;
     memcpy(request->text, text, strlen(text) + 1);
     *ticket = cml->next++;
     if (cml->next == 0) /* 0 is no ticket; nobody sends so many strings */

@@ -15,6 +15,7 @@
 #include "device/cml.h"
 
 enum { CM1E_DRIVE_CML_QUEUE = 4 };
+#define CM1E_DRIVE_LONGEST_NS (INT64_C(1000000000) * 1000000) /**< of a timeout: so that times can be added to it */
 
 typedef enum cm1e_drive_cml_state {
     CM1E_DRIVE_CML_FORGOTTEN = 0, /**< no such ticket, or so many came after it */
@@ -74,8 +75,9 @@ typedef struct cm1e_drive_cml {
 void cm1e_drive_cml_init(cm1e_drive_cml_t *cml, uint16_t position, uint8_t channel,
                          cm1e_error_t (*submit)(void *context, cm1e_sdo_t *sdo), void *context);
 /** Puts a string behind those that wait. `timeout_ns`: between it, or a line of its answer, and the next line; 0: 1 s,
- *  of an origin search 70 s. CM1E_ERROR_CML_STRING: see cm1e_cml_check(). CM1E_ERROR_FULL: four wait. Whether it may
- *  move the motor is the caller's to judge. @rt cycle */
+ *  of an origin search 70 s. CM1E_ERROR_INVALID_ARGUMENT: it is negative, or above CM1E_DRIVE_LONGEST_NS.
+ *  CM1E_ERROR_CML_STRING: see cm1e_cml_check(). CM1E_ERROR_FULL: four wait. Whether it may move the motor is the
+ *  caller's to judge. @rt cycle */
 cm1e_error_t cm1e_drive_cml_send(cm1e_drive_cml_t *cml, const char *text, int64_t timeout_ns, uint32_t *ticket);
 /** `ready`: 0x6061 shows CML, and the controlword has been 0000h for five cycles of process data. @rt cycle */
 void cm1e_drive_cml_step(cm1e_drive_cml_t *cml, int64_t now_ns, bool ready);

@@ -60,17 +60,6 @@ static cm1e_error_t check_place(const place_t *at)
 
 /* ---- mode of operation ------------------------------------------------------------------------------------------- */
 
-static cm1e_error_t read_byte(const place_t *at, uint16_t index, uint8_t subindex, int8_t *value)
-{
-    size_t size = sizeof *value;
-    const cm1e_error_t error = cm1e_sdo_read(at->bus, at->position, index, subindex, value, &size, at->diag);
-    if (error == CM1E_OK && size != sizeof *value)
-        return cm1e_diag_set(at->diag, CM1E_ERROR_BUS_MAILBOX, 0,
-                             "Slave %u: object 0x%04X was read with %zu bytes instead of 1.", at->position, index,
-                             size);
-    return error;
-}
-
 static uint16_t index_of(const place_t *at, uint16_t index)
 {
     return (uint16_t)(index + (at->channel - 1) * CM1E_BRIDGE_INDEX_INCREMENT);
@@ -78,7 +67,14 @@ static uint16_t index_of(const place_t *at, uint16_t index)
 
 static cm1e_error_t read_mode(const place_t *at, int8_t *mode)
 {
-    return read_byte(at, index_of(at, OBJ_6061_MODES_OF_OPERATION_DISPLAY), 0, mode);
+    size_t size = sizeof *mode;
+    const uint16_t index = index_of(at, OBJ_6061_MODES_OF_OPERATION_DISPLAY);
+    const cm1e_error_t error = cm1e_sdo_read(at->bus, at->position, index, 0, mode, &size, at->diag);
+    if (error == CM1E_OK && size != sizeof *mode)
+        return cm1e_diag_set(at->diag, CM1E_ERROR_BUS_MAILBOX, 0,
+                             "Slave %u: object 0x%04X was read with %zu bytes instead of 1.", at->position, index,
+                             size);
+    return error;
 }
 
 /* Why a bridge may refuse: it moves, or the motor has an error. */
@@ -122,7 +118,7 @@ static cm1e_error_t enter(const place_t *at)
         return cm1e_diag_set(at->diag, CM1E_ERROR_CM_MODE, 0,
                              "Slave %u, connector %u is in %s mode (%d). From there the way to CML and back ends in "
                              "abnormal operation (BR 6, note 2): switch the bridge off and on again.", at->position,
-                             at->channel, mode == CM1E_BRIDGE_MODE_CMD ? "CMD" : "CPIO", mode);
+                             at->channel, cm1e_bridge_mode_name(mode), mode);
     if (mode != OWN_MODE)
         error = switch_mode(at, OWN_MODE);
     return error ? error : switch_mode(at, CM1E_BRIDGE_MODE_CML);
@@ -175,13 +171,18 @@ static cm1e_error_t describe(const place_t *at, const cm1e_drive_cml_t *cml, con
     }
 }
 
-static cm1e_error_t check_string(const place_t *at, const cm1e_cml_exchange_t *exchange)
+static cm1e_error_t check_exchange(const place_t *at, const cm1e_cml_exchange_t *exchange)
 {
     const char *text = exchange->text, *wrong = text ? cm1e_cml_check(text, at->channel) : "is missing";
     if (wrong)
         return cm1e_diag_set(at->diag, CM1E_ERROR_CML_STRING, 0,
                              "Slave %u, connector %u: the string \"%.80s\" %s.", at->position, at->channel,
                              text ? text : "", wrong);
+    if (exchange->timeout_ns < 0 || exchange->timeout_ns > CM1E_DRIVE_LONGEST_NS)
+        return cm1e_diag_set(at->diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
+                             "Slave %u, connector %u: a timeout of %lld ns; 0 (the default) ... %lld is right.",
+                             at->position, at->channel, (long long)exchange->timeout_ns,
+                             (long long)CM1E_DRIVE_LONGEST_NS);
     if (cm1e_cml_kind(text) == CM1E_CML_MOTION && !exchange->allow_motion)
         return cm1e_diag_set(at->diag, CM1E_ERROR_CML_MOTION, 0,
                              "Slave %u, connector %u: the string \"%s\" may move the motor, change its power or what "
@@ -221,7 +222,7 @@ cm1e_error_t cm1e_cml_exchange(cm1e_bus_t *bus, cm1e_cml_exchange_t *exchange, c
     place_t at = {bus, exchange->position, exchange->channel, diag};
     cm1e_error_t error = check_place(&at);
     if (error == CM1E_OK)
-        error = check_string(&at, exchange);
+        error = check_exchange(&at, exchange);
     if (error == CM1E_OK)
         error = enter(&at);
     if (error)

@@ -52,6 +52,14 @@ static void fails(cm1e_error_t wanted, cm1e_error_t error, const char *words)
     ck_assert_msg(strstr(diag.text, words), "%s", diag.text);
 }
 
+/* To which no time can be added. */
+static void fails_for_time(int64_t timeout_ns)
+{
+    memset(&diag, 0, sizeof diag);
+    exchange = (cm1e_cml_exchange_t){.position = 2, .channel = 1, .text = "?99", .timeout_ns = timeout_ns};
+    fails(CM1E_ERROR_INVALID_ARGUMENT, cm1e_cml_exchange(bus, &exchange, &diag), "a timeout of");
+}
+
 START_TEST(test_answers_and_the_way_back)
 {
     start();
@@ -75,6 +83,8 @@ START_TEST(test_what_is_refused_reaches_no_motor)
     fails(CM1E_ERROR_CML_MOTION, send(1, "|.1", false), "allowed");
     fails(CM1E_ERROR_CML_STRING, send(1, "", true), "is empty");
     fails(CM1E_ERROR_CML_STRING, send(1, NULL, true), "is missing");
+    fails_for_time(-1);
+    fails_for_time(INT64_MAX);
     fails(CM1E_ERROR_CML_STRING, send(1, "?99.2", true), "another motor");
     fails(CM1E_ERROR_INVALID_ARGUMENT, send(0, "?99", false), "connector 0");
     fails(CM1E_ERROR_INVALID_ARGUMENT, send(5, "?99", false), "1 ... 4");
