@@ -18,7 +18,6 @@
 
 enum { K37 = 37 };
 static const int64_t release_ns = 2000 * MS_IN_NS;
-static const int64_t longest_ns = INT64_C(1000000000) * 1000000; /* of a timeout: so that times can be added to it */
 
 static const char abnormal[] = "In CMD and CPIO the way to CML and back ends in abnormal operation (BR 6 note 2): "
                                "CM_SetMode with Insist goes it all the same";
@@ -130,8 +129,6 @@ cm1e_error_t cm1e_axis_cml_send(cm1e_axis_t *axis, const char *text, size_t size
     *ticket = 0;
     memcpy(copy, text, strnlen(text, size < sizeof copy - 1 ? size : sizeof copy - 1));
     cm1e_error_t error = check(axis, true);
-    if (!error && (timeout_ns < 0 || timeout_ns > longest_ns))
-        error = CM1E_ERROR_INVALID_ARGUMENT;
     if (!error)
         error = check_string(axis, copy, allow_motion, &why);
     if (!error)
@@ -235,7 +232,7 @@ cm1e_error_t cm1e_axis_motor_command(cm1e_axis_t *axis, cm1e_drive_cmd_t command
 {
     *ticket = 0;
     cm1e_error_t error = !axis->muscle       ? CM1E_ERROR_CM_NO_BRIDGE
-                         : timeout_ns > longest_ns ? CM1E_ERROR_INVALID_ARGUMENT
+                         : timeout_ns > CM1E_DRIVE_LONGEST_NS ? CM1E_ERROR_INVALID_ARGUMENT
                                                    : cm1e_drive_cmd_start(&axis->drive, command, timeout_ns);
     if (error == CM1E_ERROR_STATE)
         error = CM1E_ERROR_CM_MODE;
@@ -383,23 +380,13 @@ bool cm1e_axis_cool_muscle_released(cm1e_axis_t *axis)
 
 /* ---- words ------------------------------------------------------------------------------------------------------- */
 
-static const char *mode_name(int8_t mode)
-{
-    switch (mode) {
-    case CM1E_BRIDGE_MODE_CSP: return "CSP";
-    case CM1E_BRIDGE_MODE_CML: return "CML";
-    case CM1E_BRIDGE_MODE_CMD: return "CMD";
-    case CM1E_BRIDGE_MODE_CPIO: return "CPIO";
-    default: return "another mode";
-    }
-}
-
 bool cm1e_axis_cool_muscle_text(const cm1e_axis_t *axis, cm1e_error_t error, char *text, size_t size)
 {
     const cool_muscle_t *muscle = axis->muscle;
     if (!muscle)
         return false;
     const char *const name = axis->config->name, *const why = muscle->why ? muscle->why : "";
+    const char *const mode = cm1e_drive_mode_name(&axis->drive, axis->drive.feedback.mode);
     switch (error) {
     case CM1E_ERROR_CML_STRING:
         snprintf(text, size, "Axis \"%s\": the CML string \"%s\" %s.", name, muscle->text, why);
@@ -419,7 +406,7 @@ bool cm1e_axis_cool_muscle_text(const cm1e_axis_t *axis, cm1e_error_t error, cha
                  why[0] ? "\"" : "");
         return true;
     case CM1E_ERROR_CM_MODE:
-        snprintf(text, size, "Axis \"%s\": the motor is in %s. %s.", name, mode_name(axis->drive.feedback.mode), why);
+        snprintf(text, size, "Axis \"%s\": the motor is in %s. %s.", name, mode ? mode : "another mode", why);
         return true;
     case CM1E_ERROR_CM_NOT_DISABLED:
         snprintf(text, size, "Axis \"%s\", %s: %s. MC_Power.Enable FALSE leads there.", name,

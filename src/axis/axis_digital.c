@@ -34,7 +34,7 @@ const char *cm1e_axis_signals_advice(const cm1e_axis_t *axis, cm1e_error_t error
         return "";
     switch (error) {
     case CM1E_ERROR_AXIS_SIGNAL:
-        return cm1e_bridge_motor(drive->bridge, drive->config->channel - 1u) == CM1E_BRIDGE_CM1
+        return cm1e_drive_bridge_motor(drive) == CM1E_BRIDGE_CM1
                    ? " Of a CM1 behind a bridge these can be reached: inputs 2 ... 4, output 2."
                    : " Of a CM2 behind a bridge these can be reached: inputs 1 ... 6, outputs 1 ... 4.";
     case CM1E_ERROR_PDO_MAPPING:

@@ -35,6 +35,7 @@ static const double longest_timeout_s = 1e6;
 
 typedef struct homing_kind {
     int8_t first_method, last_method;
+    int8_t first_by_switch, last_by_switch; /* those that look for a switch and not for a stop */
     bool halts;                /* it has a halt bit */
     bool attained_is_enough;   /* bit 12 alone and a motor that stands (BR appendix 4.2) */
     homing_object_t objects[HOMING_PARAMETERS];
@@ -42,6 +43,7 @@ typedef struct homing_kind {
     home_step_t steps[MOST_STEPS]; /* up to HOME_RETURN */
 } homing_kind_t;
 
+#define METHODS_BEHIND_BRIDGE .first_method = 1, .last_method = 4, .first_by_switch = 3, .last_by_switch = 4
 #define STEPS_BEHIND_BRIDGE                                                                                         \
     HOME_REST, HOME_SWITCH, HOME_WRITE, HOME_TAKEN, HOME_START, HOME_RUN, HOME_SETTLE, HOME_RETURN
 #define OBJECTS_BEHIND_BRIDGE                                                                                       \
@@ -55,7 +57,7 @@ typedef struct homing_kind {
 
 static const homing_kind_t homing_kinds[] = {
     [HOMING_CM1E] = {
-        .first_method = -6, .last_method = -1, .halts = true,
+        .first_method = -6, .last_method = -1, .first_by_switch = -6, .last_by_switch = -3, .halts = true,
         .objects = {
             [OFFSET] = {OBJ_607C_HOME_OFFSET, 0, 1.0},
             [METHOD] = {OBJ_6098_HOMING_METHOD, 0, 1.0},
@@ -66,28 +68,28 @@ static const homing_kind_t homing_kinds[] = {
         .steps = {HOME_WRITE, HOME_SWITCH, HOME_START, HOME_RUN, HOME_RETURN},
     },
     [HOMING_CM1] = {
-        .first_method = 1, .last_method = 4, .attained_is_enough = true, .subindex_by_stop = 2,
+        METHODS_BEHIND_BRIDGE, .attained_is_enough = true, .subindex_by_stop = 2,
         .objects = OBJECTS_BEHIND_BRIDGE, .steps = {STEPS_BEHIND_BRIDGE},
     },
     [HOMING_CM2] = { /* its K45 says what K48 counts in (BR 6.4.1, note 3) */
-        .first_method = 1, .last_method = 4, .attained_is_enough = true, .subindex_by_stop = 2,
+        METHODS_BEHIND_BRIDGE, .attained_is_enough = true, .subindex_by_stop = 2,
         .objects = OBJECTS_BEHIND_BRIDGE, .steps = {HOME_READ, STEPS_BEHIND_BRIDGE},
     },
 };
 
 static homing_kind_id_t kind_id(const cm1e_axis_t *axis)
 {
-    const cm1e_drive_t *drive = &axis->drive;
-    if (!cm1e_drive_bridged(drive))
+    if (!cm1e_drive_bridged(&axis->drive))
         return HOMING_CM1E;
-    return cm1e_bridge_motor(drive->bridge, drive->config->channel - 1u) == CM1E_BRIDGE_CM2 ? HOMING_CM2 : HOMING_CM1;
+    return cm1e_drive_bridge_motor(&axis->drive) == CM1E_BRIDGE_CM2 ? HOMING_CM2 : HOMING_CM1;
 }
 
 static const homing_kind_t *kind_of(const cm1e_axis_t *axis) { return &homing_kinds[kind_id(axis)]; }
 
 bool cm1e_axis_homes_by_switch(const cm1e_axis_t *axis, int method)
 {
-    return cm1e_drive_bridged(&axis->drive) ? method >= 3 : method <= -3;
+    const homing_kind_t *kind = kind_of(axis);
+    return method >= kind->first_by_switch && method <= kind->last_by_switch;
 }
 
 /* "x100, 10 or 1 pulse, set by 2nd digit of K45" (BR 6.4.1, note 3). */

@@ -222,7 +222,7 @@ static void lacking_text(const cm1e_axis_t *axis, const cm1e_axis_objects_t *row
     const int number = axis->not_set.number;
     const cm1e_drive_t *drive = &axis->drive;
     const bool bridged = cm1e_drive_bridged(drive);
-    const char *motor = bridged ? cm1e_bridge_motor_name(cm1e_bridge_motor(drive->bridge, drive->config->channel - 1u))
+    const char *motor = bridged ? cm1e_bridge_motor_name(cm1e_drive_bridge_motor(drive))
                                 : "CM1-E";
     if (row->index == OBJ_60F6_K_PARAMETERS)
         snprintf(text, size, "Axis \"%s\": parameter %d: %sa %s has no K%d.", axis->config->name, number,

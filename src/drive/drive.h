@@ -177,6 +177,11 @@ bool cm1e_drive_supports(const cm1e_drive_t *drive, cm1e_mode_t mode);
  *  way leads to is not carried out: the caller asks here first. @rt cycle */
 cm1e_error_t cm1e_drive_mode_check(const cm1e_drive_t *drive, cm1e_mode_t mode, bool insist, const char **why);
 
+/** "CSP", "HM", "CML" ...; NULL: none of its modes. @rt any */
+const char *cm1e_drive_mode_name(const cm1e_drive_t *drive, int8_t mode);
+/** The motor behind the bridge. @rt any */
+cm1e_bridge_motor_t cm1e_drive_bridge_motor(const cm1e_drive_t *drive);
+
 /** Behind a bridge digital signals go by SDO, in csp, while the motor is enabled (BR 6.5). Who reads inputs says so, as
  *  often as he reads: for a second from then on they are polled, and `feedback.digital_known` tells when they are
  *  fresh. Does nothing with other drives. @rt cycle */

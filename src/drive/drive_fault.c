@@ -58,8 +58,8 @@ static const char *advice(cm1e_error_t error)
 
 static const char *mode_name(const cm1e_drive_t *drive, int8_t mode)
 {
-    const cm1e_drive_mode_t *row = cm1e_drive_mode_row(drive->kind, mode);
-    return row ? row->abbreviation : "none";
+    const char *name = cm1e_drive_mode_name(drive, mode);
+    return name ? name : "none";
 }
 
 static void say_words(writer_t *w, const cm1e_drive_t *drive)

@@ -26,6 +26,12 @@ bool cm1e_drive_supports(const cm1e_drive_t *drive, cm1e_mode_t mode)
     return ((const cm1e_image_slot_t *)(const void *)((const char *)drive + row->target))->bytes > 0;
 }
 
+const char *cm1e_drive_mode_name(const cm1e_drive_t *drive, int8_t mode)
+{
+    const cm1e_drive_mode_t *row = cm1e_drive_mode_row(drive->kind, mode);
+    return row ? row->abbreviation : NULL;
+}
+
 /* Where the device is, as far as is known. */
 static const cm1e_drive_mode_t *place(const cm1e_drive_t *drive)
 {

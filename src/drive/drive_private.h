@@ -44,7 +44,6 @@ void cm1e_drive_reset_step(cm1e_drive_t *drive);
 /* drive_bridge.c: what a motor behind a bridge has beside this, in drive_command.c, drive_digital.c ... */
 cm1e_error_t cm1e_drive_init_bridge(cm1e_drive_t *drive, cm1e_diag_t *diag);
 void cm1e_drive_bridge_step(cm1e_drive_t *drive);
-cm1e_bridge_motor_t cm1e_drive_bridge_motor(const cm1e_drive_t *drive);
 /** It has stood for some time, as far as 0x6064 shows. */
 bool cm1e_drive_rests(const cm1e_drive_t *drive);
 
