@@ -48,12 +48,12 @@ static double base_velocity(cm1e_axis_t *axis)
     return fastest;
 }
 
-/* What the acceleration of the base still makes of its velocity while it ends. */
+/* What the acceleration of the base still makes of its velocity while it ends, also beyond a turn. */
 static double base_peak(const cm1e_axis_t *axis)
 {
     const from_t from = from_base(axis);
     const double a = from.acceleration, jerk = axis->maximum.jerk / 2.0;
-    return a * from.velocity > 0.0 ? fabs(from.velocity) + a * a / (2.0 * jerk) : fabs(from.velocity);
+    return fmax(fabs(from.velocity), fabs(from.velocity + a * fabs(a) / (2.0 * jerk)));
 }
 
 static cm1e_motion_limits_t share_of(const cm1e_axis_t *axis, const cm1e_motion_limits_t *asked)

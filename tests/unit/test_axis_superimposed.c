@@ -138,6 +138,23 @@ static void test_on_a_velocity(void)
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(base));
 }
 
+/* In a turn the acceleration of the base will still make a velocity that what goes on top has to leave room for. */
+static void test_on_a_base_that_turns(void)
+{
+    for (int wait = 0; wait < 150; wait++) {
+        const double distance = wait % 2 ? -4.0 : 0.05;
+        setUp();
+        bench_move_to(-20.0, 3.0);
+        watch_cycles(500);
+        const cm1e_command_id_t base = bench_move_to(5.0, 3.0);
+        watch_cycles(wait);
+        const cm1e_command_id_t id = superimpose(distance, 27.0);
+        wait_for(id, CM1E_COMMAND_DONE);
+        wait_for(base, CM1E_COMMAND_DONE);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 5.0 + distance, bench_info().set_position);
+    }
+}
+
 static void test_another_one_replaces_the_first_only(void)
 {
     const cm1e_command_id_t base = bench_move_velocity(10.0);
@@ -397,6 +414,7 @@ int main(void)
     RUN_TEST(test_a_base_that_needs_no_more_than_half_keeps_its_time);
     RUN_TEST(test_in_standstill_it_acts_like_a_relative_move);
     RUN_TEST(test_on_a_velocity);
+    RUN_TEST(test_on_a_base_that_turns);
     RUN_TEST(test_another_one_replaces_the_first_only);
     RUN_TEST(test_halt_superimposed_ends_it_and_leaves_the_base);
     RUN_TEST(test_an_aborting_command_ends_both_without_a_step);
