@@ -31,6 +31,8 @@ typedef struct leg {
     cm1e_motion_limits_t limits;
     double distance;       /* u; where it has no end: only the sign counts */
     double exit_velocity;  /* u/s, in its own direction */
+    double room;           /* u; from where it begins to the software limit, where there is one */
+    const cm1e_motion_limits_t *most; /* of the axis */
     bool open;             /* it has no end at which it would have to stop */
     MC_BUFFER_MODE mode;
 } leg_t;
@@ -82,6 +84,9 @@ static bool make_leg(cm1e_axis_t *axis, move_t *move, position_t *end, double si
         const double exit_velocity = cm1e_axis_exit_velocity(axis, &from, move);
         leg->exit_velocity = fmax(0.0, leg->distance > 0.0 ? exit_velocity : -exit_velocity);
     }
+    const double begin = cm1e_axis_line(axis, *end);
+    leg->room = !axis->software_limits ? INFINITY : leg->distance > 0.0 ? axis->upper - begin : begin - axis->lower;
+    leg->most = &axis->maximum;
     *end = move->target;
     return leg->distance != 0.0;
 }
@@ -92,7 +97,9 @@ static bool make_leg(cm1e_axis_t *axis, move_t *move, position_t *end, double si
  * leg be left faster, must not ask it for a slower entry than it was planned for. */
 static double entry_velocity(const leg_t *leg, double velocity_before, double sign, bool as_if_to_stop)
 {
-    const double velocity = junction_velocity(leg->mode, velocity_before, leg->limits.velocity);
+    double velocity = junction_velocity(leg->mode, velocity_before, leg->limits.velocity);
+    if (isfinite(leg->room)) /* it may turn out not to be able to begin there: then the axis stops inside its limits */
+        velocity = cm1e_profile_entry_velocity(fmax(leg->room, 0.0), velocity, 0.0, leg->most);
     if (leg->distance * sign <= 0.0)
         return 0.0;
     if (leg->open)

@@ -12,16 +12,21 @@ static double uniform(double low, double high)
     return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
 }
 
-static void begin_with(double acceleration, double deceleration, double jerk)
+static void begin_as_described(void)
 {
     bench_end();
+    bench_create();
+    bench_enable();
+    watch_begin();
+}
+
+static void begin_with(double acceleration, double deceleration, double jerk)
+{
     fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
     bus.config.axes[0].max_acceleration = acceleration;
     bus.config.axes[0].max_deceleration = deceleration;
     bus.config.axes[0].max_jerk = jerk;
-    bench_create();
-    bench_enable();
-    watch_begin();
+    begin_as_described();
 }
 
 void setUp(void) { begin_with(100.0, 80.0, 2000.0); }
@@ -232,6 +237,35 @@ static void test_a_halt_blended_behind_a_move(void)
     }
 }
 
+/* The next command may not be able to begin so close to a software limit: the axis is not so fast there that it would
+ * run over it, nor into ErrorStop on a way that is allowed. Behind it a velocity meets the limit as it always does. */
+static void test_a_junction_at_a_software_limit(void)
+{
+    static const double rooms[] = {0.0, 1e-5, 0.01, 0.2};
+    static const cm1e_command_kind_t thirds[] = {CM1E_COMMAND_MOVE_VELOCITY, CM1E_COMMAND_HALT,
+                                                 CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE};
+    for (int n = 0; n < 4 * 3 * 20; n++) {
+        const double end = 10.0 - rooms[n % 4];
+        const cm1e_command_kind_t kind = thirds[n / 4 % 3];
+        bus.config.axes[0].software_limit_positive = 10.0;
+        bus.config.axes[0].software_limit_negative = -10.0;
+        begin_as_described();
+        post_absolute(end - 0.5, 9.0, mcAborting);
+        const cm1e_command_id_t second = post_absolute(end, 0.2 + n * 0.04, mcBlendingPrevious);
+        const cm1e_command_id_t third = bench_start_command(&(cm1e_axis_command_t){
+            .kind = kind, .position = rooms[n % 4] / 2.0, .velocity = 9.0, .end_velocity = 9.0,
+            .buffer_mode = mcBlendingPrevious});
+        watch_cycles(6000);
+        TEST_ASSERT_TRUE(watch.highest <= 10.0 + 1e-6 && watch.highest >= end - 1e-4);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(second));
+        TEST_ASSERT_EQUAL_INT(kind == CM1E_COMMAND_HALT ? CM1E_COMMAND_DONE : CM1E_COMMAND_ERROR,
+                              bench_state_of(third));
+        const bool runs_up = kind == CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE; /* from behind, then meets the limit */
+        if ((rooms[n % 4] == 0.0 && !runs_up) || kind == CM1E_COMMAND_HALT)
+            TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_AXIS_STANDSTILL, axis->state, cm1e_axis_state_name(axis->state));
+    }
+}
+
 /* Random chains one way: never beyond an end before its turn, never back, never a stop without need, and in a time not
  * longer than with stops. */
 static void test_random_chains_never_stop_and_never_overrun(void)
@@ -285,6 +319,7 @@ int main(void)
     RUN_TEST(test_blending_after_a_velocity_is_previous);
     RUN_TEST(test_a_velocity_after_a_move_counts_for_the_junction);
     RUN_TEST(test_a_halt_blended_behind_a_move);
+    RUN_TEST(test_a_junction_at_a_software_limit);
     RUN_TEST(test_random_chains_never_stop_and_never_overrun);
     return UNITY_END();
 }
