@@ -1,5 +1,6 @@
 /** cm1e move, cm1e home: one axis, enabled, moved or homed, and disabled again, by a program of function blocks. */
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -19,8 +20,8 @@ typedef struct motion_options {
     const char *axis_word, *csv_file, *svg_file;
     motion_kind_t kind;
     double target, velocity, acceleration, deceleration, jerk, seconds, home_position;
-    cm1e_homing_config_t homing;
-    bool homing_given, reset;
+    cm1e_homing_config_t homing; /**< NAN: not given */
+    bool method_given, reset;
 } motion_options_t;
 
 typedef enum motion_step { STEP_POWER, STEP_RESET, STEP_RUN, STEP_HALT, STEP_POWER_OFF, STEP_END } motion_step_t;
@@ -100,7 +101,7 @@ static error_t parse_home(int key, char *arg, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
     case KEY_METHOD:
-        options->homing_given = true;
+        options->method_given = true;
         if (!parse_number(arg, "the homing method", -6, 4, &method))
             return EINVAL;
         options->homing.method = (int8_t)method;
@@ -218,7 +219,7 @@ static void prepare(motion_program_t *p, const motion_options_t *options)
     p->reset = (MC_Reset_t){.Axis = &p->axis};
     p->halt = (MC_Halt_t){.Axis = &p->axis, .Deceleration = options->deceleration, .Jerk = options->jerk};
     p->home = (MC_Home_t){.Axis = &p->axis, .Position = options->home_position,
-                          .Parameters = options->homing_given ? &options->homing : NULL};
+                          .Parameters = &options->homing};
     p->move_absolute = (MC_MoveAbsolute_t){
         .Axis = &p->axis, .Position = options->target, .Velocity = options->velocity,
         .Acceleration = options->acceleration, .Deceleration = options->deceleration, .Jerk = options->jerk};
@@ -277,6 +278,27 @@ static int run(const motion_options_t *options, const char *what, cm1e_bus_t *bu
     return status;
 }
 
+static void complete(double *value, double otherwise)
+{
+    if (isnan(*value))
+        *value = otherwise;
+}
+
+/* What is not given is the bus file's. Of another method the defaults: its offset would lead elsewhere. */
+static void complete_homing(motion_options_t *options, const cm1e_homing_config_t *configured)
+{
+    static const cm1e_homing_config_t defaults;
+    const cm1e_homing_config_t *rest = options->method_given ? &defaults : configured;
+    cm1e_homing_config_t *homing = &options->homing;
+    if (!options->method_given)
+        homing->method = configured->method;
+    complete(&homing->offset, rest->offset);
+    complete(&homing->velocity, rest->velocity);
+    complete(&homing->acceleration, rest->acceleration);
+    complete(&homing->torque, rest->torque);
+    complete(&homing->timeout_s, rest->timeout_s);
+}
+
 static int move_or_home(motion_options_t *options, const char *what)
 {
     static cm1e_bus_config_t config;
@@ -285,7 +307,9 @@ static int move_or_home(motion_options_t *options, const char *what)
     const int axis = find_axis(&config, options->axis_word ? options->axis_word : "1");
     if (axis < 0)
         return EXIT_WRONG_USE;
-    if (options->kind != MOTION_HOME && options->velocity == 0)
+    if (options->kind == MOTION_HOME)
+        complete_homing(options, &config.axes[axis].homing);
+    else if (options->velocity == 0)
         options->velocity = 1.0;
     cm1e_diag_t diag = {0};
     cm1e_bus_t *bus = NULL;
@@ -341,9 +365,12 @@ int command_home(int argc, char **argv)
         {0}};
     static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
     static const struct argp argp = {table, parse_home, "[AXIS]",
-                                     "Enables one axis (name or number, default 1), homes it, disables it.", children,
-                                     NULL, NULL};
-    motion_options_t options = {.kind = MOTION_HOME};
+                                     "Enables one axis (name or number, default 1), homes it, disables it. What is not "
+                                     "given is the bus file's homing; with --method it is the motor's default.",
+                                     children, NULL, NULL};
+    motion_options_t options = {.kind = MOTION_HOME,
+                                .homing = {.offset = NAN, .velocity = NAN, .acceleration = NAN, .torque = NAN,
+                                           .timeout_s = NAN}};
     if (argp_parse(&argp, argc, argv, 0, NULL, &options))
         return EXIT_WRONG_USE;
     return move_or_home(&options, "home");

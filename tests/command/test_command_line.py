@@ -432,6 +432,13 @@ WRONG = [
     (["home", "-i", "sim", "--method", "-7"], WRONG_USE, "method"),
     (["home", "-i", "sim", "--method", "0"], FAILED, "method"),
     (["home", "-i", "sim", "--method", "-2", "--velocity", "100"], FAILED, "homing parameter"),
+    # What is given beside the bus file's method counts: it was ignored once, torque and all.
+    (["home", "-i", "sim", "-b", f"{SOURCE}/examples/three_axes.yaml", "X", "--torque", "5"], FAILED, "homing.torque"),
+    (["home", "-i", "sim", "-b", f"{SOURCE}/examples/three_axes.yaml", "X", "--for", "0.5"], FAILED, "in time"),
+    (["home", "-i", "sim", "-b", f"{SOURCE}/examples/three_axes.yaml", "X", "--offset", "1e9"], FAILED,
+     "homing.offset"),
+    (["home", "-i", "sim", "-b", f"{SOURCE}/examples/bridge.yaml", "lift", "--acceleration", "1e9"], FAILED,
+     "homing.acceleration"),
     (["sim"], WRONG_USE, "-i"),
     (["sim", "-i", "no-such-interface"], FAILED, "no-such-interface"),
     (["sim", "-i", "lo", "--pdo-order", "up"], WRONG_USE, "ug-4.4"),
