@@ -97,7 +97,8 @@ static void watch_lag(cm1e_axis_t *axis)
 /* An axis that is neither under torque nor to be so has nothing to lose while the bus is away. */
 static bool depends_on_bus(const cm1e_axis_t *axis)
 {
-    return axis->drive.command.enable || axis->state != CM1E_AXIS_DISABLED;
+    return axis->drive.command.enable || (axis->power_enable && !axis->shutting_down) ||
+           axis->state != CM1E_AXIS_DISABLED;
 }
 
 void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t health, int64_t now_ns)

@@ -226,6 +226,24 @@ static void follow_switch(cm1e_axis_t *axis)
     end_switching(muscle, CM1E_COMMAND_DONE, CM1E_OK);
 }
 
+/* Where a bridge that was away is found counts: switched off and on, it is in CSP (BR 6), and nothing leads it into a
+ * dead end again that nobody has asked for since. Until it is known, nothing is asked for. From a homing that was broken
+ * off the way leads on to CSP. */
+static void follow_return(cm1e_axis_t *axis)
+{
+    cool_muscle_t *muscle = axis->muscle;
+    const int8_t shown = axis->drive.feedback.mode;
+    muscle->away = muscle->away || !cm1e_drive_operational(&axis->drive);
+    if (!muscle->away || !cm1e_drive_operational(&axis->drive) || !axis->drive.mode_known || shown == CM1E_MODE_NONE)
+        return;
+    muscle->away = false;
+    if (!is_mode(shown))
+        return;
+    if (shown != muscle->next)
+        end_switching(muscle, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_OFFLINE);
+    muscle->next = shown;
+}
+
 /* ---- CMD --------------------------------------------------------------------------------------------------------- */
 
 cm1e_error_t cm1e_axis_motor_command(cm1e_axis_t *axis, cm1e_drive_cmd_t command, int64_t timeout_ns, uint32_t *ticket)
@@ -327,13 +345,14 @@ void cm1e_axis_cool_muscle_step(cm1e_axis_t *axis)
         return;
     follow_command(axis);
     follow_string(axis);
+    follow_return(axis);
     muscle->release_ns = axis->shutting_down ? muscle->release_ns : 0;
     if ((axis->power_enable || axis->shutting_down) && !failed && muscle->next == cml && leads_home(axis)) {
         end_switching(muscle, CM1E_COMMAND_ABORTED, CM1E_OK);
         muscle->next = (int8_t)axis->mode;
     }
     const bool away = muscle->moved && !muscle->must_free && !cm1e_drive_operational(&axis->drive);
-    const bool leaves = muscle->mode == cml && muscle->next != cml && !muscle->must_free;
+    const bool leaves = muscle->next != cml && !muscle->must_free; /* before it was there, too */
     if ((failed && !muscle->failed) || away || (leaves && (muscle->moved || !cm1e_drive_cml_idle(cml_of(axis)))))
         end_strings(axis, failed ? axis->error : away ? CM1E_ERROR_BUS_LOST : CM1E_ERROR_CANCELLED);
     muscle->failed = failed;
@@ -342,14 +361,14 @@ void cm1e_axis_cool_muscle_step(cm1e_axis_t *axis)
         muscle->mode = muscle->next;
     follow_switch(axis);
     if (axis->activity == ACTIVITY_FREE && !drive_moves(axis)) {
-        axis->drive.command.mode = (cm1e_mode_t)muscle->mode;
+        axis->drive.command.mode = muscle->away ? CM1E_MODE_NONE : (cm1e_mode_t)muscle->mode;
         axis->drive.command.mode_insist = muscle->insist;
     }
 }
 
 cm1e_error_t cm1e_axis_cool_muscle_refuses_power(cm1e_axis_t *axis)
 {
-    if (axis->state != CM1E_AXIS_DISABLED || cm1e_axis_cool_muscle_at_home(axis))
+    if (axis->state != CM1E_AXIS_DISABLED || cm1e_axis_cool_muscle_at_home(axis) || axis->muscle->away)
         return CM1E_OK;
     const int8_t next = axis->muscle->next;
     if (next == CM1E_BRIDGE_MODE_CMD || (next == CM1E_BRIDGE_MODE_CML && !leads_home(axis)))

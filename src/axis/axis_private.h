@@ -321,6 +321,7 @@ typedef struct cool_muscle {
     bool moved;                 /**< since CML was entered, a string was taken that may have moved the motor */
     bool must_free;             /**< it is to lose its torque before anything else */
     bool failed;                /**< ErrorStop, as of the last cycle */
+    bool away;                  /**< the slave was, and its mode is not known since */
     uint32_t freeing;           /**< ticket of the string that does that; 0: none is under way */
     uint32_t last;              /**< ticket of the last string that a block sent; its end is not told yet; 0: it is */
     int64_t release_ns;         /**< shut down is waited for since then; 0: it is not */

@@ -447,6 +447,86 @@ START_TEST(test_a_switch_that_another_one_replaces_is_cancelled)
 }
 END_TEST
 
+/* The way out of a dead end, as MC_Power tells it: the bridge is switched off and on, and found in CSP. Nothing leads it
+ * back, and no motor has torque that MC_Power does not tell of. */
+static void power_cycle_in(CM_MODE mode, bool enabled)
+{
+    start();
+    switch_mode(2, mode, FALSE);
+    ck_assert_msg(set_mode[2].Done, "%s", text_of(2));
+    if (enabled) {
+        power_of[2].Enable = TRUE;
+        scan(300);
+        ck_assert(power_of[2].Status == (mode != cmCMD));
+    }
+    simulate("power-cycle 1 300");
+    scan(1000);
+    power_of[2].Enable = TRUE;
+    scan(10);
+    ck_assert_int_eq(info_of(2).state, CM1E_AXIS_ERROR_STOP);
+    MC_Reset_t reset = {.Axis = &references[2], .Execute = TRUE};
+    MC_Reset(&reset);
+    for (int i = 0; i < 3000 && reset.Busy; i++) {
+        scan(1);
+        MC_Reset(&reset);
+    }
+    ck_assert_msg(reset.Done, "%s", text_of(2));
+    enable_axis(2);
+    ck_assert_int_eq(info_of(2).mode, CM1E_BRIDGE_MODE_CSP);
+    turning[2].Execute = TRUE;
+    scan(600);
+    ck_assert_msg(turning[2].InVelocity, "%s", text_of(2));
+    close_segment();
+}
+
+START_TEST(test_a_bridge_that_was_switched_off_and_on_is_in_csp)
+{
+    for (int mode = cmCSP; mode <= cmCPIO; mode++) {
+        power_cycle_in((CM_MODE)mode, false);
+        power_cycle_in((CM_MODE)mode, true);
+    }
+}
+END_TEST
+
+/* Another axis resets the bridge; this one, in CMD before, was asked nothing and stays where the bridge begins. */
+START_TEST(test_nothing_leads_back_into_a_dead_end)
+{
+    start();
+    switch_mode(2, cmCMD, FALSE);
+    power_of[3].Enable = TRUE;
+    scan(300);
+    simulate("power-cycle 1 300");
+    scan(1000);
+    MC_Reset_t reset = {.Axis = &references[3], .Execute = TRUE};
+    MC_Reset(&reset);
+    for (int i = 0; i < 3000 && reset.Busy; i++) {
+        scan(1);
+        MC_Reset(&reset);
+    }
+    ck_assert_msg(reset.Done, "%s", text_of(3));
+    scan(500);
+    ck_assert_int_eq(info_of(2).state, CM1E_AXIS_DISABLED);
+    ck_assert_int_eq(info_of(2).mode, CM1E_BRIDGE_MODE_CSP);
+    enable_axis(2);
+    close_segment();
+}
+END_TEST
+
+START_TEST(test_a_string_that_a_switch_overtakes_is_cancelled)
+{
+    start();
+    snprintf(cml[0].Command, sizeof cml[0].Command, "?99.1");
+    cml[0].Execute = TRUE;
+    set_mode[0].Mode = cmCMD;
+    set_mode[0].Execute = TRUE;
+    scan(3);
+    ck_assert_int_eq(ERROR_OF(cml[0]), CM1E_ERROR_CANCELLED);
+    wait_for(&set_mode[0].Busy, 1000);
+    ck_assert(set_mode[0].Done);
+    close_segment();
+}
+END_TEST
+
 /* ---- CMD --------------------------------------------------------------------------------------------------------- */
 
 START_TEST(test_commands_of_cmd)
@@ -517,6 +597,9 @@ int main(void)
     tcase_add_test(tests, test_modes_and_their_dead_ends);
     tcase_add_test(tests, test_cpio_moves_as_csp_but_does_not_home);
     tcase_add_test(tests, test_a_switch_that_another_one_replaces_is_cancelled);
+    tcase_add_test(tests, test_a_bridge_that_was_switched_off_and_on_is_in_csp);
+    tcase_add_test(tests, test_nothing_leads_back_into_a_dead_end);
+    tcase_add_test(tests, test_a_string_that_a_switch_overtakes_is_cancelled);
     tcase_add_test(tests, test_commands_of_cmd);
     tcase_add_test(tests, test_a_search_in_cmd_that_lasts_too_long_is_ended);
     suite_add_tcase(suite, tests);
