@@ -94,11 +94,12 @@ static void watch_lag(cm1e_axis_t *axis)
     }
 }
 
+static bool asks_for_torque(const cm1e_axis_t *axis) { return axis->power_enable && !axis->shutting_down; }
+
 /* An axis that is neither under torque nor to be so has nothing to lose while the bus is away. */
 static bool depends_on_bus(const cm1e_axis_t *axis)
 {
-    return axis->drive.command.enable || (axis->power_enable && !axis->shutting_down) ||
-           axis->state != CM1E_AXIS_DISABLED;
+    return axis->drive.command.enable || asks_for_torque(axis) || axis->state != CM1E_AXIS_DISABLED;
 }
 
 void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t health, int64_t now_ns)
@@ -119,6 +120,8 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
         return;
     if (health && depends_on_bus(axis))
         cm1e_drive_fail(drive, health);
+    else if (asks_for_torque(axis) && !cm1e_drive_operational(drive)) /* its frames are good all the same */
+        cm1e_drive_fail(drive, drive->watch.lost ? CM1E_ERROR_AXIS_OFFLINE : CM1E_ERROR_BUS_STATE);
     else if (powered_state(axis->state) && !drive_moves(axis) && !drive->feedback.enabled)
         cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_ENABLE_LOST); /* an earlier and better reason stays */
     if (drive->fault.error) {

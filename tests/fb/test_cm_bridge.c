@@ -512,6 +512,28 @@ START_TEST(test_nothing_leads_back_into_a_dead_end)
 }
 END_TEST
 
+/* A cable that was away for a moment while nobody asked for torque: the frames are good again, the bridge is not in
+ * Operational. MC_Power says so. */
+START_TEST(test_mc_power_does_not_wait_for_ever_for_a_bridge_that_is_not_in_operational)
+{
+    for (int mode = cmCSP; mode <= cmCPIO; mode++) {
+        start();
+        switch_mode(2, (CM_MODE)mode, FALSE);
+        simulate("unplug 1");
+        scan(300);
+        simulate("replug 1");
+        scan(300);
+        ck_assert_int_eq(info_of(2).state, CM1E_AXIS_DISABLED);
+        power_of[2].Enable = TRUE;
+        scan(10);
+        ck_assert_int_eq(info_of(2).state, CM1E_AXIS_ERROR_STOP);
+        ck_assert_int_eq(ERROR_OF(power_of[2]), CM1E_ERROR_BUS_STATE);
+        ck_assert_msg(strstr(text_of(2), "MC_Reset"), "%s", text_of(2));
+        close_segment();
+    }
+}
+END_TEST
+
 START_TEST(test_a_string_that_a_switch_overtakes_is_cancelled)
 {
     start();
@@ -599,6 +621,7 @@ int main(void)
     tcase_add_test(tests, test_a_switch_that_another_one_replaces_is_cancelled);
     tcase_add_test(tests, test_a_bridge_that_was_switched_off_and_on_is_in_csp);
     tcase_add_test(tests, test_nothing_leads_back_into_a_dead_end);
+    tcase_add_test(tests, test_mc_power_does_not_wait_for_ever_for_a_bridge_that_is_not_in_operational);
     tcase_add_test(tests, test_a_string_that_a_switch_overtakes_is_cancelled);
     tcase_add_test(tests, test_commands_of_cmd);
     tcase_add_test(tests, test_a_search_in_cmd_that_lasts_too_long_is_ended);
