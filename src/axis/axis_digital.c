@@ -14,10 +14,7 @@ static const int64_t input_timeout_ns = 1000 * MS_IN_NS;
 /* So long the torque waits at the end for outputs to go off. */
 static const int64_t output_timeout_ns = 500 * MS_IN_NS;
 
-static bool in_process_data(const cm1e_axis_t *axis)
-{
-    return !cm1e_drive_bridged(&axis->drive) || axis->drive.feedback.mode == CM1E_BRIDGE_MODE_CPIO;
-}
+static bool in_process_data(const cm1e_axis_t *axis) { return cm1e_drive_signals_in_cycle(&axis->drive); }
 
 /* BR 6.5: in csp, while the motor is enabled. */
 static cm1e_error_t reachable(const cm1e_axis_t *axis)

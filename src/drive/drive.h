@@ -195,6 +195,8 @@ typedef enum cm1e_drive_outputs {
 } cm1e_drive_outputs_t;
 /** @rt cycle */
 cm1e_drive_outputs_t cm1e_drive_outputs(const cm1e_drive_t *drive);
+/** They are in the process data: in CPIO, and where there is no bridge. @rt cycle */
+bool cm1e_drive_signals_in_cycle(const cm1e_drive_t *drive);
 /** Bit 0: input 1, output 1. Those that can be reached from the bus: all of the mapping, or what the motor behind a
  *  bridge leaves to its user (BR 6.5). 0: none. @rt cycle */
 uint16_t cm1e_drive_input_mask(const cm1e_drive_t *drive);

@@ -24,7 +24,7 @@ uint16_t cm1e_drive_input_mask(const cm1e_drive_t *drive)
 {
     if (!cm1e_drive_bridged(drive))
         return drive->in_digital.bytes ? UINT16_MAX : 0;
-    return (uint16_t)cm1e_drive_entry(drive, OBJ_60FD_DIGITAL_INPUTS, 0)->maximum;
+    return drive->behind->digital.input_mask;
 }
 
 uint16_t cm1e_drive_output_mask(const cm1e_drive_t *drive)
@@ -33,6 +33,8 @@ uint16_t cm1e_drive_output_mask(const cm1e_drive_t *drive)
         return drive->out_digital.bytes ? UINT16_MAX : 0;
     return cm1e_bridge_output_mask(cm1e_drive_bridge_motor(drive));
 }
+
+bool cm1e_drive_signals_in_cycle(const cm1e_drive_t *drive) { return !drive->behind || drive->words->inputs != 0; }
 
 static bool reachable(const cm1e_drive_t *drive)
 {

@@ -272,7 +272,11 @@ static void test_cpio_has_outputs_and_positions_in_its_words(void)
     for (unsigned outputs = 0; outputs < 0x20; outputs++) {
         bench_open(CM1E_DEVICE_EB12, 1 + outputs % 4);
         drive.command.digital_outputs = (uint16_t)outputs;
+        TEST_ASSERT_FALSE(cm1e_drive_signals_in_cycle(&drive));
         TEST_ASSERT_TRUE(bench_mode(CM1E_BRIDGE_MODE_CPIO, 100));
+        TEST_ASSERT_TRUE(cm1e_drive_signals_in_cycle(&drive));
+        TEST_ASSERT_EQUAL_STRING("CPIO", cm1e_drive_mode_name(&drive, drive.feedback.mode));
+        TEST_ASSERT_NULL(cm1e_drive_mode_name(&drive, CM1E_MODE_NONE));
         const unsigned mask = outputs % 4 < 2 ? 0x02 : 0x0F;
         bench_cycles(2);
         TEST_ASSERT_EQUAL_HEX16(0xC006 | (outputs & mask) << 4, bench_word());
