@@ -88,8 +88,9 @@ uint8_t cm1e_bridge_output_mask(cm1e_bridge_motor_t motor);
 
 /** "CM1", "CM2". */
 const char *cm1e_bridge_motor_name(cm1e_bridge_motor_t motor);
-/** The model that has these motors at its connectors: "CM1", "CM2", or "" for any. EB12 where all may be any. FALSE:
- *  there is no such bridge. */
+/** The model has these motors at its connectors: "CM1", "CM2", or "" (or NULL) for any. */
+bool cm1e_bridge_has_motors(cm1e_device_model_t model, const char *const motors[CM1E_BRIDGE_AXES]);
+/** The model that has them; EB12 where all may be any. FALSE: there is no such bridge. */
 bool cm1e_bridge_model_with(const char *const motors[CM1E_BRIDGE_AXES], cm1e_device_model_t *model);
 
 #endif

@@ -181,15 +181,6 @@ static cm1e_error_t find_nodes(node_t *nodes, uint32_t *count, const cm1e_bus_co
     return CM1E_OK;
 }
 
-static bool has_motors(cm1e_device_model_t model, const node_t *node)
-{
-    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
-        if (node->motors[i] && node->motors[i][0] &&
-            strcmp(node->motors[i], cm1e_bridge_motor_name(cm1e_bridge_motor(model, i))) != 0)
-            return false;
-    return true;
-}
-
 /* The bridge's guide states no identity: it has to be one of those that the user states. */
 static cm1e_error_t describe_bridge(cm1e_description_file_t *described, const node_t *node,
                                     const cm1e_generate_options_t *options, cm1e_diag_t *diag)
@@ -197,7 +188,7 @@ static cm1e_error_t describe_bridge(cm1e_description_file_t *described, const no
     const cm1e_device_options_t *found = NULL;
     for (size_t i = 0; options->devices && i < options->device_count; i++) {
         const cm1e_device_options_t *device = &options->devices[i];
-        if (!cm1e_bridge_name(device->model) || !has_motors(device->model, node))
+        if (!cm1e_bridge_name(device->model) || !cm1e_bridge_has_motors(device->model, node->motors))
             continue;
         if (found)
             return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
