@@ -191,14 +191,26 @@ static bool refused_here(cm1e_error_t error)
            error == CM1E_ERROR_CML_STRING || error == CM1E_ERROR_CML_MOTION;
 }
 
+/* What was typed, or its beginning, as a terminal may see it. */
+static const char *show(const char *text, char shown[CM1E_CML_BYTES + 1])
+{
+    size_t size = 0;
+    for (; size < CM1E_CML_BYTES && text[size]; size++)
+        shown[size] = text[size] >= ' ' && text[size] <= '~' ? text[size] : '?';
+    shown[size] = '\0';
+    return shown;
+}
+
 /** Sends a string and shows what came back, in `results` where that is not NULL. */
 static int send_string(session_t *session, const char *text, json_t *results)
 {
     static cm1e_cml_exchange_t exchange;
+    char shown[CM1E_CML_BYTES + 1];
     cm1e_diag_t diag = {0};
     const unsigned channel = session->channel ? session->channel : named_channel(text);
     if (channel == 0) {
-        complain("to which motor? Name its connector in the string (\"?99.1\"), or by --channel or --axis");
+        complain("to which motor is \"%s\"? No connector is read from it: name it in the string (\"?99.1\"), or by "
+                 "--channel or --axis", show(text, shown));
         return EXIT_WRONG_USE;
     }
     exchange = (cm1e_cml_exchange_t){
@@ -237,6 +249,14 @@ static int send_arguments(session_t *session)
     return status;
 }
 
+static int refuse_binary(const char *line)
+{
+    char shown[CM1E_CML_BYTES + 1];
+    complain("the line that begins with \"%s\" has a byte 0 in it, which no string in CML has: nothing was sent",
+             show(line, shown));
+    return EXIT_WRONG_USE;
+}
+
 /* Line by line until the end of the input; a line that fails does not end it, but shows in the exit status. */
 static int send_lines(session_t *session)
 {
@@ -251,11 +271,12 @@ static int send_lines(session_t *session)
         const ssize_t size = getline(&line, &room, stdin);
         if (size < 0)
             break;
+        const bool whole = strlen(line) == (size_t)size; /* else there is a byte 0 in it */
         line[strcspn(line, "\r\n")] = '\0';
-        if (line[0] == '\0')
+        if (line[0] == '\0' && whole)
             continue;
         json_t *results = json_array();
-        const int result = send_string(session, line, results);
+        const int result = whole ? send_string(session, line, results) : refuse_binary(line);
         status = result == EXIT_OK ? status : result;
         if (session->options->common.json && json_array_size(results) > 0)
             print_json(json_incref(json_array_get(results, 0)));
@@ -289,6 +310,17 @@ static int run_session(session_t *session, const cm1e_bus_config_t *config, cm1e
     return sent != EXIT_OK ? sent : left;
 }
 
+/* Also where the terminal or the reader of our output is gone: a motor that moves by a string is freed at the end, and
+ * no watchdog does it for us. */
+static void end_in_order(void)
+{
+    const struct sigaction end = {.sa_handler = on_signal}, ignore = {.sa_handler = SIG_IGN};
+    sigaction(SIGINT, &end, NULL);
+    sigaction(SIGTERM, &end, NULL);
+    sigaction(SIGHUP, &end, NULL);
+    sigaction(SIGPIPE, &ignore, NULL);
+}
+
 int command_cml(int argc, char **argv)
 {
     static const struct argp_option table[] = {
@@ -315,9 +347,7 @@ int command_cml(int argc, char **argv)
     static cm1e_bus_config_t config;
     if (!load_configuration(&options.common, &config))
         return EXIT_WRONG_USE;
-    const struct sigaction action = {.sa_handler = on_signal};
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
+    end_in_order();
     cm1e_diag_t diag = {0};
     session_t session = {.options = &options};
     if (cm1e_bus_open(&session.bus, &config, &diag) != CM1E_OK || cm1e_bus_scan(session.bus, &diag) != CM1E_OK) {

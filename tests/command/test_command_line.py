@@ -7,9 +7,11 @@ test_command_line.py BIN-DIRECTORY SOURCE-DIRECTORY
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import xml.etree.ElementTree
 
 BIN, SOURCE = sys.argv[1], sys.argv[2]
@@ -260,6 +262,9 @@ def check_cml(folder):
     objects = [json.loads(part + "}") for part in told.stdout.split("}\n") if part]
     expect([entry["lines"] for entry in objects] == [["Ux.1=8"], [], ["Ux.3=16"]] and
            "may move" in objects[1]["error"] and "to which motor" in told.stderr, "cml line by line as JSON", told)
+    cut = cml("-a", "left", stdin="(\0?99\n?99\n")
+    expect(cut.returncode == WRONG_USE and cut.stdout == "Ux.1=8  in position\n" and "byte 0" in cut.stderr,
+           "a line with a byte 0", cut)
     late = cml("--timeout", "0.05", "?1234.1")
     expect(late.returncode == FAILED and "within 50 ms" in late.stderr, "cml without an answer", late)
     for words, status, word in (
@@ -269,14 +274,31 @@ def check_cml(folder):
             (["-a", "left", "--slave", "2", "?99"], WRONG_USE, "--axis"),
             (["-a", "left", ""], FAILED, "is empty"), (["-a", "left", "K53="], FAILED, "cut off"),
             (["-a", "left", "K53\r\n"], FAILED, "CR or LF"), (["-a", "left", "?" * 65], FAILED, "64 bytes"),
-            (["-a", "left", "\x1b[2J"], FAILED, "printable"), (["(.1"], FAILED, "--allow-motion"),
+            (["hello\x1b.1"], WRONG_USE, "hello?.1"), (["-a", "left", "\x1b[2J"], FAILED, "printable"), (["(.1"], FAILED, "--allow-motion"),
             (["K37.1=30"], FAILED, "--allow-motion"), (["--channel", "5", "?99"], WRONG_USE, "1 ... 4"),
             (["--timeout", "0", "?99.1"], WRONG_USE, "above 0"), (["-a", "middle", "?99"], FAILED, "no axis")):
         refused = cml(*words)
         expect(refused.returncode == status and word in refused.stderr and refused.stdout == "" and
                "\x1b" not in refused.stderr, f"cml {words}: \"{word}\"", refused)
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        check_cml_ended(bus, number)
     none = run("cm1e", "cml", "-i", "sim", "?99.1")
     expect(none.returncode == FAILED and "no EtherCAT Cool MUSCLE Bridge" in none.stderr, "cml without a bridge", none)
+
+
+def check_cml_ended(bus, number):
+    """A signal in the middle of a search, also that of a terminal that is gone: the motor is freed before the end."""
+    command = [os.path.join(BIN, "cm1e"), "cml", "-b", bus, "--allow-motion"]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True) as cml:
+        cml.stdin.write("(.3\n|.3\n")
+        cml.stdin.flush()
+        cml.stdout.readline() # "sent": the motor is enabled, the search begins
+        time.sleep(0.1)
+        cml.send_signal(number)
+        output, complaint = cml.communicate(timeout=30)
+    ended = subprocess.CompletedProcess(command, cml.returncode, output, complaint)
+    expect(cml.returncode == FAILED and '"|.3" was cancelled' in complaint, f"cml ended by {number.name}", ended)
 
 
 def check_sii(folder):
