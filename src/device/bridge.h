@@ -85,6 +85,8 @@ int32_t cm1e_bridge_counts_per_revolution(int32_t k37);
 
 /** Digital outputs that the motor leaves to its user, bit 0: output 1. A CM1 has its serial line there (BR 6.5.2). */
 uint8_t cm1e_bridge_output_mask(cm1e_bridge_motor_t motor);
+/** Digital inputs, bit 0: input 1. A CM1 has its serial line there, and four (BR 6.5.1). */
+uint8_t cm1e_bridge_input_mask(cm1e_bridge_motor_t motor);
 
 /** "CM1", "CM2". */
 const char *cm1e_bridge_motor_name(cm1e_bridge_motor_t motor);

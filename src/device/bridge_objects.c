@@ -174,6 +174,8 @@ cm1e_bridge_motor_t cm1e_bridge_motor(cm1e_device_model_t model, unsigned axis)
 
 uint8_t cm1e_bridge_output_mask(cm1e_bridge_motor_t motor) { return motor == CM1E_BRIDGE_CM1 ? 0x02 : 0x0F; }
 
+uint8_t cm1e_bridge_input_mask(cm1e_bridge_motor_t motor) { return motor == CM1E_BRIDGE_CM1 ? 0x0E : 0x3F; }
+
 const char *cm1e_bridge_motor_name(cm1e_bridge_motor_t motor) { return motor == CM1E_BRIDGE_CM1 ? "CM1" : "CM2"; }
 
 bool cm1e_bridge_has_motors(cm1e_device_model_t model, const char *const asked[CM1E_BRIDGE_AXES])

@@ -47,7 +47,6 @@ cm1e_error_t cm1e_drive_init_bridge(cm1e_drive_t *drive, cm1e_diag_t *diag)
     drive->behind = calloc(1, sizeof *drive->behind);
     if (!drive->behind)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for axis \"%s\".", config->name);
-    drive->behind->digital.input_mask = (uint16_t)cm1e_drive_entry(drive, OBJ_60FD_DIGITAL_INPUTS, 0)->maximum;
     cm1e_drive_cml_init(&drive->behind->cml, drive->position, config->channel, submit_cml, drive->bus);
     return CM1E_OK;
 }

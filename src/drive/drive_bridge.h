@@ -18,7 +18,6 @@ typedef struct cm1e_drive_digital {
     bool outputs_known;             /**< 60FE:1 is `outputs` */
     bool failed;
     uint16_t outputs, writing_outputs, inputs;
-    uint16_t input_mask;            /**< cm1e_drive_input_mask(); kept, as it is asked for in every cycle */
     int64_t wanted_until_ns, read_next_ns, fresh_until_ns, write_next_ns;
 } cm1e_drive_digital_t;
 

@@ -24,7 +24,7 @@ uint16_t cm1e_drive_input_mask(const cm1e_drive_t *drive)
 {
     if (!cm1e_drive_bridged(drive))
         return drive->in_digital.bytes ? UINT16_MAX : 0;
-    return drive->behind->digital.input_mask;
+    return cm1e_bridge_input_mask(cm1e_drive_bridge_motor(drive));
 }
 
 uint16_t cm1e_drive_output_mask(const cm1e_drive_t *drive)

@@ -51,12 +51,10 @@ void cm1e_sim_bridge_axis_power(cm1e_sim_bridge_axis_t *axis, bool on)
     hold(axis);
 }
 
-/* BR 6.5.1: a CM1's input 1 is its serial line, and it has four. */
 uint8_t cm1e_sim_bridge_inputs_of(const cm1e_sim_bridge_axis_t *axis)
 {
-    enum { INPUTS_CM1 = 0x0E, INPUTS_CM2 = 0x3F };
     const uint8_t inputs = cm1e_sim_sensors_inputs(&axis->sensors, axis->mechanics.position);
-    return inputs & (axis->motor == CM1E_BRIDGE_CM1 ? INPUTS_CM1 : INPUTS_CM2);
+    return inputs & cm1e_bridge_input_mask(axis->motor);
 }
 
 /* 0x607A on the scale of the mechanics, within what the resolution allows (BR appendix 5). It has 32 bits and wraps:

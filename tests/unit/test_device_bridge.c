@@ -352,6 +352,15 @@ static void test_process_data_are_24_bytes_each_way(void)
     }
 }
 
+/* BR 6.5: one fact for the dictionary and for who asks for the signals of a motor. */
+static void test_digital_signals_are_those_of_the_dictionary(void)
+{
+    TEST_ASSERT_EQUAL_HEX(cm1e_bridge_entry(CM1E_DEVICE_EB01, 0x60FD, 0)->maximum,
+                          cm1e_bridge_input_mask(CM1E_BRIDGE_CM1));
+    TEST_ASSERT_EQUAL_HEX(cm1e_bridge_entry(CM1E_DEVICE_EB02, 0x60FD, 0)->maximum,
+                          cm1e_bridge_input_mask(CM1E_BRIDGE_CM2));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -369,5 +378,6 @@ int main(void)
     RUN_TEST(test_signed_objects_are_signed);
     RUN_TEST(test_position_limits_by_k37);
     RUN_TEST(test_process_data_are_24_bytes_each_way);
+    RUN_TEST(test_digital_signals_are_those_of_the_dictionary);
     return UNITY_END();
 }
