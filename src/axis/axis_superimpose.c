@@ -270,7 +270,7 @@ cm1e_error_t cm1e_axis_superimpose_update(cm1e_axis_t *axis, const move_t *input
     superimposed_t next = *on_top;
     next.move = *inputs;
     if (!plan(axis, &next))
-        return CM1E_ERROR_AXIS_POSITION_RANGE;
+        return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
     *on_top = next;
     return CM1E_OK;
 }

@@ -145,7 +145,10 @@ static void refused_dynamics_text(const cm1e_axis_t *axis, char *text, size_t si
 static bool too_small(const cm1e_axis_t *axis, const cm1e_axis_command_t *command)
 {
     static const double least_counts = 1e-6;
-    const double numbers[] = {command->velocity, command->acceleration, command->deceleration, command->jerk};
+    const double factor = axis->override.acceleration, jerk_factor = axis->override.jerk;
+    const double numbers[] = {command->velocity, factor * command->acceleration, factor * command->deceleration,
+                              jerk_factor * command->jerk, factor * axis->maximum.acceleration,
+                              jerk_factor * axis->maximum.jerk};
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
         if (numbers[i] != 0.0 && fabs(numbers[i] * axis->scale) < least_counts)
             return true;
@@ -157,8 +160,9 @@ static void refused_small_text(const cm1e_axis_t *axis, char *text, size_t size)
     const cm1e_axis_command_t *refused = &axis->refused;
     snprintf(text, size,
              "Axis \"%s\": velocity %.6g, acceleration %.6g, deceleration %.6g, jerk %.6g were asked for; one of them "
-             "is too small to compute with.", axis->config->name, refused->velocity, refused->acceleration,
-             refused->deceleration, refused->jerk);
+             "is too small to compute with, after the factors %.6g (acceleration) and %.6g (jerk) of MC_SetOverride.",
+             axis->config->name, refused->velocity, refused->acceleration, refused->deceleration, refused->jerk,
+             axis->override.acceleration, axis->override.jerk);
 }
 
 /* Where the base is, and where it goes as far as that is known. */

@@ -322,6 +322,7 @@ static void test_an_override_that_leaves_nothing_refuses_it_in_standstill(void)
     const cm1e_axis_command_t c = {.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = 1.0, .velocity = 1.0};
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_override(axis, 0.75, 1e-300, 0.8));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DYNAMICS_RANGE, cm1e_axis_start(axis, &c, &id));
+    bench_told("too small to compute with, after the factors 1e-300 (acceleration) and 0.8 (jerk) of MC_SetOverride");
     watch_cycles(10);
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, axis->state);
 }
@@ -345,6 +346,9 @@ static void test_dynamics_of_next_to_nothing_are_refused_and_change_nothing(void
             cm1e_command_id_t id = 1;
             TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DYNAMICS_RANGE, cm1e_axis_start(axis, &commands[i], &id));
             TEST_ASSERT_EQUAL_UINT32(0, id);
+            bench_told("one of them is too small to compute with");
+            if (commands[i].kind == CM1E_COMMAND_MOVE_SUPERIMPOSED)
+                TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DYNAMICS_RANGE, cm1e_axis_update(axis, first, &commands[i]));
             wait_for(first, CM1E_COMMAND_DONE);
             TEST_ASSERT_DOUBLE_WITHIN(1e-12, 4.0, covered(first));
             if (moves)
