@@ -192,7 +192,7 @@ static void refuse_torque(cm1e_drive_t *drive)
     const bool asked = drive->command.enable && !drive->torque && drive->seen && drive->feedback.online;
     if (asked && !in_range(drive, drive->feedback.position)) /* as a target it would be cut: a jump */
         cm1e_drive_fail(drive, CM1E_ERROR_AXIS_POSITION_RANGE);
-    if (!asked || drive->takes_torque)
+    if (!asked || drive->takes_torque || drive->blocked_ns == 0) /* the clock began long ago */
         drive->blocked_ns = drive->now_ns;
     else if (drive->now_ns - drive->blocked_ns >= enable_timeout_ns)
         cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_ENABLE_TIMEOUT);

@@ -81,6 +81,17 @@ static void test_a_bridge_found_in_hm_or_cml_is_brought_to_csp(void)
     }
 }
 
+/* `cm1e move` after `cm1e cml --stay`: torque is asked for in the very first cycle, on a clock that runs for days. */
+static void test_a_bridge_found_in_cml_is_enabled_from_the_first_cycle_on(void)
+{
+    fake_bridge_open(&bus, CM1E_DEVICE_EB02, 3);
+    fake_bridge_axis()->mode = CM1E_BRIDGE_MODE_CML;
+    bus.clock.virtual_now_ns += INT64_C(100000000000000);
+    bench_init();
+    drive.command.mode = CM1E_MODE_CSP;
+    bench_enable();
+}
+
 /* ---- enabling --------------------------------------------------------------------------------------------------- */
 
 static void test_every_channel_of_every_model_is_enabled_without_moving_and_follows(void)
@@ -467,6 +478,7 @@ int main(void)
     RUN_TEST(test_an_object_that_is_not_mapped_is_named_by_its_index_on_the_channel);
     RUN_TEST(test_a_bridge_found_in_a_dead_end_is_an_error_that_says_so);
     RUN_TEST(test_a_bridge_found_in_hm_or_cml_is_brought_to_csp);
+    RUN_TEST(test_a_bridge_found_in_cml_is_enabled_from_the_first_cycle_on);
     RUN_TEST(test_every_channel_of_every_model_is_enabled_without_moving_and_follows);
     RUN_TEST(test_the_way_from_every_state_has_one_command_a_cycle);
     RUN_TEST(test_enabling_survives_a_lost_frame_at_every_cycle);
