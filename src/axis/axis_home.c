@@ -92,11 +92,7 @@ bool cm1e_axis_homes_by_switch(const cm1e_axis_t *axis, int method)
     return method >= kind->first_by_switch && method <= kind->last_by_switch;
 }
 
-/* "x100, 10 or 1 pulse, set by 2nd digit of K45" (BR 6.4.1, note 3). */
-enum { OFFSET_UNITS = 3 };
-static const double offset_units[OFFSET_UNITS] = {100.0, 10.0, 1.0};
-
-static bool k45_is_known(const homing_t *home) { return home->k45 / 10 % 10 < OFFSET_UNITS; }
+static bool k45_is_known(const homing_t *home) { return cm1e_bridge_offset_unit(home->k45) != 0; }
 
 /* The object of a parameter for a method, and what its range is: of K47 behind a bridge that of a CM1-E, as the guide
  * has none. */
@@ -106,8 +102,8 @@ static homing_object_t object_of(const cm1e_axis_t *axis, int which, int method)
     homing_object_t object = kind->objects[which];
     if (which == SPEED && kind->subindex_by_stop && !cm1e_axis_homes_by_switch(axis, method))
         object.subindex = kind->subindex_by_stop;
-    if (which == OFFSET && axis->home.k45 >= 0)
-        object.unit = offset_units[axis->home.k45 / 10 % 10 % OFFSET_UNITS];
+    if (which == OFFSET && axis->home.k45 >= 0 && k45_is_known(&axis->home))
+        object.unit = cm1e_bridge_offset_unit(axis->home.k45);
     return object;
 }
 

@@ -42,6 +42,8 @@ enum {
 #define CM1E_BRIDGE_OFFSET_UNIT 100
 #define CM1E_BRIDGE_SPEED_UNIT 100
 #define CM1E_BRIDGE_ACCELERATION_UNIT 1000
+/** Of the offset of a CM2, by the second digit of its K45 (BR 6.4.1, note 3); 0: the guide has no such digit. */
+int cm1e_bridge_offset_unit(int32_t k45);
 
 /** Bits of the statusword in csp and hm that CiA 402 leaves to the manufacturer (BR 6.1.3). */
 enum { CM1E_BRIDGE_STATUSWORD_ERROR = 0x4000, CM1E_BRIDGE_STATUSWORD_FREE = 0x8000 };

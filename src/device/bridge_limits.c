@@ -35,3 +35,10 @@ int32_t cm1e_bridge_counts_per_revolution(int32_t k37)
         return 0;
     return resolutions[k37 >= OTHER_RESOLUTIONS && k37 < FINEST][k37 % REPEATED];
 }
+
+int cm1e_bridge_offset_unit(int32_t k45)
+{
+    static const int units[] = {CM1E_BRIDGE_OFFSET_UNIT, 10, 1};
+    const int digit = k45 / 10 % 10;
+    return digit >= 0 && digit < (int)(sizeof units / sizeof units[0]) ? units[digit] : 0;
+}

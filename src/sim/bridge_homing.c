@@ -18,12 +18,10 @@ static void look_at_sensor(cm1e_sim_bridge_axis_t *axis)
     axis->search.edge = cm1e_sim_sensors_edge(&axis->sensors, input);
 }
 
-/* "x100, 10 or 1 pulse, set by 2nd digit of K45" on a CM2. */
 static double offset_unit(const cm1e_sim_bridge_t *bridge, const cm1e_sim_bridge_axis_t *axis)
 {
-    static const double units[] = {CM1E_BRIDGE_OFFSET_UNIT, 10, 1};
-    const int64_t digit = *cm1e_sim_bridge_k(bridge, axis->number, K_OFFSET_UNIT) / 10 % 10;
-    return axis->motor == CM1E_BRIDGE_CM2 && (digit == 1 || digit == 2) ? units[digit] : units[0];
+    const int unit = cm1e_bridge_offset_unit((int32_t)*cm1e_sim_bridge_k(bridge, axis->number, K_OFFSET_UNIT));
+    return axis->motor == CM1E_BRIDGE_CM2 && unit ? unit : CM1E_BRIDGE_OFFSET_UNIT;
 }
 
 void cm1e_sim_bridge_search_begin(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)

@@ -361,6 +361,15 @@ static void test_digital_signals_are_those_of_the_dictionary(void)
                           cm1e_bridge_input_mask(CM1E_BRIDGE_CM2));
 }
 
+/* BR 6.4.1, note 3 */
+static void test_unit_of_the_offset_by_k45(void)
+{
+    static const int units[10] = {100, 10, 1};
+    for (int32_t k45 = 0; k45 < 1000; k45++)
+        TEST_ASSERT_EQUAL(units[k45 / 10 % 10], cm1e_bridge_offset_unit(k45));
+    TEST_ASSERT_EQUAL(0, cm1e_bridge_offset_unit(INT32_MIN));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -379,5 +388,6 @@ int main(void)
     RUN_TEST(test_position_limits_by_k37);
     RUN_TEST(test_process_data_are_24_bytes_each_way);
     RUN_TEST(test_digital_signals_are_those_of_the_dictionary);
+    RUN_TEST(test_unit_of_the_offset_by_k45);
     return UNITY_END();
 }
