@@ -33,7 +33,8 @@ const char *cm1e_axis_signals_advice(const cm1e_axis_t *axis, cm1e_error_t error
     case CM1E_ERROR_AXIS_SIGNAL:
         return cm1e_drive_bridge_motor(drive) == CM1E_BRIDGE_CM1
                    ? " Of a CM1 behind a bridge these can be reached: inputs 2 ... 4, output 2."
-                   : " Of a CM2 behind a bridge these can be reached: inputs 1 ... 6, outputs 1 ... 4.";
+                   : " Of a CM2 behind a bridge these can be reached: inputs 1 ... 6 (in CPIO 1 ... 4), "
+                     "outputs 1 ... 4.";
     case CM1E_ERROR_PDO_MAPPING:
         return " Behind a bridge torque is not known, and digital signals go by SDO, too late for what follows a "
                "position: only in CPIO mode they are in the process data.";

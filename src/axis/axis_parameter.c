@@ -19,7 +19,7 @@ typedef struct parameter {
     rule_t rule;
     size_t value;        /* in the axis; 0: none, see value_of() */
     size_t system;       /* APPLICATION: the largest value */
-    double least_counts; /* ... and the smallest */
+    double least_counts; /* ... and the smallest, of a CM1-E */
 } parameter_t;
 
 #define AT(member) offsetof(struct cm1e_axis, member)
@@ -139,7 +139,8 @@ static cm1e_error_t write(cm1e_axis_t *axis, int number, double value)
     case LAG:
         return write_number(axis, parameter, value, CM1E_LEAST_LAG_COUNTS, CM1E_LARGEST_LAG_COUNTS / fabs(axis->scale));
     case APPLICATION:
-        return write_number(axis, parameter, value, parameter->least_counts, double_at(axis, parameter->system));
+        return write_number(axis, parameter, value, parameter->least_counts * axis->count,
+                            double_at(axis, parameter->system));
     case READ_ONLY: break;
     }
     return CM1E_ERROR_AXIS_PARAMETER_READ_ONLY;
@@ -169,7 +170,7 @@ static void range_text(const cm1e_axis_t *axis, const parameter_t *parameter, ch
     switch (parameter->rule) {
     case APPLICATION:
         snprintf(text, size, "%.6g was to be written; %.6g ... %.6g is right, which is %s.", value,
-                 parameter->least_counts / scale, double_at(axis, parameter->system), (parameter - 1)->name);
+                 parameter->least_counts * axis->count / scale, double_at(axis, parameter->system), (parameter - 1)->name);
         break;
     case LAG:
         snprintf(text, size, "%.6g was to be written; %.6g ... %.6g u is right.", value, CM1E_LEAST_LAG_COUNTS / scale,

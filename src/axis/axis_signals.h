@@ -11,7 +11,7 @@
 
 /** The greatest numbers. Of a CM1-E the bus reaches inputs 1 ... 4 and output 1, output 2 is the motor's own (UG
  *  7.3.24, 7.3.25, K34); behind a bridge of a CM1 inputs 2 ... 4 and output 2, of a CM2 inputs 1 ... 6 and outputs
- *  1 ... 4 (BR 6.5), by SDO and only while the motor is enabled in csp, in CPIO in every cycle. */
+ *  1 ... 4 (BR 6.5), by SDO and only while the motor is enabled in csp, in CPIO in every cycle without inputs 5, 6. */
 enum { CM1E_AXIS_INPUTS = 6, CM1E_AXIS_OUTPUTS = 4 };
 
 /** Planned time of this cycle, ns; the clock of what follows. @rt cycle */

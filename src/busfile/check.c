@@ -104,7 +104,8 @@ static bool check_bus(const check_t *check)
 
 /* ---- numbers of an axis ------------------------------------------------------------------------------------------ */
 
-typedef enum scale { AS_IS, IN_COUNTS } scale_t;
+/* BY_REVOLUTION: in counts, the minimum in those of a CM1-E. */
+typedef enum scale { AS_IS, IN_COUNTS, BY_REVOLUTION } scale_t;
 
 /* A number of the axis configuration; 0 is its default. Where an object is named, its range in the dictionary holds. */
 typedef struct number {
@@ -122,11 +123,11 @@ typedef struct number {
 /* Bounds without an object keep the profile computable: below them a stop would take minutes, above them an axis would
  * reach its peak speed within one cycle. */
 static const number_t numbers[] = {
-    {"limits.acceleration", FIELD(max_acceleration), IN_COUNTS, "counts/s2", CM1E_LEAST_ACCELERATION_COUNTS, 1e11, 0,
-     0, 0},
-    {"limits.deceleration", FIELD(max_deceleration), IN_COUNTS, "counts/s2", CM1E_LEAST_ACCELERATION_COUNTS, 1e11, 0,
-     0, 0},
-    {"limits.jerk", FIELD(max_jerk), IN_COUNTS, "counts/s3", CM1E_LEAST_JERK_COUNTS, 1e15, 0, 0, 0},
+    {"limits.acceleration", FIELD(max_acceleration), BY_REVOLUTION, "counts/s2", CM1E_LEAST_ACCELERATION_COUNTS, 1e11,
+     0, 0, 0},
+    {"limits.deceleration", FIELD(max_deceleration), BY_REVOLUTION, "counts/s2", CM1E_LEAST_ACCELERATION_COUNTS, 1e11,
+     0, 0, 0},
+    {"limits.jerk", FIELD(max_jerk), BY_REVOLUTION, "counts/s3", CM1E_LEAST_JERK_COUNTS, 1e15, 0, 0, 0},
     {"limits.position_lag", FIELD(max_position_lag), IN_COUNTS, "counts", CM1E_LEAST_LAG_COUNTS,
      CM1E_LARGEST_LAG_COUNTS, 0, 0, 0},
     {"backlash.gap", FIELD(backlash), IN_COUNTS, "counts", 1, 500000, 0, 0, 0},
@@ -170,9 +171,14 @@ static bool check_range(const check_t *check, const char *key, double value, sca
             return true;
         return axis_wrong(check, key, "is %.10g; expected %.10g ... %.10g %s", value, minimum, maximum, unit);
     }
-    /* Whole counts are what reaches the wire, so 0.3 mm of 1/3 counts is no reason to refuse the exact bound. */
-    const double counts = round(value * check->counts_per_unit);
-    if (counts >= minimum && counts <= maximum)
+    if (scale == BY_REVOLUTION)
+        minimum *= cm1e_unit_count(check->axis);
+    /* Whole counts are what reaches the wire, so 0.3 mm of 1/3 counts is no reason to refuse the exact bound; nor is
+     * what doubles make of a part of a revolution, which may be less than a count. */
+    const double least = scale == BY_REVOLUTION ? minimum * (1.0 - 1e-9) : minimum;
+    const double exact = value * check->counts_per_unit, whole = round(exact);
+    const double counts = scale == BY_REVOLUTION && minimum < 1.0 && fabs(exact) < 1.0 ? exact : whole;
+    if (counts >= least && counts <= maximum)
         return true;
     return axis_wrong(check, key, "is %.10g, %.10g %s; expected %.10g ... %.10g, %.10g ... %.10g %s", value, counts,
                       unit, minimum / check->counts_per_unit, maximum / check->counts_per_unit, minimum, maximum, unit);
@@ -247,7 +253,7 @@ static bool check_modulo(const check_t *check)
     cm1e_fraction_t turn;
     if (axis->modulo_range == 0)
         return true;
-    if (!check_range(check, "unit.modulo_range", axis->modulo_range, IN_COUNTS, CM1E_LEAST_MODULO_COUNTS,
+    if (!check_range(check, "unit.modulo_range", axis->modulo_range, BY_REVOLUTION, CM1E_LEAST_MODULO_COUNTS,
                      CM1E_LARGEST_MODULO_COUNTS, "counts"))
         return false;
     if (!cm1e_unit_modulo(axis, &turn))
@@ -271,8 +277,8 @@ static bool check_velocity(check_t *check)
     if (axis->backlash != 0)
         kept = cm1e_unit_backlash_velocity(axis);
     if (axis->backlash_velocity != 0) {
-        if (!check_range(check, "backlash.velocity", axis->backlash_velocity, IN_COUNTS, CM1E_LEAST_VELOCITY_COUNTS,
-                         peak / 2, "counts/s"))
+        if (!check_range(check, "backlash.velocity", axis->backlash_velocity, BY_REVOLUTION,
+                         CM1E_LEAST_VELOCITY_COUNTS, peak / 2, "counts/s"))
             return false;
         kept = axis->backlash_velocity * check->counts_per_unit;
     }
@@ -280,7 +286,7 @@ static bool check_velocity(check_t *check)
     if (axis->max_velocity == 0)
         return true;
     check->most_velocity = axis->max_velocity * check->counts_per_unit;
-    return check_range(check, "limits.velocity", axis->max_velocity, IN_COUNTS, CM1E_LEAST_VELOCITY_COUNTS,
+    return check_range(check, "limits.velocity", axis->max_velocity, BY_REVOLUTION, CM1E_LEAST_VELOCITY_COUNTS,
                        floor(peak - kept), kept != 0 ? "counts/s beside the compensation of backlash" : "counts/s");
 }
 
@@ -463,9 +469,11 @@ static bool check_jog(const check_t *check)
 {
     const cm1e_axis_config_t *axis = check->axis;
     const double most = check->most_velocity;
-    if (axis->jog_slow != 0 && !check_range(check, "jog.slow", axis->jog_slow, IN_COUNTS, 1, most, "counts/s"))
+    if (axis->jog_slow != 0 && !check_range(check, "jog.slow", axis->jog_slow, BY_REVOLUTION,
+                                            CM1E_LEAST_VELOCITY_COUNTS, most, "counts/s"))
         return false;
-    return axis->jog_fast == 0 || check_range(check, "jog.fast", axis->jog_fast, IN_COUNTS, 1, most, "counts/s");
+    return axis->jog_fast == 0 || check_range(check, "jog.fast", axis->jog_fast, BY_REVOLUTION,
+                                              CM1E_LEAST_VELOCITY_COUNTS, most, "counts/s");
 }
 
 static bool check_sim(const check_t *check)

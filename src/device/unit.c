@@ -24,6 +24,11 @@ double cm1e_unit_counts_per_revolution(const cm1e_axis_config_t *config)
     return counts > 0 ? counts : CM1E_COUNTS_PER_REVOLUTION;
 }
 
+double cm1e_unit_count(const cm1e_axis_config_t *config)
+{
+    return cm1e_unit_counts_per_revolution(config) / CM1E_COUNTS_PER_REVOLUTION;
+}
+
 double cm1e_unit_peak_velocity(const cm1e_axis_config_t *config)
 {
     if (config->channel)

@@ -22,20 +22,24 @@ typedef struct cm1e_fraction {
     int64_t numerator, denominator; /**< denominator > 0, no common divisor */
 } cm1e_fraction_t;
 
-/* Bounds that hold in the bus file and for parameters written later: below them a stop would take minutes. */
-#define CM1E_LEAST_VELOCITY_COUNTS 1.0     /**< counts/s */
-#define CM1E_LEAST_ACCELERATION_COUNTS 1e3 /**< counts/s2 */
-#define CM1E_LEAST_JERK_COUNTS 1e3         /**< counts/s3 */
-#define CM1E_LEAST_LAG_COUNTS 1.0          /**< counts */
+/* Bounds that hold in the bus file and for parameters written later: below them a stop would take minutes. Those of
+ * motion are counts of a CM1-E, of any motor that part of a revolution: times cm1e_unit_count(). */
+#define CM1E_LEAST_VELOCITY_COUNTS 1.0     /**< counts/s: 0.00002 revolutions/s */
+#define CM1E_LEAST_ACCELERATION_COUNTS 1e3 /**< counts/s2: 0.02 revolutions/s2 */
+#define CM1E_LEAST_JERK_COUNTS 1e3         /**< counts/s3: 0.02 revolutions/s3 */
+#define CM1E_LEAST_LAG_COUNTS 1.0          /**< counts of the motor: one is what it sees */
 #define CM1E_LARGEST_LAG_COUNTS 2147483647.0
 
-/** Shortest and longest turn of a modulo axis, in counts. */
+/** Shortest turn of a modulo axis, in counts of a CM1-E like those above: 0.02 revolutions; longest, in counts. */
 #define CM1E_LEAST_MODULO_COUNTS 1000.0
 #define CM1E_LARGEST_MODULO_COUNTS 1e12
 
 /** Counts in one revolution of the motor: of a CM1-E always the same, behind a bridge by its K37 (50,000 where that is
  *  not stated). */
 double cm1e_unit_counts_per_revolution(const cm1e_axis_config_t *config);
+
+/** Counts of this motor on the way of one count of a CM1-E. */
+double cm1e_unit_count(const cm1e_axis_config_t *config);
 
 /** The motor's peak speed, counts/s: of a CM1-E by its size (UG 6.3), 3000 1/min behind a bridge, whose guide does not
  *  state it. 0: there is no such motor. */

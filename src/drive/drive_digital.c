@@ -24,7 +24,9 @@ uint16_t cm1e_drive_input_mask(const cm1e_drive_t *drive)
 {
     if (!cm1e_drive_bridged(drive))
         return drive->in_digital.bytes ? UINT16_MAX : 0;
-    return cm1e_bridge_input_mask(cm1e_drive_bridge_motor(drive));
+    const uint16_t all = cm1e_bridge_input_mask(cm1e_drive_bridge_motor(drive));
+    const unsigned in_words = (unsigned)drive->words->inputs >> CM1E_DRIVE_SIGNALS_AT;
+    return in_words ? (uint16_t)(all & in_words) : all; /* inputs 5 and 6 "are not replied" (BR 7.1.3, note 2) */
 }
 
 uint16_t cm1e_drive_output_mask(const cm1e_drive_t *drive)

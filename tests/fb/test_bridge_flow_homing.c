@@ -10,7 +10,7 @@
 
 enum { DRIVES = CM1E_BRIDGE_AXES, ENABLED_WORD = 0x000F, START_WORD = 0x001F, SETTING_NS = 100000000 };
 enum { REACHED = 0x0400, ATTAINED = 0x1000, HOMING_ERROR = 0x2000 };
-enum { METHODS = 4 };
+enum { METHODS = 4, SPEED = 8 /* revolutions/s */ };
 
 typedef enum way { COMPLETE, FAILED, ERROR_BIT, NO_ERROR_BIT, ATTAINED_BIT, NOT_ATTAINED } way_t;
 
@@ -80,7 +80,7 @@ static void enable_axis(int n)
 static cm1e_command_id_t home(int n, int method)
 {
     cm1e_command_id_t id;
-    const cm1e_homing_config_t homing = {.method = (int8_t)method, .velocity = 8, .acceleration = 90, .torque = 40};
+    const cm1e_homing_config_t homing = {.method = (int8_t)method, .velocity = SPEED, .acceleration = 90, .torque = 40};
     const cm1e_axis_command_t c = {.kind = CM1E_COMMAND_HOME, .position = 2.5, .homing = &homing};
     const cm1e_error_t error = cm1e_axis_start(axes[n], &c, &id);
     ck_assert_msg(error == CM1E_OK, "ID%d: %s %s", n + 1, cm1e_strerror(error), text_of(n));
@@ -88,6 +88,24 @@ static cm1e_command_id_t home(int n, int method)
 }
 
 static uint16_t on_wire(int n, uint16_t index) { return (uint16_t)(index + n * CM1E_BRIDGE_INDEX_INCREMENT); }
+
+/** 0x6099: "speed during search for switch" is sub-index 1, "for stopper" 2; in 100 pulses/s. The other one keeps what
+ *  it is. */
+static void check_speed(int n, int method)
+{
+    int seen = 0;
+    for (int i = 0; i < wire.sdo_count; i++) {
+        const sdo_seen_t *sdo = &wire.sdos[i];
+        if (!sdo->write || sdo->index != on_wire(n, 0x6099))
+            continue;
+        seen++;
+        ck_assert_msg(sdo->subindex == (method <= 2 ? 2 : 1), "ID%d, method %d: %04Xh:%d is written", n + 1, method,
+                      sdo->index, sdo->subindex);
+        ck_assert_uint_eq(sdo->size, 4);
+        ck_assert_uint_eq(cm1e_get_u32((const uint8_t *)sdo->data), SPEED * 50000 / 100);
+    }
+    ck_assert_msg(seen == 1, "ID%d, method %d: the speed is written %d times", n + 1, method, seen);
+}
 
 /** The boxes of chart 4.1 ahead of the monitoring, in their order. */
 static void check_start(int n, int method)
@@ -108,6 +126,7 @@ static void check_start(int n, int method)
                       (double)(run->from_ns - sdo->answered_ns) * 1e-6, on_wire(n, objects[i]));
     }
     ck_assert_int_eq(find_sdo(0, true, on_wire(n, 0x6098), NULL)->data[0], method);
+    check_speed(n, method);
 }
 
 static cm1e_command_status_t run_home(int n, cm1e_command_id_t id, double seconds, int *waited)

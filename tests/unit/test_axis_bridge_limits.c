@@ -167,6 +167,32 @@ static void test_a_step_of_a_homing_ends_there(void)
     TEST_ASSERT_INT64_WITHIN(1000, LIMIT, farthest);
 }
 
+/* 0.02 revolutions/s2 and 0.00002 revolutions/s, however many counts that is. */
+static void test_the_least_parameters_are_parts_of_a_revolution(void)
+{
+    static const struct {
+        int number;
+        double least;
+        const char *words;
+    } rows[] = {{CM1E_PARAMETER_MAX_VELOCITY_APPL, 2e-5, "; 2e-05 ... 50 is right"},
+                {CM1E_PARAMETER_MAX_ACCELERATION_APPL, 0.02, "; 0.02 ... 100 is right"},
+                {CM1E_PARAMETER_MAX_DECELERATION_APPL, 0.02, "; 0.02 ... 100 is right"},
+                {CM1E_PARAMETER_MAX_JERK_APPL, 0.02, "; 0.02 ... 2000 is right"}};
+    static const uint8_t k37[] = {10, 0, 20, 3};
+    for (size_t k = 0; k < sizeof k37; k++) {
+        bench_end();
+        fake_bridge_open(&bus, CM1E_DEVICE_EB12, 3);
+        bus.config.axes[0].k37 = k37[k];
+        bench_create();
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_PARAMETER_RANGE,
+                                  cm1e_axis_write_parameter(axis, rows[i].number, 0.999 * rows[i].least));
+            bench_told(rows[i].words);
+            TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axis, rows[i].number, rows[i].least));
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -177,5 +203,6 @@ int main(void)
     RUN_TEST(test_a_backlash_stays_inside);
     RUN_TEST(test_software_limits_hold_beside_them);
     RUN_TEST(test_a_step_of_a_homing_ends_there);
+    RUN_TEST(test_the_least_parameters_are_parts_of_a_revolution);
     return UNITY_END();
 }

@@ -1,5 +1,6 @@
 /* Axes behind a bridge: what one may be beside another, and bounds by motor and K37. */
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -118,13 +119,53 @@ static void test_peak_velocity_follows_k37(void)
     config.axes[1].max_velocity = 50;
     expect_good();
     config.axes[1].max_velocity = 50.001;
-    expect_wrong("expected 0.001 ... 50, 1 ... 50000 counts/s");
+    expect_wrong("expected 2e-05 ... 50, 0.02 ... 50000 counts/s");
     config.axes[1].max_velocity = 0;
     config.axes[1].backlash = 0.1;
     config.axes[1].jog_fast = 49;
     expect_good();
     config.axes[1].jog_fast = 49.01;
     expect_wrong("jog.fast");
+}
+
+/* The least that a motor is asked for is the same part of a revolution, with 50,000 counts or with 200. */
+static void test_least_motion_follows_k37(void)
+{
+    static const struct {
+        size_t offset;
+        const char *key;
+        double least; /* revolutions */
+    } rows[] = {
+        {offsetof(cm1e_axis_config_t, max_velocity), "limits.velocity", 2e-5},
+        {offsetof(cm1e_axis_config_t, max_acceleration), "limits.acceleration", 0.02},
+        {offsetof(cm1e_axis_config_t, max_deceleration), "limits.deceleration", 0.02},
+        {offsetof(cm1e_axis_config_t, max_jerk), "limits.jerk", 0.02},
+        {offsetof(cm1e_axis_config_t, modulo_range), "unit.modulo_range", 0.02},
+        {offsetof(cm1e_axis_config_t, backlash_velocity), "backlash.velocity", 2e-5},
+        {offsetof(cm1e_axis_config_t, jog_slow), "jog.slow", 2e-5},
+        {offsetof(cm1e_axis_config_t, jog_fast), "jog.fast", 2e-5},
+    };
+    static const uint8_t k37[] = {10, 0, 1, 3, 20, 40, 50};
+    for (size_t k = 0; k < sizeof k37; k++)
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            const double counts = cm1e_bridge_counts_per_revolution(k37[k]) * rows[i].least;
+            const double below = counts < 1.0 ? 0.999 : 1.0 - 0.51 / counts; /* half a count is rounded */
+            setUp();
+            config.axes[0].k37 = k37[k];
+            config.axes[0].backlash = strncmp(rows[i].key, "backlash", 8) == 0 ? 0.1 : 0.0;
+            double *value = (double *)((char *)&config.axes[0] + rows[i].offset);
+            *value = rows[i].least;
+            expect_good();
+            *value = rows[i].least * below;
+            expect_wrong(rows[i].key);
+        }
+    config.axes[0].k37 = 0;
+    config.axes[0].jog_fast = 0;
+    config.axes[0].max_acceleration = 0.005;
+    expect_wrong("limits.acceleration is 0.005, 1 counts/s2; expected 0.02 ... 500000000, 4 ... 1e+11 counts/s2");
+    config.axes[0].max_acceleration = 0;
+    config.axes[0].max_velocity = 1e-5;
+    expect_wrong("limits.velocity is 1e-05, 0.002 counts/s; expected 2e-05 ... 50, 0.004 ... 10000 counts/s");
 }
 
 static void test_software_limits_are_where_the_motor_counts(void)
@@ -244,6 +285,7 @@ int main(void)
     RUN_TEST(test_motors_are_those_of_a_bridge);
     RUN_TEST(test_every_k37_is_known_or_refused);
     RUN_TEST(test_peak_velocity_follows_k37);
+    RUN_TEST(test_least_motion_follows_k37);
     RUN_TEST(test_software_limits_are_where_the_motor_counts);
     RUN_TEST(test_homing_bounds_are_those_of_the_motor);
     RUN_TEST(test_homing_methods_are_1_to_4);
