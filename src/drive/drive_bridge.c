@@ -7,8 +7,10 @@
 #include "drive/drive_kind.h"
 #include "drive/drive_private.h"
 
-/* 0x6064 of a motor that holds may swing by some pulses. */
-enum { REST_COUNTS = 3 };
+/* 0x6064 of a motor that holds may swing by some pulses. Where a revolution has few of them (K37), one is a long way,
+ * and takes its time: what counts as rest is slower than a twentieth of a revolution a second. */
+enum { REST_COUNTS = 3, REST_COUNTS_COARSE = 1, COARSE_COUNTS_PER_REVOLUTION = 5000 };
+static const int64_t rest_revolution_ns = 40000 * MS_IN_NS;
 enum { STATUS_TRIES = 3 };
 static const int64_t rest_ns = 20 * MS_IN_NS;
 static const int64_t status_timeout_ns = 300 * MS_IN_NS;
@@ -19,6 +21,13 @@ cm1e_bridge_motor_t cm1e_drive_bridge_motor(const cm1e_drive_t *drive)
 }
 
 static cm1e_error_t submit_cml(void *bus, cm1e_sdo_t *sdo) { return cm1e_sdo_submit(bus, sdo); }
+
+static void set_rest(cm1e_drive_bridge_t *behind, int32_t counts_per_revolution)
+{
+    const int64_t time_ns = rest_revolution_ns / counts_per_revolution;
+    behind->rest_ns = time_ns > rest_ns ? time_ns : rest_ns;
+    behind->rest_counts = counts_per_revolution < COARSE_COUNTS_PER_REVOLUTION ? REST_COUNTS_COARSE : REST_COUNTS;
+}
 
 cm1e_error_t cm1e_drive_init_bridge(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
@@ -47,26 +56,28 @@ cm1e_error_t cm1e_drive_init_bridge(cm1e_drive_t *drive, cm1e_diag_t *diag)
     drive->behind = calloc(1, sizeof *drive->behind);
     if (!drive->behind)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for axis \"%s\".", config->name);
+    set_rest(drive->behind, cm1e_bridge_counts_per_revolution(config->k37));
     cm1e_drive_cml_init(&drive->behind->cml, drive->position, config->channel, submit_cml, drive->bus);
     return CM1E_OK;
 }
 
 bool cm1e_drive_rests(const cm1e_drive_t *drive)
 {
-    return drive->behind && drive->now_ns - drive->behind->rest_since_ns >= rest_ns;
+    return drive->behind && drive->now_ns - drive->behind->rest_since_ns >= drive->behind->rest_ns;
 }
 
-static bool near(int32_t a, int32_t b)
+static bool near(const cm1e_drive_bridge_t *behind, int32_t a, int32_t b)
 {
     const int64_t way = (int64_t)a - b;
-    return way <= REST_COUNTS && way >= -REST_COUNTS;
+    return way <= behind->rest_counts && way >= -behind->rest_counts;
 }
 
 /* A target that was just written moves the motor in a moment. */
 static void watch_rest(cm1e_drive_t *drive)
 {
     cm1e_drive_bridge_t *behind = drive->behind;
-    if (near(drive->feedback.position, behind->rest_position) && near(drive->target_position, behind->rest_target))
+    if (near(behind, drive->feedback.position, behind->rest_position) &&
+        near(behind, drive->target_position, behind->rest_target))
         return;
     behind->rest_position = drive->feedback.position;
     behind->rest_target = drive->target_position;

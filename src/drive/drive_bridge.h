@@ -24,6 +24,8 @@ typedef struct cm1e_drive_digital {
 typedef struct cm1e_drive_bridge {
     int32_t rest_position, rest_target; /**< the motor stands there, its target too ... */
     int64_t rest_since_ns;          /**< ... since then */
+    int64_t rest_ns;                /**< so long is rest, by the resolution of the motor (K37) ... */
+    int32_t rest_counts;            /**< ... and so many pulses are no motion */
     cm1e_sdo_t status_sdo;          /**< F530:5 ... 8 */
     uint8_t status_data[4], status_tries;
     bool status_reading;

@@ -10,6 +10,7 @@
 #define OVERLOAD_LIMIT_S 0.5     /* i2t */
 #define PEAK_TO_RATED_TORQUE 1.25
 #define STANDSTILL_COUNTS_PER_S 100.0
+#define STANDSTILL_PULSES_PER_S 10.0 /* where one of them is a long way: nobody outside could tell */
 enum { SILENCE_MS = 10 };        /* without a good answer: an error of the serial line */
 enum { SETTING_NS = 100000000 }; /* until a setting of homing is done (BR appendix 4.1) */
 enum { K_RESOLUTION = 37, K_ENABLE_AT_POWER_ON = 68 };
@@ -131,7 +132,8 @@ void cm1e_sim_bridge_axis_exchange(cm1e_sim_bridge_axis_t *axis)
 
 bool cm1e_sim_bridge_axis_stands(const cm1e_sim_bridge_axis_t *axis)
 {
-    return fabs(axis->mechanics.velocity) < STANDSTILL_COUNTS_PER_S && axis->servo.reference_velocity == 0;
+    const double least = fmax(STANDSTILL_COUNTS_PER_S, STANDSTILL_PULSES_PER_S / axis->scale);
+    return fabs(axis->mechanics.velocity) < least && axis->servo.reference_velocity == 0;
 }
 
 uint8_t cm1e_sim_bridge_motor_status(const cm1e_sim_bridge_axis_t *axis)

@@ -191,6 +191,30 @@ static void test_a_motor_that_never_rests_ends_in_a_timeout_without_a_write(void
     fake_bridge.shortest_mode_interval_ns = INT64_MAX;
 }
 
+/* 200 pulses in a revolution and a tenth of it a second: in 20 ms that is not half a pulse. */
+static void test_a_coarse_resolution_does_not_hide_that_the_motor_turns(void)
+{
+    static const uint8_t k37s[] = {0, 1, 3, 4, 6, 7, 10, 40, 45, 50};
+    for (size_t i = 0; i < sizeof k37s; i++) {
+        bench_open(CM1E_DEVICE_EB01, 1);
+        bus.config.axes[0].k37 = k37s[i];
+        bench_init();
+        fake_bridge_axis()->scale = cm1e_bridge_counts_per_revolution(k37s[i]) / (double)CM1E_COUNTS_PER_REVOLUTION;
+        for (int n = 0; n < 1600; n++) {
+            if (n == 400)
+                drive.command.mode = (cm1e_mode_t)CML;
+            fake_bridge_axis()->zero += 5;
+            bench_cycle();
+        }
+        TEST_ASSERT_EQUAL_UINT(0, writes_of_mode());
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_MODE_TIMEOUT, drive.fault.error);
+        bench_open(CM1E_DEVICE_EB01, 1);
+        bus.config.axes[0].k37 = k37s[i];
+        bench_init();
+        TEST_ASSERT_TRUE(bench_mode(CML, 300)); /* and one that stands is no longer waited for than that */
+    }
+}
+
 static void test_an_error_of_the_motor_keeps_every_mode_but_cmd_shut(void)
 {
     for (int to = 1; to < MODES; to++) {
@@ -365,6 +389,7 @@ int main(void)
     RUN_TEST(test_words_of_another_coding_wait_until_the_torque_is_gone);
     RUN_TEST(test_a_switch_waits_for_rest);
     RUN_TEST(test_a_motor_that_never_rests_ends_in_a_timeout_without_a_write);
+    RUN_TEST(test_a_coarse_resolution_does_not_hide_that_the_motor_turns);
     RUN_TEST(test_an_error_of_the_motor_keeps_every_mode_but_cmd_shut);
     RUN_TEST(test_a_switch_that_is_not_confirmed_is_a_fault_that_says_what_is_shown);
     RUN_TEST(test_after_a_refused_switch_csp_works_on);
