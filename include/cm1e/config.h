@@ -62,7 +62,7 @@ typedef struct cm1e_homing_config {
                               behind a bridge 1/2 hard stop CW/CCW, 3/4 home switch CW/CCW (BR 6.4.1) */
     double offset;       /**< u; the axis moves there after the reference, then calls it 0; +-3,276,700 counts */
     double velocity;     /**< u/s; 0: 50,000 counts/s; 1,000 ... 500,000 counts/s. Behind a bridge CM1 0: 10,000,
-                              100 ... 500,000; CM2 0: 1,000, 100 ... 3,276,700 */
+                              100 ... 500,000; CM2 0: 1,000, 100 ... 3,276,700; 0: at most a revolution a second */
     double acceleration; /**< u/s2; 0: 100,000 counts/s2; 1,000 ... 5,000,000 counts/s2, CM2 ... 32,767,000 */
     double torque;       /**< % of rated torque, 10 ... 100; 0: 30 */
     double timeout_s;    /**< s; 0: 60 */

@@ -126,6 +126,14 @@ static uint8_t bits(const cm1e_axis_t *axis)
 
 /* ---- parameters -------------------------------------------------------------------------------------------------- */
 
+/* The motor's; but a speed is a revolution a second at most. K42 counts pulses, of which a CM1 has 200 in a revolution
+ * with K37 = 0: its default would be 50 revolutions a second, into a hard stop. */
+static double default_of(const cm1e_axis_t *axis, int which, const homing_object_t *object, const cm1e_entry_t *entry)
+{
+    const double most = CM1E_COUNTS_PER_REVOLUTION * axis->count / object->unit;
+    return which == SPEED ? fmin((double)entry->default_value, most) : (double)entry->default_value;
+}
+
 /* Checked against the device's range and rounded as the device rounds, before anything reaches the wire. 0 is the
  * default of those that have one. */
 static bool parameter(cm1e_axis_t *axis, int which, int method, double value)
@@ -135,7 +143,8 @@ static bool parameter(cm1e_axis_t *axis, int which, int method, double value)
     if (!entry || !isfinite(value) || fabs(value / object.unit) > INT32_MAX)
         return false;
     const bool by_default = value == 0.0 && which != OFFSET && which != METHOD;
-    const int64_t rounded = cm1e_entry_round(entry, by_default ? entry->default_value : llround(value / object.unit));
+    const double asked = by_default ? default_of(axis, which, &object, entry) : value / object.unit;
+    const int64_t rounded = cm1e_entry_round(entry, llround(asked));
     if (rounded < entry->minimum || rounded > entry->maximum)
         return false;
     axis->home.raw[which] = (int32_t)rounded;

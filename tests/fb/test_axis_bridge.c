@@ -227,6 +227,26 @@ START_TEST(test_parameters_are_written_in_the_units_of_the_motor)
 }
 END_TEST
 
+/* With K37 = 0 a revolution of a CM1 has 200 pulses, with 3 it has 1000: K42's default would be 50 and 10 of them a
+ * second. */
+START_TEST(test_a_homing_speed_by_default_is_no_more_than_a_revolution_a_second)
+{
+    static const struct { uint8_t k37; int64_t speed; } rows[] = {{0, 2}, {3, 10}, {10, 100}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        describe_bridge();
+        config.axes[CM1].k37 = rows[i].k37;
+        open_enabled();
+        const cm1e_command_id_t id = home_of(CM1, 0.0, &(cm1e_homing_config_t){.method = 1});
+        while (status_of(CM1, id).state == CM1E_COMMAND_ACTIVE && axes[CM1]->home.step != HOME_RUN)
+            cycles(1);
+        const cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(
+            cm1e_sim_segment_slave(cm1e_nic_segment(cm1e_bus_nic(bus)), 1));
+        ck_assert_int_eq(*cm1e_sim_bridge_k(bridge, (unsigned)CM1, 42), rows[i].speed);
+        close_segment();
+    }
+}
+END_TEST
+
 static void set_k45(int n, double value)
 {
     uint32_t ticket;
@@ -659,6 +679,7 @@ int main(void)
     tcase_add_test(tcase, test_four_motors_are_enabled_and_moved_side_by_side);
     tcase_add_loop_test(tcase, test_every_method_homes_both_kinds_of_motor, 0, 4 * METHODS);
     tcase_add_test(tcase, test_parameters_are_written_in_the_units_of_the_motor);
+    tcase_add_test(tcase, test_a_homing_speed_by_default_is_no_more_than_a_revolution_a_second);
     tcase_add_test(tcase, test_the_offset_goes_by_k45_of_a_cm2);
     tcase_add_test(tcase, test_what_is_wrong_with_a_homing_is_told_before_it_begins);
     tcase_add_test(tcase, test_an_offset_that_k45_does_not_allow_ends_the_homing);
