@@ -227,8 +227,8 @@ static void follow_switch(cm1e_axis_t *axis)
 }
 
 /* Where a bridge that was away is found counts: switched off and on, it is in CSP (BR 6), and nothing leads it into a
- * dead end again that nobody has asked for since. Until it is known, nothing is asked for. From a homing that was broken
- * off the way leads on to CSP. */
+ * dead end again that nobody has asked for since. Until it is known, nothing is asked for. From a homing that was
+ * broken off the way leads on to CSP. */
 static void follow_return(cm1e_axis_t *axis)
 {
     cool_muscle_t *muscle = axis->muscle;

@@ -20,7 +20,7 @@ static const source_t of_channel[] = {
     OF_CHANNEL(baud_rate, OBJ_F511_CONFIG_AXIS_1, 2, 1, 0),
     OF_CHANNEL(cycle_time_ms, OBJ_F511_CONFIG_AXIS_1, 3, 1, 0),
     OF_CHANNEL(receive_errors, OBJ_F530_SYSTEM_INFO, 1, 0, 1),
-    OF_CHANNEL(status, OBJ_F530_SYSTEM_INFO, CM1E_BRIDGE_STATUS_SUBINDEX, 0, 1),
+    OF_CHANNEL(status, OBJ_F530_SYSTEM_INFO, CM1E_BRIDGE_STATUS_SUBINDEX(1), 0, 1),
     OF_CHANNEL(sent, OBJ_F530_SYSTEM_INFO, 9, 0, 1),
     OF_CHANNEL(received, OBJ_F530_SYSTEM_INFO, 13, 0, 1),
     OF_CHANNEL(profile, OBJ_F010_MODULE_PROFILE_LIST, 1, 0, 1),

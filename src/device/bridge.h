@@ -30,7 +30,7 @@ enum {
 #define CM1E_BRIDGE_MODULE_IDENT 0x00219800u /**< of each axis, whatever motor is behind it (F030, F050) */
 #define CM1E_BRIDGE_CYCLE_TIME_NS 1000000 /**< the only one (BR 6.3) */
 #define CM1E_BRIDGE_MODE_INTERVAL_NS 5000000 /**< between writes of 0x6060: more than that (BR 6.2.2 note 2) */
-#define CM1E_BRIDGE_STATUS_SUBINDEX 5     /**< of F530: what the motor at ID1 says of itself; then those of the others */
+#define CM1E_BRIDGE_STATUS_SUBINDEX(id) ((uint8_t)(4 + (id))) /**< of F530: what the motor at ID 1 ... 4 says */
 
 /** Between one CML string and the next: the shorter time after one of less than so many bytes (BR 7.2.2). */
 #define CM1E_BRIDGE_CML_LONG_BYTES 32

@@ -139,8 +139,8 @@ typedef struct cm1e_drive {
  *  as is a motor behind a bridge without its K37. CM1E_ERROR_STATE: it is found in a mode without a way back to csp.
  *  @rt init */
 cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis, cm1e_diag_t *diag);
-/** Frees what cm1e_drive_init() made, also where it failed. After cm1e_bus_stop(), which ends the transfers of the drive
- *  that wait: they would end in this memory. @rt init */
+/** Frees what cm1e_drive_init() made, also where it failed. After cm1e_bus_stop(), which ends the transfers of the
+ *  drive that wait: they would end in this memory. @rt init */
 void cm1e_drive_free(cm1e_drive_t *drive);
 /** Decodes the inputs of this cycle; `bus_ok` FALSE: they are old. Latches faults. @rt cycle */
 void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns);

@@ -114,7 +114,7 @@ static void ask_status(cm1e_drive_t *drive)
         behind->status_tries++;
         behind->status_sdo = (cm1e_sdo_t){
             .position = drive->position, .index = OBJ_F530_SYSTEM_INFO,
-            .subindex = (uint8_t)(CM1E_BRIDGE_STATUS_SUBINDEX + drive->config->channel - 1), .data = behind->status_data,
+            .subindex = CM1E_BRIDGE_STATUS_SUBINDEX(drive->config->channel), .data = behind->status_data,
             .size = sizeof behind->status_data, .timeout_ns = status_timeout_ns,
         };
         behind->status_reading = cm1e_sdo_submit(drive->bus, &behind->status_sdo) == CM1E_OK;

@@ -84,8 +84,9 @@ static cm1e_error_t not_confirmed(const place_t *at, int8_t wanted, int8_t shown
     uint8_t status[4];
     size_t size = sizeof status;
     const cm1e_device_model_t model = cm1e_bus_slave(at->bus, at->position)->model;
-    if (cm1e_sdo_read(at->bus, at->position, OBJ_F530_SYSTEM_INFO, (uint8_t)(CM1E_BRIDGE_STATUS_SUBINDEX + at->channel - 1), status, &size, NULL)
-            == CM1E_OK && size == sizeof status)
+    const cm1e_error_t error = cm1e_sdo_read(at->bus, at->position, OBJ_F530_SYSTEM_INFO,
+                                             CM1E_BRIDGE_STATUS_SUBINDEX(at->channel), status, &size, NULL);
+    if (error == CM1E_OK && size == sizeof status)
         cm1e_bridge_status_text(cm1e_bridge_motor(model, at->channel - 1u), cm1e_get_u32(status), words, sizeof words);
     return cm1e_diag_set(at->diag, CM1E_ERROR_DRIVE_MODE_TIMEOUT, 0,
                          "Slave %u, connector %u: mode of operation %d was asked for, object 0x%04X shows %d. The "
@@ -245,7 +246,9 @@ cm1e_error_t cm1e_cml_leave(cm1e_bus_t *bus, uint16_t position, uint8_t channel,
 {
     const place_t at = {bus, position, channel, diag};
     int8_t mode = 0;
-    cm1e_error_t error = bus ? check_place(&at) : CM1E_ERROR_INVALID_ARGUMENT;
+    if (!bus)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_cml_leave() needs a bus.");
+    cm1e_error_t error = check_place(&at);
     if (error == CM1E_OK)
         error = read_mode(&at, &mode);
     if (error || mode != CM1E_BRIDGE_MODE_CML)

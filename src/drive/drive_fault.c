@@ -84,7 +84,7 @@ static void say_status(writer_t *w, const cm1e_drive_t *drive)
     const char *cure = cm1e_bridge_status_cure(motor, status);
     say(w, " The motor (%s) says: %s (F530:%u = 0x%02X).", cm1e_bridge_motor_name(motor),
         cm1e_bridge_status_text(motor, status, text, sizeof text),
-        CM1E_BRIDGE_STATUS_SUBINDEX + drive->config->channel - 1u, status);
+        CM1E_BRIDGE_STATUS_SUBINDEX(drive->config->channel), status);
     if (cure[0])
         say(w, " Cure: %s.", cure);
 }

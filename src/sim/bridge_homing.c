@@ -34,7 +34,8 @@ void cm1e_sim_bridge_search_begin(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axi
     axis->search = (cm1e_sim_search_t){
         .direction = methods[method - 1].direction,
         .speed = CM1E_BRIDGE_SPEED_UNIT * (double)*cm1e_sim_bridge_k(bridge, n, K_SPEED) / axis->scale,
-        .acceleration = CM1E_BRIDGE_ACCELERATION_UNIT * (double)*cm1e_sim_bridge_k(bridge, n, K_ACCELERATION) / axis->scale,
+        .acceleration =
+            CM1E_BRIDGE_ACCELERATION_UNIT * (double)*cm1e_sim_bridge_k(bridge, n, K_ACCELERATION) / axis->scale,
         .offset = offset_unit(bridge, axis) * (double)*cm1e_sim_bridge_k(bridge, n, K_OFFSET) / axis->scale,
     };
     look_at_sensor(axis);

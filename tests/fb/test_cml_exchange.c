@@ -85,6 +85,8 @@ START_TEST(test_what_is_refused_reaches_no_motor)
     fails(CM1E_ERROR_CML_STRING, send(1, NULL, true), "is missing");
     fails_for_time(-1);
     fails_for_time(INT64_MAX);
+    fails(CM1E_ERROR_INVALID_ARGUMENT, cm1e_cml_exchange(NULL, &exchange, &diag), "needs a bus");
+    fails(CM1E_ERROR_INVALID_ARGUMENT, cm1e_cml_leave(NULL, 2, 1, false, &diag), "needs a bus");
     fails(CM1E_ERROR_CML_STRING, send(1, "?99.2", true), "another motor");
     fails(CM1E_ERROR_INVALID_ARGUMENT, send(0, "?99", false), "connector 0");
     fails(CM1E_ERROR_INVALID_ARGUMENT, send(5, "?99", false), "1 ... 4");
