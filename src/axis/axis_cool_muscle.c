@@ -414,6 +414,10 @@ bool cm1e_axis_cool_muscle_text(const cm1e_axis_t *axis, cm1e_error_t error, cha
         snprintf(text, size, "Axis \"%s\": the CML string \"%s\" may move the motor, change its power or what its "
                  "positions mean, or is not known: it is sent where AllowMotion is TRUE.", name, muscle->text);
         return true;
+    case CM1E_ERROR_CANCELLED:
+        snprintf(text, size, "Axis \"%s\": \"%s\" was cancelled: MC_Power, CM_SetMode or the end of the run came "
+                 "between.", name, muscle->text);
+        return muscle->text[0] != '\0';
     case CM1E_ERROR_CML_TIMEOUT:
     case CM1E_ERROR_CM_SEARCH_TIMEOUT:
         snprintf(text, size, "Axis \"%s\": %s%s%s%s.", name, cm1e_strerror(error), muscle->text[0] ? ": \"" : "",
