@@ -14,6 +14,7 @@ typedef struct cm1e_drive_digital {
     cm1e_sdo_t in_sdo, out_sdo;
     uint8_t in_data[4], out_data[4];
     bool reading, writing, writing_mask;
+    bool cleared;                   /**< 60FE:1 was written since the start: nothing of another master is in it */
     bool mask_written;              /**< 60FE:2 says which outputs are ours */
     bool outputs_known;             /**< 60FE:1 is `outputs` */
     bool failed;

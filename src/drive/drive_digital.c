@@ -112,7 +112,7 @@ static void write_ended(cm1e_drive_t *drive, bool good)
         d->mask_written = true;
     else {
         d->outputs = d->writing_outputs;
-        d->outputs_known = true;
+        d->outputs_known = d->cleared = true;
     }
 }
 
@@ -132,9 +132,10 @@ static void step_outputs(cm1e_drive_t *drive)
     const uint16_t outputs = wanted(drive);
     if ((d->outputs_known && d->outputs == outputs) || drive->now_ns < d->write_next_ns)
         return;
-    d->writing_mask = outputs != 0 && !d->mask_written;
-    d->writing_outputs = outputs;
-    cm1e_put_u32(d->out_data, d->writing_mask ? cm1e_drive_output_mask(drive) : outputs);
+    /* What another master left in 60FE:1, behind a mask of 0, must not be on when the mask lets it through. */
+    d->writing_mask = outputs != 0 && d->cleared && !d->mask_written;
+    d->writing_outputs = d->cleared ? outputs : 0;
+    cm1e_put_u32(d->out_data, d->writing_mask ? cm1e_drive_output_mask(drive) : d->writing_outputs);
     d->writing = submit(drive, &d->out_sdo, (cm1e_sdo_t){.index = OBJ_60FE_DIGITAL_OUTPUTS,
                                                          .subindex = d->writing_mask ? MASK : OUTPUTS, .write = true,
                                                          .data = d->out_data, .size = sizeof d->out_data});

@@ -181,6 +181,27 @@ static void test_what_a_run_before_left_on_goes_off(void)
     TEST_ASSERT_EQUAL_HEX8(0, fake_bridge_axis()->outputs);
 }
 
+/* 60FE:1 of another master behind a mask that let nothing through (BR 6.5.2): the mask comes after a 0. */
+static void test_what_another_master_left_behind_the_mask_never_goes_on(void)
+{
+    for (unsigned channel = 1; channel <= 4; channel++) {
+        bench_open(CM1E_DEVICE_EB12, channel);
+        const unsigned axis = fake_bridge.axis;
+        *cm1e_sim_bridge_value(fake_bridge.app, axis, 0x60FE, 1) = 0x0F;
+        *cm1e_sim_bridge_value(fake_bridge.app, axis, 0x60FE, 2) = 0;
+        drive.command.digital_outputs = channel > 2 ? 1 : 0;
+        drive.command.enable = true;
+        for (int i = 0; i < 100; i++) {
+            bench_cycle();
+            TEST_ASSERT_EQUAL_HEX8(0, fake_bridge_axis()->outputs & ~drive.command.digital_outputs);
+        }
+        TEST_ASSERT_EQUAL_HEX8(drive.command.digital_outputs, fake_bridge_axis()->outputs);
+        drive.command.digital_outputs = 2;
+        bench_cycles(20);
+        TEST_ASSERT_EQUAL_HEX8(2, fake_bridge_axis()->outputs);
+    }
+}
+
 static void test_a_transfer_that_fails_is_told_and_repeated(void)
 {
     bench_enable();
@@ -223,6 +244,7 @@ int main(void)
     RUN_TEST(test_outputs_of_no_motor_are_no_matter);
     RUN_TEST(test_without_torque_outputs_wait_and_are_written_anew);
     RUN_TEST(test_what_a_run_before_left_on_goes_off);
+    RUN_TEST(test_what_another_master_left_behind_the_mask_never_goes_on);
     RUN_TEST(test_a_transfer_that_fails_is_told_and_repeated);
     RUN_TEST(test_after_a_power_cycle_the_mask_is_written_again);
     return UNITY_END();
