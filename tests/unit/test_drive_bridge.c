@@ -177,6 +177,28 @@ static void test_a_motor_that_stays_free_is_not_enabled(void)
     TEST_ASSERT_EQUAL_HEX16(0x0006, bench_word());
 }
 
+/* BR 6.1.1, state A: no controlword frees it there. It holds where it stands, and no target of the start moves it. */
+static void test_a_cm1_holds_from_power_on_until_it_was_enabled_once(void)
+{
+    for (unsigned channel = 1; channel <= CM1E_BRIDGE_AXES; channel++) {
+        bench_open(CM1E_DEVICE_EB12, channel);
+        const bool holds = cm1e_bridge_motor(CM1E_DEVICE_EB12, channel - 1) == CM1E_BRIDGE_CM1;
+        drive.command.target_position = 4711;
+        bench_cycles(500);
+        TEST_ASSERT_EQUAL_INT(!holds, fake_bridge_axis()->motor_free);
+        TEST_ASSERT_EQUAL_INT(!holds, drive.feedback.motor_free);
+        TEST_ASSERT_FALSE(drive.feedback.enabled);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, drive.fault.error);
+        TEST_ASSERT_EQUAL_INT32(0, drive.feedback.position);
+        bench_enable();
+        TEST_ASSERT_EQUAL_INT64(0, fake_bridge.largest_step);
+        drive.command.enable = false;
+        bench_cycles(20);
+        TEST_ASSERT_TRUE(fake_bridge_axis()->motor_free);
+        TEST_ASSERT_TRUE(drive.feedback.motor_free);
+    }
+}
+
 static void test_motor_free_while_enabled_is_a_loss(void)
 {
     bench_enable();
@@ -483,6 +505,7 @@ int main(void)
     RUN_TEST(test_the_way_from_every_state_has_one_command_a_cycle);
     RUN_TEST(test_enabling_survives_a_lost_frame_at_every_cycle);
     RUN_TEST(test_a_motor_that_stays_free_is_not_enabled);
+    RUN_TEST(test_a_cm1_holds_from_power_on_until_it_was_enabled_once);
     RUN_TEST(test_motor_free_while_enabled_is_a_loss);
     RUN_TEST(test_every_statusword_in_csp_leaves_a_defined_output);
     RUN_TEST(test_every_statusword_in_cpio);
