@@ -1,17 +1,21 @@
 #include "axis/axis_signals.h"
 #include "edge.h"
 
-static cm1e_error_t write_output(const MC_WriteDigitalOutput_t *fb, cm1e_axis_t *axis)
+static int number_of(const MC_WriteDigitalOutput_t *fb)
 {
-    const int number = fb->OutputNumber ? fb->OutputNumber : fb->Output->Number;
-    const cm1e_error_t error = fb_refuse_execution_mode(fb->ExecutionMode);
-    return error ? error : cm1e_axis_write_output(axis, number, fb->Value != FALSE);
+    return fb->OutputNumber ? fb->OutputNumber : fb->Output->Number;
 }
 
-static void poll(MC_WriteDigitalOutput_t *fb, const cm1e_axis_t *axis)
+static cm1e_error_t write_output(const MC_WriteDigitalOutput_t *fb, cm1e_axis_t *axis)
+{
+    const cm1e_error_t error = fb_refuse_execution_mode(fb->ExecutionMode);
+    return error ? error : cm1e_axis_write_output(axis, number_of(fb), fb->Value != FALSE);
+}
+
+static void poll(MC_WriteDigitalOutput_t *fb, cm1e_axis_t *axis)
 {
     cm1e_error_t error;
-    const cm1e_command_state_t state = cm1e_axis_output_state(axis, &error);
+    const cm1e_command_state_t state = cm1e_axis_output_state(axis, number_of(fb), &error);
     fb_polled(&fb->Private, state, error);
 }
 

@@ -163,7 +163,7 @@ cm1e_error_t cm1e_axis_write_output(cm1e_axis_t *axis, int number, bool value)
     return set_output(axis, number, value, INT64_MAX);
 }
 
-cm1e_command_state_t cm1e_axis_output_state(const cm1e_axis_t *axis, cm1e_error_t *error)
+cm1e_command_state_t cm1e_axis_output_state(cm1e_axis_t *axis, int number, cm1e_error_t *error)
 {
     *error = CM1E_OK;
     switch (cm1e_drive_outputs(&axis->drive)) {
@@ -178,7 +178,10 @@ cm1e_command_state_t cm1e_axis_output_state(const cm1e_axis_t *axis, cm1e_error_
     case CM1E_DRIVE_OUTPUTS_UNDER_WAY:
         break;
     }
-    return *error ? CM1E_COMMAND_ERROR : CM1E_COMMAND_ACTIVE;
+    if (!*error)
+        return CM1E_COMMAND_ACTIVE;
+    cm1e_axis_remember_not_set(axis, (not_set_t){.error = *error, .what = NOT_SET_OUTPUT, .number = number});
+    return CM1E_COMMAND_ERROR;
 }
 
 cm1e_error_t cm1e_axis_hold_output(cm1e_axis_t *axis, int number, bool value, int64_t keep_ns)

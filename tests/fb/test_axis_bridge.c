@@ -535,7 +535,7 @@ static cm1e_error_t write_output(int n, int number, bool value)
     cm1e_command_state_t state = CM1E_COMMAND_ACTIVE;
     for (int i = 0; i < 200 && !error && state == CM1E_COMMAND_ACTIVE; i++) {
         cycles(1);
-        state = cm1e_axis_output_state(axes[n], &error);
+        state = cm1e_axis_output_state(axes[n], number, &error);
     }
     ck_assert(error || state == CM1E_COMMAND_DONE);
     return error;

@@ -291,6 +291,7 @@ START_TEST(test_an_output_that_the_bridge_refuses)
     scan(100);
     cm1e_nic_set_tap(cm1e_bus_nic(bus), refuse_output, &index);
     write_output(n, 2, TRUE, CM1E_ERROR_BUS_MAILBOX);
+    told(n, "digital output 2 was not written: mailbox error");
     ck_assert_int_eq(info_of(n).state, CM1E_AXIS_STANDSTILL);
     cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
     scan(500);
