@@ -64,11 +64,25 @@ static cm1e_motion_limits_t share_of(const cm1e_axis_t *axis, const cm1e_motion_
     return (cm1e_motion_limits_t){asked->velocity, acceleration, acceleration, fmin(asked->jerk, most->jerk / 2.0)};
 }
 
+/* With what is left it would run over a software limit. */
+static bool needs_all_to_halt(const cm1e_axis_t *axis)
+{
+    const from_t from = from_base(axis);
+    const cm1e_motion_state_t start = {0.0, from.velocity, from.acceleration};
+    cm1e_motion_limits_t limits;
+    cm1e_profile_t stop;
+    return axis->kind == CM1E_COMMAND_HALT && axis->software_limits &&
+           (cm1e_axis_limits_of(axis, &from, &axis->move, &limits) ||
+            cm1e_profile_to_velocity(&stop, &start, 0.0, &limits) || !cm1e_axis_limits_contain(axis, &from, &stop));
+}
+
 /* The base makes room; FALSE: it cannot now. */
 static bool base_gives_way(cm1e_axis_t *axis)
 {
     if (axis->stands)
         return true;
+    if (axis->active && needs_all_to_halt(axis))
+        return false;
     if (!axis->active || base_peak(axis) + axis->superimposed.share.velocity > axis->maximum.velocity)
         return false;
     return axis->reached || cm1e_axis_replan_if(axis); /* a constant velocity stays, and InVelocity (3.10) */

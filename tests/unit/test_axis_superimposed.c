@@ -155,6 +155,23 @@ static void test_on_a_base_that_turns(void)
     }
 }
 
+/* A halt that needs its whole deceleration before a software limit keeps it: what goes on top begins when it stands. */
+static void test_on_a_halt_before_a_limit(void)
+{
+    for (int wait = 0; wait < 100; wait += 3) {
+        begin_with(100.0, 100.0, 25.0);
+        bench_move_velocity(10.0);
+        while (bench_info().set_position < 24.0)
+            watch_cycles(1);
+        const cm1e_command_id_t halt = post(CM1E_COMMAND_HALT, 0.0, 0.0, mcAborting);
+        watch_cycles(wait);
+        const cm1e_command_id_t id = superimpose(-1.0, 5.0);
+        wait_for(halt, CM1E_COMMAND_DONE);
+        wait_for(id, CM1E_COMMAND_DONE);
+        TEST_ASSERT_TRUE(watch.highest <= 25.0);
+    }
+}
+
 static void test_another_one_replaces_the_first_only(void)
 {
     const cm1e_command_id_t base = bench_move_velocity(10.0);
@@ -419,6 +436,7 @@ int main(void)
     RUN_TEST(test_in_standstill_it_acts_like_a_relative_move);
     RUN_TEST(test_on_a_velocity);
     RUN_TEST(test_on_a_base_that_turns);
+    RUN_TEST(test_on_a_halt_before_a_limit);
     RUN_TEST(test_another_one_replaces_the_first_only);
     RUN_TEST(test_halt_superimposed_ends_it_and_leaves_the_base);
     RUN_TEST(test_an_aborting_command_ends_both_without_a_step);
