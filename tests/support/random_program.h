@@ -129,8 +129,10 @@ static void judge_arrival(int n)
     if (!stories[n].known || stories[n].origin != origin() || !rests)
         return;
     const double end = stories[n].end;
-    const double off = (cm1e_axis_units(judged.axis, judged.axis->set) - end) * fabs(judged.axis->scale);
-    MUST(fabs(off) < 0.01 + fabs(end) * 1e-12, "%s is Done, but stands %.6g counts beside %.9g", name_of(fb), off, end);
+    const double scale = fabs(judged.axis->scale), off = (cm1e_axis_units(judged.axis, judged.axis->set) - end) * scale;
+    /* Three roundings to a double in u: of where it began, of where that is to end, and of where it is. */
+    MUST(fabs(off) < 0.01 + fabs(end) * scale * 4e-16, "%s is Done, but stands %.6g counts beside %.9g",
+         name_of(fb), off, end);
 }
 
 /** What the program knows of the move that has just been started. */
