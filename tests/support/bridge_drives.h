@@ -56,9 +56,9 @@ static inline void close_drives(void)
     for (int n = 0; n < DRIVES; n++)
         ck_assert_msg(motor(n)->broken_rules == 0, "ID%d: rules of the guide are broken: 0x%03X", n + 1,
                       motor(n)->broken_rules);
+    cm1e_bus_stop(bus); /* transfers of the drives end here: before their memory goes */
     for (int n = 0; n < DRIVES; n++)
         cm1e_drive_free(&drives[n]);
-    cm1e_bus_stop(bus);
     cm1e_bus_close(bus);
     bus = NULL;
 }
