@@ -17,15 +17,11 @@ static cm1e_error_t start(CM_Command_t *fb, cm1e_axis_t *axis)
     return error;
 }
 
-/** The block has no CommandAborted: a command that another one has taken the place of is an error. */
 static void poll(CM_Command_t *fb, const cm1e_axis_t *axis)
 {
     cm1e_error_t error;
     const cm1e_command_state_t state = cm1e_axis_motor_command_state(axis, fb->Private.command, &error);
-    if (state == CM1E_COMMAND_ABORTED)
-        fb_fail(&fb->Private, CM1E_ERROR_CANCELLED);
-    else
-        fb_polled(&fb->Private, state, error);
+    fb_polled_or_cancelled(&fb->Private, state, error);
 }
 
 void CM_Command(CM_Command_t *fb)

@@ -92,6 +92,14 @@ void fb_polled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t e
     }
 }
 
+void fb_polled_or_cancelled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error)
+{
+    if (state == CM1E_COMMAND_ABORTED || state == CM1E_COMMAND_UNKNOWN)
+        fb_polled(fb, CM1E_COMMAND_ERROR, CM1E_ERROR_CANCELLED);
+    else
+        fb_polled(fb, state, error);
+}
+
 fb_outputs_t fb_outputs(const cm1e_fb_private_t *fb)
 {
     return (fb_outputs_t){

@@ -34,6 +34,8 @@ fb_step_t fb_execute(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL ex
 void fb_started(cm1e_fb_private_t *fb, cm1e_error_t error);
 /** What became of it so far. */
 void fb_polled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error);
+/** The same for a block without CommandAborted: what another one has taken the place of is CM1E_ERROR_CANCELLED. */
+void fb_polled_or_cancelled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error);
 fb_outputs_t fb_outputs(const cm1e_fb_private_t *fb);
 
 /** A whole block of the Execute type that is one motion command: starts it at the edge, hands on new inputs while

@@ -1,14 +1,10 @@
 #include "edge.h"
 
-/** MC_Reset has no CommandAborted: a reset that did not come to an end is an error. */
 static void poll_reset(cm1e_fb_private_t *fb, const cm1e_axis_t *axis)
 {
     cm1e_error_t error = CM1E_OK;
     const cm1e_command_state_t state = cm1e_axis_reset_state(axis, &error);
-    if (state == CM1E_COMMAND_ABORTED || state == CM1E_COMMAND_UNKNOWN)
-        fb_fail(fb, CM1E_ERROR_CANCELLED);
-    else
-        fb_polled(fb, state, error);
+    fb_polled_or_cancelled(fb, state, error);
 }
 
 void MC_Reset(MC_Reset_t *fb)
