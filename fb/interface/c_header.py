@@ -8,7 +8,7 @@ def c_type(name):
     """The standard's names stay; handles and what is ours follow the house's names."""
     if name == "STRING(80)":
         return "STRING80"
-    return name + "_t" if name == "AXIS_REF" or name.startswith("cm1e_") else name
+    return name + "_t" if name in ("AXIS_REF", "AXES_GROUP_REF") or name.startswith("cm1e_") else name
 
 
 def comment(text, indent=""):

@@ -50,8 +50,11 @@ def member_type(variable, files):
         return "POINTER"
     if variable.type in st.ELEMENTARY:
         return variable.type.removesuffix("(80)")
-    kinds = {item.name: item.kind for file in files for item in file.declarations}
-    return "STRUCT" if kinds.get(variable.type) == "struct" else "ENUM"
+    types = {item.name: item for file in files for item in file.declarations}
+    of = types.get(variable.type)
+    if of and of.kind == "alias" and of.base in st.ELEMENTARY:
+        return of.base
+    return "STRUCT" if of and of.kind == "struct" else "ENUM"
 
 
 def c_state(name):

@@ -3,8 +3,8 @@ fb/interface/README.md; anything else is an error that names file and line."""
 import re
 from dataclasses import dataclass, field
 
-ELEMENTARY = {"BOOL": 1, "SINT": 1, "INT": 2, "UINT": 2, "WORD": 2, "DWORD": 4, "LREAL": 8, "TIME": 8,
-              "STRING(80)": 81}
+ELEMENTARY = {"BOOL": 1, "SINT": 1, "INT": 2, "UINT": 2, "DINT": 4, "UDINT": 4, "WORD": 2,
+              "DWORD": 4, "LREAL": 8, "TIME": 8, "STRING(80)": 81}
 VARIABLE = re.compile(r"(\w+)\s*:\s*(REF_TO\s+\w+|ARRAY\s*\[1\.\.\w+\]\s*OF\s+\w+|STRING\(80\)|\w+)\s*(?::=\s*([^;]+?)\s*)?;"
                       r"\s*(?://\s*(.*))?$")
 ENUMERATOR = re.compile(r"(\w+)\s*:=\s*(\d+)\s*,?\s*(?://\s*(.*))?$")

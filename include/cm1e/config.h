@@ -93,9 +93,25 @@ typedef struct cm1e_sim_axis_config {
     bool no_sensors;         /**< TRUE: nothing is wired to IN2 and IN3 */
 } cm1e_sim_axis_config_t;
 
+/** What is behind an axis. */
+typedef enum cm1e_axis_type {
+    CM1E_AXIS_MOTOR = 0,             /**< a motor on the bus */
+    CM1E_AXIS_VIRTUAL,               /**< nothing: it is where its set-point is; a master for others, or for trials */
+    CM1E_AXIS_ENCODER,               /**< an encoder whose counts the program brings (cm1e_axis_write_encoder()): a
+                                          master that others follow by its actual value */
+} cm1e_axis_type_t;
+
+/** What an axis that follows a master does where it cannot go on so: its limits, or the master failed. */
+typedef enum cm1e_coupling_stop {
+    CM1E_COUPLING_STOP_THIS = 0,     /**< it stops alone, with its own deceleration */
+    CM1E_COUPLING_STOP_COUPLED,      /**< so do its master and all that follow the same one */
+    CM1E_COUPLING_STOP_KEEP_RATIO,   /**< the master is braked so that it can follow, and it follows to the end */
+} cm1e_coupling_stop_t;
+
 /** One axis: where it is, which motor, which units and limits. */
 typedef struct cm1e_axis_config {
     char name[CM1E_NAME_LENGTH];     /**< "": "axis<n>" */
+    cm1e_axis_type_t type;           /**< other than a motor: it has no place on the bus, the next keys mean nothing */
     cm1e_address_kind_t address_kind;
     uint16_t address;                /**< position 1 ..., alias or ID; 0: position = place in the list */
     uint8_t channel;                 /**< 0: the slave is the motor, a CM1-E. 1 ... 4: the motor at this connector (ID)
@@ -127,6 +143,10 @@ typedef struct cm1e_axis_config {
     bool velocity_unit_stated;       /**< TRUE: the field above is used instead of the firmware version */
     bool acceleration_in_kpulses;    /**< TRUE: 0x6083/0x6084 take kpulses/s2 on the wire (UG 7.3.17/6.2.3) */
     double jog_slow, jog_fast;       /**< u/s, MC_Jog's own velocities; 0: 5 % and 25 % of the maximum velocity */
+    uint16_t cam_points;             /**< most points of a cam that the axis follows, 2 ... 4096; 0: 128 */
+    cm1e_coupling_stop_t coupling_stop; /**< when it follows a master */
+    double encoder_filter_s;         /**< s; time constant with which masters' actual values are smoothed, for this
+                                          axis as a master; 0: 4 cycles */
     bool table_profiles;             /**< TRUE: MC_PositionProfile and its like have their 2 kB of memory */
     cm1e_input_config_t inputs;
     cm1e_homing_config_t homing;

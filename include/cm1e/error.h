@@ -95,6 +95,29 @@ extern "C" {
     X(ERROR_AXIS_STEP_TORQUE, -114, "homing step: TorqueLimit reached before the reference was found")              \
     X(ERROR_AXIS_STEP_LIMIT_SWITCH, -115, "homing step: a limit switch came before the reference")                  \
     X(ERROR_AXIS_NO_SUCH_SIGNAL, -116, "the drive has no such signal: reference pulse, coded marks, absolute encoder") \
+    X(ERROR_AXIS_MASTER, -120, "the master is not an axis of this scheduler")                                        \
+    X(ERROR_AXIS_COUPLING_CYCLE, -121, "an axis cannot follow itself, also not by way of others")                   \
+    X(ERROR_AXIS_MASTER_LOST, -122, "the master failed, lost its position or does not answer")                      \
+    X(ERROR_AXIS_COUPLING_LIMIT, -123, "the coupling asks for more than the axis may do")                           \
+    X(ERROR_AXIS_COUPLED, -124, "an axis that this one is coupled with has stopped with an error")                  \
+    X(ERROR_AXIS_NOT_COUPLED, -125, "the axis follows no master in this way")                                       \
+    X(ERROR_AXIS_RATIO, -126, "a ratio or a scaling is zero, not finite or too large")                              \
+    X(ERROR_AXIS_SYNC_WAY, -127, "the axis cannot get to the point of synchronisation within its limits")           \
+    X(ERROR_AXIS_CAM_TABLE, -128, "a cam table has too few or too many points, or they do not rise or are not finite")\
+    X(ERROR_AXIS_CAM_ID, -129, "CamTableID names no cam table of this slave: MC_CamTableSelect first")              \
+    X(ERROR_AXIS_CAM_START, -130, "the slave is not where the cam wants it: mcRampIn, or a MasterStartDistance")    \
+    X(ERROR_AXIS_IN_GROUP, -131, "the axis is moved by its axes group")                                             \
+    X(ERROR_AXIS_VIRTUAL, -132, "the axis has no motor: it is virtual, or an encoder")                              \
+    X(ERROR_GROUP_REF, -140, "AXES_GROUP_REF names no axes group")                                                  \
+    X(ERROR_GROUP_STATE, -141, "not allowed in the present state of the axes group")                                \
+    X(ERROR_GROUP_DISABLED, -142, "the axes group is disabled: MC_GroupEnable first")                               \
+    X(ERROR_GROUP_ERROR_STOP, -143, "the axes group is in GroupErrorStop: remove the cause, then MC_GroupReset")    \
+    X(ERROR_GROUP_STOPPING, -144, "the axes group is stopping: MC_GroupStop.Execute is still TRUE or it still moves")\
+    X(ERROR_GROUP_MEMBER, -145, "no such member, its place is taken, or the axis is in a group already")            \
+    X(ERROR_GROUP_AXIS, -146, "an axis of the group is not powered, moves by itself or has failed")                 \
+    X(ERROR_GROUP_PATH, -147, "the path is not finite, no arc goes through these points, or it leaves the limits")  \
+    X(ERROR_GROUP_TRANSITION, -148, "the transition mode or its parameter is not supported here")                   \
+    X(ERROR_GROUP_COORD_SYSTEM, -149, "the axes group has axis coordinates (ACS) only")                             \
     X(ERROR_FB_AXIS_REF, -90, "AXIS_REF names no axis")                                                             \
     X(ERROR_FB_AXIS_CHANGED, -91, "the axis of a busy function block was changed")                                  \
     X(ERROR_FB_SECOND_POWER, -92, "another MC_Power controls this axis")                                            \

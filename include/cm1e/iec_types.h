@@ -11,6 +11,8 @@ typedef uint8_t BOOL;
 typedef int8_t SINT;
 typedef int16_t INT;
 typedef uint16_t UINT;
+typedef int32_t DINT;
+typedef uint32_t UDINT;
 typedef uint16_t WORD;
 typedef uint32_t DWORD;
 typedef double LREAL;

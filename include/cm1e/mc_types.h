@@ -70,6 +70,51 @@ typedef enum E_JogMode {
     MC_JOGMODE_INCHING_MODULO = 4, /**< as INCHING, to the next multiple of Position */
 } E_JogMode;
 
+/** How MC_CamIn places a cam (4.3). */
+typedef enum MC_START_MODE {
+    mcAbsolute = 0, /**< where its positions say */
+    mcRelative = 1, /**< from where master or slave are at the start */
+    mcRampIn = 2,   /**< as MC_CamTableSelect says; the slave gets into it while the master goes on */
+} MC_START_MODE;
+
+/** How MC_GearInPos gets in step (4.7). */
+typedef enum MC_SYNC_MODE {
+    mcShortest = 0, /**< the way that takes the smaller change of velocity */
+    mcCatchUp = 1,  /**< by going faster than the ratio */
+    mcSlowDown = 2, /**< by going slower than the ratio */
+} MC_SYNC_MODE;
+
+/** What MC_CombineAxes makes of the motions of its masters (4.10). */
+typedef enum MC_COMBINE_MODE {
+    mcAddAxes = 0, /**< their sum */
+    mcSubAxes = 1, /**< Master1 - Master2 */
+} MC_COMBINE_MODE;
+
+/** How a cam goes from point to point (not in the standard). */
+typedef enum MC_CAM_CURVE {
+    mcCamPolynomial5 = 0, /**< polynomials of degree 5 through Slave, Velocity and Acceleration of each point */
+    mcCamCubicSpline = 1, /**< a cubic spline through Slave, without a step of acceleration */
+    mcCamLinear = 2,      /**< straight lines: a step of velocity at every point */
+} MC_CAM_CURVE;
+
+/** A point of a cam. */
+typedef struct MC_CAM_POINT {
+    LREAL Master;       /**< u of the master; rising from point to point */
+    LREAL Slave;        /**< u of the slave */
+    LREAL Velocity;     /**< u of the slave / u of the master; mcCamPolynomial5 only */
+    LREAL Acceleration; /**< u of the slave / u2 of the master; mcCamPolynomial5 only */
+} MC_CAM_POINT;
+
+/** A cam. MC_CamTableSelect copies it: it may be changed and selected again while the old one runs. */
+typedef struct MC_CAM_REF {
+    const MC_CAM_POINT *Points; /**< the first of ... */
+    UINT NumberOfPoints;        /**< 2 ... `cam_points` of the slave in the bus file */
+    MC_CAM_CURVE Curve;
+} MC_CAM_REF;
+
+/** Names a cam that MC_CamTableSelect has made ready for its slave; 0: none. */
+typedef UDINT MC_CAM_ID;
+
 /** Digital input of a motor, for MC_ReadDigitalInput. */
 typedef struct MC_INPUT_REF {
     AXIS_REF_t Axis; /**< whose motor */

@@ -10,6 +10,7 @@
 #include "cm1e/axis.h"
 #include "cm1e/plcopen.h"
 #include "drive/drive.h"
+#include "motion/profile.h"
 
 typedef struct cm1e_axis cm1e_axis_t;
 
@@ -29,6 +30,15 @@ typedef enum cm1e_command_kind {
     CM1E_COMMAND_HOMING_STEP,       /**< Part 5, done by the axis: see `step` */
     CM1E_COMMAND_MOVE_SUPERIMPOSED, /**< a second motion on top: never the active command, it has a record of its own */
     CM1E_COMMAND_HALT_SUPERIMPOSED,
+    CM1E_COMMAND_GEAR_IN,           /**< follows a master: see `coupling`, as the next three */
+    CM1E_COMMAND_GEAR_IN_POS,
+    CM1E_COMMAND_CAM_IN,
+    CM1E_COMMAND_COMBINE_AXES,
+    CM1E_COMMAND_GEAR_OUT,          /**< leaves the master and keeps the velocity: Done at once */
+    CM1E_COMMAND_CAM_OUT,
+    CM1E_COMMAND_PHASING_ABSOLUTE,  /**< `position` is the phase shift, u of the master: never the active command, it
+                                         has a record of its own */
+    CM1E_COMMAND_PHASING_RELATIVE,
     CM1E_COMMAND_KIND_COUNT,
 } cm1e_command_kind_t;
 
@@ -65,6 +75,28 @@ typedef struct cm1e_axis_table {
     double offset;                  /**< added to all values */
 } cm1e_axis_table_t;
 
+/** A master as a slave follows it, and by which ratio (CAM_IN has none). */
+typedef struct cm1e_coupling_master {
+    AXIS_REF_t axis;
+    MC_SOURCE source;               /**< mcSetValue, mcActualValue; an encoder has actual values only */
+    int32_t numerator;              /**< not 0 */
+    uint32_t denominator;           /**< not 0 */
+} cm1e_coupling_master_t;
+
+/** What a slave follows. Beside it, in the command: acceleration, deceleration, jerk of the way into step, and for
+ *  GEAR_IN_POS `velocity`. */
+typedef struct cm1e_axis_coupling {
+    cm1e_coupling_master_t master[2]; /**< the second one: COMBINE_AXES only */
+    MC_COMBINE_MODE combine;
+    double master_sync_position;    /**< u of the master; GEAR_IN_POS, CAM_IN */
+    double slave_sync_position;     /**< u; GEAR_IN_POS */
+    double master_start_distance;   /**< u of the master, signed as the way it goes; 0: the axis decides */
+    MC_SYNC_MODE sync_mode;
+    MC_CAM_ID cam;
+    MC_START_MODE start_mode;
+    double master_offset, slave_offset;   /**< u of the master, u */
+    double master_scaling, slave_scaling; /**< 0 acts as 1 */
+} cm1e_axis_coupling_t;
 
 /** A motion command as a function block posts it. Zero acceleration, deceleration or jerk: the axis's maximum. */
 typedef struct cm1e_axis_command {
@@ -78,6 +110,7 @@ typedef struct cm1e_axis_command {
     const cm1e_homing_config_t *homing; /**< HOME: parameters, copied; NULL: the axis's configured ones */
     const cm1e_homing_step_t *step;     /**< HOMING_STEP: copied */
     const cm1e_axis_table_t *table;     /**< PROFILE: copied as segments when the command is taken */
+    const cm1e_axis_coupling_t *coupling; /**< GEAR_IN ... COMBINE_AXES: copied. PHASING_*: only master[0].axis */
 } cm1e_axis_command_t;
 
 /** Commands that wait behind the active one; one more is CM1E_ERROR_FULL. */
@@ -98,8 +131,11 @@ typedef enum cm1e_command_state {
 typedef struct cm1e_command_status {
     cm1e_command_state_t state;
     cm1e_error_t error;   /**< with CM1E_COMMAND_ERROR */
-    bool reached;         /**< InVelocity, InEndVelocity, ProfileCompleted: set value = commanded value */
-    double covered;       /**< MOVE_SUPERIMPOSED: CoveredDistance, u */
+    bool reached;         /**< InVelocity, InEndVelocity, ProfileCompleted, InGear, InSync: set value = commanded value */
+    bool synchronizing;   /**< GEAR_IN_POS: StartSync */
+    bool end_of_profile;  /**< CAM_IN: EndOfProfile, TRUE in the cycle that came over it */
+    double covered;       /**< MOVE_SUPERIMPOSED: CoveredDistance, u; PHASING_*: the shift (absolute), or what of it was
+                               covered (relative), u of the master */
 } cm1e_command_status_t;
 
 /** Makes the axis of drive `index` and registers its handle. @rt init */
@@ -121,6 +157,12 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns);
 /** Starts a command or refuses it (then *id is 0 and nothing has changed). Kinds that the axis does not know how to
  *  do yet are CM1E_ERROR_UNSUPPORTED. @rt cycle */
 cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+/** MC_CamTableSelect (4.2): copies a cam into the memory of its slave, where the last CM1E_AXIS_CAMS stay for
+ *  CAM_IN; one that is followed, or that a waiting command names, is not overwritten: CM1E_ERROR_FULL.
+ *  CM1E_ERROR_AXIS_CAM_TABLE. @rt cycle */
+enum { CM1E_AXIS_CAMS = 4 };
+cm1e_error_t cm1e_axis_cam_select(cm1e_axis_t *slave, const MC_CAM_REF *cam, bool periodic, bool master_absolute,
+                                  bool slave_absolute, MC_CAM_ID *id);
 /** ContinuousUpdate (2.4.6): the present inputs of a command; the same ones cost a comparison. Relative values count
  *  from where the command began; the buffer mode stays what it was. A refused update changes nothing: the motion goes
  *  on by the last good inputs, and the error is for the block to show. After the command's end nothing happens.
@@ -155,6 +197,27 @@ bool cm1e_axis_powered(const cm1e_axis_t *axis);
 /** MC_Reset: starts; poll with cm1e_axis_reset_state(). @rt cycle */
 cm1e_error_t cm1e_axis_reset(cm1e_axis_t *axis);
 cm1e_command_state_t cm1e_axis_reset_state(const cm1e_axis_t *axis, cm1e_error_t *error);
+
+/** Set-points that somebody above gives, cycle by cycle: the axis is in SynchronizedMotion and asks for the next one
+ *  while its own half of cm1e_axis_outputs() runs. */
+typedef struct cm1e_axis_leader {
+    /** Position (u, as cm1e_axis_get() counts it, without the turns of a modulo axis), velocity, acceleration of this
+     *  cycle. FALSE: there is none, and the axis stops by itself as after an error. */
+    bool (*next)(void *context, uint32_t index, double *position, double *velocity, double *acceleration);
+    /** The axis is led no longer, by MC_Stop, MC_Power, an error of it: `error` as its commands end with. */
+    void (*lost)(void *context, uint32_t index, cm1e_error_t error);
+    void *context;
+    uint32_t index;                 /**< of the axis, as the leader counts */
+} cm1e_axis_leader_t;
+/** While an axis has a leader, other motion commands than MC_Stop are CM1E_ERROR_AXIS_IN_GROUP, as is
+ *  MC_SetPosition. From Standstill only, also where it stands already: CM1E_ERROR_AXIS_STATE. The leader must outlive
+ *  that. @rt cycle */
+cm1e_error_t cm1e_axis_lead(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader);
+/** The leader lets it go: at rest to Standstill, else it ramps down with its own limits. @rt cycle */
+void cm1e_axis_release(cm1e_axis_t *axis);
+/** u, u/s, u/s2, u/s3: what commands may ask of the axis at present, and where its software limits are (infinite: none
+ *  on that side). @rt cycle */
+void cm1e_axis_bounds(const cm1e_axis_t *axis, cm1e_motion_limits_t *limits, double *lower, double *upper);
 
 void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info);
 const cm1e_axis_config_t *cm1e_axis_configuration(const cm1e_axis_t *axis);

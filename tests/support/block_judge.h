@@ -140,6 +140,8 @@ static void put(instance_t *fb, const char *name, double value)
     case BLOCK_WORD: memcpy(place, &number, sizeof number); break;
     case BLOCK_LREAL: memcpy(place, &real, sizeof real); break;
     case BLOCK_TIME: memcpy(place, &time, sizeof time); break;
+    case BLOCK_DINT:
+    case BLOCK_UDINT:
     case BLOCK_DWORD:
     case BLOCK_ENUM: memcpy(place, &choice, sizeof choice); break;
     case BLOCK_STRING:
