@@ -14,6 +14,9 @@ typedef enum trigger {
     HOMING_STEP,
     SUPERIMPOSED,
     HALT_SUPERIMPOSED,
+    COUPLE,
+    DECOUPLE,
+    PHASING,
     TRIGGER_COUNT,
 } trigger_t;
 
@@ -33,11 +36,20 @@ static const trigger_t triggers[CM1E_COMMAND_KIND_COUNT] = {
     [CM1E_COMMAND_HOMING_STEP] = HOMING_STEP,
     [CM1E_COMMAND_MOVE_SUPERIMPOSED] = SUPERIMPOSED,
     [CM1E_COMMAND_HALT_SUPERIMPOSED] = HALT_SUPERIMPOSED,
+    [CM1E_COMMAND_GEAR_IN] = COUPLE,
+    [CM1E_COMMAND_GEAR_IN_POS] = COUPLE,
+    [CM1E_COMMAND_CAM_IN] = COUPLE,
+    [CM1E_COMMAND_COMBINE_AXES] = COUPLE,
+    [CM1E_COMMAND_GEAR_OUT] = DECOUPLE,
+    [CM1E_COMMAND_CAM_OUT] = DECOUPLE,
+    [CM1E_COMMAND_PHASING_ABSOLUTE] = PHASING,
+    [CM1E_COMMAND_PHASING_RELATIVE] = PHASING,
 };
 
 /* Homing has no arrow to a motion, so only MC_Stop and the next step of a homing in steps (Part 5) are taken there.
  * Stopping takes another MC_Stop only when no MC_Stop holds it any more (axis_command.c): the same block may so be
- * triggered again while the axis still brakes. A superimposed motion changes no state but Standstill (3.8). */
+ * triggered again while the axis still brakes. A superimposed motion changes no state but Standstill (3.8).
+ * What leaves a master, or shifts against it, needs one (4.4, 4.6, 4.8). */
 static const state_rule_t rules[CM1E_AXIS_STATE_COUNT][TRIGGER_COUNT] = {
     [CM1E_AXIS_DISABLED] = {
         [DISCRETE] = REFUSED(NOT_POWERED),
@@ -47,6 +59,9 @@ static const state_rule_t rules[CM1E_AXIS_STATE_COUNT][TRIGGER_COUNT] = {
         [HOMING_STEP] = REFUSED(NOT_POWERED),
         [SUPERIMPOSED] = REFUSED(NOT_POWERED),
         [HALT_SUPERIMPOSED] = REFUSED(NOT_POWERED),
+        [COUPLE] = REFUSED(NOT_POWERED),
+        [DECOUPLE] = REFUSED(NOT_POWERED),
+        [PHASING] = REFUSED(NOT_POWERED),
     },
     [CM1E_AXIS_STANDSTILL] = {
         [DISCRETE] = TO(DISCRETE_MOTION),
@@ -56,6 +71,9 @@ static const state_rule_t rules[CM1E_AXIS_STATE_COUNT][TRIGGER_COUNT] = {
         [HOMING_STEP] = TO(HOMING),
         [SUPERIMPOSED] = TO(DISCRETE_MOTION),
         [HALT_SUPERIMPOSED] = TO(STANDSTILL),
+        [COUPLE] = TO(SYNCHRONIZED_MOTION),
+        [DECOUPLE] = REFUSED(NOT_COUPLED),
+        [PHASING] = REFUSED(NOT_COUPLED),
     },
     [CM1E_AXIS_HOMING] = {
         [DISCRETE] = REFUSED(HOMING),
@@ -65,6 +83,9 @@ static const state_rule_t rules[CM1E_AXIS_STATE_COUNT][TRIGGER_COUNT] = {
         [HOMING_STEP] = TO(HOMING),
         [SUPERIMPOSED] = REFUSED(HOMING),
         [HALT_SUPERIMPOSED] = REFUSED(HOMING),
+        [COUPLE] = REFUSED(HOMING),
+        [DECOUPLE] = REFUSED(HOMING),
+        [PHASING] = REFUSED(HOMING),
     },
     [CM1E_AXIS_DISCRETE_MOTION] = {
         [DISCRETE] = TO(DISCRETE_MOTION),
@@ -74,6 +95,9 @@ static const state_rule_t rules[CM1E_AXIS_STATE_COUNT][TRIGGER_COUNT] = {
         [HOMING_STEP] = REFUSED(STATE),
         [SUPERIMPOSED] = TO(DISCRETE_MOTION),
         [HALT_SUPERIMPOSED] = TO(DISCRETE_MOTION),
+        [COUPLE] = TO(SYNCHRONIZED_MOTION),
+        [DECOUPLE] = REFUSED(NOT_COUPLED),
+        [PHASING] = REFUSED(NOT_COUPLED),
     },
     [CM1E_AXIS_CONTINUOUS_MOTION] = {
         [DISCRETE] = TO(DISCRETE_MOTION),
@@ -83,6 +107,9 @@ static const state_rule_t rules[CM1E_AXIS_STATE_COUNT][TRIGGER_COUNT] = {
         [HOMING_STEP] = REFUSED(STATE),
         [SUPERIMPOSED] = TO(CONTINUOUS_MOTION),
         [HALT_SUPERIMPOSED] = TO(CONTINUOUS_MOTION),
+        [COUPLE] = TO(SYNCHRONIZED_MOTION),
+        [DECOUPLE] = REFUSED(NOT_COUPLED),
+        [PHASING] = REFUSED(NOT_COUPLED),
     },
     [CM1E_AXIS_SYNCHRONIZED_MOTION] = {
         [DISCRETE] = TO(DISCRETE_MOTION),
@@ -92,6 +119,9 @@ static const state_rule_t rules[CM1E_AXIS_STATE_COUNT][TRIGGER_COUNT] = {
         [HOMING_STEP] = REFUSED(STATE),
         [SUPERIMPOSED] = TO(SYNCHRONIZED_MOTION),
         [HALT_SUPERIMPOSED] = TO(SYNCHRONIZED_MOTION),
+        [COUPLE] = TO(SYNCHRONIZED_MOTION),
+        [DECOUPLE] = TO(CONTINUOUS_MOTION),
+        [PHASING] = TO(SYNCHRONIZED_MOTION),
     },
     [CM1E_AXIS_STOPPING] = {
         [DISCRETE] = REFUSED(STOPPING),
@@ -101,6 +131,9 @@ static const state_rule_t rules[CM1E_AXIS_STATE_COUNT][TRIGGER_COUNT] = {
         [HOMING_STEP] = REFUSED(STOPPING),
         [SUPERIMPOSED] = REFUSED(STOPPING),
         [HALT_SUPERIMPOSED] = REFUSED(STOPPING),
+        [COUPLE] = REFUSED(STOPPING),
+        [DECOUPLE] = REFUSED(STOPPING),
+        [PHASING] = REFUSED(STOPPING),
     },
     [CM1E_AXIS_ERROR_STOP] = {
         [DISCRETE] = REFUSED(ERROR_STOP),
@@ -110,6 +143,9 @@ static const state_rule_t rules[CM1E_AXIS_STATE_COUNT][TRIGGER_COUNT] = {
         [HOMING_STEP] = REFUSED(ERROR_STOP),
         [SUPERIMPOSED] = REFUSED(ERROR_STOP),
         [HALT_SUPERIMPOSED] = REFUSED(ERROR_STOP),
+        [COUPLE] = REFUSED(ERROR_STOP),
+        [DECOUPLE] = REFUSED(ERROR_STOP),
+        [PHASING] = REFUSED(ERROR_STOP),
     },
 };
 
