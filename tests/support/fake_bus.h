@@ -1,7 +1,8 @@
 /**
  * @file fake_bus.h
- * A bus for unit tests of drive and axis, without frames: one CM1-E as the process data shows it, in a few lines.
- * Include it once in a test program; it defines the functions of bus.h and bus_image.h that the two rooms call.
+ * A bus for unit tests of drive and axis, without frames: one CM1-E as the process data shows it, in a few lines; with
+ * fake_bus_add() more of them, each a fake bus of its own that the first one carries. Include it once in a test program;
+ * it defines the functions of bus.h and bus_image.h that the two rooms call.
  *
  * The drive behind it follows the controlword (UG 6.1), one cycle late, with motor power, faults, modes and a shaft
  * that follows the target position exactly. A test may overwrite every member at any time.
@@ -16,7 +17,7 @@
 #include "cia402/cia402.h"
 #include "core/bytes.h"
 
-enum { FAKE_SDO_LOG = 64, FAKE_SDO_WAITING = 8 };
+enum { FAKE_SDO_LOG = 64, FAKE_SDO_WAITING = 8, FAKE_SLAVES = 4, FAKE_IMAGE = 64 };
 
 typedef struct fake_sdo_entry {
     uint16_t index;
@@ -31,7 +32,8 @@ struct cm1e_bus {
     cm1e_firmware_t firmware;
     bool firmware_unreadable;
     cm1e_pdo_t rx, tx;
-    uint8_t outputs[64], inputs[64];
+    uint8_t outputs[FAKE_SLAVES * FAKE_IMAGE], inputs[FAKE_SLAVES * FAKE_IMAGE];
+    struct cm1e_bus *others[FAKE_SLAVES - 1]; /**< slaves 2 ... behind this one, whose image has a part for each */
     cm1e_slave_watch_t watch;
     cm1e_slave_info_t info;
     unsigned recoveries;
@@ -115,9 +117,20 @@ static uint16_t fake_statusword(const cm1e_bus_t *bus)
                       STATUSWORD_REMOTE | bus->mode_status);
 }
 
-/** The inputs as the device would send them now. */
+/** Slave number n as a device of its own. */
+static cm1e_bus_t *fake_slave(const cm1e_bus_t *bus, unsigned position)
+{
+    return position >= 2 && position <= FAKE_SLAVES && bus->others[position - 2] ? bus->others[position - 2]
+                                                                                 : (cm1e_bus_t *)(uintptr_t)bus;
+}
+
+/** The inputs as the devices would send them now. */
 static inline void fake_bus_show(cm1e_bus_t *bus)
 {
+    for (unsigned i = 0; i < FAKE_SLAVES - 1 && bus->others[i]; i++) {
+        fake_bus_show(bus->others[i]);
+        memcpy(bus->inputs + (i + 1) * FAKE_IMAGE, bus->others[i]->inputs, FAKE_IMAGE);
+    }
     fake_input(bus, OBJ_6041_STATUSWORD, fake_statusword(bus));
     fake_input(bus, OBJ_603F_ERROR_CODE, bus->error_code);
     fake_input(bus, OBJ_6064_POSITION_ACTUAL_VALUE, (uint32_t)bus->position);
@@ -211,6 +224,11 @@ static void fake_serve_sdo(cm1e_bus_t *bus)
 /** The device takes the outputs in, time passes, and it shows its inputs. */
 static inline void fake_bus_cycle(cm1e_bus_t *bus, int64_t cycle_ns)
 {
+    for (unsigned i = 0; i < FAKE_SLAVES - 1 && bus->others[i]; i++) {
+        memcpy(bus->others[i]->outputs, bus->outputs + (i + 1) * FAKE_IMAGE, FAKE_IMAGE);
+        fake_bus_cycle(bus->others[i], cycle_ns);
+        memcpy(bus->inputs + (i + 1) * FAKE_IMAGE, bus->others[i]->inputs, FAKE_IMAGE);
+    }
     bus->clock.virtual_now_ns += cycle_ns;
     fake_serve_sdo(bus);
     if (bus->device_cycle) {
@@ -243,6 +261,17 @@ static inline void fake_bus_cycle(cm1e_bus_t *bus, int64_t cycle_ns)
     fake_bus_show(bus);
 }
 
+/** `slave`, initialised by fake_bus_init(), is one more slave of the bus, and one more axis as its own configuration
+ *  says. The clock of the bus is the first one's. */
+static inline void fake_bus_add(cm1e_bus_t *bus, cm1e_bus_t *slave)
+{
+    unsigned i = 0;
+    while (bus->others[i])
+        i++;
+    bus->others[i] = slave;
+    bus->config.axes[bus->config.axis_count++] = slave->config.axes[0];
+}
+
 static inline void fake_bus_fault(cm1e_bus_t *bus, uint16_t code)
 {
     bus->state = FAULT;
@@ -256,8 +285,7 @@ const uint8_t *cm1e_bus_inputs(const cm1e_bus_t *bus) { return bus->inputs; }
 const cm1e_bus_config_t *cm1e_bus_configuration(const cm1e_bus_t *bus) { return &bus->config; }
 const cm1e_slave_info_t *cm1e_bus_slave(const cm1e_bus_t *bus, uint32_t position)
 {
-    (void)position;
-    return &bus->info;
+    return &fake_slave(bus, position)->info;
 }
 uint16_t cm1e_bus_axis_position(const cm1e_bus_t *bus, uint32_t axis)
 {
@@ -266,28 +294,33 @@ uint16_t cm1e_bus_axis_position(const cm1e_bus_t *bus, uint32_t axis)
 cm1e_clock_t *cm1e_bus_clock(cm1e_bus_t *bus) { return &bus->clock; }
 const cm1e_firmware_info_t *cm1e_bus_slave_firmware(const cm1e_bus_t *bus, uint16_t position)
 {
-    (void)position;
-    return bus->firmware_unreadable ? NULL : cm1e_firmware_info(bus->firmware);
+    const cm1e_bus_t *slave = fake_slave(bus, position);
+    return slave->firmware_unreadable ? NULL : cm1e_firmware_info(slave->firmware);
+}
+static cm1e_image_slot_t fake_part(const cm1e_bus_t *bus, const cm1e_bus_t *slave, uint16_t position,
+                                   cm1e_image_slot_t slot)
+{
+    if (slave != bus && slot.bytes)
+        slot.offset = (slot.offset + (position - 1u) * FAKE_IMAGE) & 0xFFFFFF;
+    return slot;
 }
 cm1e_image_slot_t cm1e_bus_find_output(const cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex)
 {
-    (void)position;
-    return subindex == 0 ? fake_find(&bus->rx, index) : (cm1e_image_slot_t){0};
+    const cm1e_bus_t *slave = fake_slave(bus, position);
+    return fake_part(bus, slave, position, subindex == 0 ? fake_find(&slave->rx, index) : (cm1e_image_slot_t){0});
 }
 cm1e_image_slot_t cm1e_bus_find_input(const cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex)
 {
-    (void)position;
-    return subindex == 0 ? fake_find(&bus->tx, index) : (cm1e_image_slot_t){0};
+    const cm1e_bus_t *slave = fake_slave(bus, position);
+    return fake_part(bus, slave, position, subindex == 0 ? fake_find(&slave->tx, index) : (cm1e_image_slot_t){0});
 }
 cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position)
 {
-    (void)position;
-    return bus->watch;
+    return fake_slave(bus, position)->watch;
 }
 void cm1e_bus_request_recovery(cm1e_bus_t *bus, uint16_t position)
 {
-    (void)position;
-    bus->recoveries++;
+    fake_slave(bus, position)->recoveries++;
 }
 const char *cm1e_al_status_text(uint16_t al_status_code) { return al_status_code ? "an AL status" : "no error"; }
 const char *cm1e_sdo_abort_text(uint32_t abort_code) { return abort_code ? "an abort" : "no abort"; }
@@ -296,6 +329,7 @@ cm1e_sdo_state_t cm1e_sdo_state(const cm1e_sdo_t *sdo) { return (cm1e_sdo_state_
 cm1e_error_t cm1e_sdo_submit(cm1e_bus_t *bus, cm1e_sdo_t *sdo)
 {
     unsigned waiting = 0;
+    bus = fake_slave(bus, sdo->position);
     while (waiting < FAKE_SDO_WAITING && bus->sdo_waiting[waiting])
         waiting++;
     if (bus->sdo_full || waiting == FAKE_SDO_WAITING)
@@ -316,6 +350,7 @@ cm1e_error_t cm1e_sdo_write(cm1e_bus_t *bus, uint16_t position, uint16_t index, 
     memcpy(copy, data, size < sizeof copy ? size : sizeof copy);
     cm1e_sdo_t sdo = {.position = position, .index = index, .subindex = subindex, .write = true, .data = copy,
                       .size = size};
+    bus = fake_slave(bus, position);
     bus->sdo = &sdo;
     bus->sdo_wait = 0;
     fake_serve_sdo(bus);
@@ -328,6 +363,7 @@ cm1e_error_t cm1e_sdo_read(cm1e_bus_t *bus, uint16_t position, uint16_t index, u
                            size_t *size, cm1e_diag_t *diag)
 {
     cm1e_sdo_t sdo = {.position = position, .index = index, .subindex = subindex, .data = data, .size = *size};
+    bus = fake_slave(bus, position);
     bus->sdo = &sdo;
     bus->sdo_wait = 0;
     fake_serve_sdo(bus);
