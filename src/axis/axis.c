@@ -55,6 +55,8 @@ void cm1e_axis_destroy(cm1e_axis_t *axis)
 
 AXIS_REF_t cm1e_axis_reference(const cm1e_axis_t *axis) { return (AXIS_REF_t){.Handle = axis->handle}; }
 
+const cm1e_bus_t *cm1e_axis_bus(const cm1e_axis_t *axis) { return axis->drive.bus; }
+
 const cm1e_axis_config_t *cm1e_axis_configuration(const cm1e_axis_t *axis) { return axis->config; }
 
 static bool powered_state(cm1e_axis_state_t state)
@@ -73,7 +75,7 @@ static bool was_deaf(const cm1e_axis_t *axis, double lag, double lag_before)
 /* A set-point that the motor has lost is a jump to come: braking begins anew where the motor is. */
 static void watch_lag(cm1e_axis_t *axis)
 {
-    const bool own = axis->activity == ACTIVITY_HOLD || axis->activity == ACTIVITY_PROFILE;
+    const bool own = axis->activity == ACTIVITY_HOLD || set_points_move(axis);
     const bool blind_before = axis->blind;
     axis->blind = own && !axis->drive.feedback.fresh;
     if (axis->blind)
@@ -135,7 +137,7 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
 /* In most cycles of a motion nothing happens to it: the motor takes its set-points, and nobody ends that. */
 static bool moves_on(const cm1e_axis_t *axis)
 {
-    return axis->activity == ACTIVITY_PROFILE && axis->state != CM1E_AXIS_DISABLED && axis_acts(axis);
+    return set_points_move(axis) && axis->state != CM1E_AXIS_DISABLED && axis_acts(axis);
 }
 
 void cm1e_axis_advance(cm1e_axis_t *axis)
@@ -152,7 +154,7 @@ void cm1e_axis_advance(cm1e_axis_t *axis)
         cm1e_axis_backlash_step(axis);
     if (axis->objects.head != axis->objects.next)
         cm1e_axis_objects_step(axis);
-    if (!undisturbed || axis->activity != ACTIVITY_PROFILE)
+    if (!undisturbed || !set_points_move(axis))
         cm1e_axis_enable_step(axis);
 }
 

@@ -198,14 +198,26 @@ bool cm1e_axis_powered(const cm1e_axis_t *axis);
 cm1e_error_t cm1e_axis_reset(cm1e_axis_t *axis);
 cm1e_command_state_t cm1e_axis_reset_state(const cm1e_axis_t *axis, cm1e_error_t *error);
 
+/** What a leader has for a cycle. */
+typedef enum cm1e_lead {
+    CM1E_LEAD_NONE = 0, /**< there is none: the axis stops by itself, as after an error, unless it was let go */
+    CM1E_LEAD_ON,
+    CM1E_LEAD_LAST,     /**< the last one: the axis is let go with it, to Standstill if it is at rest then */
+} cm1e_lead_t;
+
 /** Set-points that somebody above gives, cycle by cycle: the axis is in SynchronizedMotion and asks for the next one
- *  while its own half of cm1e_axis_outputs() runs. */
+ *  while its own half of cm1e_axis_outputs() runs. One that it could not follow is not given to the motor: the axis
+ *  stops with CM1E_ERROR_AXIS_COUPLING_LIMIT. */
 typedef struct cm1e_axis_leader {
     /** Position (u, as cm1e_axis_get() counts it, without the turns of a modulo axis), velocity, acceleration of this
-     *  cycle. FALSE: there is none, and the axis stops by itself as after an error. */
-    bool (*next)(void *context, uint32_t index, double *position, double *velocity, double *acceleration);
-    /** The axis is led no longer, by MC_Stop, MC_Power, an error of it: `error` as its commands end with. */
+     *  cycle. */
+    cm1e_lead_t (*next)(void *context, uint32_t index, double *position, double *velocity, double *acceleration);
+    /** The axis is led no longer, by MC_Stop, MC_Power, an error of it: `error` as its commands end with, CM1E_OK
+     *  where they would be aborted. */
     void (*lost)(void *context, uint32_t index, cm1e_error_t error);
+    /** The motor has come to rest at its last set-point, because no frame was sent for a while: cm1e_axis_after_pause(),
+     *  before the next set-point is asked for. The next ones begin there, from rest. */
+    void (*paused)(void *context, uint32_t index);
     void *context;
     uint32_t index;                 /**< of the axis, as the leader counts */
 } cm1e_axis_leader_t;
@@ -215,6 +227,12 @@ typedef struct cm1e_axis_leader {
 cm1e_error_t cm1e_axis_lead(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader);
 /** The leader lets it go: at rest to Standstill, else it ramps down with its own limits. @rt cycle */
 void cm1e_axis_release(cm1e_axis_t *axis);
+/** TRUE while a leader with this context leads the axis. @rt cycle */
+bool cm1e_axis_led_by(const cm1e_axis_t *axis, const void *context);
+/** u, as a leader gives positions: where the set-point is, or the motor. @rt cycle */
+double cm1e_axis_place(const cm1e_axis_t *axis, bool actual);
+/** The bus that the axis belongs to. @rt cycle */
+const cm1e_bus_t *cm1e_axis_bus(const cm1e_axis_t *axis);
 /** u, u/s, u/s2, u/s3: what commands may ask of the axis at present, and where its software limits are (infinite: none
  *  on that side). @rt cycle */
 void cm1e_axis_bounds(const cm1e_axis_t *axis, cm1e_motion_limits_t *limits, double *lower, double *upper);

@@ -37,6 +37,7 @@ void cm1e_axis_remember_end(cm1e_axis_t *axis, cm1e_command_kind_t kind, cm1e_er
 void cm1e_axis_commands_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
 {
     cm1e_axis_command_end(axis, state, error);
+    cm1e_axis_lead_end(axis, error);
     cm1e_axis_superimposed_end(axis, state, state == CM1E_COMMAND_ERROR ? CM1E_ERROR_AXIS_ERROR_STOP : CM1E_OK);
     for (int i = 0; i < axis->waiting.count; i++)
         cm1e_axis_record(axis, waiting_move(axis, i)->id, state,
@@ -322,6 +323,8 @@ static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command,
     *id = 0;
     if ((unsigned)command->kind >= CM1E_COMMAND_KIND_COUNT)
         return CM1E_ERROR_INVALID_ARGUMENT;
+    if (axis_led(axis) && command->kind != CM1E_COMMAND_STOP)
+        return CM1E_ERROR_AXIS_IN_GROUP;
     const bool on_top = command->kind == CM1E_COMMAND_MOVE_SUPERIMPOSED ||
                         command->kind == CM1E_COMMAND_HALT_SUPERIMPOSED;
     if (drive_profiles(axis) && !cm1e_axis_drive_takes(command->kind))

@@ -285,7 +285,7 @@ cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from,
 /* What runs is judged as a whole, from where it began, so that a limit may be refused that lies behind the axis. */
 bool cm1e_axis_limits_hold(const cm1e_axis_t *axis, double lower, double upper)
 {
-    if (axis->activity == ACTIVITY_DRIVE) /* of its way only the end is known */
+    if (axis->activity == ACTIVITY_DRIVE || axis_led(axis)) /* of its way only the end is known, or nothing */
         return isinf(lower) && isinf(upper);
     if (axis->activity != ACTIVITY_PROFILE)
         return true;

@@ -298,6 +298,10 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
     case ACTIVITY_PROFILE:
         profile_step(axis);
         break;
+    case ACTIVITY_LED:
+        if (!cm1e_axis_lead_step(axis) && axis->activity == ACTIVITY_PROFILE)
+            profile_step(axis);
+        break;
     case ACTIVITY_HOMING:
         cm1e_axis_home_step(axis);
         break;

@@ -62,13 +62,17 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
     const bool goes_on = axis->mode == CM1E_MODE_CSV;
     if (!goes_on)
         axis->backlash.offset_velocity = 0.0;
-    if (axis->activity != ACTIVITY_PROFILE)
+    if (!set_points_move(axis))
         return;
     if (goes_on)
         axis->set = cm1e_position_plus(axis->set, axis->set_velocity * axis->scale * (double)pause_ns * 1e-9);
     else
         axis->set_velocity = 0.0;
     axis->set_acceleration = 0.0;
+    if (axis_led(axis)) {
+        cm1e_axis_lead_after_pause(axis);
+        return;
+    }
     cm1e_axis_superimposed_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK); /* what is left of it belongs to the base now */
     const cm1e_error_t error = move_anew(axis);
     if (error)

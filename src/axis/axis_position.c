@@ -115,6 +115,15 @@ double cm1e_axis_line(const cm1e_axis_t *axis, position_t position)
     return origin + to_units(axis, (double)way.counts + way.fraction);
 }
 
+bool cm1e_axis_position_from_line(const cm1e_axis_t *axis, double line, position_t *position)
+{
+    const double counts = to_counts(axis, axis->modulo_range > 0.0 ? line : line - axis->origin_units);
+    if (!(fabs(counts) < (double)CM1E_FARTHEST_COUNTS))
+        return false;
+    *position = cm1e_position_plus(axis->origin, axis->scale > 0.0 ? counts : -counts);
+    return cm1e_position_in_range(*position);
+}
+
 bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position)
 {
     if (axis->modulo_range > 0.0) {
@@ -124,11 +133,7 @@ bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, positi
         *position = in_turn(axis, turn_of(axis, from_origin(axis, axis->set), &phase), to_counts(axis, units));
         return cm1e_position_in_range(*position);
     }
-    const double counts = to_counts(axis, units - axis->origin_units);
-    if (!isfinite(units) || !(fabs(counts) < (double)CM1E_FARTHEST_COUNTS))
-        return false;
-    *position = cm1e_position_plus(axis->origin, axis->scale > 0.0 ? counts : -counts);
-    return cm1e_position_in_range(*position);
+    return cm1e_axis_position_from_line(axis, units, position);
 }
 
 /* Which repetition of a position, `way` counts away, the axis goes to: the first one in the direction asked for that
@@ -215,6 +220,8 @@ static bool new_position(const cm1e_axis_t *axis, double now, double position, b
 
 static cm1e_error_t set_position(cm1e_axis_t *axis, double position, bool relative)
 {
+    if (axis_led(axis))
+        return CM1E_ERROR_AXIS_IN_GROUP;
     if (axis->state == CM1E_AXIS_HOMING || axis->activity == ACTIVITY_HOMING)
         return CM1E_ERROR_AXIS_HOMING;
     if (!axis->position_known || !axis->drive.feedback.online)

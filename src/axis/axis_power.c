@@ -22,6 +22,7 @@ bool cm1e_axis_wants_enable(const cm1e_axis_t *axis)
 
 void cm1e_axis_become_free(cm1e_axis_t *axis)
 {
+    cm1e_axis_lead_end(axis, CM1E_ERROR_AXIS_ERROR_STOP);
     axis->activity = ACTIVITY_FREE;
     axis->energized = false;
     axis->stepping.pushing = axis->stepping.after_stop = false;
@@ -38,7 +39,7 @@ static void wind_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp)
         cm1e_axis_home_abort(axis, HOME_GOAL_OFF);
     else if (axis->activity == ACTIVITY_DRIVE)
         cm1e_axis_drive_abort(axis, HOME_GOAL_OFF);
-    else if (axis->activity == ACTIVITY_PROFILE || axis->activity == ACTIVITY_HOLD)
+    else if (set_points_move(axis) || axis->activity == ACTIVITY_HOLD)
         cm1e_axis_ramp_down(axis, ramp);
 }
 

@@ -55,6 +55,7 @@ typedef enum activity {
     ACTIVITY_PROFILE,  /**< a profile, of a command or of a stopping ramp */
     ACTIVITY_HOMING,   /**< the drive's own homing (axis_home.c) */
     ACTIVITY_DRIVE,    /**< the drive's own profile (axis_drive_profile.c) */
+    ACTIVITY_LED,      /**< somebody above (axis_lead.c) */
 } activity_t;
 
 enum { COMMANDS_REMEMBERED = 32, HOMING_PARAMETERS = 5 };
@@ -330,6 +331,26 @@ typedef struct cool_muscle {
     char text[CM1E_CML_BYTES + 1]; /**< ... and the string */
 } cool_muscle_t;
 
+/** What a set-point that is not of the axis's own making would break. */
+typedef enum guard_limit {
+    GUARD_KEPT = 0,
+    GUARD_FINITE,
+    GUARD_PAUSE,       /**< the motor has gone on without it (axis_pause.c) */
+    GUARD_DIRECTION,
+    GUARD_VELOCITY,
+    GUARD_ACCELERATION,
+    GUARD_DECELERATION,
+    GUARD_JERK,
+    GUARD_STEP,
+    GUARD_SOFTWARE_LIMIT,
+    GUARD_COUNT,
+} guard_limit_t;
+
+typedef struct guard {
+    guard_limit_t limit;
+    double asked, allowed; /**< in the units of the limit */
+} guard_t;
+
 struct cm1e_axis {
     /* what every cycle of a motion looks at */
     cm1e_drive_t drive;
@@ -395,6 +416,8 @@ struct cm1e_axis {
     cm1e_error_t error;
     uint16_t device_error;
     double error_value, error_bound; /**< numbers for the text */
+    guard_t guard;                  /**< with CM1E_ERROR_AXIS_COUPLING_LIMIT */
+    cm1e_axis_leader_t leader;      /**< next is NULL: none */
 
     position_t origin;              /**< position origin_units is there; modulo: 0 */
     double origin_units;
@@ -445,6 +468,8 @@ void cm1e_axis_advance(cm1e_axis_t *axis);
 double cm1e_axis_units(const cm1e_axis_t *axis, position_t position);
 /** The same without the turns of a modulo axis: what limits are compared with. */
 double cm1e_axis_line(const cm1e_axis_t *axis, position_t position);
+/** The way back; FALSE: not finite, or farther away than the axis counts. */
+bool cm1e_axis_position_from_line(const cm1e_axis_t *axis, double line, position_t *position);
 /** FALSE: not finite, or farther away than the axis counts. */
 bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position);
 /** Where a command to `position` (u) ends that begins at `from` with `velocity` (u/s): on a linear axis there, whatever
@@ -739,6 +764,21 @@ void cm1e_axis_table_needs(const cm1e_axis_t *axis, const cm1e_axis_command_t *c
 /** Whether the running one still goes in that direction after `from_s`. */
 bool cm1e_axis_table_goes(cm1e_axis_t *axis, double from_s, double sign);
 
+/* axis_guard.c */
+/** Whether the next set-point may follow the present one. `kept_jerk`: the limit of jerk counts too. */
+guard_t cm1e_axis_guard(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk);
+/** ErrorStop with CM1E_ERROR_AXIS_COUPLING_LIMIT, which tells what was asked for and allowed. */
+void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t broken);
+void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size);
+
+/* axis_lead.c */
+static inline bool axis_led(const cm1e_axis_t *axis) { return axis->leader.next != NULL; }
+/** What leads the axis is told that it does so no longer. */
+void cm1e_axis_lead_end(cm1e_axis_t *axis, cm1e_error_t error);
+/** The set-point of the cycle; FALSE: the leader has none that the axis may follow, and a ramp has begun. */
+bool cm1e_axis_lead_step(cm1e_axis_t *axis);
+void cm1e_axis_lead_after_pause(cm1e_axis_t *axis);
+
 /* axis_homing_steps.c */
 /** What is wrong with a step whatever the state of the axis. */
 cm1e_error_t cm1e_axis_step_check(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move);
@@ -767,6 +807,11 @@ void cm1e_axis_drive_abort(cm1e_axis_t *axis, home_goal_t goal);
 void cm1e_axis_drive_direction_disabled(cm1e_axis_t *axis, double sign);
 void cm1e_axis_drive_step(cm1e_axis_t *axis);
 void cm1e_axis_drive_write(cm1e_axis_t *axis);
+/** Set-points of ours change from cycle to cycle. */
+static inline bool set_points_move(const cm1e_axis_t *axis)
+{
+    return axis->activity == ACTIVITY_PROFILE || axis->activity == ACTIVITY_LED;
+}
 /** The drive moves, or is about to, by itself. */
 static inline bool drive_moves(const cm1e_axis_t *axis)
 {

@@ -240,6 +240,7 @@ static const struct {
     {CM1E_ERROR_AXIS_POSITION_RANGE, range_text},
     {CM1E_ERROR_AXIS_HOMING_FAILED, homing_text},
     {CM1E_ERROR_AXIS_HOMING_TIMEOUT, homing_text},
+    {CM1E_ERROR_AXIS_COUPLING_LIMIT, cm1e_axis_guard_text},
 };
 
 void cm1e_axis_error_text(AXIS_REF_t reference, char *text, size_t size)

@@ -1,0 +1,102 @@
+/* The last look at set-points that the axis has not planned itself: one that the motor could not follow within the
+ * limits of the axis is not given to it. */
+#include <math.h>
+#include <stdio.h>
+
+#include "axis/axis_private.h"
+
+/* What sums of doubles leave, relative and in counts. */
+static const double slack = 1e-6;
+static const double slack_counts = 1e-5;
+
+static guard_t broken(guard_limit_t limit, double asked, double allowed)
+{
+    return (guard_t){.limit = limit, .asked = asked, .allowed = allowed};
+}
+
+/* From velocity to velocity within one cycle: through zero both limits are used. */
+static guard_t guard_acceleration(const cm1e_axis_t *axis, const from_t *next)
+{
+    const cm1e_motion_limits_t *most = &axis->system;
+    const double v0 = axis->set_velocity, v1 = next->velocity, a = next->acceleration, t = axis->cycle_s;
+    const bool turns = v0 * v1 < 0.0, grows = fabs(v1) >= fabs(v0);
+    const double bound = turns ? fmax(most->acceleration, most->deceleration)
+                         : grows ? most->acceleration : most->deceleration;
+    const double change = fabs(v1 - v0) / t, either = fmax(most->acceleration, most->deceleration);
+    const double noise = slack_counts / fabs(axis->scale) / t;
+    const guard_limit_t limit = !turns && !grows ? GUARD_DECELERATION : GUARD_ACCELERATION;
+    if (change > bound * (1.0 + slack) + noise)
+        return broken(limit, change, bound);
+    if (fabs(a) > either * (1.0 + slack) + noise)
+        return broken(limit, fabs(a), either);
+    return broken(GUARD_KEPT, 0.0, 0.0);
+}
+
+/* What a position may do in a cycle while its velocity changes within these limits. */
+static guard_t guard_step(const cm1e_axis_t *axis, const from_t *next)
+{
+    const double t = axis->cycle_s, step = cm1e_position_minus(next->position, axis->set) / axis->scale;
+    const double mean = (axis->set_velocity + next->velocity) * 0.5 * t;
+    const double most = fmax(axis->system.acceleration, axis->system.deceleration) * t * t / 4.0;
+    /* A double of the whole way has this much noise. */
+    const double far = 1e-15 * fabs(cm1e_axis_line(axis, next->position)) + slack_counts / fabs(axis->scale);
+    if (!(fabs(step - mean) <= most * (1.0 + slack) + slack * fabs(mean) + far))
+        return broken(GUARD_STEP, step, mean);
+    return broken(GUARD_KEPT, 0.0, 0.0);
+}
+
+guard_t cm1e_axis_guard(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
+{
+    const cm1e_motion_limits_t *most = &axis->system;
+    const double v = next->velocity, a = next->acceleration, line = cm1e_axis_line(axis, next->position);
+    if (!isfinite(v) || !isfinite(a))
+        return broken(GUARD_FINITE, 0.0, 0.0);
+    if (fabs(v) > most->velocity * (1.0 + slack))
+        return broken(GUARD_VELOCITY, fabs(v), most->velocity);
+    if (fabs(v) > axis->tolerance && !cm1e_axis_direction_enabled(axis, v))
+        return broken(GUARD_DIRECTION, v, 0.0);
+    guard_t guard = guard_acceleration(axis, next);
+    if (guard.limit)
+        return guard;
+    const double jerk = fabs(a - axis->set_acceleration) / axis->cycle_s;
+    if (kept_jerk && jerk > most->jerk * (1.0 + slack) + slack * most->acceleration / axis->cycle_s)
+        return broken(GUARD_JERK, jerk, most->jerk);
+    guard = guard_step(axis, next);
+    if (guard.limit)
+        return guard;
+    if (!cm1e_axis_limits_can_stop(axis, line, (cm1e_motion_state_t){0.0, v, a}))
+        return broken(GUARD_SOFTWARE_LIMIT, line, v > 0.0 ? axis->upper : axis->lower);
+    return guard;
+}
+
+void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t guard)
+{
+    if (axis->state != CM1E_AXIS_ERROR_STOP)
+        axis->guard = guard;
+    cm1e_axis_fail(axis, CM1E_ERROR_AXIS_COUPLING_LIMIT, guard.asked, guard.allowed);
+}
+
+/* With the numbers asked and allowed. */
+static const char *const said[GUARD_COUNT] = {
+    [GUARD_KEPT] = "nothing",
+    [GUARD_FINITE] = "a set-point that is not a finite number, or too far away",
+    [GUARD_PAUSE] = "to go on behind a pause of the cycle (the motor ran on at %.6g u/s meanwhile)",
+    [GUARD_DIRECTION] = "a velocity of %.6g u/s, in a direction that MC_Power does not enable",
+    [GUARD_VELOCITY] = "a velocity of %.6g u/s; up to %.6g u/s is right",
+    [GUARD_ACCELERATION] = "an acceleration of %.6g u/s2; up to %.6g u/s2 is right",
+    [GUARD_DECELERATION] = "a deceleration of %.6g u/s2; up to %.6g u/s2 is right",
+    [GUARD_JERK] = "a jerk of %.6g u/s3; up to %.6g u/s3 is right",
+    [GUARD_STEP] = "a step of %.6g u in a cycle whose velocity is good for %.6g u",
+    [GUARD_SOFTWARE_LIMIT] = "to be at %.6g u, where it could not stop before the software limit at %.6g u",
+};
+
+void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    char asked[160];
+    snprintf(asked, sizeof asked, said[axis->guard.limit], axis->guard.asked, axis->guard.allowed);
+    snprintf(text, size,
+             "Axis \"%s\": what it was coupled with, or its axes group, asked it for %s. That set-point was not given to "
+             "the motor, which was braked. Reduce the dynamics of what leads it, or raise the limits of this axis; then "
+             "reset the axis with MC_Reset.",
+             axis->config->name, asked);
+}

@@ -1,0 +1,98 @@
+/*
+ * An axis that somebody above leads: its axes group. The leader gives a set-point in every cycle; the axis looks at it
+ * once more, and stops by itself when it is not one that the motor can follow, or when there is none.
+ */
+#include "axis/axis_private.h"
+
+static bool at_rest(const cm1e_axis_t *axis) { return axis->set_velocity == 0.0 && axis->set_acceleration == 0.0; }
+
+cm1e_error_t cm1e_axis_lead(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader)
+{
+    if (drive_profiles(axis))
+        return CM1E_ERROR_UNSUPPORTED;
+    if (axis->state != CM1E_AXIS_STANDSTILL || axis->activity != ACTIVITY_HOLD || axis->active ||
+        axis->waiting.count > 0 || axis->superimposed.id || !axis_acts(axis))
+        return CM1E_ERROR_AXIS_STATE;
+    axis->leader = *leader;
+    axis->activity = ACTIVITY_LED;
+    axis->state = CM1E_AXIS_SYNCHRONIZED_MOTION;
+    return CM1E_OK;
+}
+
+void cm1e_axis_lead_end(cm1e_axis_t *axis, cm1e_error_t error)
+{
+    if (!axis_led(axis))
+        return;
+    const cm1e_axis_leader_t leader = axis->leader;
+    axis->leader = (cm1e_axis_leader_t){0};
+    leader.lost(leader.context, leader.index, error);
+}
+
+void cm1e_axis_release(cm1e_axis_t *axis)
+{
+    if (!axis_led(axis))
+        return;
+    axis->leader = (cm1e_axis_leader_t){0};
+    if (at_rest(axis)) {
+        axis->activity = ACTIVITY_HOLD;
+        axis->state = CM1E_AXIS_STANDSTILL;
+    } else {
+        axis->state = CM1E_AXIS_DISCRETE_MOTION;
+        cm1e_axis_ramp_down(axis, &axis->maximum);
+    }
+}
+
+bool cm1e_axis_led_by(const cm1e_axis_t *axis, const void *context)
+{
+    return axis_led(axis) && axis->leader.context == context;
+}
+
+bool cm1e_axis_lead_step(cm1e_axis_t *axis)
+{
+    const cm1e_axis_leader_t leader = axis->leader;
+    double line = 0.0;
+    from_t next = {.shared = false};
+    const cm1e_lead_t lead =
+        leader.next(leader.context, leader.index, &line, &next.velocity, &next.acceleration);
+    if (lead == CM1E_LEAD_NONE) {
+        if (axis_led(axis)) /* else it was let go just now */
+            cm1e_axis_fail(axis, CM1E_ERROR_AXIS_COUPLED, 0.0, 0.0);
+        return false;
+    }
+    guard_t guard = {.limit = GUARD_FINITE};
+    if (cm1e_axis_position_from_line(axis, line, &next.position))
+        guard = cm1e_axis_guard(axis, &next, true);
+    if (guard.limit) {
+        cm1e_axis_guard_fail(axis, guard);
+        return false;
+    }
+    axis->set = next.position;
+    axis->set_velocity = next.velocity;
+    axis->set_acceleration = next.acceleration;
+    if (next.velocity != 0.0)
+        axis->positive_before = next.velocity > 0.0;
+    if (lead == CM1E_LEAD_LAST)
+        cm1e_axis_release(axis);
+    return true;
+}
+
+void cm1e_axis_lead_after_pause(cm1e_axis_t *axis)
+{
+    const cm1e_axis_leader_t leader = axis->leader;
+    if (axis->set_velocity == 0.0)
+        leader.paused(leader.context, leader.index);
+    else
+        cm1e_axis_guard_fail(axis, (guard_t){.limit = GUARD_PAUSE, .asked = axis->set_velocity});
+}
+
+void cm1e_axis_bounds(const cm1e_axis_t *axis, cm1e_motion_limits_t *limits, double *lower, double *upper)
+{
+    *limits = axis->maximum;
+    *lower = axis->lower;
+    *upper = axis->upper;
+}
+
+double cm1e_axis_place(const cm1e_axis_t *axis, bool actual)
+{
+    return cm1e_axis_line(axis, actual ? axis_actual(axis) : axis->set);
+}
