@@ -25,7 +25,8 @@ typedef struct fb_outputs {
     BOOL done, busy, active, aborted, error;
     WORD error_id;
     BOOL reached;  /**< InVelocity and its like (2.4.1): TRUE at times while Busy and Active */
-    LREAL covered; /**< MC_MoveSuperimposed: CoveredDistance */
+    BOOL synchronizing, end_of_profile; /**< StartSync, EndOfProfile */
+    LREAL covered; /**< CoveredDistance, AbsolutePhaseShift, CoveredPhaseShift */
 } fb_outputs_t;
 
 /** `*axis` is valid unless the step is FB_STEP_NONE. */

@@ -85,7 +85,9 @@ def defaults(block):
     macro = f"{block.name.upper()}_DEFAULTS"
     first = block.variables[0].name
     text = f"Its initial values: `{block.name}_t fb = {{.{first} = &axis, {macro}}};`"
-    return comment(text) + f"#define {macro} " + ", ".join(f".{name} = {value}" for name, value in values) + "\n"
+    pairs = textwrap.wrap(", ".join(f".{name}\0=\0{value}" for name, value in values),
+                          WIDTH - len(f"#define {macro}  \\"))
+    return comment(text) + f"#define {macro} " + " \\\n    ".join(pairs).replace("\0", " ") + "\n"
 
 
 def block(declaration, symbol):

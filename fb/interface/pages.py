@@ -7,6 +7,7 @@ from tables import STATES
 SECTIONS = (("in_out", "VAR_IN_OUT"), ("input", "VAR_INPUT"), ("output", "VAR_OUTPUT"))
 CHAPTERS = {
     "mc_motion.h": "Motion",
+    "mc_multi_axis.h": "Slaves and masters",
     "mc_administrative.h": "Parameters, signals, what the axis shows",
     "mc_homing.h": "Homing in steps",
     "cm_bridge.h": "Motors behind a Cool MUSCLE bridge",

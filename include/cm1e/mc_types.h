@@ -225,6 +225,13 @@ typedef struct cm1e_fb_private {
     BOOL active;            /**< what Active showed */
 } cm1e_fb_private_t;
 
+/** State of a block of a slave that is not to be touched; `common` has latched the slave. */
+typedef struct cm1e_coupling_private {
+    cm1e_fb_private_t common;
+    UINT master;        /**< latched at the rising edge */
+    UINT second_master; /**< ... as this one, of MC_CombineAxes */
+} cm1e_coupling_private_t;
+
 /** State of MC_ReadMotionState that is not to be touched. */
 typedef struct cm1e_motion_private {
     cm1e_fb_private_t common;

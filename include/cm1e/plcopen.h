@@ -1,9 +1,8 @@
 /**
  * @file plcopen.h
- * The function blocks of PLCopen Motion Control, Part 1 v2.0 and Part 5 v2.0, as far as they concern one axis, and
- * those of ours for motors behind a bridge (CM_...). Each
- * block is a plain struct, valid when zeroed (see the defaults beside the inputs), and a function of the same name that
- * a program calls once a scan, also while nothing happens:
+ * The function blocks of PLCopen Motion Control, Part 1 v2.0 and Part 5 v2.0, and those of ours for motors behind a
+ * bridge (CM_...). Each block is a plain struct, valid when zeroed (see the defaults beside the inputs), and a function
+ * of the same name that a program calls once a scan, also while nothing happens:
  *
  *     static MC_Power_t power = {.Axis = &axis, .EnablePositive = TRUE, .EnableNegative = TRUE};
  *     power.Enable = TRUE;
@@ -13,10 +12,11 @@
  * programs of the scheduler that owns the axis (@rt cycle). Units: u, u/s, u/s2, u/s3 (config.h). Acceleration,
  * Deceleration, Jerk 0 mean the axis's maximum. ErrorID: cm1e_strerror(cm1e_error_from_id(ErrorID)).
  *
- * Said once for all: the axis is latched at the rising edge of Execute or Enable; another Axis while the block is busy
- * is CM1E_ERROR_FB_AXIS_CHANGED and touches neither axis. A motion goes on when its block is no longer called, or when
- * its re-trigger was refused. What a reading block shows is 0 while Valid is FALSE. A page for each block, with its
- * timing diagram: docs/blocks/. The standard blocks of IEC 61131-3 (TON, R_TRIG, CTU ...) are in iec.h.
+ * Said once for all: the axis (a slave and its masters too) is latched at the rising edge of Execute or Enable; another
+ * one while the block is busy is CM1E_ERROR_FB_AXIS_CHANGED and touches no axis. A motion goes on when its block is no
+ * longer called, or when its re-trigger was refused. What a reading block shows is 0 while Valid is FALSE. A page for
+ * each block, with its timing diagram: docs/blocks/. The standard blocks of IEC 61131-3 (TON, R_TRIG, CTU ...) are in
+ * iec.h.
  */
 #ifndef CM1E_PLCOPEN_H
 #define CM1E_PLCOPEN_H
@@ -25,6 +25,7 @@
 #include "cm1e/mc_administrative.h"
 #include "cm1e/mc_homing.h"
 #include "cm1e/mc_motion.h"
+#include "cm1e/mc_multi_axis.h"
 #include "cm1e/mc_types.h"
 
 #endif

@@ -24,12 +24,13 @@ typedef struct block {
     void (*clear)(void);
 } block_t;
 
-#define BLOCK_FUNCTIONS(TYPE, DONE, ACTIVE, ABORTED)                                                                   \
+#define BLOCK_FUNCTIONS(TYPE, DONE, ACTIVE, ABORTED) BLOCK_FUNCTIONS_OF(TYPE, Axis, DONE, ACTIVE, ABORTED)
+#define BLOCK_FUNCTIONS_OF(TYPE, AXIS, DONE, ACTIVE, ABORTED)                                                          \
     static TYPE##_t instance_##TYPE;                                                                                   \
     static outputs_t call_##TYPE(AXIS_REF_t *axis, BOOL execute)                                                       \
     {                                                                                                                  \
         TYPE##_t *fb = &instance_##TYPE;                                                                               \
-        fb->Axis = axis;                                                                                               \
+        fb->AXIS = axis;                                                                                               \
         fb->Execute = execute;                                                                                         \
         TYPE(fb);                                                                                                      \
         return (outputs_t){DONE, fb->Busy, ACTIVE, ABORTED, fb->Error, fb->ErrorID};                                   \
@@ -48,6 +49,14 @@ BLOCK_FUNCTIONS(MC_Halt, fb->Done, fb->Active, fb->CommandAborted)
 BLOCK_FUNCTIONS(MC_Stop, fb->Done, fb->Active, fb->CommandAborted)
 BLOCK_FUNCTIONS(MC_Home, fb->Done, fb->Active, fb->CommandAborted)
 BLOCK_FUNCTIONS(MC_Reset, fb->Done, FALSE, FALSE)
+BLOCK_FUNCTIONS_OF(MC_GearIn, Slave, fb->InGear, fb->Active, fb->CommandAborted)
+BLOCK_FUNCTIONS_OF(MC_GearInPos, Slave, fb->InSync, fb->Active, fb->CommandAborted)
+BLOCK_FUNCTIONS_OF(MC_CamIn, Slave, fb->InSync, fb->Active, fb->CommandAborted)
+BLOCK_FUNCTIONS_OF(MC_CombineAxes, Slave, fb->InSync, fb->Active, fb->CommandAborted)
+BLOCK_FUNCTIONS_OF(MC_GearOut, Slave, fb->Done, FALSE, FALSE)
+BLOCK_FUNCTIONS_OF(MC_CamOut, Slave, fb->Done, FALSE, FALSE)
+BLOCK_FUNCTIONS_OF(MC_PhasingAbsolute, Slave, fb->Done, fb->Active, fb->CommandAborted)
+BLOCK_FUNCTIONS_OF(MC_PhasingRelative, Slave, fb->Done, fb->Active, fb->CommandAborted)
 
 #define BLOCK(TYPE, KIND, ACTIVE, ABORTED, VELOCITY)                                                                   \
     {#TYPE, KIND, ACTIVE, ABORTED, VELOCITY, call_##TYPE, clear_##TYPE}
@@ -65,6 +74,14 @@ static const block_t blocks[] = {
     BLOCK(MC_MoveContinuousRelative, CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE, true, true, true),
     BLOCK(MC_MoveSuperimposed, CM1E_COMMAND_MOVE_SUPERIMPOSED, false, true, false),
     BLOCK(MC_HaltSuperimposed, CM1E_COMMAND_HALT_SUPERIMPOSED, true, true, false),
+    BLOCK(MC_GearIn, CM1E_COMMAND_GEAR_IN, true, true, true),
+    BLOCK(MC_GearInPos, CM1E_COMMAND_GEAR_IN_POS, true, true, true),
+    BLOCK(MC_CamIn, CM1E_COMMAND_CAM_IN, true, true, true),
+    BLOCK(MC_CombineAxes, CM1E_COMMAND_COMBINE_AXES, true, true, true),
+    BLOCK(MC_GearOut, CM1E_COMMAND_GEAR_OUT, false, false, false),
+    BLOCK(MC_CamOut, CM1E_COMMAND_CAM_OUT, false, false, false),
+    BLOCK(MC_PhasingAbsolute, CM1E_COMMAND_PHASING_ABSOLUTE, true, true, false),
+    BLOCK(MC_PhasingRelative, CM1E_COMMAND_PHASING_RELATIVE, true, true, false),
 };
 enum { BLOCKS = sizeof blocks / sizeof blocks[0] };
 

@@ -19,6 +19,7 @@ struct cm1e_axis {
     cm1e_command_id_t updated;      /**< whose inputs */
     cm1e_error_t update_error;      /**< answer to cm1e_axis_update() */
     cm1e_axis_command_t command;    /**< the last one */
+    cm1e_axis_coupling_t coupling;  /**< ... and its coupling */
     cm1e_command_id_t id;           /**< of the last one */
     cm1e_command_status_t status[FAKE_COMMANDS]; /**< by id % FAKE_COMMANDS */
     cm1e_command_state_t reset_state;
@@ -30,6 +31,9 @@ struct cm1e_axis {
     cm1e_error_t power_error;
     unsigned power_calls;
     double override[3];
+    MC_CAM_REF cam;                 /**< the last one selected */
+    bool cam_flags[3];              /**< periodic, master absolute, slave absolute */
+    MC_CAM_ID cams;
 };
 
 static cm1e_axis_t fake_axes[FAKE_AXES];
@@ -46,6 +50,15 @@ cm1e_axis_t *cm1e_axis_from_reference(const AXIS_REF_t *reference)
     return reference->Handle >= 1 && reference->Handle <= FAKE_AXES ? &fake_axes[reference->Handle - 1] : NULL;
 }
 
+/** The block's own memory of the coupling is gone after its call. */
+static void fake_keep(cm1e_axis_t *axis, const cm1e_axis_command_t *command)
+{
+    axis->command = *command;
+    if (command->coupling)
+        axis->coupling = *command->coupling;
+    axis->command.coupling = NULL;
+}
+
 cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     static cm1e_command_id_t next_id;
@@ -55,7 +68,7 @@ cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *comma
         return axis->start_error;
     if (axis->id && axis->status[axis->id % FAKE_COMMANDS].state == CM1E_COMMAND_ACTIVE)
         axis->status[axis->id % FAKE_COMMANDS].state = CM1E_COMMAND_ABORTED;
-    axis->command = *command;
+    fake_keep(axis, command);
     axis->id = *id = ++next_id;
     axis->status[axis->id % FAKE_COMMANDS] = (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE};
     return CM1E_OK;
@@ -76,13 +89,28 @@ cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1
     axis->updates++;
     axis->updated = id;
     if (!axis->update_error)
-        axis->command = *command;
+        fake_keep(axis, command);
     return axis->update_error;
 }
 
 cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_command_id_t id)
 {
     return id ? axis->status[id % FAKE_COMMANDS] : (cm1e_command_status_t){.state = CM1E_COMMAND_UNKNOWN};
+}
+
+cm1e_error_t cm1e_axis_cam_select(cm1e_axis_t *slave, const MC_CAM_REF *cam, bool periodic, bool master_absolute,
+                                  bool slave_absolute, MC_CAM_ID *id)
+{
+    slave->starts++;
+    *id = 0;
+    if (slave->start_error)
+        return slave->start_error;
+    slave->cam = *cam;
+    slave->cam_flags[0] = periodic;
+    slave->cam_flags[1] = master_absolute;
+    slave->cam_flags[2] = slave_absolute;
+    *id = ++slave->cams;
+    return CM1E_OK;
 }
 
 void cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold)

@@ -95,6 +95,8 @@ END_TEST
 
 /* ---- in every state -------------------------------------------------------------------------------------------- */
 
+static const MC_CAM_POINT cam_points[] = {{0, 0, 0, 0}, {5, 1, 0, 0}};
+static const MC_CAM_REF cam = {.Points = cam_points, .NumberOfPoints = 2};
 static const MC_TP_REF positions = {.NumberOfPairs = 1, .MC_TP_Array = {{200000000, 1}}};
 static const MC_TV_REF velocities = {.NumberOfPairs = 2, .MC_TV_Array = {{200000000, 1}, {200000000, 1}}};
 static const MC_TA_REF accelerations = {.NumberOfPairs = 3,
@@ -110,7 +112,8 @@ static void fill(const block_t *block)
     const struct {
         const char *name;
         const void *pointer;
-    } pointers[] = {{"Axis", &bench.reference}, {"TimePosition", &positions}, {"TimeVelocity", &velocities},
+    } pointers[] = {{"Axis", &bench.reference}, {"Slave", &bench.reference}, {"CamTable", &cam},
+                    {"TimePosition", &positions}, {"TimeVelocity", &velocities},
                     {"TimeAcceleration", &accelerations}};
     clear(block);
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {

@@ -219,7 +219,7 @@ START_TEST(test_instance_serves_one_axis_after_the_other)
         trigger(&subject, false);
         cycles_of_both(1, judged.axis);
         MUST(!subject.now.busy, "still Busy");
-        point_at(&subject, "Axis", &other);
+        point_at_axis(&subject, &other);
         trigger(&subject, true);
         cycles_of_both(3, other_axis);
         MUST(!subject.now.error && other_axis->state != CM1E_AXIS_DISABLED, "Error 0x%04X", subject.now.error_id);

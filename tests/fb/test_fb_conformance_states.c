@@ -8,7 +8,7 @@
 static instance_t mover, subject;
 
 /** Blocks that an axis has to do with. */
-static bool has_axis(const block_t *type) { return member_of(type, "Axis") != NULL; }
+static bool has_axis(const block_t *type) { return member_of(type, "Axis") || member_of(type, "Slave"); }
 static bool is(const block_t *type, const char *name) { return strcmp(type->name, name) == 0; }
 
 #define FOR_EACH_BLOCK(type)                                                                                         \
@@ -157,7 +157,7 @@ START_TEST(test_block_without_an_axis_is_an_error_and_survives)
             scene("no axis", type, CM1E_AXIS_STANDSTILL);
             into(CM1E_AXIS_STANDSTILL, &mover);
             make(&subject, type->name);
-            point_at(&subject, "Axis", references[i]);
+            point_at_axis(&subject, references[i]);
             trigger(&subject, true);
             put(&subject, "JogForward", 1);
             cycle();
@@ -216,14 +216,14 @@ START_TEST(test_busy_block_given_another_axis_is_an_error_and_both_axes_go_on)
         if (!subject.now.busy)
             continue;
         const cm1e_axis_state_t state = judged.state;
-        point_at(&subject, "Axis", &another);
+        point_at_axis(&subject, &another);
         cycle();
         MUST(subject.now.error && subject.now.error_id == cm1e_error_id(CM1E_ERROR_FB_AXIS_CHANGED),
              "Error %d 0x%04X", subject.now.error, subject.now.error_id);
         MUST(judged.state == state, "the axis is in %s", cm1e_axis_state_name(judged.state));
         trigger(&subject, false);
         cycles(2);
-        point_at(&subject, "Axis", &judged.reference); /* and the same instance works again */
+        point_at_axis(&subject, &judged.reference); /* and the same instance works again */
         cycles(2);
         MUST(!subject.now.error, "the Error stays");
     }

@@ -17,7 +17,7 @@
 #include "axis/axis_private.h"
 #include "block_table.h"
 
-enum { BLOCK_BYTES = 4096, BLOCKS_MOST = 96 };
+enum { BLOCK_BYTES = 4096, BLOCKS_MOST = 160 };
 
 /** Where the members are that many blocks have; NOWHERE: this one has not. */
 enum { NOWHERE = 0xFFFF };
@@ -44,6 +44,7 @@ typedef struct instance {
 static struct judged {
     cm1e_axis_t *axis;
     AXIS_REF_t reference;
+    AXIS_REF_t master;              /**< what its slaves' blocks name as their masters */
     cm1e_axis_state_t state;        /**< last judged */
     bool reset_asked;               /**< since ErrorStop */
     long long number;               /**< of the cycle */
@@ -99,8 +100,10 @@ static uint16_t first_place(const block_t *type, const char *const *names)
 static const block_view_t *view_of(const char *name)
 {
     static block_view_t views[BLOCKS_MOST];
-    static const char *const reached[] = {"InVelocity", "InEndVelocity", "InTorque", "ProfileCompleted", NULL};
+    static const char *const reached[] = {"InVelocity", "InEndVelocity", "InTorque", "ProfileCompleted",
+                                           "InGear", "InSync", NULL};
     static const char *const valid[] = {"Valid", "Enabled", "InOperation", NULL};
+    static const char *const axis[] = {"Axis", "Slave", NULL};
     for (size_t i = 0; i < block_count; i++) {
         const block_t *type = &block_table[i];
         if (strcmp(type->name, name) != 0)
@@ -111,7 +114,7 @@ static const block_view_t *view_of(const char *name)
             .done = place_of(type, "Done"), .reached = first_place(type, reached), .busy = place_of(type, "Busy"),
             .active = place_of(type, "Active"), .aborted = place_of(type, "CommandAborted"),
             .error = place_of(type, "Error"), .error_id = place_of(type, "ErrorID"), .valid = first_place(type, valid),
-            .axis = place_of(type, "Axis"), .buffer_mode = place_of(type, "BufferMode"),
+            .axis = first_place(type, axis), .buffer_mode = place_of(type, "BufferMode"),
         };
         return &views[i];
     }
@@ -425,6 +428,8 @@ static const MC_TA_REF table_of_accelerations = {.NumberOfPairs = 2, .IsAbsolute
 static MC_OUTPUT_REF output_of_axis;
 static MC_INPUT_REF input_of_axis;
 static MC_TRIGGER_REF trigger_of_axis;
+static const MC_CAM_POINT cam_points[] = {{0, 0, 0, 0}, {5, 2, 0, 0}, {10, 0, 0, 0}};
+static const MC_CAM_REF cam_of_master = {.Points = cam_points, .NumberOfPoints = 3};
 static const MC_CAMSWITCH_REF cam_switches = {
     .NumberOfSwitches = 1, .Switches = {{.TrackNumber = 1, .FirstOnPosition = 1, .LastOnPosition = 2}}};
 
@@ -435,6 +440,13 @@ static void begin_blocks(void)
     output_of_axis.Axis = input_of_axis.Axis = trigger_of_axis.Axis = judged.reference;
 }
 
+/** The axis that it is about. */
+static void point_at_axis(instance_t *fb, const AXIS_REF_t *axis)
+{
+    point_at(fb, "Axis", axis);
+    point_at(fb, "Slave", axis);
+}
+
 /** A block with inputs that make sense, zeroed beside; it is called in every cycle from now on. */
 static void make(instance_t *fb, const char *name)
 {
@@ -443,10 +455,17 @@ static void make(instance_t *fb, const char *name)
         double value;
     } good[] = {{"Position", 5}, {"Distance", 3}, {"Velocity", 10}, {"EndVelocity", 4}, {"VelocityDiff", 5},
                 {"Acceleration", 80}, {"Deceleration", 80}, {"VelFactor", 1}, {"AccFactor", 1}, {"JerkFactor", 1},
-                {"ParameterNumber", 9}, {"InputNumber", 1}, {"OutputNumber", 1}, {"EnableMask", 1}, {"Torque", 10}};
+                {"RatioNumerator", 1}, {"RatioDenominator", 2}, {"GearRatioNumeratorM1", 1},
+                {"GearRatioDenominatorM1", 2}, {"GearRatioNumeratorM2", 1}, {"GearRatioDenominatorM2", 4},
+                {"PhaseShift", 0.5}, {"ParameterNumber", 9}, {"InputNumber", 1}, {"OutputNumber", 1},
+                {"EnableMask", 1}, {"Torque", 10}};
+    static const char *const masters[] = {"Master", "Master1", "Master2", NULL};
     memset(fb, 0, sizeof *fb);
     fb->view = view_of(name);
-    point_at(fb, "Axis", &judged.reference);
+    point_at_axis(fb, &judged.reference);
+    for (const char *const *master = masters; *master; master++)
+        point_at(fb, *master, &judged.master);
+    point_at(fb, "CamTable", &cam_of_master);
     point_at(fb, "TimePosition", &table_of_positions);
     point_at(fb, "TimeVelocity", &table_of_velocities);
     point_at(fb, "TimeAcceleration", &table_of_accelerations);

@@ -26,6 +26,7 @@ _Static_assert(sizeof(MC_CAMSWITCH_REF) == 1288, "MC_CAMSWITCH_REF");
 _Static_assert(sizeof(MC_TRACK) == 24, "MC_TRACK");
 _Static_assert(sizeof(MC_TRACK_REF) == 768, "MC_TRACK_REF");
 _Static_assert(sizeof(cm1e_fb_private_t) == 12, "cm1e_fb_private_t");
+_Static_assert(sizeof(cm1e_coupling_private_t) == 16, "cm1e_coupling_private_t");
 _Static_assert(sizeof(cm1e_motion_private_t) == 40, "cm1e_motion_private_t");
 _Static_assert(sizeof(cm1e_jog_private_t) == 48, "cm1e_jog_private_t");
 _Static_assert(sizeof(cm1e_cam_point_t) == 16, "cm1e_cam_point_t");
@@ -299,6 +300,160 @@ AT(MC_Jog, CommandAborted, 59);
 AT(MC_Jog, Error, 60);
 AT(MC_Jog, ErrorID, 62);
 AT(MC_Jog, Private, 64);
+_Static_assert(sizeof(MC_CamTableSelect_t) == 56, "MC_CamTableSelect");
+AT(MC_CamTableSelect, Master, 0);
+AT(MC_CamTableSelect, Slave, 8);
+AT(MC_CamTableSelect, CamTable, 16);
+AT(MC_CamTableSelect, Execute, 24);
+AT(MC_CamTableSelect, Periodic, 25);
+AT(MC_CamTableSelect, MasterAbsolute, 26);
+AT(MC_CamTableSelect, SlaveAbsolute, 27);
+AT(MC_CamTableSelect, ExecutionMode, 28);
+AT(MC_CamTableSelect, Done, 32);
+AT(MC_CamTableSelect, Busy, 33);
+AT(MC_CamTableSelect, Error, 34);
+AT(MC_CamTableSelect, ErrorID, 36);
+AT(MC_CamTableSelect, CamTableID, 40);
+AT(MC_CamTableSelect, Private, 44);
+_Static_assert(sizeof(MC_CamIn_t) == 120, "MC_CamIn");
+AT(MC_CamIn, Master, 0);
+AT(MC_CamIn, Slave, 8);
+AT(MC_CamIn, Execute, 16);
+AT(MC_CamIn, ContinuousUpdate, 17);
+AT(MC_CamIn, MasterOffset, 24);
+AT(MC_CamIn, SlaveOffset, 32);
+AT(MC_CamIn, MasterScaling, 40);
+AT(MC_CamIn, SlaveScaling, 48);
+AT(MC_CamIn, MasterStartDistance, 56);
+AT(MC_CamIn, MasterSyncPosition, 64);
+AT(MC_CamIn, StartMode, 72);
+AT(MC_CamIn, MasterValueSource, 76);
+AT(MC_CamIn, CamTableID, 80);
+AT(MC_CamIn, BufferMode, 84);
+AT(MC_CamIn, InSync, 88);
+AT(MC_CamIn, Busy, 89);
+AT(MC_CamIn, Active, 90);
+AT(MC_CamIn, CommandAborted, 91);
+AT(MC_CamIn, Error, 92);
+AT(MC_CamIn, ErrorID, 94);
+AT(MC_CamIn, EndOfProfile, 96);
+AT(MC_CamIn, Private, 100);
+_Static_assert(sizeof(MC_CamOut_t) == 32, "MC_CamOut");
+AT(MC_CamOut, Slave, 0);
+AT(MC_CamOut, Execute, 8);
+AT(MC_CamOut, Done, 9);
+AT(MC_CamOut, Busy, 10);
+AT(MC_CamOut, Error, 11);
+AT(MC_CamOut, ErrorID, 12);
+AT(MC_CamOut, Private, 16);
+_Static_assert(sizeof(MC_GearIn_t) == 88, "MC_GearIn");
+AT(MC_GearIn, Master, 0);
+AT(MC_GearIn, Slave, 8);
+AT(MC_GearIn, Execute, 16);
+AT(MC_GearIn, ContinuousUpdate, 17);
+AT(MC_GearIn, RatioNumerator, 20);
+AT(MC_GearIn, RatioDenominator, 24);
+AT(MC_GearIn, MasterValueSource, 28);
+AT(MC_GearIn, Acceleration, 32);
+AT(MC_GearIn, Deceleration, 40);
+AT(MC_GearIn, Jerk, 48);
+AT(MC_GearIn, BufferMode, 56);
+AT(MC_GearIn, InGear, 60);
+AT(MC_GearIn, Busy, 61);
+AT(MC_GearIn, Active, 62);
+AT(MC_GearIn, CommandAborted, 63);
+AT(MC_GearIn, Error, 64);
+AT(MC_GearIn, ErrorID, 66);
+AT(MC_GearIn, Private, 68);
+_Static_assert(sizeof(MC_GearOut_t) == 32, "MC_GearOut");
+AT(MC_GearOut, Slave, 0);
+AT(MC_GearOut, Execute, 8);
+AT(MC_GearOut, Done, 9);
+AT(MC_GearOut, Busy, 10);
+AT(MC_GearOut, Error, 11);
+AT(MC_GearOut, ErrorID, 12);
+AT(MC_GearOut, Private, 16);
+_Static_assert(sizeof(MC_GearInPos_t) == 128, "MC_GearInPos");
+AT(MC_GearInPos, Master, 0);
+AT(MC_GearInPos, Slave, 8);
+AT(MC_GearInPos, Execute, 16);
+AT(MC_GearInPos, RatioNumerator, 20);
+AT(MC_GearInPos, RatioDenominator, 24);
+AT(MC_GearInPos, MasterValueSource, 28);
+AT(MC_GearInPos, MasterSyncPosition, 32);
+AT(MC_GearInPos, SlaveSyncPosition, 40);
+AT(MC_GearInPos, SyncMode, 48);
+AT(MC_GearInPos, MasterStartDistance, 56);
+AT(MC_GearInPos, Velocity, 64);
+AT(MC_GearInPos, Acceleration, 72);
+AT(MC_GearInPos, Deceleration, 80);
+AT(MC_GearInPos, Jerk, 88);
+AT(MC_GearInPos, BufferMode, 96);
+AT(MC_GearInPos, StartSync, 100);
+AT(MC_GearInPos, InSync, 101);
+AT(MC_GearInPos, Busy, 102);
+AT(MC_GearInPos, Active, 103);
+AT(MC_GearInPos, CommandAborted, 104);
+AT(MC_GearInPos, Error, 105);
+AT(MC_GearInPos, ErrorID, 106);
+AT(MC_GearInPos, Private, 108);
+_Static_assert(sizeof(MC_PhasingAbsolute_t) == 104, "MC_PhasingAbsolute");
+AT(MC_PhasingAbsolute, Master, 0);
+AT(MC_PhasingAbsolute, Slave, 8);
+AT(MC_PhasingAbsolute, Execute, 16);
+AT(MC_PhasingAbsolute, PhaseShift, 24);
+AT(MC_PhasingAbsolute, Velocity, 32);
+AT(MC_PhasingAbsolute, Acceleration, 40);
+AT(MC_PhasingAbsolute, Deceleration, 48);
+AT(MC_PhasingAbsolute, Jerk, 56);
+AT(MC_PhasingAbsolute, BufferMode, 64);
+AT(MC_PhasingAbsolute, Done, 68);
+AT(MC_PhasingAbsolute, Busy, 69);
+AT(MC_PhasingAbsolute, Active, 70);
+AT(MC_PhasingAbsolute, CommandAborted, 71);
+AT(MC_PhasingAbsolute, Error, 72);
+AT(MC_PhasingAbsolute, ErrorID, 74);
+AT(MC_PhasingAbsolute, AbsolutePhaseShift, 80);
+AT(MC_PhasingAbsolute, Private, 88);
+_Static_assert(sizeof(MC_PhasingRelative_t) == 104, "MC_PhasingRelative");
+AT(MC_PhasingRelative, Master, 0);
+AT(MC_PhasingRelative, Slave, 8);
+AT(MC_PhasingRelative, Execute, 16);
+AT(MC_PhasingRelative, PhaseShift, 24);
+AT(MC_PhasingRelative, Velocity, 32);
+AT(MC_PhasingRelative, Acceleration, 40);
+AT(MC_PhasingRelative, Deceleration, 48);
+AT(MC_PhasingRelative, Jerk, 56);
+AT(MC_PhasingRelative, BufferMode, 64);
+AT(MC_PhasingRelative, Done, 68);
+AT(MC_PhasingRelative, Busy, 69);
+AT(MC_PhasingRelative, Active, 70);
+AT(MC_PhasingRelative, CommandAborted, 71);
+AT(MC_PhasingRelative, Error, 72);
+AT(MC_PhasingRelative, ErrorID, 74);
+AT(MC_PhasingRelative, CoveredPhaseShift, 80);
+AT(MC_PhasingRelative, Private, 88);
+_Static_assert(sizeof(MC_CombineAxes_t) == 88, "MC_CombineAxes");
+AT(MC_CombineAxes, Master1, 0);
+AT(MC_CombineAxes, Master2, 8);
+AT(MC_CombineAxes, Slave, 16);
+AT(MC_CombineAxes, Execute, 24);
+AT(MC_CombineAxes, ContinuousUpdate, 25);
+AT(MC_CombineAxes, CombineMode, 28);
+AT(MC_CombineAxes, GearRatioNumeratorM1, 32);
+AT(MC_CombineAxes, GearRatioDenominatorM1, 36);
+AT(MC_CombineAxes, GearRatioNumeratorM2, 40);
+AT(MC_CombineAxes, GearRatioDenominatorM2, 44);
+AT(MC_CombineAxes, MasterValueSourceM1, 48);
+AT(MC_CombineAxes, MasterValueSourceM2, 52);
+AT(MC_CombineAxes, BufferMode, 56);
+AT(MC_CombineAxes, InSync, 60);
+AT(MC_CombineAxes, Busy, 61);
+AT(MC_CombineAxes, Active, 62);
+AT(MC_CombineAxes, CommandAborted, 63);
+AT(MC_CombineAxes, Error, 64);
+AT(MC_CombineAxes, ErrorID, 66);
+AT(MC_CombineAxes, Private, 68);
 _Static_assert(sizeof(MC_SetPosition_t) == 56, "MC_SetPosition");
 AT(MC_SetPosition, Axis, 0);
 AT(MC_SetPosition, Execute, 8);
@@ -903,6 +1058,36 @@ static const block_rule_t rules_halt_superimposed[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
     [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
 };
+static const block_rule_t rules_couple[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
+    [CM1E_AXIS_STANDSTILL] = {.refusal = CM1E_ERROR_UNSUPPORTED},
+    [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_HOMING},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.refusal = CM1E_ERROR_UNSUPPORTED},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.refusal = CM1E_ERROR_UNSUPPORTED},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.next = CM1E_AXIS_SYNCHRONIZED_MOTION},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
+};
+static const block_rule_t rules_decouple[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
+    [CM1E_AXIS_STANDSTILL] = {.refusal = CM1E_ERROR_AXIS_NOT_COUPLED},
+    [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_HOMING},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.refusal = CM1E_ERROR_AXIS_NOT_COUPLED},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.refusal = CM1E_ERROR_AXIS_NOT_COUPLED},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.next = CM1E_AXIS_CONTINUOUS_MOTION},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
+};
+static const block_rule_t rules_phasing[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
+    [CM1E_AXIS_STANDSTILL] = {.refusal = CM1E_ERROR_AXIS_NOT_COUPLED},
+    [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_HOMING},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.refusal = CM1E_ERROR_AXIS_NOT_COUPLED},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.refusal = CM1E_ERROR_AXIS_NOT_COUPLED},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.next = CM1E_AXIS_SYNCHRONIZED_MOTION},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
+};
 static const block_rule_t rules_unsupported[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_UNSUPPORTED},
     [CM1E_AXIS_STANDSTILL] = {.refusal = CM1E_ERROR_UNSUPPORTED},
@@ -1468,6 +1653,318 @@ static const cm1e_error_t errors_of_MC_Jog[] = {
     CM1E_ERROR_AXIS_VELOCITY_RANGE,
     CM1E_ERROR_AXIS_POSITION_RANGE,
     CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_INVALID_ARGUMENT,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_CamTableSelect[] = {
+    MEMBER(MC_CamTableSelect, Master, IN_OUT, POINTER),
+    MEMBER(MC_CamTableSelect, Slave, IN_OUT, POINTER),
+    MEMBER(MC_CamTableSelect, CamTable, IN_OUT, POINTER),
+    MEMBER(MC_CamTableSelect, Execute, INPUT, BOOL),
+    MEMBER(MC_CamTableSelect, Periodic, INPUT, BOOL),
+    MEMBER(MC_CamTableSelect, MasterAbsolute, INPUT, BOOL),
+    MEMBER(MC_CamTableSelect, SlaveAbsolute, INPUT, BOOL),
+    MEMBER(MC_CamTableSelect, ExecutionMode, INPUT, ENUM),
+    MEMBER(MC_CamTableSelect, Done, OUTPUT, BOOL),
+    MEMBER(MC_CamTableSelect, Busy, OUTPUT, BOOL),
+    MEMBER(MC_CamTableSelect, Error, OUTPUT, BOOL),
+    MEMBER(MC_CamTableSelect, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_CamTableSelect, CamTableID, OUTPUT, UDINT),
+};
+static void call_MC_CamTableSelect(void *fb) { MC_CamTableSelect(fb); }
+static const cm1e_error_t errors_of_MC_CamTableSelect[] = {
+    CM1E_ERROR_AXIS_CAM_TABLE,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_UNSUPPORTED,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_CamIn[] = {
+    MEMBER(MC_CamIn, Master, IN_OUT, POINTER),
+    MEMBER(MC_CamIn, Slave, IN_OUT, POINTER),
+    MEMBER(MC_CamIn, Execute, INPUT, BOOL),
+    MEMBER(MC_CamIn, ContinuousUpdate, INPUT, BOOL),
+    MEMBER(MC_CamIn, MasterOffset, INPUT, LREAL),
+    MEMBER(MC_CamIn, SlaveOffset, INPUT, LREAL),
+    MEMBER(MC_CamIn, MasterScaling, INPUT, LREAL),
+    MEMBER(MC_CamIn, SlaveScaling, INPUT, LREAL),
+    MEMBER(MC_CamIn, MasterStartDistance, INPUT, LREAL),
+    MEMBER(MC_CamIn, MasterSyncPosition, INPUT, LREAL),
+    MEMBER(MC_CamIn, StartMode, INPUT, ENUM),
+    MEMBER(MC_CamIn, MasterValueSource, INPUT, ENUM),
+    MEMBER(MC_CamIn, CamTableID, INPUT, UDINT),
+    MEMBER(MC_CamIn, BufferMode, INPUT, ENUM),
+    MEMBER(MC_CamIn, InSync, OUTPUT, BOOL),
+    MEMBER(MC_CamIn, Busy, OUTPUT, BOOL),
+    MEMBER(MC_CamIn, Active, OUTPUT, BOOL),
+    MEMBER(MC_CamIn, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_CamIn, Error, OUTPUT, BOOL),
+    MEMBER(MC_CamIn, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_CamIn, EndOfProfile, OUTPUT, BOOL),
+};
+static void call_MC_CamIn(void *fb) { MC_CamIn(fb); }
+static const cm1e_error_t errors_of_MC_CamIn[] = {
+    CM1E_ERROR_AXIS_CAM_START,
+    CM1E_ERROR_AXIS_CAM_ID,
+    CM1E_ERROR_AXIS_SYNC_WAY,
+    CM1E_ERROR_AXIS_RATIO,
+    CM1E_ERROR_AXIS_COUPLING_LIMIT,
+    CM1E_ERROR_AXIS_MASTER_LOST,
+    CM1E_ERROR_AXIS_COUPLING_CYCLE,
+    CM1E_ERROR_AXIS_MASTER,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_UNSUPPORTED,
+    CM1E_ERROR_FULL,
+    CM1E_ERROR_INVALID_ARGUMENT,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_CamOut[] = {
+    MEMBER(MC_CamOut, Slave, IN_OUT, POINTER),
+    MEMBER(MC_CamOut, Execute, INPUT, BOOL),
+    MEMBER(MC_CamOut, Done, OUTPUT, BOOL),
+    MEMBER(MC_CamOut, Busy, OUTPUT, BOOL),
+    MEMBER(MC_CamOut, Error, OUTPUT, BOOL),
+    MEMBER(MC_CamOut, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_CamOut(void *fb) { MC_CamOut(fb); }
+static const cm1e_error_t errors_of_MC_CamOut[] = {
+    CM1E_ERROR_AXIS_NOT_COUPLED,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_CANCELLED,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_GearIn[] = {
+    MEMBER(MC_GearIn, Master, IN_OUT, POINTER),
+    MEMBER(MC_GearIn, Slave, IN_OUT, POINTER),
+    MEMBER(MC_GearIn, Execute, INPUT, BOOL),
+    MEMBER(MC_GearIn, ContinuousUpdate, INPUT, BOOL),
+    MEMBER(MC_GearIn, RatioNumerator, INPUT, DINT),
+    MEMBER(MC_GearIn, RatioDenominator, INPUT, UDINT),
+    MEMBER(MC_GearIn, MasterValueSource, INPUT, ENUM),
+    MEMBER(MC_GearIn, Acceleration, INPUT, LREAL),
+    MEMBER(MC_GearIn, Deceleration, INPUT, LREAL),
+    MEMBER(MC_GearIn, Jerk, INPUT, LREAL),
+    MEMBER(MC_GearIn, BufferMode, INPUT, ENUM),
+    MEMBER(MC_GearIn, InGear, OUTPUT, BOOL),
+    MEMBER(MC_GearIn, Busy, OUTPUT, BOOL),
+    MEMBER(MC_GearIn, Active, OUTPUT, BOOL),
+    MEMBER(MC_GearIn, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_GearIn, Error, OUTPUT, BOOL),
+    MEMBER(MC_GearIn, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_GearIn(void *fb) { MC_GearIn(fb); }
+static const cm1e_error_t errors_of_MC_GearIn[] = {
+    CM1E_ERROR_AXIS_RATIO,
+    CM1E_ERROR_AXIS_COUPLING_LIMIT,
+    CM1E_ERROR_AXIS_MASTER_LOST,
+    CM1E_ERROR_AXIS_COUPLING_CYCLE,
+    CM1E_ERROR_AXIS_MASTER,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_UNSUPPORTED,
+    CM1E_ERROR_FULL,
+    CM1E_ERROR_INVALID_ARGUMENT,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_GearOut[] = {
+    MEMBER(MC_GearOut, Slave, IN_OUT, POINTER),
+    MEMBER(MC_GearOut, Execute, INPUT, BOOL),
+    MEMBER(MC_GearOut, Done, OUTPUT, BOOL),
+    MEMBER(MC_GearOut, Busy, OUTPUT, BOOL),
+    MEMBER(MC_GearOut, Error, OUTPUT, BOOL),
+    MEMBER(MC_GearOut, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_GearOut(void *fb) { MC_GearOut(fb); }
+static const cm1e_error_t errors_of_MC_GearOut[] = {
+    CM1E_ERROR_AXIS_NOT_COUPLED,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_CANCELLED,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_GearInPos[] = {
+    MEMBER(MC_GearInPos, Master, IN_OUT, POINTER),
+    MEMBER(MC_GearInPos, Slave, IN_OUT, POINTER),
+    MEMBER(MC_GearInPos, Execute, INPUT, BOOL),
+    MEMBER(MC_GearInPos, RatioNumerator, INPUT, DINT),
+    MEMBER(MC_GearInPos, RatioDenominator, INPUT, UDINT),
+    MEMBER(MC_GearInPos, MasterValueSource, INPUT, ENUM),
+    MEMBER(MC_GearInPos, MasterSyncPosition, INPUT, LREAL),
+    MEMBER(MC_GearInPos, SlaveSyncPosition, INPUT, LREAL),
+    MEMBER(MC_GearInPos, SyncMode, INPUT, ENUM),
+    MEMBER(MC_GearInPos, MasterStartDistance, INPUT, LREAL),
+    MEMBER(MC_GearInPos, Velocity, INPUT, LREAL),
+    MEMBER(MC_GearInPos, Acceleration, INPUT, LREAL),
+    MEMBER(MC_GearInPos, Deceleration, INPUT, LREAL),
+    MEMBER(MC_GearInPos, Jerk, INPUT, LREAL),
+    MEMBER(MC_GearInPos, BufferMode, INPUT, ENUM),
+    MEMBER(MC_GearInPos, StartSync, OUTPUT, BOOL),
+    MEMBER(MC_GearInPos, InSync, OUTPUT, BOOL),
+    MEMBER(MC_GearInPos, Busy, OUTPUT, BOOL),
+    MEMBER(MC_GearInPos, Active, OUTPUT, BOOL),
+    MEMBER(MC_GearInPos, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_GearInPos, Error, OUTPUT, BOOL),
+    MEMBER(MC_GearInPos, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_GearInPos(void *fb) { MC_GearInPos(fb); }
+static const cm1e_error_t errors_of_MC_GearInPos[] = {
+    CM1E_ERROR_AXIS_SYNC_WAY,
+    CM1E_ERROR_AXIS_RATIO,
+    CM1E_ERROR_AXIS_COUPLING_LIMIT,
+    CM1E_ERROR_AXIS_MASTER_LOST,
+    CM1E_ERROR_AXIS_COUPLING_CYCLE,
+    CM1E_ERROR_AXIS_MASTER,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_UNSUPPORTED,
+    CM1E_ERROR_FULL,
+    CM1E_ERROR_INVALID_ARGUMENT,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_PhasingAbsolute[] = {
+    MEMBER(MC_PhasingAbsolute, Master, IN_OUT, POINTER),
+    MEMBER(MC_PhasingAbsolute, Slave, IN_OUT, POINTER),
+    MEMBER(MC_PhasingAbsolute, Execute, INPUT, BOOL),
+    MEMBER(MC_PhasingAbsolute, PhaseShift, INPUT, LREAL),
+    MEMBER(MC_PhasingAbsolute, Velocity, INPUT, LREAL),
+    MEMBER(MC_PhasingAbsolute, Acceleration, INPUT, LREAL),
+    MEMBER(MC_PhasingAbsolute, Deceleration, INPUT, LREAL),
+    MEMBER(MC_PhasingAbsolute, Jerk, INPUT, LREAL),
+    MEMBER(MC_PhasingAbsolute, BufferMode, INPUT, ENUM),
+    MEMBER(MC_PhasingAbsolute, Done, OUTPUT, BOOL),
+    MEMBER(MC_PhasingAbsolute, Busy, OUTPUT, BOOL),
+    MEMBER(MC_PhasingAbsolute, Active, OUTPUT, BOOL),
+    MEMBER(MC_PhasingAbsolute, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_PhasingAbsolute, Error, OUTPUT, BOOL),
+    MEMBER(MC_PhasingAbsolute, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_PhasingAbsolute, AbsolutePhaseShift, OUTPUT, LREAL),
+};
+static void call_MC_PhasingAbsolute(void *fb) { MC_PhasingAbsolute(fb); }
+static const cm1e_error_t errors_of_MC_PhasingAbsolute[] = {
+    CM1E_ERROR_AXIS_NOT_COUPLED,
+    CM1E_ERROR_AXIS_MASTER,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_UNSUPPORTED,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_PhasingRelative[] = {
+    MEMBER(MC_PhasingRelative, Master, IN_OUT, POINTER),
+    MEMBER(MC_PhasingRelative, Slave, IN_OUT, POINTER),
+    MEMBER(MC_PhasingRelative, Execute, INPUT, BOOL),
+    MEMBER(MC_PhasingRelative, PhaseShift, INPUT, LREAL),
+    MEMBER(MC_PhasingRelative, Velocity, INPUT, LREAL),
+    MEMBER(MC_PhasingRelative, Acceleration, INPUT, LREAL),
+    MEMBER(MC_PhasingRelative, Deceleration, INPUT, LREAL),
+    MEMBER(MC_PhasingRelative, Jerk, INPUT, LREAL),
+    MEMBER(MC_PhasingRelative, BufferMode, INPUT, ENUM),
+    MEMBER(MC_PhasingRelative, Done, OUTPUT, BOOL),
+    MEMBER(MC_PhasingRelative, Busy, OUTPUT, BOOL),
+    MEMBER(MC_PhasingRelative, Active, OUTPUT, BOOL),
+    MEMBER(MC_PhasingRelative, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_PhasingRelative, Error, OUTPUT, BOOL),
+    MEMBER(MC_PhasingRelative, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_PhasingRelative, CoveredPhaseShift, OUTPUT, LREAL),
+};
+static void call_MC_PhasingRelative(void *fb) { MC_PhasingRelative(fb); }
+static const cm1e_error_t errors_of_MC_PhasingRelative[] = {
+    CM1E_ERROR_AXIS_NOT_COUPLED,
+    CM1E_ERROR_AXIS_MASTER,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_AXIS_POSITION_RANGE,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_UNSUPPORTED,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_CombineAxes[] = {
+    MEMBER(MC_CombineAxes, Master1, IN_OUT, POINTER),
+    MEMBER(MC_CombineAxes, Master2, IN_OUT, POINTER),
+    MEMBER(MC_CombineAxes, Slave, IN_OUT, POINTER),
+    MEMBER(MC_CombineAxes, Execute, INPUT, BOOL),
+    MEMBER(MC_CombineAxes, ContinuousUpdate, INPUT, BOOL),
+    MEMBER(MC_CombineAxes, CombineMode, INPUT, ENUM),
+    MEMBER(MC_CombineAxes, GearRatioNumeratorM1, INPUT, DINT),
+    MEMBER(MC_CombineAxes, GearRatioDenominatorM1, INPUT, DINT),
+    MEMBER(MC_CombineAxes, GearRatioNumeratorM2, INPUT, DINT),
+    MEMBER(MC_CombineAxes, GearRatioDenominatorM2, INPUT, DINT),
+    MEMBER(MC_CombineAxes, MasterValueSourceM1, INPUT, ENUM),
+    MEMBER(MC_CombineAxes, MasterValueSourceM2, INPUT, ENUM),
+    MEMBER(MC_CombineAxes, BufferMode, INPUT, ENUM),
+    MEMBER(MC_CombineAxes, InSync, OUTPUT, BOOL),
+    MEMBER(MC_CombineAxes, Busy, OUTPUT, BOOL),
+    MEMBER(MC_CombineAxes, Active, OUTPUT, BOOL),
+    MEMBER(MC_CombineAxes, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_CombineAxes, Error, OUTPUT, BOOL),
+    MEMBER(MC_CombineAxes, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_CombineAxes(void *fb) { MC_CombineAxes(fb); }
+static const cm1e_error_t errors_of_MC_CombineAxes[] = {
+    CM1E_ERROR_AXIS_RATIO,
+    CM1E_ERROR_AXIS_COUPLING_LIMIT,
+    CM1E_ERROR_AXIS_MASTER_LOST,
+    CM1E_ERROR_AXIS_COUPLING_CYCLE,
+    CM1E_ERROR_AXIS_MASTER,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_HOMING,
+    CM1E_ERROR_AXIS_STOPPING,
+    CM1E_ERROR_AXIS_ERROR_STOP,
+    CM1E_ERROR_AXIS_NOT_POWERED,
+    CM1E_ERROR_UNSUPPORTED,
+    CM1E_ERROR_FULL,
     CM1E_ERROR_INVALID_ARGUMENT,
     CM1E_OK,
 };
@@ -2393,6 +2890,15 @@ const block_t block_table[] = {
     BLOCK(MC_VelocityProfile, rules_continuous),
     BLOCK(MC_AccelerationProfile, rules_continuous),
     BLOCK(MC_Jog, NULL),
+    BLOCK(MC_CamTableSelect, rules_any),
+    BLOCK(MC_CamIn, rules_couple),
+    BLOCK(MC_CamOut, rules_decouple),
+    BLOCK(MC_GearIn, rules_couple),
+    BLOCK(MC_GearOut, rules_decouple),
+    BLOCK(MC_GearInPos, rules_couple),
+    BLOCK(MC_PhasingAbsolute, rules_phasing),
+    BLOCK(MC_PhasingRelative, rules_phasing),
+    BLOCK(MC_CombineAxes, rules_couple),
     BLOCK(MC_SetPosition, rules_any),
     BLOCK(MC_SetOverride, rules_any),
     BLOCK(MC_ReadParameter, rules_any),

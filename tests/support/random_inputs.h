@@ -95,8 +95,8 @@ static void random_member(instance_t *fb, const block_member_t *m, const ranges_
     case BLOCK_TIME: memcpy(place, &time, sizeof time); break;
     case BLOCK_BOOL: *(BOOL *)place = one_in(3); break;
     case BLOCK_STRING: random_text(place, m->size); break;
-    case BLOCK_DINT: *(DINT *)place = (DINT)chance(); break;
-    case BLOCK_UDINT:
+    case BLOCK_DINT: *(DINT *)place = one_in(20) ? (DINT)chance() : (DINT)pick(9) - 4; break;
+    case BLOCK_UDINT: *(UDINT *)place = one_in(20) ? (UDINT)chance() : (UDINT)pick(6); break;
     case BLOCK_DWORD: *(DWORD *)place = (DWORD)chance(); break;
     default: break;
     }

@@ -1,0 +1,31 @@
+#include "coupling.h"
+
+void MC_CamIn(MC_CamIn_t *fb)
+{
+    cm1e_command_status_t status;
+    if (fb_follows(&fb->Private, fb->Slave, fb->Master, NULL, fb->Execute, &status)) {
+        fb->InSync = status.reached;
+        fb->EndOfProfile = status.end_of_profile;
+        return;
+    }
+    const cm1e_axis_coupling_t coupling = {
+        .master = {{.axis = fb_master(fb->Master), .source = fb->MasterValueSource, .numerator = 1, .denominator = 1}},
+        .master_sync_position = fb->MasterSyncPosition,
+        .master_start_distance = fb->MasterStartDistance,
+        .cam = fb->CamTableID,
+        .start_mode = fb->StartMode,
+        .master_offset = fb->MasterOffset,
+        .slave_offset = fb->SlaveOffset,
+        .master_scaling = fb->MasterScaling,
+        .slave_scaling = fb->SlaveScaling,
+    };
+    const cm1e_axis_command_t command = {
+        .kind = CM1E_COMMAND_CAM_IN,
+        .buffer_mode = fb->BufferMode,
+        .coupling = &coupling,
+    };
+    const fb_outputs_t out = fb_couple(&fb->Private, fb->Slave, fb->Execute, fb->ContinuousUpdate, &command);
+    fb->InSync = out.reached;
+    fb->EndOfProfile = out.end_of_profile;
+    FB_SHOW_ACTIVE(fb, out);
+}

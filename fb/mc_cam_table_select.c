@@ -1,0 +1,30 @@
+#include "edge.h"
+
+/** The cam is copied at the edge; which master it is for, MC_CamIn says. */
+static cm1e_error_t take(MC_CamTableSelect_t *fb, cm1e_axis_t *slave)
+{
+    fb->CamTableID = 0;
+    const cm1e_error_t error = fb_refuse_execution_mode(fb->ExecutionMode);
+    if (error)
+        return error;
+    return fb->CamTable ? cm1e_axis_cam_select(slave, fb->CamTable, fb->Periodic, fb->MasterAbsolute, fb->SlaveAbsolute,
+                                               &fb->CamTableID)
+                        : CM1E_ERROR_AXIS_CAM_TABLE;
+}
+
+void MC_CamTableSelect(MC_CamTableSelect_t *fb)
+{
+    cm1e_axis_t *slave = NULL;
+    switch (fb_execute(&fb->Private, fb->Slave, fb->Execute, &slave)) {
+    case FB_STEP_START: fb_started(&fb->Private, take(fb, slave)); break;
+    case FB_STEP_POLL: /* done at the edge */
+        fb_polled(&fb->Private, CM1E_COMMAND_DONE, CM1E_OK);
+        break;
+    case FB_STEP_NONE: break;
+    }
+    const fb_outputs_t out = fb_outputs(&fb->Private);
+    fb->Done = out.done;
+    fb->Busy = out.busy;
+    fb->Error = out.error;
+    fb->ErrorID = out.error_id;
+}

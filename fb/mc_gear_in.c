@@ -1,0 +1,23 @@
+#include "coupling.h"
+
+void MC_GearIn(MC_GearIn_t *fb)
+{
+    cm1e_command_status_t status;
+    if (fb_follows(&fb->Private, fb->Slave, fb->Master, NULL, fb->Execute, &status)) {
+        fb->InGear = status.reached;
+        return;
+    }
+    const cm1e_axis_coupling_t coupling = {
+        .master = {{.axis = fb_master(fb->Master), .source = fb->MasterValueSource, .numerator = fb->RatioNumerator,
+                    .denominator = fb->RatioDenominator}},
+    };
+    const cm1e_axis_command_t command = {
+        .kind = CM1E_COMMAND_GEAR_IN,
+        FB_DYNAMICS(fb),
+        .buffer_mode = fb->BufferMode,
+        .coupling = &coupling,
+    };
+    const fb_outputs_t out = fb_couple(&fb->Private, fb->Slave, fb->Execute, fb->ContinuousUpdate, &command);
+    fb->InGear = out.reached;
+    FB_SHOW_ACTIVE(fb, out);
+}

@@ -1,0 +1,30 @@
+#include "coupling.h"
+
+void MC_GearInPos(MC_GearInPos_t *fb)
+{
+    cm1e_command_status_t status;
+    if (fb_follows(&fb->Private, fb->Slave, fb->Master, NULL, fb->Execute, &status)) {
+        fb->StartSync = status.synchronizing;
+        fb->InSync = status.reached;
+        return;
+    }
+    const cm1e_axis_coupling_t coupling = {
+        .master = {{.axis = fb_master(fb->Master), .source = fb->MasterValueSource, .numerator = fb->RatioNumerator,
+                    .denominator = fb->RatioDenominator}},
+        .master_sync_position = fb->MasterSyncPosition,
+        .slave_sync_position = fb->SlaveSyncPosition,
+        .master_start_distance = fb->MasterStartDistance,
+        .sync_mode = fb->SyncMode,
+    };
+    const cm1e_axis_command_t command = {
+        .kind = CM1E_COMMAND_GEAR_IN_POS,
+        .velocity = fb->Velocity,
+        FB_DYNAMICS(fb),
+        .buffer_mode = fb->BufferMode,
+        .coupling = &coupling,
+    };
+    const fb_outputs_t out = fb_couple(&fb->Private, fb->Slave, fb->Execute, FALSE, &command);
+    fb->StartSync = out.synchronizing;
+    fb->InSync = out.reached;
+    FB_SHOW_ACTIVE(fb, out);
+}

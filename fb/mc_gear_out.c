@@ -1,0 +1,10 @@
+#include "coupling.h"
+
+void MC_GearOut(MC_GearOut_t *fb)
+{
+    const fb_outputs_t out = fb_decouple(&fb->Private, fb->Slave, fb->Execute, CM1E_COMMAND_GEAR_OUT);
+    fb->Done = out.done;
+    fb->Busy = out.busy;
+    fb->Error = out.error;
+    fb->ErrorID = out.error_id;
+}

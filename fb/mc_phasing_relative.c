@@ -1,0 +1,20 @@
+#include "coupling.h"
+
+void MC_PhasingRelative(MC_PhasingRelative_t *fb)
+{
+    const cm1e_axis_coupling_t coupling = {.master = {{.axis = fb_master(fb->Master)}}};
+    const cm1e_axis_command_t command = {
+        .kind = CM1E_COMMAND_PHASING_RELATIVE,
+        .position = fb->PhaseShift,
+        .velocity = fb->Velocity,
+        FB_DYNAMICS(fb),
+        .buffer_mode = fb->BufferMode,
+        .coupling = &coupling,
+    };
+    const BOOL busy_before = fb->Busy;
+    const fb_outputs_t out = fb_couple(&fb->Private, fb->Slave, fb->Execute, FALSE, &command);
+    if (busy_before || out.busy) /* what it was at its end stays to be read */
+        fb->CoveredPhaseShift = out.covered;
+    fb->Done = out.done;
+    FB_SHOW_ACTIVE(fb, out);
+}

@@ -1,0 +1,204 @@
+/**
+ * @file mc_multi_axis.h
+ * The blocks of slaves that follow masters (PLCopen Part 1 v2.0, chapter 4).
+ * Generated from fb/interface/multi_axis.st by fb/interface/generate.py; change it there.
+ */
+#ifndef CM1E_MC_MULTI_AXIS_H
+#define CM1E_MC_MULTI_AXIS_H
+
+#include "cm1e/mc_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** 4.2. Makes a cam ready for a slave. Done: CamTableID is the one to be used in MC_CamIn. @rt cycle */
+typedef struct MC_CamTableSelect {
+    AXIS_REF_t *Master;         /**< (not needed here: may be NULL) */
+    AXIS_REF_t *Slave;          /**< whose memory takes the cam */
+    const MC_CAM_REF *CamTable; /**< copied at the edge */
+    BOOL Execute;
+    BOOL Periodic;              /**< TRUE: the cam begins again at its end; FALSE: once */
+    BOOL MasterAbsolute;        /**< TRUE: its master positions are those of the master; FALSE: they count from the
+                                     start */
+    BOOL SlaveAbsolute;         /**< TRUE: its slave positions are those of the slave; FALSE: they count from the
+                                     start */
+    MC_EXECUTION_MODE ExecutionMode;
+    /* outputs */
+    BOOL Done;                  /**< CamTableID is valid */
+    BOOL Busy, Error;
+    WORD ErrorID;
+    MC_CAM_ID CamTableID;       /**< 0: none */
+    cm1e_fb_private_t Private;
+} MC_CamTableSelect_t;
+void MC_CamTableSelect(MC_CamTableSelect_t *fb);
+
+/** 4.3. Lets the slave follow its master by a cam. @rt cycle */
+typedef struct MC_CamIn {
+    AXIS_REF_t *Master;
+    AXIS_REF_t *Slave;
+    BOOL Execute, ContinuousUpdate;
+    LREAL MasterOffset;          /**< u of the master; added to the master positions of the cam */
+    LREAL SlaveOffset;           /**< u; added to the slave positions of the cam */
+    LREAL MasterScaling;         /**< factor of the master positions; 0 acts as 1 */
+    LREAL SlaveScaling;          /**< factor of the slave positions; 0 acts as 1 */
+    LREAL MasterStartDistance;   /**< u of the master; way of the master on which the slave gets in step; 0: none */
+    LREAL MasterSyncPosition;    /**< u of the master; where in the cam that way ends */
+    MC_START_MODE StartMode;
+    MC_SOURCE MasterValueSource; /**< mcSetValue or mcActualValue */
+    MC_CAM_ID CamTableID;        /**< of MC_CamTableSelect, for this slave */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL InSync;                 /**< the slave is where the cam wants it */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    BOOL EndOfProfile;           /**< TRUE in the call that finds the master gone over an end of the cam */
+    cm1e_coupling_private_t Private;
+} MC_CamIn_t;
+void MC_CamIn(MC_CamIn_t *fb);
+
+/** 4.4. Ends the following by a cam; the slave goes on with the velocity that it has. @rt cycle */
+typedef struct MC_CamOut {
+    AXIS_REF_t *Slave;
+    BOOL Execute;
+    /* outputs */
+    BOOL Done; /**< the slave follows no longer */
+    BOOL Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_CamOut_t;
+void MC_CamOut(MC_CamOut_t *fb);
+
+/** 4.5. Lets the slave follow its master by a ratio of their velocities, and of their positions from InGear on.
+ *  @rt cycle */
+typedef struct MC_GearIn {
+    AXIS_REF_t *Master;
+    AXIS_REF_t *Slave;
+    BOOL Execute, ContinuousUpdate;
+    DINT RatioNumerator;         /**< not 0; u of the slave */
+    UDINT RatioDenominator;      /**< not 0; ... for so many u of the master */
+    MC_SOURCE MasterValueSource; /**< mcSetValue or mcActualValue */
+    LREAL Acceleration;          /**< u/s2, 0 ... maximum; of getting in step; 0: the axis's maximum */
+    LREAL Deceleration;          /**< u/s2, 0 ... maximum; in the same way */
+    LREAL Jerk;                  /**< u/s3, 0 ... maximum; in the same way */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL InGear;                 /**< the set velocity is that of the ratio */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_coupling_private_t Private;
+} MC_GearIn_t;
+/** Its initial values: `MC_GearIn_t fb = {.Master = &axis, MC_GEARIN_DEFAULTS};` */
+#define MC_GEARIN_DEFAULTS .RatioNumerator = 1, .RatioDenominator = 1
+void MC_GearIn(MC_GearIn_t *fb);
+
+/** 4.6. Ends the following by a ratio; the slave goes on with the velocity that it has. @rt cycle */
+typedef struct MC_GearOut {
+    AXIS_REF_t *Slave;
+    BOOL Execute;
+    /* outputs */
+    BOOL Done; /**< the slave follows no longer */
+    BOOL Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_GearOut_t;
+void MC_GearOut(MC_GearOut_t *fb);
+
+/** 4.7. Lets the slave follow its master by a ratio of their positions from a point on at which both have given
+ *  positions. @rt cycle */
+typedef struct MC_GearInPos {
+    AXIS_REF_t *Master;
+    AXIS_REF_t *Slave;
+    BOOL Execute;
+    DINT RatioNumerator;         /**< not 0; u of the slave */
+    UDINT RatioDenominator;      /**< not 0; ... for so many u of the master */
+    MC_SOURCE MasterValueSource; /**< mcSetValue or mcActualValue */
+    LREAL MasterSyncPosition;    /**< u of the master; from here on they are in step ... */
+    LREAL SlaveSyncPosition;     /**< u; ... while the slave is here */
+    MC_SYNC_MODE SyncMode;
+    LREAL MasterStartDistance;   /**< u of the master; so far before MasterSyncPosition the slave begins; 0: at once */
+    LREAL Velocity;              /**< u/s, > 0 ... maximum; largest on the way into step */
+    LREAL Acceleration;          /**< u/s2, 0 ... maximum; on the way into step; 0: the axis's maximum */
+    LREAL Deceleration;          /**< u/s2, 0 ... maximum; in the same way */
+    LREAL Jerk;                  /**< u/s3, 0 ... maximum; in the same way */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL StartSync;              /**< the slave is on its way into step */
+    BOOL InSync;                 /**< the set position is that of the ratio */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_coupling_private_t Private;
+} MC_GearInPos_t;
+/** Its initial values: `MC_GearInPos_t fb = {.Master = &axis, MC_GEARINPOS_DEFAULTS};` */
+#define MC_GEARINPOS_DEFAULTS .RatioNumerator = 1, .RatioDenominator = 1
+void MC_GearInPos(MC_GearInPos_t *fb);
+
+/** 4.8. Shifts the master's position as the slave sees it, to a phase shift. @rt cycle */
+typedef struct MC_PhasingAbsolute {
+    AXIS_REF_t *Master;
+    AXIS_REF_t *Slave;
+    BOOL Execute;
+    LREAL PhaseShift;         /**< u of the master; what the slave sees is the master's position and this */
+    LREAL Velocity;           /**< u/s of the master, > 0; largest of the shift */
+    LREAL Acceleration;       /**< u/s2 of the master, 0 ... maximum; 0: as much as the slave can follow */
+    LREAL Deceleration;       /**< u/s2 of the master, 0 ... maximum; in the same way */
+    LREAL Jerk;               /**< u/s3 of the master, 0 ... maximum; in the same way */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done;                /**< the phase shift is reached; it stays */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    LREAL AbsolutePhaseShift; /**< u of the master; the phase shift, while Busy */
+    cm1e_coupling_private_t Private;
+} MC_PhasingAbsolute_t;
+void MC_PhasingAbsolute(MC_PhasingAbsolute_t *fb);
+
+/** 4.9. Shifts the master's position as the slave sees it, by so much more. @rt cycle */
+typedef struct MC_PhasingRelative {
+    AXIS_REF_t *Master;
+    AXIS_REF_t *Slave;
+    BOOL Execute;
+    LREAL PhaseShift;        /**< u of the master; added to the phase shift that there is */
+    LREAL Velocity;          /**< u/s of the master, > 0; largest of the shift */
+    LREAL Acceleration;      /**< u/s2 of the master, 0 ... maximum; 0: as much as the slave can follow */
+    LREAL Deceleration;      /**< u/s2 of the master, 0 ... maximum; in the same way */
+    LREAL Jerk;              /**< u/s3 of the master, 0 ... maximum; in the same way */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL Done;               /**< it is added; it stays */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    LREAL CoveredPhaseShift; /**< u of the master; added by this block since its start */
+    cm1e_coupling_private_t Private;
+} MC_PhasingRelative_t;
+void MC_PhasingRelative(MC_PhasingRelative_t *fb);
+
+/** 4.10. Lets the slave follow the sum, or the difference, of the motions of two masters. @rt cycle */
+typedef struct MC_CombineAxes {
+    AXIS_REF_t *Master1;
+    AXIS_REF_t *Master2;
+    AXIS_REF_t *Slave;
+    BOOL Execute, ContinuousUpdate;
+    MC_COMBINE_MODE CombineMode;
+    DINT GearRatioNumeratorM1;     /**< not 0; u of the slave */
+    DINT GearRatioDenominatorM1;   /**< not 0; ... for so many u of Master1 */
+    DINT GearRatioNumeratorM2;     /**< not 0; u of the slave */
+    DINT GearRatioDenominatorM2;   /**< not 0; ... for so many u of Master2 */
+    MC_SOURCE MasterValueSourceM1; /**< mcSetValue or mcActualValue */
+    MC_SOURCE MasterValueSourceM2; /**< mcSetValue or mcActualValue */
+    MC_BUFFER_MODE BufferMode;
+    /* outputs */
+    BOOL InSync;                   /**< the set velocity is that of both masters by their ratios */
+    BOOL Busy, Active, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_coupling_private_t Private;
+} MC_CombineAxes_t;
+/** Its initial values: `MC_CombineAxes_t fb = {.Master1 = &axis, MC_COMBINEAXES_DEFAULTS};` */
+#define MC_COMBINEAXES_DEFAULTS .GearRatioNumeratorM1 = 1, .GearRatioDenominatorM1 = 1, .GearRatioNumeratorM2 = 1, \
+    .GearRatioDenominatorM2 = 1
+void MC_CombineAxes(MC_CombineAxes_t *fb);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
