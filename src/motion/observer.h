@@ -24,8 +24,8 @@ typedef struct cm1e_observed {
     double offset, velocity, acceleration;
 } cm1e_observed_t;
 
-/** `delay_s`: how old a measured value is when it comes. A time constant of 0: no filter, the velocity is that since
- *  the last sample. At rest at `counts`. */
+/** `delay_s`: how old a measured value is when it comes. A time constant of 0: no filter, but the parabola through
+ *  the last three samples. At rest at `counts`. */
 void cm1e_observer_init(cm1e_observer_t *observer, double cycle_s, double time_constant_s, double delay_s,
                         int64_t counts);
 /** A jump that is none of the master: at rest at `counts`. */

@@ -1,0 +1,240 @@
+/*
+ * All three kinds of curve are kept as position, slope and curvature at the points: the polynomial of degree 5 between
+ * two of them is the straight line, the cubic or the polynomial that was asked for.
+ */
+#include <math.h>
+#include <stddef.h>
+
+#include "motion/cam.h"
+
+/* Of what is known already: an interval that could add no more to the extremes is not looked into. */
+static const double next_to_nothing = 1e-9;
+
+static double span(const cm1e_cam_knot_t *knots, int i) { return knots[i + 1].master - knots[i].master; }
+
+static double chord(const cm1e_cam_knot_t *knots, int i)
+{
+    return (knots[i + 1].slave - knots[i].slave) / span(knots, i);
+}
+
+static cm1e_cam_fault_t take_points(cm1e_cam_knot_t *knots, const MC_CAM_REF *table, int *at)
+{
+    const bool whole = table->Curve == mcCamPolynomial5;
+    for (*at = 0; *at < table->NumberOfPoints; ++*at) {
+        const MC_CAM_POINT *point = &table->Points[*at];
+        const double slope = whole ? point->Velocity : 0, curvature = whole ? point->Acceleration : 0;
+        if (!isfinite(point->Master) || !isfinite(point->Slave) || !isfinite(slope) || !isfinite(curvature))
+            return CM1E_CAM_NOT_FINITE;
+        if (*at > 0 && !(point->Master > knots[*at - 1].master))
+            return CM1E_CAM_NOT_RISING;
+        knots[*at] = (cm1e_cam_knot_t){point->Master, point->Slave, slope, curvature};
+    }
+    return CM1E_CAM_GOOD;
+}
+
+static void draw_lines(cm1e_cam_knot_t *knots, int count)
+{
+    for (int i = 0; i + 1 < count; i++)
+        knots[i].slope = chord(knots, i);
+    knots[count - 1].slope = knots[count - 2].slope;
+}
+
+/** The spline with this curvature at both ends; of the points only `part` (1, or 0: as if they were on a line). The
+ *  slopes are room for the elimination. */
+static void bend(cm1e_cam_knot_t *knots, int count, double part, double curvature)
+{
+    knots[0].curvature = knots[count - 1].curvature = curvature;
+    knots[0].slope = 0;
+    for (int i = 1; i + 1 < count; i++) { /* down: curvature = (that kept as curvature) - slope * (the next one) */
+        const double before = span(knots, i - 1) / 6, behind = span(knots, i) / 6;
+        const double middle = 2 * (before + behind) - before * knots[i - 1].slope;
+        const double step = part * (chord(knots, i) - chord(knots, i - 1));
+        knots[i].slope = behind / middle;
+        knots[i].curvature = (step - before * knots[i - 1].curvature) / middle;
+    }
+    for (int i = count - 2; i > 0; i--)
+        knots[i].curvature -= knots[i].slope * knots[i + 1].curvature;
+}
+
+/** Periodic: with the curvature at the ends for which the slopes there are the same. */
+static void draw_spline(cm1e_cam_knot_t *knots, int count, bool periodic)
+{
+    bend(knots, count, 1, 0);
+    if (periodic && count > 2) {
+        const int last = count - 2;
+        const double first_h = span(knots, 0), last_h = span(knots, last);
+        const double step = chord(knots, 0) - chord(knots, last) -
+                            (first_h * knots[1].curvature + last_h * knots[last].curvature) / 6;
+        bend(knots, count, 0, 1);
+        const double each = (first_h * (2 + knots[1].curvature) + last_h * (2 + knots[last].curvature)) / 6;
+        bend(knots, count, 1, step / each);
+    }
+    for (int i = 0; i + 1 < count; i++)
+        knots[i].slope = chord(knots, i) - span(knots, i) * (2 * knots[i].curvature + knots[i + 1].curvature) / 6;
+    const double h = span(knots, count - 2);
+    knots[count - 1].slope = periodic ? knots[0].slope
+                                      : chord(knots, count - 2) +
+                                            h * (knots[count - 2].curvature + 2 * knots[count - 1].curvature) / 6;
+}
+
+/** FALSE: doubles cannot hold it. */
+static bool interval(const cm1e_cam_t *cam, int i, cm1e_curve_t *curve)
+{
+    const cm1e_cam_knot_t *a = &cam->knots[i], *b = a + 1;
+    if (cam->curve == mcCamLinear) {
+        *curve = (cm1e_curve_t){a->master - cam->start, b->master - a->master, {a->slave, a->slope}};
+        return true;
+    }
+    const cm1e_curve_point_t first = {a->slave, a->slope, a->curvature, 0};
+    const cm1e_curve_point_t last = {b->slave, b->slope, b->curvature, 0};
+    return cm1e_curve_between(curve, a->master - cam->start, &first, b->master - cam->start, &last);
+}
+
+/** Bounds of an interval that cost next to nothing: a polynomial stays within its control points (Bernstein), its
+ *  derivatives within the differences of these. */
+static void hull(const cm1e_cam_knot_t *a, cm1e_curve_extremes_t *hull)
+{
+    const cm1e_cam_knot_t *b = a + 1;
+    const double h = b->master - a->master, fifth = h / 5, bend = h * h / 20;
+    double point[6] = {a->slave, a->slave + fifth * a->slope, a->slave + 2 * fifth * a->slope + bend * a->curvature,
+                       b->slave - 2 * fifth * b->slope + bend * b->curvature, b->slave - fifth * b->slope, b->slave};
+    double low[4], high[4], factor = 1;
+    for (int k = 0; k < 4; k++) {
+        low[k] = high[k] = point[0] * factor;
+        for (int i = 0; i < 6 - k; i++) {
+            low[k] = fmin(low[k], point[i] * factor);
+            high[k] = fmax(high[k], point[i] * factor);
+            if (i < 5 - k)
+                point[i] = point[i + 1] - point[i];
+        }
+        factor *= (5 - k) / h;
+    }
+    *hull = (cm1e_curve_extremes_t){low[0], high[0], low[1], high[1], fmax(-low[2], high[2]), fmax(-low[3], high[3])};
+}
+
+static void widen(cm1e_curve_extremes_t *all, const cm1e_curve_extremes_t *part)
+{
+    all->lowest = fmin(all->lowest, part->lowest);
+    all->highest = fmax(all->highest, part->highest);
+    all->least_slope = fmin(all->least_slope, part->least_slope);
+    all->most_slope = fmax(all->most_slope, part->most_slope);
+    all->curvature = fmax(all->curvature, part->curvature);
+    all->third = fmax(all->third, part->third);
+}
+
+static bool adds(const cm1e_curve_extremes_t *all, const cm1e_curve_extremes_t *part)
+{
+    const double position = next_to_nothing * (all->highest - all->lowest);
+    const double slope = next_to_nothing * fmax(fabs(all->least_slope), fabs(all->most_slope));
+    return part->lowest < all->lowest - position || part->highest > all->highest + position ||
+           part->least_slope < all->least_slope - slope || part->most_slope > all->most_slope + slope ||
+           part->curvature > all->curvature * (1 + next_to_nothing);
+}
+
+static cm1e_cam_fault_t find_extremes(cm1e_cam_t *cam, int *at)
+{
+    cm1e_curve_extremes_t all = {INFINITY, -INFINITY, INFINITY, -INFINITY, 0, 0};
+    for (int i = 0; i < cam->count; i++) {
+        const cm1e_cam_knot_t *knot = &cam->knots[i];
+        widen(&all, &(cm1e_curve_extremes_t){knot->slave, knot->slave, knot->slope, knot->slope,
+                                             fabs(knot->curvature), 0});
+    }
+    for (*at = 0; *at + 1 < cam->count && cam->curve != mcCamLinear; ++*at) {
+        cm1e_curve_t curve;
+        cm1e_curve_extremes_t part;
+        hull(&cam->knots[*at], &part);
+        const double h = span(cam->knots, *at);
+        if (!isnormal(h * h * h * h) || !isfinite(part.third / (h * h))) /* about the highest coefficient */
+            return CM1E_CAM_STEEP;
+        all.third = fmax(all.third, part.third);
+        if (!adds(&all, &part))
+            continue;
+        if (!interval(cam, *at, &curve))
+            return CM1E_CAM_STEEP;
+        cm1e_curve_extremes(&curve, &part);
+        widen(&all, &part);
+    }
+    cam->extremes = all;
+    *at = 0;
+    const double most = all.third + all.curvature + (all.most_slope - all.least_slope) + (all.highest - all.lowest);
+    return isfinite(most) && isfinite(cam->length) ? CM1E_CAM_GOOD : CM1E_CAM_STEEP;
+}
+
+cm1e_cam_fault_t cm1e_cam_compile(cm1e_cam_t *cam, cm1e_cam_knot_t *knots, int capacity, const MC_CAM_REF *table,
+                                  bool periodic, int *at)
+{
+    const int count = table->NumberOfPoints;
+    *at = 0;
+    if (!table->Points || count < 2)
+        return CM1E_CAM_TOO_FEW;
+    if (count > capacity) {
+        *at = capacity;
+        return CM1E_CAM_TOO_MANY;
+    }
+    if ((unsigned)table->Curve > mcCamLinear)
+        return CM1E_CAM_CURVE;
+    const cm1e_cam_fault_t fault = take_points(knots, table, at);
+    if (fault != CM1E_CAM_GOOD)
+        return fault;
+    if (table->Curve == mcCamLinear)
+        draw_lines(knots, count);
+    else if (table->Curve == mcCamCubicSpline)
+        draw_spline(knots, count, periodic);
+    *cam = (cm1e_cam_t){
+        .knots = knots,
+        .count = count,
+        .curve = table->Curve,
+        .periodic = periodic,
+        .start = knots[0].master,
+        .length = knots[count - 1].master - knots[0].master,
+        .advance = knots[count - 1].slave - knots[0].slave,
+    };
+    return find_extremes(cam, at);
+}
+
+static void find(const cm1e_cam_t *cam, cm1e_cam_place_t *place, double phase)
+{
+    const double master = cam->start + phase;
+    int low = 0, high = cam->count - 1; /* a knot not above it, and one above it or the last one */
+    const int near = place->knot;
+    if (near >= 0 && near + 2 < cam->count && cam->knots[near + 1].master <= master &&
+        master < cam->knots[near + 2].master) {
+        low = near + 1;
+        high = near + 2;
+    }
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        if (cam->knots[middle].master <= master)
+            low = middle;
+        else
+            high = middle;
+    }
+    place->knot = low;
+    (void)interval(cam, low, &place->curve); /* it was possible when the cam was compiled */
+}
+
+void cm1e_cam_sample(const cm1e_cam_t *cam, cm1e_cam_place_t *place, double master, cm1e_cam_sample_t *sample)
+{
+    const double way = master - cam->start;
+    double phase = way, turn = 0;
+    if (cam->periodic) {
+        turn = floor(way / cam->length);
+        phase = fma(-turn, cam->length, way);
+        if (phase < 0) { /* the quotient was rounded to a whole number */
+            turn -= 1;
+            phase += cam->length;
+        }
+        if (phase >= cam->length) {
+            turn += 1;
+            phase = 0;
+        }
+    } else if (!(way > 0) || way >= cam->length) {
+        const bool behind = way > 0;
+        *sample = (cm1e_cam_sample_t){{.position = cam->knots[behind ? cam->count - 1 : 0].slave}, behind ? 1 : -1,
+                                      behind ? cam->length : 0};
+        return;
+    }
+    if (!(phase >= place->curve.from && phase - place->curve.from < place->curve.length))
+        find(cam, place, phase);
+    *sample = (cm1e_cam_sample_t){cm1e_curve_at(&place->curve, phase), turn, phase};
+}
