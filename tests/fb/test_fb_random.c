@@ -94,11 +94,11 @@ START_TEST(test_random_programs_keep_every_rule)
     for (int i = _i; i < runs; i += BATCHES)
         run(seed_of(i));
 
-    printf("batch %d: %llu cycles, %llu of them moving, %llu edges, %llu times Done\n", _i, cycles_total, watch.moving,
+    printf("batch %d: %llu cycles, %llu of them moving, %llu edges, %llu times Done\n", _i, cycles_total, watched.moving,
            edges_total, done_total);
     if (getenv("CM1E_TEST_SEED"))
         return;
-    MUST(watch.moving > cycles_total / 8, "too wild to test anything");
+    MUST(watched.moving > cycles_total / 8, "too wild to test anything");
     for (int state = 0; state < CM1E_AXIS_STATE_COUNT; state++)
         MUST(seen[state] > 0 || state == CM1E_AXIS_SYNCHRONIZED_MOTION, "never in %s",
              cm1e_axis_state_name((cm1e_axis_state_t)state));

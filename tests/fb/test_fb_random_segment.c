@@ -216,7 +216,7 @@ static void judge_motor(void)
     if (judged.number < bench.disturbed_until)
         return;
     const double counts = fabs(judged.axis->scale), cycle_s = (double)judged.cycle_ns * 1e-9;
-    const double allowed = 300 * judged.axis->count + 4 * watch.most.velocity * counts * cycle_s;
+    const double allowed = 300 * judged.axis->count + 4 * watched.most.velocity * counts * cycle_s;
     MUST(fabs(bench.info.position_lag) * counts <= allowed, "%s: the motor lags by %.0f counts, %.0f allowed",
          cm1e_axis_state_name(judged.axis->state), bench.info.position_lag * counts, allowed);
 }
@@ -342,7 +342,7 @@ static void prepare(unsigned seed, bool bridge)
     judged.state = CM1E_AXIS_DISABLED;
     judged.reset_asked = false;
     judged.number = 0;
-    watch.ours = false;
+    watched.ours = false;
     bench.power = (MC_Power_t){.Axis = &judged.reference, .EnablePositive = TRUE, .EnableNegative = TRUE};
     bench.start_ns = cm1e_clock_now(cm1e_bus_clock(bench.bus));
     begin_blocks();
@@ -371,9 +371,9 @@ static void run_seeds(int batch, int wanted, bool bridge)
     for (int i = batch; i < runs; i += BATCHES)
         run(seed_of(i), bridge);
     printf("%s, batch %d: %llu cycles, %llu of them moving, %llu edges, %llu times Done\n",
-           bridge ? "bridge" : "CM1-E", batch, cycles_total, watch.moving, edges_total, done_total);
+           bridge ? "bridge" : "CM1-E", batch, cycles_total, watched.moving, edges_total, done_total);
     if (!getenv("CM1E_TEST_SEED") && runs >= wanted)
-        MUST(watch.moving > cycles_total / 8, "too wild to test anything");
+        MUST(watched.moving > cycles_total / 8, "too wild to test anything");
 }
 
 START_TEST(test_random_programs_on_the_segment_keep_every_rule) { run_seeds(_i, RUNS, false); }

@@ -116,7 +116,7 @@ static void bench_make_axis(void)
     judged.state = CM1E_AXIS_DISABLED;
     judged.reset_asked = false;
     judged.number = 0;
-    watch.ours = false;
+    watched.ours = false;
     fake_bus_show(&bench.bus);
     cycles(2);
 }

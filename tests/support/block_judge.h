@@ -17,7 +17,7 @@
 #include "axis/axis_private.h"
 #include "block_table.h"
 
-enum { BLOCK_BYTES = 4096, BLOCKS_MOST = 160 };
+enum { BLOCK_BYTES = 4096, BLOCKS_MOST = 160, JUDGED_MOST = 4, INSTANCES_MOST = JUDGED_MOST * BLOCKS_MOST };
 
 /** Where the members are that many blocks have; NOWHERE: this one has not. */
 enum { NOWHERE = 0xFFFF };
@@ -37,11 +37,12 @@ typedef struct instance {
     const block_view_t *view;
     shown_t now, before;
     bool refused;             /**< the last edge was refused */
+    int of;                   /**< which axis it is about; see judged_at */
     _Alignas(16) unsigned char memory[BLOCK_BYTES];
 } instance_t;
 
-/** The axis that is judged. */
-static struct judged {
+/** The axes that are judged ... */
+static struct judged_axis {
     cm1e_axis_t *axis;
     AXIS_REF_t reference;
     AXIS_REF_t master;              /**< what its slaves' blocks name as their masters */
@@ -50,9 +51,12 @@ static struct judged {
     long long number;               /**< of the cycle */
     int64_t cycle_ns;
     char scene[200];                /**< which run this is, for messages */
-} judged;
+} judged_axes[JUDGED_MOST];
+/** ... one of them at a time: call() turns to the one of its block. Most tests have but the first one. */
+static int judged_at;
+#define judged judged_axes[judged_at]
 
-static instance_t *called[BLOCKS_MOST];
+static instance_t *called[INSTANCES_MOST];
 static int called_count;
 
 __attribute__((format(printf, 1, 2), noreturn)) static void bench_fail(const char *format, ...)
@@ -62,7 +66,7 @@ __attribute__((format(printf, 1, 2), noreturn)) static void bench_fail(const cha
     va_start(arguments, format);
     vsnprintf(words, sizeof words, format, arguments);
     va_end(arguments);
-    ck_abort_msg("%s, cycle %lld: %s", judged.scene, judged.number, words);
+    ck_abort_msg("%s, axis %d, cycle %lld: %s", judged.scene, judged_at, judged.number, words);
     abort();
 }
 
@@ -246,9 +250,19 @@ static void judge_state(instance_t *fb, cm1e_axis_state_t before, bool may_wait)
     judged.state = after;
 }
 
+/** A block acts on its own axis only; what it makes others do comes with the cycle. */
+static void judge_others(const instance_t *fb)
+{
+    for (int n = 0; n < JUDGED_MOST; n++)
+        if (n != fb->of && judged_axes[n].axis)
+            MUST(judged_axes[n].axis->state == judged_axes[n].state, "%s brings axis %d from %s to %s", name_of(fb), n,
+                 cm1e_axis_state_name(judged_axes[n].state), cm1e_axis_state_name(judged_axes[n].axis->state));
+}
+
 static void call(instance_t *fb)
 {
     const block_view_t *v = fb->view;
+    judged_at = fb->of;
     const cm1e_axis_state_t state = judged.axis->state;
     const bool may_wait = judged.axis->active && v->buffer_mode != NOWHERE && fb->memory[v->buffer_mode] != mcAborting;
     MUST(state == judged.state, "the state changed from %s to %s between two calls", cm1e_axis_state_name(judged.state),
@@ -265,11 +279,12 @@ static void call(instance_t *fb)
     else if (v->valid != NOWHERE && v->busy != NOWHERE)
         judge_enable(fb);
     judge_state(fb, state, may_wait);
+    judge_others(fb);
 }
 
 /* ---- watching the set-point -------------------------------------------------------------------------------------- */
 
-static struct watch {
+static struct watched_axis {
     bool ours;                 /**< the set-point was the axis's own */
     position_t set;
     double velocity, acceleration;
@@ -282,11 +297,13 @@ static struct watch {
     double lower, upper;       /**< u; software limits */
     double lowest, highest;    /**< u; where it may be */
     unsigned long long moving; /**< cycles */
-} watch;
+} watched_axes[JUDGED_MOST];
+#define watched watched_axes[judged_at]
 
 static bool set_point_is_ours(void)
 {
-    return judged.axis->activity == ACTIVITY_HOLD || judged.axis->activity == ACTIVITY_PROFILE;
+    const activity_t activity = judged.axis->activity;
+    return activity != ACTIVITY_FREE && activity != ACTIVITY_HOMING && activity != ACTIVITY_DRIVE;
 }
 
 /** An axis that stands outside its software limits may come back but go no farther; nor farther than it brakes when the
@@ -297,28 +314,28 @@ static void watch_limits(void)
     const double now = cm1e_axis_units(axis, axis->set), tolerance = 0.02 / fabs(axis->scale);
     const double way = axis->set_velocity * axis->set_velocity / (2.0 * axis->maximum.deceleration) +
                        2.0 * fabs(axis->set_velocity) * (double)judged.cycle_ns * 1e-9;
-    const bool changed = axis->lower != watch.lower || axis->upper != watch.upper ||
-                         cm1e_axis_units(axis, watch.set) != watch.units;
+    const bool changed = axis->lower != watched.lower || axis->upper != watched.upper ||
+                         cm1e_axis_units(axis, watched.set) != watched.units;
     /* Where the limits are is not known before a homing; what follows it begins wherever it was. */
-    const bool searches = axis->state == CM1E_AXIS_HOMING || (watch.searched && axis->state == CM1E_AXIS_STOPPING);
-    watch.searched = searches;
-    if (!axis->software_limits || !watch.ours || axis->set_velocity == 0.0 || changed || searches) {
-        watch.lowest = fmin(axis->lower, now - way) - tolerance;
-        watch.highest = fmax(axis->upper, now + way) + tolerance;
+    const bool searches = axis->state == CM1E_AXIS_HOMING || (watched.searched && axis->state == CM1E_AXIS_STOPPING);
+    watched.searched = searches;
+    if (!axis->software_limits || !watched.ours || axis->set_velocity == 0.0 || changed || searches) {
+        watched.lowest = fmin(axis->lower, now - way) - tolerance;
+        watched.highest = fmax(axis->upper, now + way) + tolerance;
     }
-    watch.lower = axis->lower;
-    watch.upper = axis->upper;
+    watched.lower = axis->lower;
+    watched.upper = axis->upper;
     if (axis->software_limits)
-        MUST(now >= watch.lowest && now <= watch.highest, "the set position %.9g is outside %.9g ... %.9g", now,
-             watch.lowest, watch.highest);
+        MUST(now >= watched.lowest && now <= watched.highest, "the set position %.9g is outside %.9g ... %.9g", now,
+             watched.lowest, watched.highest);
 }
 
 /** The master was late by so much: the motor stands, or in CSV has gone on. */
 static inline void pause_of_master(int64_t pause_ns)
 {
     cm1e_axis_after_pause(judged.axis, pause_ns);
-    watch.ours = watch.ours && judged.axis->mode == CM1E_MODE_CSP;
-    watch.velocity = watch.acceleration = 0;
+    watched.ours = watched.ours && judged.axis->mode == CM1E_MODE_CSP;
+    watched.velocity = watched.acceleration = 0;
     judged.state = judged.axis->state; /* a table over time ends by it */
 }
 
@@ -329,21 +346,21 @@ static inline void pause_of_master(int64_t pause_ns)
 static const cm1e_motion_limits_t *limits_in_force(void)
 {
     const cm1e_motion_limits_t *now = &judged.axis->maximum;
-    if (!watch.ours || watch.resting)
-        watch.most = watch.maximum;
-    watch.resting = judged.axis->activity == ACTIVITY_HOLD;
-    watch.maximum = *now;
-    watch.most.velocity = fmax(watch.most.velocity, now->velocity);
-    watch.most.acceleration = fmax(watch.most.acceleration, now->acceleration);
-    watch.most.deceleration = fmax(watch.most.deceleration, now->deceleration);
-    watch.most.jerk = fmax(watch.most.jerk, now->jerk);
-    return &watch.most;
+    if (!watched.ours || watched.resting)
+        watched.most = watched.maximum;
+    watched.resting = judged.axis->activity == ACTIVITY_HOLD;
+    watched.maximum = *now;
+    watched.most.velocity = fmax(watched.most.velocity, now->velocity);
+    watched.most.acceleration = fmax(watched.most.acceleration, now->acceleration);
+    watched.most.deceleration = fmax(watched.most.deceleration, now->deceleration);
+    watched.most.jerk = fmax(watched.most.jerk, now->jerk);
+    return &watched.most;
 }
 
 /** Where a ramp without limit of jerk is left for a motion, more than the axis's is needed to keep its velocity. */
 static double jerk_to_stay_below(const cm1e_motion_limits_t *most)
 {
-    const double a = watch.acceleration, room = most->velocity - (a > 0 ? watch.velocity : -watch.velocity);
+    const double a = watched.acceleration, room = most->velocity - (a > 0 ? watched.velocity : -watched.velocity);
     return a * a / (2.0 * fmax(room, 1e-9 * most->velocity));
 }
 
@@ -359,33 +376,33 @@ static void watch_set_point(void)
     const double t = (double)judged.cycle_ns * 1e-9, v = axis->set_velocity, a = axis->set_acceleration;
     const bool stop = !axis->active || axis->kind == CM1E_COMMAND_HALT || axis->kind == CM1E_COMMAND_STOP ||
                       axis->paused;
-    const bool ours = set_point_is_ours(), stepping = watch.searched; /* lets go of what it pushes at */
+    const bool ours = set_point_is_ours(), stepping = watched.searched; /* lets go of what it pushes at */
     const bool is_hard = axis->state == CM1E_AXIS_ERROR_STOP || stepping || (stop && axis->software_limits);
-    const bool hard = is_hard || watch.hard;
+    const bool hard = is_hard || watched.hard;
     const double largest = fmax(most->acceleration, most->deceleration), slack = 1.0 + 1e-6;
-    if (ours && watch.ours && !hard && !watch.lost) {
-        const double way = cm1e_position_minus(axis->set, watch.set) / axis->scale;
-        const double jerk = fabs(a - watch.acceleration) / t, gain = fabs(v - watch.velocity);
+    if (ours && watched.ours && !hard && !watched.lost) {
+        const double way = cm1e_position_minus(axis->set, watched.set) / axis->scale;
+        const double jerk = fabs(a - watched.acceleration) / t, gain = fabs(v - watched.velocity);
         const double far = cm1e_position_minus(axis->target, axis->set) / axis->scale;
         const double rounding = 1e-3 / fabs(axis->scale) + 4e-16 * fabs(far);
-        const double off = fabs(way - (v + watch.velocity) * t / 2.0);
+        const double off = fabs(way - (v + watched.velocity) * t / 2.0);
         KEEPS(fabs(v) <= most->velocity * slack, "velocity %.12g, limit %.12g", v, most->velocity);
         KEEPS(fabs(a) <= largest * slack, "acceleration %.12g, limit %.12g", a, largest);
-        KEEPS(gain <= largest * t * slack + 1e-12, "velocity from %.9g to %.9g in a cycle", watch.velocity, v);
+        KEEPS(gain <= largest * t * slack + 1e-12, "velocity from %.9g to %.9g in a cycle", watched.velocity, v);
         KEEPS(jerk <= fmax(most->jerk, jerk_to_stay_below(most)) * slack + 1e-9,
               "jerk %.9g, limit %.9g (acceleration from %.9g to %.9g, velocity %.9g)", jerk, most->jerk,
-             watch.acceleration, a, v);
+             watched.acceleration, a, v);
         KEEPS(off <= most->jerk * t * t * t / 6.0 * slack + rounding,
-             "the position moves by %.9g, the velocities are %.9g and %.9g", way, watch.velocity, v);
+             "the position moves by %.9g, the velocities are %.9g and %.9g", way, watched.velocity, v);
     }
-    watch.hard = is_hard;
-    watch.moving += ours && v != 0.0;
-    watch.ours = ours;
-    watch.set = axis->set;
-    watch.units = cm1e_axis_units(axis, axis->set);
-    watch.velocity = v;
-    watch.acceleration = a;
-    watch.lost = fabs(cm1e_position_minus(axis->set, axis_actual(axis)) / axis->scale) > 0.9 * axis->max_lag;
+    watched.hard = is_hard;
+    watched.moving += ours && v != 0.0;
+    watched.ours = ours;
+    watched.set = axis->set;
+    watched.units = cm1e_axis_units(axis, axis->set);
+    watched.velocity = v;
+    watched.acceleration = a;
+    watched.lost = fabs(cm1e_position_minus(axis->set, axis_actual(axis)) / axis->scale) > 0.9 * axis->max_lag;
 }
 
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
@@ -401,14 +418,16 @@ static void judge_cycle(void)
         [CM1E_AXIS_ERROR_STOP] = 1u << CM1E_AXIS_DISABLED | 1u << CM1E_AXIS_STANDSTILL,
     };
     const unsigned begins = 1u << CM1E_AXIS_DISCRETE_MOTION | 1u << CM1E_AXIS_CONTINUOUS_MOTION |
-                            1u << CM1E_AXIS_HOMING | 1u << CM1E_AXIS_STANDSTILL; /* a halt that ends at once */
+                            1u << CM1E_AXIS_HOMING | 1u << CM1E_AXIS_SYNCHRONIZED_MOTION |
+                            1u << CM1E_AXIS_STANDSTILL; /* a halt that ends at once */
     const cm1e_axis_state_t before = judged.state, after = judged.axis->state;
     if (after == before)
         return;
     bool waits = false;
     for (int i = 0; i < called_count; i++)
-        waits = waits || (called[i]->before.busy && !called[i]->before.active) ||
-                (called[i]->now.busy && !called[i]->now.active);
+        waits = waits || (called[i]->of == judged_at &&
+                          ((called[i]->before.busy && !called[i]->before.active) ||
+                           (called[i]->now.busy && !called[i]->now.active)));
     const unsigned allowed = to[before] | 1u << CM1E_AXIS_ERROR_STOP | (waits ? begins : 0);
     MUST(allowed >> after & 1u, "from %s to %s in the cycle, a command waits: %d", cm1e_axis_state_name(before),
          cm1e_axis_state_name(after), waits);
@@ -480,7 +499,8 @@ static void make(instance_t *fb, const char *name)
         put(fb, "ParameterNumber", strstr(name, "Bool") ? 6 : 7);
     if (strstr(name, "BoolParameter"))
         put(fb, "ParameterNumber", 4);
-    MUST(called_count < BLOCKS_MOST, "too many blocks");
+    fb->of = judged_at;
+    MUST(called_count < INSTANCES_MOST, "too many blocks");
     called[called_count++] = fb;
 }
 
