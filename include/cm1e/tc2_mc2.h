@@ -39,6 +39,12 @@ typedef MC_MoveSuperimposed_t MC_MoveSuperImposed_t;
 typedef MC_HaltSuperimposed_t MC_AbortSuperposition_t;
 #define MC_AbortSuperposition MC_HaltSuperimposed
 
+/* TF5050 (cams). Its modes that are absolute for one of the two axes alone: mcRampIn, with MasterAbsolute and
+ * SlaveAbsolute of MC_CamTableSelect. */
+typedef MC_START_MODE MC_StartMode;
+#define MC_STARTMODE_ABSOLUTE mcAbsolute
+#define MC_STARTMODE_RELATIVE mcRelative
+
 /* Part 5 as in Tc3_MC2_AdvancedHoming; the enumerators are PLCopen's in both. */
 typedef MC_HOME_DIRECTION MC_Home_Direction;
 typedef MC_SWITCH_MODE MC_Switch_Mode;

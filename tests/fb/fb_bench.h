@@ -40,9 +40,9 @@ enum { SETS = 2 };
 
 static struct bench {
     cm1e_bus_t *bus;
-    cm1e_axis_t *axis;
-    AXIS_REF_t reference;
-    MC_Power_t power;
+    cm1e_axis_t *axis, *master;       /**< master: NULL but with bench_open_axes(2) */
+    AXIS_REF_t reference, master_reference;
+    MC_Power_t power, master_power;
     MC_ReadStatus_t status;
     set_t sets[SETS];
     BOOL execute[SETS][KINDS], execute_before[SETS][KINDS];
@@ -125,10 +125,16 @@ static void scan(void)
     const cm1e_error_t received = cm1e_bus_receive(bench.bus);
     cm1e_axis_inputs(bench.axis, received, cm1e_bus_health(bench.bus), planned_ns);
     MC_Power(&bench.power);
+    if (bench.master) {
+        cm1e_axis_inputs(bench.master, received, cm1e_bus_health(bench.bus), planned_ns);
+        MC_Power(&bench.master_power);
+    }
     call_blocks();
     bench.status.Enable = TRUE;
     MC_ReadStatus(&bench.status);
     cm1e_axis_outputs(bench.axis);
+    if (bench.master)
+        cm1e_axis_outputs(bench.master);
     cm1e_bus_send(bench.bus);
     cm1e_axis_get(bench.axis, &bench.info);
 }
@@ -172,17 +178,25 @@ static void reset_inputs(set_t *set)
     };
 }
 
-static void bench_open(void)
+/** One axis; with two, the second one is a master, enabled at once. */
+static void bench_open_axes(uint32_t count)
 {
     static cm1e_bus_config_t config;
     cm1e_diag_t diag = {0};
     memset(&bench, 0, sizeof bench);
-    describe_axes(&config, 1);
+    describe_axes(&config, count);
     ck_assert_msg(cm1e_bus_open(&bench.bus, &config, &diag) == CM1E_OK, "%s", diag.text);
     ck_assert_msg(cm1e_bus_start(bench.bus, &diag) == CM1E_OK, "%s", diag.text);
     ck_assert_msg(cm1e_axis_create(&bench.axis, bench.bus, 0, &diag) == CM1E_OK, "%s", diag.text);
     bench.reference = cm1e_axis_reference(bench.axis);
     bench.power = (MC_Power_t){.Axis = &bench.reference, .EnablePositive = TRUE, .EnableNegative = TRUE};
+    if (count > 1) {
+        ck_assert_msg(cm1e_axis_create(&bench.master, bench.bus, 1, &diag) == CM1E_OK, "%s", diag.text);
+        bench.master_reference = cm1e_axis_reference(bench.master);
+        bench.master_power = bench.power;
+        bench.master_power.Axis = &bench.master_reference;
+        bench.master_power.Enable = TRUE;
+    }
     bench.status = (MC_ReadStatus_t){.Axis = &bench.reference};
     for (int i = 0; i < SETS; i++)
         reset_inputs(&bench.sets[i]);
@@ -190,18 +204,26 @@ static void bench_open(void)
     scan();
 }
 
-static void bench_open_powered(void)
+static void bench_power_on(void)
+{
+    bench.power.Enable = TRUE;
+    SCAN_UNTIL(bench.power.Status && (!bench.master || bench.master_power.Status));
+    ck_assert_int_eq(bench.info.state, CM1E_AXIS_STANDSTILL);
+}
+
+static inline void bench_open(void) { bench_open_axes(1); }
+static inline void bench_open_powered(void)
 {
     bench_open();
-    bench.power.Enable = TRUE;
-    SCAN_UNTIL(bench.power.Status);
-    ck_assert_int_eq(bench.info.state, CM1E_AXIS_STANDSTILL);
+    bench_power_on();
 }
 
 static void bench_close(void)
 {
     cm1e_bus_stop(bench.bus);
     cm1e_axis_destroy(bench.axis);
+    if (bench.master)
+        cm1e_axis_destroy(bench.master);
     cm1e_bus_close(bench.bus);
 }
 

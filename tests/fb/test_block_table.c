@@ -108,11 +108,14 @@ static void fill(const block_t *block)
     static const struct {
         const char *name;
         double value;
-    } numbers[] = {{"Position", 1}, {"Distance", 0.5}, {"Velocity", 4}, {"EndVelocity", 1}, {"VelocityDiff", 0.5}};
+    } numbers[] = {{"Position", 1}, {"Distance", 0.5}, {"Velocity", 4}, {"EndVelocity", 1}, {"VelocityDiff", 0.5},
+                   {"PhaseShift", 0.5}};
     const struct {
         const char *name;
         const void *pointer;
     } pointers[] = {{"Axis", &bench.reference}, {"Slave", &bench.reference}, {"CamTable", &cam},
+                    {"Master", &bench.master_reference}, {"Master1", &bench.master_reference},
+                    {"Master2", &bench.master_reference},
                     {"TimePosition", &positions}, {"TimeVelocity", &velocities},
                     {"TimeAcceleration", &accelerations}};
     clear(block);
@@ -121,6 +124,9 @@ static void fill(const block_t *block)
         if (member && member->section == BLOCK_INPUT && member->type == BLOCK_LREAL)
             memcpy(memory + member->offset, &numbers[i].value, sizeof(double));
     }
+    for (size_t i = 0; i < block->member_count; i++) /* ratios */
+        if (block->members[i].type == BLOCK_DINT || strcmp(block->members[i].name, "RatioDenominator") == 0)
+            memcpy(memory + block->members[i].offset, &(DINT){1}, sizeof(DINT));
     for (size_t i = 0; i < sizeof pointers / sizeof *pointers; i++) {
         const block_member_t *member = member_of(block, pointers[i].name);
         if (member)
@@ -141,11 +147,10 @@ static void enter(cm1e_axis_state_t state)
     static const int kind_of[CM1E_AXIS_STATE_COUNT] = {
         [CM1E_AXIS_DISCRETE_MOTION] = ABSOLUTE, [CM1E_AXIS_CONTINUOUS_MOTION] = VELOCITY,
         [CM1E_AXIS_STOPPING] = STOP};
-    if (state == CM1E_AXIS_DISABLED) {
-        bench_open();
+    bench_open_axes(2);
+    if (state == CM1E_AXIS_DISABLED)
         return;
-    }
-    bench_open_powered();
+    bench_power_on();
     if (state == CM1E_AXIS_ERROR_STOP)
         simulate("error 1 2310");
     else if (state == CM1E_AXIS_HOMING)

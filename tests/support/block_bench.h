@@ -10,8 +10,10 @@
 #include "fake_bus.h"
 
 static struct bench {
-    cm1e_bus_t bus;
-    MC_Power_t power;
+    cm1e_bus_t bus, master_bus;
+    bool with_master;               /**< a second axis, which its slaves' blocks name as their master */
+    cm1e_axis_t *master;            /**< NULL: there is none */
+    MC_Power_t power, master_power;
     cm1e_error_t received, health;
     cm1e_axis_info_t info;          /**< after the last cycle */
     int homing_cycles;              /**< what the drive's own homing takes */
@@ -52,21 +54,41 @@ static void turn_shaft(void)
                                          (double)judged.axis->drive.velocity_unit * (double)judged.cycle_ns * 1e-9);
 }
 
+/** The same for the master as for the axis. */
+static void master_begins(void)
+{
+    cm1e_axis_inputs(bench.master, bench.received, bench.health, bench.bus.clock.virtual_now_ns);
+    judged_at = 1;
+    judge_cycle();
+    MC_Power(&bench.master_power);
+    judged.state = judged.axis->state;
+    judged_at = 0;
+}
+
 static void cycle_begin(void)
 {
+    judged_at = 0;
     turn_shaft();
     fake_bus_cycle(&bench.bus, judged.cycle_ns);
     cm1e_axis_inputs(judged.axis, bench.received, bench.health, bench.bus.clock.virtual_now_ns);
     judge_cycle();
     MC_Power(&bench.power);
+    if (bench.master)
+        master_begins();
     judged.state = judged.axis->state; /* what MC_Power may do is judged where it is tested */
 }
 
 static void cycle_end(void)
 {
+    judged_at = 0;
     cm1e_axis_outputs(judged.axis);
-    judge_cycle();
-    watch_set_point();
+    if (bench.master)
+        cm1e_axis_outputs(bench.master);
+    for (judged_at = bench.master ? 1 : 0; judged_at >= 0; judged_at--) {
+        judge_cycle();
+        watch_set_point();
+    }
+    judged_at = 0;
     cm1e_axis_get(judged.axis, &bench.info);
     judged.number++;
 }
@@ -98,19 +120,41 @@ static inline void cycles(int count)
 
 /* ---- beginnings ----------------------------------------------------------------------------------------- */
 
-/** Axis of 1 u = 50000 counts, 50 u/s, 100 u/s2, as the caller changed bench.bus.config.axes[0]. */
+static void bench_end(void)
+{
+    if (judged.axis)
+        cm1e_axis_destroy(judged.axis);
+    if (bench.master)
+        cm1e_axis_destroy(bench.master);
+    judged.axis = bench.master = judged_axes[1].axis = NULL;
+}
+
+static void make_master(void)
+{
+    cm1e_diag_t diag = {0};
+    MUST(cm1e_axis_create(&bench.master, &bench.bus, 1, &diag) == CM1E_OK, "%s", diag.text);
+    judged.master = cm1e_axis_reference(bench.master);
+    judged_axes[1] = (struct judged_axis){.axis = bench.master, .reference = judged.master,
+                                          .state = CM1E_AXIS_DISABLED, .cycle_ns = judged.cycle_ns};
+    snprintf(judged_axes[1].scene, sizeof judged_axes[1].scene, "the master");
+    watched_axes[1].ours = false;
+    bench.master_power = (MC_Power_t){.Axis = &judged.master, .EnablePositive = TRUE, .EnableNegative = TRUE};
+}
+
+/** Axis of 1 u = 50000 counts, 50 u/s, 100 u/s2, as the caller changed bench.bus.config.axes[0]; so is the master. */
 static void bench_make_axis(void)
 {
     cm1e_diag_t diag = {0};
-    if (judged.axis)
-        cm1e_axis_destroy(judged.axis);
-    judged.axis = NULL;
+    bench_end();
     bench.received = bench.health = CM1E_OK;
     bench.bus.homing = fake_homing;
     bench.homing_cycle = -1;
     bench.bus.mode_status = STATUSWORD_TARGET_REACHED;
     MUST(cm1e_axis_create(&judged.axis, &bench.bus, 0, &diag) == CM1E_OK, "%s", diag.text);
     judged.reference = cm1e_axis_reference(judged.axis);
+    judged.master = (AXIS_REF_t){.Handle = 0};
+    if (bench.with_master)
+        make_master();
     begin_blocks();
     bench.power = (MC_Power_t){.Axis = &judged.reference, .EnablePositive = TRUE, .EnableNegative = TRUE};
     judged.state = CM1E_AXIS_DISABLED;
@@ -123,10 +167,12 @@ static void bench_make_axis(void)
 
 static void bench_describe(void)
 {
-    if (judged.axis)
-        cm1e_axis_destroy(judged.axis);
-    judged.axis = NULL;
+    bench_end();
     fake_bus_init(&bench.bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+    if (bench.with_master) {
+        fake_bus_init(&bench.master_bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        fake_bus_add(&bench.bus, &bench.master_bus);
+    }
     bench.bus.config.axes[0].homing.method = -1;
     bench.bus.config.cycle_time_ns = judged.cycle_ns = 1000000;
     bench.bus.config.axes[0].inputs = (cm1e_input_config_t){.limit_positive = 1, .limit_negative = 2, .home = 3};
@@ -134,10 +180,22 @@ static void bench_describe(void)
     bench.homing_cycles = 60;
 }
 
+/** The master turns, if there is one. */
+static inline void bench_turn_master(double velocity)
+{
+    cm1e_command_id_t id;
+    MUST(cm1e_axis_start(bench.master,
+                         &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = velocity},
+                         &id) == CM1E_OK, "the master does not turn");
+    judged_axes[1].state = bench.master->state;
+}
+
 static inline void bench_power_up(void)
 {
-    bench.power.Enable = TRUE;
-    CYCLE_UNTIL(bench.power.Status);
+    bench.power.Enable = bench.master_power.Enable = TRUE;
+    CYCLE_UNTIL(bench.power.Status && (!bench.master || bench.master_power.Status));
+    if (bench.master)
+        bench_turn_master(4);
     MUST(judged.axis->state == CM1E_AXIS_STANDSTILL, "not in Standstill");
 }
 
@@ -166,7 +224,8 @@ static inline void into(cm1e_axis_state_t state, instance_t *mover)
 {
     static const char *const movers[CM1E_AXIS_STATE_COUNT] = {
         [CM1E_AXIS_HOMING] = "MC_Home", [CM1E_AXIS_DISCRETE_MOTION] = "MC_MoveAbsolute",
-        [CM1E_AXIS_CONTINUOUS_MOTION] = "MC_MoveVelocity", [CM1E_AXIS_STOPPING] = "MC_Stop"};
+        [CM1E_AXIS_CONTINUOUS_MOTION] = "MC_MoveVelocity", [CM1E_AXIS_SYNCHRONIZED_MOTION] = "MC_GearIn",
+        [CM1E_AXIS_STOPPING] = "MC_Stop"};
     into_by(state, mover, movers[state]);
 }
 
