@@ -9,6 +9,7 @@
 
 #include "cm1e/bridge.h"
 #include "core/text.h"
+#include "device/place.h"
 
 enum { KEY_PCAP = 0x100, KEY_JSON };
 
@@ -156,13 +157,21 @@ bool load_axes(const common_options_t *options, cm1e_bus_config_t *config)
 
 int find_axis(const cm1e_bus_config_t *config, const char *word)
 {
-    for (uint32_t i = 0; i < config->axis_count; i++)
+    int axis = -1;
+    for (uint32_t i = 0; i < config->axis_count && axis < 0; i++)
         if (config->axes[i].name[0] && strcmp(config->axes[i].name, word) == 0)
-            return (int)i;
+            axis = (int)i;
     char *end;
     const long number = strtol(word, &end, 10);
-    if (*word && *end == '\0' && number >= 1 && number <= (long)config->axis_count)
-        return (int)number - 1;
+    if (axis < 0 && *word && *end == '\0' && number >= 1 && number <= (long)config->axis_count)
+        axis = (int)number - 1;
+    if (axis >= 0 && cm1e_axis_has_motor(&config->axes[axis]))
+        return axis;
+    if (axis >= 0) {
+        complain("axis \"%s\" is %s in the bus file: there is no motor behind it", word,
+                 config->axes[axis].type == CM1E_AXIS_ENCODER ? "an encoder" : "virtual");
+        return -1;
+    }
     complain("there is no axis \"%s\"; there are 1 ... %u%s", word, config->axis_count,
              config->axes[0].name[0] ? ", or their names in the bus file" : "");
     return -1;
@@ -174,8 +183,8 @@ int find_axis_at(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave
                                   [CM1E_ADDRESS_EXPLICIT_ID] = slave->explicit_id};
     for (uint32_t i = 0; i < config->axis_count; i++) {
         const cm1e_axis_config_t *axis = &config->axes[i];
-        const uint32_t address = axis->address ? axis->address : i + 1; /* the default is the place in the list */
-        if (axis->channel == channel && addresses[axis->address_kind] == address)
+        const uint32_t address = cm1e_axis_address(config, i);
+        if (cm1e_axis_has_motor(axis) && axis->channel == channel && addresses[axis->address_kind] == address)
             return (int)i;
     }
     return -1;

@@ -58,6 +58,11 @@ typedef struct cm1e_axis_info {
 
 /** CM1E_ERROR_FB_AXIS_REF for a handle that names no axis. @rt cycle (call it in a program of the axis's scheduler) */
 cm1e_error_t cm1e_axis_read(AXIS_REF_t axis, cm1e_axis_info_t *info);
+/** What the encoder shows now, of an axis with `type: encoder`; 32 bits that wrap around are counted on. A program of
+ *  the axis's scheduler calls it in every cycle: in a cycle without a call, or with `valid` FALSE, the axis is offline.
+ *  It is taken in at the beginning of the next cycle, as are the positions of motors. CM1E_ERROR_UNSUPPORTED: the axis
+ *  is no encoder. @rt cycle */
+cm1e_error_t cm1e_axis_write_encoder(AXIS_REF_t axis, uint32_t counts, bool valid);
 /** The configured name; "" for a handle that names no axis. @rt any */
 const char *cm1e_axis_name(AXIS_REF_t axis);
 /** Large enough for every text of cm1e_axis_error_text(). */

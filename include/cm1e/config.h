@@ -111,9 +111,10 @@ typedef enum cm1e_coupling_stop {
 /** One axis: where it is, which motor, which units and limits. */
 typedef struct cm1e_axis_config {
     char name[CM1E_NAME_LENGTH];     /**< "": "axis<n>" */
-    cm1e_axis_type_t type;           /**< other than a motor: it has no place on the bus, the next keys mean nothing */
+    cm1e_axis_type_t type;           /**< other than a motor: it has no place on the bus, and what is said of a motor is
+                                          an error beside it (docs/BUS-FILE.md) */
     cm1e_address_kind_t address_kind;
-    uint16_t address;                /**< position 1 ..., alias or ID; 0: position = place in the list */
+    uint16_t address;                /**< position 1 ..., alias or ID; 0: position = its place among the motors */
     uint8_t channel;                 /**< 0: the slave is the motor, a CM1-E. 1 ... 4: the motor at this connector (ID)
                                           of an EtherCAT Cool MUSCLE Bridge; up to four axes have its address then */
     char motor[20];                  /**< "CM1-E-17S30D", -17L30D, -23S30D or -23L20D; "": CM1-E-17S30D. Behind a
@@ -168,7 +169,7 @@ typedef struct cm1e_bus_config {
     cm1e_axis_config_t axes[CM1E_MAX_AXES];
 } cm1e_bus_config_t;
 
-/** A configuration of `axis_count` default axes at positions 1 ... n on `interface_name` (NULL: "sim"). @rt init */
+/** A configuration of `axis_count` default axes, at positions 1 ... n, on `interface_name` (NULL: "sim"). @rt init */
 void cm1e_bus_config_init(cm1e_bus_config_t *config, const char *interface_name, uint32_t axis_count);
 
 /** Reads a bus file (YAML; format: docs/BUS-FILE.md). On failure `config` is untouched and `diag` names file, line,

@@ -98,9 +98,12 @@ static void watch_lag(cm1e_axis_t *axis)
 
 static bool asks_for_torque(const cm1e_axis_t *axis) { return axis->power_enable && !axis->shutting_down; }
 
-/* An axis that is neither under torque nor to be so has nothing to lose while the bus is away. */
+/* An axis that is neither under torque nor to be so has nothing to lose while the bus is away; one without a device
+ * never has. */
 static bool depends_on_bus(const cm1e_axis_t *axis)
 {
+    if (cm1e_drive_is_virtual(&axis->drive))
+        return false;
     return axis->drive.command.enable || asks_for_torque(axis) || axis->state != CM1E_AXIS_DISABLED;
 }
 

@@ -70,7 +70,7 @@ static bool is_quiet(const cm1e_axis_t *axis)
 static cm1e_error_t check(const cm1e_axis_t *axis, bool string)
 {
     if (!axis->muscle)
-        return CM1E_ERROR_CM_NO_BRIDGE;
+        return cm1e_drive_is_virtual(&axis->drive) ? CM1E_ERROR_AXIS_VIRTUAL : CM1E_ERROR_CM_NO_BRIDGE;
     const bool shown = axis->drive.feedback.mode == CM1E_BRIDGE_MODE_CML && axis->muscle->mode == axis->muscle->next;
     if (axis->state == CM1E_AXIS_ERROR_STOP && !(string && shown && axis->activity == ACTIVITY_FREE))
         return CM1E_ERROR_AXIS_ERROR_STOP;

@@ -63,6 +63,8 @@ static cm1e_error_t check_signal(int number, int most, unsigned there, unsigned 
 cm1e_error_t cm1e_axis_check_input(const cm1e_axis_t *axis, int number)
 {
     const unsigned mask = cm1e_drive_input_mask(&axis->drive);
+    if (cm1e_drive_is_virtual(&axis->drive))
+        return CM1E_ERROR_AXIS_VIRTUAL;
     return check_signal(number, CM1E_AXIS_INPUTS, cm1e_drive_bridged(&axis->drive) ? mask : 0x0F, mask);
 }
 
@@ -138,6 +140,8 @@ bool cm1e_axis_switch_active(const cm1e_axis_t *axis, cm1e_axis_switch_t which)
 static cm1e_error_t check_output(const cm1e_axis_t *axis, int number)
 {
     const unsigned mask = cm1e_drive_output_mask(&axis->drive);
+    if (cm1e_drive_is_virtual(&axis->drive))
+        return CM1E_ERROR_AXIS_VIRTUAL;
     return check_signal(number, CM1E_AXIS_OUTPUTS, cm1e_drive_bridged(&axis->drive) ? mask : 0x01, mask);
 }
 
@@ -204,6 +208,8 @@ cm1e_error_t cm1e_axis_read_output(const cm1e_axis_t *axis, int number, bool *va
 cm1e_error_t cm1e_axis_read_torque(const cm1e_axis_t *axis, double *percent)
 {
     *percent = axis->drive.feedback.torque * (axis->scale < 0.0 ? -0.1 : 0.1);
+    if (cm1e_drive_is_virtual(&axis->drive))
+        return CM1E_ERROR_AXIS_VIRTUAL;
     if (axis->drive.in_torque.bytes == 0)
         return CM1E_ERROR_PDO_MAPPING;
     return axis->drive.feedback.online ? CM1E_OK : CM1E_ERROR_AXIS_OFFLINE;

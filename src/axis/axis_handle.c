@@ -34,6 +34,17 @@ cm1e_error_t cm1e_axis_read(AXIS_REF_t reference, cm1e_axis_info_t *info)
     return CM1E_OK;
 }
 
+cm1e_error_t cm1e_axis_write_encoder(AXIS_REF_t reference, uint32_t counts, bool valid)
+{
+    cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
+    if (!axis)
+        return CM1E_ERROR_FB_AXIS_REF;
+    if (axis->config->type != CM1E_AXIS_ENCODER)
+        return CM1E_ERROR_UNSUPPORTED;
+    axis->drive.encoder = (cm1e_drive_encoder_t){.counts = counts, .valid = valid};
+    return CM1E_OK;
+}
+
 const char *cm1e_axis_name(AXIS_REF_t reference)
 {
     const cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);

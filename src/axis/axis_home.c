@@ -212,6 +212,8 @@ cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t
     const homing_kind_t *kind = kind_of(axis);
     homing_t *home = &axis->home;
     position_t position;
+    if (cm1e_drive_is_virtual(&axis->drive))
+        return CM1E_ERROR_AXIS_VIRTUAL;
     if (!cm1e_axis_position_from_units(axis, command->position, &position))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     if (cm1e_axis_cool_muscle_refuses_homing(axis))

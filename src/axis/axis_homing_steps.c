@@ -112,6 +112,8 @@ cm1e_error_t cm1e_axis_step_check(const cm1e_axis_t *axis, const cm1e_homing_ste
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     if (!searches(step->kind))
         return CM1E_OK;
+    if (cm1e_drive_is_virtual(&axis->drive)) /* neither switches nor torque */
+        return CM1E_ERROR_AXIS_VIRTUAL;
     if (!direction_valid(step))
         return CM1E_ERROR_AXIS_DIRECTION;
     if (!mode_valid(step) || step->input < 0 || step->input > CM1E_AXIS_INPUTS || !usable(step->torque_limit) ||

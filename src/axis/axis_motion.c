@@ -345,6 +345,8 @@ void cm1e_axis_write_set_point(cm1e_axis_t *axis)
     command->target_position = (int32_t)(uint32_t)(uint64_t)cm1e_axis_motor_target(axis);
     if (axis->mode == CM1E_MODE_CSV)
         command->target_velocity = target_velocity(axis);
+    else if (cm1e_drive_is_virtual(&axis->drive)) /* shown as the actual one: positions of whole counts tell it badly */
+        command->target_velocity = (int32_t)round(axis->set_velocity * axis->scale);
     else if (axis->activity == ACTIVITY_DRIVE)
         cm1e_axis_drive_write(axis);
 }

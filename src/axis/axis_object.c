@@ -112,6 +112,8 @@ static cm1e_error_t check_write(const cm1e_axis_t *axis, const cm1e_entry_t *ent
 static cm1e_error_t check(const cm1e_axis_t *axis, int number, bool write, double value)
 {
     const cm1e_entry_t *entry = entry_of(axis, number);
+    if (cm1e_drive_is_virtual(&axis->drive) && row_of(number))
+        return CM1E_ERROR_AXIS_VIRTUAL;
     if (!entry)
         return row_of(number) ? CM1E_ERROR_UNSUPPORTED : CM1E_ERROR_AXIS_PARAMETER;
     if (axis->drive.firmware && entry->since > axis->drive.firmware->firmware)

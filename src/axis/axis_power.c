@@ -86,6 +86,8 @@ static void power_off(cm1e_axis_t *axis)
 cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, bool enable_positive,
                              bool enable_negative)
 {
+    if (enable && axis->config->type == CM1E_AXIS_ENCODER)
+        return axis->refusal = CM1E_ERROR_AXIS_VIRTUAL;
     if (axis->power_owner != owner) {
         /* A block that does not enable may be replaced, one that does may not. */
         if (axis->power_owner && (axis->power_enable || axis->energized))

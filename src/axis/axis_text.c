@@ -199,6 +199,17 @@ static void refused_position_text(const cm1e_axis_t *axis, char *text, size_t si
     add_counts_limit(axis, text, size);
 }
 
+static void refused_virtual_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    if (axis->config->type == CM1E_AXIS_ENCODER)
+        snprintf(text, size, "Axis \"%s\" is an encoder (type: encoder): it is neither enabled nor moved. Others follow "
+                 "its actual value, and MC_SetPosition says where it is.", axis->config->name);
+    else
+        snprintf(text, size, "Axis \"%s\" is virtual (type: virtual): without a motor there is no homing by a drive or "
+                 "a switch, and there are no digital signals, probes, torque, objects of a drive or CML. "
+                 "MC_HomeDirect and MC_SetPosition say where it is.", axis->config->name);
+}
+
 /* A command was refused; the axis itself has no error. */
 static const struct {
     cm1e_error_t error;
@@ -207,6 +218,7 @@ static const struct {
     {CM1E_ERROR_AXIS_VELOCITY_RANGE, refused_velocity_text},
     {CM1E_ERROR_AXIS_DYNAMICS_RANGE, refused_dynamics_text},
     {CM1E_ERROR_AXIS_POSITION_RANGE, refused_position_text},
+    {CM1E_ERROR_AXIS_VIRTUAL, refused_virtual_text},
     {CM1E_ERROR_AXIS_HOMING_METHOD, cm1e_axis_home_wrong_text},
     {CM1E_ERROR_AXIS_HOMING_PARAMETER, cm1e_axis_home_wrong_text},
 };

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "bus/bus_internal.h"
+#include "device/place.h"
 
 enum { DEFAULT_CYCLE_NS = 1000000, DEFAULT_LOST_CYCLES = 3 };
 
@@ -21,8 +22,7 @@ static void copy_config(cm1e_bus_config_t *to, const cm1e_bus_config_t *from)
         cm1e_axis_config_t *axis = &to->axes[i];
         if (!axis->name[0])
             snprintf(axis->name, sizeof axis->name, "axis%u", i + 1);
-        if (axis->address_kind == CM1E_ADDRESS_POSITION && axis->address == 0)
-            axis->address = (uint16_t)(i + 1);
+        axis->address = cm1e_axis_address(to, i);
     }
 }
 

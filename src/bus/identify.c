@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "bus/bus_internal.h"
+#include "device/place.h"
 
 /** "alias 17", "position 3" ...: how the configuration finds an axis. */
 static const char *address_text(const cm1e_axis_config_t *axis, char text[32])
@@ -218,8 +219,9 @@ static cm1e_error_t check_extra(const cm1e_bus_t *bus, cm1e_diag_t *diag)
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         if (!cm1e_bus_has_motors(slave) || is_used(slave))
             continue;
-        snprintf(problem, sizeof problem, "Slave %u is a %s that is extra: %u axes are configured and none is %sit.",
-                 slave->info.position, slave->info.is_cm1e ? "CM1-E" : "Cool MUSCLE Bridge", bus->config.axis_count,
+        snprintf(problem, sizeof problem, "Slave %u is a %s that is extra: %u axes with a motor are configured and none is %sit.",
+                 slave->info.position, slave->info.is_cm1e ? "CM1-E" : "Cool MUSCLE Bridge",
+                 cm1e_motors_before(&bus->config, bus->config.axis_count),
                  slave->info.is_cm1e ? "" : "behind ");
         return identity_error(bus, diag, problem);
     }
@@ -236,7 +238,8 @@ cm1e_error_t cm1e_bus_identify(cm1e_bus_t *bus, cm1e_diag_t *diag)
         memset(bus->slaves[i].axes, 0, sizeof bus->slaves[i].axes);
     cm1e_error_t error = CM1E_OK;
     for (uint32_t axis = 0; axis < bus->config.axis_count && error == CM1E_OK; axis++)
-        error = match_axis(bus, axis, diag);
+        if (cm1e_axis_has_motor(&bus->config.axes[axis]))
+            error = match_axis(bus, axis, diag);
     if (error == CM1E_OK)
         error = check_extra(bus, diag);
     if (error == CM1E_OK)

@@ -56,6 +56,8 @@ typedef struct cm1e_busfile {
     cm1e_busfile_axis_t axes[CM1E_MAX_AXES];
 } cm1e_busfile_t;
 
+enum { CM1E_LEAST_CAM_POINTS = 2, CM1E_MOST_CAM_POINTS = 4096 };
+
 extern const cyaml_schema_value_t cm1e_busfile_schema;
 
 /** Range of a whole number by its key. */

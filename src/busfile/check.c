@@ -5,6 +5,7 @@
 
 #include "busfile/busfile.h"
 #include "device/bridge.h"
+#include "device/place.h"
 #include "device/unit.h"
 
 /* Every check returns FALSE with the problem filled. Paths and key names are those of a bus file; a configuration made
@@ -140,6 +141,7 @@ static const number_t numbers[] = {
     {"homing.torque", FIELD(homing.torque), AS_IS, "%", 0, 0, OBJ_60F6_K_PARAMETERS, CM1E_K_PARAMETER_HOMING_TORQUE,
      0},
     {"homing.timeout_s", FIELD(homing.timeout_s), AS_IS, "s", 0.1, 3600, 0, 0, 0},
+    {"encoder_filter_s", FIELD(encoder_filter_s), AS_IS, "s", 1e-4, 10, 0, 0, 0},
     {"sim.load_inertia_kgm2", FIELD(sim.load_inertia), AS_IS, "kg m2", 1e-9, 1, 0, 0, 0},
     {"sim.friction_nm", FIELD(sim.friction), AS_IS, "Nm", 1e-9, 10, 0, 0, 0},
     {"sim.viscous_friction_nms", FIELD(sim.viscous_friction), AS_IS, "Nm s/rad", 1e-9, 1, 0, 0, 0},
@@ -272,6 +274,12 @@ static bool check_velocity(check_t *check)
     const cm1e_axis_config_t *axis = check->axis;
     const double peak = cm1e_unit_peak_velocity(axis);
     double kept = 0;
+    if (!cm1e_axis_has_motor(axis)) {
+        check->most_velocity = peak;
+        return axis->max_velocity == 0 || check_range(check, "limits.velocity", axis->max_velocity, BY_REVOLUTION,
+                                                      CM1E_LEAST_VELOCITY_COUNTS, CM1E_VIRTUAL_MOST_VELOCITY_COUNTS,
+                                                      "counts/s");
+    }
     if (axis->backlash == 0 && axis->backlash_velocity != 0)
         return axis_wrong(check, "backlash.velocity", "is given without a gap; expected backlash.gap too");
     if (axis->backlash != 0)
@@ -328,11 +336,6 @@ static bool check_firmware(const check_t *check)
     return true;
 }
 
-static uint16_t address_of(const cm1e_axis_config_t *axis, uint32_t index)
-{
-    return axis->address_kind == CM1E_ADDRESS_POSITION && axis->address == 0 ? (uint16_t)(index + 1) : axis->address;
-}
-
 static const struct {
     const char *key;
     uint16_t maximum;
@@ -345,8 +348,8 @@ static const struct {
 static bool at_same_address(const check_t *check, uint32_t other)
 {
     const cm1e_axis_config_t *axis = &check->config->axes[other];
-    return axis->address_kind == check->axis->address_kind &&
-           address_of(axis, other) == address_of(check->axis, check->index);
+    return cm1e_axis_has_motor(axis) && axis->address_kind == check->axis->address_kind &&
+           cm1e_axis_address(check->config, other) == cm1e_axis_address(check->config, check->index);
 }
 
 /* At the address of an earlier entry: only behind the same bridge, each at a connector of its own. */
@@ -354,7 +357,7 @@ static bool may_share(const check_t *check, uint32_t other)
 {
     const unsigned channel = check->axis->channel, taken = check->config->axes[other].channel;
     const char *key = addresses[check->axis->address_kind].key;
-    const unsigned address = address_of(check->axis, check->index);
+    const unsigned address = cm1e_axis_address(check->config, check->index);
     if (!channel && !taken)
         return axis_wrong(check, key, "is %u, which entry %u of the list has already; expected one axis at each "
                           "address", address, other + 1);
@@ -373,7 +376,7 @@ static bool check_address(const check_t *check)
     if (kind > CM1E_ADDRESS_EXPLICIT_ID)
         return axis_wrong(check, "position", "is of the unknown kind %u; expected position, alias or explicit ID",
                           kind);
-    const uint16_t address = address_of(check->axis, check->index);
+    const uint16_t address = cm1e_axis_address(check->config, check->index);
     if (address == 0 || address > addresses[kind].maximum)
         return axis_wrong(check, addresses[kind].key, "is %u; expected 1 ... %u", address, addresses[kind].maximum);
     for (uint32_t i = 0; i < check->index; i++)
@@ -573,10 +576,100 @@ static bool check_channel(const check_t *check)
            axis_wrong(check, "channel", "is %u; expected 1 ... %d", check->axis->channel, CM1E_BRIDGE_AXES);
 }
 
+/* ---- without a motor --------------------------------------------------------------------------------------------- */
+
+static bool any_input(const cm1e_input_config_t *inputs)
+{
+    return inputs->limit_positive || inputs->limit_negative || inputs->home || inputs->limits_normally_closed ||
+           inputs->home_normally_closed;
+}
+
+static bool any_homing(const cm1e_homing_config_t *homing)
+{
+    return homing->method != 0 || homing->offset != 0 || homing->velocity != 0 || homing->acceleration != 0 ||
+           homing->torque != 0 || homing->timeout_s != 0;
+}
+
+static bool any_sim(const cm1e_sim_axis_config_t *sim)
+{
+    return sim->load_inertia != 0 || sim->friction != 0 || sim->viscous_friction != 0 || sim->stop_positive != 0 ||
+           sim->stop_negative != 0 || sim->no_stops || sim->sensor_input2 != 0 || sim->sensor_input3 != 0 ||
+           sim->no_sensors;
+}
+
+/* What means nothing without a motor; of an encoder also what is said of motions. */
+static bool check_without_motor(const check_t *check)
+{
+    const cm1e_axis_config_t *axis = check->axis;
+    const bool encoder = axis->type == CM1E_AXIS_ENCODER, by_position = axis->address_kind == CM1E_ADDRESS_POSITION;
+    const struct {
+        const char *key;
+        bool given;
+    } keys[] = {
+        {"position", by_position && axis->address != 0},
+        {"alias", axis->address_kind == CM1E_ADDRESS_ALIAS},
+        {"explicit_id", axis->address_kind == CM1E_ADDRESS_EXPLICIT_ID},
+        {"channel", axis->channel != 0},
+        {"motor", axis->motor[0] != '\0'},
+        {"k37", axis->k37_stated},
+        {"firmware", axis->firmware[0] != '\0'},
+        {"mapping", axis->mapping != CM1E_MAPPING_DYNAMIC},
+        {"motion", axis->motion != CM1E_MOTION_HOST},
+        {"limits.position_lag", axis->max_position_lag != 0},
+        {"backlash.gap", axis->backlash != 0},
+        {"backlash.velocity", axis->backlash_velocity != 0},
+        {"inputs", any_input(&axis->inputs)},
+        {"homing", any_homing(&axis->homing)},
+        {"wire.velocity_unit", axis->velocity_unit_stated},
+        {"wire.acceleration_unit", axis->acceleration_in_kpulses},
+        {"sim", any_sim(&axis->sim)},
+        {"limits.velocity", encoder && axis->max_velocity != 0},
+        {"limits.acceleration", encoder && axis->max_acceleration != 0},
+        {"limits.deceleration", encoder && axis->max_deceleration != 0},
+        {"limits.jerk", encoder && axis->max_jerk != 0},
+        {"software_limits", encoder && (axis->software_limit_negative != 0 || axis->software_limit_positive != 0)},
+        {"jog.slow", encoder && axis->jog_slow != 0},
+        {"jog.fast", encoder && axis->jog_fast != 0},
+        {"table_profiles", encoder && axis->table_profiles},
+        {"cam_points", encoder && axis->cam_points != 0},
+        {"coupling_stop", encoder && axis->coupling_stop != CM1E_COUPLING_STOP_THIS},
+    };
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
+        if (keys[i].given)
+            return axis_wrong(check, keys[i].key, encoder ? "is given, and the axis is an encoder, which has no slave "
+                              "on the bus and makes no motions; expected no such key"
+                              : "is given, and the axis is virtual, without a motor on the bus; expected no such key");
+    return true;
+}
+
+/* ---- all together ------------------------------------------------------------------------------------------------ */
+
+static bool check_device(const check_t *check)
+{
+    if (!cm1e_axis_has_motor(check->axis))
+        return check_without_motor(check);
+    return check_channel(check) && check_address(check) && check_motor(check) && check_bridge(check) &&
+           check_firmware(check);
+}
+
+static bool check_coupling(const check_t *check)
+{
+    const unsigned points = check->axis->cam_points;
+    if (points != 0 && (points < CM1E_LEAST_CAM_POINTS || points > CM1E_MOST_CAM_POINTS))
+        return axis_wrong(check, "cam_points", "is %u; expected %d ... %d", points, CM1E_LEAST_CAM_POINTS,
+                          CM1E_MOST_CAM_POINTS);
+    return (unsigned)check->axis->coupling_stop <= CM1E_COUPLING_STOP_KEEP_RATIO ||
+           axis_wrong(check, "coupling_stop", "is %d; expected one of the enumeration",
+                      (int)check->axis->coupling_stop);
+}
+
 static bool check_axis(check_t *check)
 {
-    if (!check_name(check) || !check_channel(check) || !check_address(check) || !check_motor(check) ||
-        !check_bridge(check) || !check_firmware(check) || !check_unit(check))
+    if (!check_name(check))
+        return false;
+    if ((unsigned)check->axis->type > CM1E_AXIS_ENCODER)
+        return axis_wrong(check, "type", "is %d; expected one of the enumeration", (int)check->axis->type);
+    if (!check_device(check) || !check_unit(check) || !check_coupling(check))
         return false;
     if ((unsigned)check->axis->mapping > CM1E_MAPPING_PROFILE)
         return axis_wrong(check, "mapping", "is %d; expected one of the enumeration", (int)check->axis->mapping);

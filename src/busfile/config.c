@@ -7,10 +7,8 @@ void cm1e_bus_config_init(cm1e_bus_config_t *config, const char *interface_name,
     *config = (cm1e_bus_config_t){.axis_count = axis_count};
     snprintf(config->interface_name, sizeof config->interface_name, "%s", interface_name ? interface_name : "sim");
     /* A count above the maximum stays as it is, so that cm1e_bus_config_check() refuses it. */
-    for (uint32_t i = 0; i < axis_count && i < CM1E_MAX_AXES; i++) {
+    for (uint32_t i = 0; i < axis_count && i < CM1E_MAX_AXES; i++)
         snprintf(config->axes[i].name, sizeof config->axes[i].name, "axis%u", i + 1);
-        config->axes[i].address = (uint16_t)(i + 1);
-    }
 }
 
 cm1e_error_t cm1e_bus_config_check(const cm1e_bus_config_t *config, cm1e_diag_t *diag)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "busfile/busfile.h"
+#include "device/place.h"
 
 /* ---- libcyaml ---------------------------------------------------------------------------------------------------- */
 
@@ -51,8 +52,7 @@ static bool convert_address(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t 
                                              : CM1E_ADDRESS_POSITION;
     axis->address = from->alias         ? from->alias
                     : from->explicit_id ? from->explicit_id
-                    : from->position    ? from->position
-                                        : (uint16_t)(index + 1);
+                                        : from->position; /* 0: its place in the list */
     return true;
 }
 
@@ -91,6 +91,8 @@ static bool convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from, cm1e_
     for (uint32_t i = 0; i < from->axis_count; i++)
         if (!convert_axis(&config->axes[i], &from->axes[i], i, problem))
             return false;
+    for (uint32_t i = 0; i < from->axis_count; i++)
+        config->axes[i].address = cm1e_axis_address(config, i);
     return true;
 }
 

@@ -29,6 +29,16 @@ static const cyaml_strval_t motions[] = {
     {"host", CM1E_MOTION_HOST},
     {"drive", CM1E_MOTION_DRIVE},
 };
+static const cyaml_strval_t axis_types[] = {
+    {"motor", CM1E_AXIS_MOTOR},
+    {"virtual", CM1E_AXIS_VIRTUAL},
+    {"encoder", CM1E_AXIS_ENCODER},
+};
+static const cyaml_strval_t coupling_stops[] = {
+    {"this_axis", CM1E_COUPLING_STOP_THIS},
+    {"coupled_axes", CM1E_COUPLING_STOP_COUPLED},
+    {"keep_ratio", CM1E_COUPLING_STOP_KEEP_RATIO},
+};
 static const cyaml_strval_t pdo_orders[] = {
     {"ug_4_4", CM1E_PDO_ORDER_UG_4_4},
     {"ug_7_2", CM1E_PDO_ORDER_UG_7_2},
@@ -125,6 +135,7 @@ static const cyaml_schema_field_t sim_fields[] = {
 
 static const cyaml_schema_field_t axis_fields[] = {
     AXIS_STRING("name", name),
+    ENUM_OF("type", cm1e_busfile_axis_t, axis.type, axis_types),
     CYAML_FIELD_UINT("position", OPTIONAL, cm1e_busfile_axis_t, position),
     CYAML_FIELD_UINT("alias", OPTIONAL, cm1e_busfile_axis_t, alias),
     CYAML_FIELD_UINT("explicit_id", OPTIONAL, cm1e_busfile_axis_t, explicit_id),
@@ -134,6 +145,9 @@ static const cyaml_schema_field_t axis_fields[] = {
     AXIS_STRING("firmware", firmware),
     ENUM_OF("mapping", cm1e_busfile_axis_t, axis.mapping, mappings),
     AXIS_BOOL("table_profiles", table_profiles),
+    AXIS_UINT("cam_points", cam_points),
+    ENUM_OF("coupling_stop", cm1e_busfile_axis_t, axis.coupling_stop, coupling_stops),
+    AXIS_FLOAT("encoder_filter_s", encoder_filter_s),
     ENUM_OF("motion", cm1e_busfile_axis_t, axis.motion, motions),
     AXIS_GROUP("unit", unit_fields),
     AXIS_GROUP("limits", limit_fields),
@@ -171,6 +185,7 @@ const cm1e_busfile_integer_range_t cm1e_busfile_integer_ranges[] = {
     {"k37", 0, 99},
     {"method", -6, 4},       /* UG 6.2.4, BR 6.4.1 */
     {"gear_numerator", 1, 1000000}, {"gear_denominator", 1, 1000000},
+    {"cam_points", CM1E_LEAST_CAM_POINTS, CM1E_MOST_CAM_POINTS},
     {"limit_positive", 1, 4}, {"limit_negative", 1, 4}, {"home", 1, 4},
     {NULL, INT32_MIN, INT32_MAX},
 };

@@ -31,7 +31,9 @@ double cm1e_unit_count(const cm1e_axis_config_t *config)
 
 double cm1e_unit_peak_velocity(const cm1e_axis_config_t *config)
 {
-    if (config->channel)
+    if (config->type != CM1E_AXIS_MOTOR && config->max_velocity > 0.0)
+        return config->max_velocity * cm1e_unit_scale(config);
+    if (config->channel || config->type != CM1E_AXIS_MOTOR)
         return 50.0 * cm1e_unit_counts_per_revolution(config);
     const cm1e_motor_t *motor = cm1e_device_motor(config->motor);
     return motor ? motor->max_velocity_counts_per_s : 0.0;

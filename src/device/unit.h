@@ -29,6 +29,8 @@ typedef struct cm1e_fraction {
 #define CM1E_LEAST_JERK_COUNTS 1e3         /**< counts/s3: 0.02 revolutions/s3 */
 #define CM1E_LEAST_LAG_COUNTS 1.0          /**< counts of the motor: one is what it sees */
 #define CM1E_LARGEST_LAG_COUNTS 2147483647.0
+/** counts/s, of a virtual axis: at most a million counts a cycle, far from where 32 bits wrap around. */
+#define CM1E_VIRTUAL_MOST_VELOCITY_COUNTS 1e9
 
 /** Shortest turn of a modulo axis, in counts of a CM1-E like those above: 0.02 revolutions; longest, in counts. */
 #define CM1E_LEAST_MODULO_COUNTS 1000.0
@@ -42,7 +44,7 @@ double cm1e_unit_counts_per_revolution(const cm1e_axis_config_t *config);
 double cm1e_unit_count(const cm1e_axis_config_t *config);
 
 /** The motor's peak speed, counts/s: of a CM1-E by its size (UG 6.3), 3000 1/min behind a bridge, whose guide does not
- *  state it. 0: there is no such motor. */
+ *  state it. Without a motor what the configuration states, 3000 1/min where it does not. 0: there is no such motor. */
 double cm1e_unit_peak_velocity(const cm1e_axis_config_t *config);
 
 /** Default velocity of the backlash compensation, counts/s: a revolution/s. */

@@ -56,6 +56,8 @@ cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis
     drive->bus = bus;
     drive->axis = axis;
     drive->config = &config->axes[axis];
+    if (drive->config->type != CM1E_AXIS_MOTOR)
+        return cm1e_drive_init_virtual(drive);
     drive->position = cm1e_bus_axis_position(bus, axis);
     if (drive->position == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "Axis \"%s\" has no slave on the bus.",
@@ -81,6 +83,8 @@ void cm1e_drive_free(cm1e_drive_t *drive)
 
 const cm1e_entry_t *cm1e_drive_entry(const cm1e_drive_t *drive, uint16_t index, uint8_t subindex)
 {
+    if (cm1e_drive_is_virtual(drive))
+        return NULL;
     if (!cm1e_drive_bridged(drive))
         return cm1e_device_entry(index, subindex);
     const cm1e_entry_t *entry = cm1e_bridge_entry(drive->bridge, cm1e_drive_index(drive, index), subindex);
@@ -152,6 +156,10 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
 {
     cm1e_drive_feedback_t *f = &drive->feedback;
     drive->now_ns = now_ns;
+    if (cm1e_drive_is_virtual(drive)) {
+        cm1e_drive_virtual_read(drive);
+        return;
+    }
     drive->watch = cm1e_bus_slave_watch(drive->bus, drive->position);
     cm1e_drive_mode_step(drive);
     f->fresh = bus_ok || drive->watch.fresh;
@@ -280,6 +288,10 @@ static int32_t safe_position(const cm1e_drive_t *drive)
 void cm1e_drive_write(cm1e_drive_t *drive)
 {
     const cm1e_drive_command_t *command = &drive->command;
+    if (cm1e_drive_is_virtual(drive)) {
+        cm1e_drive_virtual_write(drive);
+        return;
+    }
     if (command->reset && !drive->reset_before && drive->reset_phase == RESET_IDLE)
         cm1e_drive_reset_start(drive);
     drive->reset_before = command->reset;

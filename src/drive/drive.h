@@ -1,7 +1,8 @@
 /**
  * @file drive.h
  * One CiA 402 drive in one slave: its process data by name, its state machine, mode switching, homing, fault reset, and
- * faults in words. Counts and counts/s; units and motion belong to the axis. The cycle thread owns it.
+ * faults in words. Counts and counts/s; units and motion belong to the axis. The cycle thread owns it. A virtual axis and
+ * an encoder have a drive too, without a device (drive_virtual.c), so that the axis above is the same.
  *
  * Rules kept here whatever the caller asks: the drive goes to Operation enabled only with target position = actual
  * position and target velocity = 0; a fault reset is one short edge; nothing is re-enabled by itself after a fault.
@@ -73,15 +74,21 @@ typedef struct cm1e_drive_fault {
     bool motor_status_known;        /**< ... where this is TRUE */
 } cm1e_drive_fault_t;
 
+typedef struct cm1e_drive_encoder {
+    uint32_t counts;
+    bool valid;
+} cm1e_drive_encoder_t;
+
 /** In the order of use: first what every cycle looks at. */
 typedef struct cm1e_drive {
     cm1e_bus_t *bus;
     int64_t now_ns;
-    uint16_t position;              /**< slave */
+    uint16_t position;              /**< slave; 0: there is no device */
     cm1e_slave_watch_t watch;
     cm1e_drive_command_t command;
     cm1e_drive_feedback_t feedback;
     cm1e_drive_fault_t fault;       /**< latched; cleared by a successful reset */
+    cm1e_drive_encoder_t encoder;   /**< of an encoder, as the program has written it since the last cycle */
     /* private: drive_io.c, drive.c, drive_mode.c, drive_reset.c */
     cm1e_image_slot_t in_statusword, in_error, in_position, in_velocity, in_torque, in_digital, in_temperature, in_dc,
         in_mode;
@@ -155,6 +162,8 @@ static inline bool cm1e_drive_operational(const cm1e_drive_t *drive)
 {
     return !drive->watch.lost && (drive->watch.al_state == CM1E_AL_NONE || drive->watch.al_state == CM1E_AL_OP);
 }
+/** There is no device: a virtual axis, or an encoder. @rt any */
+static inline bool cm1e_drive_is_virtual(const cm1e_drive_t *drive) { return drive->position == 0; }
 /** The motor stands behind a bridge. @rt any */
 static inline bool cm1e_drive_bridged(const cm1e_drive_t *drive) { return drive->config->channel != 0; }
 /** On the wire, the index of an object that the dictionary of a first axis has at `index`; what is the device's and no

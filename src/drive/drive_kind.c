@@ -137,6 +137,18 @@ const cm1e_drive_kind_t cm1e_drive_kind_bridge = {
     .init = cm1e_drive_init_bridge, .step = cm1e_drive_bridge_step,
 };
 
+/* ---- no device --------------------------------------------------------------------------------------------------- */
+
+static const cm1e_drive_words_t virtual_words = {.states = cm1e_fsa_table};
+static const cm1e_drive_mode_t virtual_mode_rows[] = {
+    {.mode = CM1E_MODE_CSP, .abbreviation = "CSP", .words = &virtual_words, .target = NO_TARGET, .torque = true,
+     .holds_position = true, .ways = WAYS_ALL},
+};
+
+const cm1e_drive_kind_t cm1e_drive_kind_virtual = {
+    .name = "virtual axis", .modes = virtual_mode_rows, .mode_count = COUNT(virtual_mode_rows),
+};
+
 const cm1e_drive_mode_t *cm1e_drive_mode_row(const cm1e_drive_kind_t *kind, int8_t mode)
 {
     for (size_t i = 0; i < kind->mode_count; i++)

@@ -73,7 +73,7 @@ typedef struct cm1e_drive_kind {
     void (*step)(cm1e_drive_t *drive); /**< in every cycle, after the inputs; NULL: nothing */
 } cm1e_drive_kind_t;
 
-extern const cm1e_drive_kind_t cm1e_drive_kind_cm1e, cm1e_drive_kind_bridge;
+extern const cm1e_drive_kind_t cm1e_drive_kind_cm1e, cm1e_drive_kind_bridge, cm1e_drive_kind_virtual;
 /** Of a mode that is not known: no state, no torque, controlword 0000h. */
 extern const cm1e_drive_words_t cm1e_drive_words_unknown;
 

@@ -41,6 +41,11 @@ void cm1e_drive_mode_forget(cm1e_drive_t *drive);
 void cm1e_drive_reset_start(cm1e_drive_t *drive);
 void cm1e_drive_reset_step(cm1e_drive_t *drive);
 
+/* drive_virtual.c: without a device */
+cm1e_error_t cm1e_drive_init_virtual(cm1e_drive_t *drive);
+void cm1e_drive_virtual_read(cm1e_drive_t *drive);
+void cm1e_drive_virtual_write(cm1e_drive_t *drive);
+
 /* drive_bridge.c: what a motor behind a bridge has beside this, in drive_command.c, drive_digital.c ... */
 cm1e_error_t cm1e_drive_init_bridge(cm1e_drive_t *drive, cm1e_diag_t *diag);
 void cm1e_drive_bridge_step(cm1e_drive_t *drive);

@@ -7,6 +7,7 @@
 #include "description/expand.h"
 #include "description/sii.h"
 #include "device/bridge.h"
+#include "device/place.h"
 #include "generate/ec_extend.h"
 #include "generate/eni.h"
 #include "generate/esi.h"
@@ -146,7 +147,7 @@ static uint32_t place_of(const cm1e_bus_config_t *network, uint32_t axis, const 
         if (is_behind(&nodes[place], config))
             return place;
     switch (config->address_kind) {
-    case CM1E_ADDRESS_POSITION: return config->address > 0 ? config->address - 1u : axis;
+    case CM1E_ADDRESS_POSITION: return cm1e_axis_address(network, axis) - 1u;
     case CM1E_ADDRESS_ALIAS: return count;
     default: return UINT32_MAX;
     }
@@ -165,6 +166,8 @@ static cm1e_error_t find_nodes(node_t *nodes, uint32_t *count, const cm1e_bus_co
 {
     for (uint32_t axis = 0; axis < network->axis_count; axis++) {
         const cm1e_axis_config_t *config = &network->axes[axis];
+        if (!cm1e_axis_has_motor(config))
+            continue;
         const uint32_t place = place_of(network, axis, nodes, *count);
         node_t *node = place < network->axis_count ? &nodes[place] : NULL;
         if (!node || (node->axis && !is_behind(node, config)))
@@ -243,8 +246,8 @@ static cm1e_error_t describe_nodes(cm1e_eni_slave_t *slaves, cm1e_description_fi
 static cm1e_error_t generate_eni(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag)
 {
     const cm1e_bus_config_t *network = options->network;
-    if (!network || network->axis_count == 0)
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "an ENI describes a network: which axes are there?");
+    if (!network || cm1e_motors_before(network, network->axis_count) == 0)
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "an ENI describes a network: which axes with a motor are there?");
     cm1e_error_t error = cm1e_bus_config_check(network, diag);
     cm1e_eni_slave_t *slaves = calloc(network->axis_count, sizeof *slaves);
     node_t *nodes = calloc(network->axis_count, sizeof *nodes);

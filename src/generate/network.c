@@ -3,6 +3,7 @@
 
 #include "description/describe.h"
 #include "device/bridge.h"
+#include "device/place.h"
 #include "generate/file.h"
 #include "generate/live.h"
 
@@ -43,7 +44,7 @@ static const cm1e_axis_config_t *axis_of(const cm1e_bus_config_t *config, const 
         const uint16_t address = axis->address_kind == CM1E_ADDRESS_ALIAS         ? slave->alias
                                  : axis->address_kind == CM1E_ADDRESS_EXPLICIT_ID ? slave->explicit_id
                                                                                   : slave->position;
-        if (axis->address != address || address == 0)
+        if (!cm1e_axis_has_motor(axis) || axis->address != address || address == 0)
             continue;
         first = first ? first : axis;
         cm1e_slave_name_add(name, axis);

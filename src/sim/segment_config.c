@@ -1,4 +1,5 @@
 #include "device/bridge.h"
+#include "device/place.h"
 #include "sim/segment.h"
 #include "sim/slave.h"
 
@@ -9,11 +10,6 @@ typedef struct place {
     const cm1e_axis_config_t *axis;                        /* the first of the list */
     const cm1e_axis_config_t *channels[CM1E_BRIDGE_AXES];  /* behind a bridge */
 } place_t;
-
-static uint32_t position_of(const cm1e_axis_config_t *axis, uint32_t index)
-{
-    return axis->address ? axis->address : index + 1;
-}
 
 /* FALSE: somebody is there already, or there is no such connector. */
 static bool take_place(place_t *place, const cm1e_axis_config_t *axis)
@@ -46,9 +42,9 @@ static bool place_axes(const cm1e_bus_config_t *config, place_t *places, cm1e_di
 {
     for (uint32_t i = 0; i < config->axis_count; i++) {
         const cm1e_axis_config_t *axis = &config->axes[i];
-        if (axis->address_kind != CM1E_ADDRESS_POSITION)
+        if (!cm1e_axis_has_motor(axis) || axis->address_kind != CM1E_ADDRESS_POSITION)
             continue;
-        const uint32_t position = position_of(axis, i);
+        const uint32_t position = cm1e_axis_address(config, i);
         if (position > CM1E_MAX_SLAVES || !take_place(&places[position - 1], axis)) {
             cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
                           "the simulated segment has no place for axis %u at position %u: it is %s", i + 1, position,
@@ -58,7 +54,7 @@ static bool place_axes(const cm1e_bus_config_t *config, place_t *places, cm1e_di
     }
     uint32_t free_place = 0;
     for (uint32_t i = 0; i < config->axis_count; i++) {
-        if (config->axes[i].address_kind == CM1E_ADDRESS_POSITION)
+        if (!cm1e_axis_has_motor(&config->axes[i]) || config->axes[i].address_kind == CM1E_ADDRESS_POSITION)
             continue;
         while (places[free_place].axis)
             free_place++;
@@ -141,7 +137,9 @@ cm1e_sim_segment_t *cm1e_sim_segment_create(const cm1e_bus_config_t *config, cm1
         cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "no memory for the simulated segment");
         return NULL;
     }
-    const uint32_t count = last_place(places);
+    uint32_t count = last_place(places);
+    if (count == 0 && config->axis_count > 0) /* virtual axes only: frames need somebody to pass */
+        count = 1;
     for (uint32_t i = 0; i < count; i++)
         if (add_place(segment, config, &places[i], diag) != CM1E_OK) {
             cm1e_sim_segment_destroy(segment);

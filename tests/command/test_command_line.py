@@ -537,10 +537,49 @@ def check_wrong():
         faults.append("a file was written although its program was refused")
 
 
+MIXED = """\
+bus:
+  interface: sim
+axes:
+  - {name: line, type: virtual}
+  - {name: X}
+  - {name: wheel, type: encoder}
+  - {name: Y}
+"""
+
+
+def check_axes_without_a_motor(folder):
+    """Axes without a motor have no place on the bus: what goes to slaves leaves them out, or says so."""
+    bus, motors, empty = (os.path.join(folder, f"{name}.yaml") for name in ("mixed", "motors", "empty"))
+    for path, text in ((bus, MIXED), (motors, "".join(line for line in MIXED.splitlines(True) if "type" not in line)),
+                       (empty, MIXED.split("  - {name: X}")[0])):
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+    for words in (["scan"], ["status"]):
+        mixed = run("cm1e", *words, "-b", bus, "-i", "sim")
+        plain = run("cm1e", *words, "-b", motors, "-i", "sim")
+        expect(mixed.returncode == 0 and mixed.stdout == plain.stdout, f"{words[0]} beside virtual axes", mixed)
+    for words in (["generate", "eni", "-o", "-"], ["generate", "eni", "-o", "-", "-i", "sim"]):
+        mixed = run("cm1e", *words, "-b", bus)
+        expect(mixed.returncode == 0 and mixed.stdout == run("cm1e", *words, "-b", motors).stdout,
+               "ENI beside virtual axes", mixed)
+    moved = run("cm1e", "move", "-b", bus, "-i", "sim", "Y", "--by", "1")
+    expect(moved.returncode == 0 and "Y: move done" in moved.stdout, "move beside virtual axes", moved)
+    for words in (["move", "line", "--by", "1"], ["home", "line"], ["move", "1", "--by", "1"], ["move", "--by", "1"],
+                  ["cml", "--axis", "line", "?99.1"], ["move", "wheel", "--by", "1"]):
+        refused = run("cm1e", *words, "-b", bus, "-i", "sim")
+        expect(refused.returncode != 0 and "no motor" in refused.stderr, f"{words} without a motor", refused)
+    expect(run("cm1e", "scan", "-b", empty, "-i", "sim").returncode == 0, "scan with virtual axes only",
+           run("cm1e", "scan", "-b", empty, "-i", "sim"))
+    eni = run("cm1e", "generate", "eni", "-b", empty, "-o", "-")
+    expect(eni.returncode == WRONG_USE and "axes with a motor" in eni.stderr, "ENI of virtual axes only", eni)
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         check_good(folder)
         check_bridge(folder)
+        check_axes_without_a_motor(folder)
         check_examples(folder)
     check_wrong()
     print("\n".join(faults) or f"the command line: good use and {len(WRONG)} kinds of wrong use")

@@ -155,6 +155,42 @@ static void test_default_position_counts_as_the_place_in_the_list(void)
     expect_good();
 }
 
+static void test_axes_without_a_motor_take_no_place(void)
+{
+    config.axes[0].type = CM1E_AXIS_VIRTUAL;
+    config.axes[1].address = 1;
+    expect_good();
+    config.axes[1].type = CM1E_AXIS_ENCODER;
+    expect_wrong("axis axis2: position is given");
+    config.axes[1].address = 0;
+    expect_good();
+    config.axes[1].homing.timeout_s = 5;
+    expect_wrong("homing");
+    config.axes[1].homing.timeout_s = 0;
+    config.axes[0].type = (cm1e_axis_type_t)3;
+    expect_wrong("type is 3");
+}
+
+static void test_followers_have_room_for_so_many_points_and_a_way_to_stop(void)
+{
+    config.axes[1].cam_points = 4096;
+    config.axes[1].coupling_stop = CM1E_COUPLING_STOP_KEEP_RATIO;
+    config.axes[1].encoder_filter_s = 0.01;
+    expect_good();
+    config.axes[1].cam_points = 4097;
+    expect_wrong("cam_points is 4097");
+    config.axes[1].cam_points = 1;
+    expect_wrong("cam_points is 1");
+    config.axes[1].cam_points = 0;
+    config.axes[1].coupling_stop = (cm1e_coupling_stop_t)3;
+    expect_wrong("coupling_stop is 3");
+    config.axes[1].coupling_stop = CM1E_COUPLING_STOP_THIS;
+    config.axes[1].encoder_filter_s = -0.01;
+    expect_wrong("encoder_filter_s is -0.01");
+    config.axes[1].encoder_filter_s = NAN;
+    expect_wrong("encoder_filter_s is not a finite number");
+}
+
 static void test_names_are_single_defaults_included(void)
 {
     strcpy(config.axes[0].name, "axis2");
@@ -409,6 +445,8 @@ int main(void)
     RUN_TEST(test_enumerations_out_of_range_are_refused);
     RUN_TEST(test_addresses_are_in_range_and_single);
     RUN_TEST(test_default_position_counts_as_the_place_in_the_list);
+    RUN_TEST(test_axes_without_a_motor_take_no_place);
+    RUN_TEST(test_followers_have_room_for_so_many_points_and_a_way_to_stop);
     RUN_TEST(test_names_are_single_defaults_included);
     RUN_TEST(test_numbers_that_are_none_or_absurd_are_refused);
     RUN_TEST(test_only_positions_may_be_negative);

@@ -168,6 +168,26 @@ static void test_three_axes_example_loads(void)
     }
 }
 
+static void test_documented_axes_without_a_motor(void)
+{
+    char *text = documented_example(2);
+    load(text);
+    free(text);
+    const cm1e_axis_config_t *line = &config.axes[0], *wheel = &config.axes[1], *knife = &config.axes[2];
+    TEST_ASSERT_EQUAL(3, config.axis_count);
+    TEST_ASSERT_EQUAL(CM1E_AXIS_VIRTUAL, line->type);
+    TEST_ASSERT_EQUAL(0, line->address);
+    ASSERT_DOUBLE(360, line->modulo_range);
+    ASSERT_DOUBLE(1080, line->max_velocity);
+    TEST_ASSERT_EQUAL(CM1E_AXIS_ENCODER, wheel->type);
+    ASSERT_DOUBLE(20.48, wheel->counts_per_unit);
+    ASSERT_DOUBLE(0.004, wheel->encoder_filter_s);
+    TEST_ASSERT_EQUAL(CM1E_AXIS_MOTOR, knife->type);
+    TEST_ASSERT_EQUAL(1, knife->address); /* those before it are not on the bus */
+    TEST_ASSERT_EQUAL(361, knife->cam_points);
+    TEST_ASSERT_EQUAL(CM1E_COUPLING_STOP_KEEP_RATIO, knife->coupling_stop);
+}
+
 static void test_one_software_limit_leaves_the_other_side_open(void)
 {
     load("axes: [{software_limits: {positive: 0}}, {software_limits: {negative: -3.5}}, {software_limits: {}}]");
@@ -183,6 +203,8 @@ static void test_smallest_file_gives_defaults(void)
 {
     cm1e_bus_config_t expected;
     cm1e_bus_config_init(&expected, NULL, 2);
+    expected.axes[0].address = 1;
+    expected.axes[1].address = 2;
     load("axes: [{}, {}]");
     TEST_ASSERT_EQUAL_MEMORY(&expected, &config, sizeof config);
     TEST_ASSERT_EQUAL_STRING("sim", config.interface_name);
@@ -195,6 +217,7 @@ static void test_unset_fields_are_zero_after_an_earlier_load(void)
     memset(&config, 0xA5, sizeof config);
     cm1e_bus_config_t expected;
     cm1e_bus_config_init(&expected, "sim", 1);
+    expected.axes[0].address = 1;
     load("axes:\n- {}\n");
     TEST_ASSERT_EQUAL_MEMORY(&expected, &config, sizeof config);
 }
@@ -334,6 +357,7 @@ int main(void)
     RUN_TEST(test_example_files_are_loaded);
     RUN_TEST(test_documented_example_fills_the_other_addresses_and_units);
     RUN_TEST(test_three_axes_example_loads);
+    RUN_TEST(test_documented_axes_without_a_motor);
     RUN_TEST(test_one_software_limit_leaves_the_other_side_open);
     RUN_TEST(test_smallest_file_gives_defaults);
     RUN_TEST(test_unset_fields_are_zero_after_an_earlier_load);

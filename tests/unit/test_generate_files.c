@@ -280,6 +280,8 @@ static void test_eni_needs_a_network_whose_places_are_known(void)
 
 static void test_axes_in_any_order_stand_in_the_eni_in_the_order_of_the_wire(void)
 {
+    for (int i = 0; i < 3; i++)
+        network.axes[i].address = (uint16_t)(i + 1);
     generate(&file, &(cm1e_generate_options_t){.format = CM1E_FILE_ENI, .network = &network});
     const cm1e_axis_config_t first = network.axes[0];
     network.axes[0] = network.axes[2];

@@ -1,0 +1,33 @@
+/**
+ * @file place.h
+ * Where the configuration has an axis on the wire. Pure functions of the configuration.
+ */
+#ifndef CM1E_DEVICE_PLACE_H
+#define CM1E_DEVICE_PLACE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "cm1e/config.h"
+
+/** FALSE: it is virtual, or an encoder, and has no slave. */
+static inline bool cm1e_axis_has_motor(const cm1e_axis_config_t *axis) { return axis->type == CM1E_AXIS_MOTOR; }
+
+/** Motors among the first `count` entries of the list. */
+static inline uint32_t cm1e_motors_before(const cm1e_bus_config_t *config, uint32_t count)
+{
+    uint32_t motors = 0;
+    for (uint32_t i = 0; i < count && i < CM1E_MAX_AXES; i++)
+        motors += cm1e_axis_has_motor(&config->axes[i]);
+    return motors;
+}
+
+/** What the slave of an axis is found by; of a position that is not stated its place among the motors of the list. */
+static inline uint16_t cm1e_axis_address(const cm1e_bus_config_t *config, uint32_t index)
+{
+    const cm1e_axis_config_t *axis = &config->axes[index];
+    const bool stated = axis->address != 0 || axis->address_kind != CM1E_ADDRESS_POSITION;
+    return stated || !cm1e_axis_has_motor(axis) ? axis->address : (uint16_t)(cm1e_motors_before(config, index) + 1);
+}
+
+#endif

@@ -1,0 +1,75 @@
+/* A drive without a device. That of a virtual axis is enabled when it is told to be, and is where its target is; that
+ * of an encoder shows what the program has written, and is never enabled. */
+#include "drive/drive_kind.h"
+#include "drive/drive_private.h"
+
+/* UG 6.1.3. Nobody has to wait for motor power. */
+enum {
+    STATUSWORD_NEVER = STATUSWORD_REMOTE | STATUSWORD_SWITCH_ON_DISABLED,
+    STATUSWORD_OFF = STATUSWORD_REMOTE | STATUSWORD_QUICK_STOP | STATUSWORD_VOLTAGE_ENABLED |
+                     STATUSWORD_READY_TO_SWITCH_ON,
+    STATUSWORD_ON = STATUSWORD_OFF | STATUSWORD_SWITCHED_ON | STATUSWORD_OPERATION_ENABLED | STATUSWORD_BIT12,
+};
+
+cm1e_error_t cm1e_drive_init_virtual(cm1e_drive_t *drive)
+{
+    drive->kind = &cm1e_drive_kind_virtual;
+    drive->mode = drive->command.mode = CM1E_MODE_CSP;
+    drive->wanted = drive->shown = cm1e_drive_mode_row(drive->kind, CM1E_MODE_CSP);
+    drive->words = drive->wanted->words;
+    drive->position_least = INT32_MIN;
+    drive->position_most = INT32_MAX;
+    drive->velocity_unit = 1;
+    drive->feedback = drive->config->type == CM1E_AXIS_ENCODER
+                          ? (cm1e_drive_feedback_t){.state = SWITCH_ON_DISABLED, .statusword = STATUSWORD_NEVER}
+                          : (cm1e_drive_feedback_t){.state = READY_TO_SWITCH_ON, .statusword = STATUSWORD_OFF,
+                                                    .mode = CM1E_MODE_CSP, .voltage = true};
+    return CM1E_OK;
+}
+
+/* Its velocity is the difference of two positions, as that of a motor that shows none. */
+static void read_encoder(cm1e_drive_t *drive)
+{
+    cm1e_drive_feedback_t *f = &drive->feedback;
+    const int64_t elapsed_ns = drive->now_ns - drive->read_ns;
+    const int32_t way = (int32_t)(drive->encoder.counts - (uint32_t)f->position);
+    f->online = f->fresh = drive->encoder.valid;
+    drive->encoder.valid = false; /* written anew in every cycle, or it is not there */
+    if (!f->fresh)
+        return;
+    if (drive->seen && elapsed_ns > 0) {
+        const int64_t velocity = (int64_t)way * INT64_C(1000000000) / elapsed_ns;
+        f->velocity = (int32_t)(velocity > INT32_MAX ? INT32_MAX : velocity < INT32_MIN ? INT32_MIN : velocity);
+    }
+    f->position = (int32_t)drive->encoder.counts;
+    drive->read_ns = drive->now_ns;
+    drive->seen = true;
+}
+
+void cm1e_drive_virtual_read(cm1e_drive_t *drive)
+{
+    cm1e_drive_feedback_t *f = &drive->feedback;
+    if (drive->config->type == CM1E_AXIS_ENCODER) {
+        read_encoder(drive);
+        return;
+    }
+    f->online = f->fresh = drive->seen = true;
+    f->enabled = drive->operates = drive->torque;
+    f->state = drive->torque ? OPERATION_ENABLED : READY_TO_SWITCH_ON;
+    f->statusword = drive->torque ? STATUSWORD_ON : STATUSWORD_OFF;
+    f->position = drive->target_position;
+    f->velocity = drive->torque ? drive->command.target_velocity : 0;
+    drive->read_ns = drive->now_ns;
+}
+
+void cm1e_drive_virtual_write(cm1e_drive_t *drive)
+{
+    const cm1e_drive_command_t *command = &drive->command;
+    if (command->reset && !drive->reset_before)
+        drive->fault = (cm1e_drive_fault_t){0};
+    drive->reset_before = command->reset;
+    drive->torque = command->enable && drive->config->type == CM1E_AXIS_VIRTUAL;
+    if (drive->torque && drive->feedback.enabled)
+        drive->target_position = command->target_position;
+    drive->feedback.enabled = drive->feedback.enabled && drive->torque;
+}
