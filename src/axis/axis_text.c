@@ -202,8 +202,8 @@ static void refused_position_text(const cm1e_axis_t *axis, char *text, size_t si
 static void refused_virtual_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     if (axis->config->type == CM1E_AXIS_ENCODER)
-        snprintf(text, size, "Axis \"%s\" is an encoder (type: encoder): it is neither enabled nor moved. Others follow "
-                 "its actual value, and MC_SetPosition says where it is.", axis->config->name);
+        snprintf(text, size, "Axis \"%s\" is an encoder (type: encoder): it is neither enabled nor moved. Others "
+                 "follow its actual value, and MC_SetPosition says where it is.", axis->config->name);
     else
         snprintf(text, size, "Axis \"%s\" is virtual (type: virtual): without a motor there is no homing by a drive or "
                  "a switch, and there are no digital signals, probes, torque, objects of a drive or CML. "

@@ -219,7 +219,8 @@ static cm1e_error_t check_extra(const cm1e_bus_t *bus, cm1e_diag_t *diag)
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
         if (!cm1e_bus_has_motors(slave) || is_used(slave))
             continue;
-        snprintf(problem, sizeof problem, "Slave %u is a %s that is extra: %u axes with a motor are configured and none is %sit.",
+        snprintf(problem, sizeof problem,
+                 "Slave %u is a %s that is extra: %u axes with a motor are configured and none is %sit.",
                  slave->info.position, slave->info.is_cm1e ? "CM1-E" : "Cool MUSCLE Bridge",
                  cm1e_motors_before(&bus->config, bus->config.axis_count),
                  slave->info.is_cm1e ? "" : "behind ");

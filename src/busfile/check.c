@@ -3,22 +3,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "busfile/busfile.h"
+#include "busfile/check.h"
 #include "device/bridge.h"
 #include "device/place.h"
 #include "device/unit.h"
 
-/* Every check returns FALSE with the problem filled. Paths and key names are those of a bus file; a configuration made
- * by hand has the same names in other places. */
-typedef struct check {
-    const cm1e_bus_config_t *config;
-    cm1e_busfile_problem_t *problem;
-    const cm1e_axis_config_t *axis; /* the axis being checked */
-    uint32_t index;
-    double counts_per_unit;
-    double most_velocity; /* counts/s of the axis */
-    char name[CM1E_NAME_LENGTH + 8];
-} check_t;
 
 __attribute__((format(printf, 3, 4)))
 static bool bus_wrong(const check_t *check, const char *key, const char *format, ...)
@@ -32,8 +21,7 @@ static bool bus_wrong(const check_t *check, const char *key, const char *format,
     return false;
 }
 
-__attribute__((format(printf, 3, 4)))
-static bool axis_wrong(const check_t *check, const char *key, const char *format, ...)
+bool cm1e_busfile_axis_wrong(const check_t *check, const char *key, const char *format, ...)
 {
     snprintf(check->problem->path, sizeof check->problem->path, "axes[%u].%s", check->index, key);
     int length = snprintf(check->problem->text, sizeof check->problem->text, "axis %s: %s ", check->name, key);
@@ -576,78 +564,12 @@ static bool check_channel(const check_t *check)
            axis_wrong(check, "channel", "is %u; expected 1 ... %d", check->axis->channel, CM1E_BRIDGE_AXES);
 }
 
-/* ---- without a motor --------------------------------------------------------------------------------------------- */
-
-static bool any_input(const cm1e_input_config_t *inputs)
-{
-    return inputs->limit_positive || inputs->limit_negative || inputs->home || inputs->limits_normally_closed ||
-           inputs->home_normally_closed;
-}
-
-static bool any_homing(const cm1e_homing_config_t *homing)
-{
-    return homing->method != 0 || homing->offset != 0 || homing->velocity != 0 || homing->acceleration != 0 ||
-           homing->torque != 0 || homing->timeout_s != 0;
-}
-
-static bool any_sim(const cm1e_sim_axis_config_t *sim)
-{
-    return sim->load_inertia != 0 || sim->friction != 0 || sim->viscous_friction != 0 || sim->stop_positive != 0 ||
-           sim->stop_negative != 0 || sim->no_stops || sim->sensor_input2 != 0 || sim->sensor_input3 != 0 ||
-           sim->no_sensors;
-}
-
-/* What means nothing without a motor; of an encoder also what is said of motions. */
-static bool check_without_motor(const check_t *check)
-{
-    const cm1e_axis_config_t *axis = check->axis;
-    const bool encoder = axis->type == CM1E_AXIS_ENCODER, by_position = axis->address_kind == CM1E_ADDRESS_POSITION;
-    const struct {
-        const char *key;
-        bool given;
-    } keys[] = {
-        {"position", by_position && axis->address != 0},
-        {"alias", axis->address_kind == CM1E_ADDRESS_ALIAS},
-        {"explicit_id", axis->address_kind == CM1E_ADDRESS_EXPLICIT_ID},
-        {"channel", axis->channel != 0},
-        {"motor", axis->motor[0] != '\0'},
-        {"k37", axis->k37_stated},
-        {"firmware", axis->firmware[0] != '\0'},
-        {"mapping", axis->mapping != CM1E_MAPPING_DYNAMIC},
-        {"motion", axis->motion != CM1E_MOTION_HOST},
-        {"limits.position_lag", axis->max_position_lag != 0},
-        {"backlash.gap", axis->backlash != 0},
-        {"backlash.velocity", axis->backlash_velocity != 0},
-        {"inputs", any_input(&axis->inputs)},
-        {"homing", any_homing(&axis->homing)},
-        {"wire.velocity_unit", axis->velocity_unit_stated},
-        {"wire.acceleration_unit", axis->acceleration_in_kpulses},
-        {"sim", any_sim(&axis->sim)},
-        {"limits.velocity", encoder && axis->max_velocity != 0},
-        {"limits.acceleration", encoder && axis->max_acceleration != 0},
-        {"limits.deceleration", encoder && axis->max_deceleration != 0},
-        {"limits.jerk", encoder && axis->max_jerk != 0},
-        {"software_limits", encoder && (axis->software_limit_negative != 0 || axis->software_limit_positive != 0)},
-        {"jog.slow", encoder && axis->jog_slow != 0},
-        {"jog.fast", encoder && axis->jog_fast != 0},
-        {"table_profiles", encoder && axis->table_profiles},
-        {"cam_points", encoder && axis->cam_points != 0},
-        {"coupling_stop", encoder && axis->coupling_stop != CM1E_COUPLING_STOP_THIS},
-    };
-    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
-        if (keys[i].given)
-            return axis_wrong(check, keys[i].key, encoder ? "is given, and the axis is an encoder, which has no slave "
-                              "on the bus and makes no motions; expected no such key"
-                              : "is given, and the axis is virtual, without a motor on the bus; expected no such key");
-    return true;
-}
-
 /* ---- all together ------------------------------------------------------------------------------------------------ */
 
 static bool check_device(const check_t *check)
 {
     if (!cm1e_axis_has_motor(check->axis))
-        return check_without_motor(check);
+        return cm1e_busfile_check_without_motor(check);
     return check_channel(check) && check_address(check) && check_motor(check) && check_bridge(check) &&
            check_firmware(check);
 }

@@ -1,8 +1,8 @@
 /**
  * @file drive.h
  * One CiA 402 drive in one slave: its process data by name, its state machine, mode switching, homing, fault reset, and
- * faults in words. Counts and counts/s; units and motion belong to the axis. The cycle thread owns it. A virtual axis and
- * an encoder have a drive too, without a device (drive_virtual.c), so that the axis above is the same.
+ * faults in words. Counts and counts/s; units and motion belong to the axis. The cycle thread owns it. A virtual axis
+ * and an encoder have a drive too, without a device (drive_virtual.c), so that the axis above is the same.
  *
  * Rules kept here whatever the caller asks: the drive goes to Operation enabled only with target position = actual
  * position and target velocity = 0; a fault reset is one short edge; nothing is re-enabled by itself after a fault.

@@ -247,7 +247,8 @@ static cm1e_error_t generate_eni(cm1e_file_t *file, const cm1e_generate_options_
 {
     const cm1e_bus_config_t *network = options->network;
     if (!network || cm1e_motors_before(network, network->axis_count) == 0)
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "an ENI describes a network: which axes with a motor are there?");
+        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
+                             "an ENI describes a network: which axes with a motor are there?");
     cm1e_error_t error = cm1e_bus_config_check(network, diag);
     cm1e_eni_slave_t *slaves = calloc(network->axis_count, sizeof *slaves);
     node_t *nodes = calloc(network->axis_count, sizeof *nodes);
