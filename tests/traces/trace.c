@@ -13,9 +13,11 @@
 bench_t bench;
 static trace_t trace;
 static cm1e_bus_t *bus;
-static cm1e_axis_t *axis;
+enum { AXES = 1 + TRACE_MASTERS };
+static cm1e_axis_t *axes[AXES]; /* the axis, then its masters */
+static int axis_count;
 static int64_t start_ns, number;
-static double set_position, set_velocity;
+static double set_position[AXES], set_velocity[AXES];
 static void (*configure_next)(cm1e_axis_config_t *config);
 
 static void require(bool condition, const char *what)
@@ -38,51 +40,62 @@ static void inputs(void)
 {
     const int64_t planned_ns = start_ns + number++ * 1000000;
     cm1e_scan_time_set(planned_ns);
-    if (!axis)
+    if (axis_count == 0)
         return;
     cm1e_clock_sleep_until(cm1e_bus_clock(bus), planned_ns);
     const cm1e_error_t received = cm1e_bus_receive(bus);
-    cm1e_axis_inputs(axis, received, cm1e_bus_health(bus), planned_ns);
+    for (int i = 0; i < axis_count; i++)
+        cm1e_axis_inputs(axes[i], received, cm1e_bus_health(bus), planned_ns);
 }
 
 static void outputs(void)
 {
-    if (!axis)
+    if (axis_count == 0)
         return;
-    cm1e_axis_outputs(axis);
+    for (int i = 0; i < axis_count; i++)
+        cm1e_axis_outputs(axes[i]);
     cm1e_bus_send(bus);
-    cm1e_axis_get(axis, &bench.info);
-    set_position = bench.info.set_position;
-    set_velocity = bench.info.set_velocity;
+    for (int i = axis_count - 1; i >= 0; i--) {
+        cm1e_axis_get(axes[i], &bench.info);
+        set_position[i] = bench.info.set_position;
+        set_velocity[i] = bench.info.set_velocity;
+    }
 }
 
 void trace_configure(void (*configure)(cm1e_axis_config_t *config)) { configure_next = configure; }
 
-static void open_axis(void)
+static void open_axes(int count)
 {
     static cm1e_bus_config_t config;
     cm1e_diag_t diag = {0};
-    describe_axes(&config, 1);
-    config.axes[0].max_acceleration = config.axes[0].max_deceleration = 200;
-    config.axes[0].max_jerk = 4000;
+    describe_axes(&config, (uint32_t)count);
+    for (int i = 0; i < count; i++) {
+        config.axes[i].max_acceleration = config.axes[i].max_deceleration = 200;
+        config.axes[i].max_jerk = 4000;
+        if (i > 0)
+            config.axes[i].sim.stop_negative = config.axes[i].sim.stop_positive = 0;
+    }
     if (configure_next)
         configure_next(&config.axes[0]);
     configure_next = NULL;
     require(cm1e_bus_open(&bus, &config, &diag) == CM1E_OK, diag.text);
     require(cm1e_bus_start(bus, &diag) == CM1E_OK, diag.text);
-    require(cm1e_axis_create(&axis, bus, 0, &diag) == CM1E_OK, diag.text);
-    bench.axis = cm1e_axis_reference(axis);
+    for (axis_count = 0; axis_count < count; axis_count++)
+        require(cm1e_axis_create(&axes[axis_count], bus, (uint32_t)axis_count, &diag) == CM1E_OK, diag.text);
+    bench.axis = cm1e_axis_reference(axes[0]);
+    for (int i = 1; i < count; i++)
+        bench.masters[i - 1] = cm1e_axis_reference(axes[i]);
     start_ns = cm1e_clock_now(cm1e_bus_clock(bus));
 }
 
-static void close_axis(void)
+static void close_axes(void)
 {
-    if (!axis)
+    if (axis_count == 0)
         return;
     cm1e_bus_stop(bus);
-    cm1e_axis_destroy(axis);
+    while (axis_count > 0)
+        cm1e_axis_destroy(axes[--axis_count]);
     cm1e_bus_close(bus);
-    axis = NULL;
     bus = NULL;
 }
 
@@ -144,12 +157,23 @@ void trace_value(const char *type, const void *fb, const char *name, const char 
 
 void trace_signal(const char *name, const BOOL *signal) { add_lane(name, signal); }
 
-void trace_curves(bool position, bool velocity)
+static void add_curves(const char *whose, int of, bool position, bool velocity)
 {
+    char name[48];
+    snprintf(name, sizeof name, "%s velocity", whose);
     if (velocity)
-        add_curve("set velocity", "u/s", BLOCK_LREAL, &set_velocity);
+        add_curve(name, "u/s", BLOCK_LREAL, &set_velocity[of]);
+    snprintf(name, sizeof name, "%s position", whose);
     if (position)
-        add_curve("set position", "u", BLOCK_LREAL, &set_position);
+        add_curve(name, "u", BLOCK_LREAL, &set_position[of]);
+}
+
+void trace_curves(bool position, bool velocity) { add_curves(axis_count > 1 ? "slave" : "set", 0, position, velocity); }
+
+void trace_master_curves(int master, bool position, bool velocity)
+{
+    static const char *const names[TRACE_MASTERS] = {"master", "second master"};
+    add_curves(names[master], 1 + master, position, velocity);
 }
 
 static double value_of(const trace_curve_t *curve)
@@ -189,11 +213,11 @@ void trace_begin_without_axis(const char *block, const char *about)
     inputs();
 }
 
-void trace_begin_disabled(const char *block, const char *about)
+static void begin_disabled(const char *block, const char *about, int count)
 {
     trace_begin_without_axis(block, about);
     trace.has_axis = true;
-    open_axis();
+    open_axes(count);
     for (int i = 0; i < 50; i++) {
         inputs();
         outputs();
@@ -201,18 +225,35 @@ void trace_begin_disabled(const char *block, const char *about)
     inputs();
 }
 
-void trace_begin(const char *block, const char *about)
+void trace_begin_disabled(const char *block, const char *about) { begin_disabled(block, about, 1); }
+
+static void call_power(void)
 {
-    trace_begin_disabled(block, about);
-    bench.power = (MC_Power_t){.Axis = &bench.axis, .Enable = TRUE, .EnablePositive = TRUE, .EnableNegative = TRUE};
-    for (int i = 0; i < 5000 && (!bench.power.Status || i < 300); i++) {
+    if (bench.power.Axis)
         MC_Power(&bench.power);
+    for (int i = 0; i < TRACE_MASTERS; i++)
+        if (bench.master_power[i].Axis)
+            MC_Power(&bench.master_power[i]);
+}
+
+void trace_begin_with_masters(const char *block, const char *about, int masters)
+{
+    begin_disabled(block, about, 1 + masters);
+    bench.power = (MC_Power_t){.Axis = &bench.axis, .Enable = TRUE, .EnablePositive = TRUE, .EnableNegative = TRUE};
+    for (int i = 0; i < masters; i++) {
+        bench.master_power[i] = bench.power;
+        bench.master_power[i].Axis = &bench.masters[i];
+    }
+    for (int i = 0; i < 5000 && (!bench.power.Status || i < 300); i++) {
+        call_power();
         outputs();
         inputs();
     }
     require(bench.power.Status, "the axis does not come on");
-    MC_Power(&bench.power);
+    call_power();
 }
+
+void trace_begin(const char *block, const char *about) { trace_begin_with_masters(block, about, 0); }
 
 void trace_scan(void)
 {
@@ -220,8 +261,7 @@ void trace_scan(void)
     record();
     bench.scan++;
     inputs();
-    if (bench.power.Axis)
-        MC_Power(&bench.power);
+    call_power();
 }
 
 static const char *folder;
@@ -230,13 +270,13 @@ void trace_end(void)
 {
     outputs();
     require(trace_draw(&trace, folder), "its diagram cannot be written");
-    close_axis();
+    close_axes();
 }
 
 int main(int argument_count, char **arguments)
 {
-    const scenario_t *const files[] = {motion_scenarios, administrative_scenarios, homing_scenarios,
-                                       bridge_scenarios, standard_scenarios};
+    const scenario_t *const files[] = {motion_scenarios, multi_axis_scenarios, administrative_scenarios,
+                                       homing_scenarios, bridge_scenarios, standard_scenarios};
     if (argument_count < 2) {
         fprintf(stderr, "usage: %s FOLDER [BLOCK]\nDraws the timing diagrams of docs/blocks/ there.\n", *arguments);
         return EXIT_FAILURE;

@@ -11,10 +11,12 @@
 #include "block_table.h"
 #include "cm1e/config.h"
 
-/** The one simulated axis of a scenario: 1000 counts a unit, hard stops 10 u to either side. */
+/** The one simulated axis of a scenario: 1000 counts a unit, hard stops 10 u to either side. With masters, the axis is
+ *  their slave; the masters are enabled, and have no hard stops. */
+enum { TRACE_MASTERS = 2 };
 typedef struct bench {
-    AXIS_REF_t axis;
-    MC_Power_t power;
+    AXIS_REF_t axis, masters[TRACE_MASTERS];
+    MC_Power_t power, master_power[TRACE_MASTERS];
     cm1e_axis_info_t info;
     int scan; /**< of 1 ms, 0 at the begin of the recording */
 } bench_t;
@@ -25,6 +27,8 @@ extern bench_t bench;
 void trace_begin(const char *block, const char *about);
 /** The same with the axis in Disabled, and MC_Power left to the scenario. */
 void trace_begin_disabled(const char *block, const char *about);
+/** As trace_begin(), with so many masters. */
+void trace_begin_with_masters(const char *block, const char *about, int masters);
 /** The same without an axis, for blocks that need none. */
 void trace_begin_without_axis(const char *block, const char *about);
 /** Changes the configuration of the axis of the next scenario, before it begins. */
@@ -38,6 +42,8 @@ void trace_value(const char *type, const void *fb, const char *member, const cha
 void trace_signal(const char *name, const BOOL *signal);
 /** Which curves of the axis are drawn; velocity if nothing is said. */
 void trace_curves(bool position, bool velocity);
+/** The same of a master, before those of the axis. */
+void trace_master_curves(int master, bool position, bool velocity);
 /** The scan is over: axis, bus and recording go on by 1 ms. */
 void trace_scan(void);
 /** Ends the recording and writes the diagram. */
@@ -50,6 +56,9 @@ void simulate(const char *line);
 static inline BOOL during(int begin, int end) { return bench.scan >= begin && bench.scan < end; }
 
 #define AXIS .Axis = &bench.axis
+#define MASTER .Axis = &bench.masters[0]
+#define SLAVE .Slave = &bench.axis
+#define MASTER_AND_SLAVE .Master = &bench.masters[0], SLAVE
 /** The scans of a scenario: its body is a program. */
 #define UNTIL(END) for (; bench.scan < (END); trace_scan())
 
@@ -58,8 +67,8 @@ typedef struct scenario {
     const char *name;
     void (*run)(void);
 } scenario_t;
-extern const scenario_t motion_scenarios[], administrative_scenarios[], homing_scenarios[], bridge_scenarios[],
-    standard_scenarios[];
+extern const scenario_t motion_scenarios[], multi_axis_scenarios[], administrative_scenarios[], homing_scenarios[],
+    bridge_scenarios[], standard_scenarios[];
 
 /* ---- the parts that only the recording and the drawing share ---------------------------------------------------- */
 
