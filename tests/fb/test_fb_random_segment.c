@@ -27,7 +27,7 @@ typedef struct other {
 
 static struct bench {
     cm1e_bus_t *bus;
-    MC_Power_t power;
+    MC_Power_t powers[1];
     cm1e_sim_segment_t *segment;
     cm1e_axis_info_t info;
     int64_t start_ns, disturbed_until;
@@ -51,7 +51,7 @@ static void cycle_begin(void)
     for (int i = 0; i < bench.other_count; i++)
         cm1e_axis_inputs(bench.others[i].axis, received, cm1e_bus_health(bench.bus), planned_ns);
     judge_cycle();
-    MC_Power(&bench.power);
+    MC_Power(&bench.powers[0]);
     judged.state = judged.axis->state;
     play_others();
 }
@@ -103,6 +103,12 @@ static bool has_torque(void)
     return probe().torque_on && (!m || m->state == OPERATION_ENABLED || m->state == SWITCHED_ON);
 }
 static bool is_deaf(void) { return cm1e_bus_health(bench.bus) != CM1E_OK; }
+
+static bool is_shifted(const cm1e_axis_t *slave)
+{
+    (void)slave;
+    return false;
+}
 
 /* ---- faults ------------------------------------------------------------------------------------------------------ */
 
@@ -343,7 +349,7 @@ static void prepare(unsigned seed, bool bridge)
     judged.reset_asked = false;
     judged.number = 0;
     watched.ours = false;
-    bench.power = (MC_Power_t){.Axis = &judged.reference, .EnablePositive = TRUE, .EnableNegative = TRUE};
+    bench.powers[0] = (MC_Power_t){.Axis = &judged.reference, .EnablePositive = TRUE, .EnableNegative = TRUE};
     bench.start_ns = cm1e_clock_now(cm1e_bus_clock(bench.bus));
     begin_blocks();
     begin_program();

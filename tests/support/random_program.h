@@ -1,7 +1,7 @@
 /**
  * @file random_program.h
- * A program that does anything with all blocks of one axis, and what must hold whatever it does. Needs a bench before
- * it, with cycle_begin(), cycle_end(), make(), `bench.power`; and the test program defines what the device does.
+ * A program that does anything with all blocks of some axes, and what must hold whatever it does. Needs a bench before
+ * it, with cycle_begin(), cycle_end(), make(), `bench.powers`; and the test program defines what the devices do.
  * Include it once in a test program.
  */
 #ifndef CM1E_TESTS_RANDOM_PROGRAM_H
@@ -15,22 +15,36 @@
 
 /** Faults of this cycle, before it. */
 static void act_on_device(void);
-/** The power stage is on: the motor has torque. */
+/** The power stage is on: the motor of the axis judged_at has torque. */
 static bool has_torque(void);
 /** Nobody can tell the drive anything at present. */
 static bool is_deaf(void);
 static void judge_motor(void);
+/** Its master's positions are shifted, or have been. */
+static bool is_shifted(const cm1e_axis_t *slave);
 /** The time passes in which nothing is sent. */
 static void time_passes(int64_t time_ns);
 
-static instance_t instances[BLOCKS_MOST];
+static instance_t instances[INSTANCES_MOST];
 static int count;
-static ranges_t ranges;
+static int axis_count = 1;
 static MC_TP_REF positions;
 static MC_TV_REF velocities;
 static MC_TA_REF accelerations;
-static unsigned long long cycles_total, done_total, edges_total;
+static MC_CAM_POINT points[8];
+static MC_CAM_REF cam = {.Points = points};
+static AXIS_REF_t named[JUDGED_MOST + 1]; /**< what a block may name as a master; the last one is none */
+static unsigned long long cycles_total, done_total, edges_total, synchronised_total;
 static unsigned seen[CM1E_AXIS_STATE_COUNT];
+
+/** Of each axis. */
+static struct player {
+    ranges_t ranges;
+    bool edge_in_cycle;             /**< who lost the axis by it may have been called before */
+    int at_rest, off_cycles, still_cycles;
+    MC_CAM_ID cam;                  /**< the last one that was selected for it */
+} players[JUDGED_MOST];
+#define player players[judged_at]
 
 /** What the program knows of a move that it has started. */
 typedef struct story {
@@ -38,13 +52,26 @@ typedef struct story {
     double end;        /**< u; where it goes */
     double origin;     /**< u; of the count 0: positions have not got other names since */
 } story_t;
-static story_t stories[BLOCKS_MOST];
-static bool edge_in_cycle; /* who lost the axis by it may have been called before */
+static story_t stories[INSTANCES_MOST];
+
+/** What it knows of a gear: where both were in the first cycle with InGear. */
+typedef struct sync {
+    bool asked;        /**< its inputs were such that a position is kept */
+    bool known;
+    int master;
+    double ratio;      /**< counts of the slave in one of the master */
+    position_t master_at, slave_at;
+} sync_t;
+static sync_t syncs[INSTANCES_MOST];
+
 enum { STUCK = 3000 };
-static int calls_in_turn, at_rest, off_cycles, still_cycles;
+static int calls_in_turn;
 
 static bool is(const instance_t *fb, const char *name) { return strcmp(name_of(fb), name) == 0; }
 static bool is_superimposed(const instance_t *fb) { return strstr(name_of(fb), "Superimposed") != NULL; }
+/** Has a record of its own beside that of the active command. */
+static bool is_on_top(const instance_t *fb) { return is_superimposed(fb) || strstr(name_of(fb), "MC_Phasing"); }
+static bool is_multi(const block_t *type) { return member_of(type, "Slave") != NULL; }
 
 /** Any axis that is allowed. */
 static void random_axis(cm1e_axis_config_t *axis)
@@ -71,8 +98,30 @@ static void random_axis(cm1e_axis_config_t *axis)
     axis->inputs = (cm1e_input_config_t){.limit_positive = 1, .limit_negative = 2, .home = 3};
 }
 
+/** A cam that the slave can follow at some velocity of the master, which axis that may be. */
+static void random_cam(void)
+{
+    const ranges_t *slave = &player.ranges, *master = &players[pick(axis_count)].ranges;
+    const double length = master->velocity * uniform(0.2, 2.0);
+    const double way = fmin(0.3 * length * slave->velocity / master->velocity,
+                            0.02 * slave->acceleration * pow(length / master->velocity, 2));
+    cam.NumberOfPoints = (UINT)(2 + pick(7));
+    cam.Curve = one_in(30) ? (MC_CAM_CURVE)pick(5) : (MC_CAM_CURVE)pick(3);
+    for (int i = 0; i < 8; i++)
+        points[i] = (MC_CAM_POINT){.Master = absurd(length * (i + uniform(0, 0.5)) / (cam.NumberOfPoints - 0.5)),
+                                   .Slave = absurd(i == 0 || i == cam.NumberOfPoints - 1 ? 0 : way * uniform(0, 1))};
+    if (one_in(100))
+        cam.NumberOfPoints = (UINT)chance() % 300;
+    if (cam.NumberOfPoints > 8)
+        cam.Points = NULL;
+    else
+        cam.Points = points;
+}
+
 static void random_tables(void)
 {
+    const ranges_t ranges = player.ranges;
+    random_cam();
     positions.NumberOfPairs = (WORD)(1 + pick(8));
     velocities.NumberOfPairs = (WORD)(1 + pick(8));
     accelerations.NumberOfPairs = (WORD)(1 + pick(8));
@@ -87,35 +136,54 @@ static void random_tables(void)
     }
 }
 
-/** All blocks but MC_Power, which the bench calls; two of those that may follow each other. */
-static void begin_program(void)
+/** Of the axis judged_at: all blocks but MC_Power, which the bench calls; two of those that may follow each other. Of
+ *  several axes each has half of the others. */
+static void make_blocks(void)
 {
-    const cm1e_motion_limits_t *most = &judged.axis->maximum;
-    ranges = (ranges_t){150000 / fabs(judged.axis->scale), most->velocity, most->acceleration, most->deceleration,
-                        most->jerk};
-    count = 0;
     for (size_t i = 0; i < block_count; i++) {
         const block_t *type = &block_table[i];
         if (!member_of(type, "Error") || strcmp(type->name, "MC_Power") == 0)
             continue;
+        if (axis_count > 1 && !is_multi(type) && strcmp(type->name, "MC_Reset") != 0 && one_in(2))
+            continue;
         for (int copies = member_of(type, "BufferMode") ? 2 : 1; copies > 0; copies--) {
             make(&instances[count], type->name);
+            point_at(&instances[count], "CamTable", &cam);
             point_at(&instances[count], "TimePosition", &positions);
             point_at(&instances[count], "TimeVelocity", &velocities);
             point_at(&instances[count++], "TimeAcceleration", &accelerations);
         }
     }
+}
+
+static void begin_program(void)
+{
+    count = 0;
+    memset(players, 0, sizeof players);
+    memset(named, 0, sizeof named);
+    for (int n = 0; n < axis_count; n++) {
+        judged_at = n;
+        const cm1e_motion_limits_t *most = &judged.axis->maximum;
+        player.ranges = (ranges_t){150000 / fabs(judged.axis->scale), most->velocity, most->acceleration,
+                                   most->deceleration, most->jerk};
+        named[n] = judged.reference;
+        judged.master = named[pick(axis_count)];
+        make_blocks();
+    }
+    judged_at = 0;
     memset(stories, 0, sizeof stories);
+    memset(syncs, 0, sizeof syncs);
     calls_in_turn = 0;
-    at_rest = off_cycles = still_cycles = 0;
 }
 
 /* ---- one block --------------------------------------------------------------------------------------------------- */
 
+/** Of the axis judged_at. */
 static void forget_stories(void)
 {
     for (int i = 0; i < count; i++)
-        stories[i].known = false;
+        if (instances[i].of == judged_at)
+            stories[i].known = false;
 }
 
 static double origin(void) { return cm1e_axis_units(judged.axis, (position_t){0, 0.0}); }
@@ -155,7 +223,7 @@ static void tell(const instance_t *fb, const from_t *from)
         first = getenv("CM1E_TEST_TELL") ? atoll(getenv("CM1E_TEST_TELL")) : LLONG_MAX;
     if (judged.number < first)
         return;
-    fprintf(stderr, "%lld: %s from %.17g, %.17g u/s, %.17g u/s2: ErrorID 0x%04X, %s;", judged.number, name_of(fb),
+    fprintf(stderr, "%lld: axis %d: %s from %.17g, %.17g u/s, %.17g u/s2: ErrorID 0x%04X, %s;", judged.number, judged_at, name_of(fb),
             cm1e_axis_units(judged.axis, from->position), from->velocity, from->acceleration, fb->now.error_id,
             cm1e_axis_state_name(judged.axis->state));
     for (size_t i = 0; i < fb->view->type->member_count; i++) {
@@ -164,15 +232,78 @@ static void tell(const instance_t *fb, const from_t *from)
             fprintf(stderr, " %s %.17g", m->name, real_of(fb, m->name));
         else if (m->type == BLOCK_ENUM && m->section == BLOCK_INPUT)
             fprintf(stderr, " %s %d", m->name, *(const int *)(const void *)(fb->memory + m->offset));
+        else if (m->type == BLOCK_BOOL && m->section == BLOCK_INPUT && fb->memory[m->offset])
+            fprintf(stderr, " %s", m->name);
+        else if ((m->type == BLOCK_DINT || m->type == BLOCK_UDINT) && m->section == BLOCK_INPUT)
+            fprintf(stderr, " %s %d", m->name, *(const DINT *)(const void *)(fb->memory + m->offset));
+        else if (m->type == BLOCK_POINTER && (strncmp(m->name, "Master", 6) == 0))
+            fprintf(stderr, " %s %d", m->name, (int)(*(AXIS_REF_t *const *)(const void *)(fb->memory + m->offset) - named));
         else if (m->type == BLOCK_INT && m->section == BLOCK_INPUT)
             fprintf(stderr, " %s %d", m->name, *(const INT *)(const void *)(fb->memory + m->offset));
     }
     fputc('\n', stderr);
 }
 
+/* ---- gears ------------------------------------------------------------------------------------------------------- */
+
+static int integer_of(const instance_t *fb, const char *name)
+{
+    const block_member_t *m = member_of(fb->view->type, name);
+    int value;
+    memcpy(&value, fb->memory + m->offset, sizeof value);
+    return value;
+}
+
+static const AXIS_REF_t *pointer_of(const instance_t *fb, const char *name)
+{
+    const block_member_t *m = member_of(fb->view->type, name);
+    const AXIS_REF_t *value;
+    memcpy(&value, fb->memory + m->offset, sizeof value);
+    return value;
+}
+
+/** What an MC_GearIn that has just been started is to keep. */
+static sync_t sync_of(const instance_t *fb)
+{
+    const AXIS_REF_t *master = pointer_of(fb, "Master");
+    const int n = master ? (int)(master - named) : axis_count;
+    if (n >= axis_count || !fb->now.busy || integer_of(fb, "MasterValueSource") != mcSetValue)
+        return (sync_t){0};
+    const double ratio = (double)integer_of(fb, "RatioNumerator") / (UDINT)integer_of(fb, "RatioDenominator");
+    return (sync_t){.asked = !fb->memory[place_of(fb->view->type, "ContinuousUpdate")], .master = n,
+                    .ratio = ratio * judged.axis->scale / judged_axes[n].axis->scale};
+}
+
+/** InGear: the slave is where it has to be by where both were when that began. */
+static void judge_sync(int n)
+{
+    const instance_t *fb = &instances[n];
+    sync_t *sync = &syncs[n];
+    const cm1e_axis_t *slave = judged.axis, *master = judged_axes[sync->master].axis;
+    const bool moved_else = slave->superimposed.id != 0 || is_shifted(slave);
+    if (!sync->asked || !fb->now.reached || moved_else) {
+        sync->known = false;
+        return;
+    }
+    if (!sync->known) {
+        sync->known = true;
+        sync->master_at = master->set;
+        sync->slave_at = slave->set;
+        return;
+    }
+    const double way = cm1e_position_minus(master->set, sync->master_at) * sync->ratio;
+    const double off = cm1e_position_minus(slave->set, sync->slave_at) - way;
+    const double v = sync->ratio * master->set_velocity * master->scale / slave->scale;
+    synchronised_total++;
+    MUST(fabs(off) <= 0.1 + 1e-9 * fabs(way), "InGear, and %.6g counts beside, after %.9g", off, way);
+    MUST(fabs(slave->set_velocity - v) <= 1e-6 * (fabs(v) + slave->maximum.velocity * 1e-3),
+         "InGear with %.9g instead of %.9g u/s", slave->set_velocity, v);
+}
+
 static void play(int n)
 {
     instance_t *fb = &instances[n];
+    judged_at = fb->of;
     const bool edge_to_come = !fb->now.trigger && flag(fb, fb->view->execute);
     const cm1e_command_id_t active = judged.axis->active;
     const bool busy = fb->now.busy;
@@ -182,8 +313,10 @@ static void play(int n)
     if (edge_to_come) {
         tell(fb, &from);
         edges_total++;
-        edge_in_cycle = true;
+        player.edge_in_cycle = true;
         stories[n] = story_of(fb, set);
+        if (is(fb, "MC_GearIn"))
+            syncs[n] = sync_of(fb);
         if (!fb->now.error && !fb->view->type->rules)
             forget_stories();
         if (fb->now.error && fb->view->buffer_mode != NOWHERE)
@@ -194,6 +327,10 @@ static void play(int n)
     }
     if (fb->now.done && busy)
         judge_arrival(n);
+    if (is(fb, "MC_CamTableSelect") && fb->now.done)
+        player.cam = (MC_CAM_ID)integer_of(fb, "CamTableID");
+    if (is(fb, "MC_GearIn"))
+        judge_sync(n);
 }
 
 /** An idle block needs no call; now and then it gets one. */
@@ -212,20 +349,52 @@ static void play_all(void)
     }
 }
 
+/** A master, and a ratio with which the slave can often follow it at full speed. */
+static void choose_master(instance_t *fb, const char *name, const char *numerator, const char *denominator)
+{
+    if (!member_of(fb->view->type, name))
+        return;
+    int master = pick(axis_count);
+    if (master == fb->of && !one_in(10))
+        master = (master + 1) % axis_count;
+    point_at(fb, name, one_in(100) ? NULL : one_in(60) ? &named[axis_count] : &named[master]);
+    if (!member_of(fb->view->type, numerator) || one_in(10))
+        return;
+    const ranges_t *its = &players[master].ranges, *own = &player.ranges;
+    const double most = fmin(own->velocity / its->velocity,
+                             fmin(fmin(own->acceleration, own->deceleration) / fmax(its->acceleration, its->deceleration),
+                                  own->jerk / its->jerk));
+    const double ratio = most * uniform(0.02, 0.9) * (one_in(3) ? -1 : 1);
+    const double parts = 1 + pick(1000) + 30 / fabs(ratio);
+    put(fb, denominator, floor(fmin(parts, 1e9)));
+    put(fb, numerator, ceil(fmin(fabs(ratio) * parts, 1e9)) * copysign(1, ratio));
+}
+
+static void choose_masters(instance_t *fb)
+{
+    choose_master(fb, "Master", "RatioNumerator", "RatioDenominator");
+    choose_master(fb, "Master1", "GearRatioNumeratorM1", "GearRatioDenominatorM1");
+    choose_master(fb, "Master2", "GearRatioNumeratorM2", "GearRatioDenominatorM2");
+    if (member_of(fb->view->type, "CamTableID") && is(fb, "MC_CamIn") && !one_in(10))
+        put(fb, "CamTableID", player.cam);
+}
+
 static void act_on(instance_t *fb)
 {
+    judged_at = fb->of;
     const uint16_t place = fb->view->execute != NOWHERE ? fb->view->execute : fb->view->enable;
     if (is(fb, "MC_Stop") && !fb->now.trigger && !one_in(8))
         return;
     if (is(fb, "MC_SetOverride") && !one_in(4))
         return;
     if (place == NOWHERE || one_in(12)) { /* inputs at any time, also without an edge */
-        random_inputs(fb, &ranges, place == NOWHERE);
+        random_inputs(fb, &player.ranges, place == NOWHERE);
         return;
     }
     if (!fb->memory[place]) {
         random_tables();
-        random_inputs(fb, &ranges, true);
+        random_inputs(fb, &player.ranges, true);
+        choose_masters(fb);
         put(fb, "ContinuousUpdate", one_in(4));
     }
     fb->memory[place] = !fb->memory[place];
@@ -233,6 +402,11 @@ static void act_on(instance_t *fb)
 
 static void act(void)
 {
+    if (axis_count > 1 && one_in(40)) { /* a slave, and a cam for it */
+        const int n = pick(count);
+        if (is_multi(instances[n].view->type))
+            act_on(&instances[n]);
+    }
     if (one_in(20))
         for (int burst = one_in(4) ? 1 + pick(6) : 1; burst > 0; burst--)
             act_on(&instances[pick(count)]);
@@ -243,14 +417,15 @@ static void act(void)
         if (is(fb, "MC_Stop") && one_in(50))
             trigger(fb, false);
     }
-    for (int i = 0; i < count && judged.axis->state == CM1E_AXIS_ERROR_STOP && one_in(50); i++)
-        if (is(&instances[i], "MC_Reset"))
+    for (int i = 0; i < count; i++)
+        if (judged_axes[instances[i].of].axis->state == CM1E_AXIS_ERROR_STOP && is(&instances[i], "MC_Reset") &&
+            one_in(50))
             trigger(&instances[i], !instances[i].now.trigger);
 }
 
 static void act_on_power(void)
 {
-    MC_Power_t *power = &bench.power;
+    MC_Power_t *power = &bench.powers[judged_at];
     if (power->Enable ? one_in(6000) : one_in(100))
         power->Enable = !power->Enable;
     if (power->EnablePositive ? one_in(8000) : one_in(300))
@@ -265,9 +440,9 @@ static void judge_active(void)
 {
     int active = 0;
     for (int i = 0; i < count; i++)
-        active += instances[i].now.active && !is_superimposed(&instances[i]) &&
+        active += instances[i].now.active && instances[i].of == judged_at && !is_on_top(&instances[i]) &&
                   instances[i].view->type->rules != NULL && !instances[i].view->type->rules->unchanged;
-    MUST(edge_in_cycle || active <= 1, "%d blocks are Active", active);
+    MUST(player.edge_in_cycle || active <= 1, "%d blocks are Active", active);
 }
 
 static void judge_rest(void)
@@ -279,14 +454,18 @@ static void judge_rest(void)
              axis->set_velocity);
         MUST(!axis->active, "Standstill with an active command");
     }
-    at_rest = state == CM1E_AXIS_STANDSTILL ? at_rest + 1 : 0;
-    const bool off = state == CM1E_AXIS_ERROR_STOP || !bench.power.Enable;
-    const cm1e_motion_limits_t *most = &axis->maximum;
-    const double longest_s = most->velocity / most->deceleration + 2 * most->deceleration / most->jerk +
-                             2 * sqrt(most->velocity / most->jerk) + 0.2 + 10.5 * (axis->activity == ACTIVITY_HOMING);
-    off_cycles = off ? off_cycles + 1 : 0;
-    MUST(off_cycles * (double)judged.cycle_ns * 1e-9 < longest_s || !has_torque() || is_deaf(),
-         "%s: torque is on for %d cycles", cm1e_axis_state_name(state), off_cycles);
+    player.at_rest = state == CM1E_AXIS_STANDSTILL ? player.at_rest + 1 : 0;
+    const bool off = state == CM1E_AXIS_ERROR_STOP || !bench.powers[judged_at].Enable;
+    double longest_s = 0;
+    for (int n = 0; n < axis_count; n++) { /* a master that keeps its ratio brakes as its slave can */
+        const cm1e_motion_limits_t *most = &judged_axes[n].axis->maximum;
+        longest_s = fmax(longest_s, most->velocity / most->deceleration + 2 * most->deceleration / most->jerk +
+                                        2 * sqrt(most->velocity / most->jerk) + 0.2);
+    }
+    longest_s += 10.5 * (axis->activity == ACTIVITY_HOMING);
+    player.off_cycles = off ? player.off_cycles + 1 : 0;
+    MUST(player.off_cycles * (double)judged.cycle_ns * 1e-9 < longest_s || !has_torque() || is_deaf(),
+         "%s: torque is on for %d cycles", cm1e_axis_state_name(state), player.off_cycles);
 }
 
 /** Whatever is to move does: nothing hangs. */
@@ -295,37 +474,59 @@ static void judge_progress(void)
     const cm1e_axis_t *axis = judged.axis;
     const bool to_move = axis->state == CM1E_AXIS_DISCRETE_MOTION ||
                          (axis->state == CM1E_AXIS_STOPPING && !axis->stop_held);
-    still_cycles = to_move && axis->set_velocity == 0.0 && !axis->paused ? still_cycles + 1 : 0;
-    MUST(still_cycles < STUCK, "%s, and nothing has moved for %d cycles", cm1e_axis_state_name(axis->state),
-         still_cycles);
+    player.still_cycles = to_move && axis->set_velocity == 0.0 && !axis->paused ? player.still_cycles + 1 : 0;
+    MUST(player.still_cycles < STUCK, "%s, and nothing has moved for %d cycles", cm1e_axis_state_name(axis->state),
+         player.still_cycles);
 }
 
 static void pause_for(int64_t time_ns)
 {
     time_passes(time_ns);
-    pause_of_master(time_ns);
+    for (int n = 0; n < axis_count; n++) {
+        judged_at = n;
+        pause_of_master(time_ns);
+    }
+    for (int n = 0; n < axis_count; n++) /* it may be another's end too */
+        judged_axes[n].state = judged_axes[n].axis->state;
+    for (int i = 0; i < count; i++)
+        syncs[i].known = false;
 }
 
-static void one_cycle(void)
+static void judge_axis(void)
 {
-    edge_in_cycle = false;
-    const cm1e_axis_state_t before = judged.axis->state;
-    act_on_device();
-    act_on_power();
-    cycle_begin();
-    const cm1e_axis_state_t powered = judged.axis->state;
-    MUST(powered == before || bench.power.Enable || powered == CM1E_AXIS_DISABLED ||
-             powered == CM1E_AXIS_ERROR_STOP, "MC_Power: to %s", cm1e_axis_state_name(powered));
-    act();
-    play_all();
-    if (one_in(2000))
-        pause_for(pick(95) * 1000000);
-    cycle_end();
     judge_active();
     judge_rest();
     judge_motor();
     judge_progress();
     seen[judged.axis->state]++;
+}
+
+static void one_cycle(void)
+{
+    cm1e_axis_state_t before[JUDGED_MOST];
+    act_on_device();
+    for (int n = 0; n < axis_count; n++) {
+        judged_at = n;
+        player.edge_in_cycle = false;
+        before[n] = judged.axis->state;
+        act_on_power();
+    }
+    cycle_begin();
+    for (int n = 0; n < axis_count; n++) {
+        const cm1e_axis_state_t powered = judged_axes[n].axis->state;
+        MUST(powered == before[n] || bench.powers[n].Enable || powered == CM1E_AXIS_DISABLED ||
+                 powered == CM1E_AXIS_ERROR_STOP, "MC_Power of axis %d: to %s", n, cm1e_axis_state_name(powered));
+    }
+    act();
+    play_all();
+    if (one_in(2000))
+        pause_for(pick(95) * 1000000);
+    cycle_end();
+    for (int n = 0; n < axis_count; n++) {
+        judged_at = n;
+        judge_axis();
+    }
+    judged_at = 0;
 }
 
 #endif
