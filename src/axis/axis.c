@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "axis/axis_coupling.h"
 #include "axis/axis_handle.h"
-#include "axis/axis_private.h"
 
 cm1e_error_t cm1e_axis_create(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t index, cm1e_diag_t *diag)
 {
@@ -20,6 +20,8 @@ cm1e_error_t cm1e_axis_create(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t in
     }
     if (!error)
         error = cm1e_axis_table_init(axis, diag);
+    if (!error)
+        error = cm1e_axis_coupling_init(axis, diag);
     axis->mode = !error && !cm1e_drive_supports(&axis->drive, CM1E_MODE_CSP) ? CM1E_MODE_CSV : CM1E_MODE_CSP;
     if (!error)
         error = cm1e_axis_cool_muscle_init(axis, diag);
@@ -30,6 +32,7 @@ cm1e_error_t cm1e_axis_create(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t in
         cm1e_drive_free(&axis->drive);
         free(axis->tables);
         free(axis->muscle);
+        cm1e_axis_coupling_free(axis);
         free(axis);
         return error;
     }
@@ -50,6 +53,7 @@ void cm1e_axis_destroy(cm1e_axis_t *axis)
     cm1e_drive_free(&axis->drive);
     free(axis->tables);
     free(axis->muscle);
+    cm1e_axis_coupling_free(axis);
     free(axis);
 }
 
@@ -111,6 +115,7 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
 {
     cm1e_drive_t *drive = &axis->drive;
     axis->now_ns = now_ns;
+    axis->advanced = false;
     cm1e_drive_read(drive, received == CM1E_OK, now_ns);
     if (drive->feedback.fresh)
         cm1e_axis_track(axis);
@@ -145,6 +150,9 @@ static bool moves_on(const cm1e_axis_t *axis)
 
 void cm1e_axis_advance(cm1e_axis_t *axis)
 {
+    axis->advanced = true;
+    if (axis_follows(axis))
+        cm1e_axis_advance_masters(axis);
     if (axis->kept != 0 || axis->drive.command.digital_outputs != 0)
         cm1e_axis_signals_step(axis);
     const bool undisturbed = moves_on(axis);
@@ -163,7 +171,8 @@ void cm1e_axis_advance(cm1e_axis_t *axis)
 
 void cm1e_axis_outputs(cm1e_axis_t *axis)
 {
-    cm1e_axis_advance(axis);
+    if (!axis->advanced) /* else an axis that follows it has asked for that */
+        cm1e_axis_advance(axis);
     cm1e_axis_write_set_point(axis);
     cm1e_drive_write(&axis->drive);
 }

@@ -9,7 +9,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_coupling.h"
 
 static bool is_homing(cm1e_command_kind_t kind)
 {
@@ -162,7 +162,7 @@ static cm1e_error_t check(const cm1e_axis_t *axis, move_t *move, const position_
     const from_t from = {end ? *end : axis->set, 0.0, 0.0, shared(axis)};
     const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
     cm1e_motion_limits_t limits;
-    if (is_homing(kind) || is_table(kind))
+    if (is_homing(kind) || is_table(kind) || is_coupling(kind))
         return CM1E_OK;
     cm1e_error_t error = cm1e_axis_limits_of(axis, &from, move, &limits);
     move->origin = from.position;
@@ -197,9 +197,15 @@ static cm1e_error_t check_behind(cm1e_axis_t *axis, int index, move_t *move)
 {
     cm1e_command_kind_t kind;
     const move_t *first = before(axis, index, &kind);
-    if (is_homing((cm1e_command_kind_t)move->kind) && is_endless(kind))
+    if (is_homing((cm1e_command_kind_t)move->kind) && (is_endless(kind) || is_coupling(kind)))
         return CM1E_ERROR_AXIS_STATE; /* homing begins at rest */
     return check(axis, move, is_discrete_move(kind) || is_continuous_move(kind) ? &first->target : NULL);
+}
+
+/* What goes on when it has reached what it was to reach, and then lets the next command take its place. */
+static bool hands_over(const cm1e_axis_t *axis)
+{
+    return is_coupling(axis->kind) ? !axis->coupling->now->waits_for_end : is_endless(axis->kind);
 }
 
 cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move)
@@ -211,7 +217,7 @@ cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move)
         return error;
     move->id = cm1e_axis_next_id(axis);
     *waiting_move(axis, axis->waiting.count++) = *move;
-    if (axis->reached && is_endless(axis->kind)) { /* the signal that it waits for is there already (table 4) */
+    if (axis->reached && hands_over(axis)) { /* the signal that it waits for is there already (table 4) */
         const from_t from = from_base(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
     } else if (is_discrete_move(axis->kind)) {
@@ -273,6 +279,8 @@ bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offse
             error = move.kind == CM1E_COMMAND_HOME          ? cm1e_axis_begin_homing(axis, &move)
                     : move.kind == CM1E_COMMAND_HOMING_STEP ? cm1e_axis_begin_step(axis, &move)
                     : is_table((cm1e_command_kind_t)move.kind) ? cm1e_axis_table_begin(axis, &move, from, offset_s)
+                    : is_coupling((cm1e_command_kind_t)move.kind)
+                        ? cm1e_axis_coupling_begin(axis, &move, from, offset_s)
                                                                : begin_move(axis, &move, from, offset_s);
         if (!error) {
             if (move.kind != CM1E_COMMAND_HOMING_STEP) /* MC_HomeDirect may be over already */
@@ -312,7 +320,7 @@ cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *as)
 static bool can_replan(const cm1e_axis_t *axis)
 {
     return axis->active && axis->activity == ACTIVITY_PROFILE && axis->kind != CM1E_COMMAND_STOP &&
-           axis->kind != CM1E_COMMAND_HOMING_STEP && !is_table(axis->kind);
+           cm1e_axis_can_plan(axis->kind);
 }
 
 /* `careful`: not when it would then run over its target. */

@@ -1,6 +1,7 @@
 /* Commands: posted by function blocks, known by number, one of them active. */
 #include <math.h>
 
+#include "axis/axis_coupling.h"
 #include "axis/axis_handle.h"
 
 /* ---- records ----------------------------------------------------------------------------------------------------- */
@@ -48,7 +49,9 @@ void cm1e_axis_commands_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_
 cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_command_id_t id)
 {
     if (id != 0 && id == axis->active)
-        return (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE, .reached = axis->reached};
+        return (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE, .reached = axis->reached,
+                                       .synchronizing = axis_follows(axis) && axis->coupling->synchronizing,
+                                       .end_of_profile = axis_follows(axis) && axis->coupling->end_of_profile};
     for (int i = 0; i < axis->waiting.count; i++)
         if (axis->waiting.moves[(axis->waiting.first + i) % CM1E_AXIS_BUFFER_DEPTH].id == id)
             return (cm1e_command_status_t){.state = CM1E_COMMAND_BUFFERED};
@@ -288,6 +291,8 @@ static cm1e_error_t buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command
         return buffer_step(axis, command, id);
     if (is_table(command->kind))
         return cm1e_axis_table_buffer(axis, command, id);
+    if (is_coupling(command->kind))
+        return cm1e_axis_coupling_buffer(axis, command, id);
     move_t move = cm1e_axis_move_of(command);
     cm1e_error_t error = command->kind == CM1E_COMMAND_HOME ? keep_homing(axis, command) : CM1E_OK;
     if (!error)
@@ -300,8 +305,8 @@ static cm1e_error_t buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command
 /* Whether there is something to wait for; then the state is of no matter in which the command would begin now. */
 static bool has_to_wait(const cm1e_axis_t *axis, const cm1e_axis_command_t *command)
 {
-    return command->buffer_mode != mcAborting && command->kind != CM1E_COMMAND_STOP && axis->active &&
-           axis->state != CM1E_AXIS_STOPPING;
+    return command->buffer_mode != mcAborting && command->kind != CM1E_COMMAND_STOP &&
+           !is_decoupling(command->kind) && axis->active && axis->state != CM1E_AXIS_STOPPING;
 }
 
 /* With nothing to wait for. */
@@ -313,6 +318,10 @@ static cm1e_error_t start_now(cm1e_axis_t *axis, const cm1e_axis_command_t *comm
         return start_step(axis, command, id);
     if (is_table(command->kind))
         return cm1e_axis_table_start(axis, command, id);
+    if (is_coupling(command->kind))
+        return cm1e_axis_couple(axis, command, id);
+    if (is_decoupling(command->kind))
+        return cm1e_axis_decouple(axis, command, id);
     if (by_drive(axis, command->kind))
         return start_drive(axis, command, id);
     return axis->activity == ACTIVITY_HOMING ? stop_homing(axis, command, id) : start_move(axis, command, id);
@@ -336,9 +345,9 @@ static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command,
     if (axis->state == CM1E_AXIS_STOPPING && axis->stop_held)
         return CM1E_ERROR_AXIS_STOPPING;
     if (command->kind != CM1E_COMMAND_HOME && command->kind != CM1E_COMMAND_HOMING_STEP && !on_top &&
-        !is_table(command->kind) && !cm1e_axis_can_plan(command->kind))
+        !is_table(command->kind) && !cm1e_axis_can_plan(command->kind) && !cm1e_axis_can_couple(command->kind))
         return CM1E_ERROR_UNSUPPORTED;
-    if (command->kind != CM1E_COMMAND_STOP && !on_top && (unsigned)command->buffer_mode > mcBlendingHigh)
+    if (command->kind != CM1E_COMMAND_STOP && !on_top && !is_decoupling(command->kind) && (unsigned)command->buffer_mode > mcBlendingHigh)
         return CM1E_ERROR_AXIS_BUFFER_MODE;
     if (waits && drive_profiles(axis))
         return CM1E_ERROR_AXIS_BUFFER_MODE;

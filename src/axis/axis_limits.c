@@ -148,7 +148,8 @@ static cm1e_error_t asked_limits(const cm1e_axis_t *axis, const move_t *move, cm
         !choose(move->jerk, most->jerk, stopping, &limits->jerk))
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
     limits->velocity = most->velocity;
-    if (stopping)
+    const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
+    if (stopping || is_decoupling(kind) || (is_coupling(kind) && move->velocity == 0.0))
         return CM1E_OK;
     /* The sign of a velocity is a direction, and only MC_MoveVelocity's has one (3.10). */
     const double speed = move->kind == CM1E_COMMAND_MOVE_VELOCITY ? fabs(move->velocity) : move->velocity;
@@ -159,10 +160,12 @@ static cm1e_error_t asked_limits(const cm1e_axis_t *axis, const move_t *move, cm
     return CM1E_OK;
 }
 
-/* Where MC_SetOverride does not act: MC_Stop is a matter of safety, and a homing has its own measures. */
+/* Where MC_SetOverride does not act: MC_Stop is a matter of safety, a homing has its own measures, and a slave's
+ * velocity is its master's (3.18). */
 static bool has_override(cm1e_command_kind_t kind)
 {
-    return kind != CM1E_COMMAND_STOP && kind != CM1E_COMMAND_HOMING_STEP && kind != CM1E_COMMAND_HOME;
+    return kind != CM1E_COMMAND_STOP && kind != CM1E_COMMAND_HOMING_STEP && kind != CM1E_COMMAND_HOME &&
+           !is_coupling(kind) && !is_decoupling(kind);
 }
 
 /* What a superimposed motion leaves: the sums stay within the maxima, in whatever direction each of them goes. An

@@ -1,7 +1,7 @@
 /* The set-point of every cycle: planned once at the command, sampled here. */
 #include <math.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_coupling.h"
 #include "core/rare.h"
 
 /* CSV only (a mapping without target position): the position loop is ours then. 1/s. */
@@ -268,8 +268,11 @@ static bool at_end(const cm1e_axis_t *axis, double time_s)
 CM1E_RARE static void follow_over_end(cm1e_axis_t *axis, double time_s)
 {
     while (at_end(axis, time_s)) {
-        if (!profile_ended(axis, fmax(time_s - axis->profile.duration_s, 0.0)))
+        if (!profile_ended(axis, fmax(time_s - axis->profile.duration_s, 0.0))) {
+            if (axis_follows(axis))
+                cm1e_axis_coupled_begin(axis);
             return;
+        }
         if (!axis->reached && !axis->stands)
             time_s = axis->profile_offset_s;
     }
@@ -300,6 +303,10 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
         break;
     case ACTIVITY_LED:
         if (!cm1e_axis_lead_step(axis) && axis->activity == ACTIVITY_PROFILE)
+            profile_step(axis);
+        break;
+    case ACTIVITY_COUPLED:
+        if (!cm1e_axis_coupled_step(axis) && axis->activity == ACTIVITY_PROFILE)
             profile_step(axis);
         break;
     case ACTIVITY_HOMING:

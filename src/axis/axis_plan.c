@@ -196,6 +196,18 @@ static cm1e_error_t plan_stop(const cm1e_axis_t *axis, const from_t *from, move_
     return error ? error : cm1e_axis_plan_stop(axis, from, &limits, profile);
 }
 
+/* 4.4, 4.6: the velocity that the axis had when it left its master. */
+static cm1e_error_t plan_kept(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
+{
+    cm1e_motion_limits_t limits;
+    const cm1e_motion_state_t start = start_of(from);
+    const cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
+    if (error)
+        return error;
+    return cm1e_profile_to_velocity(profile, &start, move->end_velocity, &limits) ? CM1E_ERROR_AXIS_VELOCITY_RANGE
+                                                                                 : CM1E_OK;
+}
+
 /* ---- by kind ----------------------------------------------------------------------------------------------------- */
 
 typedef struct planner {
@@ -212,6 +224,8 @@ static const planner_t planners[CM1E_COMMAND_KIND_COUNT] = {
     [CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE] = {resolve_relative, plan_continuous},
     [CM1E_COMMAND_HALT] = {resolve_none, plan_stop},
     [CM1E_COMMAND_STOP] = {resolve_none, plan_stop},
+    [CM1E_COMMAND_GEAR_OUT] = {resolve_none, plan_kept},
+    [CM1E_COMMAND_CAM_OUT] = {resolve_none, plan_kept},
 };
 
 bool cm1e_axis_can_plan(cm1e_command_kind_t kind) { return planners[kind].plan != NULL; }
@@ -242,8 +256,8 @@ static bool plan_pause(const cm1e_axis_t *axis, const from_t *from, move_t *move
 cm1e_error_t cm1e_axis_plan(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
 {
     const cm1e_error_t error = planners[move->kind].plan(axis, from, move, profile);
-    const bool moves = is_discrete_move((cm1e_command_kind_t)move->kind) ||
-                       is_endless((cm1e_command_kind_t)move->kind);
+    const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
+    const bool moves = is_discrete_move(kind) || (is_endless(kind) && !is_decoupling(kind));
     move->paused = !error && moves && axis->override.velocity == 0.0 && plan_pause(axis, from, move, profile);
     return error;
 }

@@ -53,6 +53,7 @@ typedef enum activity {
     ACTIVITY_FREE = 0, /**< nowhere: no torque, the set-point is the actual position */
     ACTIVITY_HOLD,     /**< it stands */
     ACTIVITY_PROFILE,  /**< a profile, of a command or of a stopping ramp */
+    ACTIVITY_COUPLED,  /**< other axes, its masters (axis_coupling.h) */
     ACTIVITY_HOMING,   /**< the drive's own homing (axis_home.c) */
     ACTIVITY_DRIVE,    /**< the drive's own profile (axis_drive_profile.c) */
     ACTIVITY_LED,      /**< somebody above (axis_lead.c) */
@@ -372,6 +373,7 @@ struct cm1e_axis {
     bool shutting_down;
     bool position_known, homed;
     bool stop_held;
+    bool advanced;                  /**< its set-point is that of this cycle */
     const void *power_owner;
     double cycle_s;
     int64_t profile_cycles;         /**< since it began ... */
@@ -455,6 +457,8 @@ struct cm1e_axis {
 
     stepping_t stepping;
     cool_muscle_t *muscle;          /**< NULL: the motor is a CM1-E */
+    struct coupling *coupling;      /**< what it follows */
+    struct link *slaves;            /**< who follows it */
 };
 
 /** Counts of this motor that are as far as so many of a CM1-E; two at least, as one is rounding. */
@@ -589,11 +593,23 @@ static inline bool is_continuous_move(cm1e_command_kind_t kind)
 {
     return kind == CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE || kind == CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE;
 }
+static inline bool is_coupling(cm1e_command_kind_t kind)
+{
+    return kind == CM1E_COMMAND_GEAR_IN || kind == CM1E_COMMAND_GEAR_IN_POS || kind == CM1E_COMMAND_CAM_IN ||
+           kind == CM1E_COMMAND_COMBINE_AXES;
+}
+/** As an active command: the velocity that is kept, as `end_velocity`. */
+static inline bool is_decoupling(cm1e_command_kind_t kind)
+{
+    return kind == CM1E_COMMAND_GEAR_OUT || kind == CM1E_COMMAND_CAM_OUT;
+}
+/** F of a coupling is what moves the axis. */
+static inline bool axis_follows(const cm1e_axis_t *axis) { return axis->activity == ACTIVITY_COUPLED; }
 /** Goes on when it has reached what it was to reach. */
 static inline bool is_endless(cm1e_command_kind_t kind)
 {
     return is_continuous_move(kind) || kind == CM1E_COMMAND_MOVE_VELOCITY ||
-           kind == CM1E_COMMAND_VELOCITY_PROFILE || kind == CM1E_COMMAND_ACCELERATION_PROFILE;
+           kind == CM1E_COMMAND_VELOCITY_PROFILE || kind == CM1E_COMMAND_ACCELERATION_PROFILE || is_decoupling(kind);
 }
 static inline bool is_table(cm1e_command_kind_t kind)
 {
@@ -810,7 +826,7 @@ void cm1e_axis_drive_write(cm1e_axis_t *axis);
 /** Set-points of ours change from cycle to cycle. */
 static inline bool set_points_move(const cm1e_axis_t *axis)
 {
-    return axis->activity == ACTIVITY_PROFILE || axis->activity == ACTIVITY_LED;
+    return axis->activity == ACTIVITY_PROFILE || axis->activity == ACTIVITY_COUPLED || axis->activity == ACTIVITY_LED;
 }
 /** The drive moves, or is about to, by itself. */
 static inline bool drive_moves(const cm1e_axis_t *axis)

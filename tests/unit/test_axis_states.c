@@ -1,8 +1,24 @@
 /* The state diagram of PLCopen Part 1 v2.0, 2.1: every state x command, and the transitions of power, error, reset. */
 #include "../support/axis_bench.h"
 
-void setUp(void) { bench_start(); }
-void tearDown(void) { bench_end(); }
+/* It stands under torque, and nobody asks it anything: for what follows it. */
+static cm1e_axis_t *master;
+
+void setUp(void)
+{
+    cm1e_diag_t diag;
+    bench_start();
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_create(&master, &bus, 0, &diag));
+    master->activity = ACTIVITY_HOLD;
+    master->advanced = true;
+}
+
+void tearDown(void)
+{
+    bench_end();
+    cm1e_axis_destroy(master);
+    master = NULL;
+}
 
 static const cm1e_homing_config_t hard_stop = {.method = -1};
 
@@ -18,8 +34,11 @@ static cm1e_axis_command_t command_of(cm1e_command_kind_t kind)
 {
     static const cm1e_homing_step_t block = {.kind = CM1E_STEP_BLOCK};
     static const cm1e_axis_table_t table = {.read = one_pair, .count = 1};
+    static cm1e_axis_coupling_t coupling;
+    const cm1e_coupling_master_t any = {.axis = cm1e_axis_reference(master), .numerator = 1, .denominator = 1};
+    coupling = (cm1e_axis_coupling_t){.master = {any, any}};
     return (cm1e_axis_command_t){.kind = kind, .position = 2.0, .velocity = 1.0, .homing = &hard_stop,
-                                 .step = &block, .table = &table};
+                                 .step = &block, .table = &table, .coupling = &coupling};
 }
 
 static void raise_error(void)
@@ -45,9 +64,9 @@ static void into(cm1e_axis_state_t state)
     case CM1E_AXIS_CONTINUOUS_MOTION:
         bench_move_velocity(1.0);
         break;
-    case CM1E_AXIS_SYNCHRONIZED_MOTION: /* no block of this version leads there */
-        bench_move_velocity(1.0);
-        axis->state = CM1E_AXIS_SYNCHRONIZED_MOTION;
+    case CM1E_AXIS_SYNCHRONIZED_MOTION:
+        command = command_of(CM1E_COMMAND_GEAR_IN);
+        bench_start_command(&command);
         break;
     case CM1E_AXIS_STOPPING:
         bench_move_velocity(1.0);
@@ -66,16 +85,16 @@ static void into(cm1e_axis_state_t state)
 }
 
 /* The matrix once more, by hand from the standard, so that a slip in the table shows. M: DiscreteMotion, V:
- * ContinuousMotion, S: Stopping, H: Homing; lower case: refused. */
+ * ContinuousMotion, F: SynchronizedMotion, S: Stopping, H: Homing; lower case: refused. */
 static const char *const expected[CM1E_AXIS_STATE_COUNT] = {
     /* abs rel add vel cabs crel pprofile vprofile aprofile halt stop home step superimposed haltsuperimposed, gearin
      * gearinpos camin combine gearout camout phasing phasing; K: as it was */
     [CM1E_AXIS_DISABLED] = "ppppppppppppppppppppppp",
-    [CM1E_AXIS_STANDSTILL] = "MMMVVVMVVMSHHMKuuuucccc",
+    [CM1E_AXIS_STANDSTILL] = "MMMVVVMVVMSHHMKFuuFcccc",
     [CM1E_AXIS_HOMING] = "hhhhhhhhhhShhhhhhhhhhhh", /* that of the drive; between steps: test_axis_homing_steps */
-    [CM1E_AXIS_DISCRETE_MOTION] = "MMMVVVMVVMSxxKKuuuucccc",
-    [CM1E_AXIS_CONTINUOUS_MOTION] = "MMMVVVMVVMSxxKKuuuucccc",
-    [CM1E_AXIS_SYNCHRONIZED_MOTION] = "MMMVVVMVVMSxxKKuuuuuuuu",
+    [CM1E_AXIS_DISCRETE_MOTION] = "MMMVVVMVVMSxxKKFuuFcccc",
+    [CM1E_AXIS_CONTINUOUS_MOTION] = "MMMVVVMVVMSxxKKFuuFcccc",
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = "MMMVVVMVVMSxxKKFuuFVcuu",
     [CM1E_AXIS_STOPPING] = "sssssssssssssssssssssss",
     [CM1E_AXIS_ERROR_STOP] = "eeeeeeeeeeeeeeeeeeeeeee",
 };
@@ -91,6 +110,7 @@ static cm1e_axis_state_t accepted_state(char code, cm1e_axis_state_t state)
     switch (code) {
     case 'M': return CM1E_AXIS_DISCRETE_MOTION;
     case 'V': return CM1E_AXIS_CONTINUOUS_MOTION;
+    case 'F': return CM1E_AXIS_SYNCHRONIZED_MOTION;
     case 'S': return CM1E_AXIS_STOPPING;
     case 'H': return CM1E_AXIS_HOMING;
     case 'K': return state;
@@ -146,8 +166,10 @@ static void test_a_buffer_mode_that_is_none_is_refused(void)
         cm1e_axis_command_t command = command_of((cm1e_command_kind_t)kind);
         command.buffer_mode = (MC_BUFFER_MODE)(mcBlendingHigh + 1);
         cm1e_command_id_t id;
+        if (kind == CM1E_COMMAND_GEAR_IN_POS || kind == CM1E_COMMAND_CAM_IN) /* unknown yet */
+            continue;
         const bool stop = kind == CM1E_COMMAND_STOP; /* has none */
-        if (on_top((cm1e_command_kind_t)kind) || kind >= CM1E_COMMAND_GEAR_IN)
+        if (on_top((cm1e_command_kind_t)kind) || kind >= CM1E_COMMAND_GEAR_OUT)
             continue;
         TEST_ASSERT_EQUAL_INT(stop ? CM1E_OK : CM1E_ERROR_AXIS_BUFFER_MODE, cm1e_axis_start(axis, &command, &id));
         if (stop) {
@@ -422,7 +444,7 @@ static void test_handles_name_their_axis_only(void)
     cm1e_axis_info_t info;
     for (unsigned handle = 0; handle <= UINT16_MAX; handle++) {
         const AXIS_REF_t any = {.Handle = (UINT)handle};
-        if (handle == reference.Handle)
+        if (handle == reference.Handle || handle == cm1e_axis_reference(master).Handle)
             continue;
         TEST_ASSERT_NULL(cm1e_axis_from_reference(&any));
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_FB_AXIS_REF, cm1e_axis_read(any, &info));
@@ -430,6 +452,8 @@ static void test_handles_name_their_axis_only(void)
     }
     TEST_ASSERT_NULL(cm1e_axis_from_reference(NULL));
     bench_end();
+    cm1e_axis_destroy(master);
+    master = NULL;
     TEST_ASSERT_NULL(cm1e_axis_from_reference(&reference));
     for (int i = 0; i < 600; i++) { /* an old handle names no newer axis, but for one turn of the count in 255 */
         bench_create();
@@ -449,7 +473,7 @@ static void test_the_table_of_axes_is_bounded(void)
     int made = 0;
     while (made < 256 && cm1e_axis_create(&many[made], &bus, 0, &diag) == CM1E_OK)
         made++;
-    TEST_ASSERT_EQUAL_INT(255, made); /* and the one of the bench */
+    TEST_ASSERT_EQUAL_INT(254, made); /* and the two of the bench */
     TEST_ASSERT_NULL(many[made]);
     for (int i = 0; i < made; i++)
         cm1e_axis_destroy(many[i]);

@@ -1,0 +1,157 @@
+/**
+ * @file axis_coupling.h
+ * Followers (Part 1, chapter 4) as the sources of the axis room see them. Everything here runs in the cycle unless
+ * marked otherwise.
+ *
+ *     set-point = F(masters as seen) + rest + what is superimposed
+ *
+ * The masters are advanced first, so that a slave follows them within the same cycle, whatever their order on the bus.
+ * F is one of a few kinds (`follow_kind_t`), each an object of its own source:
+ *   gear, combine     axis_gear.c
+ *   cam, ways into step over the master's position (MC_GearInPos, MC_CamIn)      axis_cam.c
+ * `rest` is what is not in step yet: a profile over time in the frame that moves with F, from the difference of the two
+ * when F began to nothing. So the slave is in step at a definite time, without a step of position, velocity or
+ * acceleration, and whatever the masters do meanwhile.
+ *
+ * Seams:
+ *   - A new kind of F fills the spare `follow_t` (cm1e_axis_follow_spare()), takes its masters in (cm1e_axis_link()) and
+ *     calls cm1e_axis_follow(). Nothing has changed before that, so a refusal leaves what runs alone.
+ *   - What a slave sees of a master is made in one place, cm1e_axis_see() (axis_master.c): by its set value, by its
+ *     actual value, and with the phase shift, which is a state of motion of its own (`phase`, axis_phasing.c).
+ */
+#ifndef CM1E_AXIS_AXIS_COUPLING_H
+#define CM1E_AXIS_AXIS_COUPLING_H
+
+#include "axis/axis_private.h"
+
+/** A master as its slave sees it in this cycle, phase shift included. */
+typedef struct sight {
+    double counts;                 /**< of the master, since the slave began to follow it */
+    double velocity, acceleration; /**< of the master: u/s, u/s2 */
+} sight_t;
+
+/** A slave at its master. */
+typedef struct link {
+    cm1e_axis_t *master;           /**< NULL: there is none, or it has been destroyed */
+    cm1e_axis_t *slave;
+    struct link *next;             /**< of the same master; in force while `listed` */
+    bool listed;
+    MC_SOURCE source;
+    position_t origin;             /**< of the master, as seen, when the slave began to follow it */
+    double ratio;                  /**< u of the slave on a u of the master: of gears and combinations */
+    double counts_ratio;           /**< the same in counts */
+    sight_t seen;
+} link_t;
+
+enum { LINKS = 2, FOLLOWS = 3, COUPLINGS_WAITING = 3 };
+
+struct follow_kind;
+
+/** What a slave follows, and how. */
+typedef struct follow {
+    const struct follow_kind *kind; /**< NULL: nothing */
+    link_t links[LINKS];
+    int count;                     /**< of them */
+    position_t anchor;             /**< of the slave, where F counts from */
+    bool to_position;              /**< the rest is brought to 0 in its position too (mcRampIn); else lost distance is
+                                        not made up, and the anchor takes it in at the end */
+    bool in_step;                  /**< F itself is what was commanded: no way into step any more */
+    bool waits_for_end;            /**< commands that wait do so until EndOfProfile (single-shot cams) instead of InSync */
+} follow_t;
+
+/** A kind of F. */
+typedef struct follow_kind {
+    /** The slave's set-point for the masters as seen in this cycle. It may come over a change within F (the end of a
+     *  way into step, the end of a single-shot cam) and says so in the coupling. */
+    void (*evaluate)(cm1e_axis_t *axis, follow_t *follow, from_t *point);
+    /** The largest |u of the slave on a u of that master| that it may come to. */
+    double (*steepest)(const cm1e_axis_t *axis, const follow_t *follow, int link);
+} follow_kind_t;
+
+/** What is not in step yet, in the frame that moves with F; u. */
+typedef struct rest {
+    bool on;
+    bool held_back;                /**< F needs more of the limits than was thought when it was planned */
+    cm1e_motion_limits_t asked;    /**< of the command */
+    cm1e_profile_t profile;
+    int64_t cycles;
+    cm1e_motion_state_t now;
+} rest_t;
+
+/** Why a master cannot be followed; for the text. */
+typedef enum master_trouble {
+    MASTER_GOOD = 0,
+    MASTER_GONE,                   /**< destroyed */
+    MASTER_ERROR_STOP,
+    MASTER_FREE,                   /**< no torque, so no set value */
+    MASTER_HOMING,                 /**< its drive moves it */
+    MASTER_UNSEEN,                 /**< its actual position is not known */
+    MASTER_JUMPED,
+} master_trouble_t;
+
+/** A command that waits, with what it needs beside a move. */
+typedef struct waiting_coupling {
+    cm1e_command_id_t id;
+    cm1e_axis_coupling_t coupling;
+} waiting_coupling_t;
+
+/** Made with the axis. */
+typedef struct coupling {
+    follow_t follows[FOLLOWS];     /**< links are in lists: they keep their place */
+    follow_t *now;                 /**< F; NULL: never was one */
+    follow_t *next;                /**< takes F's place at a position of its master (StartSync); NULL: none does */
+    rest_t rest;
+    cm1e_motion_state_t phase;     /**< u of the master: shift of links[0], see axis_phasing.c */
+    double f_acceleration;         /**< u/s2; of F, in the last cycle */
+    bool synchronizing;            /**< GEAR_IN_POS: StartSync */
+    bool end_of_profile;           /**< CAM_IN: F came over it in this cycle */
+    bool linear;                   /**< F's acceleration jumps by its nature: no limit of jerk holds */
+    uint64_t mark;                 /**< of the last search that came here */
+    uint32_t searches;
+    cm1e_axis_coupling_t inputs;   /**< of the active command, for ContinuousUpdate */
+    waiting_coupling_t waiting[COUPLINGS_WAITING];
+    master_trouble_t trouble;      /**< what a master was lost for ... */
+    char master_name[CM1E_NAME_LENGTH]; /**< ... which one */
+} coupling_t;
+
+/* axis_master.c */
+/** Advances the masters of F, and of what waits to become it, where that has not been done in this cycle. */
+void cm1e_axis_advance_masters(cm1e_axis_t *axis);
+/** Fills in a master of a `follow` that is not in force yet: origin and sight as of the slave's present set-point.
+ *  CM1E_ERROR_AXIS_MASTER, _COUPLING_CYCLE, _MASTER_LOST, _RATIO: nothing follows it. */
+cm1e_error_t cm1e_axis_link(cm1e_axis_t *slave, follow_t *follow, const cm1e_coupling_master_t *master);
+/** What the slave sees in this cycle, of all masters of F. */
+master_trouble_t cm1e_axis_see(cm1e_axis_t *slave, follow_t *follow);
+void cm1e_axis_list_links(follow_t *follow);
+void cm1e_axis_unlist_links(follow_t *follow);
+/** Nobody follows it any more, and it nobody. @rt init */
+void cm1e_axis_unlink(cm1e_axis_t *axis);
+const char *cm1e_axis_trouble_name(master_trouble_t trouble);
+
+/* axis_coupling.c */
+cm1e_error_t cm1e_axis_coupling_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */
+void cm1e_axis_coupling_free(cm1e_axis_t *axis);                            /* @rt init */
+cm1e_error_t cm1e_axis_couple(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+cm1e_error_t cm1e_axis_coupling_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+/** A waiting one begins; `from` is where the command before it ended, `late_s` before the present set-point. */
+cm1e_error_t cm1e_axis_coupling_begin(cm1e_axis_t *axis, const move_t *move, const from_t *from, double late_s);
+/** The set-point of the cycle. FALSE: it does not come from F any more, but from the axis's profile. */
+bool cm1e_axis_coupled_step(cm1e_axis_t *axis);
+/** An empty place for an F that is being prepared. */
+follow_t *cm1e_axis_follow_spare(cm1e_axis_t *axis);
+/** F is this from now on; what the state `from` differs from it becomes the rest. The active command is the caller's to
+ *  change. */
+void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked);
+/** Kinds of commands that the axis knows how to follow by. */
+bool cm1e_axis_can_couple(cm1e_command_kind_t kind);
+/** In a cycle in which F has begun: its set-point, without going on. */
+void cm1e_axis_coupled_begin(cm1e_axis_t *axis);
+
+/* axis_gear.c */
+/** Prepares a gear or a combination that begins there, in the spare place. */
+cm1e_error_t cm1e_axis_gear_prepare(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
+                                    const from_t *from);
+/** MC_GearOut, MC_CamOut: leaves the masters and keeps the velocity. */
+cm1e_error_t cm1e_axis_decouple(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+
+#endif

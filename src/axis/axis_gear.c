@@ -1,0 +1,83 @@
+/* MC_GearIn, MC_CombineAxes: the sum of the masters' motions, each by its ratio. And the way out again. */
+#include <math.h>
+
+#include "axis/axis_coupling.h"
+
+static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
+{
+    (void)axis;
+    double counts = 0.0, velocity = 0.0, acceleration = 0.0;
+    for (int i = 0; i < follow->count; i++) {
+        const link_t *link = &follow->links[i];
+        counts += link->seen.counts * link->counts_ratio;
+        velocity += link->seen.velocity * link->ratio;
+        acceleration += link->seen.acceleration * link->ratio;
+    }
+    /* What is beyond all that can be counted, the guard finds too fast. */
+    counts = fmax(-(double)CM1E_FARTHEST_COUNTS, fmin(counts, (double)CM1E_FARTHEST_COUNTS));
+    *point = (from_t){cm1e_position_plus(follow->anchor, counts), velocity, acceleration, false};
+}
+
+static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link)
+{
+    (void)axis;
+    return fabs(follow->links[link].ratio);
+}
+
+static const follow_kind_t gear = {evaluate, steepest};
+
+/* Whole numbers as far as doubles hold them, so that they are rounded once: positions are this times counts. */
+static double counts_ratio(const cm1e_axis_t *slave, const cm1e_axis_t *master, double numerator, double denominator)
+{
+    const double sign = slave->scale * master->scale < 0.0 ? -1.0 : 1.0;
+    return sign * (numerator * (slave->unit.counts * master->unit.units)) /
+           (denominator * (slave->unit.units * master->unit.counts));
+}
+
+cm1e_error_t cm1e_axis_gear_prepare(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
+                                    const from_t *from)
+{
+    follow_t *follow = cm1e_axis_follow_spare(axis);
+    const int masters = move->kind == CM1E_COMMAND_COMBINE_AXES ? 2 : 1;
+    *follow = (follow_t){.kind = &gear, .anchor = from->position, .in_step = true};
+    for (int i = 0; i < masters; i++) {
+        const cm1e_coupling_master_t *master = &coupling->master[i];
+        if (master->numerator == 0 || master->denominator == 0)
+            return CM1E_ERROR_AXIS_RATIO;
+        const cm1e_error_t error = cm1e_axis_link(axis, follow, master);
+        if (error)
+            return error;
+        link_t *link = &follow->links[i];
+        const bool subtracted = i == 1 && coupling->combine == mcSubAxes;
+        const double numerator = subtracted ? -(double)master->numerator : master->numerator;
+        link->ratio = numerator / master->denominator;
+        link->counts_ratio = counts_ratio(axis, link->master, numerator, master->denominator);
+    }
+    return CM1E_OK;
+}
+
+/* ---- out again --------------------------------------------------------------------------------------------------- */
+
+static bool leaves(cm1e_command_kind_t out, cm1e_command_kind_t in)
+{
+    return out == CM1E_COMMAND_CAM_OUT ? in == CM1E_COMMAND_CAM_IN : in != CM1E_COMMAND_CAM_IN;
+}
+
+/* Done at once; what goes on is a command that no block owns. */
+cm1e_error_t cm1e_axis_decouple(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+{
+    const from_t from = from_set(axis);
+    move_t move = {.kind = (uint8_t)command->kind, .end_velocity = from_base(axis).velocity};
+    cm1e_profile_t profile;
+    if (!axis_follows(axis) || !axis->active || !leaves(command->kind, axis->kind))
+        return CM1E_ERROR_AXIS_NOT_COUPLED;
+    const cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, &profile);
+    if (error)
+        return error;
+    cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+    *id = cm1e_axis_next_id(axis);
+    cm1e_axis_record(axis, *id, CM1E_COMMAND_DONE, CM1E_OK);
+    move.id = cm1e_axis_next_id(axis);
+    cm1e_axis_take(axis, &move, &from, &profile, 0.0);
+    return CM1E_OK;
+}

@@ -1,0 +1,171 @@
+/* The masters of a follower: who follows whom, in which order they advance, and what is seen of them. */
+#include <string.h>
+
+#include "axis/axis_coupling.h"
+
+/* Counts by which a master's position may differ from what its velocities explain: rounding of where a ramp without a
+ * limit of jerk has its corner. */
+static const double same_way_counts = 1.0;
+
+void cm1e_axis_advance_masters(cm1e_axis_t *axis)
+{
+    coupling_t *c = axis->coupling;
+    for (int i = 0; i < c->now->count; i++)
+        if (c->now->links[i].master && !c->now->links[i].master->advanced)
+            cm1e_axis_advance(c->now->links[i].master);
+    for (int i = 0; c->next && i < c->next->count; i++)
+        if (c->next->links[i].master && !c->next->links[i].master->advanced)
+            cm1e_axis_advance(c->next->links[i].master);
+}
+
+/* ---- who follows whom -------------------------------------------------------------------------------------------- */
+
+static bool search(cm1e_axis_t *from, const cm1e_axis_t *goal, uint64_t mark);
+
+static bool search_masters(const follow_t *follow, const cm1e_axis_t *goal, uint64_t mark)
+{
+    for (int i = 0; follow && i < follow->count; i++)
+        if (follow->links[i].master && search(follow->links[i].master, goal, mark))
+            return true;
+    return false;
+}
+
+/* Whether `goal` is `from`, or one of its masters, or of theirs. Each axis is looked at once. */
+static bool search(cm1e_axis_t *from, const cm1e_axis_t *goal, uint64_t mark)
+{
+    coupling_t *c = from->coupling;
+    if (from == goal)
+        return true;
+    if (!axis_follows(from) || c->mark == mark)
+        return false;
+    c->mark = mark;
+    return search_masters(c->now, goal, mark) || search_masters(c->next, goal, mark);
+}
+
+static bool would_follow_itself(cm1e_axis_t *slave, cm1e_axis_t *master)
+{
+    const uint64_t mark = (uint64_t)slave->handle << 32 | ++slave->coupling->searches;
+    return search(master, slave, mark);
+}
+
+void cm1e_axis_list_links(follow_t *follow)
+{
+    for (int i = 0; i < follow->count; i++) {
+        link_t *link = &follow->links[i];
+        link->next = link->master->slaves;
+        link->master->slaves = link;
+        link->listed = true;
+    }
+}
+
+static void unlist(link_t *link)
+{
+    link_t **place = link->listed && link->master ? &link->master->slaves : NULL;
+    while (place && *place != link)
+        place = &(*place)->next;
+    if (place)
+        *place = link->next;
+    link->listed = false;
+}
+
+void cm1e_axis_unlist_links(follow_t *follow)
+{
+    for (int i = 0; i < follow->count; i++)
+        unlist(&follow->links[i]);
+}
+
+void cm1e_axis_unlink(cm1e_axis_t *axis)
+{
+    for (int i = 0; i < FOLLOWS; i++)
+        cm1e_axis_unlist_links(&axis->coupling->follows[i]);
+    while (axis->slaves) {
+        link_t *link = axis->slaves;
+        axis->slaves = link->next;
+        link->master = NULL;
+        link->listed = false;
+    }
+}
+
+/* ---- what is seen of them ---------------------------------------------------------------------------------------- */
+
+static master_trouble_t look_at_set_value(const cm1e_axis_t *master)
+{
+    if (master->state == CM1E_AXIS_ERROR_STOP)
+        return MASTER_ERROR_STOP;
+    if (drive_moves(master))
+        return MASTER_HOMING;
+    return master->activity == ACTIVITY_FREE ? MASTER_FREE : MASTER_GOOD;
+}
+
+/* Positions are counted in the master's counts from where the slave began to follow, so that no shift of coordinates is
+ * a motion, and none of them is lost however far the master goes. */
+static master_trouble_t see(link_t *link, position_t *position)
+{
+    const cm1e_axis_t *master = link->master;
+    if (!master)
+        return MASTER_GONE;
+    const master_trouble_t trouble = look_at_set_value(master);
+    if (trouble)
+        return trouble;
+    *position = master->set;
+    link->seen.velocity = master->set_velocity;
+    link->seen.acceleration = master->set_acceleration;
+    return MASTER_GOOD;
+}
+
+static bool jumped(const link_t *link, const sight_t *before, double cycle_s)
+{
+    const cm1e_axis_t *master = link->master;
+    const double way = (link->seen.velocity + before->velocity) / 2.0 * cycle_s;
+    const double corner = fmax(master->system.acceleration, master->system.deceleration) * cycle_s * cycle_s / 2.0;
+    return fabs(link->seen.counts - before->counts - way * master->scale) >
+           same_way_counts + corner * fabs(master->scale);
+}
+
+static master_trouble_t trouble_with(cm1e_axis_t *slave, const link_t *link, master_trouble_t trouble)
+{
+    coupling_t *c = slave->coupling;
+    c->trouble = trouble;
+    memcpy(c->master_name, link->master ? link->master->config->name : "", link->master ? sizeof c->master_name : 1);
+    return trouble;
+}
+
+master_trouble_t cm1e_axis_see(cm1e_axis_t *slave, follow_t *follow)
+{
+    for (int i = 0; i < follow->count; i++) {
+        link_t *link = &follow->links[i];
+        const sight_t before = link->seen;
+        position_t position;
+        const master_trouble_t trouble = see(link, &position);
+        if (trouble)
+            return trouble_with(slave, link, trouble);
+        link->seen.counts = cm1e_position_minus(position, link->origin);
+        if (jumped(link, &before, slave->cycle_s))
+            return trouble_with(slave, link, MASTER_JUMPED);
+    }
+    return MASTER_GOOD;
+}
+
+cm1e_error_t cm1e_axis_link(cm1e_axis_t *slave, follow_t *follow, const cm1e_coupling_master_t *asked)
+{
+    cm1e_axis_t *master = cm1e_axis_from_reference(&asked->axis);
+    if (!master || master->drive.bus != slave->drive.bus)
+        return CM1E_ERROR_AXIS_MASTER;
+    if (would_follow_itself(slave, master))
+        return CM1E_ERROR_AXIS_COUPLING_CYCLE;
+    if (asked->source != mcSetValue && asked->source != mcActualValue)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    if (asked->source != mcSetValue)
+        return CM1E_ERROR_UNSUPPORTED;
+    if (slave->advanced && !master->advanced) /* a command that waited begins: the slave's set-point is of this cycle */
+        cm1e_axis_advance(master);
+    link_t *link = &follow->links[follow->count];
+    *link = (link_t){.master = master, .slave = slave, .source = asked->source};
+    const master_trouble_t trouble = see(link, &link->origin);
+    if (trouble) {
+        trouble_with(slave, link, trouble);
+        return CM1E_ERROR_AXIS_MASTER_LOST;
+    }
+    follow->count++;
+    return CM1E_OK;
+}

@@ -1,0 +1,158 @@
+/* MC_GearIn and MC_GearOut, Part 1 4.5 and 4.6: into step, in step, and out again. */
+#include "unity.h"
+
+#include "../support/axes_bench.h"
+
+void setUp(void) { axes_begin(2); }
+void tearDown(void) { axes_end(); }
+
+enum { MASTER = 0, SLAVE = 1 };
+
+static double set_of(int n) { return axes_info(n).set_position; }
+
+/* 4.5, note 1: it ramps up to the ratio of the velocities and locks in; lost distance is not caught up. */
+static void test_it_gets_into_step_with_a_master_that_moves(void)
+{
+    axes_move_velocity(MASTER, 4.0);
+    axes_cycles(500);
+    const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, 3, 2);
+    axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
+    axes_cycles(1);
+    TEST_ASSERT_FALSE(axes_status(SLAVE, gear).reached);
+    axes_wait_reached(SLAVE, gear, 1000);
+    TEST_ASSERT_EQUAL_DOUBLE(6.0, axes_info(SLAVE).set_velocity);
+    const double master = set_of(MASTER), slave = set_of(SLAVE);
+    for (int n = 0; n < 1000; n++) {
+        axes_cycles(1);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.5 * (set_of(MASTER) - master), set_of(SLAVE) - slave);
+    }
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, axes_status(SLAVE, gear).state);
+    TEST_ASSERT_TRUE(axes_status(SLAVE, gear).reached);
+}
+
+/* The slave is before its master in the bus file, or behind it: no cycle of delay either way. */
+static void test_it_follows_within_the_cycle_in_either_order(void)
+{
+    for (int slave = 0; slave < 2; slave++) {
+        axes_begin(2);
+        const int master = 1 - slave;
+        const cm1e_command_id_t gear = axes_gear_in(slave, master, -1, 2);
+        axes_cycles(1);
+        TEST_ASSERT_TRUE(axes_status(slave, gear).reached);
+        axes_move_to(master, 10.0, 5.0);
+        for (int n = 0; n < 4000; n++) {
+            axes_cycles(1);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12, -0.5 * set_of(master), set_of(slave));
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12, -0.5 * axes_info(master).set_velocity, axes_info(slave).set_velocity);
+        }
+        TEST_ASSERT_EQUAL_DOUBLE(-5.0, set_of(slave));
+    }
+}
+
+/* Whatever the master does on the way: the sum keeps the slave's limits (the bench watches), in a definite time. */
+static void test_it_gets_into_step_with_a_master_that_accelerates(void)
+{
+    for (int delay = 0; delay < 120; delay += 7) {
+        axes_begin(2);
+        axes_move_velocity(MASTER, 10.0);
+        axes_cycles(delay);
+        const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, 1, 1);
+        axes_cycles(30);
+        axes_move_velocity(MASTER, 3.0);
+        axes_wait_reached(SLAVE, gear, 2000);
+        axes_cycles(1000);
+        TEST_ASSERT_EQUAL_DOUBLE(3.0, axes_info(SLAVE).set_velocity);
+    }
+}
+
+/* 4.6: Done at once; the last velocity is kept. */
+static void test_out_of_gear_it_keeps_its_velocity(void)
+{
+    const cm1e_axis_command_t gently = {.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 4.0, .acceleration = 40.0,
+                                        .jerk = 900.0};
+    axes_command(MASTER, &gently);
+    axes_gear_in(SLAVE, MASTER, 2, 1);
+    axes_cycles(1500);
+    const cm1e_axis_command_t out = {.kind = CM1E_COMMAND_GEAR_OUT};
+    const cm1e_command_id_t id = axes_command(SLAVE, &out);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, axes_status(SLAVE, id).state);
+    axes_must_be(SLAVE, CM1E_AXIS_CONTINUOUS_MOTION);
+    axes_move_velocity(MASTER, 1.0);
+    axes_cycles(500);
+    TEST_ASSERT_EQUAL_DOUBLE(8.0, axes_info(SLAVE).set_velocity);
+    axes_refused(SLAVE, &out, CM1E_ERROR_AXIS_NOT_COUPLED);
+    axes_wait(SLAVE, axes_move_to(SLAVE, 0.0, 10.0), 20000);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, set_of(SLAVE));
+}
+
+/* In the middle of an acceleration, which is brought to an end, and back to the velocity. */
+static void test_out_of_gear_while_it_accelerates(void)
+{
+    axes_gear_in(SLAVE, MASTER, 1, 1);
+    axes_move_velocity(MASTER, 10.0);
+    axes_cycles(60);
+    const double velocity = axes_info(SLAVE).set_velocity;
+    TEST_ASSERT_TRUE(axes_info(SLAVE).set_acceleration > 50.0);
+    axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_OUT});
+    axes_cycles(500);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, velocity, axes_info(SLAVE).set_velocity);
+}
+
+static void test_gear_out_does_not_end_a_cam_nor_anything_else(void)
+{
+    const cm1e_axis_command_t gear_out = {.kind = CM1E_COMMAND_GEAR_OUT}, cam_out = {.kind = CM1E_COMMAND_CAM_OUT};
+    axes_refused(SLAVE, &gear_out, CM1E_ERROR_AXIS_NOT_COUPLED);
+    axes_move_velocity(SLAVE, 1.0);
+    axes_cycles(10);
+    axes_refused(SLAVE, &gear_out, CM1E_ERROR_AXIS_NOT_COUPLED);
+    axes_gear_in(SLAVE, MASTER, 1, 1);
+    axes_refused(SLAVE, &cam_out, CM1E_ERROR_AXIS_NOT_COUPLED);
+}
+
+/* 4.5, note 2. */
+static void test_another_ratio_takes_over_without_a_step(void)
+{
+    axes_move_velocity(MASTER, 4.0);
+    const cm1e_command_id_t first = axes_gear_in(SLAVE, MASTER, 1, 1);
+    axes_cycles(1000);
+    const cm1e_command_id_t second = axes_gear_in(SLAVE, MASTER, -2, 1);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ABORTED, axes_status(SLAVE, first).state);
+    axes_cycles(1);
+    TEST_ASSERT_FALSE(axes_status(SLAVE, second).reached);
+    axes_wait_reached(SLAVE, second, 1000);
+    TEST_ASSERT_EQUAL_DOUBLE(-8.0, axes_info(SLAVE).set_velocity);
+}
+
+static void test_what_cannot_be_followed_is_refused(void)
+{
+    cm1e_axis_coupling_t coupling = {.master = {{.axis = axes_reference(SLAVE), .numerator = 1, .denominator = 1}}};
+    const cm1e_axis_command_t command = {.kind = CM1E_COMMAND_GEAR_IN, .coupling = &coupling};
+    axes_refused(SLAVE, &command, CM1E_ERROR_AXIS_COUPLING_CYCLE);
+    coupling.master[0].axis.Handle ^= 0x5500;
+    axes_refused(SLAVE, &command, CM1E_ERROR_AXIS_MASTER);
+    coupling.master[0].axis = axes_reference(MASTER);
+    coupling.master[0].numerator = 0;
+    axes_refused(SLAVE, &command, CM1E_ERROR_AXIS_RATIO);
+    coupling.master[0].numerator = 1;
+    coupling.master[0].denominator = 0;
+    axes_refused(SLAVE, &command, CM1E_ERROR_AXIS_RATIO);
+    coupling.master[0].denominator = 1;
+    axes_power(MASTER, false);
+    axes_cycles(20);
+    axes_refused(SLAVE, &command, CM1E_ERROR_AXIS_MASTER_LOST);
+    axes_must_be(SLAVE, CM1E_AXIS_STANDSTILL);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_it_gets_into_step_with_a_master_that_moves);
+    RUN_TEST(test_it_follows_within_the_cycle_in_either_order);
+    RUN_TEST(test_it_gets_into_step_with_a_master_that_accelerates);
+    RUN_TEST(test_out_of_gear_it_keeps_its_velocity);
+    RUN_TEST(test_out_of_gear_while_it_accelerates);
+    RUN_TEST(test_gear_out_does_not_end_a_cam_nor_anything_else);
+    RUN_TEST(test_another_ratio_takes_over_without_a_step);
+    RUN_TEST(test_what_cannot_be_followed_is_refused);
+    return UNITY_END();
+}
