@@ -1,12 +1,14 @@
 /**
- * Random programs on one to four axes, millions of cycles: every block of the table with random inputs, nonsense among them, at
- * any time and in any order; power, directions, faults of the drive, lost frames. What must hold after every cycle:
+ * Random programs on one to four axes, millions of cycles: every block of the table with random inputs, nonsense among
+ * them, at any time and in any order; power, directions, faults of the drives, lost frames; axes that follow each other.
+ * What must hold after every cycle:
  *
  *  - position, velocity, acceleration and jerk of the set-point keep the axis's limits, and fit together;
  *  - the motor follows: the drive is sent the set-point, and only under torque;
  *  - outputs of every block as PLCopen 2.4.1 says, one block Active at most (superimposed motions beside it);
  *  - the state goes only the ways of figure 2; a refused command changes nothing;
  *  - a move that is Done has arrived where it was to; nothing stands still for ever that should move;
+ *  - a slave that is InGear is where its master and the ratio say;
  *  - in Standstill nothing moves, and without MC_Power or in ErrorStop the torque ends in time.
  *
  * CM1E_TEST_SEED=<n> repeats one run, CM1E_TEST_RUNS=<n> makes more of them.

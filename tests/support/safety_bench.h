@@ -274,7 +274,8 @@ static bool began_anew(const bench_t *bench, uint32_t n, const witness_t *w, dou
     cm1e_axis_info_t info = {0};
     cm1e_axis_read(bench->axis[n], &info);
     const int32_t off = (int32_t)((uint32_t)w->target - (uint32_t)w->position);
-    const bool moving = info.state == CM1E_AXIS_DISCRETE_MOTION || info.state == CM1E_AXIS_CONTINUOUS_MOTION;
+    const bool moving = info.state == CM1E_AXIS_DISCRETE_MOTION || info.state == CM1E_AXIS_CONTINUOUS_MOTION ||
+                        info.state == CM1E_AXIS_SYNCHRONIZED_MOTION;
     const double shaft = fabs((double)(int32_t)((uint32_t)w->position - (uint32_t)w->position_before));
     return !moving && (step == 0 || fabs((double)off) <= fmax(w->max_step, 3 * shaft) + 1.0);
 }
