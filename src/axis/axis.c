@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "axis/axis_cam.h"
 #include "axis/axis_coupling.h"
 #include "axis/axis_handle.h"
 
@@ -21,6 +22,8 @@ cm1e_error_t cm1e_axis_create(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t in
     if (!error)
         error = cm1e_axis_table_init(axis, diag);
     if (!error)
+        error = cm1e_axis_cams_init(axis, diag);
+    if (!error)
         error = cm1e_axis_coupling_init(axis, diag);
     axis->mode = !error && !cm1e_drive_supports(&axis->drive, CM1E_MODE_CSP) ? CM1E_MODE_CSV : CM1E_MODE_CSP;
     if (!error)
@@ -31,6 +34,7 @@ cm1e_error_t cm1e_axis_create(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t in
     if (error) {
         cm1e_drive_free(&axis->drive);
         free(axis->tables);
+        free(axis->cams);
         free(axis->muscle);
         cm1e_axis_coupling_free(axis);
         free(axis);
@@ -52,6 +56,7 @@ void cm1e_axis_destroy(cm1e_axis_t *axis)
     cm1e_axis_handle_give_back(axis->handle);
     cm1e_drive_free(&axis->drive);
     free(axis->tables);
+    free(axis->cams);
     free(axis->muscle);
     cm1e_axis_coupling_free(axis);
     free(axis);

@@ -1,10 +1,132 @@
-/* Cams in the memory of their slave. */
-#include "axis/axis_private.h"
+/* Cams in the memory of their slave (MC_CamTableSelect). */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "axis/axis_cam.h"
+
+enum { DEFAULT_POINTS = 128 };
+
+cm1e_error_t cm1e_axis_cams_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
+{
+    const int points = axis->config->cam_points ? axis->config->cam_points : DEFAULT_POINTS;
+    cams_t *cams = calloc(1, sizeof *cams + (size_t)CAM_SLOTS * (size_t)points * sizeof cams->knots[0]);
+    if (!cams)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the cams of axis \"%s\": %d of %d points.",
+                             axis->config->name, CM1E_AXIS_CAMS, points);
+    cams->points = points;
+    for (int i = 0; i < CAM_SLOTS; i++)
+        cams->slots[i].knots = &cams->knots[i * points];
+    axis->cams = cams;
+    return CM1E_OK;
+}
+
+const cam_slot_t *cm1e_axis_cam_of(const cm1e_axis_t *axis, MC_CAM_ID id)
+{
+    for (int i = 0; id != 0 && i < CAM_SLOTS; i++)
+        if (axis->cams->slots[i].id == id)
+            return &axis->cams->slots[i];
+    return NULL;
+}
+
+static bool used(const cm1e_axis_t *axis, const cam_slot_t *slot)
+{
+    (void)axis, (void)slot;
+    return false;
+}
+
+static cam_slot_t *empty_slot(cams_t *cams)
+{
+    cam_slot_t *slot = cams->slots;
+    while (slot->id != 0) /* there is one more of them than cams stay */
+        slot++;
+    return slot;
+}
+
+/* The oldest that nobody needs. NULL: none; `*room`: there is no need for that. */
+static cam_slot_t *to_go(cm1e_axis_t *axis, bool *room)
+{
+    cam_slot_t *oldest = NULL;
+    int count = 0;
+    for (int i = 0; i < CAM_SLOTS; i++) {
+        cam_slot_t *slot = &axis->cams->slots[i];
+        count += slot->id != 0;
+        if (slot->id != 0 && !used(axis, slot) &&
+            (!oldest || axis->cams->last - slot->id > axis->cams->last - oldest->id))
+            oldest = slot;
+    }
+    *room = count < CM1E_AXIS_CAMS;
+    return oldest;
+}
+
+static cm1e_error_t select_cam(cm1e_axis_t *axis, const MC_CAM_REF *table, bool periodic, cam_slot_t **taken)
+{
+    cams_t *cams = axis->cams;
+    bool room;
+    cam_slot_t *oldest = to_go(axis, &room), *slot = empty_slot(cams);
+    if (!room && !oldest)
+        return CM1E_ERROR_FULL;
+    cams->fault = cm1e_cam_compile(&slot->cam, slot->knots, cams->points, table, periodic, &cams->wrong);
+    if (cams->fault != CM1E_CAM_GOOD)
+        return CM1E_ERROR_AXIS_CAM_TABLE;
+    if (!room)
+        oldest->id = 0;
+    if (++cams->last == 0)
+        cams->last = 1; /* 0 is no cam */
+    slot->id = cams->last;
+    *taken = slot;
+    return CM1E_OK;
+}
 
 cm1e_error_t cm1e_axis_cam_select(cm1e_axis_t *slave, const MC_CAM_REF *cam, bool periodic, bool master_absolute,
                                   bool slave_absolute, MC_CAM_ID *id)
 {
-    (void)slave, (void)cam, (void)periodic, (void)master_absolute, (void)slave_absolute;
+    cam_slot_t *slot = NULL;
+    const cm1e_error_t error = select_cam(slave, cam, periodic, &slot);
     *id = 0;
-    return CM1E_ERROR_UNSUPPORTED;
+    cm1e_axis_remember_not_set(slave, (not_set_t){.error = error, .what = NOT_SET_CAM});
+    if (error)
+        return error;
+    slot->master_absolute = master_absolute;
+    slot->slave_absolute = slave_absolute;
+    *id = slot->id;
+    return CM1E_OK;
+}
+
+/* In words what is wrong with the cam that was refused last, and what would be right. */
+void cm1e_axis_cam_table_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const cams_t *cams = axis->cams;
+    const char *name = axis->config->name;
+    const int point = cams->wrong + 1;
+    if (axis->not_set.error == CM1E_ERROR_FULL) {
+        snprintf(text, size, "Axis \"%s\": no cam was selected: the %d for which there is memory are followed, or "
+                 "commands that wait name them.", name, CM1E_AXIS_CAMS);
+        return;
+    }
+    switch (cams->fault) {
+    case CM1E_CAM_TOO_FEW:
+        snprintf(text, size, "Axis \"%s\": a cam has no points, or only one; 2 ... %d are right.", name, cams->points);
+        break;
+    case CM1E_CAM_TOO_MANY:
+        snprintf(text, size, "Axis \"%s\": a cam has too many points; 2 ... %d are right, as `cam_points` of the bus "
+                 "file says.", name, cams->points);
+        break;
+    case CM1E_CAM_NOT_FINITE:
+        snprintf(text, size, "Axis \"%s\": a number of point %d of a cam is not finite.", name, point);
+        break;
+    case CM1E_CAM_NOT_RISING:
+        snprintf(text, size, "Axis \"%s\": Master of point %d of a cam is not above that of point %d; it has to rise "
+                 "from one to the next.", name, point, point - 1);
+        break;
+    case CM1E_CAM_CURVE:
+        snprintf(text, size, "Axis \"%s\": the Curve of a cam is none; mcCamPolynomial5, mcCamCubicSpline and "
+                 "mcCamLinear are.", name);
+        break;
+    case CM1E_CAM_STEEP:
+        snprintf(text, size, "Axis \"%s\": points %d and %d of a cam are so close together, or so far apart, that the "
+                 "curve between them cannot be computed.", name, point, point + 1);
+        break;
+    case CM1E_CAM_GOOD:
+        break;
+    }
 }

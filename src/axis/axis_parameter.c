@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_cam.h"
 
 /* The axis keeps positions as doubles: whole counts are exact up to 2^53. */
 static const double farthest_limit_counts = 9e15;
@@ -217,6 +217,8 @@ void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size)
     } else if (refused->what == NOT_SET_PROBE) {
         snprintf(text, size, "Axis \"%s\": no touch probe at input %d: %s.%s", name, refused->number,
                  cm1e_strerror(refused->error), cm1e_axis_signals_advice(axis, refused->error));
+    } else if (refused->what == NOT_SET_CAM) {
+        cm1e_axis_cam_table_text(axis, text, size);
     } else if (refused->number >= CM1E_PARAMETER_VENDOR) {
         cm1e_axis_object_text(axis, text, size);
     } else if (!known(refused->number)) {

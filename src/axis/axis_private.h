@@ -259,6 +259,7 @@ typedef enum not_set_what {
     NOT_SET_OVERRIDE,      /**< MC_SetOverride; see override_refused */
     NOT_SET_OUTPUT,        /**< digital output `number` */
     NOT_SET_PROBE,         /**< a touch probe at input `number` */
+    NOT_SET_CAM,           /**< MC_CamTableSelect; see cams_t */
     NOT_FINISHED,          /**< a command, of the kind `number`, that was taken and ended with the error */
 } not_set_what_t;
 
@@ -459,6 +460,7 @@ struct cm1e_axis {
     cool_muscle_t *muscle;          /**< NULL: the motor is a CM1-E */
     struct coupling *coupling;      /**< what it follows */
     struct link *slaves;            /**< who follows it */
+    struct cams *cams;              /**< that it may follow (axis_cam.h) */
 };
 
 /** Counts of this motor that are as far as so many of a CM1-E; two at least, as one is rounding. */
