@@ -47,7 +47,8 @@ typedef enum cm1e_path_junction {
     CM1E_PATH_STOP,  /**< at rest */
     /** Exactly along both segments. Where the tangent of any axis breaks: at rest. Where it does not, but the curvature
      *  does (a line into an arc), the acceleration of axes steps; it is passed so slowly that the step is at most half
-     *  of what the axis's limit of jerk allows in a cycle, and both segments have the other half of that limit. */
+     *  of what the axis's limit of jerk allows in a cycle, and for a cycle before and after the path has the other half
+     *  of that limit. */
     CM1E_PATH_EXACT,
     /** By a transition from `parameter` u (length of path) before the end to as much behind it, smooth in tangent and
      *  curvature. Less where that is more than half of one of the segments, or has begun. */
@@ -119,16 +120,18 @@ typedef enum cm1e_path_kind { CM1E_PATH_LINE, CM1E_PATH_ARC, CM1E_PATH_CURVE } c
 
 enum { CM1E_PATH_KNOTS = 8 };
 
-/** A piece of geometry over its own length. A line: from + direction * l. An arc: the space part is centre + radius
- *  (u cos + v sin)(l / radius). A curve: a polynomial of degree 5, `power` its coefficients over 0 ... 1, `at` the
- *  length from its start at CM1E_PATH_KNOTS parts. */
+/** A piece of geometry over its own length. Lines and arcs are reckoned from the nearer of both ends, so that these are
+ *  exact and an arc of any radius is as exact as a line: from + direction l, and of an arc besides
+ *  radius (v sin(l / radius) - u (1 - cos(l / radius))), where u points from the centre to the end and v along. A curve
+ *  is a polynomial of degree 5 over 0 ... 1; `at` is the length from its beginning at CM1E_PATH_KNOTS parts. */
 typedef struct cm1e_path_piece {
     cm1e_path_kind_t kind;
+    int measured; /**< the length is the norm of so many axes */
     double length;
     union {
         struct {
-            double from[CM1E_PATH_AXES], direction[CM1E_PATH_AXES]; /**< per length; an arc: of further axes */
-            double centre[CM1E_PATH_SPACE], u[CM1E_PATH_SPACE], v[CM1E_PATH_SPACE], radius;
+            double from[CM1E_PATH_AXES], to[CM1E_PATH_AXES], direction[CM1E_PATH_AXES];
+            double u[2][CM1E_PATH_SPACE], v[2][CM1E_PATH_SPACE], radius;
         };
         struct {
             double power[6][CM1E_PATH_AXES], at[CM1E_PATH_KNOTS + 1];
@@ -141,18 +144,21 @@ typedef struct cm1e_path_point {
     double position[CM1E_PATH_AXES], tangent[CM1E_PATH_AXES], curvature[CM1E_PATH_AXES];
 } cm1e_path_point_t;
 
-/** A stretch of path with limits of its own: a segment without what its transitions took, or a transition. */
+/** A stretch of path with limits of its own: a segment without what its junctions took, a transition, or what is next
+ *  to a step of the curvature. */
 typedef struct cm1e_path_element {
     const cm1e_path_piece_t *piece;
     uint32_t tag;
-    bool last_of_tag;
-    double skipped;             /**< length of the piece before the element begins */
-    double begin, end;          /**< length of path */
-    cm1e_motion_limits_t limits;  /**< the command's, as far as the axes allow */
-    cm1e_motion_limits_t most;    /**< what the axes allow */
-    double entry;               /**< the highest velocity at which it may be entered from the element before */
-    double velocity;            /**< planned at its beginning, acceleration 0 there; only where a run begins */
-    bool joined;                /**< planned in one with the element before */
+    bool last_of_tag;             /**< its end is the end of the segment */
+    bool dropped;                 /**< with the segment cut off, so it is not reported as done */
+    bool joined;                  /**< planned in one with the element before, so that the acceleration goes on */
+    double skipped, length;       /**< of the piece: where it begins, and how far it goes */
+    cm1e_motion_limits_t limits;  /**< of the command; but for the velocity as far as the axes allow */
+    double highest;               /**< the velocity that the axes allow with them */
+    cm1e_motion_limits_t most;    /**< what the axes allow for a stop */
+    double passed;                /**< the highest velocity with which its beginning can be passed */
+    double junction;              /**< and the one that the command wants there, at an override of 1 */
+    double entry, hard_entry;     /**< looked ahead, where it begins a run: to keep all, and to keep the axes' limits */
 } cm1e_path_element_t;
 
 typedef struct cm1e_path_segment {
@@ -160,22 +166,25 @@ typedef struct cm1e_path_segment {
     cm1e_path_command_t command;
 } cm1e_path_segment_t;
 
-enum { CM1E_PATH_ELEMENTS = 2 * CM1E_PATH_SEGMENTS };
+enum { CM1E_PATH_ELEMENTS = 3 * CM1E_PATH_SEGMENTS };
 
 typedef struct cm1e_path {
     cm1e_path_config_t config;
-    cm1e_path_phase_t phase;
-    double position[CM1E_PATH_AXES]; /**< at rest, where there is no segment */
+    double end[CM1E_PATH_AXES];     /**< of everything */
     double override;
     int first_segment, segment_count;
     cm1e_path_segment_t segment[CM1E_PATH_SEGMENTS]; /**< a ring */
     int first_element, element_count;
     cm1e_path_element_t element[CM1E_PATH_ELEMENTS]; /**< a ring; the first is the one it is on */
-    cm1e_profile_t profile;          /**< of the run it is on */
+    bool cut;                       /**< the end is where a stop will be, not the end of a segment */
+    bool stop_wanted;
+    bool stopping;                  /**< the profile is that of a stop: it ends wherever it does */
+    cm1e_motion_limits_t stop;      /**< deceleration and jerk of it */
+    cm1e_profile_t profile;         /**< of the elements that are joined with the first one */
     cm1e_profile_stretch_t stretch;
-    double time_s, run_end;          /**< on the profile; where it ends */
-    cm1e_motion_state_t along;       /**< where it is */
-    cm1e_motion_limits_t stop;       /**< deceleration and jerk of the stop that was asked for */
+    double time_s;                  /**< on the profile */
+    double begin;                   /**< where on the profile the first element begins */
+    cm1e_motion_state_t along;      /**< on the profile */
 } cm1e_path_t;
 
 /* ---- functions --------------------------------------------------------------------------------------------------- */
@@ -195,8 +204,8 @@ cm1e_error_t cm1e_path_append_line(cm1e_path_t *path, const double *end, const c
 cm1e_error_t cm1e_path_append_arc_border(cm1e_path_t *path, const double *border, const double *end,
                                          const cm1e_path_command_t *command, cm1e_path_problem_t *problem);
 /** An arc around `centre`, in the plane of beginning, centre and end; the end as far from the centre as the beginning,
- *  to within 1e-6 of the radius: within that the centre is shifted, for ends are kept exactly. End equal to beginning
- *  in space: a full circle. Where the three lie in a line (half and full circles) the plane is the one parallel to X and Y
+ *  to within 1e-6 of the radius; both ends are kept. End equal to beginning in space (to within 1e-9 of the radius): a
+ *  full circle. Where the three lie in a line (half and full circles) the plane is the one parallel to X and Y
  *  if the centre is as high as the beginning, else there is none: take the border. */
 cm1e_error_t cm1e_path_append_arc_centre(cm1e_path_t *path, const double *centre, const double *end,
                                          cm1e_path_way_t way, const cm1e_path_command_t *command,
@@ -212,8 +221,8 @@ double cm1e_path_left(const cm1e_path_t *path);
 /** Factor >= 0 of the velocities of commands, never beyond the axes' limits. 0: comes to rest and waits. */
 void cm1e_path_override(cm1e_path_t *path, double factor);
 /** Comes to rest along the path, as soon as `deceleration` and `jerk` (0: as much as the axes allow) allow but not
- *  later than planned, and stays there: CM1E_PATH_STOPPING, then CM1E_PATH_STOPPED (CM1E_PATH_IDLE if that is the end of
- *  everything). What is left waits. */
+ *  later than planned, and stays there: CM1E_PATH_STOPPING, then CM1E_PATH_STOPPED (CM1E_PATH_IDLE if that is the end
+ *  of everything). What is left waits. */
 void cm1e_path_stop(cm1e_path_t *path, double deceleration, double jerk);
 /** Goes on with what is left, also while it still stops. */
 void cm1e_path_go_on(cm1e_path_t *path);

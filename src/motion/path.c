@@ -1,0 +1,346 @@
+#include "motion/path.h"
+
+#include <math.h>
+
+#include "motion/path_private.h"
+
+static const double LARGEST = 1e15;
+
+static bool is_limit(double value) { return value >= 0; } /* also infinite */
+
+cm1e_error_t cm1e_path_begin(cm1e_path_t *path, const cm1e_path_config_t *config, const double *position)
+{
+    if (config->axes < 1 || config->axes > CM1E_PATH_AXES || config->space < 1 || config->space > CM1E_PATH_SPACE ||
+        config->space > config->axes || !(config->cycle_s > 0) || !isfinite(config->cycle_s))
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    for (int i = 0; i < config->axes; i++) {
+        const cm1e_path_axis_t *axis = &config->axis[i];
+        if (!(axis->velocity > 0 && axis->acceleration > 0 && axis->jerk > 0 && axis->velocity < LARGEST &&
+              axis->acceleration < LARGEST && axis->lowest <= axis->highest && fabs(position[i]) < LARGEST))
+            return CM1E_ERROR_INVALID_ARGUMENT;
+    }
+    path->config = *config;
+    path->override = 1;
+    path->first_segment = path->segment_count = path->first_element = path->element_count = 0;
+    path->cut = path->stop_wanted = path->stopping = false;
+    path->along = (cm1e_motion_state_t){0, 0, 0};
+    path->begin = path->time_s = 0;
+    for (int i = 0; i < config->axes; i++)
+        path->end[i] = position[i];
+    return CM1E_OK;
+}
+
+/* ---- appending --------------------------------------------------------------------------------------------------- */
+
+static cm1e_path_segment_t *segment_at(cm1e_path_t *path, int index)
+{
+    return &path->segment[(path->first_segment + index) % CM1E_PATH_SEGMENTS];
+}
+
+static cm1e_error_t refuse(cm1e_path_problem_t *problem, cm1e_path_refusal_t refusal, int axis, double position)
+{
+    if (problem)
+        *problem = (cm1e_path_problem_t){refusal, axis, position};
+    switch (refusal) {
+    case CM1E_PATH_FINE: return CM1E_OK;
+    case CM1E_PATH_FULL: return CM1E_ERROR_FULL;
+    case CM1E_PATH_OUT_OF_BOUNDS: return CM1E_ERROR_AXIS_POSITION_RANGE;
+    default: return CM1E_ERROR_INVALID_ARGUMENT;
+    }
+}
+
+static cm1e_path_refusal_t check(const cm1e_path_t *path, const double *end, const cm1e_path_command_t *command)
+{
+    if (path->segment_count == CM1E_PATH_SEGMENTS || path->element_count > CM1E_PATH_ELEMENTS - 3)
+        return CM1E_PATH_FULL;
+    const cm1e_motion_limits_t *limits = &command->limits;
+    if (!is_limit(limits->velocity) || !is_limit(limits->acceleration) || !is_limit(limits->deceleration) ||
+        !is_limit(limits->jerk) || command->tag == 0)
+        return CM1E_PATH_NO_NUMBER;
+    for (int i = 0; i < path->config.axes; i++)
+        if (!(fabs(end[i]) < LARGEST))
+            return CM1E_PATH_NO_NUMBER;
+    const bool transition = command->junction == CM1E_PATH_CORNER_DISTANCE ||
+                            command->junction == CM1E_PATH_CORNER_DEVIATION;
+    return transition && !(command->parameter > 0) ? CM1E_PATH_NO_TRANSITION : CM1E_PATH_FINE;
+}
+
+/** The ring has a place for the next segment: what is made there counts only once it is taken in. */
+static cm1e_error_t take_in(cm1e_path_t *path, const cm1e_path_command_t *command, cm1e_path_problem_t *problem)
+{
+    cm1e_path_segment_t *segment = segment_at(path, path->segment_count);
+    const cm1e_path_frame_t frame = {path->config.axes, path->config.space};
+    for (int i = 0; i < path->config.axes; i++) {
+        const cm1e_path_axis_t *axis = &path->config.axis[i];
+        double low, high;
+        cm1e_path_extent(&segment->piece, &frame, i, &low, &high);
+        if (low < fmin(axis->lowest, path->end[i]))
+            return refuse(problem, CM1E_PATH_OUT_OF_BOUNDS, i, low);
+        if (high > fmax(axis->highest, path->end[i]))
+            return refuse(problem, CM1E_PATH_OUT_OF_BOUNDS, i, high);
+    }
+    double *limit[] = {&segment->command.limits.velocity, &segment->command.limits.acceleration,
+                       &segment->command.limits.deceleration, &segment->command.limits.jerk};
+    segment->command = *command;
+    for (int i = 0; i < 4; i++)
+        if (*limit[i] == 0)
+            *limit[i] = INFINITY;
+    const bool at_rest = path->element_count == 0;
+    cm1e_path_segment_t *before = at_rest ? NULL : segment_at(path, path->segment_count - 1);
+    path->segment_count++;
+    if (at_rest) {
+        path->along = (cm1e_motion_state_t){0, 0, 0};
+        path->begin = path->time_s = 0;
+    }
+    cm1e_path_join(path, before, segment);
+    path->cut = false;
+    for (int i = 0; i < path->config.axes; i++)
+        path->end[i] = segment->piece.to[i];
+    return refuse(problem, CM1E_PATH_FINE, 0, 0);
+}
+
+cm1e_error_t cm1e_path_append_line(cm1e_path_t *path, const double *end, const cm1e_path_command_t *command,
+                                   cm1e_path_problem_t *problem)
+{
+    const cm1e_path_refusal_t refusal = check(path, end, command);
+    if (refusal)
+        return refuse(problem, refusal, 0, 0);
+    const cm1e_path_frame_t frame = {path->config.axes, path->config.space};
+    cm1e_path_make_line(&segment_at(path, path->segment_count)->piece, &frame, path->end, end);
+    return take_in(path, command, problem);
+}
+
+static bool are_numbers(const double *point, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (!(fabs(point[i]) < LARGEST))
+            return false;
+    return true;
+}
+
+cm1e_error_t cm1e_path_append_arc_border(cm1e_path_t *path, const double *border, const double *end,
+                                         const cm1e_path_command_t *command, cm1e_path_problem_t *problem)
+{
+    cm1e_path_refusal_t refusal = check(path, end, command);
+    const cm1e_path_frame_t frame = {path->config.axes, path->config.space};
+    if (!refusal && !are_numbers(border, frame.space))
+        refusal = CM1E_PATH_NO_NUMBER;
+    if (refusal)
+        return refuse(problem, refusal, 0, 0);
+    cm1e_path_segment_t *segment = segment_at(path, path->segment_count);
+    if (!cm1e_path_make_border_arc(&segment->piece, &frame, path->end, border, end))
+        return refuse(problem, CM1E_PATH_NO_ARC, 0, 0);
+    return take_in(path, command, problem);
+}
+
+cm1e_error_t cm1e_path_append_arc_centre(cm1e_path_t *path, const double *centre, const double *end,
+                                         cm1e_path_way_t way, const cm1e_path_command_t *command,
+                                         cm1e_path_problem_t *problem)
+{
+    cm1e_path_refusal_t refusal = check(path, end, command);
+    const cm1e_path_frame_t frame = {path->config.axes, path->config.space};
+    if (!refusal && !are_numbers(centre, frame.space))
+        refusal = CM1E_PATH_NO_NUMBER;
+    if (refusal)
+        return refuse(problem, refusal, 0, 0);
+    cm1e_path_segment_t *segment = segment_at(path, path->segment_count);
+    if (!cm1e_path_make_centre_arc(&segment->piece, &frame, path->end, centre, way, end))
+        return refuse(problem, CM1E_PATH_NO_ARC, 0, 0);
+    return take_in(path, command, problem);
+}
+
+int cm1e_path_room(const cm1e_path_t *path)
+{
+    const int elements = (CM1E_PATH_ELEMENTS - path->element_count) / 3;
+    const int segments = CM1E_PATH_SEGMENTS - path->segment_count;
+    return elements < segments ? elements : segments;
+}
+
+void cm1e_path_end(const cm1e_path_t *path, double *position)
+{
+    for (int i = 0; i < path->config.axes; i++)
+        position[i] = path->end[i];
+}
+
+double cm1e_path_left(const cm1e_path_t *path)
+{
+    double left = -cm1e_path_here(path);
+    for (int i = 0; i < path->element_count; i++)
+        left += path->element[(path->first_element + i) % CM1E_PATH_ELEMENTS].length;
+    return fmax(0, left);
+}
+
+/* ---- stopping and going on --------------------------------------------------------------------------------------- */
+
+static bool must_stop(const cm1e_path_t *path) { return path->stop_wanted || path->override == 0; }
+
+static bool is_at_rest(const cm1e_path_t *path)
+{
+    return path->element_count == 0 || (path->stopping && path->time_s >= path->profile.duration_s);
+}
+
+/** Takes back a stop; one that is so far on that the way cannot be planned from it is carried through first. */
+static void try_to_go_on(cm1e_path_t *path)
+{
+    if (!must_stop(path) && path->stopping && !is_at_rest(path)) /* at rest, the next step goes on */
+        cm1e_path_resume(path);
+}
+
+void cm1e_path_override(cm1e_path_t *path, double factor)
+{
+    if (!(factor >= 0) || factor == path->override)
+        return;
+    path->override = fmin(factor, LARGEST);
+    if (path->element_count == 0 || is_at_rest(path))
+        return;
+    if (factor == 0 && !path->stopping) {
+        const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
+        path->stop = run.limits;
+        (void)cm1e_path_plan_stop(path);
+    } else if (path->stopping) {
+        try_to_go_on(path);
+    } else {
+        (void)cm1e_path_plan(path);
+    }
+}
+
+void cm1e_path_stop(cm1e_path_t *path, double deceleration, double jerk)
+{
+    if (path->element_count == 0)
+        return;
+    path->stop_wanted = true;
+    path->stop.deceleration = deceleration > 0 ? deceleration : INFINITY;
+    path->stop.jerk = jerk > 0 ? jerk : INFINITY;
+    if (!is_at_rest(path))
+        (void)cm1e_path_plan_stop(path);
+}
+
+void cm1e_path_go_on(cm1e_path_t *path)
+{
+    path->stop_wanted = false;
+    try_to_go_on(path);
+}
+
+void cm1e_path_clear(cm1e_path_t *path)
+{
+    if (path->element_count == 0)
+        return;
+    if (!is_at_rest(path)) {
+        if (!path->stop_wanted)
+            cm1e_path_stop(path, 0, 0);
+        cm1e_path_cut(path);
+        path->stop_wanted = false;
+        return;
+    }
+    const cm1e_path_element_t *element = cm1e_path_element(path, 0);
+    cm1e_path_point_t point;
+    cm1e_path_point_at(element->piece, path->config.axes, element->skipped + cm1e_path_here(path), &point);
+    for (int i = 0; i < path->config.axes; i++)
+        path->end[i] = point.position[i];
+    path->element_count = path->segment_count = 0;
+    path->stop_wanted = path->stopping = false;
+}
+
+/* ---- a cycle ----------------------------------------------------------------------------------------------------- */
+
+static void pop(cm1e_path_t *path, cm1e_path_sample_t *sample)
+{
+    const cm1e_path_element_t *element = cm1e_path_element(path, 0);
+    if (element->last_of_tag) {
+        if (!element->dropped)
+            sample->done_tags[sample->done++] = element->tag;
+        path->first_segment = (path->first_segment + 1) % CM1E_PATH_SEGMENTS;
+        path->segment_count--;
+    }
+    path->begin += element->length;
+    path->first_element = (path->first_element + 1) % CM1E_PATH_ELEMENTS;
+    path->element_count--;
+}
+
+/** `slack`: how near an end is as good as there. */
+static void pop_passed(cm1e_path_t *path, cm1e_path_sample_t *sample, int keep, double slack)
+{
+    while (path->element_count > keep && cm1e_path_here(path) >= cm1e_path_element(path, 0)->length - slack)
+        pop(path, sample);
+}
+
+/** What comes after the end of the profile. FALSE: nothing yet. */
+static bool go_to_next(cm1e_path_t *path, cm1e_path_sample_t *sample)
+{
+    const double over_s = path->time_s - path->profile.duration_s;
+    path->along = (cm1e_motion_state_t){path->profile.end.position, path->profile.end.velocity, 0};
+    if (path->stopping) {
+        pop_passed(path, sample, 0, 1e-12 * path->along.position);
+        path->time_s = path->profile.duration_s;
+        if (path->element_count > 0 && must_stop(path))
+            return false;
+        path->stopping = false;
+        if (path->element_count > 0)
+            path->along.position = fmax(0, cm1e_path_here(path));
+    } else {
+        const int count = cm1e_path_run(path, 0, path->element_count).count;
+        for (int i = 0; i < count; i++)
+            pop(path, sample);
+        path->along.position = 0;
+    }
+    path->begin = 0;
+    if (path->element_count == 0) {
+        path->along = (cm1e_motion_state_t){0, 0, 0};
+        path->stop_wanted = path->cut = false;
+        return false;
+    }
+    (void)cm1e_path_plan(path);
+    path->time_s = over_s;
+    return true;
+}
+
+static void fill(cm1e_path_t *path, cm1e_path_sample_t *sample)
+{
+    const int axes = path->config.axes;
+    const double v = path->along.velocity, a = path->along.acceleration;
+    sample->path_velocity = v;
+    sample->path_acceleration = a;
+    const cm1e_path_element_t *element = cm1e_path_element(path, 0);
+    cm1e_path_point_t point;
+    cm1e_path_point_at(element->piece, axes,
+                       element->skipped + fmin(fmax(cm1e_path_here(path), 0), element->length), &point);
+    for (int i = 0; i < axes; i++) {
+        sample->position[i] = point.position[i];
+        sample->velocity[i] = point.tangent[i] * v;
+        sample->acceleration[i] = point.curvature[i] * v * v + point.tangent[i] * a;
+    }
+    sample->active = element->tag;
+    sample->phase = !path->stop_wanted ? CM1E_PATH_MOVING : is_at_rest(path) ? CM1E_PATH_STOPPED : CM1E_PATH_STOPPING;
+}
+
+static void fill_idle(const cm1e_path_t *path, cm1e_path_sample_t *sample)
+{
+    sample->path_velocity = sample->path_acceleration = 0;
+    for (int i = 0; i < path->config.axes; i++) {
+        sample->position[i] = path->end[i];
+        sample->velocity[i] = sample->acceleration[i] = 0;
+    }
+    sample->active = 0;
+    sample->phase = CM1E_PATH_IDLE;
+}
+
+void cm1e_path_step(cm1e_path_t *path, cm1e_path_sample_t *sample)
+{
+    sample->done = 0;
+    if (path->element_count > 0 && must_stop(path) && !path->stopping)
+        (void)cm1e_path_plan_stop(path);
+    path->time_s += path->config.cycle_s;
+    bool moves = path->element_count > 0;
+    while (moves && path->time_s >= path->profile.duration_s)
+        moves = go_to_next(path, sample);
+    if (moves) {
+        if (path->time_s >= path->stretch.until_s)
+            cm1e_profile_stretch_at(&path->profile, path->time_s, &path->stretch);
+        path->along = cm1e_profile_stretch_state(&path->stretch, path->time_s);
+        pop_passed(path, sample, 1, 0);
+    }
+    if (path->element_count > 0)
+        fill(path, sample);
+    else
+        fill_idle(path, sample);
+}

@@ -1,0 +1,317 @@
+/*
+ * What becomes of the place where two segments meet: a stop, a passage, or a curve that takes the place of both ends.
+ * And which elements are planned in one.
+ */
+#include <math.h>
+
+#include "motion/path_private.h"
+
+enum { TRIES = 4 };
+
+/** A break of the tangent by more than this (rad, or u per u of path) is a corner. */
+static const double CORNER = 1e-3;
+
+/** A step of the acceleration by this part of what the limit of jerk allows in a cycle is none. */
+static const double NO_STEP = 1e-6;
+
+/** How much of an arc a transition may take (rad), and how far back a corner may turn that it goes round (cosine). */
+static const double MOST_OF_ARC = 0.7, BACK = -0.97;
+
+/** Which part of a limit of jerk is for steps of the acceleration. */
+static const double STEP_SHARE = 0.5;
+
+static cm1e_path_frame_t frame_of(const cm1e_path_t *path)
+{
+    return (cm1e_path_frame_t){path->config.axes, path->config.space};
+}
+
+static void pop_last(cm1e_path_t *path, int count) { path->element_count -= count; }
+
+/** Puts a part of a piece behind everything, not to be entered but from rest. */
+static cm1e_path_element_t *push(cm1e_path_t *path, const cm1e_path_piece_t *piece, double skipped, double length,
+                                 const cm1e_path_command_t *command, double jerk_share)
+{
+    static const cm1e_motion_limits_t all = {INFINITY, INFINITY, INFINITY, INFINITY}, any = {1, 1, 1, 1};
+    cm1e_path_element_t *element = cm1e_path_element(path, path->element_count++);
+    *element = (cm1e_path_element_t){.piece = piece, .tag = command->tag, .last_of_tag = true, .skipped = skipped,
+                                     .length = length};
+    if (piece->length == 0) {
+        element->most = element->limits = any;
+        element->highest = any.velocity;
+        return element;
+    }
+    element->most = cm1e_path_allowed(piece, &path->config, jerk_share, &all);
+    const cm1e_motion_limits_t *wanted = &command->limits;
+    element->limits = cm1e_path_allowed(piece, &path->config, jerk_share, wanted);
+    element->highest = piece->kind == CM1E_PATH_LINE
+                           ? element->most.velocity
+                           : cm1e_path_allowed_velocity(piece, &path->config, jerk_share, &element->limits);
+    element->limits.velocity = wanted->velocity;
+    return element;
+}
+
+static double blended(cm1e_path_blend_t blend, double first, double second)
+{
+    switch (blend) {
+    case CM1E_PATH_BLEND_PREVIOUS: return first;
+    case CM1E_PATH_BLEND_NEXT: return second;
+    case CM1E_PATH_BLEND_HIGH: return fmax(first, second);
+    default: return fmin(first, second);
+    }
+}
+
+/* ---- one run ----------------------------------------------------------------------------------------------------- */
+
+static double time_over(double length, double velocity, const cm1e_motion_limits_t *limits)
+{
+    if (velocity >= limits->velocity)
+        return length / velocity;
+    const cm1e_motion_state_t start = {0, velocity, 0};
+    cm1e_profile_t profile;
+    return cm1e_profile_to_state(&profile, &start, length, velocity, limits) ? INFINITY : profile.duration_s;
+}
+
+/** Whether to plan an element in one with those before: they get the lowest of all limits, but the acceleration along
+ *  the path need not come to 0 in between. What that takes is compared with what it saves. */
+static bool worth_joining(cm1e_path_t *path, int index)
+{
+    int first = index - 1;
+    while (first > 0 && cm1e_path_element(path, first)->joined)
+        first--;
+    const cm1e_path_element_t *element = cm1e_path_element(path, index);
+    const cm1e_path_run_t run = cm1e_path_run(path, first, index);
+    cm1e_motion_limits_t own = element->limits, low = run.limits;
+    own.velocity = fmin(own.velocity * (path->override > 0 ? path->override : 1), element->highest);
+    low.velocity = fmin(own.velocity, low.velocity);
+    low.acceleration = fmin(own.acceleration, low.acceleration);
+    low.deceleration = fmin(own.deceleration, low.deceleration);
+    low.jerk = fmin(own.jerk, low.jerk);
+    if (low.velocity > element->passed * (1 + 1e-9))
+        return false;
+    const double same = 1 - 1e-9;
+    const bool lowers_run = low.velocity < run.limits.velocity * same || element->highest < run.highest * same ||
+                            low.acceleration < run.limits.acceleration * same ||
+                            low.deceleration < run.limits.deceleration * same ||
+                            low.jerk < run.limits.jerk * same;
+    if (lowers_run && first == 0 && (path->along.velocity != 0 || path->along.acceleration != 0))
+        return false; /* it is on the way already */
+    const double a = fmin(low.acceleration, low.deceleration);
+    const double ease = isinf(low.jerk) ? 0 : fmin(a / low.jerk, sqrt(low.velocity / low.jerk));
+    const double slower = run.length / low.velocity - time_over(run.length, low.velocity, &run.limits) +
+                          element->length / low.velocity - time_over(element->length, low.velocity, &own);
+    const double run_a = fmin(run.limits.acceleration, run.limits.deceleration);
+    const double own_a = fmin(own.acceleration, own.deceleration);
+    const double weaker = fmin(low.velocity / a, 2 * sqrt(2 * run.length / a)) * (1 - a / run_a) +
+                          fmin(low.velocity / a, 2 * sqrt(2 * element->length / a)) * (1 - a / own_a);
+    return slower + weaker <= ease * (1 + 1e-9) || (slower <= 0 && weaker <= 0);
+}
+
+static void set_entry(cm1e_path_t *path, int index, double passed, double junction)
+{
+    cm1e_path_element_t *element = cm1e_path_element(path, index);
+    element->passed = passed;
+    element->junction = junction;
+    element->joined = passed > 0 && worth_joining(path, index);
+}
+
+/** What of the last element is not needed for the motion under way. */
+static double room_on_last(cm1e_path_t *path)
+{
+    const int last = path->element_count - 1;
+    const double length = cm1e_path_element(path, last)->length;
+    double used = path->stopping ? path->profile.end.position - path->begin : cm1e_path_here(path);
+    for (int i = 0; i < last; i++)
+        used -= cm1e_path_element(path, i)->length;
+    return length - fmax(0, used);
+}
+
+/* ---- exactly ----------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    bool corner, even; /**< a break of the tangent; no step of the acceleration either */
+    double velocity;   /**< at which the step is as large as it may be */
+} break_t;
+
+static break_t look_at_break(const cm1e_path_t *path, const cm1e_path_piece_t *before, const cm1e_path_piece_t *after,
+                             double velocity)
+{
+    const cm1e_path_config_t *config = &path->config;
+    cm1e_path_point_t a, b;
+    cm1e_path_point_at(before, config->axes, before->length, &a);
+    cm1e_path_point_at(after, config->axes, 0, &b);
+    break_t found = {before->measured != after->measured, true, INFINITY};
+    for (int i = 0; i < config->axes; i++) {
+        const double bend = fabs(b.tangent[i] - a.tangent[i]) / config->cycle_s;
+        const double curve = fabs(b.curvature[i] - a.curvature[i]);
+        const double allowed = STEP_SHARE * fmin(config->axis[i].jerk * config->cycle_s, config->axis[i].acceleration);
+        found.corner = found.corner || bend * config->cycle_s > CORNER;
+        found.even = found.even && bend * velocity + curve * velocity * velocity <= NO_STEP * allowed;
+        const double root = sqrt(bend * bend + 4 * curve * allowed);
+        if (bend + root > 0)
+            found.velocity = fmin(found.velocity, 2 * allowed / (bend + root));
+    }
+    return found;
+}
+
+/** Next to a step, half of the axes' jerk is for the step. */
+static bool pass_slowly(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_segment_t *segment, double velocity,
+                        double junction)
+{
+    const int last = path->element_count - 1;
+    cm1e_path_element_t *element = cm1e_path_element(path, last);
+    const double zone = velocity * path->config.cycle_s;
+    if (!(zone < room_on_last(path) / 2 && zone < segment->piece.length / 2))
+        return false;
+    element->length -= zone;
+    element->last_of_tag = false;
+    const struct {
+        const cm1e_path_segment_t *of;
+        double skipped, length, share;
+    } parts[3] = {{before, element->skipped + element->length, zone, 1 - STEP_SHARE},
+                  {segment, 0, zone, 1 - STEP_SHARE},
+                  {segment, zone, segment->piece.length - zone, 1}};
+    for (int i = 0; i < 3; i++) {
+        cm1e_path_element_t *part = push(path, &parts[i].of->piece, parts[i].skipped, parts[i].length,
+                                         &parts[i].of->command, parts[i].share);
+        part->last_of_tag = i != 1;
+        if (i < 2)
+            part->highest = fmin(part->highest, velocity);
+        set_entry(path, last + 1 + i, velocity, junction);
+    }
+    if (cm1e_path_plan(path))
+        return true;
+    pop_last(path, 3);
+    element->length += zone;
+    element->last_of_tag = true;
+    return false;
+}
+
+static void stop_between(cm1e_path_t *path, cm1e_path_segment_t *segment)
+{
+    push(path, &segment->piece, 0, segment->piece.length, &segment->command, 1);
+    (void)cm1e_path_plan(path);
+}
+
+static void pass_exactly(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_segment_t *segment)
+{
+    const double junction = blended(segment->command.blend, before->command.limits.velocity,
+                                    segment->command.limits.velocity);
+    const int last = path->element_count - 1;
+    cm1e_path_element_t *element = push(path, &segment->piece, 0, segment->piece.length, &segment->command, 1);
+    const double most = fmin(cm1e_path_element(path, last)->highest, element->highest);
+    const break_t found = look_at_break(path, &before->piece, &segment->piece, most);
+    if (!found.corner && found.even) {
+        set_entry(path, last + 1, most, junction);
+        if (cm1e_path_plan(path))
+            return;
+        element->joined = false;
+        if (cm1e_path_plan(path))
+            return;
+    }
+    pop_last(path, 1);
+    if (!found.corner && !found.even && pass_slowly(path, before, segment, fmin(most, found.velocity), junction))
+        return;
+    stop_between(path, segment);
+}
+
+/* ---- by a transition --------------------------------------------------------------------------------------------- */
+
+static double most_of(const cm1e_path_piece_t *piece)
+{
+    return piece->kind == CM1E_PATH_ARC ? fmin(piece->length / 2, MOST_OF_ARC * piece->radius) : piece->length / 2;
+}
+
+static bool within_bounds(const cm1e_path_t *path, const cm1e_path_piece_t *piece)
+{
+    const cm1e_path_frame_t frame = frame_of(path);
+    for (int i = 0; i < path->config.axes; i++) {
+        double low, high;
+        cm1e_path_extent(piece, &frame, i, &low, &high);
+        if (low < path->config.axis[i].lowest || high > path->config.axis[i].highest)
+            return false;
+    }
+    return true;
+}
+
+/** How far from the junction a transition begins and ends; 0: there is none. */
+static double reach_of(const cm1e_path_t *path, const cm1e_path_segment_t *before, cm1e_path_segment_t *segment,
+                       double room)
+{
+    const cm1e_path_frame_t frame = frame_of(path);
+    cm1e_path_point_t a, b;
+    cm1e_path_point_at(&before->piece, frame.axes, before->piece.length, &a);
+    cm1e_path_point_at(&segment->piece, frame.axes, 0, &b);
+    double cosine = 0;
+    for (int i = 0; i < before->piece.measured; i++)
+        cosine += a.tangent[i] * b.tangent[i];
+    if (before->piece.measured != segment->piece.measured || cosine < BACK)
+        return 0;
+    double reach = fmin(room, fmin(most_of(&before->piece), most_of(&segment->piece)));
+    const bool by_distance = segment->command.junction == CM1E_PATH_CORNER_DISTANCE;
+    if (by_distance)
+        reach = fmin(reach, segment->command.parameter);
+    for (int i = 0; i < 2 * TRIES && reach > 0; i++) {
+        cm1e_path_make_curve(&segment->transition, &frame, &before->piece, reach, &segment->piece, reach);
+        const double deviation =
+            by_distance ? 0 : cm1e_path_deviation(&segment->transition, &frame, before->piece.to);
+        if (deviation > segment->command.parameter)
+            reach *= 0.999 * segment->command.parameter / deviation;
+        else if (!within_bounds(path, &segment->transition))
+            reach /= 2;
+        else
+            return reach;
+    }
+    return 0;
+}
+
+static bool try_transition(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_segment_t *segment, double reach)
+{
+    const cm1e_path_frame_t frame = frame_of(path);
+    const int last = path->element_count - 1;
+    cm1e_path_element_t *element = cm1e_path_element(path, last);
+    const cm1e_path_element_t saved = *element;
+    const double junction = blended(segment->command.blend, before->command.limits.velocity,
+                                    segment->command.limits.velocity);
+    cm1e_path_make_curve(&segment->transition, &frame, &before->piece, reach, &segment->piece, reach);
+    element->length = fmax(0, element->length - reach);
+    cm1e_path_command_t command = segment->command;
+    command.limits.velocity = junction;
+    cm1e_path_element_t *curve = push(path, &segment->transition, 0, segment->transition.length, &command, 1);
+    curve->last_of_tag = false;
+    set_entry(path, last + 1, fmin(curve->highest, element->highest), junction);
+    const double rest = segment->piece.length - reach;
+    cm1e_path_element_t *main = push(path, &segment->piece, reach, rest, &segment->command, 1);
+    set_entry(path, last + 2, fmin(curve->highest, main->highest), junction);
+    for (int i = 0; i < 3; i++) {
+        if (cm1e_path_plan(path))
+            return true;
+        curve->joined = false;
+        if (i == 1)
+            main->joined = false;
+    }
+    pop_last(path, 2);
+    *element = saved;
+    return false;
+}
+
+static void pass_by_transition(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_segment_t *segment)
+{
+    double reach = reach_of(path, before, segment, room_on_last(path));
+    for (int i = 0; i < TRIES && reach > 0; i++) {
+        if (try_transition(path, before, segment, reach))
+            return;
+        reach /= 2;
+    }
+    pass_exactly(path, before, segment);
+}
+
+void cm1e_path_join(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_segment_t *segment)
+{
+    const bool has_length = segment->piece.length > 0 && before && before->piece.length > 0;
+    if (!has_length || path->cut || segment->command.junction == CM1E_PATH_STOP)
+        stop_between(path, segment);
+    else if (segment->command.junction == CM1E_PATH_EXACT)
+        pass_exactly(path, before, segment);
+    else
+        pass_by_transition(path, before, segment);
+}

@@ -1,0 +1,147 @@
+/*
+ * What the limits of the axes allow along a piece. With q the position of an axis over the length, v, a and j the
+ * motion along the path, the axis has the velocity q' v, the acceleration q'' v2 + q' a and the jerk
+ * q''' v3 + 3 q'' v a + q' j. A line has no q'' and no q''', and what its limits are is plain. Where the path bends the
+ * limits share what the axis can do: the more acceleration along the path, the less velocity. Chosen is the share with
+ * which the piece is soonest passed.
+ */
+#include <math.h>
+
+#include "motion/path_piece.h"
+
+enum { CURVE_STEPS = 24, BENDS_MAX = (CURVE_STEPS + 1) * CM1E_PATH_AXES, SOLVER_STEPS = 40 };
+
+/** Between the points of a curve that are looked at it may bend more by this much. */
+static const double BETWEEN_POINTS = 1.01;
+
+/** Sizes of the derivatives of an axis by the length, and its limits. */
+typedef struct {
+    double first, second, third, acceleration, jerk;
+} bend_t;
+
+typedef struct {
+    cm1e_motion_limits_t straight; /**< what can be had as if nothing were bent */
+    bool round; /**< a circle: what is along and what is across are never at their most at the same time */
+    int count;
+    bend_t bend[BENDS_MAX];
+} bends_t;
+
+static void add(bends_t *bends, const cm1e_path_axis_t *axis, double share, const bend_t *sizes)
+{
+    const double jerk = axis->jerk * share;
+    if (sizes->first > 0) {
+        bends->straight.velocity = fmin(bends->straight.velocity, axis->velocity / sizes->first);
+        bends->straight.acceleration = fmin(bends->straight.acceleration, axis->acceleration / sizes->first);
+        bends->straight.jerk = fmin(bends->straight.jerk, jerk / sizes->first);
+    }
+    if (sizes->second > 0 || sizes->third > 0) {
+        bends->bend[bends->count] = *sizes;
+        bends->bend[bends->count].acceleration = axis->acceleration;
+        bends->bend[bends->count++].jerk = jerk;
+    }
+}
+
+static void look(bends_t *bends, const cm1e_path_piece_t *piece, const cm1e_path_config_t *config, double share)
+{
+    bends->straight = (cm1e_motion_limits_t){INFINITY, INFINITY, INFINITY, INFINITY};
+    bends->round = piece->kind == CM1E_PATH_ARC;
+    bends->count = 0;
+    if (piece->kind == CM1E_PATH_CURVE) {
+        for (int k = 0; k <= CURVE_STEPS; k++) {
+            double by_length[3][CM1E_PATH_AXES];
+            cm1e_path_curve_derivatives(piece, config->axes, (double)k / CURVE_STEPS, by_length);
+            for (int i = 0; i < config->axes; i++)
+                add(bends, &config->axis[i], share,
+                    &(bend_t){BETWEEN_POINTS * fabs(by_length[0][i]), BETWEEN_POINTS * fabs(by_length[1][i]),
+                              BETWEEN_POINTS * fabs(by_length[2][i]), 0, 0});
+        }
+    } else {
+        for (int i = 0; i < config->axes; i++) {
+            const bool bent = bends->round && i < piece->measured;
+            const double first = bent ? hypot(piece->u[0][i], piece->v[0][i]) : fabs(piece->direction[i]);
+            const double curvature = bent ? 1 / piece->radius : 0;
+            add(bends, &config->axis[i], share,
+                &(bend_t){first, first * curvature, first * curvature * curvature, 0, 0});
+        }
+    }
+    bends->straight.deceleration = bends->straight.acceleration;
+}
+
+static double acceleration_of(const bends_t *bends, const bend_t *bend, double v, double a)
+{
+    return bends->round ? hypot(bend->first * a, bend->second * v * v) : bend->first * a + bend->second * v * v;
+}
+
+static double jerk_of(const bends_t *bends, const bend_t *bend, double v, double a, double j)
+{
+    const double pushed = bend->first > 0 ? bend->first * j : 0; /* j may be infinite */
+    const double along = pushed + bend->third * v * v * v, across = 3 * bend->second * v * a;
+    return bends->round ? hypot(along, across) : along + across;
+}
+
+/** The highest velocity up to `velocity` with this acceleration and jerk along the path. */
+static double velocity_with(const bends_t *bends, double velocity, double a, double j)
+{
+    for (int i = 0; i < bends->count; i++) {
+        const bend_t *bend = &bends->bend[i];
+        if (acceleration_of(bends, bend, velocity, a) > bend->acceleration) {
+            const double along = bend->first * a;
+            const double across = bends->round
+                                      ? sqrt(fmax(0, (bend->acceleration - along) * (bend->acceleration + along)))
+                                      : fmax(0, bend->acceleration - along);
+            velocity = sqrt(across / bend->second);
+        }
+        if (jerk_of(bends, bend, velocity, a, j) <= bend->jerk)
+            continue;
+        double low = 0, high = velocity;
+        for (int k = 0; k < SOLVER_STEPS && high - low > 1e-6 * high; k++) {
+            const double middle = (low + high) / 2;
+            if (jerk_of(bends, bend, middle, a, j) <= bend->jerk)
+                low = middle;
+            else
+                high = middle;
+        }
+        velocity = low;
+    }
+    return velocity;
+}
+
+static double larger(const cm1e_motion_limits_t *limits) { return fmax(limits->acceleration, limits->deceleration); }
+
+static cm1e_motion_limits_t lower(const cm1e_motion_limits_t *a, const cm1e_motion_limits_t *b, double share)
+{
+    return (cm1e_motion_limits_t){fmin(a->velocity, b->velocity), fmin(a->acceleration, share * b->acceleration),
+                                  fmin(a->deceleration, share * b->deceleration), fmin(a->jerk, share * b->jerk)};
+}
+
+cm1e_motion_limits_t cm1e_path_allowed(const cm1e_path_piece_t *piece, const cm1e_path_config_t *config,
+                                       double jerk_share, const cm1e_motion_limits_t *wanted)
+{
+    static const double shares[] = {1, 0.7, 0.5, 0.35, 0.2, 0.1, 0.03};
+    bends_t bends;
+    look(&bends, piece, config, jerk_share);
+    cm1e_motion_limits_t best = lower(wanted, &bends.straight, 1);
+    const double velocity = best.velocity;
+    double soonest = INFINITY;
+    for (size_t i = 0; bends.count > 0 && i < sizeof shares / sizeof *shares; i++) {
+        cm1e_motion_limits_t limits = lower(wanted, &bends.straight, shares[i]);
+        limits.velocity = velocity_with(&bends, velocity, larger(&limits), limits.jerk);
+        const double time = piece->length / limits.velocity + limits.velocity / larger(&limits) / 2 +
+                            (isinf(limits.jerk) ? 0 : larger(&limits) / limits.jerk / 2);
+        if (time < soonest) {
+            soonest = time;
+            best = limits;
+        }
+        if (i == 0 && limits.velocity == velocity)
+            break;
+    }
+    return best;
+}
+
+double cm1e_path_allowed_velocity(const cm1e_path_piece_t *piece, const cm1e_path_config_t *config, double jerk_share,
+                                  const cm1e_motion_limits_t *limits)
+{
+    bends_t bends;
+    look(&bends, piece, config, jerk_share);
+    return velocity_with(&bends, bends.straight.velocity, larger(limits), limits->jerk);
+}

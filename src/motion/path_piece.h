@@ -1,0 +1,51 @@
+/**
+ * @file path_piece.h
+ * The geometry of a path: lines, arcs and the curves between them, each over its own length, and what the limits of
+ * the axes allow along them. Private to the room. @rt cycle throughout.
+ */
+#ifndef CM1E_MOTION_PATH_PIECE_H
+#define CM1E_MOTION_PATH_PIECE_H
+
+#include "motion/path.h"
+
+/** In which space, and which axes there are. */
+typedef struct cm1e_path_frame {
+    int axes, space;
+} cm1e_path_frame_t;
+
+/** A line that moves the space axes by less than this part of the others is measured by all of them. */
+#define CM1E_PATH_NO_SPACE 1e-6
+
+void cm1e_path_make_line(cm1e_path_piece_t *piece, const cm1e_path_frame_t *frame, const double *from,
+                         const double *to);
+/** FALSE: there is no such arc. */
+bool cm1e_path_make_border_arc(cm1e_path_piece_t *piece, const cm1e_path_frame_t *frame, const double *from,
+                               const double *border, const double *to);
+bool cm1e_path_make_centre_arc(cm1e_path_piece_t *piece, const cm1e_path_frame_t *frame, const double *from,
+                               const double *centre, cm1e_path_way_t way, const double *to);
+/** From `before` at `leave` u before its end to `after` at `enter` u behind its beginning, of equal tangent and
+ *  curvature there. */
+void cm1e_path_make_curve(cm1e_path_piece_t *piece, const cm1e_path_frame_t *frame, const cm1e_path_piece_t *before,
+                          double leave, const cm1e_path_piece_t *after, double enter);
+/** How far a curve stays from the junction that it goes round: the larger of the distance in space and that of any
+ *  further axis, where it is nearest. */
+double cm1e_path_deviation(const cm1e_path_piece_t *curve, const cm1e_path_frame_t *frame, const double *junction);
+
+void cm1e_path_point_at(const cm1e_path_piece_t *piece, int axes, double length, cm1e_path_point_t *point);
+/** What of an axis the piece covers; of a curve at least that. */
+void cm1e_path_extent(const cm1e_path_piece_t *piece, const cm1e_path_frame_t *frame, int axis, double *lowest,
+                      double *highest);
+
+/** Of a curve (0 ... 1 of its parameter): the first three derivatives of the positions by the length. */
+void cm1e_path_curve_derivatives(const cm1e_path_piece_t *curve, int axes, double x,
+                                 double by_length[3][CM1E_PATH_AXES]);
+
+/** What may be had along the piece of these limits so that every axis keeps its own, whatever the motion does within
+ *  them. Any of `wanted` may be INFINITY. */
+cm1e_motion_limits_t cm1e_path_allowed(const cm1e_path_piece_t *piece, const cm1e_path_config_t *config,
+                                       double jerk_share, const cm1e_motion_limits_t *wanted);
+/** The highest velocity for which that holds with the other limits as they are. */
+double cm1e_path_allowed_velocity(const cm1e_path_piece_t *piece, const cm1e_path_config_t *config, double jerk_share,
+                                  const cm1e_motion_limits_t *limits);
+
+#endif

@@ -1,0 +1,302 @@
+/*
+ * How fast along the path. Elements that are joined are one run: one profile goes over all of them, with the lowest of
+ * their limits. At the beginning of a run the acceleration along the path is 0, and its velocity is looked ahead for
+ * from the end of everything backwards, twice: as the commands and the override want it, and as the axes' limits need
+ * it. From a run that is entered with no more than the second, the next one can always be entered so too; so whatever
+ * has been planned can be followed to the end, and what is planned anew on the way is taken only where it can be.
+ */
+#include <math.h>
+
+#include "motion/path_private.h"
+
+enum { SLOWEST_STEPS = 16, FIND_STEPS = 60 };
+
+/** A way longer by this part of it is as long. */
+static const double AS_LONG = 1e-9;
+
+static double factor(const cm1e_path_t *path) { return path->override > 0 ? path->override : 1; }
+
+cm1e_path_run_t cm1e_path_run(cm1e_path_t *path, int first, int until)
+{
+    cm1e_path_run_t run = {0, 0, {INFINITY, INFINITY, INFINITY, INFINITY}, INFINITY};
+    for (int i = first; i < until; i++) {
+        const cm1e_path_element_t *element = cm1e_path_element(path, i);
+        if (i > first && !element->joined)
+            break;
+        run.count++;
+        run.length += element->length;
+        run.highest = fmin(run.highest, element->highest);
+        run.limits.velocity = fmin(run.limits.velocity, factor(path) * element->limits.velocity);
+        run.limits.acceleration = fmin(run.limits.acceleration, element->limits.acceleration);
+        run.limits.deceleration = fmin(run.limits.deceleration, element->limits.deceleration);
+        run.limits.jerk = fmin(run.limits.jerk, element->limits.jerk);
+    }
+    run.limits.velocity = fmin(run.limits.velocity, run.highest);
+    return run;
+}
+
+/* ---- looking ahead ----------------------------------------------------------------------------------------------- */
+
+static void look_ahead(cm1e_path_t *path, int first)
+{
+    double soft = 0, hard = 0;
+    for (int last = path->element_count; last > first;) {
+        int start = last - 1;
+        while (cm1e_path_element(path, start)->joined)
+            start--;
+        if (start < first)
+            break;
+        cm1e_path_element_t *element = cm1e_path_element(path, start);
+        const cm1e_path_run_t run = cm1e_path_run(path, start, last);
+        soft = fmin(soft, run.highest);
+        hard = fmin(hard, run.highest);
+        const double most = fmin(element->passed, run.highest);
+        const double wanted = fmin(most, factor(path) * element->junction);
+        element->hard_entry = cm1e_profile_entry_velocity(run.length, most, hard, &run.limits);
+        element->hard_entry = fmin(element->hard_entry, most);
+        element->entry = cm1e_profile_entry_velocity(run.length, wanted, soft, &run.limits);
+        element->entry = fmin(element->entry, fmin(wanted, element->hard_entry));
+        soft = element->entry;
+        hard = element->hard_entry;
+        last = start;
+    }
+}
+
+/* ---- one run ----------------------------------------------------------------------------------------------------- */
+
+static double fastest(const cm1e_profile_t *profile)
+{
+    double velocity = profile->end.velocity;
+    for (int i = 0; i < profile->segment_count; i++) {
+        const cm1e_profile_segment_t *segment = &profile->segments[i];
+        const double end_s = i + 1 < profile->segment_count ? segment[1].start_s : profile->duration_s;
+        const double a = segment->start.acceleration, j = segment->jerk;
+        velocity = fmax(velocity, segment->start.velocity);
+        if (a > 0 && j < 0 && -a / j < end_s - segment->start_s)
+            velocity = fmax(velocity, segment->start.velocity - a * a / j / 2);
+    }
+    return velocity;
+}
+
+/** Whether it goes ahead only, not beyond its end and not too fast. */
+static bool keeps(const cm1e_profile_t *profile, const cm1e_motion_state_t *start, double end, double highest)
+{
+    double low, high;
+    cm1e_profile_extent(profile, &low, &high);
+    const double slack = AS_LONG * (end - start->position);
+    return low >= start->position - slack && high <= end + slack && fastest(profile) <= highest * (1 + 1e-9);
+}
+
+static bool plan_to(cm1e_profile_t *profile, const cm1e_motion_state_t *start, const cm1e_path_run_t *run, double exit)
+{
+    const double highest = fmax(run->highest, start->velocity);
+    return !cm1e_profile_to_state(profile, start, run->length, exit, &run->limits) &&
+           keeps(profile, start, run->length, highest);
+}
+
+/** From a state on the run to its end, to leave it with `soft`, or as near to that as can be, but not beyond `hard`. */
+static bool plan_run(cm1e_profile_t *profile, const cm1e_motion_state_t *start, const cm1e_path_run_t *run, double soft,
+                     double hard)
+{
+    const double exit = cm1e_profile_passing_velocity(start, run->length, soft, &run->limits);
+    if (plan_to(profile, start, run, exit))
+        return true;
+    /* Too fast to come down to that. */
+    const double eased = start->velocity + start->acceleration * (fabs(start->acceleration) / run->limits.jerk) / 2;
+    double high = fmin(hard, fmax(eased, soft)), low = soft;
+    if (!plan_to(profile, start, run, high)) {
+        high = fmin(hard, start->velocity);
+        if (!plan_to(profile, start, run, high))
+            return false;
+    }
+    for (int i = 0; i < SLOWEST_STEPS && high - low > 1e-3 * high; i++) {
+        const double middle = (low + high) / 2;
+        cm1e_profile_t slower;
+        if (plan_to(&slower, start, run, middle)) {
+            *profile = slower;
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    return true;
+}
+
+static void exits(cm1e_path_t *path, const cm1e_path_run_t *run, int next, double *soft, double *hard)
+{
+    *soft = *hard = 0;
+    if (next < path->element_count) {
+        *soft = fmin(cm1e_path_element(path, next)->entry, run->highest);
+        *hard = fmin(cm1e_path_element(path, next)->hard_entry, run->highest);
+    }
+}
+
+static void follow(cm1e_path_t *path, const cm1e_profile_t *profile, const cm1e_motion_state_t *start)
+{
+    path->profile = *profile;
+    path->time_s = 0;
+    path->begin = 0;
+    path->along = *start;
+    path->stretch.until_s = -1;
+}
+
+/** FALSE: nothing has changed. */
+static bool plan_anew(cm1e_path_t *path, const cm1e_path_run_t *run, double soft, double hard)
+{
+    const cm1e_motion_state_t start = {cm1e_path_here(path), path->along.velocity, path->along.acceleration};
+    cm1e_profile_t profile;
+    if (!plan_run(&profile, &start, run, soft, hard))
+        return false;
+    follow(path, &profile, &start);
+    path->stopping = false;
+    return true;
+}
+
+bool cm1e_path_plan(cm1e_path_t *path)
+{
+    const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
+    look_ahead(path, run.count);
+    if (path->stopping || run.count == 0)
+        return true;
+    double soft, hard;
+    exits(path, &run, run.count, &soft, &hard);
+    return plan_anew(path, &run, soft, hard) ||
+           (fabs(path->profile.end.position - path->begin - run.length) <= AS_LONG * run.length &&
+            path->profile.end.velocity <= hard * (1 + 1e-9));
+}
+
+void cm1e_path_resume(cm1e_path_t *path)
+{
+    const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
+    look_ahead(path, run.count);
+    double soft, hard;
+    exits(path, &run, run.count, &soft, &hard);
+    (void)plan_anew(path, &run, soft, hard);
+}
+
+/* ---- stopping ---------------------------------------------------------------------------------------------------- */
+
+static double velocity_at(const cm1e_profile_t *profile, double position)
+{
+    double low = 0, high = profile->duration_s;
+    cm1e_motion_state_t state = profile->end;
+    for (int i = 0; i < FIND_STEPS; i++) {
+        const double middle = (low + high) / 2;
+        cm1e_profile_sample(profile, middle, &state);
+        if (state.position < position)
+            low = middle;
+        else
+            high = middle;
+    }
+    return state.velocity;
+}
+
+/** Whether a stop over so many elements keeps what they allow. */
+static bool stop_keeps(cm1e_path_t *path, const cm1e_profile_t *stop, const cm1e_motion_state_t *start, int count,
+                       double length, const cm1e_path_run_t *run)
+{
+    if (!keeps(stop, start, length, fmax(run->limits.velocity, start->velocity)))
+        return false;
+    double begin = run->length;
+    for (int i = run->count; i < count; i++) {
+        const cm1e_path_element_t *element = cm1e_path_element(path, i);
+        if (velocity_at(stop, begin) > fmin(element->highest, element->passed) * (1 + 1e-9))
+            return false;
+        begin += element->length;
+    }
+    return true;
+}
+
+static double fastest_from(const cm1e_motion_state_t *start, double jerk)
+{
+    return start->velocity + fmax(0, start->acceleration) * (fmax(0, start->acceleration) / jerk) / 2;
+}
+
+static bool find_stop(cm1e_path_t *path, double deceleration, double jerk, cm1e_profile_t *stop,
+                      const cm1e_motion_state_t *start)
+{
+    const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
+    cm1e_motion_limits_t limits = {run.highest, run.limits.acceleration, deceleration, jerk};
+    double length = 0;
+    for (int i = 0; i < path->element_count; i++) {
+        const cm1e_path_element_t *element = cm1e_path_element(path, i);
+        const bool quick = fastest_from(start, jerk) <= element->most.velocity &&
+                           fabs(start->acceleration) <= element->most.acceleration;
+        const cm1e_motion_limits_t *most = quick ? &element->most : &element->limits;
+        if (i >= run.count && element->passed == 0)
+            return false;
+        limits.velocity = fmin(limits.velocity, element->highest);
+        limits.acceleration = fmin(limits.acceleration, most->acceleration);
+        limits.deceleration = fmin(limits.deceleration, most->deceleration);
+        limits.jerk = fmin(limits.jerk, most->jerk);
+        length += element->length;
+        if (cm1e_profile_to_velocity(stop, start, 0, &limits))
+            return false;
+        if (stop->end.position <= length)
+            return stop_keeps(path, stop, start, i + 1, length, &run);
+    }
+    return false;
+}
+
+bool cm1e_path_plan_stop(cm1e_path_t *path)
+{
+    const cm1e_motion_state_t start = {cm1e_path_here(path), path->along.velocity, path->along.acceleration};
+    const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
+    const double deceleration = path->stop.deceleration, jerk = path->stop.jerk;
+    cm1e_profile_t stop;
+    if (!find_stop(path, deceleration, jerk, &stop, &start) &&
+        !find_stop(path, deceleration, fmax(jerk, run.limits.jerk), &stop, &start) &&
+        !find_stop(path, fmax(deceleration, run.limits.deceleration), fmax(jerk, run.limits.jerk), &stop, &start))
+        return false;
+    follow(path, &stop, &start);
+    path->stopping = true;
+    return true;
+}
+
+static void cut_at(cm1e_path_t *path, double position)
+{
+    int last = 0;
+    double begin = 0;
+    while (last < path->element_count - 1 && begin + cm1e_path_element(path, last)->length < position)
+        begin += cm1e_path_element(path, last++)->length;
+    cm1e_path_element_t *element = cm1e_path_element(path, last);
+    element->length = fmin(element->length, position - begin);
+    element->last_of_tag = element->dropped = true;
+    path->element_count = last + 1;
+    path->cut = true;
+    path->segment_count = 0;
+    for (int i = 0; i <= last; i++)
+        path->segment_count += cm1e_path_element(path, i)->last_of_tag;
+    cm1e_path_point_t point;
+    cm1e_path_point_at(element->piece, path->config.axes, element->skipped + element->length, &point);
+    for (int i = 0; i < path->config.axes; i++)
+        path->end[i] = point.position[i];
+}
+
+void cm1e_path_cut(cm1e_path_t *path)
+{
+    if (path->stopping || cm1e_path_plan_stop(path)) {
+        cut_at(path, path->profile.end.position - path->begin);
+        return;
+    }
+    /* It cannot stop before the end of this run: soonest in one that it enters slowly enough. */
+    const cm1e_path_run_t current = cm1e_path_run(path, 0, path->element_count);
+    cm1e_motion_state_t start = {0, path->profile.end.velocity, 0};
+    double begin = current.length;
+    for (int next = current.count; next < path->element_count;) {
+        const cm1e_path_run_t run = cm1e_path_run(path, next, path->element_count);
+        cm1e_profile_t profile;
+        if (!cm1e_profile_to_velocity(&profile, &start, 0, &run.limits) && profile.end.position <= run.length) {
+            cut_at(path, begin + profile.end.position * (1 + AS_LONG));
+            break;
+        }
+        double soft, hard;
+        next += run.count;
+        begin += run.length;
+        exits(path, &run, next, &soft, &hard);
+        if (!plan_run(&profile, &start, &run, soft, hard))
+            return;
+        start.velocity = profile.end.velocity;
+    }
+    (void)cm1e_path_plan(path);
+}

@@ -1,0 +1,45 @@
+/**
+ * @file path_private.h
+ * What the files of the path share. Private to the room. @rt cycle throughout.
+ */
+#ifndef CM1E_MOTION_PATH_PRIVATE_H
+#define CM1E_MOTION_PATH_PRIVATE_H
+
+#include "motion/path_piece.h"
+
+static inline cm1e_path_element_t *cm1e_path_element(cm1e_path_t *path, int index)
+{
+    return &path->element[(path->first_element + index) % CM1E_PATH_ELEMENTS];
+}
+
+/** Elements that are planned in one. */
+typedef struct cm1e_path_run {
+    int count;
+    double length;
+    cm1e_motion_limits_t limits; /**< of all of them, override included */
+    double highest;              /**< the velocity that the axes allow on all of them */
+} cm1e_path_run_t;
+
+/** The run from that element on: to the first one that is not joined, or before `until`. */
+cm1e_path_run_t cm1e_path_run(cm1e_path_t *path, int first, int until);
+
+/** How far on the first element it is. */
+static inline double cm1e_path_here(const cm1e_path_t *path)
+{
+    return path->element_count ? path->along.position - path->begin : 0;
+}
+
+/** Puts a segment behind the one before it (NULL: there is none), as its command says, and plans. */
+void cm1e_path_join(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_segment_t *segment);
+
+/** Looks ahead and plans the way from here to the end of the run anew. FALSE: that cannot be done; the motion under way
+ *  is as it was, and so it is a plan only if nothing of it has been changed. */
+bool cm1e_path_plan(cm1e_path_t *path);
+/** Plans the way on from within a stop, if that can be done. */
+void cm1e_path_resume(cm1e_path_t *path);
+/** Tries to begin with the stop that is wanted. */
+bool cm1e_path_plan_stop(cm1e_path_t *path);
+/** Cuts the path off where it can be at rest. */
+void cm1e_path_cut(cm1e_path_t *path);
+
+#endif
