@@ -40,6 +40,8 @@ void cm1e_axis_commands_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_
     cm1e_axis_command_end(axis, state, error);
     cm1e_axis_lead_end(axis, error);
     cm1e_axis_superimposed_end(axis, state, state == CM1E_COMMAND_ERROR ? CM1E_ERROR_AXIS_ERROR_STOP : CM1E_OK);
+    if (state == CM1E_COMMAND_ERROR) /* else it ends when its master is left */
+        cm1e_axis_phasing_end(axis, state, CM1E_ERROR_AXIS_ERROR_STOP);
     for (int i = 0; i < axis->waiting.count; i++)
         cm1e_axis_record(axis, waiting_move(axis, i)->id, state,
                          state == CM1E_COMMAND_ERROR ? CM1E_ERROR_AXIS_ERROR_STOP : CM1E_OK);
@@ -58,12 +60,16 @@ cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_com
     const superimposed_t *on_top = &axis->superimposed;
     if (id != 0 && id == on_top->id)
         return (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE, .covered = on_top->now.position};
+    cm1e_command_status_t status;
+    if (cm1e_axis_phasing_status(axis, id, &status))
+        return status;
     const command_record_t *record = &axis->records[id % COMMANDS_REMEMBERED];
     if (id == 0 || record->id != id)
         return (cm1e_command_status_t){.state = CM1E_COMMAND_UNKNOWN};
     return (cm1e_command_status_t){.state = (cm1e_command_state_t)record->state,
                                    .error = (cm1e_error_t)record->error,
-                                   .covered = id == on_top->ended ? on_top->covered : 0.0};
+                                   .covered = id == on_top->ended ? on_top->covered
+                                                                  : cm1e_axis_phasing_covered(axis, id)};
 }
 
 bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id)
@@ -338,22 +344,26 @@ static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command,
                         command->kind == CM1E_COMMAND_HALT_SUPERIMPOSED;
     if (drive_profiles(axis) && !cm1e_axis_drive_takes(command->kind))
         return CM1E_ERROR_UNSUPPORTED;
-    const bool waits = !on_top && has_to_wait(axis, command);
+    const bool beside = on_top || is_phasing(command->kind); /* never the active command */
+    const bool waits = !beside && has_to_wait(axis, command);
     const state_rule_t *rule = cm1e_axis_state_rule(axis->state, command->kind);
     if (rule->refusal && !waits)
         return rule->refusal;
     if (axis->state == CM1E_AXIS_STOPPING && axis->stop_held)
         return CM1E_ERROR_AXIS_STOPPING;
-    if (command->kind != CM1E_COMMAND_HOME && command->kind != CM1E_COMMAND_HOMING_STEP && !on_top &&
+    if (command->kind != CM1E_COMMAND_HOME && command->kind != CM1E_COMMAND_HOMING_STEP && !beside &&
         !is_table(command->kind) && !cm1e_axis_can_plan(command->kind) && !cm1e_axis_can_couple(command->kind))
         return CM1E_ERROR_UNSUPPORTED;
-    if (command->kind != CM1E_COMMAND_STOP && !on_top && !is_decoupling(command->kind) && (unsigned)command->buffer_mode > mcBlendingHigh)
+    if (command->kind != CM1E_COMMAND_STOP && !on_top && !is_decoupling(command->kind) &&
+        (unsigned)command->buffer_mode > mcBlendingHigh)
         return CM1E_ERROR_AXIS_BUFFER_MODE;
     if (waits && drive_profiles(axis))
         return CM1E_ERROR_AXIS_BUFFER_MODE;
     if (waits)
         return buffer(axis, command, id);
-    const cm1e_error_t error = on_top ? cm1e_axis_superimpose(axis, command, id) : start_now(axis, command, id);
+    const cm1e_error_t error = on_top ? cm1e_axis_superimpose(axis, command, id)
+                               : is_phasing(command->kind) ? cm1e_axis_phasing(axis, command, id)
+                                                           : start_now(axis, command, id);
     if (!error && command->kind != CM1E_COMMAND_HOMING_STEP) /* MC_HomeDirect may be over already */
         axis->state = rule->next;
     return error;

@@ -172,6 +172,7 @@ bool cm1e_axis_coupled_step(cm1e_axis_t *axis)
     coupling_t *c = axis->coupling;
     from_t f;
     guard_t guard;
+    cm1e_axis_phasing_step(axis);
     if (cm1e_axis_see(axis, c->now)) {
         master_lost(axis);
         return false;
@@ -211,6 +212,8 @@ void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, c
 {
     coupling_t *c = axis->coupling;
     from_t f;
+    if (!axis_follows(axis) || c->now->links[0].master != follow->links[0].master)
+        cm1e_axis_phasing_forget(axis);
     if (c->now)
         cm1e_axis_unlist_links(c->now);
     if (c->next)

@@ -43,7 +43,7 @@ typedef struct link {
     sight_t seen;
 } link_t;
 
-enum { LINKS = 2, FOLLOWS = 3, COUPLINGS_WAITING = 3 };
+enum { LINKS = 2, FOLLOWS = 3, COUPLINGS_WAITING = 3, PHASINGS_WAITING = 3 };
 
 struct follow_kind;
 
@@ -95,13 +95,27 @@ typedef struct waiting_coupling {
     cm1e_axis_coupling_t coupling;
 } waiting_coupling_t;
 
+/** MC_PhasingAbsolute, MC_PhasingRelative: what changes the phase shift; u of the master. */
+typedef struct phasing {
+    cm1e_command_id_t id;          /**< 0: none, or what moves on belongs to no command any more */
+    bool moving;
+    double origin;                 /**< of what is covered */
+    cm1e_profile_t profile;
+    int64_t cycles;
+    move_t waiting[PHASINGS_WAITING];
+    int count;
+    cm1e_command_id_t ended;       /**< the last one, and what it had covered */
+    double covered;
+} phasing_t;
+
 /** Made with the axis. */
 typedef struct coupling {
     follow_t follows[FOLLOWS];     /**< links are in lists: they keep their place */
     follow_t *now;                 /**< F; NULL: never was one */
     follow_t *next;                /**< takes F's place at a position of its master (StartSync); NULL: none does */
     rest_t rest;
-    cm1e_motion_state_t phase;     /**< u of the master: shift of links[0], see axis_phasing.c */
+    cm1e_motion_state_t phase;     /**< u of the master: shift of links[0], as long as that one is followed ... */
+    phasing_t phasing;             /**< ... and what changes it */
     double f_acceleration;         /**< u/s2; of F, in the last cycle */
     bool synchronizing;            /**< GEAR_IN_POS: StartSync */
     bool end_of_profile;           /**< CAM_IN: F came over it in this cycle */
@@ -146,6 +160,21 @@ void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, c
 bool cm1e_axis_can_couple(cm1e_command_kind_t kind);
 /** In a cycle in which F has begun: its set-point, without going on. */
 void cm1e_axis_coupled_begin(cm1e_axis_t *axis);
+
+/* axis_phasing.c */
+cm1e_error_t cm1e_axis_phasing(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+/** The shift of the next cycle, before anything is seen of the masters. */
+void cm1e_axis_phasing_step(cm1e_axis_t *axis);
+/** Running and waiting ones end. Where the axis still follows, the shift comes to rest. */
+void cm1e_axis_phasing_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
+/** The axis leaves the master that was shifted. */
+void cm1e_axis_phasing_forget(cm1e_axis_t *axis);
+/** FALSE: `id` is not one that runs or waits. */
+bool cm1e_axis_phasing_status(const cm1e_axis_t *axis, cm1e_command_id_t id, cm1e_command_status_t *status);
+/** Of one that has ended; 0: it was not the last one. */
+double cm1e_axis_phasing_covered(const cm1e_axis_t *axis, cm1e_command_id_t id);
+/** Of one that was refused for its numbers; FALSE: none was. */
+bool cm1e_axis_phasing_text(const cm1e_axis_t *axis, char *text, size_t size);
 
 /* axis_gear.c */
 /** Prepares a gear or a combination that begins there, in the spare place. */

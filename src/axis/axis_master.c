@@ -113,6 +113,15 @@ static master_trouble_t see(link_t *link, position_t *position)
     return MASTER_GOOD;
 }
 
+/* The slave's own: the shift against the first of its masters (4.8). */
+static void add_phase(const cm1e_axis_t *slave, link_t *link)
+{
+    const cm1e_motion_state_t *phase = &slave->coupling->phase;
+    link->seen.counts += phase->position * link->master->scale;
+    link->seen.velocity += phase->velocity;
+    link->seen.acceleration += phase->acceleration;
+}
+
 static bool jumped(const link_t *link, const sight_t *before, double cycle_s)
 {
     const cm1e_axis_t *master = link->master;
@@ -140,6 +149,8 @@ master_trouble_t cm1e_axis_see(cm1e_axis_t *slave, follow_t *follow)
         if (trouble)
             return trouble_with(slave, link, trouble);
         link->seen.counts = cm1e_position_minus(position, link->origin);
+        if (i == 0)
+            add_phase(slave, link);
         if (jumped(link, &before, slave->cycle_s))
             return trouble_with(slave, link, MASTER_JUMPED);
     }
@@ -166,6 +177,7 @@ cm1e_error_t cm1e_axis_link(cm1e_axis_t *slave, follow_t *follow, const cm1e_cou
         trouble_with(slave, link, trouble);
         return CM1E_ERROR_AXIS_MASTER_LOST;
     }
-    follow->count++;
+    if (follow->count++ == 0 && axis_follows(slave) && slave->coupling->now->links[0].master == master)
+        add_phase(slave, link);
     return CM1E_OK;
 }

@@ -28,6 +28,8 @@ static void begin_run(cm1e_axis_t *axis, const from_t *from, position_t target, 
     axis->reached = false;
     axis->paused = false;
     axis->stands = false;
+    if (axis_follows(axis))
+        cm1e_axis_phasing_forget(axis);
     axis->activity = ACTIVITY_PROFILE;
 }
 

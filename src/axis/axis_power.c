@@ -8,6 +8,7 @@
  */
 #include <math.h>
 
+#include "axis/axis_coupling.h"
 #include "axis/axis_handle.h"
 
 /* How long a drive that cannot be heard any more counts as "still there" at the end. */
@@ -23,6 +24,8 @@ bool cm1e_axis_wants_enable(const cm1e_axis_t *axis)
 void cm1e_axis_become_free(cm1e_axis_t *axis)
 {
     cm1e_axis_lead_end(axis, CM1E_ERROR_AXIS_ERROR_STOP);
+    if (axis_follows(axis))
+        cm1e_axis_phasing_forget(axis);
     axis->activity = ACTIVITY_FREE;
     axis->energized = false;
     axis->stepping.pushing = axis->stepping.after_stop = false;

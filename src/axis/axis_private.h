@@ -605,6 +605,10 @@ static inline bool is_decoupling(cm1e_command_kind_t kind)
 {
     return kind == CM1E_COMMAND_GEAR_OUT || kind == CM1E_COMMAND_CAM_OUT;
 }
+static inline bool is_phasing(cm1e_command_kind_t kind)
+{
+    return kind == CM1E_COMMAND_PHASING_ABSOLUTE || kind == CM1E_COMMAND_PHASING_RELATIVE;
+}
 /** F of a coupling is what moves the axis. */
 static inline bool axis_follows(const cm1e_axis_t *axis) { return axis->activity == ACTIVITY_COUPLED; }
 /** Goes on when it has reached what it was to reach. */

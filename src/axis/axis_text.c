@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_coupling.h"
 
 static void lag_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
@@ -98,6 +98,8 @@ static const char *const kind_names[CM1E_COMMAND_KIND_COUNT] = {
     [CM1E_COMMAND_HOMING_STEP] = "a step of a homing",
     [CM1E_COMMAND_MOVE_SUPERIMPOSED] = "MC_MoveSuperimposed",
     [CM1E_COMMAND_HALT_SUPERIMPOSED] = "MC_HaltSuperimposed",
+    [CM1E_COMMAND_PHASING_ABSOLUTE] = "MC_PhasingAbsolute",
+    [CM1E_COMMAND_PHASING_RELATIVE] = "MC_PhasingRelative",
 };
 
 void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size)
@@ -228,6 +230,8 @@ static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
     const bool by_numbers = axis->refusal == CM1E_ERROR_AXIS_VELOCITY_RANGE ||
                             axis->refusal == CM1E_ERROR_AXIS_DYNAMICS_RANGE ||
                             axis->refusal == CM1E_ERROR_AXIS_POSITION_RANGE;
+    if (by_numbers && cm1e_axis_phasing_text(axis, text, size))
+        return;
     if (by_numbers && !is_table(axis->refused.kind) && too_small(axis, &axis->refused)) {
         refused_small_text(axis, text, size);
         return;

@@ -94,15 +94,15 @@ static const char *const expected[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_HOMING] = "hhhhhhhhhhShhhhhhhhhhhh", /* that of the drive; between steps: test_axis_homing_steps */
     [CM1E_AXIS_DISCRETE_MOTION] = "MMMVVVMVVMSxxKKFuuFcccc",
     [CM1E_AXIS_CONTINUOUS_MOTION] = "MMMVVVMVVMSxxKKFuuFcccc",
-    [CM1E_AXIS_SYNCHRONIZED_MOTION] = "MMMVVVMVVMSxxKKFuuFVcuu",
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = "MMMVVVMVVMSxxKKFuuFVcKK",
     [CM1E_AXIS_STOPPING] = "sssssssssssssssssssssss",
     [CM1E_AXIS_ERROR_STOP] = "eeeeeeeeeeeeeeeeeeeeeee",
 };
 
-/* Neither aborts what runs. */
+/* None of them aborts what runs. */
 static bool on_top(cm1e_command_kind_t kind)
 {
-    return kind == CM1E_COMMAND_MOVE_SUPERIMPOSED || kind == CM1E_COMMAND_HALT_SUPERIMPOSED;
+    return kind == CM1E_COMMAND_MOVE_SUPERIMPOSED || kind == CM1E_COMMAND_HALT_SUPERIMPOSED || is_phasing(kind);
 }
 
 static cm1e_axis_state_t accepted_state(char code, cm1e_axis_state_t state)

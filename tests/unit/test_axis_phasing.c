@@ -1,0 +1,545 @@
+/* MC_PhasingAbsolute and MC_PhasingRelative, Part 1 4.8 and 4.9: the slave sees its master shifted. The bench watches
+ * every set-point: position, velocity and acceleration go on without a step within the limits of the axes. */
+#include "unity.h"
+
+#include "../support/axes_bench.h"
+#include "axis/axis_coupling.h"
+
+void setUp(void) { axes_begin(3); }
+void tearDown(void) { axes_end(); }
+
+enum { MASTER = 0, SLAVE = 1, OTHER = 2 };
+
+static cm1e_axis_coupling_t seen;
+
+static cm1e_axis_command_t shift(bool relative, double position, double velocity)
+{
+    seen = (cm1e_axis_coupling_t){.master = {{.axis = axes_reference(MASTER)}}};
+    return (cm1e_axis_command_t){
+        .kind = relative ? CM1E_COMMAND_PHASING_RELATIVE : CM1E_COMMAND_PHASING_ABSOLUTE, .position = position,
+        .velocity = velocity, .coupling = &seen,
+    };
+}
+
+static cm1e_command_id_t to_shift(double position, double velocity)
+{
+    const cm1e_axis_command_t c = shift(false, position, velocity);
+    return axes_command(SLAVE, &c);
+}
+
+static cm1e_command_id_t by_shift(double position, double velocity)
+{
+    const cm1e_axis_command_t c = shift(true, position, velocity);
+    return axes_command(SLAVE, &c);
+}
+
+static cm1e_command_id_t then_shift(bool relative, double position, double velocity)
+{
+    cm1e_axis_command_t c = shift(relative, position, velocity);
+    c.buffer_mode = mcBuffered;
+    return axes_command(SLAVE, &c);
+}
+
+static cm1e_command_state_t state_of(cm1e_command_id_t id) { return axes_status(SLAVE, id).state; }
+
+/* ---- against the ideal ------------------------------------------------------------------------------------------- */
+
+/* What F is measured from: in step, without a shift. */
+static struct reference {
+    position_t master, slave;
+    double counts_ratio;
+} zero;
+
+static void in_step(int32_t numerator, uint32_t denominator)
+{
+    const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, numerator, denominator);
+    axes_wait_reached(SLAVE, gear, 2000);
+    axes_cycles(1);
+    zero = (struct reference){axes_axis(MASTER)->set, axes_axis(SLAVE)->set,
+                              (double)numerator / denominator * axes_axis(SLAVE)->scale / axes_axis(MASTER)->scale};
+}
+
+/* Counts of the slave between where it is and where it would be with the master at `shifted` (u) more. */
+static double off(double shifted)
+{
+    const double master = cm1e_position_minus(axes_axis(MASTER)->set, zero.master);
+    return cm1e_position_minus(axes_axis(SLAVE)->set, zero.slave) -
+           (master + shifted * axes_axis(MASTER)->scale) * zero.counts_ratio;
+}
+
+/* A shift of its own against one that the test makes with the same numbers, sample by sample. */
+static void check_against_the_ideal(double from, double to, const cm1e_axis_command_t *c)
+{
+    const cm1e_motion_limits_t limits = {c->velocity, c->acceleration, c->deceleration, c->jerk};
+    const cm1e_motion_state_t start = {.position = from};
+    cm1e_profile_t ideal;
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_profile_to_position(&ideal, &start, to, &limits));
+    const cm1e_command_id_t id = axes_command(SLAVE, c);
+    const int cycles = (int)(ideal.duration_s * 1000.0) + 50;
+    for (int n = 1; n <= cycles; n++) {
+        cm1e_motion_state_t now;
+        axes_cycles(1);
+        cm1e_profile_sample(&ideal, n * 1e-3, &now);
+        TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1.0, 0.0, off(now.position), axes_text(SLAVE));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9 * fmax(1.0, fabs(to)),
+                                  now.position - (c->kind == CM1E_COMMAND_PHASING_RELATIVE ? from : 0.0),
+                                  axes_status(SLAVE, id).covered);
+    }
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_DONE, state_of(id));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, off(to));
+}
+
+static void test_shift_is_the_ideal_one_at_every_sample_in_both_directions(void)
+{
+    static const struct {
+        int32_t numerator;
+        uint32_t denominator;
+        double master;
+    } cases[] = {{1, 1, 0.0}, {1, 1, 5.0}, {-3, 2, 4.0}, {2, 7, -10.0}, {-1, 1, -8.0}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        axes_begin(3);
+        if (cases[i].master != 0.0)
+            axes_move_velocity(MASTER, cases[i].master);
+        axes_cycles(1000);
+        in_step(cases[i].numerator, cases[i].denominator);
+        cm1e_axis_command_t c = shift(false, 2.5, 3.0);
+        c.acceleration = 20.0;
+        c.deceleration = 12.0;
+        c.jerk = 400.0;
+        check_against_the_ideal(0.0, 2.5, &c);
+        c = shift(true, -4.0, 2.0);
+        c.acceleration = 10.0;
+        c.deceleration = 15.0;
+        c.jerk = 300.0;
+        check_against_the_ideal(2.5, -1.5, &c);
+        c = shift(false, 0.0, 2.0);
+        c.acceleration = c.deceleration = 10.0;
+        c.jerk = 300.0;
+        check_against_the_ideal(-1.5, 0.0, &c);
+    }
+}
+
+static void test_shift_of_axes_with_other_units_and_a_way_round(void)
+{
+    axes_describe(3);
+    axes_config(MASTER)->counts_per_unit = 500.0;
+    axes_config(MASTER)->modulo_range = 360.0;
+    axes_config(SLAVE)->invert = true;
+    axes_config(SLAVE)->counts_per_unit = 1234.5;
+    axes_make();
+    axes_enable_all();
+    axes_move_velocity(MASTER, 300.0);
+    axes_cycles(1500);
+    in_step(1, 20);
+    cm1e_axis_command_t c = shift(false, 90.0, 60.0);
+    c.acceleration = c.deceleration = 100.0;
+    c.jerk = 2000.0;
+    check_against_the_ideal(0.0, 90.0, &c);
+    axes_cycles(2000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, off(90.0));
+}
+
+/* The master turns round meanwhile, and comes again. */
+static void test_shift_adds_to_a_master_whatever_that_does(void)
+{
+    axes_move_velocity(MASTER, 5.0);
+    axes_cycles(800);
+    in_step(1, 2);
+    const cm1e_command_id_t id = to_shift(6.0, 4.0);
+    for (int n = 0; n < 3000; n++) {
+        if (n == 300)
+            axes_move_velocity(MASTER, -5.0);
+        if (n == 900)
+            axes_move_to(MASTER, 2.0, 8.0);
+        axes_cycles(1);
+        TEST_ASSERT_DOUBLE_WITHIN(1.0, 0.0, off(n < 2999 && state_of(id) == CM1E_COMMAND_ACTIVE
+                                                    ? axes_status(SLAVE, id).covered : 6.0));
+    }
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_DONE, state_of(id));
+    axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
+}
+
+/* 3.17 and here: coordinates are no motion. */
+static void test_set_positions_of_both_leave_a_shift_under_way_alone(void)
+{
+    axes_move_velocity(MASTER, 2.0);
+    axes_cycles(500);
+    in_step(1, 1);
+    const cm1e_command_id_t id = to_shift(3.0, 2.0);
+    axes_cycles(400);
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_axis_set_position(axes_axis(MASTER), 100.0, false));
+    axes_cycles(100);
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_axis_set_position(axes_axis(SLAVE), -7.0, true));
+    axes_wait(SLAVE, id, 5000);
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_DONE, state_of(id));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, off(3.0));
+}
+
+/* ---- one and another --------------------------------------------------------------------------------------------- */
+
+static void test_relative_shifts_add_and_an_absolute_one_leads_back(void)
+{
+    in_step(1, 1);
+    cm1e_command_id_t id = by_shift(1.0, 5.0);
+    axes_wait(SLAVE, id, 3000);
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, axes_status(SLAVE, id).covered);
+    id = by_shift(0.5, 5.0);
+    axes_wait(SLAVE, id, 3000);
+    TEST_ASSERT_EQUAL_DOUBLE(0.5, axes_status(SLAVE, id).covered);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, off(1.5));
+    id = to_shift(1.5, 5.0); /* it is there */
+    axes_wait(SLAVE, id, 3000);
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_DONE, state_of(id));
+    TEST_ASSERT_EQUAL_DOUBLE(1.5, axes_status(SLAVE, id).covered);
+    id = to_shift(-0.25, 5.0);
+    axes_wait(SLAVE, id, 3000);
+    TEST_ASSERT_EQUAL_DOUBLE(-0.25, axes_status(SLAVE, id).covered);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, off(-0.25));
+}
+
+/* From any moment of the first: it goes on from its present velocity and acceleration. */
+static void test_another_phasing_takes_over_at_any_moment(void)
+{
+    for (int at = 1; at < 900; at += 61) {
+        axes_begin(3);
+        axes_move_velocity(MASTER, -3.0);
+        axes_cycles(300);
+        in_step(2, 1);
+        const cm1e_command_id_t first = to_shift(2.0, 4.0);
+        axes_cycles(at);
+        const bool was_active = state_of(first) == CM1E_COMMAND_ACTIVE;
+        const double present = was_active ? axes_status(SLAVE, first).covered : 2.0;
+        const cm1e_command_id_t second = by_shift(-1.0, 3.0);
+        TEST_ASSERT_EQUAL(was_active ? CM1E_COMMAND_ABORTED : CM1E_COMMAND_DONE, state_of(first));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, present, axes_status(SLAVE, first).covered);
+        axes_wait(SLAVE, second, 3000);
+        TEST_ASSERT_EQUAL(CM1E_COMMAND_DONE, state_of(second));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, off(present - 1.0));
+    }
+}
+
+static void test_buffered_ones_begin_one_after_the_other(void)
+{
+    in_step(1, 1);
+    const cm1e_command_id_t first = to_shift(1.0, 5.0);
+    const cm1e_command_id_t second = then_shift(true, 1.0, 2.0), third = then_shift(false, 0.5, 3.0),
+                            fourth = then_shift(true, 0.1, 3.0);
+    cm1e_axis_command_t fifth = shift(true, 0.1, 3.0);
+    fifth.buffer_mode = mcBlendingHigh;
+    axes_refused(SLAVE, &fifth, CM1E_ERROR_FULL);
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_BUFFERED, state_of(second));
+    axes_wait(SLAVE, first, 3000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, off(1.0));
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_ACTIVE, state_of(second));
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_BUFFERED, state_of(third));
+    axes_wait(SLAVE, second, 3000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, off(2.0));
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, axes_status(SLAVE, second).covered);
+    axes_wait(SLAVE, third, 3000);
+    axes_wait(SLAVE, fourth, 3000);
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_DONE, state_of(fourth));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, off(0.6));
+}
+
+static void test_an_aborting_one_forgets_those_that_wait(void)
+{
+    in_step(1, 1);
+    const cm1e_command_id_t first = to_shift(1.0, 5.0), second = then_shift(true, 1.0, 2.0);
+    axes_cycles(50);
+    const cm1e_command_id_t third = to_shift(0.5, 2.0);
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_ABORTED, state_of(first));
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_ABORTED, state_of(second));
+    axes_wait(SLAVE, third, 3000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, off(0.5));
+}
+
+/* 2.2.2, case 2: a waiting one that cannot begin by then fails alone. */
+static void test_a_waiting_one_that_does_not_fit_any_more_fails_alone(void)
+{
+    in_step(1, 1);
+    const cm1e_command_id_t first = to_shift(1.0, 5.0), second = then_shift(true, 60.0, 45.0),
+                            third = then_shift(true, 1.0, 2.0);
+    axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 40.0, .jerk = 900.0,
+                                                .acceleration = 45.0});
+    axes_wait(SLAVE, first, 3000);
+    axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_ERROR, state_of(second));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_AXIS_VELOCITY_RANGE, axes_status(SLAVE, second).error);
+    axes_told(SLAVE, "MC_PhasingRelative");
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_ACTIVE, state_of(third));
+}
+
+/* ---- beside the coupling ----------------------------------------------------------------------------------------- */
+
+static void test_it_runs_while_the_slave_gets_into_step(void)
+{
+    axes_move_velocity(MASTER, 20.0);
+    axes_cycles(1000);
+    const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, 1, 1);
+    axes_cycles(20);
+    const cm1e_command_id_t id = to_shift(3.0, 5.0);
+    axes_cycles(1);
+    TEST_ASSERT_FALSE(axes_status(SLAVE, gear).reached);
+    axes_wait(SLAVE, id, 5000);
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_DONE, state_of(id));
+    axes_wait_reached(SLAVE, gear, 3000);
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_ACTIVE, axes_status(SLAVE, gear).state);
+    TEST_ASSERT_EQUAL_DOUBLE(20.0, axes_info(SLAVE).set_velocity);
+}
+
+/* Another ratio, at any moment: the shift goes on, and stays. */
+static void test_it_goes_on_through_a_change_of_ratio(void)
+{
+    for (int at = 10; at < 1000; at += 90) {
+        axes_begin(3);
+        axes_move_velocity(MASTER, 6.0);
+        axes_cycles(500);
+        in_step(1, 1);
+        const cm1e_command_id_t id = to_shift(4.0, 5.0);
+        axes_cycles(at);
+        const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, -1, 2);
+        axes_wait(SLAVE, id, 5000);
+        TEST_ASSERT_EQUAL(CM1E_COMMAND_DONE, state_of(id));
+        axes_wait_reached(SLAVE, gear, 3000);
+        TEST_ASSERT_EQUAL_DOUBLE(-3.0, axes_info(SLAVE).set_velocity);
+        const cm1e_command_id_t back = to_shift(4.0, 5.0); /* where it is */
+        axes_cycles(2);
+        TEST_ASSERT_EQUAL(CM1E_COMMAND_DONE, state_of(back));
+    }
+}
+
+static void test_another_master_ends_it(void)
+{
+    axes_move_velocity(MASTER, 6.0);
+    axes_move_velocity(OTHER, 4.0);
+    axes_cycles(500);
+    in_step(1, 1);
+    const cm1e_command_id_t id = to_shift(4.0, 5.0), waits = then_shift(true, 1.0, 1.0);
+    axes_cycles(300);
+    const cm1e_command_id_t gear = axes_gear_in(SLAVE, OTHER, 1, 1);
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_ABORTED, state_of(id));
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_ABORTED, state_of(waits));
+    axes_wait_reached(SLAVE, gear, 3000);
+    TEST_ASSERT_EQUAL_DOUBLE(4.0, axes_info(SLAVE).set_velocity);
+    const cm1e_axis_command_t c = shift(true, 1.0, 1.0);
+    axes_refused(SLAVE, &c, CM1E_ERROR_AXIS_MASTER);
+}
+
+static void end_by_move(void) { axes_move_to(SLAVE, 0.0, 5.0); }
+static void end_by_stop(void) { axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_STOP}); }
+static void end_by_gear_out(void) { axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_OUT}); }
+static void end_by_power(void)
+{
+    axes_power(SLAVE, false);
+    axes_cycles(1);
+}
+static void end_by_waiting_move(void)
+{
+    axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 100.0, .velocity = 5.0,
+                                               .buffer_mode = mcBuffered});
+    axes_cycles(1);
+}
+static void end_by_fault(void)
+{
+    fake_bus_fault(axes_motor(SLAVE), 0x2310);
+    axes_cycles(3);
+}
+static void end_by_master(void)
+{
+    fake_bus_fault(axes_motor(MASTER), 0x2310);
+    axes_cycles(3);
+}
+
+static void test_it_ends_with_the_coupling(void)
+{
+    static const struct {
+        void (*end)(void);
+        cm1e_command_state_t state;
+    } ways[] = {{end_by_move, CM1E_COMMAND_ABORTED},     {end_by_stop, CM1E_COMMAND_ABORTED},
+                {end_by_gear_out, CM1E_COMMAND_ABORTED}, {end_by_power, CM1E_COMMAND_ABORTED},
+                {end_by_waiting_move, CM1E_COMMAND_ABORTED}, {end_by_fault, CM1E_COMMAND_ERROR},
+                {end_by_master, CM1E_COMMAND_ERROR}};
+    for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
+        axes_begin(3);
+        axes_move_velocity(MASTER, 6.0);
+        axes_cycles(500);
+        in_step(1, 1);
+        const cm1e_command_id_t id = to_shift(4.0, 5.0), waits = then_shift(true, 1.0, 1.0);
+        axes_cycles(200);
+        ways[i].end();
+        char which[16];
+        snprintf(which, sizeof which, "way %d", (int)i);
+        TEST_ASSERT_EQUAL_MESSAGE(ways[i].state, state_of(id), which);
+        TEST_ASSERT_EQUAL_MESSAGE(ways[i].state, state_of(waits), which);
+        if (ways[i].state == CM1E_COMMAND_ERROR)
+            TEST_ASSERT_EQUAL(CM1E_ERROR_AXIS_ERROR_STOP, axes_status(SLAVE, id).error);
+        TEST_ASSERT_NOT_EQUAL(CM1E_AXIS_SYNCHRONIZED_MOTION, axes_state(SLAVE));
+        axes_cycles(500);
+        const cm1e_axis_command_t c = shift(true, 1.0, 1.0);
+        cm1e_command_id_t refused;
+        TEST_ASSERT_NOT_EQUAL(CM1E_OK, cm1e_axis_start(axes_axis(SLAVE), &c, &refused));
+    }
+}
+
+/* A new coupling begins without the shift of the one before. */
+static void test_a_shift_does_not_outlive_its_coupling(void)
+{
+    in_step(1, 1);
+    cm1e_command_id_t id = to_shift(2.0, 5.0);
+    axes_wait(SLAVE, id, 3000);
+    axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT});
+    axes_cycles(100);
+    in_step(1, 1);
+    id = to_shift(2.0, 5.0);
+    axes_cycles(2);
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_ACTIVE, state_of(id));
+    axes_wait(SLAVE, id, 3000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, off(2.0));
+}
+
+/* The first master of MC_CombineAxes is the one that is shifted. */
+static void test_of_two_masters_the_first_is_shifted(void)
+{
+    const cm1e_axis_coupling_t both = {
+        .combine = mcAddAxes,
+        .master = {{.axis = axes_reference(MASTER), .numerator = 1, .denominator = 1},
+                   {.axis = axes_reference(OTHER), .numerator = 1, .denominator = 1}},
+    };
+    axes_move_velocity(MASTER, 2.0);
+    axes_move_velocity(OTHER, 3.0);
+    axes_cycles(500);
+    const cm1e_command_id_t combined =
+        axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_COMBINE_AXES, .coupling = &both});
+    axes_wait_reached(SLAVE, combined, 3000);
+    cm1e_axis_command_t c = shift(true, 1.0, 1.0);
+    seen.master[0].axis = axes_reference(OTHER);
+    axes_refused(SLAVE, &c, CM1E_ERROR_AXIS_MASTER);
+    const double before = axes_info(SLAVE).set_position - axes_info(MASTER).set_position -
+                          axes_info(OTHER).set_position;
+    const cm1e_command_id_t id = by_shift(1.0, 1.0);
+    axes_wait(SLAVE, id, 3000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, before + 1.0, axes_info(SLAVE).set_position - axes_info(MASTER).set_position -
+                                                      axes_info(OTHER).set_position);
+}
+
+/* ---- refused ----------------------------------------------------------------------------------------------------- */
+
+static void test_it_needs_a_slave_and_its_master(void)
+{
+    cm1e_axis_command_t c = shift(false, 1.0, 1.0);
+    axes_refused(SLAVE, &c, CM1E_ERROR_AXIS_NOT_COUPLED);
+    axes_move_velocity(SLAVE, 1.0);
+    axes_refused(SLAVE, &c, CM1E_ERROR_AXIS_NOT_COUPLED);
+    in_step(1, 1);
+    seen.master[0].axis = axes_reference(OTHER);
+    axes_refused(SLAVE, &c, CM1E_ERROR_AXIS_MASTER);
+    seen.master[0].axis = axes_reference(SLAVE);
+    axes_refused(SLAVE, &c, CM1E_ERROR_AXIS_MASTER);
+    seen.master[0].axis = (AXIS_REF_t){0};
+    axes_refused(SLAVE, &c, CM1E_ERROR_AXIS_MASTER);
+    c.coupling = NULL;
+    axes_refused(SLAVE, &c, CM1E_ERROR_AXIS_MASTER);
+    c = shift(false, 1.0, 1.0);
+    c.buffer_mode = (MC_BUFFER_MODE)6;
+    axes_refused(SLAVE, &c, CM1E_ERROR_AXIS_BUFFER_MODE);
+    axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
+}
+
+static void test_numbers_that_the_slave_cannot_follow_are_refused_in_words(void)
+{
+    in_step(2, 1); /* of the slave's 50 u/s, 100 u/s2, 2000 u/s3 the master has half */
+    const double velocities[] = {0.0, -1.0, NAN, INFINITY, 25.1}, positions[] = {NAN, INFINITY, 1e15};
+    cm1e_axis_command_t c;
+    for (size_t i = 0; i < sizeof velocities / sizeof velocities[0]; i++) {
+        c = shift(true, 100.0, velocities[i]);
+        axes_refused(SLAVE, &c, CM1E_ERROR_AXIS_VELOCITY_RANGE);
+        axes_told(SLAVE, "up to 25 u/s");
+    }
+    for (size_t i = 0; i < sizeof positions / sizeof positions[0]; i++) {
+        c = shift(false, positions[i], 1.0);
+        axes_refused(SLAVE, &c, CM1E_ERROR_AXIS_POSITION_RANGE);
+    }
+    c = shift(false, 1.0, 1.0);
+    c.acceleration = 50.1;
+    axes_refused(SLAVE, &c, CM1E_ERROR_AXIS_DYNAMICS_RANGE);
+    axes_told(SLAVE, "50 u/s2");
+    c.acceleration = 0.0;
+    c.deceleration = -1.0;
+    axes_refused(SLAVE, &c, CM1E_ERROR_AXIS_DYNAMICS_RANGE);
+    c.deceleration = 0.0;
+    c.jerk = 1000.1;
+    axes_refused(SLAVE, &c, CM1E_ERROR_AXIS_DYNAMICS_RANGE);
+    axes_told(SLAVE, "1000 u/s3");
+    axes_cycles(100);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.0, off(0.0));
+}
+
+/* 0: half of what the slave can do, so that its master may accelerate meanwhile. */
+static void test_without_numbers_half_of_the_limits_are_the_shifts(void)
+{
+    in_step(2, 1);
+    cm1e_axis_command_t c = shift(false, 3.0, 10.0);
+    const cm1e_command_id_t id = axes_command(SLAVE, &c);
+    axes_bench.witness[SLAVE].worst_gain = axes_bench.witness[SLAVE].worst_jerk = 0.0;
+    axes_wait(SLAVE, id, 3000);
+    TEST_ASSERT_DOUBLE_WITHIN(1.5, 50.0, axes_bench.witness[SLAVE].worst_gain);
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, 1000.0, axes_bench.witness[SLAVE].worst_jerk);
+}
+
+/* With the master's present velocity it would be too fast: refused, but for the way back. */
+static void test_it_is_refused_where_it_is_too_fast_beside_the_master(void)
+{
+    axes_move_velocity(MASTER, 40.0);
+    axes_cycles(2000);
+    in_step(1, 1);
+    cm1e_axis_command_t c = shift(true, 20.0, 12.0);
+    axes_refused(SLAVE, &c, CM1E_ERROR_AXIS_VELOCITY_RANGE);
+    axes_told(SLAVE, "40 now");
+    by_shift(-20.0, 12.0);
+    axes_cycles(200);
+    c = shift(true, 0.01, 12.0); /* never comes to be so fast */
+    axes_command(SLAVE, &c);
+    axes_cycles(1000);
+    axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
+}
+
+/* The guard: a master that becomes too fast while the shift runs. No set-point beyond the limits is given out. */
+static void test_a_master_that_becomes_too_fast_beside_it_stops_the_slave(void)
+{
+    axes_move_velocity(MASTER, 30.0);
+    axes_cycles(2000);
+    in_step(1, 1);
+    const cm1e_command_id_t id = by_shift(100.0, 15.0);
+    axes_cycles(500);
+    axes_move_velocity(MASTER, 49.0);
+    AXES_UNTIL(axes_state(SLAVE) == CM1E_AXIS_ERROR_STOP);
+    TEST_ASSERT_EQUAL(CM1E_ERROR_AXIS_COUPLING_LIMIT, axes_info(SLAVE).error);
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_ERROR, state_of(id));
+    axes_must_be(MASTER, CM1E_AXIS_CONTINUOUS_MOTION);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_shift_is_the_ideal_one_at_every_sample_in_both_directions);
+    RUN_TEST(test_shift_of_axes_with_other_units_and_a_way_round);
+    RUN_TEST(test_shift_adds_to_a_master_whatever_that_does);
+    RUN_TEST(test_set_positions_of_both_leave_a_shift_under_way_alone);
+    RUN_TEST(test_relative_shifts_add_and_an_absolute_one_leads_back);
+    RUN_TEST(test_another_phasing_takes_over_at_any_moment);
+    RUN_TEST(test_buffered_ones_begin_one_after_the_other);
+    RUN_TEST(test_an_aborting_one_forgets_those_that_wait);
+    RUN_TEST(test_a_waiting_one_that_does_not_fit_any_more_fails_alone);
+    RUN_TEST(test_it_runs_while_the_slave_gets_into_step);
+    RUN_TEST(test_it_goes_on_through_a_change_of_ratio);
+    RUN_TEST(test_another_master_ends_it);
+    RUN_TEST(test_it_ends_with_the_coupling);
+    RUN_TEST(test_a_shift_does_not_outlive_its_coupling);
+    RUN_TEST(test_of_two_masters_the_first_is_shifted);
+    RUN_TEST(test_it_needs_a_slave_and_its_master);
+    RUN_TEST(test_numbers_that_the_slave_cannot_follow_are_refused_in_words);
+    RUN_TEST(test_without_numbers_half_of_the_limits_are_the_shifts);
+    RUN_TEST(test_it_is_refused_where_it_is_too_fast_beside_the_master);
+    RUN_TEST(test_a_master_that_becomes_too_fast_beside_it_stops_the_slave);
+    return UNITY_END();
+}
