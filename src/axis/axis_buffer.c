@@ -205,7 +205,8 @@ static cm1e_error_t check_behind(cm1e_axis_t *axis, int index, move_t *move)
 /* What goes on when it has reached what it was to reach, and then lets the next command take its place. */
 static bool hands_over(const cm1e_axis_t *axis)
 {
-    return is_coupling(axis->kind) ? !axis->coupling->now->waits_for_end : is_endless(axis->kind);
+    const follow_t *follow = axis->coupling->now;
+    return is_coupling(axis->kind) ? !follow->waits_for_end || follow->ended : is_endless(axis->kind);
 }
 
 cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move)

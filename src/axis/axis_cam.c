@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "axis/axis_cam.h"
+#include "axis/axis_coupling.h"
 
 enum { DEFAULT_POINTS = 128 };
 
@@ -28,9 +28,15 @@ const cam_slot_t *cm1e_axis_cam_of(const cm1e_axis_t *axis, MC_CAM_ID id)
     return NULL;
 }
 
-static bool used(const cm1e_axis_t *axis, const cam_slot_t *slot)
+/* It is followed, or a command that waits names it. */
+static bool used(cm1e_axis_t *axis, const cam_slot_t *slot)
 {
-    (void)axis, (void)slot;
+    const coupling_t *c = axis->coupling;
+    if ((axis_follows(axis) && c->now->cam.slot == slot) || (c->next && c->next->cam.slot == slot))
+        return true;
+    for (int i = 0; i < COUPLINGS_WAITING; i++)
+        if (c->waiting[i].coupling.cam == slot->id && cm1e_axis_find_waiting(axis, c->waiting[i].id))
+            return true;
     return false;
 }
 
@@ -129,4 +135,24 @@ void cm1e_axis_cam_table_text(const cm1e_axis_t *axis, char *text, size_t size)
     case CM1E_CAM_GOOD:
         break;
     }
+}
+
+void cm1e_axis_cam_id_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    char ids[12 * CAM_SLOTS] = "";
+    size_t used_bytes = 0;
+    for (int i = 0; i < CAM_SLOTS; i++)
+        if (axis->cams->slots[i].id != 0)
+            used_bytes += (size_t)snprintf(ids + used_bytes, sizeof ids - used_bytes, " %u",
+                                           (unsigned)axis->cams->slots[i].id);
+    snprintf(text, size, "Axis \"%s\": %s. The last %d of this slave stay, now:%s.", axis->config->name,
+             cm1e_strerror(CM1E_ERROR_AXIS_CAM_ID), CM1E_AXIS_CAMS, used_bytes ? ids : " none");
+}
+
+void cm1e_axis_cam_start_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const cam_refused_t *r = &axis->cams->refused;
+    snprintf(text, size, "Axis \"%s\" is at %.6g u with %.6g u/s, where the cam would have it at %.6g u with %.6g u/s. "
+             "Bring it there first, or let it get there: mcRampIn, or a MasterStartDistance.", axis->config->name,
+             r->position, r->velocity, r->wanted_position, r->wanted_velocity);
 }

@@ -29,6 +29,11 @@ typedef struct cam_slot {
 /** Those that stay, and one more to take the next one in. */
 enum { CAM_SLOTS = CM1E_AXIS_CAMS + 1 };
 
+/** Where a slave was that should have been on its cam, and where that wanted it; u, u/s; for the text. */
+typedef struct cam_refused {
+    double position, wanted_position, velocity, wanted_velocity;
+} cam_refused_t;
+
 /** Made with the axis. */
 typedef struct cams {
     cam_slot_t slots[CAM_SLOTS];
@@ -36,12 +41,26 @@ typedef struct cams {
     int points;
     cm1e_cam_fault_t fault;        /**< of the last cam that was refused, for the text ... */
     int wrong;                     /**< ... at which point, from 0 */
+    cam_refused_t refused;
     cm1e_cam_knot_t knots[];
 } cams_t;
+
+/** A cam that is followed. */
+typedef struct cam_place {
+    const cam_slot_t *slot;        /**< NULL: it is another kind of F */
+    position_t slave_zero;
+    double away;                   /**< counts of the master from its zero to where its slave began to follow it */
+    double master_offset, master_scaling, slave_offset, slave_scaling;
+    cm1e_cam_place_t place;
+    cm1e_cam_sample_t before;      /**< of the last cycle ... */
+    bool sampled;                  /**< ... if there was one */
+} cam_place_t;
 
 cm1e_error_t cm1e_axis_cams_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */
 /** NULL: there is none of that number. */
 const cam_slot_t *cm1e_axis_cam_of(const cm1e_axis_t *axis, MC_CAM_ID id);
+void cm1e_axis_cam_id_text(const cm1e_axis_t *axis, char *text, size_t size);
+void cm1e_axis_cam_start_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_axis_cam_table_text(const cm1e_axis_t *axis, char *text, size_t size);
 
 #endif

@@ -34,6 +34,8 @@ static double at_most(double asked, double most, double used)
 static cm1e_motion_limits_t limits_beside(const cm1e_axis_t *axis, const from_t *f, double f_jerk, bool full_jerk)
 {
     const rest_t *rest = &axis->coupling->rest;
+    if (axis->coupling->now->to_position)
+        return cm1e_axis_cam_leaves(axis, axis->coupling->now, &rest->asked);
     const cm1e_motion_limits_t *most = &axis->maximum;
     const double now = f->velocity + rest->now.velocity, way = rest->now.velocity > 0.0 ? -1.0 : 1.0;
     const bool helps = f->acceleration * way <= 0.0 && rest->now.acceleration * way >= 0.0;
@@ -121,7 +123,7 @@ static from_t with_rest(cm1e_axis_t *axis, const from_t *f, guard_t *guard)
         rest->held_back = attempt == WITHOUT_JERK || (attempt > AS_PLANNED && disturbed);
         go_on(axis, f, (attempt_t)attempt);
         sum = sum_of(axis, f);
-        *guard = cm1e_axis_guard(axis, &sum, !axis->coupling->linear);
+        *guard = cm1e_axis_guard(axis, &sum, !axis->coupling->now->linear);
         if (!guard->limit)
             break;
     }
@@ -156,7 +158,7 @@ static void after_set_point(cm1e_axis_t *axis)
     if (axis->superimposed.id)
         cm1e_axis_superimposed_after(axis);
     axis->reached = !rest->on && c->now->in_step;
-    if (axis->reached && axis->waiting.count > 0 && (!c->now->waits_for_end || c->end_of_profile)) {
+    if (axis->reached && axis->waiting.count > 0 && (!c->now->waits_for_end || c->end_of_profile || c->now->ended)) {
         const from_t from = from_base(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
     }
@@ -186,7 +188,7 @@ bool cm1e_axis_coupled_step(cm1e_axis_t *axis)
     const bool in_step = !c->rest.on;
     const from_t next = in_step ? sum_of(axis, &f) : with_rest(axis, &f, &guard);
     if (in_step)
-        guard = cm1e_axis_guard(axis, &next, !c->linear);
+        guard = cm1e_axis_guard(axis, &next, !c->now->linear);
     if (guard.limit) {
         cm1e_axis_guard_fail(axis, guard);
         return false;
@@ -206,6 +208,14 @@ follow_t *cm1e_axis_follow_spare(cm1e_axis_t *axis)
     while (spare == c->now || spare == c->next)
         spare++;
     return spare;
+}
+
+/* What rounding leaves of nothing at all. */
+static bool is_nothing(const cm1e_axis_t *axis, const cm1e_motion_state_t *rest)
+{
+    const double counts = 1e-6, t = axis->cycle_s, scale = fabs(axis->scale);
+    return fabs(rest->position) * scale < counts && fabs(rest->velocity) * scale * t < counts &&
+           fabs(rest->acceleration) * scale * t * t < counts;
 }
 
 void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked)
@@ -228,6 +238,8 @@ void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, c
                        .now = {cm1e_position_minus(from->position, f.position) / axis->scale,
                                from->velocity - f.velocity, from->acceleration - f.acceleration},
                        .held_back = f.acceleration != 0.0};
+    if (is_nothing(axis, &c->rest.now))
+        c->rest.now = (cm1e_motion_state_t){0};
     const cm1e_motion_limits_t limits = limits_beside(axis, &f, 0.0, true);
     plan_rest(axis, &limits);
     axis->activity = ACTIVITY_COUPLED;
@@ -252,6 +264,7 @@ typedef cm1e_error_t prepare_t(cm1e_axis_t *axis, const move_t *move, const cm1e
 
 static prepare_t *const preparers[CM1E_COMMAND_KIND_COUNT] = {
     [CM1E_COMMAND_GEAR_IN] = cm1e_axis_gear_prepare,
+    [CM1E_COMMAND_CAM_IN] = cm1e_axis_cam_prepare,
     [CM1E_COMMAND_COMBINE_AXES] = cm1e_axis_gear_prepare,
 };
 

@@ -8,7 +8,8 @@
  * The masters are advanced first, so that a slave follows them within the same cycle, whatever their order on the bus.
  * F is one of a few kinds (`follow_kind_t`), each an object of its own source:
  *   gear, combine     axis_gear.c
- *   cam, ways into step over the master's position (MC_GearInPos, MC_CamIn)      axis_cam.c
+ *   cam               axis_cam_follow.c
+ *   a way into step over the master's position (MC_GearInPos, MC_CamIn), then one of these   axis_way.c
  * `rest` is what is not in step yet: a profile over time in the frame that moves with F, from the difference of the two
  * when F began to nothing. So the slave is in step at a definite time, without a step of position, velocity or
  * acceleration, and whatever the masters do meanwhile.
@@ -22,7 +23,7 @@
 #ifndef CM1E_AXIS_AXIS_COUPLING_H
 #define CM1E_AXIS_AXIS_COUPLING_H
 
-#include "axis/axis_private.h"
+#include "axis/axis_cam.h"
 
 /** A master as its slave sees it in this cycle, phase shift included. */
 typedef struct sight {
@@ -56,7 +57,10 @@ typedef struct follow {
     bool to_position;              /**< the rest is brought to 0 in its position too (mcRampIn); else lost distance is
                                         not made up, and the anchor takes it in at the end */
     bool in_step;                  /**< F itself is what was commanded: no way into step any more */
-    bool waits_for_end;            /**< commands that wait do so until EndOfProfile (single-shot cams) instead of InSync */
+    bool waits_for_end;            /**< commands that wait do so until EndOfProfile (cams) instead of InSync */
+    bool ended;                    /**< a single-shot cam has come over one of its ends */
+    bool linear;                   /**< F's acceleration jumps by its nature: no limit of jerk holds */
+    cam_place_t cam;
 } follow_t;
 
 /** A kind of F. */
@@ -119,7 +123,6 @@ typedef struct coupling {
     double f_acceleration;         /**< u/s2; of F, in the last cycle */
     bool synchronizing;            /**< GEAR_IN_POS: StartSync */
     bool end_of_profile;           /**< CAM_IN: F came over it in this cycle */
-    bool linear;                   /**< F's acceleration jumps by its nature: no limit of jerk holds */
     uint64_t mark;                 /**< of the last search that came here */
     uint32_t searches;
     cm1e_axis_coupling_t inputs;   /**< of the active command, for ContinuousUpdate */
@@ -182,5 +185,13 @@ cm1e_error_t cm1e_axis_gear_prepare(cm1e_axis_t *axis, const move_t *move, const
                                     const from_t *from);
 /** MC_GearOut, MC_CamOut: leaves the masters and keeps the velocity. */
 cm1e_error_t cm1e_axis_decouple(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+
+/* axis_cam_follow.c */
+/** Prepares a cam in the same way. */
+cm1e_error_t cm1e_axis_cam_prepare(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
+                                   const from_t *from);
+/** What the cam leaves of the axis's limits for the way onto it, with the master's present velocity. */
+cm1e_motion_limits_t cm1e_axis_cam_leaves(const cm1e_axis_t *axis, const follow_t *follow,
+                                          const cm1e_motion_limits_t *asked);
 
 #endif

@@ -212,6 +212,14 @@ static void refused_virtual_text(const cm1e_axis_t *axis, char *text, size_t siz
                  "MC_HomeDirect and MC_SetPosition say where it is.", axis->config->name);
 }
 
+static void refused_ratio_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    snprintf(text, size, axis->refused.kind == CM1E_COMMAND_CAM_IN
+                 ? "Axis \"%s\": MasterScaling or SlaveScaling is not a number of 1e-9 ... 1e9, of either sign, nor 0, "
+                   "which acts as 1."
+                 : "Axis \"%s\": a numerator or denominator of a ratio is 0.", axis->config->name);
+}
+
 /* A command was refused; the axis itself has no error. */
 static const struct {
     cm1e_error_t error;
@@ -223,6 +231,9 @@ static const struct {
     {CM1E_ERROR_AXIS_VIRTUAL, refused_virtual_text},
     {CM1E_ERROR_AXIS_HOMING_METHOD, cm1e_axis_home_wrong_text},
     {CM1E_ERROR_AXIS_HOMING_PARAMETER, cm1e_axis_home_wrong_text},
+    {CM1E_ERROR_AXIS_RATIO, refused_ratio_text},
+    {CM1E_ERROR_AXIS_CAM_ID, cm1e_axis_cam_id_text},
+    {CM1E_ERROR_AXIS_CAM_START, cm1e_axis_cam_start_text},
 };
 
 static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)

@@ -1,4 +1,4 @@
-/* Cams: the memory of a slave for them. */
+/* Cams: the memory of a slave for them, and slaves that follow them, against the ideal function at every sample. */
 #include "unity.h"
 
 #include "../support/axes_bench.h"
@@ -108,11 +108,432 @@ static void test_a_cam_is_a_copy(void)
     TEST_ASSERT_EQUAL_DOUBLE(1, sample.point.position);
 }
 
+/* ---- following --------------------------------------------------------------------------------------------------- */
+
+enum { MASTER = 0, SLAVE = 1 };
+
+static double set_of(int n) { return axes_info(n).set_position; }
+
+/* From rest to rest within 1, as every book has it. */
+static double smooth_step(double t) { return t * t * t * (10 + t * (-15 + t * 6)); }
+
+/* Up by `height` within the first half of 10 u of the master, and on to `end` in the second half. */
+static double hill(double x, double height, double end)
+{
+    const double turn = floor(x / 10), phase = x - 10 * turn;
+    return turn * end + (phase < 5 ? height * smooth_step(phase / 5)
+                                   : height + (end - height) * smooth_step((phase - 5) / 5));
+}
+
+static MC_CAM_ID select_hill(double height, double end, bool periodic, bool master_absolute, bool slave_absolute)
+{
+    points[0] = (MC_CAM_POINT){0, 0, 0, 0};
+    points[1] = (MC_CAM_POINT){5, height, 0, 0};
+    points[2] = (MC_CAM_POINT){10, end, 0, 0};
+    const MC_CAM_REF table = {points, 3, mcCamPolynomial5};
+    MC_CAM_ID id = 0;
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_cam_select(axes_axis(SLAVE), &table, periodic, master_absolute,
+                                                        slave_absolute, &id));
+    return id;
+}
+
+static cm1e_axis_coupling_t by_cam(MC_CAM_ID id, MC_START_MODE mode)
+{
+    return (cm1e_axis_coupling_t){.master = {{.axis = axes_reference(MASTER), .numerator = 1, .denominator = 1}},
+                                  .cam = id, .start_mode = mode};
+}
+
+static cm1e_command_id_t cam_in(const cm1e_axis_coupling_t *coupling)
+{
+    return axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_CAM_IN, .coupling = coupling});
+}
+
+static void cam_refused(const cm1e_axis_coupling_t *coupling, cm1e_error_t expected)
+{
+    axes_refused(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_CAM_IN, .coupling = coupling}, expected);
+}
+
+/* Master to and fro, ever faster and slower; at every sample within a thousandth of a count (the smallest of all is
+ * 0.00002 u). */
+static void master_wanders(int cycles, double (*ideal)(double master))
+{
+    static const double velocities[] = {3, -1, 8, 0.01, -6, 10, -10, 5};
+    for (int i = 0; i < cycles; i++) {
+        if (i % 500 == 0)
+            axes_move_velocity(MASTER, velocities[i / 500 % 8]);
+        axes_cycles(1);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-8, ideal(set_of(MASTER)), set_of(SLAVE));
+    }
+    axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
+}
+
+static double hill_back(double x) { return hill(x, 0.6, 0); }
+static double hill_on(double x) { return hill(x, 0.6, 1); }
+static double hill_once(double x) { return x <= 0 ? 0 : x >= 10 ? 1 : hill(x, 0.6, 1); }
+
+static void test_at_every_sample_the_slave_is_on_the_cam(void)
+{
+    static const struct { double end; bool periodic; double (*ideal)(double); } cases[] = {
+        {0, true, hill_back}, {1, true, hill_on}, {1, false, hill_once}};
+    for (int i = 0; i < 3; i++)
+        for (int slave_first = 0; slave_first < 2; slave_first++) {
+            axes_begin(2);
+            axes_bench.order[0] = slave_first ? SLAVE : MASTER;
+            axes_bench.order[1] = slave_first ? MASTER : SLAVE;
+            const cm1e_axis_coupling_t coupling =
+                by_cam(select_hill(0.6, cases[i].end, cases[i].periodic, true, true), mcAbsolute);
+            const cm1e_command_id_t id = cam_in(&coupling);
+            axes_cycles(1);
+            TEST_ASSERT_TRUE(axes_status(SLAVE, id).reached);
+            master_wanders(8000, cases[i].ideal);
+            TEST_ASSERT_TRUE(axes_status(SLAVE, id).reached);
+        }
+}
+
+/* (M - offset) / scaling, then offset + scaling * cam. */
+static double scaled(double x) { return 0.25 - 0.5 * hill((x - 2) / 3, 0.6, 1); }
+
+static void test_offsets_and_scalings(void)
+{
+    axes_begin(2);
+    cm1e_axis_coupling_t coupling = by_cam(select_hill(0.6, 1, true, true, true), mcRampIn);
+    coupling.master_offset = 2;
+    coupling.master_scaling = 3;
+    coupling.slave_offset = 0.25;
+    coupling.slave_scaling = -0.5;
+    axes_wait_reached(SLAVE, cam_in(&coupling), 2000);
+    master_wanders(8000, scaled);
+}
+
+/* What MC_CamTableSelect says is relative counts from where it is: of the master the cam's 0, of the slave so that it is
+ * on the cam. mcRelative is relative for the slave whatever was selected. */
+static void test_relative_to_where_they_are(void)
+{
+    for (int i = 0; i < 8; i++) {
+        const bool master_absolute = i & 1, slave_absolute = i & 2, relative = (i & 4) || !slave_absolute;
+        axes_begin(2);
+        axes_wait(MASTER, axes_move_to(MASTER, 3, 10), 5000);
+        axes_wait(SLAVE, axes_move_to(SLAVE, relative ? -7 : hill(master_absolute ? 3 : 0, 0.6, 1), 10), 5000);
+        const cm1e_axis_coupling_t coupling = by_cam(select_hill(0.6, 1, true, master_absolute, slave_absolute),
+                                                     i & 4 ? mcRelative : mcAbsolute);
+        (void)cam_in(&coupling);
+        axes_move_velocity(MASTER, -4);
+        for (int n = 0; n < 6000; n++) {
+            axes_cycles(1);
+            if (n == 3000)
+                axes_move_velocity(MASTER, 6);
+            const double x = master_absolute ? set_of(MASTER) : set_of(MASTER) - 3, begin = master_absolute ? 3 : 0;
+            const double ideal = hill(x, 0.6, 1) + (relative ? -7 - hill(begin, 0.6, 1) : 0);
+            TEST_ASSERT_DOUBLE_WITHIN(2e-8, ideal, set_of(SLAVE));
+        }
+    }
+}
+
+static void test_where_the_slave_is_not_on_the_cam_it_is_refused(void)
+{
+    axes_begin(2);
+    const MC_CAM_ID id = select_hill(1.5, 0, true, true, true);
+    cm1e_axis_coupling_t coupling = by_cam(id, mcAbsolute);
+    axes_wait(SLAVE, axes_move_to(SLAVE, 0.01, 10), 5000);
+    cam_refused(&coupling, CM1E_ERROR_AXIS_CAM_START);
+    axes_told(SLAVE, "is at 0.01 u with 0 u/s, where the cam would have it at 0 u");
+    axes_must_be(SLAVE, CM1E_AXIS_STANDSTILL);
+    axes_wait(SLAVE, axes_move_to(SLAVE, 0, 10), 5000);
+    axes_move_velocity(MASTER, 4);
+    axes_cycles(600); /* the cam goes on, the slave stands */
+    cam_refused(&coupling, CM1E_ERROR_AXIS_CAM_START);
+    coupling.start_mode = mcRelative;
+    cam_refused(&coupling, CM1E_ERROR_AXIS_CAM_START);
+    coupling.start_mode = mcRampIn;
+    axes_wait_reached(SLAVE, cam_in(&coupling), 5000);
+}
+
+/* The bench watches every set-point: velocity, acceleration and jerk within the slave's limits, each the derivative of
+ * the next. From any place, at any phase, and also from a motion. */
+static void test_ramp_in_has_no_step(void)
+{
+    for (int phase = 0; phase < 2500; phase += 311)
+        for (int moving = 0; moving < 3; moving++) {
+            axes_begin(2);
+            axes_move_velocity(MASTER, 4);
+            if (moving)
+                axes_move_velocity(SLAVE, moving == 1 ? 6 : -6);
+            axes_cycles(300 + phase);
+            cm1e_axis_coupling_t coupling = by_cam(select_hill(0.6, 1, true, false, true), mcRampIn);
+            const double begin = set_of(MASTER);
+            coupling.slave_offset = 0.3;
+            const cm1e_command_id_t id = cam_in(&coupling);
+            axes_cycles(1);
+            TEST_ASSERT_FALSE(axes_status(SLAVE, id).reached);
+            axes_wait_reached(SLAVE, id, 20000);
+            for (int n = 0; n < 3000; n++) {
+                if (n == 1000)
+                    axes_move_velocity(MASTER, -3);
+                axes_cycles(1);
+                TEST_ASSERT_DOUBLE_WITHIN(2e-8, 0.3 + hill(set_of(MASTER) - begin, 0.6, 1), set_of(SLAVE));
+            }
+        }
+}
+
+static void test_a_cam_is_changed_for_another_while_it_runs(void)
+{
+    axes_begin(2);
+    const cm1e_axis_coupling_t first = by_cam(select_hill(0.6, 1, true, true, true), mcAbsolute);
+    cm1e_command_id_t before = cam_in(&first);
+    axes_move_velocity(MASTER, 5);
+    for (int i = 0; i < 40; i++) {
+        axes_cycles(137);
+        const double height = 0.1 * (i % 7), end = 0.5 * (i % 3);
+        const cm1e_axis_coupling_t next = by_cam(select_hill(height, end, true, true, true), mcRampIn);
+        const cm1e_command_id_t id = cam_in(&next);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ABORTED, axes_status(SLAVE, before).state);
+        before = id;
+        axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
+        if (i % 4)
+            continue; /* the next one comes on the way */
+        axes_wait_reached(SLAVE, id, 20000);
+        for (int n = 0; n < 500; n++) {
+            axes_cycles(1);
+            TEST_ASSERT_DOUBLE_WITHIN(2e-8, hill(set_of(MASTER), height, end), set_of(SLAVE));
+        }
+    }
+}
+
+/* The same with a cam that goes through the same state: no way at all. */
+static void test_a_cam_that_goes_on_where_the_other_is_needs_no_ramp(void)
+{
+    axes_begin(2);
+    const cm1e_axis_coupling_t first = by_cam(select_hill(0.6, 1, true, true, true), mcAbsolute);
+    (void)cam_in(&first);
+    axes_move_velocity(MASTER, 5);
+    axes_cycles(777);
+    const cm1e_axis_coupling_t same = by_cam(select_hill(0.6, 1, true, true, true), mcAbsolute);
+    const cm1e_command_id_t id = cam_in(&same);
+    axes_cycles(1);
+    TEST_ASSERT_TRUE(axes_status(SLAVE, id).reached);
+    master_wanders(4000, hill_on);
+}
+
+/* 4.3: at every end of a period, and in reverse at every beginning. */
+static void test_end_of_profile_of_a_periodic_cam(void)
+{
+    axes_begin(2);
+    const cm1e_axis_coupling_t coupling = by_cam(select_hill(0.6, 1, true, true, true), mcAbsolute);
+    const cm1e_command_id_t id = cam_in(&coupling);
+    static const double stops[] = {25, 3, 10, 9, 30, 30.5, 30, -1, 0, -20};
+    for (int i = 0; i < 10; i++) {
+        const cm1e_command_id_t move = axes_move_to(MASTER, stops[i], 8);
+        while (axes_status(MASTER, move).state == CM1E_COMMAND_ACTIVE) {
+            const double before = set_of(MASTER) / 10;
+            axes_cycles(1);
+            const double now = set_of(MASTER) / 10;
+            const bool over = now > before ? floor(now) > floor(before) : ceil(now) < ceil(before);
+            TEST_ASSERT_EQUAL(over, axes_status(SLAVE, id).end_of_profile);
+        }
+    }
+}
+
+static void test_end_of_profile_of_a_single_shot(void)
+{
+    axes_begin(2);
+    const cm1e_axis_coupling_t coupling = by_cam(select_hill(0.6, 1, false, true, true), mcAbsolute);
+    const cm1e_command_id_t id = cam_in(&coupling);
+    static const struct { double stop; int ends; double slave; } moves[] = {
+        {-5, 0, 0}, {5, 0, 0.6}, {15, 1, 1}, {30, 0, 1}, {8, 0, NAN}, {10, 1, 1}, {-3, 1, 0}, {20, 1, 1}, {10, 0, 1}};
+    for (int i = 0; i < 9; i++) {
+        int ends = 0;
+        const cm1e_command_id_t move = axes_move_to(MASTER, moves[i].stop, 8);
+        while (axes_status(MASTER, move).state == CM1E_COMMAND_ACTIVE) {
+            axes_cycles(1);
+            ends += axes_status(SLAVE, id).end_of_profile;
+        }
+        TEST_ASSERT_EQUAL_INT(moves[i].ends, ends);
+        if (!isnan(moves[i].slave))
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, moves[i].slave, set_of(SLAVE));
+        TEST_ASSERT_TRUE(axes_status(SLAVE, id).reached);
+        axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
+    }
+}
+
+/* Table 4: a command behind a cam begins at EndOfProfile. */
+static void test_what_waits_begins_at_the_end_of_the_profile(void)
+{
+    for (int periodic = 0; periodic < 2; periodic++) {
+        axes_begin(2);
+        const cm1e_axis_coupling_t coupling = by_cam(select_hill(0.6, 1, periodic, true, true), mcAbsolute);
+        const cm1e_axis_coupling_t next = by_cam(select_hill(1, 2, true, false, false), mcRelative);
+        const cm1e_command_id_t id = cam_in(&coupling);
+        const cm1e_axis_command_t behind = {.kind = CM1E_COMMAND_CAM_IN, .coupling = &next, .buffer_mode = mcBuffered};
+        const cm1e_command_id_t waits = axes_command(SLAVE, &behind);
+        axes_move_velocity(MASTER, 5);
+        while (axes_status(SLAVE, waits).state == CM1E_COMMAND_BUFFERED) {
+            TEST_ASSERT_TRUE(set_of(MASTER) < 10);
+            TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, axes_status(SLAVE, id).state);
+            axes_cycles(1);
+        }
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ABORTED, axes_status(SLAVE, id).state);
+        axes_wait_reached(SLAVE, waits, 10);
+        const double begin = set_of(MASTER), slave = set_of(SLAVE);
+        TEST_ASSERT_DOUBLE_WITHIN(0.03, 10, begin);
+        axes_cycles(4000);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, hill(set_of(MASTER) - begin, 1, 2), set_of(SLAVE) - slave);
+    }
+}
+
+static void test_out_of_a_cam_the_velocity_stays(void)
+{
+    axes_begin(2);
+    const cm1e_axis_coupling_t coupling = by_cam(select_hill(0.6, 1, true, true, true), mcAbsolute);
+    const cm1e_command_id_t id = cam_in(&coupling);
+    axes_move_velocity(MASTER, 5);
+    axes_cycles(800);
+    const double velocity = axes_info(SLAVE).set_velocity;
+    TEST_ASSERT_TRUE(fabs(velocity) > 0.1);
+    axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_CAM_OUT});
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ABORTED, axes_status(SLAVE, id).state);
+    axes_must_be(SLAVE, CM1E_AXIS_CONTINUOUS_MOTION);
+    axes_cycles(500);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, velocity, axes_info(SLAVE).set_velocity);
+}
+
+static void turn_at(double velocity)
+{
+    axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = velocity,
+                                                .acceleration = 5000, .jerk = 100000});
+}
+
+/* Both turn for ever, from far away, in units that no double holds; a period is not a turn of either. */
+static void test_modulo_axes_over_many_turns(void)
+{
+    axes_describe(2);
+    for (int n = 0; n < 2; n++) {
+        axes_config(n)->units_per_revolution = 360;
+        axes_config(n)->modulo_range = n == MASTER ? 360 : 100;
+        axes_config(n)->invert = n == SLAVE;
+    }
+    axes_make();
+    axes_start_far(MASTER, 1000);
+    axes_start_far(SLAVE, -3000);
+    axes_enable_all();
+    points[0] = (MC_CAM_POINT){0, 0, 0, 0};
+    points[1] = (MC_CAM_POINT){250, 3, 0, 0};
+    points[2] = (MC_CAM_POINT){1000.0 / 3, 1, 0, 0};
+    const MC_CAM_REF table = {points, 3, mcCamPolynomial5};
+    const cm1e_axis_coupling_t coupling = by_cam(selected(SLAVE, &table, true, true), mcRampIn);
+    const double first = set_of(MASTER);
+    axes_wait_reached(SLAVE, cam_in(&coupling), 5000);
+    turn_at(1200);
+    long double way = 0;
+    double before = set_of(MASTER);
+    for (int i = 0; i < 400000; i++) {
+        if (i == 350000)
+            turn_at(-1200);
+        axes_cycles(1);
+        const double now = set_of(MASTER);
+        way += remainder(now - before, 360);
+        before = now;
+        const long double x = first + way, period = 1000.0L / 3, turn = floorl(x / period), phase = x - turn * period;
+        const double rise = phase < 250 ? 3 * smooth_step((double)phase / 250)
+                                        : 3 - 2 * smooth_step((double)(phase - 250) / (1000.0 / 3 - 250));
+        const double ideal = (double)fmodl(turn + rise + 100000, 100);
+        TEST_ASSERT_DOUBLE_WITHIN(0.5 * 360 / 50000, 0, remainder(set_of(SLAVE) - ideal, 100));
+    }
+    TEST_ASSERT_TRUE(fabs((double)way) > 800 * 360);
+}
+
+/* The whole range of the cam is looked at before it begins, also what lies between its points. */
+static void test_a_cam_that_leaves_the_software_limits_is_refused(void)
+{
+    axes_describe(2);
+    axes_config(SLAVE)->software_limit_negative = -1;
+    axes_config(SLAVE)->software_limit_positive = 1.5;
+    axes_make();
+    axes_enable_all();
+    cm1e_axis_coupling_t coupling = by_cam(select_hill(1.5, 0, true, true, true), mcAbsolute);
+    (void)cam_in(&coupling);
+    coupling.slave_scaling = 1.01;
+    cam_refused(&coupling, CM1E_ERROR_AXIS_POSITION_RANGE);
+    coupling.slave_scaling = -0.7;
+    cam_refused(&coupling, CM1E_ERROR_AXIS_POSITION_RANGE);
+    points[1] = (MC_CAM_POINT){5, 0, 1, 0}; /* from 0 to 0, but not in between */
+    const MC_CAM_REF table = {points, 3, mcCamPolynomial5};
+    coupling = by_cam(selected(SLAVE, &table, false, true), mcRampIn);
+    (void)cam_in(&coupling);
+    coupling.slave_scaling = 3;
+    cam_refused(&coupling, CM1E_ERROR_AXIS_POSITION_RANGE);
+}
+
+static void test_a_cam_that_is_needed_is_not_overwritten(void)
+{
+    axes_begin(2);
+    const cm1e_axis_coupling_t first = by_cam(select_hill(1.5, 0, true, true, true), mcAbsolute);
+    (void)cam_in(&first);
+    for (int i = 0; i < 3; i++) {
+        const cm1e_axis_coupling_t next = by_cam(select_hill(1, 0, true, true, true), mcRampIn);
+        (void)axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_CAM_IN, .coupling = &next,
+                                                         .buffer_mode = mcBuffered});
+    }
+    const MC_CAM_REF table = table_of(3);
+    MC_CAM_ID id = 5;
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_FULL, cm1e_axis_cam_select(axes_axis(SLAVE), &table, true, true, true, &id));
+    TEST_ASSERT_EQUAL_UINT32(0, id);
+    axes_told(SLAVE, "commands that wait name them");
+    axes_cycles(10);
+    (void)axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_STOP});
+    (void)selected(SLAVE, &table, true, true);
+}
+
+static void test_wrong_inputs_are_refused(void)
+{
+    axes_begin(2);
+    const MC_CAM_ID id = select_hill(1.5, 0, true, true, true);
+    cm1e_axis_coupling_t coupling = by_cam(0, mcAbsolute);
+    cam_refused(&coupling, CM1E_ERROR_AXIS_CAM_ID);
+    axes_told(SLAVE, "now: 1.");
+    coupling.cam = id + 1;
+    cam_refused(&coupling, CM1E_ERROR_AXIS_CAM_ID);
+    coupling = by_cam(id, (MC_START_MODE)3);
+    cam_refused(&coupling, CM1E_ERROR_INVALID_ARGUMENT);
+    static const double bad[] = {NAN, INFINITY, -INFINITY, 1e10, 1e-10};
+    for (int i = 0; i < 5; i++) {
+        coupling = by_cam(id, mcAbsolute);
+        coupling.master_scaling = bad[i];
+        cam_refused(&coupling, CM1E_ERROR_AXIS_RATIO);
+        axes_told(SLAVE, "1e-9 ... 1e9");
+        coupling.master_scaling = 0;
+        coupling.slave_scaling = bad[i];
+        cam_refused(&coupling, CM1E_ERROR_AXIS_RATIO);
+        coupling.slave_scaling = 0;
+        coupling.master_offset = i < 3 ? bad[i] : 0;
+        coupling.slave_offset = i < 3 ? 0 : bad[0];
+        cam_refused(&coupling, CM1E_ERROR_AXIS_POSITION_RANGE);
+    }
+    coupling = by_cam(id, mcRampIn);
+    coupling.slave_offset = 1e300;
+    cam_refused(&coupling, CM1E_ERROR_AXIS_POSITION_RANGE);
+    axes_must_be(SLAVE, CM1E_AXIS_STANDSTILL);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_last_four_cams_stay);
     RUN_TEST(test_a_bad_cam_costs_no_good_one_and_is_told);
     RUN_TEST(test_a_cam_is_a_copy);
+    RUN_TEST(test_at_every_sample_the_slave_is_on_the_cam);
+    RUN_TEST(test_offsets_and_scalings);
+    RUN_TEST(test_relative_to_where_they_are);
+    RUN_TEST(test_where_the_slave_is_not_on_the_cam_it_is_refused);
+    RUN_TEST(test_ramp_in_has_no_step);
+    RUN_TEST(test_a_cam_is_changed_for_another_while_it_runs);
+    RUN_TEST(test_a_cam_that_goes_on_where_the_other_is_needs_no_ramp);
+    RUN_TEST(test_end_of_profile_of_a_periodic_cam);
+    RUN_TEST(test_end_of_profile_of_a_single_shot);
+    RUN_TEST(test_what_waits_begins_at_the_end_of_the_profile);
+    RUN_TEST(test_out_of_a_cam_the_velocity_stays);
+    RUN_TEST(test_modulo_axes_over_many_turns);
+    RUN_TEST(test_a_cam_that_leaves_the_software_limits_is_refused);
+    RUN_TEST(test_a_cam_that_is_needed_is_not_overwritten);
+    RUN_TEST(test_wrong_inputs_are_refused);
     return UNITY_END();
 }

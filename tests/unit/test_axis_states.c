@@ -36,7 +36,10 @@ static cm1e_axis_command_t command_of(cm1e_command_kind_t kind)
     static const cm1e_axis_table_t table = {.read = one_pair, .count = 1};
     static cm1e_axis_coupling_t coupling;
     const cm1e_coupling_master_t any = {.axis = cm1e_axis_reference(master), .numerator = 1, .denominator = 1};
-    coupling = (cm1e_axis_coupling_t){.master = {any, any}};
+    MC_CAM_POINT points[] = {{0, 0, 0, 0}, {1, 1, 0, 0}};
+    const MC_CAM_REF cam = {points, 2, mcCamPolynomial5};
+    coupling = (cm1e_axis_coupling_t){.master = {any, any}, .start_mode = mcRampIn};
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_cam_select(axis, &cam, false, false, false, &coupling.cam));
     return (cm1e_axis_command_t){.kind = kind, .position = 2.0, .velocity = 1.0, .homing = &hard_stop,
                                  .step = &block, .table = &table, .coupling = &coupling};
 }
@@ -90,11 +93,11 @@ static const char *const expected[CM1E_AXIS_STATE_COUNT] = {
     /* abs rel add vel cabs crel pprofile vprofile aprofile halt stop home step superimposed haltsuperimposed, gearin
      * gearinpos camin combine gearout camout phasing phasing; K: as it was */
     [CM1E_AXIS_DISABLED] = "ppppppppppppppppppppppp",
-    [CM1E_AXIS_STANDSTILL] = "MMMVVVMVVMSHHMKFuuFcccc",
+    [CM1E_AXIS_STANDSTILL] = "MMMVVVMVVMSHHMKFuFFcccc",
     [CM1E_AXIS_HOMING] = "hhhhhhhhhhShhhhhhhhhhhh", /* that of the drive; between steps: test_axis_homing_steps */
-    [CM1E_AXIS_DISCRETE_MOTION] = "MMMVVVMVVMSxxKKFuuFcccc",
-    [CM1E_AXIS_CONTINUOUS_MOTION] = "MMMVVVMVVMSxxKKFuuFcccc",
-    [CM1E_AXIS_SYNCHRONIZED_MOTION] = "MMMVVVMVVMSxxKKFuuFVcKK",
+    [CM1E_AXIS_DISCRETE_MOTION] = "MMMVVVMVVMSxxKKFuFFcccc",
+    [CM1E_AXIS_CONTINUOUS_MOTION] = "MMMVVVMVVMSxxKKFuFFcccc",
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = "MMMVVVMVVMSxxKKFuFFVcKK",
     [CM1E_AXIS_STOPPING] = "sssssssssssssssssssssss",
     [CM1E_AXIS_ERROR_STOP] = "eeeeeeeeeeeeeeeeeeeeeee",
 };

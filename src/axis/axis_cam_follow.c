@@ -1,0 +1,218 @@
+/* F by a cam (MC_CamIn): where it is placed, and what it asks of the slave (axis_cam.h). */
+#include <math.h>
+
+#include "axis/axis_coupling.h"
+
+/* A slave is where the cam wants it, and moves like it, when what is left to be done is as little as this. */
+static const double same_place_counts = 10.0;
+static const double same_motion_cycles = 1.0; /* of the axis's own acceleration */
+
+static const double largest_scaling = 1e9;
+
+/* ---- F ----------------------------------------------------------------------------------------------------------- */
+
+static double place_in_cam(const cam_place_t *cam, const link_t *link)
+{
+    return ((link->seen.counts + cam->away) / link->master->scale - cam->master_offset) / cam->master_scaling;
+}
+
+/* u, from the slave's zero. */
+static double height(const cam_place_t *cam, const cm1e_cam_sample_t *sample)
+{
+    const cm1e_cam_t *table = &cam->slot->cam;
+    const double turns = table->periodic ? sample->turn * table->advance : 0.0;
+    return cam->slave_offset + cam->slave_scaling * (turns + sample->point.position);
+}
+
+/* Periods of which the end is behind or under the master, seen from that way. */
+static double ends_below(const cm1e_cam_t *table, const cm1e_cam_sample_t *sample, bool rising)
+{
+    return !table->periodic || rising || sample->phase == 0.0 ? sample->turn : sample->turn + 1.0;
+}
+
+/* Over an end of the profile in either direction (4.3): a period of it, or the first or last point of one that is run
+ * once. */
+static bool came_over_end(const cam_place_t *cam, const cm1e_cam_sample_t *now)
+{
+    const cm1e_cam_t *table = &cam->slot->cam;
+    if (!cam->sampled)
+        return false;
+    if (!table->periodic)
+        return now->turn != cam->before.turn && now->turn != 0.0;
+    return ends_below(table, now, true) > ends_below(table, &cam->before, true) ||
+           ends_below(table, now, false) < ends_below(table, &cam->before, false);
+}
+
+static void sample_point(const cm1e_axis_t *axis, const follow_t *follow, const cm1e_cam_sample_t *sample,
+                         from_t *point)
+{
+    const cam_place_t *cam = &follow->cam;
+    const sight_t *seen = &follow->links[0].seen;
+    const double steeper = cam->slave_scaling / cam->master_scaling;
+    const cm1e_curve_point_t here = {.slope = steeper * sample->point.slope,
+                                     .curvature = steeper * sample->point.curvature / cam->master_scaling};
+    const cm1e_motion_state_t motion = cm1e_curve_motion(&here, seen->velocity, seen->acceleration);
+    const double most = (double)CM1E_FARTHEST_COUNTS, counts = height(cam, sample) * axis->scale;
+    *point = (from_t){.position = cm1e_position_plus(cam->slave_zero, fmax(-most, fmin(counts, most))),
+                      .velocity = motion.velocity, .acceleration = motion.acceleration};
+}
+
+static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
+{
+    cam_place_t *cam = &follow->cam;
+    const link_t *link = &follow->links[0];
+    cm1e_cam_sample_t sample;
+    cm1e_cam_sample(&cam->slot->cam, &cam->place, place_in_cam(cam, link), &sample);
+    if (came_over_end(cam, &sample)) {
+        axis->coupling->end_of_profile = true;
+        follow->ended = !cam->slot->cam.periodic;
+    }
+    cam->before = sample;
+    cam->sampled = true;
+    sample_point(axis, follow, &sample, point);
+}
+
+static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link)
+{
+    (void)axis, (void)link;
+    const cm1e_curve_extremes_t *e = &follow->cam.slot->cam.extremes;
+    return fmax(fabs(e->least_slope), fabs(e->most_slope)) *
+           fabs(follow->cam.slave_scaling / follow->cam.master_scaling);
+}
+
+static const follow_kind_t cam_kind = {evaluate, steepest};
+
+/* A cam may need all of this before long, at the master's present velocity. */
+static cm1e_motion_limits_t cam_demand(const follow_t *follow)
+{
+    const cam_place_t *cam = &follow->cam;
+    const double once = 1.0 / fabs(cam->master_scaling), all = fabs(cam->slave_scaling) * once;
+    cm1e_curve_extremes_t scaled = cam->slot->cam.extremes;
+    cm1e_motion_limits_t demand;
+    scaled.least_slope *= all;
+    scaled.most_slope *= all;
+    scaled.curvature *= all * once;
+    scaled.third *= all * once * once;
+    cm1e_approach_demand(&scaled, follow->links[0].seen.velocity, &demand);
+    return demand;
+}
+
+static double part_of(double asked, double most, double needed)
+{
+    const double least_part = 0.1, largest_part = 0.5; /* the master may become faster */
+    return fmin(asked, fmax(fmin(most - needed, largest_part * most), least_part * most));
+}
+
+cm1e_motion_limits_t cm1e_axis_cam_leaves(const cm1e_axis_t *axis, const follow_t *follow,
+                                          const cm1e_motion_limits_t *asked)
+{
+    const cm1e_motion_limits_t *most = &axis->maximum, needed = cam_demand(follow);
+    return (cm1e_motion_limits_t){
+        .velocity = part_of(asked->velocity, most->velocity, needed.velocity),
+        .acceleration = part_of(asked->acceleration, most->acceleration, needed.acceleration),
+        .deceleration = part_of(asked->deceleration, most->deceleration, needed.deceleration),
+        .jerk = part_of(asked->jerk, most->jerk, needed.jerk),
+    };
+}
+
+/* ---- where it is placed ------------------------------------------------------------------------------------------ */
+
+static bool take_scaling(double asked, double *scaling)
+{
+    *scaling = asked == 0.0 ? 1.0 : asked;
+    return fabs(*scaling) <= largest_scaling && fabs(*scaling) >= 1.0 / largest_scaling;
+}
+
+static cm1e_error_t take_numbers(const cm1e_axis_coupling_t *coupling, cam_place_t *cam)
+{
+    if (!take_scaling(coupling->master_scaling, &cam->master_scaling) ||
+        !take_scaling(coupling->slave_scaling, &cam->slave_scaling))
+        return CM1E_ERROR_AXIS_RATIO;
+    if (!isfinite(coupling->master_offset) || !isfinite(coupling->slave_offset))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    cam->master_offset = coupling->master_offset;
+    cam->slave_offset = coupling->slave_offset;
+    return CM1E_OK;
+}
+
+static void find_master_zero(follow_t *follow, cam_place_t *cam)
+{
+    const link_t *link = &follow->links[0];
+    const double units = cm1e_axis_units(link->master, link->origin);
+    cam->away = cam->slot->master_absolute ? units * link->master->scale : -link->seen.counts;
+}
+
+/* Of the places of a modulo slave, the cam's that is nearest to it. */
+static cm1e_error_t find_slave_zero(const cm1e_axis_t *axis, const cm1e_axis_coupling_t *coupling, const from_t *from,
+                                    cam_place_t *cam, double here)
+{
+    if (coupling->start_mode == mcRelative || !cam->slot->slave_absolute) {
+        cam->slave_zero = cm1e_position_plus(from->position, (cam->slave_offset - here) * axis->scale);
+        return CM1E_OK;
+    }
+    if (axis->modulo_range == 0.0)
+        return cm1e_axis_position_from_units(axis, 0.0, &cam->slave_zero) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+    const double way = here - cm1e_axis_units(axis, from->position);
+    const double turns = round(way / axis->modulo_range);
+    if (!cm1e_position_reaches(from->position, fabs(way * axis->scale) + fabs(here * axis->scale)))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    cam->slave_zero = cm1e_position_plus(from->position,
+                                         (way - turns * axis->modulo_range - here) * axis->scale);
+    return CM1E_OK;
+}
+
+/* All of it, wherever the master is to go; of one that advances with every period that is not known. */
+static bool contained(const cm1e_axis_t *axis, const from_t *from, const cam_place_t *cam)
+{
+    const cm1e_cam_t *table = &cam->slot->cam;
+    if (table->periodic && table->advance != 0.0)
+        return true;
+    const double zero = cm1e_position_minus(cam->slave_zero, from->position) / axis->scale + cam->slave_offset;
+    const double a = zero + cam->slave_scaling * table->extremes.lowest;
+    const double b = zero + cam->slave_scaling * table->extremes.highest;
+    return cm1e_axis_limits_contain_way(axis, from, fmin(a, b), fmax(a, b));
+}
+
+static bool on_it(cm1e_axis_t *axis, const from_t *from, const from_t *wanted)
+{
+    cam_refused_t *refused = &axis->cams->refused;
+    const double way = cm1e_position_minus(wanted->position, from->position);
+    const double velocity = wanted->velocity - from->velocity;
+    *refused = (cam_refused_t){cm1e_axis_units(axis, from->position), cm1e_axis_units(axis, wanted->position),
+                               from->velocity, wanted->velocity};
+    return fabs(way) <= cm1e_axis_few(axis, same_place_counts) &&
+           fabs(velocity) <= same_motion_cycles * axis->cycle_s * fmin(axis->maximum.acceleration,
+                                                                       axis->maximum.deceleration);
+}
+
+cm1e_error_t cm1e_axis_cam_prepare(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
+                                   const from_t *from)
+{
+    (void)move;
+    follow_t *follow = cm1e_axis_follow_spare(axis);
+    const cam_slot_t *slot = cm1e_axis_cam_of(axis, coupling->cam);
+    *follow = (follow_t){.kind = &cam_kind, .cam.slot = slot, .to_position = true, .in_step = true,
+                         .waits_for_end = true};
+    cam_place_t *cam = &follow->cam;
+    if (!slot)
+        return CM1E_ERROR_AXIS_CAM_ID;
+    if ((unsigned)coupling->start_mode > mcRampIn)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    cm1e_error_t error = take_numbers(coupling, cam);
+    if (!error)
+        error = cm1e_axis_link(axis, follow, &coupling->master[0]);
+    if (error)
+        return error;
+    cm1e_cam_sample_t sample;
+    from_t wanted;
+    follow->linear = slot->cam.curve == mcCamLinear;
+    find_master_zero(follow, cam);
+    cm1e_cam_sample(&slot->cam, &cam->place, place_in_cam(cam, &follow->links[0]), &sample);
+    error = find_slave_zero(axis, coupling, from, cam, height(cam, &sample));
+    if (error)
+        return error;
+    sample_point(axis, follow, &sample, &wanted);
+    if (!cm1e_position_in_range(wanted.position) || !contained(axis, from, cam))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    return coupling->start_mode == mcRampIn || on_it(axis, from, &wanted) ? CM1E_OK : CM1E_ERROR_AXIS_CAM_START;
+}
