@@ -1,14 +1,16 @@
 /**
  * What an axis costs in the cycle, without the frames: its function blocks, its state machine and its trajectory (a),
- * and with the drive below it, scaling, lag monitoring and the process image (a+b); and what the cycle costs in which
- * a command starts. With --peer LIBRARY the same moves are done by another implementation, in turn with ours, in the
- * same process on the same CPU (see bench/blocks).
+ * and with the drive below it, scaling, lag monitoring and the process image (a+b); axes that move by themselves, that
+ * follow a master by a gear or a cam, and groups of axes on a path; and what the cycle costs in which a command starts.
+ * With --peer LIBRARY the same work is done by another implementation, in turn with ours, in the same process on the
+ * same CPU (see bench/blocks).
  *
  * On a machine that others use too, single times say little. So the work is timed in many short pieces, in many rounds:
  * the best time of a piece over all rounds is what the work costs ("cost"), all times together are what was seen here
  * and now ("seen").
  */
 #include <dlfcn.h>
+#include <math.h>
 #include <sched.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -16,17 +18,34 @@
 #include <string.h>
 #include <time.h>
 
-#include "axis/axis_private.h"
-#include "blocks_subject.h"
-#include "cm1e/plcopen.h"
+#include "blocks_cm1e.h"
 
 enum {
-    BUSES = 2, BUS_AXES = BLOCKS_MAX_AXES / BUSES,
     CYCLES = 1000,        /* timed of each move; the shortest move takes a little longer */
     PIECE = 256,          /* axis cycles that are timed together */
-    MAX_ROUNDS = 200, STARTS = 5000, SUBJECTS = 3,
+    MAX_ROUNDS = 200, STARTS = 5000, SUBJECTS = 3, ROWS = 4,
 };
-#define CYCLE_NS INT64_C(1000000)
+
+typedef struct work {
+    const char *title;
+    unsigned axes[ROWS]; /* 0: no further row */
+} work_t;
+
+static const work_t works[BLOCKS_WORKS] = {
+    [BLOCKS_MOVE] = {"all axes in a move of MC_MoveAbsolute", {1, 8, 64, BLOCKS_MAX_AXES}},
+    [BLOCKS_GEAR] = {"every eighth axis so, the others in gear with it (MC_GearIn)", {2, 8, 64, BLOCKS_MAX_AXES}},
+    [BLOCKS_CAM_LINEAR] = {"the others by a cam (MC_CamIn): straight lines", {2, 8, 64, BLOCKS_MAX_AXES}},
+    [BLOCKS_CAM_CUBIC] = {"by a cam: cubic spline", {2, 8, 64, BLOCKS_MAX_AXES}},
+    [BLOCKS_CAM_POLYNOMIAL] = {"by a cam: polynomials of degree 5", {2, 8, 64, BLOCKS_MAX_AXES}},
+    [BLOCKS_GROUP] = {"groups of three axes on a path of lines and arcs",
+                      {BLOCKS_MEMBERS, 8 * BLOCKS_MEMBERS, BLOCKS_GROUPS * BLOCKS_MEMBERS}},
+};
+
+static void fail(const char *why)
+{
+    fprintf(stderr, "%s\n", why);
+    exit(1);
+}
 
 static double now_ns(void)
 {
@@ -60,124 +79,7 @@ void *__wrap_realloc(void *memory, size_t size)
     heap += size;
     return __real_realloc(memory, size);
 }
-static size_t heap_bytes(void) { return heap; }
-
-/* ---- this library as a subject ----------------------------------------------------------------------------------- */
-
-static cm1e_bus_t *buses[BUSES];
-static cm1e_axis_t *axes[BLOCKS_MAX_AXES];
-static AXIS_REF_t references[BLOCKS_MAX_AXES];
-static MC_Power_t powers[BLOCKS_MAX_AXES];
-static MC_MoveAbsolute_t moves[BLOCKS_MAX_AXES];
-static int64_t cycle_now_ns;
-
-static void fail(const char *why)
-{
-    fprintf(stderr, "%s\n", why);
-    exit(1);
-}
-
-/* The process image stands still while the bench runs, so the lag grows with the set-point and must be allowed. */
-static cm1e_bus_t *start_bus(void)
-{
-    static cm1e_bus_config_t config;
-    cm1e_bus_config_init(&config, "sim", BUS_AXES);
-    config.virtual_time = true;
-    config.cycle_time_ns = CYCLE_NS;
-    for (uint32_t i = 0; i < BUS_AXES; i++) {
-        cm1e_axis_config_t *axis = &config.axes[i];
-        axis->counts_per_unit = 500;
-        axis->max_velocity = BLOCKS_VELOCITY;
-        axis->max_acceleration = axis->max_deceleration = BLOCKS_ACCELERATION;
-        axis->max_jerk = BLOCKS_JERK;
-        axis->software_limit_negative = -1000;
-        axis->software_limit_positive = 1000;
-        axis->max_position_lag = 1e6;
-    }
-    cm1e_diag_t diag = {0};
-    cm1e_bus_t *bus = NULL;
-    if (cm1e_bus_open(&bus, &config, &diag) || cm1e_bus_start(bus, &diag))
-        fail(diag.text);
-    return bus;
-}
-
-/* (a): the programs and what the axis does for them. */
-static void run_blocks(unsigned count, unsigned cycles)
-{
-    while (cycles-- > 0)
-        for (unsigned i = 0; i < count; i++) {
-            MC_Power(&powers[i]);
-            MC_MoveAbsolute(&moves[i]);
-            cm1e_axis_advance(axes[i]);
-        }
-}
-
-/* (a+b): the same in the scheduler's order: inputs of all axes, programs, outputs of all axes. */
-static void run_whole(unsigned count, unsigned cycles)
-{
-    while (cycles-- > 0) {
-        cycle_now_ns += CYCLE_NS;
-        for (unsigned i = 0; i < count; i++)
-            cm1e_axis_inputs(axes[i], CM1E_OK, CM1E_OK, cycle_now_ns);
-        for (unsigned i = 0; i < count; i++) {
-            MC_Power(&powers[i]);
-            MC_MoveAbsolute(&moves[i]);
-        }
-        for (unsigned i = 0; i < count; i++)
-            cm1e_axis_outputs(axes[i]);
-    }
-}
-
-static bool make(unsigned count)
-{
-    cm1e_diag_t diag = {0};
-    if (axes[0])
-        return true; /* our two subjects work on the same axes */
-    for (unsigned i = 0; i < BUSES; i++)
-        buses[i] = start_bus();
-    for (unsigned i = 0; i < count; i++) {
-        if (cm1e_axis_create(&axes[i], buses[i / BUS_AXES], i % BUS_AXES, &diag))
-            fail(diag.text);
-        references[i] = cm1e_axis_reference(axes[i]);
-        powers[i] = (MC_Power_t){.Axis = &references[i], .Enable = TRUE, .EnablePositive = TRUE,
-                                 .EnableNegative = TRUE};
-        moves[i].Axis = &references[i];
-    }
-    cycle_now_ns = cm1e_clock_now(cm1e_bus_clock(buses[0]));
-    for (int cycle = 0; cycle < 200; cycle++) { /* the way to Operation enabled needs the frames */
-        for (unsigned i = 0; i < BUSES; i++) {
-            cm1e_clock_sleep_until(cm1e_bus_clock(buses[i]), cycle_now_ns + CYCLE_NS);
-            if (cm1e_bus_receive(buses[i]))
-                return false;
-        }
-        run_whole(count, 1);
-        for (unsigned i = 0; i < BUSES; i++)
-            cm1e_bus_send(buses[i]);
-    }
-    bool powered = true;
-    for (unsigned i = 0; i < count; i++)
-        powered &= powers[i].Status;
-    return powered;
-}
-
-static void give(unsigned i, const blocks_move_t *move)
-{
-    moves[i].Execute = FALSE;
-    MC_MoveAbsolute(&moves[i]);
-    moves[i].Position = move->position;
-    moves[i].Velocity = move->velocity;
-    moves[i].Acceleration = move->acceleration;
-    moves[i].Deceleration = move->deceleration;
-    moves[i].Jerk = move->jerk;
-    moves[i].Execute = TRUE;
-}
-
-static bool done(unsigned i) { return moves[i].Done; }
-static bool failed(unsigned i) { return moves[i].Error || moves[i].CommandAborted; }
-
-#define OUR_BYTES sizeof(struct cm1e_axis), sizeof(MC_Power_t), sizeof(MC_MoveAbsolute_t)
-static const blocks_subject_t our_blocks = {"cm1e (a)", make, give, run_blocks, done, failed, heap_bytes, OUR_BYTES};
-static const blocks_subject_t our_whole = {"cm1e (a+b)", make, give, run_whole, done, failed, heap_bytes, OUR_BYTES};
+size_t blocks_heap_bytes(void) { return heap; }
 
 /* ---- statistics -------------------------------------------------------------------------------------------------- */
 
@@ -229,18 +131,41 @@ static void run_to_the_end(const blocks_subject_t *subject, unsigned count)
 {
     for (unsigned i = 0; i < count; i++)
         for (int cycles = 0; !subject->done(i); cycles++) {
-            if (subject->failed(i) || cycles > 100000)
+            if (subject->failed(i) || cycles > 100000) {
+                fprintf(stderr, "%s, axis %u at %g: ", subject->name, i, subject->position(i));
                 fail("a move was not done");
+            }
             subject->run(count, 1);
         }
 }
 
-/* All axes go 250 units there or back, each at its own velocity, so that they are not all in the same phase. */
-static void one_round(const blocks_subject_t *subject, unsigned count, series_t *s)
+/* All axes at 0, each for itself. */
+static void go_home(const blocks_subject_t *subject, unsigned count)
+{
+    const blocks_move_t home = {0, BLOCKS_VELOCITY, BLOCKS_ACCELERATION, BLOCKS_ACCELERATION, BLOCKS_JERK};
+    subject->end();
+    for (unsigned i = 0; i < count; i++)
+        subject->give(i, &home);
+    subject->run(count, 1);
+    run_to_the_end(subject, count);
+}
+
+static double end_position(blocks_work_t work, unsigned axis, bool far)
+{
+    const blocks_piece_t last = blocks_path(far, BLOCKS_PIECES - 1);
+    if (work == BLOCKS_GROUP)
+        return last.end[axis % BLOCKS_MEMBERS];
+    if (!blocks_follows(work, axis))
+        return far ? BLOCKS_FAR : 0;
+    return !far ? 0 : work == BLOCKS_GEAR ? BLOCKS_RATIO * BLOCKS_FAR : BLOCKS_CAM_HEIGHT;
+}
+
+/* All axes go there or back, each that is by itself at its own velocity, so that they are not all in the same phase. */
+static void one_round(const blocks_subject_t *subject, blocks_work_t work, unsigned count, series_t *s)
 {
     s->far = !s->far;
     for (unsigned i = 0; i < count; i++) {
-        const blocks_move_t move = {s->far ? 250 : 0, BLOCKS_VELOCITY * (1 - 0.3 * i / BLOCKS_MAX_AXES),
+        const blocks_move_t move = {s->far ? BLOCKS_FAR : 0, BLOCKS_VELOCITY * (1 - 0.3 * i / BLOCKS_MAX_AXES),
                                     BLOCKS_ACCELERATION / 2, BLOCKS_ACCELERATION / 2, BLOCKS_JERK / 2};
         subject->give(i, &move);
     }
@@ -255,45 +180,63 @@ static void one_round(const blocks_subject_t *subject, unsigned count, series_t 
     }
     s->heap_bytes += subject->heap_bytes() - heap_before;
     s->rounds++;
-    for (unsigned i = 0; i < count; i++)
-        if (subject->done(i))
-            fail("a move ended while it was timed");
+    if (subject->done(0))
+        fail("a move ended while it was timed");
     run_to_the_end(subject, count);
+    for (unsigned i = 0; i < count; i++)
+        if (subject->failed(i) || fabs(subject->position(i) - end_position(work, i, s->far)) > 1e-3)
+            fail("an axis is not where it should be");
 }
 
-static void report_series(const blocks_subject_t *subject, unsigned count, series_t *s, double ours)
+/* Of one row: the cost of each subject (median), 0 where it has nothing like that. */
+static void measure_row(const blocks_subject_t *const *subjects, unsigned subject_count, blocks_work_t work,
+                        unsigned count, unsigned rounds, double *cost)
 {
-    const double median = quantile(s->cost, s->pieces, 0.5), worst = s->cost[s->pieces - 1];
-    const unsigned samples = s->pieces * s->rounds;
-    const double seen = quantile(s->seen, samples, 0.5), seen_worst = s->seen[samples - 1];
-    printf("%4u  %-18s %7.1f %7.1f   %7.1f %9.0f", count, subject->name, median, worst, seen, seen_worst);
-    if (ours > 0)
-        printf("   %5.2f x (a)", median / ours);
-    printf("\n");
-}
-
-static double steady_state(const blocks_subject_t *const *subjects, unsigned subject_count, unsigned count,
-                           unsigned rounds)
-{
+    bool there[SUBJECTS];
     memset(series, 0, sizeof series);
+    for (unsigned i = 0; i < subject_count; i++)
+        there[i] = i == 1 ? there[0] : subjects[i]->begin(work, count);
     series[1].far = true; /* our two share their axes: there by the one, back by the other */
     for (unsigned round = 0; round < rounds; round++)
         for (unsigned i = 0; i < subject_count; i++) {
             const unsigned k = round % 2 ? subject_count - 1 - i : i;
-            one_round(subjects[k], count, &series[k]);
+            if (there[k])
+                one_round(subjects[k], work, count, &series[k]);
         }
-    double ours = 0;
     for (unsigned i = 0; i < subject_count; i++) {
-        report_series(subjects[i], count, &series[i], ours);
-        if (i == 0)
-            ours = series[0].cost[series[0].pieces / 2];
+        series_t *s = &series[i];
+        cost[i] = there[i] ? quantile(s->cost, s->pieces, 0.5) : 0;
+        if (i != 0) /* with the second of our two */
+            go_home(subjects[i], count);
     }
-    return ours;
+}
+
+static void print_row(const blocks_subject_t *const *subjects, unsigned subject_count, blocks_work_t work,
+                      unsigned count, const double *cost, const double *moving)
+{
+    for (unsigned i = 0; i < subject_count; i++) {
+        series_t *s = &series[i];
+        const unsigned samples = s->pieces * s->rounds;
+        if (!samples)
+            continue;
+        const double seen = quantile(s->seen, samples, 0.5);
+        printf("%4u  %-18s %7.1f %7.1f   %7.1f %9.0f", count, subjects[i]->name, cost[i], s->cost[s->pieces - 1], seen,
+               s->seen[samples - 1]);
+        if (i > 0 && cost[0] > 0)
+            printf("   %5.2f x (a)", cost[i] / cost[0]);
+        if (blocks_follows(work, 1) && moving[i] > 0) {
+            const unsigned masters = (count + BLOCKS_SET - 1) / BLOCKS_SET;
+            printf("   a slave %6.1f", (cost[i] * count - moving[i] * masters) / (count - masters));
+        }
+        if (s->heap_bytes)
+            printf("   heap %zu bytes", s->heap_bytes);
+        printf("\n");
+    }
 }
 
 static void report_simultaneous(const blocks_subject_t *const *subjects, unsigned subject_count)
 {
-    printf("\nus of the cycle in which %d axes start at once\n%24s %7s %7s %7s\n", BLOCKS_MAX_AXES, "", "best",
+    printf("us of the cycle in which %d axes start at once\n%24s %7s %7s %7s\n", BLOCKS_MAX_AXES, "", "best",
            "median", "worst");
     for (unsigned i = 0; i < subject_count; i++) {
         series_t *s = &series[i];
@@ -301,11 +244,24 @@ static void report_simultaneous(const blocks_subject_t *const *subjects, unsigne
         printf("      %-18s %7.1f %7.1f %7.1f\n", subjects[i]->name, s->starts[0] / 1e3, median / 1e3,
                s->starts[s->rounds - 1] / 1e3);
     }
-    printf("\nbytes of heap taken in all cycles of %d axes, and bytes of an axis, its MC_Power, its MC_MoveAbsolute\n",
-           BLOCKS_MAX_AXES);
-    for (unsigned i = 0; i < subject_count; i++)
-        printf("      %-18s %7zu  %7zu %7zu %7zu\n", subjects[i]->name, series[i].heap_bytes, subjects[i]->axis_bytes,
-               subjects[i]->power_bytes, subjects[i]->move_bytes);
+}
+
+static void report_work(const blocks_subject_t *const *subjects, unsigned subject_count, blocks_work_t work,
+                        unsigned rounds)
+{
+    static double moving[ROWS][SUBJECTS];
+    printf("\nns per axis and cycle, %s\n%4s  %-18s %15s   %17s\n", works[work].title, "axes", "",
+           "cost: median, worst", "seen: median, worst");
+    for (unsigned row = 0; row < ROWS && works[work].axes[row]; row++) {
+        double cost[SUBJECTS];
+        const unsigned count = works[work].axes[row];
+        measure_row(subjects, subject_count, work, count, rounds, cost);
+        print_row(subjects, subject_count, work, count, cost, moving[row]);
+        if (work == BLOCKS_MOVE)
+            memcpy(moving[row], cost, sizeof cost);
+    }
+    if (work == BLOCKS_MOVE)
+        report_simultaneous(subjects, subject_count);
 }
 
 /* ---- the cycle in which one command starts ----------------------------------------------------------------------- */
@@ -320,39 +276,80 @@ static double random_between(double low, double high) /* splitmix64 */
     return low + (high - low) * ((double)((z ^ (z >> 31)) >> 11) * 0x1p-53);
 }
 
-static blocks_move_t random_move(void)
+static blocks_move_t random_move(double part)
 {
     return (blocks_move_t){
         .position = random_between(-200, 200),
-        .velocity = random_between(0.1, 1) * BLOCKS_VELOCITY,
-        .acceleration = random_between(0.1, 1) * BLOCKS_ACCELERATION,
-        .deceleration = random_between(0.1, 1) * BLOCKS_ACCELERATION,
-        .jerk = random_between(0.1, 1) * BLOCKS_JERK,
+        .velocity = random_between(0.1, 1) * part * BLOCKS_VELOCITY,
+        .acceleration = random_between(0.1, 1) * part * BLOCKS_ACCELERATION,
+        .deceleration = random_between(0.1, 1) * part * BLOCKS_ACCELERATION,
+        .jerk = random_between(0.1, 1) * part * BLOCKS_JERK,
     };
 }
 
-/* Each problem once, from rest or in the middle of the move before. */
-static void report_starts(const blocks_subject_t *subject, bool on_the_way)
+/* Each problem once, from rest or in the middle of the motion before. A slave starts while its master moves. */
+static void time_starts(const blocks_subject_t *subject, blocks_work_t work, bool on_the_way)
 {
     static double spent[STARTS];
     unsigned refused = 0;
+    const bool follows = blocks_follows(work, 1);
+    const unsigned count = follows ? 2 : work == BLOCKS_GROUP ? BLOCKS_MEMBERS : 1;
     random_state = 1;
+    if (!subject->begin(work, follows && !on_the_way ? 0 : count))
+        return;
     for (unsigned i = 0; i < STARTS; i++) {
-        const blocks_move_t move = random_move();
-        subject->give(0, &move);
-        spent[i] = time_run(subject, 1, 1);
-        const unsigned cycles = (unsigned)random_between(1, 500);
-        if (subject->failed(0))
-            refused++;
-        else if (on_the_way)
-            subject->run(1, cycles);
+        if (follows) {
+            const blocks_move_t way = random_move(1);
+            subject->give(0, &way);
+            subject->run(2, (unsigned)random_between(1, 200));
+        }
+        const blocks_move_t move = random_move(1);
+        if (work == BLOCKS_MOVE)
+            subject->give(0, &move);
         else
-            run_to_the_end(subject, 1);
+            subject->start(follows, &move);
+        spent[i] = time_run(subject, count, 1);
+        refused += subject->failed(follows);
+        if (on_the_way) {
+            subject->run(count, (unsigned)random_between(1, 500));
+        } else if (follows) {
+            go_home(subject, 2);
+            subject->begin(work, 0);
+        } else if (!subject->failed(0)) {
+            run_to_the_end(subject, count);
+        }
     }
     const double median = quantile(spent, STARTS, 0.5);
     printf("      %-18s %-12s %7.0f %7.0f %9.0f   refused %u of %d\n", subject->name,
            on_the_way ? "on the way" : "from rest", median, quantile(spent, STARTS, 0.99), spent[STARTS - 1], refused,
            STARTS);
+    go_home(subject, count);
+}
+
+static void report_starts(const blocks_subject_t *const *subjects, unsigned subject_count)
+{
+    static const char *const titles[BLOCKS_WORKS] = {
+        [BLOCKS_MOVE] = "MC_MoveAbsolute",
+        [BLOCKS_GEAR] = "MC_GearIn, with its master",
+        [BLOCKS_CAM_LINEAR] = "MC_CamIn, straight lines, with its master",
+        [BLOCKS_CAM_CUBIC] = "MC_CamIn, cubic spline, with its master",
+        [BLOCKS_CAM_POLYNOMIAL] = "MC_CamIn, polynomials of degree 5, with its master",
+        [BLOCKS_GROUP] = "MC_MoveLinearAbsolute of three axes",
+    };
+    for (unsigned work = 0; work < BLOCKS_WORKS; work++) {
+        printf("\nns of the cycle in which one command starts: %s\n%37s %7s %7s %9s\n", titles[work], "", "median",
+               "p99", "worst");
+        for (unsigned i = 0; i < subject_count; i++)
+            for (int on_the_way = 0; on_the_way < 2; on_the_way++)
+                time_starts(subjects[i], work, on_the_way);
+    }
+}
+
+static void report_bytes(const blocks_subject_t *subject)
+{
+    printf("\nbytes of %s\n", subject->name);
+    for (const blocks_bytes_t *b = subject->bytes(); b->what; b++)
+        printf("      %-48s %7zu\n", b->what, b->bytes);
 }
 
 /* ---- the program ------------------------------------------------------------------------------------------------- */
@@ -389,34 +386,35 @@ static void print_machine(int cpu, unsigned rounds)
            cpu >= 0 ? "yes" : "no", rounds, clock_ns);
 }
 
+static bool chosen(const char *names, const char *name) { return !names || strstr(names, name); }
+
 int main(int argc, char **argv)
 {
-    static const unsigned counts[] = {1, 8, 64, BLOCKS_MAX_AXES};
-    const blocks_subject_t *subjects[SUBJECTS] = {&our_blocks, &our_whole};
+    static const char *const names[BLOCKS_WORKS] = {"move", "gear", "linear", "cubic", "polynomial", "group"};
+    const blocks_subject_t *subjects[SUBJECTS] = {&blocks_cm1e, &blocks_cm1e_whole};
     unsigned subject_count = 2, rounds = 50;
+    const char *only = NULL;
     for (int i = 1; i + 1 < argc; i += 2)
         if (!strcmp(argv[i], "--peer"))
             subjects[subject_count++] = load_peer(argv[i + 1]);
         else if (!strcmp(argv[i], "--rounds"))
             rounds = (unsigned)strtoul(argv[i + 1], NULL, 10);
+        else if (!strcmp(argv[i], "--only"))
+            only = argv[i + 1];
     if (argc % 2 == 0 || rounds < 1 || rounds > MAX_ROUNDS)
-        fail("bench_blocks [--rounds 1 ... 200] [--peer LIBRARY]");
+        fail("bench_blocks [--rounds 1 ... 200] [--peer LIBRARY] [--only move,gear,linear,cubic,polynomial,group,starts]");
     const int cpu = stay_on_this_cpu();
     time_the_clock();
     for (unsigned i = 0; i < subject_count; i++)
         if (!subjects[i]->make(BLOCKS_MAX_AXES))
             fail("the axes are not powered");
     print_machine(cpu, rounds);
-    printf("\nns per axis and cycle, all axes in a move of MC_MoveAbsolute\n%4s  %-18s %15s   %17s\n", "axes", "",
-           "cost: median, worst", "seen: median, worst");
-    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++)
-        steady_state(subjects, subject_count, counts[i], rounds);
-    report_simultaneous(subjects, subject_count);
-    printf("\nns of the cycle in which one command starts\n%37s %7s %7s %9s\n", "", "median", "p99", "worst");
-    for (unsigned i = 0; i < subject_count; i++)
-        for (int on_the_way = 0; on_the_way < 2; on_the_way++) {
-            run_to_the_end(subjects[i], 1);
-            report_starts(subjects[i], on_the_way);
-        }
+    for (unsigned work = 0; work < BLOCKS_WORKS; work++)
+        if (chosen(only, names[work]))
+            report_work(subjects, subject_count, work, rounds);
+    if (chosen(only, "starts"))
+        report_starts(subjects, subject_count);
+    for (unsigned i = 0; i < subject_count; i += 2)
+        report_bytes(subjects[i]);
     return 0;
 }
