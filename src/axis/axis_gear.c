@@ -39,6 +39,8 @@ cm1e_error_t cm1e_axis_gear_prepare(cm1e_axis_t *axis, const move_t *move, const
 {
     follow_t *follow = cm1e_axis_follow_spare(axis);
     const int masters = move->kind == CM1E_COMMAND_COMBINE_AXES ? 2 : 1;
+    if (coupling->combine != mcAddAxes && coupling->combine != mcSubAxes)
+        return CM1E_ERROR_INVALID_ARGUMENT;
     *follow = (follow_t){.kind = &gear, .anchor = from->position, .in_step = true};
     for (int i = 0; i < masters; i++) {
         const cm1e_coupling_master_t *master = &coupling->master[i];

@@ -142,6 +142,17 @@ static void enter_homing(void)
     ck_assert(step.Busy);
 }
 
+static void enter_gear(void)
+{
+    MC_MoveVelocity_t turn = {.Axis = &bench.master_reference, .Execute = TRUE, .Velocity = 0.1};
+    MC_MoveVelocity(&turn);
+    scans(100);
+    MC_GearIn_t gear = {.Slave = &bench.reference, .Master = &bench.master_reference, .Execute = TRUE,
+                        MC_GEARIN_DEFAULTS};
+    MC_GearIn(&gear);
+    ck_assert_msg(gear.Busy, "%#x", gear.ErrorID);
+}
+
 static void enter(cm1e_axis_state_t state)
 {
     static const int kind_of[CM1E_AXIS_STATE_COUNT] = {
@@ -155,6 +166,8 @@ static void enter(cm1e_axis_state_t state)
         simulate("error 1 2310");
     else if (state == CM1E_AXIS_HOMING)
         enter_homing();
+    else if (state == CM1E_AXIS_SYNCHRONIZED_MOTION)
+        enter_gear();
     else if (state != CM1E_AXIS_STANDSTILL)
         bench.execute[0][kind_of[state]] = TRUE;
     if (state != CM1E_AXIS_STANDSTILL)
@@ -183,14 +196,18 @@ static bool check_rule(const block_t *block, cm1e_axis_state_t state)
     return right;
 }
 
+/** The way out of a cam, from a gear. */
+static bool is_unmet(const block_t *block, cm1e_axis_state_t state)
+{
+    return state == CM1E_AXIS_SYNCHRONIZED_MOTION && strcmp(block->name, "MC_CamOut") == 0;
+}
+
 START_TEST(test_every_block_in_every_state_as_its_page_says)
 {
     const cm1e_axis_state_t state = (cm1e_axis_state_t)_i;
-    if (state == CM1E_AXIS_SYNCHRONIZED_MOTION)
-        return; /* nothing leads there */
     int faults = 0;
     for (size_t i = 0; i < block_count; i++)
-        faults += block_table[i].rules && !check_rule(&block_table[i], state);
+        faults += block_table[i].rules && !is_unmet(&block_table[i], state) && !check_rule(&block_table[i], state);
     ck_assert_int_eq(faults, 0);
 }
 END_TEST
@@ -260,7 +277,7 @@ START_TEST(test_every_error_is_on_its_page)
     const unsigned seed = (unsigned)_i;
     chance_state = (seed + 1) * UINT64_C(0x9E3779B97F4A7C15);
     cm1e_axis_state_t state = (cm1e_axis_state_t)chance(CM1E_AXIS_STATE_COUNT);
-    enter(state == CM1E_AXIS_SYNCHRONIZED_MOTION ? CM1E_AXIS_STANDSTILL : state);
+    enter(state);
     for (int n = 0; n < BLOCKS_OF_A_RUN; n++) {
         const block_t *block = &block_table[chance((uint32_t)block_count)];
         if (!trigger(block) || strcmp(block->name, "MC_Power") == 0)

@@ -368,7 +368,7 @@ static double jerk_to_stay_below(const cm1e_motion_limits_t *most)
     MUST(condition, "%s, command kind %d: " format, cm1e_axis_state_name(judged.axis->state), (int)judged.axis->kind,  \
          __VA_ARGS__)
 
-static void watch_set_point(void)
+static inline void watch_set_point(void)
 {
     const cm1e_axis_t *axis = judged.axis;
     watch_limits();
@@ -459,6 +459,26 @@ static void begin_blocks(void)
     output_of_axis.Axis = input_of_axis.Axis = trigger_of_axis.Axis = judged.reference;
 }
 
+/** What a slave needs before it can follow: a cam, and a point of synchronisation that lies before both axes. */
+static void put_in_reach(instance_t *fb, const char *name)
+{
+    MC_CAM_ID cam = 0;
+    cm1e_axis_info_t slave, master;
+    cm1e_axis_t *const followed = judged.master.Handle ? cm1e_axis_from_reference(&judged.master) : NULL;
+    if (strcmp(name, "MC_CamIn") == 0 && judged.axis) {
+        (void)cm1e_axis_cam_select(judged.axis, &cam_of_master, true, false, false, &cam);
+        put(fb, "CamTableID", cam);
+        put(fb, "StartMode", mcRampIn);
+    }
+    if (strcmp(name, "MC_GearInPos") != 0 || !judged.axis || !followed)
+        return;
+    cm1e_axis_get(judged.axis, &slave);
+    cm1e_axis_get(followed, &master);
+    put(fb, "MasterSyncPosition", master.set_position + 4.0);
+    put(fb, "SlaveSyncPosition", slave.set_position + 1.0);
+    put(fb, "MasterStartDistance", 3.0);
+}
+
 /** The axis that it is about. */
 static void point_at_axis(instance_t *fb, const AXIS_REF_t *axis)
 {
@@ -499,6 +519,7 @@ static void make(instance_t *fb, const char *name)
         put(fb, "ParameterNumber", strstr(name, "Bool") ? 6 : 7);
     if (strstr(name, "BoolParameter"))
         put(fb, "ParameterNumber", 4);
+    put_in_reach(fb, name);
     fb->of = judged_at;
     MUST(called_count < INSTANCES_MOST, "too many blocks");
     called[called_count++] = fb;

@@ -1060,10 +1060,30 @@ static const block_rule_t rules_halt_superimposed[CM1E_AXIS_STATE_COUNT] = {
 };
 static const block_rule_t rules_couple[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
+    [CM1E_AXIS_STANDSTILL] = {.next = CM1E_AXIS_SYNCHRONIZED_MOTION},
+    [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_HOMING},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.next = CM1E_AXIS_SYNCHRONIZED_MOTION},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.next = CM1E_AXIS_SYNCHRONIZED_MOTION},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.next = CM1E_AXIS_SYNCHRONIZED_MOTION},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
+};
+static const block_rule_t rules_couple_later[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
     [CM1E_AXIS_STANDSTILL] = {.refusal = CM1E_ERROR_UNSUPPORTED},
     [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_HOMING},
     [CM1E_AXIS_DISCRETE_MOTION] = {.refusal = CM1E_ERROR_UNSUPPORTED},
     [CM1E_AXIS_CONTINUOUS_MOTION] = {.refusal = CM1E_ERROR_UNSUPPORTED},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.refusal = CM1E_ERROR_UNSUPPORTED},
+    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
+    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
+};
+static const block_rule_t rules_phasing[CM1E_AXIS_STATE_COUNT] = {
+    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
+    [CM1E_AXIS_STANDSTILL] = {.refusal = CM1E_ERROR_AXIS_NOT_COUPLED},
+    [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_HOMING},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.refusal = CM1E_ERROR_AXIS_NOT_COUPLED},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.refusal = CM1E_ERROR_AXIS_NOT_COUPLED},
     [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.next = CM1E_AXIS_SYNCHRONIZED_MOTION},
     [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
     [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
@@ -1075,16 +1095,6 @@ static const block_rule_t rules_decouple[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_DISCRETE_MOTION] = {.refusal = CM1E_ERROR_AXIS_NOT_COUPLED},
     [CM1E_AXIS_CONTINUOUS_MOTION] = {.refusal = CM1E_ERROR_AXIS_NOT_COUPLED},
     [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.next = CM1E_AXIS_CONTINUOUS_MOTION},
-    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
-    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
-};
-static const block_rule_t rules_phasing[CM1E_AXIS_STATE_COUNT] = {
-    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
-    [CM1E_AXIS_STANDSTILL] = {.refusal = CM1E_ERROR_AXIS_NOT_COUPLED},
-    [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_HOMING},
-    [CM1E_AXIS_DISCRETE_MOTION] = {.refusal = CM1E_ERROR_AXIS_NOT_COUPLED},
-    [CM1E_AXIS_CONTINUOUS_MOTION] = {.refusal = CM1E_ERROR_AXIS_NOT_COUPLED},
-    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.next = CM1E_AXIS_SYNCHRONIZED_MOTION},
     [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
     [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
 };
@@ -1887,7 +1897,6 @@ static const cm1e_error_t errors_of_MC_PhasingAbsolute[] = {
     CM1E_ERROR_AXIS_STOPPING,
     CM1E_ERROR_AXIS_ERROR_STOP,
     CM1E_ERROR_AXIS_NOT_POWERED,
-    CM1E_ERROR_UNSUPPORTED,
     CM1E_ERROR_FULL,
     CM1E_OK,
 };
@@ -1923,7 +1932,6 @@ static const cm1e_error_t errors_of_MC_PhasingRelative[] = {
     CM1E_ERROR_AXIS_STOPPING,
     CM1E_ERROR_AXIS_ERROR_STOP,
     CM1E_ERROR_AXIS_NOT_POWERED,
-    CM1E_ERROR_UNSUPPORTED,
     CM1E_ERROR_FULL,
     CM1E_OK,
 };
@@ -2891,11 +2899,11 @@ const block_t block_table[] = {
     BLOCK(MC_AccelerationProfile, rules_continuous),
     BLOCK(MC_Jog, NULL),
     BLOCK(MC_CamTableSelect, rules_any),
-    BLOCK(MC_CamIn, rules_couple),
+    BLOCK(MC_CamIn, rules_couple_later),
     BLOCK(MC_CamOut, rules_decouple),
     BLOCK(MC_GearIn, rules_couple),
     BLOCK(MC_GearOut, rules_decouple),
-    BLOCK(MC_GearInPos, rules_couple),
+    BLOCK(MC_GearInPos, rules_couple_later),
     BLOCK(MC_PhasingAbsolute, rules_phasing),
     BLOCK(MC_PhasingRelative, rules_phasing),
     BLOCK(MC_CombineAxes, rules_couple),
