@@ -128,7 +128,8 @@ static cm1e_error_t take_numbers(const cm1e_axis_coupling_t *coupling, cam_place
     if (!take_scaling(coupling->master_scaling, &cam->master_scaling) ||
         !take_scaling(coupling->slave_scaling, &cam->slave_scaling))
         return CM1E_ERROR_AXIS_RATIO;
-    if (!isfinite(coupling->master_offset) || !isfinite(coupling->slave_offset))
+    if (!isfinite(coupling->master_offset) || !isfinite(coupling->slave_offset) ||
+        !isfinite(coupling->master_start_distance) || !isfinite(coupling->master_sync_position))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     cam->master_offset = coupling->master_offset;
     cam->slave_offset = coupling->slave_offset;

@@ -124,6 +124,11 @@ static void fill(const block_t *block)
         if (member && member->section == BLOCK_INPUT && member->type == BLOCK_LREAL)
             memcpy(memory + member->offset, &numbers[i].value, sizeof(double));
     }
+    if (strcmp(block->name, "MC_CamIn") == 0 && bench.axis) {
+        MC_CamIn_t *in = (MC_CamIn_t *)memory;
+        (void)cm1e_axis_cam_select(bench.axis, &cam, true, false, true, &in->CamTableID);
+        in->StartMode = mcRampIn;
+    }
     for (size_t i = 0; i < block->member_count; i++) /* ratios */
         if (block->members[i].type == BLOCK_DINT || strcmp(block->members[i].name, "RatioDenominator") == 0)
             memcpy(memory + block->members[i].offset, &(DINT){1}, sizeof(DINT));

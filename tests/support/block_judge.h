@@ -466,7 +466,7 @@ static void put_in_reach(instance_t *fb, const char *name)
     cm1e_axis_info_t slave, master;
     cm1e_axis_t *const followed = judged.master.Handle ? cm1e_axis_from_reference(&judged.master) : NULL;
     if (strcmp(name, "MC_CamIn") == 0 && judged.axis) {
-        (void)cm1e_axis_cam_select(judged.axis, &cam_of_master, true, false, false, &cam);
+        (void)cm1e_axis_cam_select(judged.axis, &cam_of_master, true, true, true, &cam);
         put(fb, "CamTableID", cam);
         put(fb, "StartMode", mcRampIn);
     }

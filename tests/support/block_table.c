@@ -2899,7 +2899,7 @@ const block_t block_table[] = {
     BLOCK(MC_AccelerationProfile, rules_continuous),
     BLOCK(MC_Jog, NULL),
     BLOCK(MC_CamTableSelect, rules_any),
-    BLOCK(MC_CamIn, rules_couple_later),
+    BLOCK(MC_CamIn, rules_couple),
     BLOCK(MC_CamOut, rules_decouple),
     BLOCK(MC_GearIn, rules_couple),
     BLOCK(MC_GearOut, rules_decouple),
