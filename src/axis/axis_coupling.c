@@ -218,10 +218,41 @@ static bool is_nothing(const cm1e_axis_t *axis, const cm1e_motion_state_t *rest)
            fabs(rest->acceleration) * scale * t * t < counts;
 }
 
-void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked)
+/* The rest is what `from` differs from F as its masters are seen. */
+static void begin_rest(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *asked)
 {
     coupling_t *c = axis->coupling;
     from_t f;
+    c->now->kind->evaluate(axis, c->now, &f);
+    c->f_acceleration = f.acceleration;
+    c->rest = (rest_t){.asked = *asked,
+                       .now = {cm1e_position_minus(from->position, f.position) / axis->scale,
+                               from->velocity - f.velocity, from->acceleration - f.acceleration},
+                       .held_back = f.acceleration != 0.0};
+    if (is_nothing(axis, &c->rest.now))
+        c->rest.now = (cm1e_motion_state_t){0};
+    const cm1e_motion_limits_t limits = limits_beside(axis, &f, 0.0, true);
+    plan_rest(axis, &limits);
+}
+
+/* Where all stand at their last targets, they are in step as before: the rest is none but what it was. */
+void cm1e_axis_coupled_after_pause(cm1e_axis_t *axis)
+{
+    coupling_t *c = axis->coupling;
+    const from_t from = from_set(axis);
+    cm1e_axis_phasing_rest(axis);
+    for (int i = 0; i < c->now->count; i++) {
+        link_t *link = &c->now->links[i];
+        if (link->source == mcSetValue && link->master && link->master->mode != CM1E_MODE_CSV)
+            link->seen.velocity = link->seen.acceleration = 0.0;
+    }
+    const cm1e_motion_limits_t asked = c->rest.on ? c->rest.asked : axis->maximum;
+    begin_rest(axis, &from, &asked);
+}
+
+void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked)
+{
+    coupling_t *c = axis->coupling;
     if (!axis_follows(axis) || c->now->links[0].master != follow->links[0].master)
         cm1e_axis_phasing_forget(axis);
     if (c->now)
@@ -232,16 +263,7 @@ void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, c
     c->now = follow;
     c->next = NULL;
     c->synchronizing = c->end_of_profile = false;
-    follow->kind->evaluate(axis, follow, &f);
-    c->f_acceleration = f.acceleration;
-    c->rest = (rest_t){.asked = *asked,
-                       .now = {cm1e_position_minus(from->position, f.position) / axis->scale,
-                               from->velocity - f.velocity, from->acceleration - f.acceleration},
-                       .held_back = f.acceleration != 0.0};
-    if (is_nothing(axis, &c->rest.now))
-        c->rest.now = (cm1e_motion_state_t){0};
-    const cm1e_motion_limits_t limits = limits_beside(axis, &f, 0.0, true);
-    plan_rest(axis, &limits);
+    begin_rest(axis, from, asked);
     axis->activity = ACTIVITY_COUPLED;
     axis->reached = axis->paused = axis->stands = axis->along_table = false;
 }

@@ -161,6 +161,8 @@ follow_t *cm1e_axis_follow_spare(cm1e_axis_t *axis);
 void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked);
 /** Kinds of commands that the axis knows how to follow by. */
 bool cm1e_axis_can_couple(cm1e_command_kind_t kind);
+/** After a pause: the axis and its masters begin anew, each by itself from rest, or go on in CSV. */
+void cm1e_axis_coupled_after_pause(cm1e_axis_t *axis);
 /** In a cycle in which F has begun: its set-point, without going on. */
 void cm1e_axis_coupled_begin(cm1e_axis_t *axis);
 
@@ -170,6 +172,8 @@ cm1e_error_t cm1e_axis_phasing(cm1e_axis_t *axis, const cm1e_axis_command_t *com
 void cm1e_axis_phasing_step(cm1e_axis_t *axis);
 /** Running and waiting ones end. Where the axis still follows, the shift comes to rest. */
 void cm1e_axis_phasing_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
+/** They end with CommandAborted, and the shift stays as it is. */
+void cm1e_axis_phasing_rest(cm1e_axis_t *axis);
 /** The axis leaves the master that was shifted. */
 void cm1e_axis_phasing_forget(cm1e_axis_t *axis);
 /** FALSE: `id` is not one that runs or waits. */

@@ -4,7 +4,7 @@
  * went on would ask it for a step of velocity; so what moves begins anew from there: from rest, or from where the motor
  * must be by now. Stops and ramps of errors end where they stand.
  */
-#include "axis/axis_private.h"
+#include "axis/axis_coupling.h"
 
 static cm1e_error_t stop_anew(cm1e_axis_t *axis)
 {
@@ -74,6 +74,10 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
         return;
     }
     cm1e_axis_superimposed_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK); /* what is left of it belongs to the base now */
+    if (axis_follows(axis)) {
+        cm1e_axis_coupled_after_pause(axis);
+        return;
+    }
     const cm1e_error_t error = move_anew(axis);
     if (error)
         cm1e_axis_fail(axis, error, cm1e_axis_units(axis, axis->set),

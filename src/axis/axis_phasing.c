@@ -221,13 +221,19 @@ void cm1e_axis_phasing_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_e
     phasing->moving = cm1e_profile_to_velocity(&phasing->profile, &axis->coupling->phase, 0.0, &limits) == CM1E_OK;
 }
 
-void cm1e_axis_phasing_forget(cm1e_axis_t *axis)
+void cm1e_axis_phasing_rest(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
     record(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     forget_waiting(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     c->phasing.moving = false;
-    c->phase = (cm1e_motion_state_t){0.0, 0.0, 0.0};
+    c->phase.velocity = c->phase.acceleration = 0.0;
+}
+
+void cm1e_axis_phasing_forget(cm1e_axis_t *axis)
+{
+    cm1e_axis_phasing_rest(axis);
+    axis->coupling->phase.position = 0.0;
 }
 
 /* ---- what is told of it ------------------------------------------------------------------------------------------ */

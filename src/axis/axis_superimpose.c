@@ -13,7 +13,7 @@
  */
 #include <math.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_coupling.h"
 
 static const double same_moment = 1e-6; /* cycles */
 
@@ -107,6 +107,8 @@ static void give_to_base(cm1e_axis_t *axis)
     axis->base = cm1e_position_plus(axis->base, counts);
     axis->base_line = cm1e_axis_line(axis, axis->base);
     axis->target = cm1e_position_plus(axis->target, counts);
+    if (axis_follows(axis))
+        axis->coupling->now->anchor = cm1e_position_plus(axis->coupling->now->anchor, counts);
     if (axis->active) {
         axis->move.origin = cm1e_position_plus(axis->move.origin, counts);
         axis->move.target = cm1e_position_plus(axis->move.target, counts);

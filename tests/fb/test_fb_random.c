@@ -199,11 +199,6 @@ static void time_passes(int64_t time_ns)
         turn_shafts();
 }
 
-static bool is_shifted(const cm1e_axis_t *slave)
-{
-    (void)slave;
-    return false;
-}
 static bool has_torque(void) { return motor_of(judged_at)->state == OPERATION_ENABLED; }
 static bool is_deaf(void) { return bench.health != CM1E_OK; }
 

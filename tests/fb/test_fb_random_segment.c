@@ -104,12 +104,6 @@ static bool has_torque(void)
 }
 static bool is_deaf(void) { return cm1e_bus_health(bench.bus) != CM1E_OK; }
 
-static bool is_shifted(const cm1e_axis_t *slave)
-{
-    (void)slave;
-    return false;
-}
-
 /* ---- faults ------------------------------------------------------------------------------------------------------ */
 
 __attribute__((format(printf, 1, 2))) static void console(const char *format, ...)

@@ -151,8 +151,8 @@ static inline void axes_judge_smooth(int n, double t)
     const double j = most->jerk, slack = 1.0 + 1e-6, step = cm1e_position_minus(axis->set, w->set) / axis->scale;
     const double noise = 1e-9 * (fabs(step) + fabs(v0) * t) + 1e-4 / fabs(axis->scale);
     const char *state = cm1e_axis_state_name(axis->state);
-    AXES_MUST(fabs(a) <= fmax(most->acceleration, most->deceleration) * slack,
-              "axis %d, %s: acceleration %.12g, limit %.12g", n, state, a, fmax(most->acceleration, most->deceleration));
+    const double largest = fmax(most->acceleration, most->deceleration);
+    AXES_MUST(fabs(a) <= largest * slack, "axis %d, %s: acceleration %.12g, limit %.12g", n, state, a, largest);
     AXES_MUST(fabs(a - a0) <= j * t * slack + 1e-9 * (fabs(a) + fabs(a0)),
               "axis %d, %s: jerk %.12g, limit %.12g: acceleration %.12g -> %.12g at %.12g u/s", n, state,
               fabs(a - a0) / t, j, a0, a, v);

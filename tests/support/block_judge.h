@@ -14,7 +14,7 @@
 #include <string.h>
 
 #include "axis/axis.h"
-#include "axis/axis_private.h"
+#include "axis/axis_coupling.h"
 #include "block_table.h"
 
 enum { BLOCK_BYTES = 4096, BLOCKS_MOST = 160, JUDGED_MOST = 4, INSTANCES_MOST = JUDGED_MOST * BLOCKS_MOST };
@@ -330,6 +330,20 @@ static void watch_limits(void)
              watched.lowest, watched.highest);
 }
 
+/** It follows what has no limit of acceleration or jerk by its nature: an actual value, a cam of straight lines; or a
+ *  slave that does. */
+static bool follows_roughly(const cm1e_axis_t *axis, int depth)
+{
+    const follow_t *follow = axis->activity == ACTIVITY_COUPLED ? axis->coupling->now : NULL;
+    if (!follow || depth == 0)
+        return false;
+    bool rough = axis->coupling->linear;
+    for (int i = 0; i < follow->count; i++)
+        rough = rough || follow->links[i].source != mcSetValue ||
+                (follow->links[i].master && follows_roughly(follow->links[i].master, depth - 1));
+    return rough;
+}
+
 /** The master was late by so much: the motor stands, or in CSV has gone on. */
 static inline void pause_of_master(int64_t pause_ns)
 {
@@ -377,7 +391,8 @@ static inline void watch_set_point(void)
     const bool stop = !axis->active || axis->kind == CM1E_COMMAND_HALT || axis->kind == CM1E_COMMAND_STOP ||
                       axis->paused;
     const bool ours = set_point_is_ours(), stepping = watched.searched; /* lets go of what it pushes at */
-    const bool is_hard = axis->state == CM1E_AXIS_ERROR_STOP || stepping || (stop && axis->software_limits);
+    const bool is_hard = axis->state == CM1E_AXIS_ERROR_STOP || stepping || (stop && axis->software_limits) ||
+                         follows_roughly(axis, JUDGED_MOST);
     const bool hard = is_hard || watched.hard;
     const double largest = fmax(most->acceleration, most->deceleration), slack = 1.0 + 1e-6;
     if (ours && watched.ours && !hard && !watched.lost) {

@@ -20,8 +20,6 @@ static bool has_torque(void);
 /** Nobody can tell the drive anything at present. */
 static bool is_deaf(void);
 static void judge_motor(void);
-/** Its master's positions are shifted, or have been. */
-static bool is_shifted(const cm1e_axis_t *slave);
 /** The time passes in which nothing is sent. */
 static void time_passes(int64_t time_ns);
 
@@ -215,37 +213,6 @@ static story_t story_of(const instance_t *fb, double set)
                      .end = absolute ? real_of(fb, "Position") : set + real_of(fb, "Distance")};
 }
 
-/** CM1E_TEST_TELL=<cycle>: from there on every edge is told, for who repeats a seed. */
-static void tell(const instance_t *fb, const from_t *from)
-{
-    static long long first = -1;
-    if (first < 0)
-        first = getenv("CM1E_TEST_TELL") ? atoll(getenv("CM1E_TEST_TELL")) : LLONG_MAX;
-    if (judged.number < first)
-        return;
-    fprintf(stderr, "%lld: axis %d: %s from %.17g, %.17g u/s, %.17g u/s2: ErrorID 0x%04X, %s;", judged.number, judged_at, name_of(fb),
-            cm1e_axis_units(judged.axis, from->position), from->velocity, from->acceleration, fb->now.error_id,
-            cm1e_axis_state_name(judged.axis->state));
-    for (size_t i = 0; i < fb->view->type->member_count; i++) {
-        const block_member_t *m = &fb->view->type->members[i];
-        if (m->type == BLOCK_LREAL && m->section == BLOCK_INPUT)
-            fprintf(stderr, " %s %.17g", m->name, real_of(fb, m->name));
-        else if (m->type == BLOCK_ENUM && m->section == BLOCK_INPUT)
-            fprintf(stderr, " %s %d", m->name, *(const int *)(const void *)(fb->memory + m->offset));
-        else if (m->type == BLOCK_BOOL && m->section == BLOCK_INPUT && fb->memory[m->offset])
-            fprintf(stderr, " %s", m->name);
-        else if ((m->type == BLOCK_DINT || m->type == BLOCK_UDINT) && m->section == BLOCK_INPUT)
-            fprintf(stderr, " %s %d", m->name, *(const DINT *)(const void *)(fb->memory + m->offset));
-        else if (m->type == BLOCK_POINTER && (strncmp(m->name, "Master", 6) == 0))
-            fprintf(stderr, " %s %d", m->name, (int)(*(AXIS_REF_t *const *)(const void *)(fb->memory + m->offset) - named));
-        else if (m->type == BLOCK_INT && m->section == BLOCK_INPUT)
-            fprintf(stderr, " %s %d", m->name, *(const INT *)(const void *)(fb->memory + m->offset));
-    }
-    fputc('\n', stderr);
-}
-
-/* ---- gears ------------------------------------------------------------------------------------------------------- */
-
 static int integer_of(const instance_t *fb, const char *name)
 {
     const block_member_t *m = member_of(fb->view->type, name);
@@ -261,6 +228,37 @@ static const AXIS_REF_t *pointer_of(const instance_t *fb, const char *name)
     memcpy(&value, fb->memory + m->offset, sizeof value);
     return value;
 }
+
+/** CM1E_TEST_TELL=<cycle>: from there on every edge is told, for who repeats a seed. */
+static void tell(const instance_t *fb, const from_t *from)
+{
+    static long long first = -1;
+    if (first < 0)
+        first = getenv("CM1E_TEST_TELL") ? atoll(getenv("CM1E_TEST_TELL")) : LLONG_MAX;
+    if (judged.number < first)
+        return;
+    fprintf(stderr, "%lld: axis %d: %s from %.17g, %.17g u/s, %.17g u/s2: ErrorID 0x%04X, %s;", judged.number,
+            judged_at, name_of(fb), cm1e_axis_units(judged.axis, from->position), from->velocity, from->acceleration, fb->now.error_id,
+            cm1e_axis_state_name(judged.axis->state));
+    for (size_t i = 0; i < fb->view->type->member_count; i++) {
+        const block_member_t *m = &fb->view->type->members[i];
+        if (m->type == BLOCK_LREAL && m->section == BLOCK_INPUT)
+            fprintf(stderr, " %s %.17g", m->name, real_of(fb, m->name));
+        else if (m->type == BLOCK_ENUM && m->section == BLOCK_INPUT)
+            fprintf(stderr, " %s %d", m->name, *(const int *)(const void *)(fb->memory + m->offset));
+        else if (m->type == BLOCK_BOOL && m->section == BLOCK_INPUT && fb->memory[m->offset])
+            fprintf(stderr, " %s", m->name);
+        else if ((m->type == BLOCK_DINT || m->type == BLOCK_UDINT) && m->section == BLOCK_INPUT)
+            fprintf(stderr, " %s %d", m->name, *(const DINT *)(const void *)(fb->memory + m->offset));
+        else if (m->type == BLOCK_POINTER && (strncmp(m->name, "Master", 6) == 0))
+            fprintf(stderr, " %s %d", m->name, (int)(pointer_of(fb, m->name) - named));
+        else if (m->type == BLOCK_INT && m->section == BLOCK_INPUT)
+            fprintf(stderr, " %s %d", m->name, *(const INT *)(const void *)(fb->memory + m->offset));
+    }
+    fputc('\n', stderr);
+}
+
+/* ---- gears ------------------------------------------------------------------------------------------------------- */
 
 /** What an MC_GearIn that has just been started is to keep. */
 static sync_t sync_of(const instance_t *fb)
@@ -280,7 +278,7 @@ static void judge_sync(int n)
     const instance_t *fb = &instances[n];
     sync_t *sync = &syncs[n];
     const cm1e_axis_t *slave = judged.axis, *master = judged_axes[sync->master].axis;
-    const bool moved_else = slave->superimposed.id != 0 || is_shifted(slave);
+    const bool moved_else = slave->superimposed.id != 0 || slave->coupling->phasing.moving;
     if (!sync->asked || !fb->now.reached || moved_else) {
         sync->known = false;
         return;
@@ -361,9 +359,9 @@ static void choose_master(instance_t *fb, const char *name, const char *numerato
     if (!member_of(fb->view->type, numerator) || one_in(10))
         return;
     const ranges_t *its = &players[master].ranges, *own = &player.ranges;
+    const double hardest = fmax(its->acceleration, its->deceleration);
     const double most = fmin(own->velocity / its->velocity,
-                             fmin(fmin(own->acceleration, own->deceleration) / fmax(its->acceleration, its->deceleration),
-                                  own->jerk / its->jerk));
+                             fmin(fmin(own->acceleration, own->deceleration) / hardest, own->jerk / its->jerk));
     const double ratio = most * uniform(0.02, 0.9) * (one_in(3) ? -1 : 1);
     const double parts = 1 + pick(1000) + 30 / fabs(ratio);
     put(fb, denominator, floor(fmin(parts, 1e9)));
