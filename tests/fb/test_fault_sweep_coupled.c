@@ -275,8 +275,8 @@ static void describe_axes(void)
         axis->k37_stated = bridged;
         axis->sim.no_stops = true;
         axis->max_jerk = n == SLAVE ? 40000 : 20000; /* it can follow the ramps of its master */
-        axis->max_acceleration = 1000; /* u of 1000 counts */
-        axis->max_velocity = 400;
+        axis->max_acceleration = n == SLAVE ? 2000 : 1000;
+        axis->max_velocity = 400; /* u of 1000 counts */
         axis->homing.method = 0;
         if (bridged)
             strcpy(axis->motor, n == SLAVE ? "CM2" : "CM1");

@@ -337,7 +337,7 @@ static bool follows_roughly(const cm1e_axis_t *axis, int depth)
     const follow_t *follow = axis->activity == ACTIVITY_COUPLED ? axis->coupling->now : NULL;
     if (!follow || depth == 0)
         return false;
-    bool rough = axis->coupling->linear;
+    bool rough = follow->linear;
     for (int i = 0; i < follow->count; i++)
         rough = rough || follow->links[i].source != mcSetValue ||
                 (follow->links[i].master && follows_roughly(follow->links[i].master, depth - 1));
