@@ -29,7 +29,7 @@ static void cam_table_select(void)
 
 static void cam_in(void)
 {
-    MC_MoveVelocity_t turn = {MASTER, .Velocity = 8};
+    MC_MoveVelocity_t turn = {MASTER, .Velocity = 5};
     MC_CamTableSelect_t select = {MASTER_AND_SLAVE, .CamTable = &cam, .Periodic = TRUE, .MasterAbsolute = TRUE,
                                   .SlaveAbsolute = TRUE};
     MC_CamIn_t in = {MASTER_AND_SLAVE, .StartMode = mcRampIn};
@@ -40,10 +40,10 @@ static void cam_in(void)
     trace_block("MC_CamIn", "", &in);
     trace_master_curves(0, true, false);
     trace_curves(true, true);
-    UNTIL(2000) {
-        turn.Execute = during(10, 2000);
+    UNTIL(2500) {
+        turn.Execute = during(10, 2500);
         select.Execute = TRUE;
-        in.Execute = during(400, 1600);
+        in.Execute = during(600, 2000);
         MC_MoveVelocity(&turn);
         MC_CamTableSelect(&select);
         in.CamTableID = select.CamTableID;
@@ -165,6 +165,7 @@ static void phasing_absolute(void)
     trace_block("MC_PhasingAbsolute", "to 1 u", &there);
     trace_block("MC_PhasingAbsolute", "to 0", &back);
     trace_value("MC_PhasingAbsolute", &there, "AbsolutePhaseShift", "u");
+    trace_value("MC_PhasingAbsolute", &back, "AbsolutePhaseShift", "u");
     trace_curves(false, true);
     UNTIL(2000) {
         turn.Execute = during(10, 2000);

@@ -172,8 +172,8 @@ void trace_curves(bool position, bool velocity) { add_curves(axis_count > 1 ? "s
 
 void trace_master_curves(int master, bool position, bool velocity)
 {
-    static const char *const names[TRACE_MASTERS] = {"master", "second master"};
-    add_curves(names[master], 1 + master, position, velocity);
+    static const char *const names[TRACE_MASTERS] = {"master 1", "master 2"};
+    add_curves(axis_count > 2 ? names[master] : "master", 1 + master, position, velocity);
 }
 
 static double value_of(const trace_curve_t *curve)
