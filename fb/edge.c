@@ -6,11 +6,13 @@ static void set_state(cm1e_fb_private_t *fb, fb_state_t state, cm1e_error_t erro
     fb->error_id = cm1e_error_id(error);
 }
 
-static cm1e_axis_t *axis_of_handle(UINT handle)
+static void *axis_of_handle(UINT handle)
 {
     const AXIS_REF_t reference = {.Handle = handle};
     return handle ? cm1e_axis_from_reference(&reference) : NULL;
 }
+
+static const fb_object_t an_axis = {.find = axis_of_handle, .none = CM1E_ERROR_FB_AXIS_REF};
 
 cm1e_axis_t *fb_axis(const cm1e_fb_private_t *fb) { return axis_of_handle(fb->axis_handle); }
 
@@ -24,52 +26,55 @@ static bool rising_edge(cm1e_fb_private_t *fb, BOOL trigger)
     return edge;
 }
 
-static bool is_latched_axis(const cm1e_fb_private_t *fb, const AXIS_REF_t *reference)
+static void *latch(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle)
 {
-    return reference && reference->Handle == fb->axis_handle;
-}
-
-static cm1e_axis_t *latch_axis(cm1e_fb_private_t *fb, const AXIS_REF_t *reference)
-{
-    fb->axis_handle = reference ? reference->Handle : 0;
-    cm1e_axis_t *axis = fb_axis(fb);
-    if (!axis)
-        fb_fail(fb, CM1E_ERROR_FB_AXIS_REF);
-    return axis;
+    fb->axis_handle = handle ? *handle : 0;
+    void *object = kind->find(fb->axis_handle);
+    if (!object)
+        fb_fail(fb, kind->none);
+    return object;
 }
 
 /** The axis of a block at work; NULL and an error where it was changed or is gone. */
-static cm1e_axis_t *check_axis(cm1e_fb_private_t *fb, const AXIS_REF_t *reference)
+static void *check(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle)
 {
-    if (!is_latched_axis(fb, reference)) {
+    if (!handle || *handle != fb->axis_handle) {
         fb_fail(fb, CM1E_ERROR_FB_AXIS_CHANGED);
         return NULL;
     }
-    cm1e_axis_t *axis = fb_axis(fb);
-    if (!axis)
-        fb_fail(fb, CM1E_ERROR_FB_AXIS_REF);
-    return axis;
+    void *object = kind->find(fb->axis_handle);
+    if (!object)
+        fb_fail(fb, kind->none);
+    return object;
 }
 
 /* ---- Execute --------------------------------------------------------------------------------------------------- */
 
-fb_step_t fb_execute(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, cm1e_axis_t **axis)
+fb_step_t fb_execute_on(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle, BOOL execute, void **object)
 {
     const bool edge = rising_edge(fb, execute);
     if (fb->state == FB_BUSY) {
-        *axis = check_axis(fb, reference);
-        if (!*axis)
+        *object = check(fb, kind, handle);
+        if (!*object)
             return FB_STEP_NONE;
         return edge ? FB_STEP_START : FB_STEP_POLL;
     }
     if (edge) {
-        *axis = latch_axis(fb, reference);
-        return *axis ? FB_STEP_START : FB_STEP_NONE;
+        *object = latch(fb, kind, handle);
+        return *object ? FB_STEP_START : FB_STEP_NONE;
     }
     /* 2.4.1: a result that came after Execute fell was shown in the call that found it, that is for one cycle. */
     if (!execute)
         set_state(fb, FB_IDLE, CM1E_OK);
     return FB_STEP_NONE;
+}
+
+fb_step_t fb_execute(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, cm1e_axis_t **axis)
+{
+    void *object = NULL;
+    const fb_step_t step = fb_execute_on(fb, &an_axis, reference ? &reference->Handle : NULL, execute, &object);
+    *axis = object;
+    return step;
 }
 
 void fb_started(cm1e_fb_private_t *fb, cm1e_error_t error)
@@ -168,15 +173,20 @@ fb_outputs_t fb_table_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference,
 
 /* ---- Enable ---------------------------------------------------------------------------------------------------- */
 
-const cm1e_axis_t *fb_enable(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable)
+void *fb_enable_on(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle, BOOL enable)
 {
     if (rising_edge(fb, enable)) {
         set_state(fb, FB_BUSY, CM1E_OK);
-        return latch_axis(fb, reference);
+        return latch(fb, kind, handle);
     }
     if (!enable)
         set_state(fb, FB_IDLE, CM1E_OK);
-    return fb->state == FB_BUSY ? check_axis(fb, reference) : NULL;
+    return fb->state == FB_BUSY ? check(fb, kind, handle) : NULL;
+}
+
+const cm1e_axis_t *fb_enable(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable)
+{
+    return fb_enable_on(fb, &an_axis, reference ? &reference->Handle : NULL, enable);
 }
 
 BOOL fb_read(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, cm1e_axis_info_t *info)
@@ -187,7 +197,7 @@ BOOL fb_read(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, cm
     return axis != NULL;
 }
 
-fb_reading_t fb_reading(const cm1e_fb_private_t *fb, const cm1e_axis_t *axis, cm1e_error_t passing)
+fb_reading_t fb_reading(const cm1e_fb_private_t *fb, const void *axis, cm1e_error_t passing)
 {
     const bool passes = axis && passing;
     return (fb_reading_t){

@@ -29,6 +29,15 @@ typedef struct fb_outputs {
     LREAL covered; /**< CoveredDistance, AbsolutePhaseShift, CoveredPhaseShift */
 } fb_outputs_t;
 
+/** What a block may work on: an axis, or an axes group (group_edge.h). */
+typedef struct fb_object {
+    void *(*find)(UINT handle); /**< NULL: there is none */
+    cm1e_error_t none;          /**< the error then */
+} fb_object_t;
+
+/** `handle` NULL: none was given. `*object` is valid unless the step is FB_STEP_NONE. */
+fb_step_t fb_execute_on(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle, BOOL execute,
+                        void **object);
 /** `*axis` is valid unless the step is FB_STEP_NONE. */
 fb_step_t fb_execute(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, cm1e_axis_t **axis);
 /** Result of the start. */
@@ -76,7 +85,9 @@ cm1e_axis_t *fb_axis(const cm1e_fb_private_t *fb);
 /** An error of the block itself, shown until Execute or Enable falls. */
 void fb_fail(cm1e_fb_private_t *fb, cm1e_error_t error);
 
-/** The Enable type: the axis to be read, or NULL when disabled or in error (2.2.3: such an error needs a new edge). */
+/** The Enable type: what is to be read, or NULL when disabled or in error. */
+void *fb_enable_on(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle, BOOL enable);
+/** The same for an axis: the axis to be read, or NULL when disabled or in error (2.2.3: such an error needs a new edge). */
 const cm1e_axis_t *fb_enable(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable);
 /** The same for blocks that read: TRUE and a copy of the axis's data when it can be read. */
 BOOL fb_read(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, cm1e_axis_info_t *info);
@@ -87,7 +98,7 @@ typedef struct fb_reading {
     WORD error_id;
 } fb_reading_t;
 /** `axis`: what fb_enable() gave. */
-fb_reading_t fb_reading(const cm1e_fb_private_t *fb, const cm1e_axis_t *axis, cm1e_error_t passing);
+fb_reading_t fb_reading(const cm1e_fb_private_t *fb, const void *axis, cm1e_error_t passing);
 
 /** Nothing is queued in this version (2.4.2 for blocks that move nothing). */
 static inline cm1e_error_t fb_refuse_execution_mode(MC_EXECUTION_MODE mode)

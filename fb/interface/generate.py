@@ -16,7 +16,7 @@ import st
 import tables
 
 SOURCE = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../.."))
-FILES = ("types.st", "motion.st", "multi_axis.st", "administrative.st", "homing.st", "cm_bridge.st", "standard.st")
+FILES = ("types.st", "motion.st", "multi_axis.st", "group.st", "administrative.st", "homing.st", "cm_bridge.st", "standard.st")
 COMMAND = "fb/interface/generate.py"
 
 

@@ -8,6 +8,7 @@ SECTIONS = (("in_out", "VAR_IN_OUT"), ("input", "VAR_INPUT"), ("output", "VAR_OU
 CHAPTERS = {
     "mc_motion.h": "Motion",
     "mc_multi_axis.h": "Slaves and masters",
+    "mc_group.h": "Axes groups",
     "mc_administrative.h": "Parameters, signals, what the axis shows",
     "mc_homing.h": "Homing in steps",
     "cm_bridge.h": "Motors behind a Cool MUSCLE bridge",

@@ -283,6 +283,39 @@ typedef struct cm1e_cam_private {
     cm1e_cam_switch_t switches[CM1E_CAM_SWITCHES];
 } cm1e_cam_private_t;
 
+/** The place of an axis in a group, 1 ... 8 (Part 4). */
+typedef UINT MC_IDENT_IN_GROUP;
+
+/** In which coordinates a position of a group is meant (Part 4, 3.1). */
+typedef enum MC_COORD_SYSTEM {
+    mcACS = 0, /**< those of the axes */
+    mcMCS = 1, /**< of the machine; refused in this version */
+    mcPCS = 2, /**< of the product; refused in this version */
+} MC_COORD_SYSTEM;
+
+/** How a motion of a group passes over from the one before it, with BufferMode mcBlending... (Part 4, 11). */
+typedef enum MC_TRANSITION_MODE {
+    mcTMNone = 0,               /**< exactly along both: at rest only where the direction breaks */
+    mcTMStartVelocity = 1,      /**< refused in this version */
+    mcTMConstantVelocity = 2,   /**< refused in this version */
+    mcTMCornerDistance = 3,     /**< a smooth curve, TransitionParameter (u) before the corner to as much after */
+    mcTMMaxCornerDeviation = 4, /**< a smooth curve within TransitionParameter (u) of the corner */
+} MC_TRANSITION_MODE;
+
+/** What AuxPoint of a circle is (Part 4, 9.36). */
+typedef enum MC_CIRC_MODE {
+    mcBorder = 0, /**< a point that the arc goes through */
+    mcCenter = 1, /**< the centre of the circle */
+    mcRadius = 2, /**< refused in this version */
+} MC_CIRC_MODE;
+
+/** Which way round a circle goes, with mcCenter; seen from where Z points to, so that +X turned to +Y is
+ *  mcCounterClockwise. */
+typedef enum MC_CIRC_PATHCHOICE {
+    mcClockwise = 0,
+    mcCounterClockwise = 1,
+} MC_CIRC_PATHCHOICE;
+
 #ifdef __cplusplus
 }
 #endif

@@ -23,6 +23,7 @@
 
 #include "cm1e/cm_bridge.h"
 #include "cm1e/mc_administrative.h"
+#include "cm1e/mc_group.h"
 #include "cm1e/mc_homing.h"
 #include "cm1e/mc_motion.h"
 #include "cm1e/mc_multi_axis.h"

@@ -227,12 +227,20 @@ typedef struct cm1e_axis_leader {
 cm1e_error_t cm1e_axis_lead(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader);
 /** The leader lets it go: at rest to Standstill, else it ramps down with its own limits. @rt cycle */
 void cm1e_axis_release(cm1e_axis_t *axis);
+/** The axis belongs to this group from now on. FALSE: to another one already. @rt cycle */
+bool cm1e_axis_join(cm1e_axis_t *axis, const void *group);
+/** @rt cycle */
+void cm1e_axis_leave(cm1e_axis_t *axis, const void *group);
 /** TRUE while a leader with this context leads the axis. @rt cycle */
 bool cm1e_axis_led_by(const cm1e_axis_t *axis, const void *context);
 /** u, as a leader gives positions: where the set-point is, or the motor. @rt cycle */
 double cm1e_axis_place(const cm1e_axis_t *axis, bool actual);
 /** The bus that the axis belongs to. @rt cycle */
 const cm1e_bus_t *cm1e_axis_bus(const cm1e_axis_t *axis);
+/** s; how far apart its set-points are. @rt cycle */
+double cm1e_axis_cycle(const cm1e_axis_t *axis);
+/** What MC_Power permits. @rt cycle */
+bool cm1e_axis_may_go(const cm1e_axis_t *axis, bool positive);
 /** u, u/s, u/s2, u/s3: what commands may ask of the axis at present, and where its software limits are (infinite: none
  *  on that side). @rt cycle */
 void cm1e_axis_bounds(const cm1e_axis_t *axis, cm1e_motion_limits_t *limits, double *lower, double *upper);

@@ -42,6 +42,20 @@ void cm1e_axis_release(cm1e_axis_t *axis)
     }
 }
 
+bool cm1e_axis_join(cm1e_axis_t *axis, const void *group)
+{
+    if (axis->group && axis->group != group)
+        return false;
+    axis->group = group;
+    return true;
+}
+
+void cm1e_axis_leave(cm1e_axis_t *axis, const void *group)
+{
+    if (axis->group == group)
+        axis->group = NULL;
+}
+
 bool cm1e_axis_led_by(const cm1e_axis_t *axis, const void *context)
 {
     return axis_led(axis) && axis->leader.context == context;
@@ -90,6 +104,13 @@ void cm1e_axis_bounds(const cm1e_axis_t *axis, cm1e_motion_limits_t *limits, dou
     *limits = axis->maximum;
     *lower = axis->lower;
     *upper = axis->upper;
+}
+
+double cm1e_axis_cycle(const cm1e_axis_t *axis) { return axis->cycle_s; }
+
+bool cm1e_axis_may_go(const cm1e_axis_t *axis, bool positive)
+{
+    return positive ? axis->enable_positive : axis->enable_negative;
 }
 
 double cm1e_axis_place(const cm1e_axis_t *axis, bool actual)

@@ -421,6 +421,7 @@ struct cm1e_axis {
     double error_value, error_bound; /**< numbers for the text */
     guard_t guard;                  /**< with CM1E_ERROR_AXIS_COUPLING_LIMIT */
     cm1e_axis_leader_t leader;      /**< next is NULL: none */
+    const void *group;              /**< that it belongs to; NULL: none */
 
     position_t origin;              /**< position origin_units is there; modulo: 0 */
     double origin_units;

@@ -241,6 +241,15 @@ void cm1e_path_clear(cm1e_path_t *path)
     path->stop_wanted = path->stopping = false;
 }
 
+void cm1e_path_pause(cm1e_path_t *path)
+{
+    if (path->element_count == 0)
+        return;
+    path->along.velocity = path->along.acceleration = 0;
+    path->stopping = false; /* a stop that is wanted is planned in the next step */
+    (void)cm1e_path_plan(path);
+}
+
 /* ---- a cycle ----------------------------------------------------------------------------------------------------- */
 
 static void pop(cm1e_path_t *path, cm1e_path_sample_t *sample)

@@ -232,6 +232,10 @@ void cm1e_path_go_on(cm1e_path_t *path);
  *  whole are not reported as done; neither is the one it was on. */
 void cm1e_path_clear(cm1e_path_t *path);
 
+/** The axes have come to rest where the last step brought them, since nobody told them to go on: what is left begins
+ *  anew from there, from rest. */
+void cm1e_path_pause(cm1e_path_t *path);
+
 /** Where the axes are after one more cycle. */
 void cm1e_path_step(cm1e_path_t *path, cm1e_path_sample_t *sample);
 

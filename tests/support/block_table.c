@@ -32,6 +32,7 @@ _Static_assert(sizeof(cm1e_jog_private_t) == 48, "cm1e_jog_private_t");
 _Static_assert(sizeof(cm1e_cam_point_t) == 16, "cm1e_cam_point_t");
 _Static_assert(sizeof(cm1e_cam_switch_t) == 72, "cm1e_cam_switch_t");
 _Static_assert(sizeof(cm1e_cam_private_t) == 2360, "cm1e_cam_private_t");
+_Static_assert(sizeof(AXES_GROUP_REF_t) == 2, "AXES_GROUP_REF_t");
 _Static_assert(sizeof(cm1e_iec_timer_t) == 16, "cm1e_iec_timer_t");
 _Static_assert(sizeof(cm1e_iec_edges_t) == 2, "cm1e_iec_edges_t");
 _Static_assert(sizeof(MC_Power_t) == 32, "MC_Power");
@@ -454,6 +455,242 @@ AT(MC_CombineAxes, CommandAborted, 63);
 AT(MC_CombineAxes, Error, 64);
 AT(MC_CombineAxes, ErrorID, 66);
 AT(MC_CombineAxes, Private, 68);
+_Static_assert(sizeof(MC_AddAxisToGroup_t) == 40, "MC_AddAxisToGroup");
+AT(MC_AddAxisToGroup, AxesGroup, 0);
+AT(MC_AddAxisToGroup, Axis, 8);
+AT(MC_AddAxisToGroup, Execute, 16);
+AT(MC_AddAxisToGroup, IdentInGroup, 18);
+AT(MC_AddAxisToGroup, Done, 20);
+AT(MC_AddAxisToGroup, Busy, 21);
+AT(MC_AddAxisToGroup, Error, 22);
+AT(MC_AddAxisToGroup, ErrorID, 24);
+AT(MC_AddAxisToGroup, Private, 28);
+_Static_assert(sizeof(MC_RemoveAxisFromGroup_t) == 32, "MC_RemoveAxisFromGroup");
+AT(MC_RemoveAxisFromGroup, AxesGroup, 0);
+AT(MC_RemoveAxisFromGroup, Execute, 8);
+AT(MC_RemoveAxisFromGroup, IdentInGroup, 10);
+AT(MC_RemoveAxisFromGroup, Done, 12);
+AT(MC_RemoveAxisFromGroup, Busy, 13);
+AT(MC_RemoveAxisFromGroup, Error, 14);
+AT(MC_RemoveAxisFromGroup, ErrorID, 16);
+AT(MC_RemoveAxisFromGroup, Private, 20);
+_Static_assert(sizeof(MC_UngroupAllAxes_t) == 32, "MC_UngroupAllAxes");
+AT(MC_UngroupAllAxes, AxesGroup, 0);
+AT(MC_UngroupAllAxes, Execute, 8);
+AT(MC_UngroupAllAxes, Done, 9);
+AT(MC_UngroupAllAxes, Busy, 10);
+AT(MC_UngroupAllAxes, Error, 11);
+AT(MC_UngroupAllAxes, ErrorID, 12);
+AT(MC_UngroupAllAxes, Private, 16);
+_Static_assert(sizeof(MC_GroupReadConfiguration_t) == 40, "MC_GroupReadConfiguration");
+AT(MC_GroupReadConfiguration, AxesGroup, 0);
+AT(MC_GroupReadConfiguration, Enable, 8);
+AT(MC_GroupReadConfiguration, IdentInGroup, 10);
+AT(MC_GroupReadConfiguration, CoordSystem, 12);
+AT(MC_GroupReadConfiguration, Valid, 16);
+AT(MC_GroupReadConfiguration, Busy, 17);
+AT(MC_GroupReadConfiguration, Error, 18);
+AT(MC_GroupReadConfiguration, ErrorID, 20);
+AT(MC_GroupReadConfiguration, Axis, 22);
+AT(MC_GroupReadConfiguration, AxisID, 24);
+AT(MC_GroupReadConfiguration, Private, 28);
+_Static_assert(sizeof(MC_GroupEnable_t) == 32, "MC_GroupEnable");
+AT(MC_GroupEnable, AxesGroup, 0);
+AT(MC_GroupEnable, Execute, 8);
+AT(MC_GroupEnable, Done, 9);
+AT(MC_GroupEnable, Busy, 10);
+AT(MC_GroupEnable, Error, 11);
+AT(MC_GroupEnable, ErrorID, 12);
+AT(MC_GroupEnable, Private, 16);
+_Static_assert(sizeof(MC_GroupDisable_t) == 32, "MC_GroupDisable");
+AT(MC_GroupDisable, AxesGroup, 0);
+AT(MC_GroupDisable, Execute, 8);
+AT(MC_GroupDisable, Done, 9);
+AT(MC_GroupDisable, Busy, 10);
+AT(MC_GroupDisable, Error, 11);
+AT(MC_GroupDisable, ErrorID, 12);
+AT(MC_GroupDisable, Private, 16);
+_Static_assert(sizeof(MC_GroupReset_t) == 32, "MC_GroupReset");
+AT(MC_GroupReset, AxesGroup, 0);
+AT(MC_GroupReset, Execute, 8);
+AT(MC_GroupReset, Done, 9);
+AT(MC_GroupReset, Busy, 10);
+AT(MC_GroupReset, Error, 11);
+AT(MC_GroupReset, ErrorID, 12);
+AT(MC_GroupReset, Private, 16);
+_Static_assert(sizeof(MC_GroupReadStatus_t) == 32, "MC_GroupReadStatus");
+AT(MC_GroupReadStatus, AxesGroup, 0);
+AT(MC_GroupReadStatus, Enable, 8);
+AT(MC_GroupReadStatus, Valid, 9);
+AT(MC_GroupReadStatus, Busy, 10);
+AT(MC_GroupReadStatus, Error, 11);
+AT(MC_GroupReadStatus, ErrorID, 12);
+AT(MC_GroupReadStatus, GroupMoving, 14);
+AT(MC_GroupReadStatus, GroupHoming, 15);
+AT(MC_GroupReadStatus, GroupErrorStop, 16);
+AT(MC_GroupReadStatus, GroupStandby, 17);
+AT(MC_GroupReadStatus, GroupStopping, 18);
+AT(MC_GroupReadStatus, GroupDisabled, 19);
+AT(MC_GroupReadStatus, Private, 20);
+_Static_assert(sizeof(MC_GroupReadError_t) == 32, "MC_GroupReadError");
+AT(MC_GroupReadError, AxesGroup, 0);
+AT(MC_GroupReadError, Enable, 8);
+AT(MC_GroupReadError, Valid, 9);
+AT(MC_GroupReadError, Busy, 10);
+AT(MC_GroupReadError, Error, 11);
+AT(MC_GroupReadError, ErrorID, 12);
+AT(MC_GroupReadError, GroupErrorID, 14);
+AT(MC_GroupReadError, Private, 16);
+_Static_assert(sizeof(MC_GroupStop_t) == 56, "MC_GroupStop");
+AT(MC_GroupStop, AxesGroup, 0);
+AT(MC_GroupStop, Execute, 8);
+AT(MC_GroupStop, Deceleration, 16);
+AT(MC_GroupStop, Jerk, 24);
+AT(MC_GroupStop, Done, 32);
+AT(MC_GroupStop, Busy, 33);
+AT(MC_GroupStop, CommandAborted, 34);
+AT(MC_GroupStop, Error, 35);
+AT(MC_GroupStop, ErrorID, 36);
+AT(MC_GroupStop, Private, 40);
+_Static_assert(sizeof(MC_GroupHalt_t) == 64, "MC_GroupHalt");
+AT(MC_GroupHalt, AxesGroup, 0);
+AT(MC_GroupHalt, Execute, 8);
+AT(MC_GroupHalt, Deceleration, 16);
+AT(MC_GroupHalt, Jerk, 24);
+AT(MC_GroupHalt, BufferMode, 32);
+AT(MC_GroupHalt, Done, 36);
+AT(MC_GroupHalt, Busy, 37);
+AT(MC_GroupHalt, Active, 38);
+AT(MC_GroupHalt, CommandAccepted, 39);
+AT(MC_GroupHalt, CommandID, 40);
+AT(MC_GroupHalt, CommandAborted, 44);
+AT(MC_GroupHalt, Error, 45);
+AT(MC_GroupHalt, ErrorID, 46);
+AT(MC_GroupHalt, Private, 48);
+_Static_assert(sizeof(MC_MoveLinearAbsolute_t) == 160, "MC_MoveLinearAbsolute");
+AT(MC_MoveLinearAbsolute, AxesGroup, 0);
+AT(MC_MoveLinearAbsolute, Execute, 8);
+AT(MC_MoveLinearAbsolute, Position, 16);
+AT(MC_MoveLinearAbsolute, Velocity, 80);
+AT(MC_MoveLinearAbsolute, Acceleration, 88);
+AT(MC_MoveLinearAbsolute, Deceleration, 96);
+AT(MC_MoveLinearAbsolute, Jerk, 104);
+AT(MC_MoveLinearAbsolute, CoordSystem, 112);
+AT(MC_MoveLinearAbsolute, BufferMode, 116);
+AT(MC_MoveLinearAbsolute, TransitionMode, 120);
+AT(MC_MoveLinearAbsolute, TransitionParameter, 128);
+AT(MC_MoveLinearAbsolute, Done, 136);
+AT(MC_MoveLinearAbsolute, Busy, 137);
+AT(MC_MoveLinearAbsolute, Active, 138);
+AT(MC_MoveLinearAbsolute, CommandAccepted, 139);
+AT(MC_MoveLinearAbsolute, CommandAborted, 140);
+AT(MC_MoveLinearAbsolute, Error, 141);
+AT(MC_MoveLinearAbsolute, ErrorID, 142);
+AT(MC_MoveLinearAbsolute, CommandID, 144);
+AT(MC_MoveLinearAbsolute, Private, 148);
+_Static_assert(sizeof(MC_MoveLinearRelative_t) == 160, "MC_MoveLinearRelative");
+AT(MC_MoveLinearRelative, AxesGroup, 0);
+AT(MC_MoveLinearRelative, Execute, 8);
+AT(MC_MoveLinearRelative, Distance, 16);
+AT(MC_MoveLinearRelative, Velocity, 80);
+AT(MC_MoveLinearRelative, Acceleration, 88);
+AT(MC_MoveLinearRelative, Deceleration, 96);
+AT(MC_MoveLinearRelative, Jerk, 104);
+AT(MC_MoveLinearRelative, CoordSystem, 112);
+AT(MC_MoveLinearRelative, BufferMode, 116);
+AT(MC_MoveLinearRelative, TransitionMode, 120);
+AT(MC_MoveLinearRelative, TransitionParameter, 128);
+AT(MC_MoveLinearRelative, Done, 136);
+AT(MC_MoveLinearRelative, Busy, 137);
+AT(MC_MoveLinearRelative, Active, 138);
+AT(MC_MoveLinearRelative, CommandAccepted, 139);
+AT(MC_MoveLinearRelative, CommandAborted, 140);
+AT(MC_MoveLinearRelative, Error, 141);
+AT(MC_MoveLinearRelative, ErrorID, 142);
+AT(MC_MoveLinearRelative, CommandID, 144);
+AT(MC_MoveLinearRelative, Private, 148);
+_Static_assert(sizeof(MC_MoveCircularAbsolute_t) == 232, "MC_MoveCircularAbsolute");
+AT(MC_MoveCircularAbsolute, AxesGroup, 0);
+AT(MC_MoveCircularAbsolute, Execute, 8);
+AT(MC_MoveCircularAbsolute, CircMode, 12);
+AT(MC_MoveCircularAbsolute, AuxPoint, 16);
+AT(MC_MoveCircularAbsolute, EndPoint, 80);
+AT(MC_MoveCircularAbsolute, PathChoice, 144);
+AT(MC_MoveCircularAbsolute, Velocity, 152);
+AT(MC_MoveCircularAbsolute, Acceleration, 160);
+AT(MC_MoveCircularAbsolute, Deceleration, 168);
+AT(MC_MoveCircularAbsolute, Jerk, 176);
+AT(MC_MoveCircularAbsolute, CoordSystem, 184);
+AT(MC_MoveCircularAbsolute, BufferMode, 188);
+AT(MC_MoveCircularAbsolute, TransitionMode, 192);
+AT(MC_MoveCircularAbsolute, TransitionParameter, 200);
+AT(MC_MoveCircularAbsolute, Done, 208);
+AT(MC_MoveCircularAbsolute, Busy, 209);
+AT(MC_MoveCircularAbsolute, Active, 210);
+AT(MC_MoveCircularAbsolute, CommandAccepted, 211);
+AT(MC_MoveCircularAbsolute, CommandAborted, 212);
+AT(MC_MoveCircularAbsolute, Error, 213);
+AT(MC_MoveCircularAbsolute, ErrorID, 214);
+AT(MC_MoveCircularAbsolute, CommandID, 216);
+AT(MC_MoveCircularAbsolute, Private, 220);
+_Static_assert(sizeof(MC_MoveCircularRelative_t) == 232, "MC_MoveCircularRelative");
+AT(MC_MoveCircularRelative, AxesGroup, 0);
+AT(MC_MoveCircularRelative, Execute, 8);
+AT(MC_MoveCircularRelative, CircMode, 12);
+AT(MC_MoveCircularRelative, AuxPoint, 16);
+AT(MC_MoveCircularRelative, EndPoint, 80);
+AT(MC_MoveCircularRelative, PathChoice, 144);
+AT(MC_MoveCircularRelative, Velocity, 152);
+AT(MC_MoveCircularRelative, Acceleration, 160);
+AT(MC_MoveCircularRelative, Deceleration, 168);
+AT(MC_MoveCircularRelative, Jerk, 176);
+AT(MC_MoveCircularRelative, CoordSystem, 184);
+AT(MC_MoveCircularRelative, BufferMode, 188);
+AT(MC_MoveCircularRelative, TransitionMode, 192);
+AT(MC_MoveCircularRelative, TransitionParameter, 200);
+AT(MC_MoveCircularRelative, Done, 208);
+AT(MC_MoveCircularRelative, Busy, 209);
+AT(MC_MoveCircularRelative, Active, 210);
+AT(MC_MoveCircularRelative, CommandAccepted, 211);
+AT(MC_MoveCircularRelative, CommandAborted, 212);
+AT(MC_MoveCircularRelative, Error, 213);
+AT(MC_MoveCircularRelative, ErrorID, 214);
+AT(MC_MoveCircularRelative, CommandID, 216);
+AT(MC_MoveCircularRelative, Private, 220);
+_Static_assert(sizeof(MC_GroupReadPosition_t) == 112, "MC_GroupReadPosition");
+AT(MC_GroupReadPosition, AxesGroup, 0);
+AT(MC_GroupReadPosition, Enable, 8);
+AT(MC_GroupReadPosition, CoordSystem, 12);
+AT(MC_GroupReadPosition, Source, 16);
+AT(MC_GroupReadPosition, Valid, 20);
+AT(MC_GroupReadPosition, Busy, 21);
+AT(MC_GroupReadPosition, Error, 22);
+AT(MC_GroupReadPosition, ErrorID, 24);
+AT(MC_GroupReadPosition, Position, 32);
+AT(MC_GroupReadPosition, Private, 96);
+_Static_assert(sizeof(MC_GroupReadVelocity_t) == 120, "MC_GroupReadVelocity");
+AT(MC_GroupReadVelocity, AxesGroup, 0);
+AT(MC_GroupReadVelocity, Enable, 8);
+AT(MC_GroupReadVelocity, CoordSystem, 12);
+AT(MC_GroupReadVelocity, Source, 16);
+AT(MC_GroupReadVelocity, Valid, 20);
+AT(MC_GroupReadVelocity, Busy, 21);
+AT(MC_GroupReadVelocity, Error, 22);
+AT(MC_GroupReadVelocity, ErrorID, 24);
+AT(MC_GroupReadVelocity, Velocity, 32);
+AT(MC_GroupReadVelocity, PathVelocity, 96);
+AT(MC_GroupReadVelocity, Private, 104);
+_Static_assert(sizeof(MC_GroupSetOverride_t) == 64, "MC_GroupSetOverride");
+AT(MC_GroupSetOverride, AxesGroup, 0);
+AT(MC_GroupSetOverride, Enable, 8);
+AT(MC_GroupSetOverride, VelFactor, 16);
+AT(MC_GroupSetOverride, AccFactor, 24);
+AT(MC_GroupSetOverride, JerkFactor, 32);
+AT(MC_GroupSetOverride, Enabled, 40);
+AT(MC_GroupSetOverride, Busy, 41);
+AT(MC_GroupSetOverride, Error, 42);
+AT(MC_GroupSetOverride, ErrorID, 44);
+AT(MC_GroupSetOverride, Private, 48);
 _Static_assert(sizeof(MC_SetPosition_t) == 56, "MC_SetPosition");
 AT(MC_SetPosition, Axis, 0);
 AT(MC_SetPosition, Execute, 8);
@@ -1976,6 +2213,440 @@ static const cm1e_error_t errors_of_MC_CombineAxes[] = {
     CM1E_ERROR_INVALID_ARGUMENT,
     CM1E_OK,
 };
+static const block_member_t members_of_MC_AddAxisToGroup[] = {
+    MEMBER(MC_AddAxisToGroup, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_AddAxisToGroup, Axis, IN_OUT, POINTER),
+    MEMBER(MC_AddAxisToGroup, Execute, INPUT, BOOL),
+    MEMBER(MC_AddAxisToGroup, IdentInGroup, INPUT, UINT),
+    MEMBER(MC_AddAxisToGroup, Done, OUTPUT, BOOL),
+    MEMBER(MC_AddAxisToGroup, Busy, OUTPUT, BOOL),
+    MEMBER(MC_AddAxisToGroup, Error, OUTPUT, BOOL),
+    MEMBER(MC_AddAxisToGroup, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_AddAxisToGroup(void *fb) { MC_AddAxisToGroup(fb); }
+static const cm1e_error_t errors_of_MC_AddAxisToGroup[] = {
+    CM1E_ERROR_GROUP_MEMBER,
+    CM1E_ERROR_GROUP_STOPPING,
+    CM1E_ERROR_GROUP_ERROR_STOP,
+    CM1E_ERROR_GROUP_STATE,
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_FB_AXIS_REF,
+    CM1E_ERROR_UNSUPPORTED,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_RemoveAxisFromGroup[] = {
+    MEMBER(MC_RemoveAxisFromGroup, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_RemoveAxisFromGroup, Execute, INPUT, BOOL),
+    MEMBER(MC_RemoveAxisFromGroup, IdentInGroup, INPUT, UINT),
+    MEMBER(MC_RemoveAxisFromGroup, Done, OUTPUT, BOOL),
+    MEMBER(MC_RemoveAxisFromGroup, Busy, OUTPUT, BOOL),
+    MEMBER(MC_RemoveAxisFromGroup, Error, OUTPUT, BOOL),
+    MEMBER(MC_RemoveAxisFromGroup, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_RemoveAxisFromGroup(void *fb) { MC_RemoveAxisFromGroup(fb); }
+static const cm1e_error_t errors_of_MC_RemoveAxisFromGroup[] = {
+    CM1E_ERROR_GROUP_MEMBER,
+    CM1E_ERROR_GROUP_STOPPING,
+    CM1E_ERROR_GROUP_ERROR_STOP,
+    CM1E_ERROR_GROUP_STATE,
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_UngroupAllAxes[] = {
+    MEMBER(MC_UngroupAllAxes, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_UngroupAllAxes, Execute, INPUT, BOOL),
+    MEMBER(MC_UngroupAllAxes, Done, OUTPUT, BOOL),
+    MEMBER(MC_UngroupAllAxes, Busy, OUTPUT, BOOL),
+    MEMBER(MC_UngroupAllAxes, Error, OUTPUT, BOOL),
+    MEMBER(MC_UngroupAllAxes, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_UngroupAllAxes(void *fb) { MC_UngroupAllAxes(fb); }
+static const cm1e_error_t errors_of_MC_UngroupAllAxes[] = {
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_GroupReadConfiguration[] = {
+    MEMBER(MC_GroupReadConfiguration, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_GroupReadConfiguration, Enable, INPUT, BOOL),
+    MEMBER(MC_GroupReadConfiguration, IdentInGroup, INPUT, UINT),
+    MEMBER(MC_GroupReadConfiguration, CoordSystem, INPUT, ENUM),
+    MEMBER(MC_GroupReadConfiguration, Valid, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadConfiguration, Busy, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadConfiguration, Error, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadConfiguration, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_GroupReadConfiguration, Axis, OUTPUT, STRUCT),
+    MEMBER(MC_GroupReadConfiguration, AxisID, OUTPUT, UINT),
+};
+static void call_MC_GroupReadConfiguration(void *fb) { MC_GroupReadConfiguration(fb); }
+static const cm1e_error_t errors_of_MC_GroupReadConfiguration[] = {
+    CM1E_ERROR_GROUP_COORD_SYSTEM,
+    CM1E_ERROR_GROUP_MEMBER,
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_GroupEnable[] = {
+    MEMBER(MC_GroupEnable, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_GroupEnable, Execute, INPUT, BOOL),
+    MEMBER(MC_GroupEnable, Done, OUTPUT, BOOL),
+    MEMBER(MC_GroupEnable, Busy, OUTPUT, BOOL),
+    MEMBER(MC_GroupEnable, Error, OUTPUT, BOOL),
+    MEMBER(MC_GroupEnable, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_GroupEnable(void *fb) { MC_GroupEnable(fb); }
+static const cm1e_error_t errors_of_MC_GroupEnable[] = {
+    CM1E_ERROR_GROUP_MEMBER,
+    CM1E_ERROR_GROUP_STOPPING,
+    CM1E_ERROR_GROUP_ERROR_STOP,
+    CM1E_ERROR_GROUP_STATE,
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_GroupDisable[] = {
+    MEMBER(MC_GroupDisable, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_GroupDisable, Execute, INPUT, BOOL),
+    MEMBER(MC_GroupDisable, Done, OUTPUT, BOOL),
+    MEMBER(MC_GroupDisable, Busy, OUTPUT, BOOL),
+    MEMBER(MC_GroupDisable, Error, OUTPUT, BOOL),
+    MEMBER(MC_GroupDisable, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_GroupDisable(void *fb) { MC_GroupDisable(fb); }
+static const cm1e_error_t errors_of_MC_GroupDisable[] = {
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_GroupReset[] = {
+    MEMBER(MC_GroupReset, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_GroupReset, Execute, INPUT, BOOL),
+    MEMBER(MC_GroupReset, Done, OUTPUT, BOOL),
+    MEMBER(MC_GroupReset, Busy, OUTPUT, BOOL),
+    MEMBER(MC_GroupReset, Error, OUTPUT, BOOL),
+    MEMBER(MC_GroupReset, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_GroupReset(void *fb) { MC_GroupReset(fb); }
+static const cm1e_error_t errors_of_MC_GroupReset[] = {
+    CM1E_ERROR_GROUP_AXIS,
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_AXIS_OFFLINE,
+    CM1E_ERROR_DRIVE_RESET_TIMEOUT,
+    CM1E_ERROR_BUS_STATE,
+    CM1E_ERROR_CANCELLED,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_GroupReadStatus[] = {
+    MEMBER(MC_GroupReadStatus, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_GroupReadStatus, Enable, INPUT, BOOL),
+    MEMBER(MC_GroupReadStatus, Valid, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadStatus, Busy, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadStatus, Error, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadStatus, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_GroupReadStatus, GroupMoving, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadStatus, GroupHoming, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadStatus, GroupErrorStop, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadStatus, GroupStandby, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadStatus, GroupStopping, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadStatus, GroupDisabled, OUTPUT, BOOL),
+};
+static void call_MC_GroupReadStatus(void *fb) { MC_GroupReadStatus(fb); }
+static const cm1e_error_t errors_of_MC_GroupReadStatus[] = {
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_GroupReadError[] = {
+    MEMBER(MC_GroupReadError, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_GroupReadError, Enable, INPUT, BOOL),
+    MEMBER(MC_GroupReadError, Valid, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadError, Busy, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadError, Error, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadError, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_GroupReadError, GroupErrorID, OUTPUT, WORD),
+};
+static void call_MC_GroupReadError(void *fb) { MC_GroupReadError(fb); }
+static const cm1e_error_t errors_of_MC_GroupReadError[] = {
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_GroupStop[] = {
+    MEMBER(MC_GroupStop, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_GroupStop, Execute, INPUT, BOOL),
+    MEMBER(MC_GroupStop, Deceleration, INPUT, LREAL),
+    MEMBER(MC_GroupStop, Jerk, INPUT, LREAL),
+    MEMBER(MC_GroupStop, Done, OUTPUT, BOOL),
+    MEMBER(MC_GroupStop, Busy, OUTPUT, BOOL),
+    MEMBER(MC_GroupStop, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_GroupStop, Error, OUTPUT, BOOL),
+    MEMBER(MC_GroupStop, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_GroupStop(void *fb) { MC_GroupStop(fb); }
+static const cm1e_error_t errors_of_MC_GroupStop[] = {
+    CM1E_ERROR_GROUP_STOPPING,
+    CM1E_ERROR_GROUP_ERROR_STOP,
+    CM1E_ERROR_GROUP_DISABLED,
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_GroupHalt[] = {
+    MEMBER(MC_GroupHalt, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_GroupHalt, Execute, INPUT, BOOL),
+    MEMBER(MC_GroupHalt, Deceleration, INPUT, LREAL),
+    MEMBER(MC_GroupHalt, Jerk, INPUT, LREAL),
+    MEMBER(MC_GroupHalt, BufferMode, INPUT, ENUM),
+    MEMBER(MC_GroupHalt, Done, OUTPUT, BOOL),
+    MEMBER(MC_GroupHalt, Busy, OUTPUT, BOOL),
+    MEMBER(MC_GroupHalt, Active, OUTPUT, BOOL),
+    MEMBER(MC_GroupHalt, CommandAccepted, OUTPUT, BOOL),
+    MEMBER(MC_GroupHalt, CommandID, OUTPUT, UDINT),
+    MEMBER(MC_GroupHalt, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_GroupHalt, Error, OUTPUT, BOOL),
+    MEMBER(MC_GroupHalt, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_GroupHalt(void *fb) { MC_GroupHalt(fb); }
+static const cm1e_error_t errors_of_MC_GroupHalt[] = {
+    CM1E_ERROR_GROUP_STOPPING,
+    CM1E_ERROR_GROUP_ERROR_STOP,
+    CM1E_ERROR_GROUP_DISABLED,
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_MoveLinearAbsolute[] = {
+    MEMBER(MC_MoveLinearAbsolute, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_MoveLinearAbsolute, Execute, INPUT, BOOL),
+    MEMBER(MC_MoveLinearAbsolute, Position, INPUT, LREAL),
+    MEMBER(MC_MoveLinearAbsolute, Velocity, INPUT, LREAL),
+    MEMBER(MC_MoveLinearAbsolute, Acceleration, INPUT, LREAL),
+    MEMBER(MC_MoveLinearAbsolute, Deceleration, INPUT, LREAL),
+    MEMBER(MC_MoveLinearAbsolute, Jerk, INPUT, LREAL),
+    MEMBER(MC_MoveLinearAbsolute, CoordSystem, INPUT, ENUM),
+    MEMBER(MC_MoveLinearAbsolute, BufferMode, INPUT, ENUM),
+    MEMBER(MC_MoveLinearAbsolute, TransitionMode, INPUT, ENUM),
+    MEMBER(MC_MoveLinearAbsolute, TransitionParameter, INPUT, LREAL),
+    MEMBER(MC_MoveLinearAbsolute, Done, OUTPUT, BOOL),
+    MEMBER(MC_MoveLinearAbsolute, Busy, OUTPUT, BOOL),
+    MEMBER(MC_MoveLinearAbsolute, Active, OUTPUT, BOOL),
+    MEMBER(MC_MoveLinearAbsolute, CommandAccepted, OUTPUT, BOOL),
+    MEMBER(MC_MoveLinearAbsolute, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_MoveLinearAbsolute, Error, OUTPUT, BOOL),
+    MEMBER(MC_MoveLinearAbsolute, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_MoveLinearAbsolute, CommandID, OUTPUT, UDINT),
+};
+static void call_MC_MoveLinearAbsolute(void *fb) { MC_MoveLinearAbsolute(fb); }
+static const cm1e_error_t errors_of_MC_MoveLinearAbsolute[] = {
+    CM1E_ERROR_GROUP_COORD_SYSTEM,
+    CM1E_ERROR_GROUP_TRANSITION,
+    CM1E_ERROR_GROUP_PATH,
+    CM1E_ERROR_GROUP_AXIS,
+    CM1E_ERROR_GROUP_STOPPING,
+    CM1E_ERROR_GROUP_ERROR_STOP,
+    CM1E_ERROR_GROUP_DISABLED,
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_MoveLinearRelative[] = {
+    MEMBER(MC_MoveLinearRelative, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_MoveLinearRelative, Execute, INPUT, BOOL),
+    MEMBER(MC_MoveLinearRelative, Distance, INPUT, LREAL),
+    MEMBER(MC_MoveLinearRelative, Velocity, INPUT, LREAL),
+    MEMBER(MC_MoveLinearRelative, Acceleration, INPUT, LREAL),
+    MEMBER(MC_MoveLinearRelative, Deceleration, INPUT, LREAL),
+    MEMBER(MC_MoveLinearRelative, Jerk, INPUT, LREAL),
+    MEMBER(MC_MoveLinearRelative, CoordSystem, INPUT, ENUM),
+    MEMBER(MC_MoveLinearRelative, BufferMode, INPUT, ENUM),
+    MEMBER(MC_MoveLinearRelative, TransitionMode, INPUT, ENUM),
+    MEMBER(MC_MoveLinearRelative, TransitionParameter, INPUT, LREAL),
+    MEMBER(MC_MoveLinearRelative, Done, OUTPUT, BOOL),
+    MEMBER(MC_MoveLinearRelative, Busy, OUTPUT, BOOL),
+    MEMBER(MC_MoveLinearRelative, Active, OUTPUT, BOOL),
+    MEMBER(MC_MoveLinearRelative, CommandAccepted, OUTPUT, BOOL),
+    MEMBER(MC_MoveLinearRelative, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_MoveLinearRelative, Error, OUTPUT, BOOL),
+    MEMBER(MC_MoveLinearRelative, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_MoveLinearRelative, CommandID, OUTPUT, UDINT),
+};
+static void call_MC_MoveLinearRelative(void *fb) { MC_MoveLinearRelative(fb); }
+static const cm1e_error_t errors_of_MC_MoveLinearRelative[] = {
+    CM1E_ERROR_GROUP_COORD_SYSTEM,
+    CM1E_ERROR_GROUP_TRANSITION,
+    CM1E_ERROR_GROUP_PATH,
+    CM1E_ERROR_GROUP_AXIS,
+    CM1E_ERROR_GROUP_STOPPING,
+    CM1E_ERROR_GROUP_ERROR_STOP,
+    CM1E_ERROR_GROUP_DISABLED,
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_FULL,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_MoveCircularAbsolute[] = {
+    MEMBER(MC_MoveCircularAbsolute, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_MoveCircularAbsolute, Execute, INPUT, BOOL),
+    MEMBER(MC_MoveCircularAbsolute, CircMode, INPUT, ENUM),
+    MEMBER(MC_MoveCircularAbsolute, AuxPoint, INPUT, LREAL),
+    MEMBER(MC_MoveCircularAbsolute, EndPoint, INPUT, LREAL),
+    MEMBER(MC_MoveCircularAbsolute, PathChoice, INPUT, ENUM),
+    MEMBER(MC_MoveCircularAbsolute, Velocity, INPUT, LREAL),
+    MEMBER(MC_MoveCircularAbsolute, Acceleration, INPUT, LREAL),
+    MEMBER(MC_MoveCircularAbsolute, Deceleration, INPUT, LREAL),
+    MEMBER(MC_MoveCircularAbsolute, Jerk, INPUT, LREAL),
+    MEMBER(MC_MoveCircularAbsolute, CoordSystem, INPUT, ENUM),
+    MEMBER(MC_MoveCircularAbsolute, BufferMode, INPUT, ENUM),
+    MEMBER(MC_MoveCircularAbsolute, TransitionMode, INPUT, ENUM),
+    MEMBER(MC_MoveCircularAbsolute, TransitionParameter, INPUT, LREAL),
+    MEMBER(MC_MoveCircularAbsolute, Done, OUTPUT, BOOL),
+    MEMBER(MC_MoveCircularAbsolute, Busy, OUTPUT, BOOL),
+    MEMBER(MC_MoveCircularAbsolute, Active, OUTPUT, BOOL),
+    MEMBER(MC_MoveCircularAbsolute, CommandAccepted, OUTPUT, BOOL),
+    MEMBER(MC_MoveCircularAbsolute, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_MoveCircularAbsolute, Error, OUTPUT, BOOL),
+    MEMBER(MC_MoveCircularAbsolute, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_MoveCircularAbsolute, CommandID, OUTPUT, UDINT),
+};
+static void call_MC_MoveCircularAbsolute(void *fb) { MC_MoveCircularAbsolute(fb); }
+static const cm1e_error_t errors_of_MC_MoveCircularAbsolute[] = {
+    CM1E_ERROR_GROUP_COORD_SYSTEM,
+    CM1E_ERROR_GROUP_TRANSITION,
+    CM1E_ERROR_GROUP_PATH,
+    CM1E_ERROR_GROUP_AXIS,
+    CM1E_ERROR_GROUP_STOPPING,
+    CM1E_ERROR_GROUP_ERROR_STOP,
+    CM1E_ERROR_GROUP_DISABLED,
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_UNSUPPORTED,
+    CM1E_ERROR_FULL,
+    CM1E_ERROR_INVALID_ARGUMENT,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_MoveCircularRelative[] = {
+    MEMBER(MC_MoveCircularRelative, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_MoveCircularRelative, Execute, INPUT, BOOL),
+    MEMBER(MC_MoveCircularRelative, CircMode, INPUT, ENUM),
+    MEMBER(MC_MoveCircularRelative, AuxPoint, INPUT, LREAL),
+    MEMBER(MC_MoveCircularRelative, EndPoint, INPUT, LREAL),
+    MEMBER(MC_MoveCircularRelative, PathChoice, INPUT, ENUM),
+    MEMBER(MC_MoveCircularRelative, Velocity, INPUT, LREAL),
+    MEMBER(MC_MoveCircularRelative, Acceleration, INPUT, LREAL),
+    MEMBER(MC_MoveCircularRelative, Deceleration, INPUT, LREAL),
+    MEMBER(MC_MoveCircularRelative, Jerk, INPUT, LREAL),
+    MEMBER(MC_MoveCircularRelative, CoordSystem, INPUT, ENUM),
+    MEMBER(MC_MoveCircularRelative, BufferMode, INPUT, ENUM),
+    MEMBER(MC_MoveCircularRelative, TransitionMode, INPUT, ENUM),
+    MEMBER(MC_MoveCircularRelative, TransitionParameter, INPUT, LREAL),
+    MEMBER(MC_MoveCircularRelative, Done, OUTPUT, BOOL),
+    MEMBER(MC_MoveCircularRelative, Busy, OUTPUT, BOOL),
+    MEMBER(MC_MoveCircularRelative, Active, OUTPUT, BOOL),
+    MEMBER(MC_MoveCircularRelative, CommandAccepted, OUTPUT, BOOL),
+    MEMBER(MC_MoveCircularRelative, CommandAborted, OUTPUT, BOOL),
+    MEMBER(MC_MoveCircularRelative, Error, OUTPUT, BOOL),
+    MEMBER(MC_MoveCircularRelative, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_MoveCircularRelative, CommandID, OUTPUT, UDINT),
+};
+static void call_MC_MoveCircularRelative(void *fb) { MC_MoveCircularRelative(fb); }
+static const cm1e_error_t errors_of_MC_MoveCircularRelative[] = {
+    CM1E_ERROR_GROUP_COORD_SYSTEM,
+    CM1E_ERROR_GROUP_TRANSITION,
+    CM1E_ERROR_GROUP_PATH,
+    CM1E_ERROR_GROUP_AXIS,
+    CM1E_ERROR_GROUP_STOPPING,
+    CM1E_ERROR_GROUP_ERROR_STOP,
+    CM1E_ERROR_GROUP_DISABLED,
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_AXIS_BUFFER_MODE,
+    CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+    CM1E_ERROR_AXIS_DYNAMICS_RANGE,
+    CM1E_ERROR_AXIS_VELOCITY_RANGE,
+    CM1E_ERROR_UNSUPPORTED,
+    CM1E_ERROR_FULL,
+    CM1E_ERROR_INVALID_ARGUMENT,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_GroupReadPosition[] = {
+    MEMBER(MC_GroupReadPosition, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_GroupReadPosition, Enable, INPUT, BOOL),
+    MEMBER(MC_GroupReadPosition, CoordSystem, INPUT, ENUM),
+    MEMBER(MC_GroupReadPosition, Source, INPUT, ENUM),
+    MEMBER(MC_GroupReadPosition, Valid, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadPosition, Busy, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadPosition, Error, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadPosition, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_GroupReadPosition, Position, OUTPUT, LREAL),
+};
+static void call_MC_GroupReadPosition(void *fb) { MC_GroupReadPosition(fb); }
+static const cm1e_error_t errors_of_MC_GroupReadPosition[] = {
+    CM1E_ERROR_GROUP_COORD_SYSTEM,
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_AXIS_OFFLINE,
+    CM1E_ERROR_UNSUPPORTED,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_GroupReadVelocity[] = {
+    MEMBER(MC_GroupReadVelocity, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_GroupReadVelocity, Enable, INPUT, BOOL),
+    MEMBER(MC_GroupReadVelocity, CoordSystem, INPUT, ENUM),
+    MEMBER(MC_GroupReadVelocity, Source, INPUT, ENUM),
+    MEMBER(MC_GroupReadVelocity, Valid, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadVelocity, Busy, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadVelocity, Error, OUTPUT, BOOL),
+    MEMBER(MC_GroupReadVelocity, ErrorID, OUTPUT, WORD),
+    MEMBER(MC_GroupReadVelocity, Velocity, OUTPUT, LREAL),
+    MEMBER(MC_GroupReadVelocity, PathVelocity, OUTPUT, LREAL),
+};
+static void call_MC_GroupReadVelocity(void *fb) { MC_GroupReadVelocity(fb); }
+static const cm1e_error_t errors_of_MC_GroupReadVelocity[] = {
+    CM1E_ERROR_GROUP_COORD_SYSTEM,
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_AXIS_OFFLINE,
+    CM1E_ERROR_UNSUPPORTED,
+    CM1E_OK,
+};
+static const block_member_t members_of_MC_GroupSetOverride[] = {
+    MEMBER(MC_GroupSetOverride, AxesGroup, IN_OUT, POINTER),
+    MEMBER(MC_GroupSetOverride, Enable, INPUT, BOOL),
+    MEMBER(MC_GroupSetOverride, VelFactor, INPUT, LREAL),
+    MEMBER(MC_GroupSetOverride, AccFactor, INPUT, LREAL),
+    MEMBER(MC_GroupSetOverride, JerkFactor, INPUT, LREAL),
+    MEMBER(MC_GroupSetOverride, Enabled, OUTPUT, BOOL),
+    MEMBER(MC_GroupSetOverride, Busy, OUTPUT, BOOL),
+    MEMBER(MC_GroupSetOverride, Error, OUTPUT, BOOL),
+    MEMBER(MC_GroupSetOverride, ErrorID, OUTPUT, WORD),
+};
+static void call_MC_GroupSetOverride(void *fb) { MC_GroupSetOverride(fb); }
+static const cm1e_error_t errors_of_MC_GroupSetOverride[] = {
+    CM1E_ERROR_GROUP_REF,
+    CM1E_ERROR_FB_AXIS_CHANGED,
+    CM1E_ERROR_AXIS_OVERRIDE,
+    CM1E_OK,
+};
 static const block_member_t members_of_MC_SetPosition[] = {
     MEMBER(MC_SetPosition, Axis, IN_OUT, POINTER),
     MEMBER(MC_SetPosition, Execute, INPUT, BOOL),
@@ -2907,6 +3578,24 @@ const block_t block_table[] = {
     BLOCK(MC_PhasingAbsolute, rules_phasing),
     BLOCK(MC_PhasingRelative, rules_phasing),
     BLOCK(MC_CombineAxes, rules_couple),
+    BLOCK(MC_AddAxisToGroup, NULL),
+    BLOCK(MC_RemoveAxisFromGroup, NULL),
+    BLOCK(MC_UngroupAllAxes, NULL),
+    BLOCK(MC_GroupReadConfiguration, NULL),
+    BLOCK(MC_GroupEnable, NULL),
+    BLOCK(MC_GroupDisable, NULL),
+    BLOCK(MC_GroupReset, NULL),
+    BLOCK(MC_GroupReadStatus, NULL),
+    BLOCK(MC_GroupReadError, NULL),
+    BLOCK(MC_GroupStop, NULL),
+    BLOCK(MC_GroupHalt, NULL),
+    BLOCK(MC_MoveLinearAbsolute, NULL),
+    BLOCK(MC_MoveLinearRelative, NULL),
+    BLOCK(MC_MoveCircularAbsolute, NULL),
+    BLOCK(MC_MoveCircularRelative, NULL),
+    BLOCK(MC_GroupReadPosition, NULL),
+    BLOCK(MC_GroupReadVelocity, NULL),
+    BLOCK(MC_GroupSetOverride, NULL),
     BLOCK(MC_SetPosition, rules_any),
     BLOCK(MC_SetOverride, rules_any),
     BLOCK(MC_ReadParameter, rules_any),

@@ -168,12 +168,16 @@ static void add_curves(const char *whose, int of, bool position, bool velocity)
         add_curve(name, "u", BLOCK_LREAL, &set_position[of]);
 }
 
-void trace_curves(bool position, bool velocity) { add_curves(axis_count > 1 ? "slave" : "set", 0, position, velocity); }
+void trace_curves(bool position, bool velocity)
+{
+    const char *alone = axis_count > 1 ? "slave" : "set";
+    add_curves(bench.group.Handle ? "X" : alone, 0, position, velocity);
+}
 
 void trace_master_curves(int master, bool position, bool velocity)
 {
     static const char *const names[TRACE_MASTERS] = {"master 1", "master 2"};
-    add_curves(axis_count > 2 ? names[master] : "master", 1 + master, position, velocity);
+    add_curves(bench.group.Handle ? "Y" : axis_count > 2 ? names[master] : "master", 1 + master, position, velocity);
 }
 
 static double value_of(const trace_curve_t *curve)
@@ -253,6 +257,19 @@ void trace_begin_with_masters(const char *block, const char *about, int masters)
     call_power();
 }
 
+void trace_begin_with_group(const char *block, const char *about)
+{
+    cm1e_diag_t diag = {0};
+    trace_begin_with_masters(block, about, 1);
+    require(cm1e_group_create(&bench.group, NULL, &diag) == CM1E_OK, diag.text);
+    MC_AddAxisToGroup_t x = {GROUP, AXIS, .Execute = TRUE}, y = {GROUP, MASTER, .Execute = TRUE};
+    MC_GroupEnable_t enable = {GROUP, .Execute = TRUE};
+    MC_AddAxisToGroup(&x);
+    MC_AddAxisToGroup(&y);
+    MC_GroupEnable(&enable);
+    require(x.Done && y.Done && enable.Done, "the group is not enabled");
+}
+
 void trace_begin(const char *block, const char *about) { trace_begin_with_masters(block, about, 0); }
 
 void trace_scan(void)
@@ -271,12 +288,15 @@ void trace_end(void)
     outputs();
     require(trace_draw(&trace, folder), "its diagram cannot be written");
     close_axes();
+    if (bench.group.Handle)
+        require(cm1e_group_destroy(bench.group) == CM1E_OK, "the group still moves");
 }
 
 int main(int argument_count, char **arguments)
 {
-    const scenario_t *const files[] = {motion_scenarios, multi_axis_scenarios, administrative_scenarios,
-                                       homing_scenarios, bridge_scenarios, standard_scenarios};
+    const scenario_t *const files[] = {motion_scenarios, multi_axis_scenarios, group_scenarios,
+                                       administrative_scenarios, homing_scenarios, bridge_scenarios,
+                                       standard_scenarios};
     if (argument_count < 2) {
         fprintf(stderr, "usage: %s FOLDER [BLOCK]\nDraws the timing diagrams of docs/blocks/ there.\n", *arguments);
         return EXIT_FAILURE;

@@ -16,6 +16,7 @@
 enum { TRACE_MASTERS = 2 };
 typedef struct bench {
     AXIS_REF_t axis, masters[TRACE_MASTERS];
+    AXES_GROUP_REF_t group;
     MC_Power_t power, master_power[TRACE_MASTERS];
     cm1e_axis_info_t info;
     int scan; /**< of 1 ms, 0 at the begin of the recording */
@@ -29,6 +30,8 @@ void trace_begin(const char *block, const char *about);
 void trace_begin_disabled(const char *block, const char *about);
 /** As trace_begin(), with so many masters. */
 void trace_begin_with_masters(const char *block, const char *about, int masters);
+/** The same with an axes group of two axes, X, which is bench.axis, and Y, in GroupStandby. */
+void trace_begin_with_group(const char *block, const char *about);
 /** The same without an axis, for blocks that need none. */
 void trace_begin_without_axis(const char *block, const char *about);
 /** Changes the configuration of the axis of the next scenario, before it begins. */
@@ -57,6 +60,7 @@ static inline BOOL during(int begin, int end) { return bench.scan >= begin && be
 
 #define AXIS .Axis = &bench.axis
 #define MASTER .Axis = &bench.masters[0]
+#define GROUP .AxesGroup = &bench.group
 #define SLAVE .Slave = &bench.axis
 #define MASTER_AND_SLAVE .Master = &bench.masters[0], SLAVE
 /** The scans of a scenario: its body is a program. */
@@ -67,7 +71,7 @@ typedef struct scenario {
     const char *name;
     void (*run)(void);
 } scenario_t;
-extern const scenario_t motion_scenarios[], multi_axis_scenarios[], administrative_scenarios[], homing_scenarios[],
+extern const scenario_t motion_scenarios[], multi_axis_scenarios[], group_scenarios[], administrative_scenarios[], homing_scenarios[],
     bridge_scenarios[], standard_scenarios[];
 
 /* ---- the parts that only the recording and the drawing share ---------------------------------------------------- */

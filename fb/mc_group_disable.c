@@ -1,0 +1,7 @@
+#include "group_edge.h"
+
+void MC_GroupDisable(MC_GroupDisable_t *fb)
+{
+    const fb_outputs_t out = fb_group_act(&fb->Private, fb->AxesGroup, fb->Execute, cm1e_group_disable);
+    FB_SHOW_DONE(fb, out);
+}

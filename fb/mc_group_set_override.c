@@ -1,0 +1,19 @@
+#include "group_edge.h"
+
+/* Accelerations and jerks stay those of the commands in this version. */
+static cm1e_error_t set_factors(cm1e_group_t *group, const MC_GroupSetOverride_t *fb)
+{
+    if (fb->AccFactor != 1.0 || fb->JerkFactor != 1.0)
+        return CM1E_ERROR_AXIS_OVERRIDE;
+    return cm1e_group_set_override(group, fb->VelFactor);
+}
+
+void MC_GroupSetOverride(MC_GroupSetOverride_t *fb)
+{
+    cm1e_group_t *group = fb_group_enable(&fb->Private, fb->AxesGroup, fb->Enable);
+    const fb_reading_t out = fb_reading(&fb->Private, group, group ? set_factors(group, fb) : CM1E_OK);
+    fb->Enabled = out.valid;
+    fb->Busy = out.busy;
+    fb->Error = out.error;
+    fb->ErrorID = out.error_id;
+}

@@ -1,0 +1,17 @@
+#include "group_edge.h"
+
+void MC_MoveCircularAbsolute(MC_MoveCircularAbsolute_t *fb)
+{
+    if (fb_group_stands(&fb->Private, fb->AxesGroup, fb->Execute))
+        return;
+    cm1e_group_command_t command = {
+        .kind = CM1E_GROUP_CIRCULAR_ABSOLUTE,
+        .circ_mode = fb->CircMode,
+        .path_choice = fb->PathChoice,
+        FB_GROUP_INPUTS(fb),
+    };
+    memcpy(command.position, fb->EndPoint, sizeof command.position);
+    memcpy(command.auxiliary, fb->AuxPoint, sizeof command.auxiliary);
+    const fb_outputs_t out = fb_group_motion(&fb->Private, fb->AxesGroup, fb->Execute, &command);
+    FB_SHOW_GROUP_MOTION(fb, out);
+}

@@ -1,0 +1,322 @@
+/**
+ * @file mc_group.h
+ * The blocks of axes groups (PLCopen Part 4 v2.0, chapter 9): several axes along one path. A group is made with
+ * cm1e_group_create(). Positions are arrays, element n for the axis with IdentInGroup n. Lengths, velocities and
+ * accelerations along the path are those of the first up to three axes of the group, X, Y and Z; further axes go along
+ * in proportion. TransitionVelocity, OrientationMode and Tolerance of the standard, of its level E, are not there.
+ * Generated from fb/interface/group.st by fb/interface/generate.py; change it there.
+ */
+#ifndef CM1E_MC_GROUP_H
+#define CM1E_MC_GROUP_H
+
+#include "cm1e/group.h"
+#include "cm1e/mc_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Part 4 v2.0, 9.1. Makes an axis a member of a group, which then belongs to the bus of that axis. @rt cycle */
+typedef struct MC_AddAxisToGroup {
+    AXES_GROUP_REF_t *AxesGroup;
+    AXIS_REF_t *Axis;
+    BOOL Execute;
+    MC_IDENT_IN_GROUP IdentInGroup; /**< 0 ... 8; its place; 0: the first free one */
+    /* outputs */
+    BOOL Done, Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_AddAxisToGroup_t;
+void MC_AddAxisToGroup(MC_AddAxisToGroup_t *fb);
+
+/** Part 4 v2.0, 9.2. Takes an axis out of a group. @rt cycle */
+typedef struct MC_RemoveAxisFromGroup {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Execute;
+    MC_IDENT_IN_GROUP IdentInGroup; /**< 1 ... 8 */
+    /* outputs */
+    BOOL Done, Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_RemoveAxisFromGroup_t;
+void MC_RemoveAxisFromGroup(MC_RemoveAxisFromGroup_t *fb);
+
+/** Part 4 v2.0, 9.3. Takes all axes out of a group. What moves is stopped along its path first. @rt cycle */
+typedef struct MC_UngroupAllAxes {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Execute;
+    /* outputs */
+    BOOL Done, Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_UngroupAllAxes_t;
+void MC_UngroupAllAxes(MC_UngroupAllAxes_t *fb);
+
+/** Part 4 v2.0, 9.4. Tells which axis is at a place of a group. @rt cycle */
+typedef struct MC_GroupReadConfiguration {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Enable;
+    MC_IDENT_IN_GROUP IdentInGroup; /**< 1 ... 8 */
+    MC_COORD_SYSTEM CoordSystem;    /**< mcACS; others are refused */
+    /* outputs */
+    BOOL Valid, Busy, Error;
+    WORD ErrorID;
+    AXIS_REF_t Axis;
+    UINT AxisID;                    /**< its handle */
+    cm1e_fb_private_t Private;
+} MC_GroupReadConfiguration_t;
+void MC_GroupReadConfiguration(MC_GroupReadConfiguration_t *fb);
+
+/** Part 4 v2.0, 9.6. Enables a group: GroupStandby. Moves nothing, and powers nothing. @rt cycle */
+typedef struct MC_GroupEnable {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Execute;
+    /* outputs */
+    BOOL Done, Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_GroupEnable_t;
+void MC_GroupEnable(MC_GroupEnable_t *fb);
+
+/** Part 4 v2.0, 9.7. Disables a group. Its commands are aborted; what moves is stopped along its path. @rt cycle */
+typedef struct MC_GroupDisable {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Execute;
+    /* outputs */
+    BOOL Done, Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_GroupDisable_t;
+void MC_GroupDisable(MC_GroupDisable_t *fb);
+
+/** Part 4 v2.0, 9.31. Resets a group in GroupErrorStop, and those of its axes that are in ErrorStop as MC_Reset
+ *  does. @rt cycle */
+typedef struct MC_GroupReset {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Execute;
+    /* outputs */
+    BOOL Done; /**< no axis is in ErrorStop */
+    BOOL Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_GroupReset_t;
+void MC_GroupReset(MC_GroupReset_t *fb);
+
+/** Part 4 v2.0, 9.29. Reads the state of a group: one of the six outputs is TRUE while Valid is. @rt cycle */
+typedef struct MC_GroupReadStatus {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Enable;
+    /* outputs */
+    BOOL Valid, Busy, Error;
+    WORD ErrorID;
+    BOOL GroupMoving;
+    BOOL GroupHoming; /**< never, in this version */
+    BOOL GroupErrorStop, GroupStandby, GroupStopping, GroupDisabled;
+    cm1e_fb_private_t Private;
+} MC_GroupReadStatus_t;
+void MC_GroupReadStatus(MC_GroupReadStatus_t *fb);
+
+/** Part 4 v2.0, 9.30. Reads why a group is in GroupErrorStop; cm1e_group_error_text() says it in sentences.
+ *  @rt cycle */
+typedef struct MC_GroupReadError {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Enable;
+    /* outputs */
+    BOOL Valid, Busy, Error;
+    WORD ErrorID;
+    WORD GroupErrorID; /**< the cause; 0: none */
+    cm1e_fb_private_t Private;
+} MC_GroupReadError_t;
+void MC_GroupReadError(MC_GroupReadError_t *fb);
+
+/** Part 4 v2.0, 9.25. Stops a group along its path and holds it: it stays in GroupStopping while Execute is TRUE.
+ *  @rt cycle */
+typedef struct MC_GroupStop {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Execute;
+    LREAL Deceleration; /**< u/s2, >= 0; 0: as much as the axes allow, as is more */
+    LREAL Jerk;         /**< u/s3, >= 0; 0: as much as the axes allow, as is more */
+    /* outputs */
+    BOOL Done;          /**< the set velocity is 0 */
+    BOOL Busy, CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_GroupStop_t;
+void MC_GroupStop(MC_GroupStop_t *fb);
+
+/** Part 4 v2.0, 9.26. Stops a group along its path; any motion may abort it. @rt cycle */
+typedef struct MC_GroupHalt {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Execute;
+    LREAL Deceleration;        /**< u/s2, >= 0; 0: as much as the axes allow, as is more */
+    LREAL Jerk;                /**< u/s3, >= 0; 0: as much as the axes allow, as is more */
+    MC_BUFFER_MODE BufferMode; /**< mcAborting, mcBuffered */
+    /* outputs */
+    BOOL Done;                 /**< the set velocity is 0 */
+    BOOL Busy, Active;
+    BOOL CommandAccepted;      /**< the group has taken it, and it was not aborted */
+    UDINT CommandID;           /**< its number; 0: none */
+    BOOL CommandAborted, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_GroupHalt_t;
+void MC_GroupHalt(MC_GroupHalt_t *fb);
+
+/** Part 4 v2.0, 9.34. Moves a group along a straight line to Position. @rt cycle */
+typedef struct MC_MoveLinearAbsolute {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Execute;
+    LREAL Position[8];                 /**< u; target, by IdentInGroup */
+    LREAL Velocity;                    /**< u/s, >= 0; along the path; 0: as much as the axes allow */
+    LREAL Acceleration;                /**< u/s2, >= 0; along the path; 0: as much as the axes allow */
+    LREAL Deceleration;                /**< u/s2, >= 0; along the path; 0: as much as the axes allow */
+    LREAL Jerk;                        /**< u/s3, >= 0; along the path; 0: as much as the axes allow */
+    MC_COORD_SYSTEM CoordSystem;       /**< mcACS; others are refused */
+    MC_BUFFER_MODE BufferMode;
+    MC_TRANSITION_MODE TransitionMode; /**< with BufferMode mcBlending... */
+    LREAL TransitionParameter;         /**< u, > 0; of mcTMCornerDistance, mcTMMaxCornerDeviation */
+    /* outputs */
+    BOOL Done;                         /**< the end of its part of the path is reached */
+    BOOL Busy;
+    BOOL Active;                       /**< the group moves by it */
+    BOOL CommandAccepted;              /**< the group has taken it, and it was not aborted */
+    BOOL CommandAborted, Error;
+    WORD ErrorID;
+    UDINT CommandID;                   /**< its number; 0: none */
+    cm1e_fb_private_t Private;
+} MC_MoveLinearAbsolute_t;
+void MC_MoveLinearAbsolute(MC_MoveLinearAbsolute_t *fb);
+
+/** Part 4 v2.0, 9.35. Moves a group along a straight line by Distance. @rt cycle */
+typedef struct MC_MoveLinearRelative {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Execute;
+    LREAL Distance[8];                 /**< u; way, by IdentInGroup */
+    LREAL Velocity;                    /**< u/s, >= 0; along the path; 0: as much as the axes allow */
+    LREAL Acceleration;                /**< u/s2, >= 0; along the path; 0: as much as the axes allow */
+    LREAL Deceleration;                /**< u/s2, >= 0; along the path; 0: as much as the axes allow */
+    LREAL Jerk;                        /**< u/s3, >= 0; along the path; 0: as much as the axes allow */
+    MC_COORD_SYSTEM CoordSystem;       /**< mcACS; others are refused */
+    MC_BUFFER_MODE BufferMode;
+    MC_TRANSITION_MODE TransitionMode; /**< with BufferMode mcBlending... */
+    LREAL TransitionParameter;         /**< u, > 0; of mcTMCornerDistance, mcTMMaxCornerDeviation */
+    /* outputs */
+    BOOL Done;                         /**< the end of its part of the path is reached */
+    BOOL Busy;
+    BOOL Active;                       /**< the group moves by it */
+    BOOL CommandAccepted;              /**< the group has taken it, and it was not aborted */
+    BOOL CommandAborted, Error;
+    WORD ErrorID;
+    UDINT CommandID;                   /**< its number; 0: none */
+    cm1e_fb_private_t Private;
+} MC_MoveLinearRelative_t;
+void MC_MoveLinearRelative(MC_MoveLinearRelative_t *fb);
+
+/** Part 4 v2.0, 9.36. Moves a group along an arc to EndPoint; further axes go along. @rt cycle */
+typedef struct MC_MoveCircularAbsolute {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Execute;
+    MC_CIRC_MODE CircMode;             /**< what AuxPoint is */
+    LREAL AuxPoint[8];                 /**< u; a point of the arc, or its centre */
+    LREAL EndPoint[8];                 /**< u; target, by IdentInGroup */
+    MC_CIRC_PATHCHOICE PathChoice;     /**< with mcCenter */
+    LREAL Velocity;                    /**< u/s, >= 0; along the path; 0: as much as the axes allow */
+    LREAL Acceleration;                /**< u/s2, >= 0; along the path; 0: as much as the axes allow */
+    LREAL Deceleration;                /**< u/s2, >= 0; along the path; 0: as much as the axes allow */
+    LREAL Jerk;                        /**< u/s3, >= 0; along the path; 0: as much as the axes allow */
+    MC_COORD_SYSTEM CoordSystem;       /**< mcACS; others are refused */
+    MC_BUFFER_MODE BufferMode;
+    MC_TRANSITION_MODE TransitionMode; /**< with BufferMode mcBlending... */
+    LREAL TransitionParameter;         /**< u, > 0; of mcTMCornerDistance, mcTMMaxCornerDeviation */
+    /* outputs */
+    BOOL Done;                         /**< the end of its part of the path is reached */
+    BOOL Busy;
+    BOOL Active;                       /**< the group moves by it */
+    BOOL CommandAccepted;              /**< the group has taken it, and it was not aborted */
+    BOOL CommandAborted, Error;
+    WORD ErrorID;
+    UDINT CommandID;                   /**< its number; 0: none */
+    cm1e_fb_private_t Private;
+} MC_MoveCircularAbsolute_t;
+void MC_MoveCircularAbsolute(MC_MoveCircularAbsolute_t *fb);
+
+/** Part 4 v2.0, 9.37. Moves a group along an arc by EndPoint; both points count from where the arc begins.
+ *  @rt cycle */
+typedef struct MC_MoveCircularRelative {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Execute;
+    MC_CIRC_MODE CircMode;             /**< what AuxPoint is */
+    LREAL AuxPoint[8];                 /**< u; a point of the arc, or its centre */
+    LREAL EndPoint[8];                 /**< u; way, by IdentInGroup */
+    MC_CIRC_PATHCHOICE PathChoice;     /**< with mcCenter */
+    LREAL Velocity;                    /**< u/s, >= 0; along the path; 0: as much as the axes allow */
+    LREAL Acceleration;                /**< u/s2, >= 0; along the path; 0: as much as the axes allow */
+    LREAL Deceleration;                /**< u/s2, >= 0; along the path; 0: as much as the axes allow */
+    LREAL Jerk;                        /**< u/s3, >= 0; along the path; 0: as much as the axes allow */
+    MC_COORD_SYSTEM CoordSystem;       /**< mcACS; others are refused */
+    MC_BUFFER_MODE BufferMode;
+    MC_TRANSITION_MODE TransitionMode; /**< with BufferMode mcBlending... */
+    LREAL TransitionParameter;         /**< u, > 0; of mcTMCornerDistance, mcTMMaxCornerDeviation */
+    /* outputs */
+    BOOL Done;                         /**< the end of its part of the path is reached */
+    BOOL Busy;
+    BOOL Active;                       /**< the group moves by it */
+    BOOL CommandAccepted;              /**< the group has taken it, and it was not aborted */
+    BOOL CommandAborted, Error;
+    WORD ErrorID;
+    UDINT CommandID;                   /**< its number; 0: none */
+    cm1e_fb_private_t Private;
+} MC_MoveCircularRelative_t;
+void MC_MoveCircularRelative(MC_MoveCircularRelative_t *fb);
+
+/** Part 4 v2.0, 9.14. Reads the positions of the axes of a group, all of the same cycle. @rt cycle */
+typedef struct MC_GroupReadPosition {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Enable;
+    MC_COORD_SYSTEM CoordSystem; /**< mcACS; others are refused */
+    MC_SOURCE Source;            /**< mcSetValue, mcActualValue */
+    /* outputs */
+    BOOL Valid, Busy, Error;
+    WORD ErrorID;
+    LREAL Position[8];           /**< u; by IdentInGroup; 0 where there is no axis */
+    cm1e_fb_private_t Private;
+} MC_GroupReadPosition_t;
+void MC_GroupReadPosition(MC_GroupReadPosition_t *fb);
+
+/** Part 4 v2.0, 9.15. Reads the velocities of the axes of a group, and that along the path. @rt cycle */
+typedef struct MC_GroupReadVelocity {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Enable;
+    MC_COORD_SYSTEM CoordSystem; /**< mcACS; others are refused */
+    MC_SOURCE Source;            /**< mcSetValue, mcActualValue */
+    /* outputs */
+    BOOL Valid, Busy, Error;
+    WORD ErrorID;
+    LREAL Velocity[8];           /**< u/s; by IdentInGroup; 0 where there is no axis */
+    LREAL PathVelocity;          /**< u/s */
+    cm1e_fb_private_t Private;
+} MC_GroupReadVelocity_t;
+void MC_GroupReadVelocity(MC_GroupReadVelocity_t *fb);
+
+/** Part 4 v2.0, 9.43. Sets a factor on the velocities of the motions of a group; it stays until it is changed.
+ *  @rt cycle */
+typedef struct MC_GroupSetOverride {
+    AXES_GROUP_REF_t *AxesGroup;
+    BOOL Enable;
+    LREAL VelFactor;  /**< 0 ... 1 */
+    LREAL AccFactor;  /**< 1; others are refused in this version */
+    LREAL JerkFactor; /**< 1; others are refused in this version */
+    /* outputs */
+    BOOL Enabled;     /**< the factors are in force */
+    BOOL Busy, Error;
+    WORD ErrorID;
+    cm1e_fb_private_t Private;
+} MC_GroupSetOverride_t;
+/** Its initial values: `MC_GroupSetOverride_t fb = {.AxesGroup = &axis, MC_GROUPSETOVERRIDE_DEFAULTS};` */
+#define MC_GROUPSETOVERRIDE_DEFAULTS .VelFactor = 1.0, .AccFactor = 1.0, .JerkFactor = 1.0
+void MC_GroupSetOverride(MC_GroupSetOverride_t *fb);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,287 @@
+/* Members of a group, its states, and what it shows. */
+#include "group/group_private.h"
+
+/* ---- what became of the axes ------------------------------------------------------------------------------------- */
+
+cm1e_axis_t *cm1e_group_axis(const cm1e_group_t *group, uint32_t ident)
+{
+    const AXIS_REF_t reference = ident >= 1 && ident <= CM1E_GROUP_AXES ? group->member[ident - 1] : (AXIS_REF_t){0};
+    return reference.Handle ? cm1e_axis_from_reference(&reference) : NULL;
+}
+
+static cm1e_axis_state_t state_of(const cm1e_axis_t *axis)
+{
+    cm1e_axis_info_t info;
+    cm1e_axis_get(axis, &info);
+    return info.state;
+}
+
+cm1e_error_t cm1e_group_refuse(cm1e_group_t *group, group_refusal_t refusal)
+{
+    group->refusal = refusal;
+    return refusal.error;
+}
+
+void cm1e_group_fail(cm1e_group_t *group, cm1e_error_t error, uint32_t culprit)
+{
+    if (group->state == CM1E_GROUP_ERROR_STOP || group->state == CM1E_GROUP_DISABLED)
+        return; /* the first cause is the one to tell; a disabled group only lets its axes come to rest */
+    cm1e_group_end_all(group, CM1E_COMMAND_ERROR, CM1E_ERROR_GROUP_ERROR_STOP);
+    group->error = error;
+    group->culprit = culprit;
+    group->refusal.error = CM1E_OK;
+    group->state = cm1e_group_rule(group->state, TRIGGER_FAIL)->next;
+    cm1e_group_brake(group, 0.0, 0.0);
+}
+
+/* Of the axes that MC_GroupReset resets: done when none of them is in ErrorStop, and the others have come to rest. */
+static void refresh_reset(cm1e_group_t *group)
+{
+    if (group->reset_state != CM1E_COMMAND_ACTIVE || group->led)
+        return;
+    for (uint32_t ident = 1; ident <= CM1E_GROUP_AXES; ident++) {
+        cm1e_axis_t *axis = cm1e_group_axis(group, ident);
+        cm1e_error_t error = CM1E_ERROR_GROUP_AXIS;
+        if (group->member[ident - 1].Handle == 0 || (axis && state_of(axis) != CM1E_AXIS_ERROR_STOP))
+            continue;
+        if (axis && cm1e_axis_reset_state(axis, &error) == CM1E_COMMAND_ACTIVE)
+            return;
+        group->culprit = ident;
+        group->reset_state = CM1E_COMMAND_ERROR;
+        group->reset_error = error ? error : CM1E_ERROR_GROUP_AXIS;
+        return;
+    }
+    group->reset_state = CM1E_COMMAND_DONE;
+    group->error = CM1E_OK;
+    group->culprit = 0;
+    group->state = cm1e_group_rule(group->state, TRIGGER_RESET)->next;
+}
+
+static void refresh_members(cm1e_group_t *group)
+{
+    for (uint32_t ident = 1; ident <= CM1E_GROUP_AXES; ident++) {
+        const cm1e_axis_t *axis = cm1e_group_axis(group, ident);
+        if (group->member[ident - 1].Handle != 0 && (!axis || state_of(axis) == CM1E_AXIS_ERROR_STOP))
+            cm1e_group_fail(group, CM1E_ERROR_GROUP_AXIS, ident);
+    }
+    for (int i = 0; i < group->axes; i++) /* an axis that was destroyed tells nobody */
+        if (!cm1e_group_axis(group, group->ident[i]))
+            group->led &= ~(1u << i);
+}
+
+void cm1e_group_refresh(cm1e_group_t *group)
+{
+    refresh_members(group);
+    refresh_reset(group);
+    if (group->ungroup && !group->led) {
+        group->ungroup = false;
+        for (uint32_t ident = 1; ident <= CM1E_GROUP_AXES; ident++)
+            cm1e_group_leave(group, ident);
+    }
+}
+
+/* ---- members ----------------------------------------------------------------------------------------------------- */
+
+/* A state that refuses, or axes that still come to rest. */
+static cm1e_error_t refused_by_state(cm1e_group_t *group, group_trigger_t trigger)
+{
+    cm1e_group_refresh(group);
+    const group_rule_t *rule = cm1e_group_rule(group->state, trigger);
+    if (rule->refusal)
+        return cm1e_group_refuse(group, (group_refusal_t){.error = rule->refusal});
+    if (group->state == CM1E_GROUP_DISABLED && group->led)
+        return cm1e_group_refuse(group, (group_refusal_t){.error = CM1E_ERROR_GROUP_STATE,
+                                                          .why = "Its axes still come to rest."});
+    return cm1e_group_refuse(group, (group_refusal_t){.error = CM1E_OK});
+}
+
+static cm1e_error_t refuse_member(cm1e_group_t *group, cm1e_error_t error, uint32_t ident, const char *why)
+{
+    return cm1e_group_refuse(group, (group_refusal_t){.error = error, .ident = ident, .why = why});
+}
+
+static uint32_t free_ident(const cm1e_group_t *group)
+{
+    for (uint32_t ident = 1; ident <= CM1E_GROUP_AXES; ident++)
+        if (group->member[ident - 1].Handle == 0)
+            return ident;
+    return 0;
+}
+
+static int count_members(const cm1e_group_t *group)
+{
+    int count = 0;
+    for (int i = 0; i < CM1E_GROUP_AXES; i++)
+        count += group->member[i].Handle != 0;
+    return count;
+}
+
+cm1e_error_t cm1e_group_add(cm1e_group_t *group, AXIS_REF_t reference, uint32_t ident)
+{
+    const cm1e_error_t refused = refused_by_state(group, TRIGGER_CONFIGURE);
+    cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
+    if (refused)
+        return refused;
+    if (!axis)
+        return refuse_member(group, CM1E_ERROR_FB_AXIS_REF, 0, NULL);
+    if (ident == 0)
+        ident = free_ident(group);
+    if (ident == 0 || ident > CM1E_GROUP_AXES)
+        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "IdentInGroup 1 ... 8 is right; there are 8 places.");
+    if (group->member[ident - 1].Handle != 0)
+        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, ident, "This place is taken: MC_RemoveAxisFromGroup.");
+    if (count_members(group) > 0 && cm1e_axis_bus(axis) != group->bus)
+        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "The axis belongs to another bus than those it has.");
+    if (cm1e_axis_configuration(axis)->motion == CM1E_MOTION_DRIVE)
+        return refuse_member(group, CM1E_ERROR_UNSUPPORTED, 0, "The axis moves by profiles of its drive: it needs "
+                             "`motion: host` in the bus file.");
+    for (uint32_t other = 1; other <= CM1E_GROUP_AXES; other++)
+        if (group->member[other - 1].Handle == reference.Handle)
+            return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, other, "The axis has this place in it already.");
+    if (!cm1e_axis_join(axis, group))
+        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "The axis belongs to another group.");
+    group->bus = cm1e_axis_bus(axis);
+    group->member[ident - 1] = reference;
+    return CM1E_OK;
+}
+
+void cm1e_group_leave(cm1e_group_t *group, uint32_t ident)
+{
+    cm1e_axis_t *axis = cm1e_group_axis(group, ident);
+    if (axis)
+        cm1e_axis_leave(axis, group);
+    group->member[ident - 1] = (AXIS_REF_t){0};
+}
+
+cm1e_error_t cm1e_group_remove(cm1e_group_t *group, uint32_t ident)
+{
+    const cm1e_error_t refused = refused_by_state(group, TRIGGER_CONFIGURE);
+    if (refused)
+        return refused;
+    if (ident < 1 || ident > CM1E_GROUP_AXES || group->member[ident - 1].Handle == 0)
+        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "There is no axis at this place.");
+    cm1e_group_leave(group, ident);
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_group_ungroup(cm1e_group_t *group)
+{
+    const cm1e_error_t error = cm1e_group_disable(group);
+    group->ungroup = error == CM1E_OK;
+    cm1e_group_refresh(group);
+    return error;
+}
+
+cm1e_error_t cm1e_group_member(const cm1e_group_t *group, uint32_t ident, AXIS_REF_t *axis)
+{
+    const bool there = ident >= 1 && ident <= CM1E_GROUP_AXES && group->member[ident - 1].Handle != 0;
+    *axis = there ? group->member[ident - 1] : (AXIS_REF_t){0};
+    return there ? CM1E_OK : CM1E_ERROR_GROUP_MEMBER;
+}
+
+/* ---- the state diagram ------------------------------------------------------------------------------------------- */
+
+cm1e_error_t cm1e_group_enable(cm1e_group_t *group)
+{
+    const cm1e_error_t refused = refused_by_state(group, TRIGGER_ENABLE);
+    if (refused)
+        return refused;
+    if (count_members(group) == 0)
+        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "It has no axes: MC_AddAxisToGroup first.");
+    group->state = cm1e_group_rule(group->state, TRIGGER_ENABLE)->next;
+    group->error = CM1E_OK;
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_group_disable(cm1e_group_t *group)
+{
+    cm1e_group_refresh(group);
+    cm1e_group_end_all(group, CM1E_COMMAND_ABORTED, CM1E_OK);
+    cm1e_group_brake(group, 0.0, 0.0);
+    if (cm1e_group_at_rest(group))
+        cm1e_group_let_go(group);
+    if (group->reset_state == CM1E_COMMAND_ACTIVE) {
+        group->reset_state = CM1E_COMMAND_ERROR;
+        group->reset_error = CM1E_ERROR_CANCELLED;
+    }
+    group->state = cm1e_group_rule(group->state, TRIGGER_DISABLE)->next;
+    group->error = group->refusal.error = CM1E_OK;
+    group->culprit = 0;
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_group_reset(cm1e_group_t *group)
+{
+    cm1e_group_refresh(group);
+    group->reset_error = CM1E_OK;
+    group->reset_state = CM1E_COMMAND_DONE; /* elsewhere nothing is to be reset, and nothing happens */
+    if (group->state != CM1E_GROUP_ERROR_STOP)
+        return CM1E_OK;
+    group->reset_state = CM1E_COMMAND_ACTIVE;
+    for (uint32_t ident = 1; ident <= CM1E_GROUP_AXES; ident++) {
+        cm1e_axis_t *axis = cm1e_group_axis(group, ident);
+        if (axis)
+            (void)cm1e_axis_reset(axis);
+    }
+    return CM1E_OK;
+}
+
+cm1e_command_state_t cm1e_group_reset_state(cm1e_group_t *group, cm1e_error_t *error)
+{
+    cm1e_group_refresh(group);
+    if (error)
+        *error = group->reset_error;
+    return group->reset_state;
+}
+
+/* ---- readings ---------------------------------------------------------------------------------------------------- */
+
+void cm1e_group_get(cm1e_group_t *group, cm1e_group_info_t *info)
+{
+    cm1e_group_refresh(group);
+    *info = (cm1e_group_info_t){
+        .state = group->state,
+        .error = group->error,
+        .axes = count_members(group),
+        .commands = group->queue.count,
+    };
+    for (int i = 0; i < CM1E_GROUP_AXES; i++)
+        info->axis[i] = group->member[i];
+    if (group->led) {
+        info->path_velocity = group->sample.path_velocity;
+        info->path_acceleration = group->sample.path_acceleration;
+        info->path_left = cm1e_path_left(&group->path);
+    }
+}
+
+cm1e_error_t cm1e_group_read(AXES_GROUP_REF_t reference, cm1e_group_info_t *info)
+{
+    cm1e_group_t *group = cm1e_group_from_reference(&reference);
+    if (!group)
+        return CM1E_ERROR_GROUP_REF;
+    cm1e_group_get(group, info);
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_group_values(const cm1e_group_t *group, MC_SOURCE source, double *position, double *velocity,
+                               double *path)
+{
+    double in_space = 0.0, others = 0.0;
+    int axes = 0;
+    if (source != mcSetValue && source != mcActualValue)
+        return CM1E_ERROR_UNSUPPORTED;
+    for (uint32_t ident = 1; ident <= CM1E_GROUP_AXES; ident++) {
+        const cm1e_axis_t *axis = cm1e_group_axis(group, ident);
+        cm1e_axis_info_t info = {.online = true};
+        if (axis)
+            cm1e_axis_get(axis, &info);
+        if (source == mcActualValue && !info.online)
+            return CM1E_ERROR_AXIS_OFFLINE;
+        const bool actual = source == mcActualValue;
+        position[ident - 1] = actual ? info.actual_position : info.set_position;
+        velocity[ident - 1] = actual ? info.actual_velocity : info.set_velocity;
+        *(axis && axes++ < CM1E_PATH_SPACE ? &in_space : &others) += velocity[ident - 1] * velocity[ident - 1];
+    }
+    *path = sqrt(in_space > 0.0 ? in_space : others);
+    return CM1E_OK;
+}

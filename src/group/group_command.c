@@ -1,0 +1,381 @@
+/* Commands of a group: posted by function blocks, known by number, the first of them active. */
+#include "group/group_private.h"
+
+/* ---- records ----------------------------------------------------------------------------------------------------- */
+
+void cm1e_group_record(cm1e_group_t *group, cm1e_command_id_t id, cm1e_command_state_t state, cm1e_error_t error)
+{
+    group->records[id % GROUP_RECORDS] = (group_record_t){.id = id, .state = state, .error = error};
+}
+
+static cm1e_command_id_t first_of(const cm1e_group_t *group)
+{
+    return group->queue.count > 0 ? group->queue.ids[group->queue.first] : 0;
+}
+
+void cm1e_group_finish(cm1e_group_t *group, cm1e_command_id_t id)
+{
+    group_queue_t *queue = &group->queue;
+    if (id == 0 || first_of(group) != id)
+        return;
+    cm1e_group_record(group, id, CM1E_COMMAND_DONE, CM1E_OK);
+    queue->first = (queue->first + 1) % CM1E_GROUP_COMMANDS;
+    queue->count--;
+}
+
+void cm1e_group_end_all(cm1e_group_t *group, cm1e_command_state_t state, cm1e_error_t error)
+{
+    for (int i = 0; i < group->queue.count; i++)
+        cm1e_group_record(group, group->queue.ids[(group->queue.first + i) % CM1E_GROUP_COMMANDS], state, error);
+    group->queue.count = 0;
+    group->stop = 0;
+    group->stop_held = false;
+}
+
+static void enqueue(cm1e_group_t *group, cm1e_command_id_t id)
+{
+    group_queue_t *queue = &group->queue;
+    queue->ids[(queue->first + queue->count++) % CM1E_GROUP_COMMANDS] = id;
+}
+
+cm1e_command_status_t cm1e_group_command_status(const cm1e_group_t *group, cm1e_command_id_t id)
+{
+    if (id != 0 && first_of(group) == id)
+        return (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE};
+    for (int i = 1; i < group->queue.count; i++)
+        if (group->queue.ids[(group->queue.first + i) % CM1E_GROUP_COMMANDS] == id)
+            return (cm1e_command_status_t){.state = CM1E_COMMAND_BUFFERED};
+    const group_record_t *record = &group->records[id % GROUP_RECORDS];
+    if (id == 0 || record->id != id)
+        return (cm1e_command_status_t){.state = CM1E_COMMAND_UNKNOWN};
+    return (cm1e_command_status_t){.state = record->state, .error = record->error};
+}
+
+bool cm1e_group_runs(AXES_GROUP_REF_t reference, cm1e_command_id_t id)
+{
+    const cm1e_group_t *group = cm1e_group_from_reference(&reference);
+    return group && id != 0 && first_of(group) == id;
+}
+
+static cm1e_command_id_t next_id(cm1e_group_t *group)
+{
+    if (++group->last_id == 0)
+        group->last_id = 1; /* 0 is no command */
+    return group->last_id;
+}
+
+/* ---- what a command asks for ------------------------------------------------------------------------------------- */
+
+static cm1e_error_t refuse(cm1e_group_t *group, cm1e_error_t error, double value, const char *why)
+{
+    return cm1e_group_refuse(group, (group_refusal_t){.error = error, .value = value, .why = why});
+}
+
+static bool is_move(cm1e_group_kind_t kind) { return kind < CM1E_GROUP_HALT; }
+static bool is_circle(cm1e_group_kind_t kind)
+{
+    return kind == CM1E_GROUP_CIRCULAR_ABSOLUTE || kind == CM1E_GROUP_CIRCULAR_RELATIVE;
+}
+static bool is_relative(cm1e_group_kind_t kind)
+{
+    return kind == CM1E_GROUP_LINEAR_RELATIVE || kind == CM1E_GROUP_CIRCULAR_RELATIVE;
+}
+static bool is_blending(const cm1e_group_command_t *command) { return command->buffer_mode >= mcBlendingLow; }
+
+static bool is_limit(double value) { return value >= 0.0 && isfinite(value); }
+
+static cm1e_error_t check_modes(cm1e_group_t *group, const cm1e_group_command_t *command)
+{
+    if ((unsigned)command->buffer_mode > mcBlendingHigh)
+        return refuse(group, CM1E_ERROR_AXIS_BUFFER_MODE, 0.0, NULL);
+    if (command->kind == CM1E_GROUP_HALT)
+        return is_blending(command) ? refuse(group, CM1E_ERROR_AXIS_BUFFER_MODE, 0.0,
+                                             "MC_GroupHalt comes to rest: mcAborting, mcBuffered are right.") : CM1E_OK;
+    if (command->coordinates != mcACS)
+        return refuse(group, CM1E_ERROR_GROUP_COORD_SYSTEM, 0.0, NULL);
+    if (command->transition != mcTMNone && command->transition != mcTMCornerDistance &&
+        command->transition != mcTMMaxCornerDeviation)
+        return refuse(group, CM1E_ERROR_GROUP_TRANSITION, 0.0,
+                      "mcTMNone, mcTMCornerDistance and mcTMMaxCornerDeviation are there.");
+    if (is_blending(command) && command->transition != mcTMNone &&
+        !(command->transition_parameter > 0.0 && isfinite(command->transition_parameter)))
+        return refuse(group, CM1E_ERROR_GROUP_TRANSITION, command->transition_parameter,
+                      "TransitionParameter has to be above 0: u before the corner, or away from it.");
+    if (is_circle(command->kind) && command->circ_mode != mcBorder && command->circ_mode != mcCenter)
+        return refuse(group, CM1E_ERROR_UNSUPPORTED, 0.0, "CircMode mcBorder and mcCenter are there.");
+    if (is_circle(command->kind) && command->path_choice != mcClockwise && command->path_choice != mcCounterClockwise)
+        return refuse(group, CM1E_ERROR_INVALID_ARGUMENT, 0.0, "PathChoice is mcClockwise or mcCounterClockwise.");
+    return CM1E_OK;
+}
+
+static cm1e_error_t check(cm1e_group_t *group, const cm1e_group_command_t *command)
+{
+    if (is_move(command->kind) && !is_limit(command->velocity))
+        return refuse(group, CM1E_ERROR_AXIS_VELOCITY_RANGE, command->velocity,
+                      "0 (as much as the axes allow) or more is right.");
+    if ((is_move(command->kind) && !is_limit(command->acceleration)) || !is_limit(command->deceleration) ||
+        !is_limit(command->jerk))
+        return refuse(group, CM1E_ERROR_AXIS_DYNAMICS_RANGE, 0.0,
+                      "Acceleration, Deceleration and Jerk are 0 (as much as the axes allow) or more.");
+    return command->kind == CM1E_GROUP_STOP ? CM1E_OK : check_modes(group, command);
+}
+
+/* ---- where it goes ----------------------------------------------------------------------------------------------- */
+
+/* Where a position of a modulo axis is: its repetition next to where the path ends. */
+static bool on_the_line(const cm1e_axis_t *axis, double from, double *position)
+{
+    const double range = cm1e_axis_configuration(axis)->modulo_range;
+    if (!(range > 0.0))
+        return true;
+    if (!(*position >= 0.0 && *position < range))
+        return false;
+    *position = from + remainder(*position - from, range);
+    return true;
+}
+
+/* Target and auxiliary point by axes of the path, as it counts. `origin`: what relative positions count from. */
+static cm1e_error_t resolve(cm1e_group_t *group, const cm1e_group_command_t *command, const double *origin,
+                            double *target, double *auxiliary)
+{
+    double end[CM1E_PATH_AXES];
+    cm1e_path_end(&group->path, end);
+    for (int i = 0; i < group->axes; i++) {
+        const uint32_t ident = group->ident[i];
+        const cm1e_axis_t *axis = cm1e_group_axis(group, ident);
+        const double add = is_relative(command->kind) ? origin[i] : 0.0;
+        target[i] = add + command->position[ident - 1];
+        auxiliary[i] = add + command->auxiliary[ident - 1];
+        const bool turns = axis && cm1e_axis_configuration(axis)->modulo_range > 0.0;
+        if (turns && is_circle(command->kind) && i < CM1E_PATH_SPACE)
+            return cm1e_group_refuse(group, (group_refusal_t){.error = CM1E_ERROR_GROUP_PATH, .ident = ident,
+                                                              .why = "A circle needs linear axes."});
+        if (turns && !is_relative(command->kind) && !on_the_line(axis, end[i], &target[i]))
+            return cm1e_group_refuse(group, (group_refusal_t){.error = CM1E_ERROR_GROUP_PATH, .ident = ident,
+                                                              .value = target[i],
+                                                              .why = "It is outside the range of this modulo axis."});
+    }
+    return CM1E_OK;
+}
+
+/* MC_Power may permit one direction only. Of a circle the axes in its plane go both ways. */
+static cm1e_error_t check_directions(cm1e_group_t *group, const cm1e_group_command_t *command, const double *target)
+{
+    double end[CM1E_PATH_AXES];
+    cm1e_path_end(&group->path, end);
+    for (int i = 0; i < group->axes; i++) {
+        const cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
+        const bool both = is_circle(command->kind) && i < CM1E_PATH_SPACE;
+        const bool positive = both || target[i] > end[i], negative = both || target[i] < end[i];
+        if (axis && ((positive && !cm1e_axis_may_go(axis, true)) || (negative && !cm1e_axis_may_go(axis, false))))
+            return cm1e_group_refuse(group, (group_refusal_t){.error = CM1E_ERROR_AXIS_DIRECTION_DISABLED,
+                                                              .ident = group->ident[i]});
+    }
+    return CM1E_OK;
+}
+
+static cm1e_error_t refuse_path(cm1e_group_t *group, cm1e_error_t error, const cm1e_path_problem_t *problem)
+{
+    group_refusal_t refusal = {.error = CM1E_ERROR_GROUP_PATH, .path = problem->refusal, .value = problem->position};
+    if (error == CM1E_ERROR_FULL)
+        refusal.error = CM1E_ERROR_FULL;
+    else if (problem->refusal == CM1E_PATH_NO_TRANSITION)
+        refusal.error = CM1E_ERROR_GROUP_TRANSITION;
+    if (problem->refusal == CM1E_PATH_OUT_OF_BOUNDS) {
+        refusal.ident = group->ident[problem->axis];
+        refusal.lower = group->path.config.axis[problem->axis].lowest;
+        refusal.upper = group->path.config.axis[problem->axis].highest;
+    }
+    return cm1e_group_refuse(group, refusal);
+}
+
+static cm1e_path_command_t path_command(const cm1e_group_command_t *command, bool follows, cm1e_command_id_t id)
+{
+    static const cm1e_path_junction_t junctions[] = {
+        [mcTMNone] = CM1E_PATH_EXACT,
+        [mcTMCornerDistance] = CM1E_PATH_CORNER_DISTANCE,
+        [mcTMMaxCornerDeviation] = CM1E_PATH_CORNER_DEVIATION,
+    };
+    const bool blends = follows && is_blending(command);
+    return (cm1e_path_command_t){
+        .limits = {command->velocity, command->acceleration, command->deceleration, command->jerk},
+        .junction = blends ? junctions[command->transition] : CM1E_PATH_STOP,
+        .blend = blends ? (cm1e_path_blend_t)(command->buffer_mode - mcBlendingLow) : CM1E_PATH_BLEND_LOW,
+        .parameter = command->transition_parameter,
+        .tag = id,
+    };
+}
+
+static cm1e_error_t append(cm1e_group_t *group, const cm1e_group_command_t *command, const double *origin,
+                           bool follows, cm1e_command_id_t id)
+{
+    double target[CM1E_PATH_AXES], auxiliary[CM1E_PATH_AXES];
+    const cm1e_path_command_t way = path_command(command, follows, id);
+    cm1e_path_problem_t problem = {.refusal = CM1E_PATH_FINE};
+    cm1e_error_t error = resolve(group, command, origin, target, auxiliary);
+    if (!error)
+        error = check_directions(group, command, target);
+    if (error)
+        return error;
+    if (!is_circle(command->kind))
+        error = cm1e_path_append_line(&group->path, target, &way, &problem);
+    else if (command->circ_mode == mcBorder)
+        error = cm1e_path_append_arc_border(&group->path, auxiliary, target, &way, &problem);
+    else
+        error = cm1e_path_append_arc_centre(&group->path, auxiliary, target, command->path_choice == mcClockwise
+                                            ? CM1E_PATH_CLOCKWISE : CM1E_PATH_COUNTER_CLOCKWISE, &way, &problem);
+    return error ? refuse_path(group, error, &problem) : CM1E_OK;
+}
+
+/* ---- start ------------------------------------------------------------------------------------------------------- */
+
+/* From GroupStandby. */
+static cm1e_error_t begin_move(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)
+{
+    cm1e_error_t error = cm1e_group_begin_path(group);
+    if (!error)
+        error = append(group, command, group->sample.position, false, id);
+    return error ? error : cm1e_group_lead(group, false);
+}
+
+/* Behind those that are there. */
+static cm1e_error_t wait_behind(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)
+{
+    double end[CM1E_PATH_AXES];
+    if (group->queue.count == CM1E_GROUP_COMMANDS)
+        return refuse(group, CM1E_ERROR_FULL, 0.0, NULL);
+    cm1e_path_end(&group->path, end);
+    const cm1e_error_t error = append(group, command, end, !group->halting, id);
+    if (!error && group->halting) /* what is behind the halt does not begin before it has come to rest */
+        cm1e_path_stop(&group->path, group->halt_deceleration, group->halt_jerk);
+    return error;
+}
+
+/* In their place: along the present path to rest, and on from there. A relative line counts from where the axes are
+ * now; a circle, which begins at that rest, counts from there. */
+static cm1e_error_t replace(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)
+{
+    double rest[CM1E_PATH_AXES];
+    const bool halting = group->halting;
+    group->before = group->path;
+    cm1e_group_brake(group, command->deceleration, command->jerk);
+    cm1e_path_end(&group->path, rest);
+    const cm1e_error_t error =
+        append(group, command, is_circle(command->kind) ? rest : group->sample.position, false, id);
+    if (error) {
+        group->path = group->before;
+        group->halting = halting;
+        return error;
+    }
+    cm1e_path_go_on(&group->path);
+    cm1e_group_end_all(group, CM1E_COMMAND_ABORTED, CM1E_OK);
+    return CM1E_OK;
+}
+
+static cm1e_error_t start_move(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)
+{
+    const bool moving = group->state == CM1E_GROUP_MOVING, aborting = command->buffer_mode == mcAborting;
+    const cm1e_error_t error = !moving ? begin_move(group, command, id)
+                               : aborting ? replace(group, command, id) : wait_behind(group, command, id);
+    if (!error)
+        enqueue(group, id);
+    return error;
+}
+
+/* Of a halt that waits its turn is all that is left to do: to be at rest then. */
+static cm1e_error_t start_halt(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)
+{
+    if (group->state == CM1E_GROUP_STANDBY) {
+        cm1e_group_record(group, id, CM1E_COMMAND_DONE, CM1E_OK);
+        return CM1E_OK;
+    }
+    if (command->buffer_mode == mcBuffered) {
+        const cm1e_group_command_t rest = {.kind = CM1E_GROUP_LINEAR_RELATIVE, .buffer_mode = mcBuffered};
+        const cm1e_error_t error = wait_behind(group, &rest, id);
+        if (!error)
+            enqueue(group, id);
+        return error;
+    }
+    cm1e_group_brake(group, command->deceleration, command->jerk);
+    cm1e_group_end_all(group, CM1E_COMMAND_ABORTED, CM1E_OK);
+    group->halting = true;
+    group->halt_deceleration = command->deceleration;
+    group->halt_jerk = command->jerk;
+    enqueue(group, id);
+    return CM1E_OK;
+}
+
+/* Where the group stands, it holds those of its axes that stand, so that nothing else moves them. */
+static void start_stop(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)
+{
+    if (group->state == CM1E_GROUP_STANDBY && cm1e_group_begin_path(group) == CM1E_OK)
+        (void)cm1e_group_lead(group, true);
+    cm1e_group_brake(group, command->deceleration, command->jerk);
+    cm1e_group_end_all(group, CM1E_COMMAND_ABORTED, CM1E_OK);
+    group->stop = id;
+    group->stop_held = true;
+    enqueue(group, id);
+    if (!group->led)
+        cm1e_group_finish(group, id);
+}
+
+static cm1e_error_t start(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)
+{
+    static const group_trigger_t triggers[CM1E_GROUP_KIND_COUNT] = {
+        [CM1E_GROUP_HALT] = TRIGGER_HALT, [CM1E_GROUP_STOP] = TRIGGER_STOP};
+    const group_trigger_t trigger = is_move(command->kind) ? TRIGGER_MOVE : triggers[command->kind];
+    const group_rule_t *rule = cm1e_group_rule(group->state, trigger);
+    if (rule->refusal)
+        return refuse(group, rule->refusal, 0.0, NULL);
+    if (group->state == CM1E_GROUP_STOPPING && group->stop_held)
+        return refuse(group, CM1E_ERROR_GROUP_STOPPING, 0.0, NULL);
+    cm1e_error_t error = check(group, command);
+    if (error)
+        return error;
+    if (group->state == CM1E_GROUP_STANDBY)
+        cm1e_group_let_go(group); /* nobody, unless an axis was left out of its last cycle */
+    if (is_move(command->kind))
+        error = start_move(group, command, id);
+    else if (command->kind == CM1E_GROUP_HALT)
+        error = start_halt(group, command, id);
+    else
+        start_stop(group, command, id);
+    if (!error)
+        group->state = rule->next;
+    return error;
+}
+
+cm1e_error_t cm1e_group_start(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t *id)
+{
+    *id = 0;
+    if ((unsigned)command->kind >= CM1E_GROUP_KIND_COUNT)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    cm1e_group_refresh(group);
+    group->refusal = (group_refusal_t){.error = CM1E_OK};
+    const cm1e_command_id_t number = next_id(group);
+    const cm1e_error_t error = start(group, command, number);
+    if (!error)
+        *id = number;
+    return error;
+}
+
+void cm1e_group_hold_stop(cm1e_group_t *group, cm1e_command_id_t id, bool hold)
+{
+    if (id == 0 || id != group->stop)
+        return;
+    group->stop_held = hold;
+    if (!hold && !group->led && group->state == CM1E_GROUP_STOPPING)
+        group->state = cm1e_group_rule(group->state, TRIGGER_AT_REST)->next;
+}
+
+cm1e_error_t cm1e_group_set_override(cm1e_group_t *group, double velocity)
+{
+    if (!(velocity >= 0.0 && velocity <= 1.0))
+        return CM1E_ERROR_AXIS_OVERRIDE;
+    if (velocity == group->override)
+        return CM1E_OK;
+    group->override = velocity;
+    if (group->led)
+        cm1e_path_override(&group->path, velocity);
+    return CM1E_OK;
+}

@@ -1,0 +1,146 @@
+/*
+ * The motion of a group: a path, a step of it in every cycle, and the axes that ask for their part of it. The first one
+ * that asks makes the step. While the group moves, or holds still in GroupStopping, its axes are led; when all is done
+ * they get a last set-point and stand by themselves.
+ */
+#include "group/group_private.h"
+
+bool cm1e_group_at_rest(const cm1e_group_t *group)
+{
+    return !group->led || group->sample.phase == CM1E_PATH_IDLE || group->sample.phase == CM1E_PATH_STOPPED;
+}
+
+void cm1e_group_brake(cm1e_group_t *group, double deceleration, double jerk)
+{
+    group->halting = false;
+    if (!group->led)
+        return;
+    cm1e_path_stop(&group->path, deceleration, jerk);
+    cm1e_path_clear(&group->path);
+}
+
+/* ---- the cycle --------------------------------------------------------------------------------------------------- */
+
+/* What of the state diagram depends on the motion. */
+static void after_step(cm1e_group_t *group)
+{
+    const cm1e_path_sample_t *sample = &group->sample;
+    for (int i = 0; i < sample->done; i++)
+        cm1e_group_finish(group, sample->done_tags[i]);
+    if (!cm1e_group_at_rest(group))
+        return;
+    if (group->halting) {
+        group->halting = false;
+        cm1e_group_finish(group, group->queue.ids[group->queue.first]);
+        cm1e_path_go_on(&group->path);
+    }
+    if (group->state == CM1E_GROUP_STOPPING && group->queue.count > 0)
+        cm1e_group_finish(group, group->stop);
+    const bool held = group->state == CM1E_GROUP_STOPPING && group->stop_held;
+    if (group->queue.count > 0 || held)
+        return;
+    group->state = cm1e_group_rule(group->state, TRIGGER_AT_REST)->next;
+    group->ending = true;
+}
+
+static cm1e_lead_t next(void *context, uint32_t index, double *position, double *velocity, double *acceleration)
+{
+    cm1e_group_t *group = context;
+    const unsigned bit = 1u << index;
+    if (group->asked == 0 || (group->asked & bit) != 0) {
+        group->asked = 0;
+        if (!group->ending) {
+            cm1e_path_step(&group->path, &group->sample);
+            after_step(group);
+        }
+    }
+    group->asked |= bit;
+    *position = group->sample.position[index];
+    *velocity = group->sample.velocity[index];
+    *acceleration = group->sample.acceleration[index];
+    if (!group->ending)
+        return CM1E_LEAD_ON;
+    group->led &= ~bit;
+    return CM1E_LEAD_LAST;
+}
+
+/* Standing still in GroupStopping an axis may be taken away: there is nothing that could be left. */
+static void lost(void *context, uint32_t index, cm1e_error_t error)
+{
+    cm1e_group_t *group = context;
+    const bool holding = group->state == CM1E_GROUP_STOPPING && cm1e_group_at_rest(group);
+    group->led &= ~(1u << index);
+    if (error || !holding)
+        cm1e_group_fail(group, CM1E_ERROR_GROUP_AXIS, group->ident[index]);
+}
+
+/* All axes tell of a pause before the first of them asks again. */
+static void paused(void *context, uint32_t index)
+{
+    cm1e_group_t *group = context;
+    const unsigned bit = 1u << index;
+    if (group->paused == 0 || (group->paused & bit) != 0) {
+        group->paused = 0;
+        cm1e_path_pause(&group->path);
+    }
+    group->paused |= bit;
+}
+
+/* ---- to take the axes, and to let them go ------------------------------------------------------------------------ */
+
+void cm1e_group_let_go(cm1e_group_t *group)
+{
+    for (int i = 0; i < group->axes; i++) {
+        cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
+        if (axis && (group->led & 1u << i) != 0)
+            cm1e_axis_release(axis);
+    }
+    group->led = 0;
+}
+
+cm1e_error_t cm1e_group_begin_path(cm1e_group_t *group)
+{
+    cm1e_path_config_t config = {.axes = 0};
+    double position[CM1E_PATH_AXES] = {0.0};
+    for (uint32_t ident = 1; ident <= CM1E_GROUP_AXES; ident++) {
+        const cm1e_axis_t *axis = cm1e_group_axis(group, ident);
+        cm1e_motion_limits_t limits;
+        double lowest, highest;
+        if (!axis)
+            continue;
+        cm1e_axis_bounds(axis, &limits, &lowest, &highest);
+        config.axis[config.axes] = (cm1e_path_axis_t){limits.velocity, fmin(limits.acceleration, limits.deceleration),
+                                                      limits.jerk, lowest, highest};
+        config.cycle_s = cm1e_axis_cycle(axis);
+        position[config.axes] = cm1e_axis_place(axis, false);
+        group->ident[config.axes++] = (uint8_t)ident;
+    }
+    group->axes = config.axes;
+    config.space = config.axes < CM1E_PATH_SPACE ? config.axes : CM1E_PATH_SPACE;
+    if (cm1e_path_begin(&group->path, &config, position))
+        return cm1e_group_refuse(group, (group_refusal_t){.error = CM1E_ERROR_GROUP_PATH});
+    cm1e_path_override(&group->path, group->override);
+    group->sample = (cm1e_path_sample_t){.phase = CM1E_PATH_IDLE};
+    for (int i = 0; i < config.axes; i++)
+        group->sample.position[i] = position[i];
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_group_lead(cm1e_group_t *group, bool some)
+{
+    group->led = group->asked = group->paused = 0;
+    group->ending = group->halting = false;
+    for (int i = 0; i < group->axes; i++) {
+        cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
+        const cm1e_axis_leader_t leader = {.next = next, .lost = lost, .paused = paused, .context = group,
+                                           .index = (uint32_t)i};
+        if (axis && cm1e_axis_lead(axis, &leader) == CM1E_OK) {
+            group->led |= 1u << i;
+        } else if (!some) {
+            cm1e_group_let_go(group);
+            return cm1e_group_refuse(group, (group_refusal_t){.error = CM1E_ERROR_GROUP_AXIS,
+                                                              .ident = group->ident[i]});
+        }
+    }
+    return CM1E_OK;
+}
