@@ -124,6 +124,8 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
     cm1e_drive_read(drive, received == CM1E_OK, now_ns);
     if (drive->feedback.fresh)
         cm1e_axis_track(axis);
+    if (axis->observed)
+        cm1e_axis_observe(axis);
     if (axis->probes_armed > 0 && drive->feedback.fresh)
         cm1e_axis_probe_step(axis);
     if (drive->watch.lost || (drive->watch.al_state & 0x0F) == CM1E_AL_INIT)

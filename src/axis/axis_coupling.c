@@ -9,6 +9,7 @@ static const double same_moment = 1e-6; /* cycles */
 cm1e_error_t cm1e_axis_coupling_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {
     axis->coupling = calloc(1, sizeof *axis->coupling);
+    axis->observed = axis->config->type == CM1E_AXIS_ENCODER;
     return axis->coupling ? CM1E_OK : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for what axis \"%s\" "
                                                     "may follow.", axis->config->name);
 }
@@ -88,6 +89,8 @@ static from_t sum_of(const cm1e_axis_t *axis, const from_t *f)
     return sum;
 }
 
+static bool keeps_jerk(const coupling_t *c) { return !c->now->linear && !c->now->by_actual; }
+
 /* How the rest may go on in a cycle: by its plan; planned anew beside what F has come to need, first with all its jerk,
  * which may go against F's; and without any jerk. */
 typedef enum attempt { AS_PLANNED = 0, WITH_ALL_JERK, WITH_JERK_LEFT, WITHOUT_JERK, ATTEMPTS } attempt_t;
@@ -123,7 +126,7 @@ static from_t with_rest(cm1e_axis_t *axis, const from_t *f, guard_t *guard)
         rest->held_back = attempt == WITHOUT_JERK || (attempt > AS_PLANNED && disturbed);
         go_on(axis, f, (attempt_t)attempt);
         sum = sum_of(axis, f);
-        *guard = cm1e_axis_guard(axis, &sum, !axis->coupling->now->linear);
+        *guard = cm1e_axis_guard(axis, &sum, keeps_jerk(axis->coupling));
         if (!guard->limit)
             break;
     }
@@ -188,7 +191,7 @@ bool cm1e_axis_coupled_step(cm1e_axis_t *axis)
     const bool in_step = !c->rest.on;
     const from_t next = in_step ? sum_of(axis, &f) : with_rest(axis, &f, &guard);
     if (in_step)
-        guard = cm1e_axis_guard(axis, &next, !c->now->linear);
+        guard = cm1e_axis_guard(axis, &next, keeps_jerk(c));
     if (guard.limit) {
         cm1e_axis_guard_fail(axis, guard);
         return false;

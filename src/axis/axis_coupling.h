@@ -24,6 +24,7 @@
 #define CM1E_AXIS_AXIS_COUPLING_H
 
 #include "axis/axis_cam.h"
+#include "motion/observer.h"
 
 /** A master as its slave sees it in this cycle, phase shift included. */
 typedef struct sight {
@@ -57,6 +58,7 @@ typedef struct follow {
     bool to_position;              /**< the rest is brought to 0 in its position too (mcRampIn); else lost distance is
                                         not made up, and the anchor takes it in at the end */
     bool in_step;                  /**< F itself is what was commanded: no way into step any more */
+    bool by_actual;                /**< of one master at least: what is seen has no limit of jerk */
     bool waits_for_end;            /**< commands that wait do so until EndOfProfile (cams) instead of InSync */
     bool ended;                    /**< a single-shot cam has come over one of its ends */
     bool linear;                   /**< F's acceleration jumps by its nature: no limit of jerk holds */
@@ -112,6 +114,14 @@ typedef struct phasing {
     double covered;
 } phasing_t;
 
+/** Of this axis, for those that follow its actual value. */
+typedef struct observed {
+    bool begun;
+    cm1e_observer_t filter;
+    from_t now, before;            /**< in this cycle, and in the one before */
+    uint32_t lost;                 /**< cycles in a row without a position */
+} observed_t;
+
 /** Made with the axis. */
 typedef struct coupling {
     follow_t follows[FOLLOWS];     /**< links are in lists: they keep their place */
@@ -120,6 +130,7 @@ typedef struct coupling {
     rest_t rest;
     cm1e_motion_state_t phase;     /**< u of the master: shift of links[0], as long as that one is followed ... */
     phasing_t phasing;             /**< ... and what changes it */
+    observed_t own;
     double f_acceleration;         /**< u/s2; of F, in the last cycle */
     bool synchronizing;            /**< GEAR_IN_POS: StartSync */
     bool end_of_profile;           /**< CAM_IN: F came over it in this cycle */
@@ -165,6 +176,13 @@ bool cm1e_axis_can_couple(cm1e_command_kind_t kind);
 void cm1e_axis_coupled_after_pause(cm1e_axis_t *axis);
 /** In a cycle in which F has begun: its set-point, without going on. */
 void cm1e_axis_coupled_begin(cm1e_axis_t *axis);
+
+/* axis_observe.c */
+/** In every cycle in which somebody may follow its actual value: with the inputs. */
+void cm1e_axis_observe(cm1e_axis_t *axis);
+/** Where it is, or was in the cycle before: for a set-point that is still of that. MASTER_UNSEEN: for too long nothing
+ *  was heard of it. */
+master_trouble_t cm1e_axis_see_actual(cm1e_axis_t *master, bool of_this_cycle, from_t *seen);
 
 /* axis_phasing.c */
 cm1e_error_t cm1e_axis_phasing(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);

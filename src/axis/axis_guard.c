@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_coupling.h"
 
 /* What sums of doubles leave, relative and in counts. */
 static const double slack = 1e-6;
@@ -33,11 +33,12 @@ static guard_t guard_acceleration(const cm1e_axis_t *axis, const from_t *next)
 }
 
 /* What a position may do in a cycle while its velocity changes within these limits. */
-static guard_t guard_step(const cm1e_axis_t *axis, const from_t *next)
+static guard_t guard_step(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
 {
     const double t = axis->cycle_s, step = cm1e_position_minus(next->position, axis->set) / axis->scale;
     const double mean = (axis->set_velocity + next->velocity) * 0.5 * t;
-    const double most = fmax(axis->system.acceleration, axis->system.deceleration) * t * t / 4.0;
+    const double most = fmax(axis->system.acceleration, axis->system.deceleration) * t * t /
+                        (kept_jerk ? 4.0 : 2.0); /* without, it may change at any moment of the cycle */
     /* A double of the whole way has this much noise. */
     const double far = 1e-15 * fabs(cm1e_axis_line(axis, next->position)) + slack_counts / fabs(axis->scale);
     if (!(fabs(step - mean) <= most * (1.0 + slack) + slack * fabs(mean) + far))
@@ -61,7 +62,7 @@ guard_t cm1e_axis_guard(const cm1e_axis_t *axis, const from_t *next, bool kept_j
     const double jerk = fabs(a - axis->set_acceleration) / axis->cycle_s;
     if (kept_jerk && jerk > most->jerk * (1.0 + slack) + slack * most->acceleration / axis->cycle_s)
         return broken(GUARD_JERK, jerk, most->jerk);
-    guard = guard_step(axis, next);
+    guard = guard_step(axis, next, kept_jerk);
     if (guard.limit)
         return guard;
     if (!cm1e_axis_limits_can_stop(axis, line, (cm1e_motion_state_t){0.0, v, a}))
@@ -71,6 +72,7 @@ guard_t cm1e_axis_guard(const cm1e_axis_t *axis, const from_t *next, bool kept_j
 
 void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t guard)
 {
+    guard.by_actual = axis_follows(axis) && axis->coupling->now->by_actual;
     if (axis->state != CM1E_AXIS_ERROR_STOP)
         axis->guard = guard;
     cm1e_axis_fail(axis, CM1E_ERROR_AXIS_COUPLING_LIMIT, guard.asked, guard.allowed);
@@ -96,7 +98,9 @@ void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size)
     snprintf(asked, sizeof asked, said[axis->guard.limit], axis->guard.asked, axis->guard.allowed);
     snprintf(text, size,
              "Axis \"%s\": what it was coupled with, or its axes group, asked it for %s. That set-point was not given to "
-             "the motor, which was braked. Reduce the dynamics of what leads it, or raise the limits of this axis; then "
-             "reset the axis with MC_Reset.",
-             axis->config->name, asked);
+             "the motor, which was braked. Reduce the dynamics of what leads it, or raise the limits of this axis%s; "
+             "then reset the axis with MC_Reset.",
+             axis->config->name, asked,
+             axis->guard.by_actual ? ", or smooth the actual value of its master more (encoder_filter_s of the master)"
+                                   : "");
 }

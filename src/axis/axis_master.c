@@ -97,6 +97,19 @@ static master_trouble_t look_at_set_value(const cm1e_axis_t *master)
     return master->activity == ACTIVITY_FREE ? MASTER_FREE : MASTER_GOOD;
 }
 
+/* A set-point of the slave that has not advanced is that of the cycle before. */
+static master_trouble_t see_actual(link_t *link, position_t *position)
+{
+    from_t seen;
+    const master_trouble_t trouble = cm1e_axis_see_actual(link->master, link->slave->advanced, &seen);
+    if (trouble)
+        return trouble;
+    *position = seen.position;
+    link->seen.velocity = seen.velocity;
+    link->seen.acceleration = seen.acceleration;
+    return MASTER_GOOD;
+}
+
 /* Positions are counted in the master's counts from where the slave began to follow, so that no shift of coordinates is
  * a motion, and none of them is lost however far the master goes. */
 static master_trouble_t see(link_t *link, position_t *position)
@@ -104,6 +117,8 @@ static master_trouble_t see(link_t *link, position_t *position)
     const cm1e_axis_t *master = link->master;
     if (!master)
         return MASTER_GONE;
+    if (link->source == mcActualValue)
+        return see_actual(link, position);
     const master_trouble_t trouble = look_at_set_value(master);
     if (trouble)
         return trouble;
@@ -126,6 +141,8 @@ static bool jumped(const link_t *link, const sight_t *before, double cycle_s)
 {
     const cm1e_axis_t *master = link->master;
     const double way = (link->seen.velocity + before->velocity) / 2.0 * cycle_s;
+    if (link->source == mcActualValue) /* that is for the guard of the slave to say */
+        return false;
     const double corner = fmax(master->system.acceleration, master->system.deceleration) * cycle_s * cycle_s / 2.0;
     return fabs(link->seen.counts - before->counts - way * master->scale) >
            same_way_counts + corner * fabs(master->scale);
@@ -166,12 +183,13 @@ cm1e_error_t cm1e_axis_link(cm1e_axis_t *slave, follow_t *follow, const cm1e_cou
         return CM1E_ERROR_AXIS_COUPLING_CYCLE;
     if (asked->source != mcSetValue && asked->source != mcActualValue)
         return CM1E_ERROR_INVALID_ARGUMENT;
-    if (asked->source != mcSetValue)
-        return CM1E_ERROR_UNSUPPORTED;
     if (slave->advanced && !master->advanced) /* a command that waited begins: the slave's set-point is of this cycle */
         cm1e_axis_advance(master);
     link_t *link = &follow->links[follow->count];
     *link = (link_t){.master = master, .slave = slave, .source = asked->source};
+    if (master->config->type == CM1E_AXIS_ENCODER) /* it has no other */
+        link->source = mcActualValue;
+    follow->by_actual |= link->source == mcActualValue;
     const master_trouble_t trouble = see(link, &link->origin);
     if (trouble) {
         trouble_with(slave, link, trouble);

@@ -351,6 +351,7 @@ typedef enum guard_limit {
 typedef struct guard {
     guard_limit_t limit;
     double asked, allowed; /**< in the units of the limit */
+    bool by_actual;        /**< what asked for it was the actual value of a master */
 } guard_t;
 
 struct cm1e_axis {
@@ -375,6 +376,7 @@ struct cm1e_axis {
     bool position_known, homed;
     bool stop_held;
     bool advanced;                  /**< its set-point is that of this cycle */
+    bool observed;                  /**< somebody follows its actual value, or has; an encoder always is */
     const void *power_owner;
     double cycle_s;
     int64_t profile_cycles;         /**< since it began ... */

@@ -1,0 +1,80 @@
+/*
+ * An axis as those see it that follow its actual value. What comes from an encoder is in whole counts, a cycle old, and
+ * sometimes missing: the filter (motion/observer.h) estimates where the axis is now, as long as no more is missing than
+ * is ridden out elsewhere. Velocity and acceleration are the differences of these positions, for they are what the
+ * slave's motor is given.
+ */
+#include <math.h>
+
+#include "axis/axis_coupling.h"
+
+enum { DEFAULT_FILTER_CYCLES = 4 };
+
+static void look(cm1e_axis_t *axis)
+{
+    observed_t *own = &axis->coupling->own;
+    const cm1e_observed_t seen = cm1e_observer_now(&own->filter);
+    own->before = own->now;
+    own->now.position = cm1e_position_plus((position_t){seen.counts, 0.0}, seen.offset);
+    const double way = cm1e_position_minus(own->now.position, own->before.position) / axis->scale;
+    own->now.velocity = way / axis->cycle_s;
+    own->now.acceleration = (own->now.velocity - own->before.velocity) / axis->cycle_s;
+}
+
+/* Counts/s, of what nobody has looked at before: a motor goes as it is told to, or says how. An encoder is looked at from
+ * its first counts on. */
+static double first_velocity(const cm1e_axis_t *axis)
+{
+    if (axis->config->type == CM1E_AXIS_ENCODER)
+        return 0.0;
+    return axis->activity == ACTIVITY_FREE ? axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis)
+                                           : axis->set_velocity * axis->scale;
+}
+
+static void begin(cm1e_axis_t *axis)
+{
+    observed_t *own = &axis->coupling->own;
+    const double constant_s = axis->config->encoder_filter_s, cycle_s = axis->cycle_s;
+    const double velocity = first_velocity(axis);
+    cm1e_observer_init(&own->filter, cycle_s, constant_s > 0.0 ? constant_s : DEFAULT_FILTER_CYCLES * cycle_s, cycle_s,
+                       axis_actual(axis).counts);
+    own->filter.velocity = velocity;
+    if (axis->activity != ACTIVITY_FREE)
+        own->filter.acceleration = axis->set_acceleration * axis->scale;
+    look(axis);
+    own->now = own->before = (from_t){.position = own->now.position, .velocity = velocity / axis->scale};
+    own->before.position = cm1e_position_plus(own->now.position, -velocity * cycle_s);
+    own->lost = 0;
+    own->begun = axis->observed = true;
+}
+
+void cm1e_axis_observe(cm1e_axis_t *axis)
+{
+    observed_t *own = &axis->coupling->own;
+    const bool fresh = axis->drive.feedback.fresh;
+    const uint32_t limit = cm1e_bus_configuration(axis->drive.bus)->lost_cycles_limit;
+    /* What comes after a homing of the drive, or a long silence, is another place. */
+    const bool anew = !own->begun || axis->activity == ACTIVITY_HOMING || own->lost > limit;
+    if (anew && fresh) {
+        begin(axis);
+        return;
+    }
+    own->lost = fresh ? 0 : own->lost + (own->lost < UINT32_MAX);
+    cm1e_observer_step(&own->filter, axis_actual(axis).counts, fresh);
+    look(axis);
+}
+
+master_trouble_t cm1e_axis_see_actual(cm1e_axis_t *master, bool of_this_cycle, from_t *seen)
+{
+    const observed_t *own = &master->coupling->own;
+    if (master->state == CM1E_AXIS_ERROR_STOP)
+        return MASTER_ERROR_STOP;
+    if (drive_moves(master))
+        return MASTER_HOMING;
+    if (!own->begun && master->drive.feedback.fresh)
+        begin(master);
+    if (!own->begun || own->lost > cm1e_bus_configuration(master->drive.bus)->lost_cycles_limit)
+        return MASTER_UNSEEN;
+    *seen = of_this_cycle ? own->now : own->before;
+    return MASTER_GOOD;
+}
