@@ -183,7 +183,7 @@ static bool is_at_rest(const cm1e_path_t *path)
 static void try_to_go_on(cm1e_path_t *path)
 {
     if (!must_stop(path) && path->stopping && !is_at_rest(path)) /* at rest, the next step goes on */
-        cm1e_path_resume(path);
+        cm1e_path_change_pace(path);
 }
 
 void cm1e_path_override(cm1e_path_t *path, double factor)
@@ -200,7 +200,7 @@ void cm1e_path_override(cm1e_path_t *path, double factor)
     } else if (path->stopping) {
         try_to_go_on(path);
     } else {
-        (void)cm1e_path_plan(path);
+        cm1e_path_change_pace(path);
     }
 }
 
@@ -266,11 +266,15 @@ static void pop(cm1e_path_t *path, cm1e_path_sample_t *sample)
     path->element_count--;
 }
 
-/** `slack`: how near an end is as good as there. */
-static void pop_passed(cm1e_path_t *path, cm1e_path_sample_t *sample, int keep, double slack)
+/** Those that the profile has passed, but not the last one of a run: that ends with the profile. */
+static void pop_passed(cm1e_path_t *path, cm1e_path_sample_t *sample)
 {
-    while (path->element_count > keep && cm1e_path_here(path) >= cm1e_path_element(path, 0)->length - slack)
+    while (path->element_count > 1 && cm1e_path_here(path) >= cm1e_path_element(path, 0)->length) {
+        const cm1e_path_element_t *next = cm1e_path_element(path, 1);
+        if (!next->joined && !(path->stopping && next->passed > 0))
+            break;
         pop(path, sample);
+    }
 }
 
 /** What comes after the end of the profile. FALSE: nothing yet. */
@@ -279,7 +283,9 @@ static bool go_to_next(cm1e_path_t *path, cm1e_path_sample_t *sample)
     const double over_s = path->time_s - path->profile.duration_s;
     path->along = (cm1e_motion_state_t){path->profile.end.position, path->profile.end.velocity, 0};
     if (path->stopping) {
-        pop_passed(path, sample, 0, 1e-12 * path->along.position);
+        const double slack = 1e-12 * path->along.position; /* how near an end is as good as there */
+        while (path->element_count > 0 && cm1e_path_here(path) >= cm1e_path_element(path, 0)->length - slack)
+            pop(path, sample);
         path->time_s = path->profile.duration_s;
         if (path->element_count > 0 && must_stop(path))
             return false;
@@ -346,7 +352,7 @@ void cm1e_path_step(cm1e_path_t *path, cm1e_path_sample_t *sample)
         if (path->time_s >= path->stretch.until_s)
             cm1e_profile_stretch_at(&path->profile, path->time_s, &path->stretch);
         path->along = cm1e_profile_stretch_state(&path->stretch, path->time_s);
-        pop_passed(path, sample, 1, 0);
+        pop_passed(path, sample);
     }
     if (path->element_count > 0)
         fill(path, sample);

@@ -329,24 +329,46 @@ void cm1e_path_point_at(const cm1e_path_piece_t *piece, int axes, double length,
         line_or_arc_at(piece, axes, length, point);
 }
 
-double cm1e_path_deviation(const cm1e_path_piece_t *curve, const cm1e_path_frame_t *frame, const double *junction)
+/** How far a point is from a line or an arc, as if that had no ends, by the axes that measure it. */
+static double distance_from(const cm1e_path_piece_t *piece, const double *point)
+{
+    const double *u = piece->u[0], *v = piece->v[0];
+    const bool arc = piece->kind == CM1E_PATH_ARC;
+    double square = 0, out = 0, along = 0;
+    for (int i = 0; i < piece->measured; i++) {
+        const double from = point[i] - piece->from[i];
+        square += from * from;
+        out += arc ? from * u[i] : 0;
+        along += from * (arc ? v[i] : piece->direction[i]);
+    }
+    if (!arc)
+        return sqrt(fmax(0, square - along * along));
+    const double high = sqrt(fmax(0, square - out * out - along * along)), r = piece->radius;
+    return hypot(high, (out * out + along * along + 2 * r * out) / (hypot(r + out, along) + r));
+}
+
+double cm1e_path_deviation(const cm1e_path_piece_t *curve, const cm1e_path_frame_t *frame,
+                           const cm1e_path_piece_t *before, const cm1e_path_piece_t *after)
 {
     enum { STEPS = 32 };
-    double nearest = INFINITY;
+    double nearest = INFINITY, farthest = 0;
     for (int k = 0; k <= STEPS; k++) {
-        double in_space = 0, aside = 0, x = (double)k / STEPS;
+        const double x = (double)k / STEPS;
+        double point[CM1E_PATH_AXES], in_space = 0, aside = 0;
         for (int i = 0; i < frame->axes; i++) {
-            double position = curve->power[5][i];
+            point[i] = curve->power[5][i];
             for (int j = 4; j >= 0; j--)
-                position = curve->power[j][i] + x * position;
+                point[i] = curve->power[j][i] + x * point[i];
+            const double off = fabs(point[i] - before->to[i]);
             if (i < frame->space)
-                in_space = hypot(in_space, position - junction[i]);
+                in_space += off * off;
             else
-                aside = fmax(aside, fabs(position - junction[i]));
+                aside = fmax(aside, off);
         }
-        nearest = fmin(nearest, fmax(in_space, aside));
+        nearest = fmin(nearest, fmax(sqrt(in_space), aside));
+        farthest = fmax(farthest, fmin(distance_from(before, point), distance_from(after, point)));
     }
-    return nearest;
+    return fmax(nearest, farthest);
 }
 
 /* ---- extent ------------------------------------------------------------------------------------------------------ */

@@ -15,7 +15,10 @@ static const double CORNER = 1e-3;
 static const double NO_STEP = 1e-6;
 
 /** How much of an arc a transition may take (rad), and how far back a corner may turn that it goes round (cosine). */
-static const double MOST_OF_ARC = 0.7, BACK = -0.97;
+static const double MOST_OF_ARC = 0.7, BACK = -0.9;
+
+/** Between the points at which it is measured a curve may be further off. */
+static const double BETWEEN_POINTS = 0.98;
 
 /** Which part of a limit of jerk is for steps of the acceleration. */
 static const double STEP_SHARE = 0.5;
@@ -31,22 +34,15 @@ static void pop_last(cm1e_path_t *path, int count) { path->element_count -= coun
 static cm1e_path_element_t *push(cm1e_path_t *path, const cm1e_path_piece_t *piece, double skipped, double length,
                                  const cm1e_path_command_t *command, double jerk_share)
 {
-    static const cm1e_motion_limits_t all = {INFINITY, INFINITY, INFINITY, INFINITY}, any = {1, 1, 1, 1};
     cm1e_path_element_t *element = cm1e_path_element(path, path->element_count++);
     *element = (cm1e_path_element_t){.piece = piece, .tag = command->tag, .last_of_tag = true, .skipped = skipped,
                                      .length = length};
-    if (piece->length == 0) {
-        element->most = element->limits = any;
-        element->highest = any.velocity;
-        return element;
-    }
-    element->most = cm1e_path_allowed(piece, &path->config, jerk_share, &all);
-    const cm1e_motion_limits_t *wanted = &command->limits;
-    element->limits = cm1e_path_allowed(piece, &path->config, jerk_share, wanted);
-    element->highest = piece->kind == CM1E_PATH_LINE
-                           ? element->most.velocity
-                           : cm1e_path_allowed_velocity(piece, &path->config, jerk_share, &element->limits);
-    element->limits.velocity = wanted->velocity;
+    cm1e_path_allowance_t allowance = {{1, 1, 1, 1}, 1, {1, 1, 1, 1}};
+    if (piece->length > 0)
+        cm1e_path_allow(&allowance, piece, &path->config, jerk_share, &command->limits);
+    element->limits = allowance.limits;
+    element->highest = allowance.highest;
+    element->most = allowance.most;
     return element;
 }
 
@@ -253,15 +249,24 @@ static double reach_of(const cm1e_path_t *path, const cm1e_path_segment_t *befor
     for (int i = 0; i < 2 * TRIES && reach > 0; i++) {
         cm1e_path_make_curve(&segment->transition, &frame, &before->piece, reach, &segment->piece, reach);
         const double deviation =
-            by_distance ? 0 : cm1e_path_deviation(&segment->transition, &frame, before->piece.to);
-        if (deviation > segment->command.parameter)
-            reach *= 0.999 * segment->command.parameter / deviation;
+            by_distance ? 0
+                        : cm1e_path_deviation(&segment->transition, &frame, &before->piece, &segment->piece);
+        if (deviation > BETWEEN_POINTS * segment->command.parameter)
+            reach *= 0.999 * BETWEEN_POINTS * segment->command.parameter / deviation;
         else if (!within_bounds(path, &segment->transition))
             reach /= 2;
         else
             return reach;
     }
     return 0;
+}
+
+/** The least time from rest over a way. */
+static double least_time(const cm1e_path_element_t *element, double way)
+{
+    const double velocity = fmin(element->highest, element->limits.velocity);
+    return fmax(way / velocity, fmax(sqrt(2 * way / element->limits.acceleration),
+                                     isinf(element->limits.jerk) ? 0 : cbrt(6 * way / element->limits.jerk)));
 }
 
 static bool try_transition(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_segment_t *segment, double reach)
@@ -279,10 +284,12 @@ static bool try_transition(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_
     cm1e_path_element_t *curve = push(path, &segment->transition, 0, segment->transition.length, &command, 1);
     curve->last_of_tag = false;
     set_entry(path, last + 1, fmin(curve->highest, element->highest), junction);
+    const double slow = curve->length / fmin(curve->highest, junction);
     const double rest = segment->piece.length - reach;
     cm1e_path_element_t *main = push(path, &segment->piece, reach, rest, &segment->command, 1);
     set_entry(path, last + 2, fmin(curve->highest, main->highest), junction);
-    for (int i = 0; i < 3; i++) {
+    const bool worth = slow <= least_time(&saved, reach) + least_time(main, reach); /* or it is sooner to stop */
+    for (int i = 0; worth && i < 3; i++) {
         if (cm1e_path_plan(path))
             return true;
         curve->joined = false;

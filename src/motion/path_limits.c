@@ -9,10 +9,13 @@
 
 #include "motion/path_piece.h"
 
-enum { CURVE_STEPS = 24, BENDS_MAX = (CURVE_STEPS + 1) * CM1E_PATH_AXES, SOLVER_STEPS = 40 };
+enum { STEPS_LEAST = 24, STEPS_MOST = 96, BENDS_MAX = (STEPS_MOST + 1) * CM1E_PATH_AXES, SOLVER_STEPS = 40 };
 
 /** Between the points of a curve that are looked at it may bend more by this much. */
 static const double BETWEEN_POINTS = 1.01;
+
+/** What rounding makes of a limit that is used up. */
+static const double ROUNDING = 1e-9;
 
 /** Sizes of the derivatives of an axis by the length, and its limits. */
 typedef struct {
@@ -41,15 +44,26 @@ static void add(bends_t *bends, const cm1e_path_axis_t *axis, double share, cons
     }
 }
 
+/** The sharper a curve turns, the shorter is the way over the middle of its parameter. */
+static int steps_over(const cm1e_path_piece_t *curve)
+{
+    double shortest = INFINITY;
+    for (int i = 0; i < CM1E_PATH_KNOTS; i++)
+        shortest = fmin(shortest, curve->at[i + 1] - curve->at[i]);
+    const double steps = STEPS_LEAST / 2 * curve->length / CM1E_PATH_KNOTS / shortest;
+    return (int)fmin(fmax(steps, STEPS_LEAST), STEPS_MOST);
+}
+
 static void look(bends_t *bends, const cm1e_path_piece_t *piece, const cm1e_path_config_t *config, double share)
 {
     bends->straight = (cm1e_motion_limits_t){INFINITY, INFINITY, INFINITY, INFINITY};
     bends->round = piece->kind == CM1E_PATH_ARC;
     bends->count = 0;
     if (piece->kind == CM1E_PATH_CURVE) {
-        for (int k = 0; k <= CURVE_STEPS; k++) {
+        const int steps = steps_over(piece);
+        for (int k = 0; k <= steps; k++) {
             double by_length[3][CM1E_PATH_AXES];
-            cm1e_path_curve_derivatives(piece, config->axes, (double)k / CURVE_STEPS, by_length);
+            cm1e_path_curve_derivatives(piece, config->axes, (double)k / steps, by_length);
             for (int i = 0; i < config->axes; i++)
                 add(bends, &config->axis[i], share,
                     &(bend_t){BETWEEN_POINTS * fabs(by_length[0][i]), BETWEEN_POINTS * fabs(by_length[1][i]),
@@ -84,19 +98,19 @@ static double velocity_with(const bends_t *bends, double velocity, double a, dou
 {
     for (int i = 0; i < bends->count; i++) {
         const bend_t *bend = &bends->bend[i];
-        if (acceleration_of(bends, bend, velocity, a) > bend->acceleration) {
+        const double acceleration = bend->acceleration * (1 + ROUNDING), jerk = bend->jerk * (1 + ROUNDING);
+        if (acceleration_of(bends, bend, velocity, a) > acceleration) {
             const double along = bend->first * a;
-            const double across = bends->round
-                                      ? sqrt(fmax(0, (bend->acceleration - along) * (bend->acceleration + along)))
-                                      : fmax(0, bend->acceleration - along);
+            const double across = bends->round ? sqrt(fmax(0, (acceleration - along) * (acceleration + along)))
+                                               : fmax(0, acceleration - along);
             velocity = sqrt(across / bend->second);
         }
-        if (jerk_of(bends, bend, velocity, a, j) <= bend->jerk)
+        if (jerk_of(bends, bend, velocity, a, j) <= jerk)
             continue;
         double low = 0, high = velocity;
         for (int k = 0; k < SOLVER_STEPS && high - low > 1e-6 * high; k++) {
             const double middle = (low + high) / 2;
-            if (jerk_of(bends, bend, middle, a, j) <= bend->jerk)
+            if (jerk_of(bends, bend, middle, a, j) <= jerk)
                 low = middle;
             else
                 high = middle;
@@ -114,19 +128,16 @@ static cm1e_motion_limits_t lower(const cm1e_motion_limits_t *a, const cm1e_moti
                                   fmin(a->deceleration, share * b->deceleration), fmin(a->jerk, share * b->jerk)};
 }
 
-cm1e_motion_limits_t cm1e_path_allowed(const cm1e_path_piece_t *piece, const cm1e_path_config_t *config,
-                                       double jerk_share, const cm1e_motion_limits_t *wanted)
+static cm1e_motion_limits_t choose(const bends_t *bends, double length, const cm1e_motion_limits_t *wanted)
 {
     static const double shares[] = {1, 0.7, 0.5, 0.35, 0.2, 0.1, 0.03};
-    bends_t bends;
-    look(&bends, piece, config, jerk_share);
-    cm1e_motion_limits_t best = lower(wanted, &bends.straight, 1);
+    cm1e_motion_limits_t best = lower(wanted, &bends->straight, 1);
     const double velocity = best.velocity;
     double soonest = INFINITY;
-    for (size_t i = 0; bends.count > 0 && i < sizeof shares / sizeof *shares; i++) {
-        cm1e_motion_limits_t limits = lower(wanted, &bends.straight, shares[i]);
-        limits.velocity = velocity_with(&bends, velocity, larger(&limits), limits.jerk);
-        const double time = piece->length / limits.velocity + limits.velocity / larger(&limits) / 2 +
+    for (size_t i = 0; bends->count > 0 && i < sizeof shares / sizeof *shares; i++) {
+        cm1e_motion_limits_t limits = lower(wanted, &bends->straight, shares[i]);
+        limits.velocity = velocity_with(bends, velocity, larger(&limits), limits.jerk);
+        const double time = length / limits.velocity + limits.velocity / larger(&limits) / 2 +
                             (isinf(limits.jerk) ? 0 : larger(&limits) / limits.jerk / 2);
         if (time < soonest) {
             soonest = time;
@@ -138,10 +149,15 @@ cm1e_motion_limits_t cm1e_path_allowed(const cm1e_path_piece_t *piece, const cm1
     return best;
 }
 
-double cm1e_path_allowed_velocity(const cm1e_path_piece_t *piece, const cm1e_path_config_t *config, double jerk_share,
-                                  const cm1e_motion_limits_t *limits)
+void cm1e_path_allow(cm1e_path_allowance_t *allowance, const cm1e_path_piece_t *piece,
+                     const cm1e_path_config_t *config, double jerk_share, const cm1e_motion_limits_t *wanted)
 {
+    static const cm1e_motion_limits_t all = {INFINITY, INFINITY, INFINITY, INFINITY};
     bends_t bends;
     look(&bends, piece, config, jerk_share);
-    return velocity_with(&bends, bends.straight.velocity, larger(limits), limits->jerk);
+    allowance->most = choose(&bends, piece->length, &all);
+    allowance->limits = choose(&bends, piece->length, wanted);
+    allowance->highest = velocity_with(&bends, bends.straight.velocity, larger(&allowance->limits),
+                                       allowance->limits.jerk);
+    allowance->limits.velocity = wanted->velocity;
 }

@@ -27,9 +27,10 @@ bool cm1e_path_make_centre_arc(cm1e_path_piece_t *piece, const cm1e_path_frame_t
  *  curvature there. */
 void cm1e_path_make_curve(cm1e_path_piece_t *piece, const cm1e_path_frame_t *frame, const cm1e_path_piece_t *before,
                           double leave, const cm1e_path_piece_t *after, double enter);
-/** How far a curve stays from the junction that it goes round: the larger of the distance in space and that of any
- *  further axis, where it is nearest. */
-double cm1e_path_deviation(const cm1e_path_piece_t *curve, const cm1e_path_frame_t *frame, const double *junction);
+/** How far a curve stays away: from the junction that it goes round, the larger of the distance in space and that of
+ *  any further axis where it is nearest; or from the nearer of both pieces, where that is more. */
+double cm1e_path_deviation(const cm1e_path_piece_t *curve, const cm1e_path_frame_t *frame,
+                           const cm1e_path_piece_t *before, const cm1e_path_piece_t *after);
 
 void cm1e_path_point_at(const cm1e_path_piece_t *piece, int axes, double length, cm1e_path_point_t *point);
 /** What of an axis the piece covers; of a curve at least that. */
@@ -40,12 +41,15 @@ void cm1e_path_extent(const cm1e_path_piece_t *piece, const cm1e_path_frame_t *f
 void cm1e_path_curve_derivatives(const cm1e_path_piece_t *curve, int axes, double x,
                                  double by_length[3][CM1E_PATH_AXES]);
 
-/** What may be had along the piece of these limits so that every axis keeps its own, whatever the motion does within
- *  them. Any of `wanted` may be INFINITY. */
-cm1e_motion_limits_t cm1e_path_allowed(const cm1e_path_piece_t *piece, const cm1e_path_config_t *config,
-                                       double jerk_share, const cm1e_motion_limits_t *wanted);
-/** The highest velocity for which that holds with the other limits as they are. */
-double cm1e_path_allowed_velocity(const cm1e_path_piece_t *piece, const cm1e_path_config_t *config, double jerk_share,
-                                  const cm1e_motion_limits_t *limits);
+/** What may be had along a piece so that every axis keeps its own limits, whatever the motion does within them. */
+typedef struct cm1e_path_allowance {
+    cm1e_motion_limits_t limits; /**< of what is wanted, but for the velocity */
+    double highest;              /**< the velocity with them */
+    cm1e_motion_limits_t most;   /**< when nothing is wanted but to be soon through */
+} cm1e_path_allowance_t;
+
+/** `jerk_share`: of the axes' limits. Any of `wanted` may be INFINITY. */
+void cm1e_path_allow(cm1e_path_allowance_t *allowance, const cm1e_path_piece_t *piece,
+                     const cm1e_path_config_t *config, double jerk_share, const cm1e_motion_limits_t *wanted);
 
 #endif

@@ -37,6 +37,14 @@ cm1e_path_run_t cm1e_path_run(cm1e_path_t *path, int first, int until)
 
 /* ---- looking ahead ----------------------------------------------------------------------------------------------- */
 
+/** How fast a run may begin and end as the commands want it: beyond its own velocity only where it is of one segment,
+ *  or another one would be passed too fast. */
+static double most_at_ends(cm1e_path_t *path, int first, const cm1e_path_run_t *run)
+{
+    const bool one = cm1e_path_element(path, first)->tag == cm1e_path_element(path, first + run->count - 1)->tag;
+    return one ? run->highest : run->limits.velocity;
+}
+
 static void look_ahead(cm1e_path_t *path, int first)
 {
     double soft = 0, hard = 0;
@@ -48,10 +56,10 @@ static void look_ahead(cm1e_path_t *path, int first)
             break;
         cm1e_path_element_t *element = cm1e_path_element(path, start);
         const cm1e_path_run_t run = cm1e_path_run(path, start, last);
-        soft = fmin(soft, run.highest);
+        const double ends = most_at_ends(path, start, &run), most = fmin(element->passed, run.highest);
+        const double wanted = fmin(fmin(most, ends), factor(path) * element->junction);
+        soft = fmin(soft, ends);
         hard = fmin(hard, run.highest);
-        const double most = fmin(element->passed, run.highest);
-        const double wanted = fmin(most, factor(path) * element->junction);
         element->hard_entry = cm1e_profile_entry_velocity(run.length, most, hard, &run.limits);
         element->hard_entry = fmin(element->hard_entry, most);
         element->entry = cm1e_profile_entry_velocity(run.length, wanted, soft, &run.limits);
@@ -64,55 +72,63 @@ static void look_ahead(cm1e_path_t *path, int first)
 
 /* ---- one run ----------------------------------------------------------------------------------------------------- */
 
-static double fastest(const cm1e_profile_t *profile)
+static void velocities(const cm1e_profile_t *profile, double *lowest, double *highest)
 {
-    double velocity = profile->end.velocity;
+    *lowest = *highest = profile->end.velocity;
     for (int i = 0; i < profile->segment_count; i++) {
         const cm1e_profile_segment_t *segment = &profile->segments[i];
         const double end_s = i + 1 < profile->segment_count ? segment[1].start_s : profile->duration_s;
-        const double a = segment->start.acceleration, j = segment->jerk;
-        velocity = fmax(velocity, segment->start.velocity);
-        if (a > 0 && j < 0 && -a / j < end_s - segment->start_s)
-            velocity = fmax(velocity, segment->start.velocity - a * a / j / 2);
+        const double v = segment->start.velocity, a = segment->start.acceleration, j = segment->jerk;
+        const bool turns = a * j < 0 && -a / j < end_s - segment->start_s;
+        const double turn = turns ? v - a * a / j / 2 : v;
+        *lowest = fmin(*lowest, fmin(v, turn));
+        *highest = fmax(*highest, fmax(v, turn));
     }
-    return velocity;
 }
 
 /** Whether it goes ahead only, not beyond its end and not too fast. */
 static bool keeps(const cm1e_profile_t *profile, const cm1e_motion_state_t *start, double end, double highest)
 {
-    double low, high;
+    double low, high, slowest, fastest;
     cm1e_profile_extent(profile, &low, &high);
+    velocities(profile, &slowest, &fastest);
     const double slack = AS_LONG * (end - start->position);
-    return low >= start->position - slack && high <= end + slack && fastest(profile) <= highest * (1 + 1e-9);
+    return high <= end + slack && slowest >= -AS_LONG * highest && fastest <= highest * (1 + AS_LONG);
 }
 
-static bool plan_to(cm1e_profile_t *profile, const cm1e_motion_state_t *start, const cm1e_path_run_t *run, double exit)
+static double eased(const cm1e_motion_state_t *start, double jerk)
 {
-    const double highest = fmax(run->highest, start->velocity);
+    return start->velocity + start->acceleration * (fabs(start->acceleration) / jerk) / 2;
+}
+
+static bool plan_to(cm1e_profile_t *profile, const cm1e_motion_state_t *start, const cm1e_path_run_t *run, double exit,
+                    double highest)
+{
     return !cm1e_profile_to_state(profile, start, run->length, exit, &run->limits) &&
            keeps(profile, start, run->length, highest);
 }
 
-/** From a state on the run to its end, to leave it with `soft`, or as near to that as can be, but not beyond `hard`. */
+/** From a state on the run to its end, to leave it with `soft`, or as near to that as can be, but not beyond `hard`.
+ *  `faster`: it may get faster than the command says as long as its acceleration is brought to 0. */
 static bool plan_run(cm1e_profile_t *profile, const cm1e_motion_state_t *start, const cm1e_path_run_t *run, double soft,
-                     double hard)
+                     double hard, bool faster)
 {
+    const double ease = eased(start, run->limits.jerk), commanded = fmax(run->limits.velocity, soft);
+    const double highest = fmax(fmax(commanded, start->velocity), faster ? fmin(ease, run->highest) : 0);
     const double exit = cm1e_profile_passing_velocity(start, run->length, soft, &run->limits);
-    if (plan_to(profile, start, run, exit))
+    if (plan_to(profile, start, run, exit, highest))
         return true;
     /* Too fast to come down to that. */
-    const double eased = start->velocity + start->acceleration * (fabs(start->acceleration) / run->limits.jerk) / 2;
-    double high = fmin(hard, fmax(eased, soft)), low = soft;
-    if (!plan_to(profile, start, run, high)) {
+    double high = fmin(hard, fmax(ease, soft)), low = soft;
+    if (!plan_to(profile, start, run, high, highest)) {
         high = fmin(hard, start->velocity);
-        if (!plan_to(profile, start, run, high))
+        if (!plan_to(profile, start, run, high, highest))
             return false;
     }
     for (int i = 0; i < SLOWEST_STEPS && high - low > 1e-3 * high; i++) {
         const double middle = (low + high) / 2;
         cm1e_profile_t slower;
-        if (plan_to(&slower, start, run, middle)) {
+        if (plan_to(&slower, start, run, middle, highest)) {
             *profile = slower;
             high = middle;
         } else {
@@ -122,11 +138,13 @@ static bool plan_run(cm1e_profile_t *profile, const cm1e_motion_state_t *start, 
     return true;
 }
 
-static void exits(cm1e_path_t *path, const cm1e_path_run_t *run, int next, double *soft, double *hard)
+/** How fast to leave the run that begins with that element. */
+static void exits(cm1e_path_t *path, int first, const cm1e_path_run_t *run, double *soft, double *hard)
 {
+    const int next = first + run->count;
     *soft = *hard = 0;
     if (next < path->element_count) {
-        *soft = fmin(cm1e_path_element(path, next)->entry, run->highest);
+        *soft = fmin(cm1e_path_element(path, next)->entry, most_at_ends(path, first, run));
         *hard = fmin(cm1e_path_element(path, next)->hard_entry, run->highest);
     }
 }
@@ -141,11 +159,11 @@ static void follow(cm1e_path_t *path, const cm1e_profile_t *profile, const cm1e_
 }
 
 /** FALSE: nothing has changed. */
-static bool plan_anew(cm1e_path_t *path, const cm1e_path_run_t *run, double soft, double hard)
+static bool plan_anew(cm1e_path_t *path, const cm1e_path_run_t *run, double soft, double hard, bool faster)
 {
     const cm1e_motion_state_t start = {cm1e_path_here(path), path->along.velocity, path->along.acceleration};
     cm1e_profile_t profile;
-    if (!plan_run(&profile, &start, run, soft, hard))
+    if (!plan_run(&profile, &start, run, soft, hard, faster))
         return false;
     follow(path, &profile, &start);
     path->stopping = false;
@@ -159,19 +177,19 @@ bool cm1e_path_plan(cm1e_path_t *path)
     if (path->stopping || run.count == 0)
         return true;
     double soft, hard;
-    exits(path, &run, run.count, &soft, &hard);
-    return plan_anew(path, &run, soft, hard) ||
+    exits(path, 0, &run, &soft, &hard);
+    return plan_anew(path, &run, soft, hard, false) ||
            (fabs(path->profile.end.position - path->begin - run.length) <= AS_LONG * run.length &&
-            path->profile.end.velocity <= hard * (1 + 1e-9));
+            path->profile.end.velocity <= hard * (1 + AS_LONG));
 }
 
-void cm1e_path_resume(cm1e_path_t *path)
+void cm1e_path_change_pace(cm1e_path_t *path)
 {
     const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
     look_ahead(path, run.count);
     double soft, hard;
-    exits(path, &run, run.count, &soft, &hard);
-    (void)plan_anew(path, &run, soft, hard);
+    exits(path, 0, &run, &soft, &hard);
+    (void)plan_anew(path, &run, soft, hard, true);
 }
 
 /* ---- stopping ---------------------------------------------------------------------------------------------------- */
@@ -207,11 +225,6 @@ static bool stop_keeps(cm1e_path_t *path, const cm1e_profile_t *stop, const cm1e
     return true;
 }
 
-static double fastest_from(const cm1e_motion_state_t *start, double jerk)
-{
-    return start->velocity + fmax(0, start->acceleration) * (fmax(0, start->acceleration) / jerk) / 2;
-}
-
 static bool find_stop(cm1e_path_t *path, double deceleration, double jerk, cm1e_profile_t *stop,
                       const cm1e_motion_state_t *start)
 {
@@ -220,7 +233,7 @@ static bool find_stop(cm1e_path_t *path, double deceleration, double jerk, cm1e_
     double length = 0;
     for (int i = 0; i < path->element_count; i++) {
         const cm1e_path_element_t *element = cm1e_path_element(path, i);
-        const bool quick = fastest_from(start, jerk) <= element->most.velocity &&
+        const bool quick = fmax(start->velocity, eased(start, jerk)) <= element->most.velocity &&
                            fabs(start->acceleration) <= element->most.acceleration;
         const cm1e_motion_limits_t *most = quick ? &element->most : &element->limits;
         if (i >= run.count && element->passed == 0)
@@ -291,10 +304,10 @@ void cm1e_path_cut(cm1e_path_t *path)
             break;
         }
         double soft, hard;
+        exits(path, next, &run, &soft, &hard);
         next += run.count;
         begin += run.length;
-        exits(path, &run, next, &soft, &hard);
-        if (!plan_run(&profile, &start, &run, soft, hard))
+        if (!plan_run(&profile, &start, &run, soft, hard, false))
             return;
         start.velocity = profile.end.velocity;
     }

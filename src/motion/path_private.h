@@ -35,8 +35,8 @@ void cm1e_path_join(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_se
 /** Looks ahead and plans the way from here to the end of the run anew. FALSE: that cannot be done; the motion under way
  *  is as it was, and so it is a plan only if nothing of it has been changed. */
 bool cm1e_path_plan(cm1e_path_t *path);
-/** Plans the way on from within a stop, if that can be done. */
-void cm1e_path_resume(cm1e_path_t *path);
+/** Plans the way on with another override, or from within a stop, if that can be done. */
+void cm1e_path_change_pace(cm1e_path_t *path);
 /** Tries to begin with the stop that is wanted. */
 bool cm1e_path_plan_stop(cm1e_path_t *path);
 /** Cuts the path off where it can be at rest. */
