@@ -150,7 +150,7 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
         return axis->activity == ACTIVITY_PROFILE;
     if (axis->active && is_endless(axis->kind)) {
         if (cm1e_axis_begin_waiting(axis, &end, late_s))
-            return true;
+            return axis->activity == ACTIVITY_PROFILE; /* not what follows a master */
         axis->reached = true;
         axis->move.passing = true; /* the position lies behind now, whatever else changes */
         return true;

@@ -206,12 +206,13 @@ static bool is_deaf(void) { return bench.health != CM1E_OK; }
 static void judge_motor(void)
 {
     const cm1e_bus_t *bus = motor_of(judged_at);
-    const bool holding = bus->state == OPERATION_ENABLED && bus->mode == CM1E_MODE_CSP &&
-                         fake_find(&bus->rx, OBJ_607A_TARGET_POSITION).bytes;
+    const cm1e_image_slot_t slot =
+        cm1e_bus_find_output(&bench.bus, (uint16_t)(judged_at + 1), OBJ_607A_TARGET_POSITION, 0);
+    const bool holding = bus->state == OPERATION_ENABLED && bus->mode == CM1E_MODE_CSP && slot.bytes;
     if (!holding || bus->blocked)
         return;
     const double fastest = judged.axis->maximum.velocity * fabs(judged.axis->scale) * (double)judged.cycle_ns * 1e-9;
-    const uint32_t target = (uint32_t)judged.axis->drive.command.target_position;
+    const uint32_t target = (uint32_t)cm1e_get_uint(bench.bus.outputs + slot.offset, slot.bytes);
     const double off = (double)(int32_t)(target - (uint32_t)bus->position);
     MUST(fabs(off) <= fastest + 1.01 + judged.axis->max_lag * fabs(judged.axis->scale),
          "the target is %.0f counts from the motor", off);
