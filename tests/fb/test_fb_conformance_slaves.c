@@ -122,7 +122,7 @@ START_TEST(test_follower_is_aborted_by_every_block_that_moves)
 }
 END_TEST
 
-/** The waiting one begins when the follower is in step, or, of a single cam, at its end; in any mode but mcAborting. */
+/** The waiting one begins when the follower is in step, of a cam at its EndOfProfile; in any mode but mcAborting. */
 START_TEST(test_block_that_waits_behind_a_follower_begins_when_it_is_in_step)
 {
     const char *next = movers[_i];
@@ -130,7 +130,7 @@ START_TEST(test_block_that_waits_behind_a_follower_begins_when_it_is_in_step)
         return;
     for (int mode = mcBuffered; mode <= mcBlendingHigh; mode++)
         FOR_EACH_PHASE (name, phase, next) {
-            if (strcmp(name, "MC_CamIn") == 0 || phase == WAITING)
+            if (phase == WAITING)
                 continue;
             make_follower(&other, next);
             if (other.view->buffer_mode == NOWHERE)
@@ -217,25 +217,23 @@ END_TEST
 /* ---- losses ------------------------------------------------------------------------------------------------------ */
 
 typedef enum loss {
-    SLAVE_OFF = 0, SLAVE_FAULT, SLAVE_WITHOUT_VOLTAGE, SLAVE_GONE,
-    MASTER_OFF, MASTER_FAULT, MASTER_WITHOUT_VOLTAGE, MASTER_GONE, MASTER_HOMES, LOSSES
+    LOSS_SLAVE_OFF = 0, LOSS_SLAVE_FAULT, LOSS_SLAVE_VOLTAGE, LOSS_SLAVE_GONE,
+    LOSS_MASTER_OFF, LOSS_MASTER_FAULT, LOSS_MASTER_VOLTAGE, LOSS_MASTER_GONE, LOSSES
 } loss_t;
 static const char *const loss_names[] = {"slave off", "slave: fault", "slave: no voltage", "slave gone", "master off",
-                                         "master: fault", "master: no voltage", "master gone", "master homes"};
+                                         "master: fault", "master: no voltage", "master gone"};
 
 static void strike(loss_t loss)
 {
-    const int n = loss >= MASTER_OFF;
+    const int n = loss >= LOSS_MASTER_OFF;
     switch (loss) {
-    case SLAVE_OFF:
-    case MASTER_OFF: axes_power(n, false); break;
-    case SLAVE_FAULT:
-    case MASTER_FAULT: fake_bus_fault(axes_motor(n), 0x2310); break;
-    case SLAVE_WITHOUT_VOLTAGE:
-    case MASTER_WITHOUT_VOLTAGE: axes_motor(n)->power = false; break;
-    case SLAVE_GONE:
-    case MASTER_GONE: axes_motor(n)->watch = (cm1e_slave_watch_t){.al_state = CM1E_AL_PRE_OP}; break;
-    default: made_about(1, -1, &more[0], "MC_Halt"), trigger(&more[0], true); break;
+    case LOSS_SLAVE_OFF:
+    case LOSS_MASTER_OFF: axes_power(n, false); break;
+    case LOSS_SLAVE_FAULT:
+    case LOSS_MASTER_FAULT: fake_bus_fault(axes_motor(n), 0x2310); break;
+    case LOSS_SLAVE_VOLTAGE:
+    case LOSS_MASTER_VOLTAGE: axes_motor(n)->power = false; break;
+    default: axes_motor(n)->watch = (cm1e_slave_watch_t){.al_state = CM1E_AL_PRE_OP}; break;
     }
 }
 
@@ -243,7 +241,7 @@ static void strike(loss_t loss)
 static void check_slave_lost(loss_t loss)
 {
     cycles(40);
-    const bool off = loss == SLAVE_OFF;
+    const bool off = loss == LOSS_SLAVE_OFF;
     MUST(axes_state(0) == (off ? CM1E_AXIS_DISABLED : CM1E_AXIS_ERROR_STOP), "the slave is in %s",
          cm1e_axis_state_name(axes_state(0)));
     MUST(follower.now.aborted == off && follower.now.error == !off && !follower.now.busy,
@@ -274,17 +272,45 @@ static void check_master_lost(phase_t phase)
 START_TEST(test_loss_of_an_axis_in_every_phase)
 {
     const loss_t loss = (loss_t)_i;
-    if (loss == MASTER_HOMES)
-        return;
     FOR_EACH_PHASE (name, phase, loss_names[loss]) {
-        if (loss >= MASTER_OFF && phase == BEFORE_THE_WAY)
+        if (loss >= LOSS_MASTER_OFF && phase == BEFORE_THE_WAY)
             continue; /* it may still go on by its motion before: tested where it is made */
         strike(loss);
-        if (loss < MASTER_OFF)
+        if (loss < LOSS_MASTER_OFF)
             check_slave_lost(loss);
         else
             check_master_lost((phase_t)phase);
     }
+}
+END_TEST
+
+/** The drive moves a master that homes, so it has no set value; other coordinates are no motion. */
+START_TEST(test_master_that_is_homed_is_lost_and_one_that_is_renamed_is_not)
+{
+    FOR_EACH_PHASE (name, phase, "MC_SetPosition of master and slave") {
+        if (phase != IN_STEP)
+            continue;
+        const double velocity = axes_info(0).set_velocity;
+        for (int n = 0; n < 2; n++) {
+            made_about(n, -1, &more[n], "MC_SetPosition");
+            put(&more[n], "Position", 1000.0 * (n + 1));
+            trigger(&more[n], true);
+        }
+        cycles(2);
+        MUST(more[0].now.done && more[1].now.done, "Error 0x%04X, 0x%04X", more[0].now.error_id, more[1].now.error_id);
+        cycles(50);
+        MUST(follower.now.reached && (fabs(axes_info(0).set_velocity - velocity) < 1e-6 || is(&follower, "MC_CamIn")),
+             "velocity %g instead of %g", axes_info(0).set_velocity, velocity);
+    }
+    snprintf(judged_axes[0].scene, sizeof judged_axes[0].scene, "the master homes");
+    slaves_begin(2);
+    make_and_start(0, 1, &follower, "MC_GearIn");
+    CYCLE_UNTIL(follower.now.reached);
+    make_and_start(1, -1, &other, "MC_Home");
+    MUST(other.now.busy, "Error 0x%04X: %s", other.now.error_id, axes_text(1));
+    CYCLE_UNTIL(!follower.now.busy);
+    MUST(follower.now.error && axes_axis(0)->error == CM1E_ERROR_AXIS_MASTER_LOST, "Error 0x%04X",
+         follower.now.error_id);
 }
 END_TEST
 
@@ -650,6 +676,7 @@ int main(void)
         test_follower_goes_on_when_its_block_is_gone,
         test_instance_serves_one_slave_after_the_other,
         test_slave_follows_again_after_reset,
+        test_master_that_is_homed_is_lost_and_one_that_is_renamed_is_not,
         test_order_of_calls_and_of_axes_does_not_matter,
         test_nobody_follows_itself,
         test_circle_of_waiting_commands_ends_with_an_error,

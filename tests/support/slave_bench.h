@@ -103,8 +103,10 @@ static void slaves_begin_with(int count, void (*configure)(void))
     called_count = 0;
     call_order = ORDER_MADE;
     axes_describe(count);
-    for (int n = 0; n < count; n++)
+    for (int n = 0; n < count; n++) {
         axes_config(n)->table_profiles = true;
+        axes_config(n)->homing.method = -1;
+    }
     if (configure)
         configure();
     axes_make();
