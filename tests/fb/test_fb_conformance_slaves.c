@@ -25,6 +25,12 @@ static bool can(const char *name)
 
 static bool is(const instance_t *fb, const char *name) { return strcmp(name_of(fb), name) == 0; }
 
+static void expect_error(const instance_t *fb, cm1e_error_t error)
+{
+    MUST(fb->now.error && fb->now.error_id == cm1e_error_id(error), "%s: Error 0x%04X, 0x%04X is right", name_of(fb),
+         fb->now.error_id, cm1e_error_id(error));
+}
+
 /* ---- phases of a follower ---------------------------------------------------------------------------------------- */
 
 typedef enum phase { WAITING = 0, BEFORE_THE_WAY, INTO_STEP, IN_STEP, PHASES } phase_t;
@@ -343,6 +349,46 @@ START_TEST(test_slave_follows_again_after_reset)
 }
 END_TEST
 
+/* ---- by actual values -------------------------------------------------------------------------------------------- */
+
+/** A hand wheel: the master has no torque, and somebody turns it. */
+START_TEST(test_master_without_torque_is_followed_by_its_actual_value)
+{
+    static const char *const names[] = {"MC_GearIn", "MC_CombineAxes"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        snprintf(judged_axes[0].scene, sizeof judged_axes[0].scene, "%s of a hand wheel", names[i]);
+        slaves_begin(2);
+        axes_bench.witness[0].strictness = AXES_STEEP;
+        axes_power(1, false);
+        cycles(20);
+        make_and_start(0, 1, &follower, names[i]);
+        expect_error(&follower, CM1E_ERROR_AXIS_MASTER_LOST); /* its set value is none */
+        trigger(&follower, false);
+        cycle();
+        put(&follower, "MasterValueSource", mcActualValue);
+        put(&follower, "MasterValueSourceM1", mcActualValue);
+        put(&follower, "MasterValueSourceM2", mcActualValue);
+        trigger(&follower, true);
+        CYCLE_UNTIL(follower.now.reached);
+        const double from = axes_info(0).set_position;
+        const int32_t start = axes_motor(1)->position;
+        for (int n = 0; n <= 1000; n++) {
+            axes_motor(1)->position = start + (int32_t)lround(5000.0 * (1.0 - cos(n * acos(-1.0) / 1000.0)));
+            cycle();
+            MUST(follower.now.busy && axes_state(0) == CM1E_AXIS_SYNCHRONIZED_MOTION, "Error 0x%04X: %s",
+                 follower.now.error_id, axes_text(0));
+        }
+        cycles(200);
+        const double way = 10000.0 / axes_axis(1)->scale * (i == 0 ? 0.5 : 0.75);
+        MUST(fabs(axes_info(0).set_position - from - way) < 2.0 / fabs(axes_axis(0)->scale), "it has gone %g u, not %g",
+             axes_info(0).set_position - from, way);
+        make_and_start(0, -1, &other, "MC_Halt");
+        cycles(2);
+        MUST(follower.now.aborted && axes_state(1) == CM1E_AXIS_DISABLED, "CommandAborted %d", follower.now.aborted);
+    }
+}
+END_TEST
+
 /* ---- chains ------------------------------------------------------------------------------------------------------ */
 
 /** Axis 0 follows 1, which follows 2, which turns. */
@@ -450,12 +496,6 @@ START_TEST(test_order_of_calls_and_of_axes_does_not_matter)
 END_TEST
 
 /* ---- what is refused --------------------------------------------------------------------------------------------- */
-
-static void expect_error(const instance_t *fb, cm1e_error_t error)
-{
-    MUST(fb->now.error && fb->now.error_id == cm1e_error_id(error), "%s: Error 0x%04X, 0x%04X is right", name_of(fb),
-         fb->now.error_id, cm1e_error_id(error));
-}
 
 START_TEST(test_nobody_follows_itself)
 {
@@ -677,6 +717,7 @@ int main(void)
         test_instance_serves_one_slave_after_the_other,
         test_slave_follows_again_after_reset,
         test_master_that_is_homed_is_lost_and_one_that_is_renamed_is_not,
+        test_master_without_torque_is_followed_by_its_actual_value,
         test_order_of_calls_and_of_axes_does_not_matter,
         test_nobody_follows_itself,
         test_circle_of_waiting_commands_ends_with_an_error,
