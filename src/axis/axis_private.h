@@ -354,6 +354,16 @@ typedef struct guard {
     bool by_actual;        /**< what asked for it was the actual value of a master */
 } guard_t;
 
+/** What a set-point may be beside the one before it, in the numbers that are compared; made once. */
+typedef struct guarding {
+    double velocity;         /**< u/s */
+    double up, down;         /**< u/s in a cycle */
+    double acceleration;     /**< u/s2 */
+    double jerk;             /**< u/s2 in a cycle */
+    double half_cycle, step; /**< counts in half a cycle at 1 u/s; counts beside the mean of both velocities */
+    double per_count;        /**< u, signed */
+} guarding_t;
+
 struct cm1e_axis {
     /* what every cycle of a motion looks at */
     cm1e_drive_t drive;
@@ -391,6 +401,7 @@ struct cm1e_axis {
     double lower, upper;            /**< u, as cm1e_axis_line() counts; infinite: none on that side */
     double tolerance;               /**< u; which they are kept with */
     double emergency_way;           /**< s2/u; times the square of a velocity: that it goes */
+    guarding_t guarding;
     double max_lag;                 /**< u */
     double lag_seen;                /**< counts; amount, when the inputs were fresh last */
     int64_t now_ns;
@@ -792,6 +803,7 @@ bool cm1e_axis_table_goes(cm1e_axis_t *axis, double from_s, double sign);
 /* axis_guard.c */
 /** Whether the next set-point may follow the present one. `kept_jerk`: the limit of jerk counts too. */
 guard_t cm1e_axis_guard(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk);
+void cm1e_axis_guard_init(cm1e_axis_t *axis); /* @rt init */
 /** ErrorStop with CM1E_ERROR_AXIS_COUPLING_LIMIT, which tells what was asked for and allowed. */
 void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t broken);
 void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size);
