@@ -22,11 +22,9 @@ fb_outputs_t fb_decouple(cm1e_fb_private_t *fb, const AXIS_REF_t *slave, BOOL ex
 static inline bool fb_follows(const cm1e_coupling_private_t *fb, const AXIS_REF_t *slave, const AXIS_REF_t *master,
                               const AXIS_REF_t *second, BOOL execute, cm1e_command_status_t *status)
 {
-    if (!fb_stands(&fb->common, slave, execute) || fb_master(master).Handle != fb->master ||
-        fb_master(second).Handle != fb->second_master)
-        return false;
-    *status = cm1e_axis_command_status(fb_axis(&fb->common), fb->common.command);
-    return true;
+    return fb_same(&fb->common, slave, execute) && fb_master(master).Handle == fb->master &&
+           fb_master(second).Handle == fb->second_master &&
+           cm1e_axis_follows_by(*slave, fb->common.command, status);
 }
 
 #endif

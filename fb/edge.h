@@ -60,12 +60,17 @@ fb_outputs_t fb_motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, const
  *  ContinuousUpdate is refused. */
 fb_outputs_t fb_table_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, BOOL continuous_update,
                              cm1e_command_kind_t kind, MC_BUFFER_MODE buffer_mode, const cm1e_axis_table_t *table);
-/** TRUE: no edge, the same axis, no inputs to hand on, and its command still is the active one, so that the outputs
- *  stand as they are. Most calls of a block are such; they cost little that way. */
-static inline bool fb_stands(const cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute)
+/** TRUE: no edge, the same axis, no inputs to hand on, and its command was the active one. */
+static inline bool fb_same(const cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute)
 {
     return fb->active && fb->state == FB_BUSY && !fb->continuous_update && !execute == !fb->trigger_before &&
-           reference && reference->Handle == fb->axis_handle && cm1e_axis_runs(*reference, fb->command);
+           reference && reference->Handle == fb->axis_handle;
+}
+/** ... and it still is, so that the outputs stand as they are. Most calls of a block are such; they cost little that
+ *  way. */
+static inline bool fb_stands(const cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute)
+{
+    return fb_same(fb, reference, execute) && cm1e_axis_runs(*reference, fb->command);
 }
 
 /* What the files of motion blocks have in common: inputs and outputs of the standard's names. */

@@ -78,6 +78,17 @@ bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id)
     return axis && id != 0 && axis->active == id;
 }
 
+bool cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id, cm1e_command_status_t *status)
+{
+    const cm1e_axis_t *axis = cm1e_axis_from_handle(reference.Handle);
+    if (!axis || id == 0 || axis->active != id || !axis_follows(axis))
+        return false;
+    status->reached = axis->reached;
+    status->synchronizing = axis->coupling->synchronizing;
+    status->end_of_profile = axis->coupling->end_of_profile;
+    return true;
+}
+
 /* ---- start ------------------------------------------------------------------------------------------------------- */
 
 void cm1e_axis_take(cm1e_axis_t *axis, const move_t *move, const from_t *from, const cm1e_profile_t *profile,

@@ -175,9 +175,11 @@ static void master_lost(cm1e_axis_t *axis)
 bool cm1e_axis_coupled_step(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
-    from_t f;
+    from_t f, sum;
+    const from_t *next = &f;
     guard_t guard;
-    cm1e_axis_phasing_step(axis);
+    if (c->phasing.moving)
+        cm1e_axis_phasing_step(axis);
     if (cm1e_axis_see(axis, c->now)) {
         master_lost(axis);
         return false;
@@ -189,15 +191,18 @@ bool cm1e_axis_coupled_step(cm1e_axis_t *axis)
         cm1e_axis_superimposed_step(axis, &unused);
     }
     const bool in_step = !c->rest.on;
-    const from_t next = in_step ? sum_of(axis, &f) : with_rest(axis, &f, &guard);
+    if (!in_step || axis->superimposed.id) {
+        sum = in_step ? sum_of(axis, &f) : with_rest(axis, &f, &guard);
+        next = &sum;
+    }
     if (in_step)
-        guard = cm1e_axis_guard(axis, &next, keeps_jerk(c));
+        guard = cm1e_axis_guard(axis, next, keeps_jerk(c));
     if (guard.limit) {
         cm1e_axis_guard_fail(axis, guard);
         return false;
     }
     c->f_acceleration = f.acceleration;
-    emit(axis, &next);
+    emit(axis, next);
     after_set_point(axis);
     return true;
 }

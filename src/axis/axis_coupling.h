@@ -42,6 +42,8 @@ typedef struct link {
     position_t origin;             /**< of the master, as seen, when the slave began to follow it */
     double ratio;                  /**< u of the slave on a u of the master: of gears and combinations */
     double counts_ratio;           /**< the same in counts */
+    double half_cycle;             /**< counts of the master in half a cycle at 1 u/s */
+    double most_unexplained;       /**< counts; of its way in a cycle, by its velocities */
     sight_t seen;
 } link_t;
 

@@ -14,7 +14,8 @@ static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
         acceleration += link->seen.acceleration * link->ratio;
     }
     /* What is beyond all that can be counted, the guard finds too fast. */
-    counts = fmax(-(double)CM1E_FARTHEST_COUNTS, fmin(counts, (double)CM1E_FARTHEST_COUNTS));
+    if (!(fabs(counts) < (double)CM1E_FARTHEST_COUNTS))
+        counts = copysign((double)CM1E_FARTHEST_COUNTS, counts);
     *point = (from_t){cm1e_position_plus(follow->anchor, counts), velocity, acceleration, false};
 }
 

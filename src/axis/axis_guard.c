@@ -47,7 +47,7 @@ static guard_t guard_step(const cm1e_axis_t *axis, const from_t *next, bool kept
     return broken(GUARD_KEPT, 0.0, 0.0);
 }
 
-CM1E_RARE static guard_t look_closely(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
+CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
 {
     const cm1e_motion_limits_t *most = &axis->system;
     const double v = next->velocity, a = next->acceleration, line = cm1e_axis_line(axis, next->position);
@@ -85,32 +85,6 @@ void cm1e_axis_guard_init(cm1e_axis_t *axis)
         .step = either * t * t / 4.0 * fabs(axis->scale) + slack_counts,
         .per_count = 1.0 / axis->scale,
     };
-}
-
-/* Within the limits without any slack: nearly every set-point is, and this costs next to nothing. Not a number compares
- * with nothing. */
-static bool well_within(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
-{
-    const guarding_t *g = &axis->guarding;
-    const double v0 = axis->set_velocity, v = next->velocity, a = next->acceleration, speed = fabs(v);
-    const double step = cm1e_position_minus(next->position, axis->set) - (v0 + v) * g->half_cycle;
-    const bool smooth = !kept_jerk || fabs(a - axis->set_acceleration) <= g->jerk;
-    if (!(speed <= g->velocity && fabs(v - v0) <= (speed >= fabs(v0) ? g->up : g->down) &&
-          fabs(a) <= g->acceleration && fabs(step) <= g->step && smooth && axis->enable_positive &&
-          axis->enable_negative))
-        return false;
-    if (!axis->software_limits)
-        return true;
-    const double line = axis->origin_units + cm1e_position_minus(next->position, axis->origin) * g->per_count;
-    const double way = speed * speed * axis->emergency_way;
-    return line + way <= axis->upper && line - way >= axis->lower;
-}
-
-guard_t cm1e_axis_guard(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
-{
-    if (well_within(axis, next, kept_jerk))
-        return broken(GUARD_KEPT, 0.0, 0.0);
-    return look_closely(axis, next, kept_jerk);
 }
 
 void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t guard)

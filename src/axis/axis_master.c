@@ -137,15 +137,21 @@ static void add_phase(const cm1e_axis_t *slave, link_t *link)
     link->seen.acceleration += phase->acceleration;
 }
 
-static bool jumped(const link_t *link, const sight_t *before, double cycle_s)
+/* What velocities explain of a way, and what they do not: within a cycle both limits may be met. What an actual value may
+ * do, the guard of the slave has to say. */
+static void know_ways(link_t *link, double cycle_s)
 {
     const cm1e_axis_t *master = link->master;
-    const double way = (link->seen.velocity + before->velocity) / 2.0 * cycle_s;
-    if (link->source == mcActualValue) /* that is for the guard of the slave to say */
-        return false;
     const double corner = fmax(master->system.acceleration, master->system.deceleration) * cycle_s * cycle_s / 2.0;
-    return fabs(link->seen.counts - before->counts - way * master->scale) >
-           same_way_counts + corner * fabs(master->scale);
+    link->half_cycle = master->scale * cycle_s / 2.0;
+    link->most_unexplained = link->source == mcActualValue ? INFINITY
+                                                           : same_way_counts + corner * fabs(master->scale);
+}
+
+static bool jumped(const link_t *link, const sight_t *before)
+{
+    const double way = (link->seen.velocity + before->velocity) * link->half_cycle;
+    return fabs(link->seen.counts - before->counts - way) > link->most_unexplained;
 }
 
 static master_trouble_t trouble_with(cm1e_axis_t *slave, const link_t *link, master_trouble_t trouble)
@@ -168,7 +174,7 @@ master_trouble_t cm1e_axis_see(cm1e_axis_t *slave, follow_t *follow)
         link->seen.counts = cm1e_position_minus(position, link->origin);
         if (i == 0)
             add_phase(slave, link);
-        if (jumped(link, &before, slave->cycle_s))
+        if (jumped(link, &before))
             return trouble_with(slave, link, MASTER_JUMPED);
     }
     return MASTER_GOOD;
@@ -190,6 +196,7 @@ cm1e_error_t cm1e_axis_link(cm1e_axis_t *slave, follow_t *follow, const cm1e_cou
     if (master->config->type == CM1E_AXIS_ENCODER) /* it has no other */
         link->source = mcActualValue;
     follow->by_actual |= link->source == mcActualValue;
+    know_ways(link, slave->cycle_s);
     const master_trouble_t trouble = see(link, &link->origin);
     if (trouble) {
         trouble_with(slave, link, trouble);

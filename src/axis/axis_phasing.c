@@ -194,8 +194,6 @@ void cm1e_axis_phasing_step(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
     phasing_t *phasing = &c->phasing;
-    if (!phasing->moving)
-        return;
     const double time_s = (double)++phasing->cycles * axis->cycle_s;
     cm1e_profile_sample(&phasing->profile, time_s, &c->phase);
     if (time_s < phasing->profile.duration_s - same_moment * axis->cycle_s)

@@ -801,8 +801,31 @@ void cm1e_axis_table_needs(const cm1e_axis_t *axis, const cm1e_axis_command_t *c
 bool cm1e_axis_table_goes(cm1e_axis_t *axis, double from_s, double sign);
 
 /* axis_guard.c */
+/** Within the limits without any slack: nearly every set-point is, and this costs next to nothing. What is not a number
+ *  is not. */
+static inline bool cm1e_axis_well_within(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
+{
+    const guarding_t *g = &axis->guarding;
+    const double v0 = axis->set_velocity, v = next->velocity, a = next->acceleration, speed = fabs(v);
+    const double step = cm1e_position_minus(next->position, axis->set) - (v0 + v) * g->half_cycle;
+    if (!(speed <= g->velocity && fabs(v - v0) <= (speed >= fabs(v0) ? g->up : g->down) &&
+          fabs(a) <= g->acceleration && fabs(step) <= g->step && axis->enable_positive && axis->enable_negative))
+        return false;
+    if (kept_jerk && !(fabs(a - axis->set_acceleration) <= g->jerk))
+        return false;
+    if (!axis->software_limits)
+        return true;
+    const double line = axis->origin_units + cm1e_position_minus(next->position, axis->origin) * g->per_count;
+    const double way = speed * speed * axis->emergency_way;
+    return line + way <= axis->upper && line - way >= axis->lower;
+}
+guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk);
 /** Whether the next set-point may follow the present one. `kept_jerk`: the limit of jerk counts too. */
-guard_t cm1e_axis_guard(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk);
+static inline guard_t cm1e_axis_guard(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
+{
+    return cm1e_axis_well_within(axis, next, kept_jerk) ? (guard_t){.limit = GUARD_KEPT}
+                                                        : cm1e_axis_look_closely(axis, next, kept_jerk);
+}
 void cm1e_axis_guard_init(cm1e_axis_t *axis); /* @rt init */
 /** ErrorStop with CM1E_ERROR_AXIS_COUPLING_LIMIT, which tells what was asked for and allowed. */
 void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t broken);

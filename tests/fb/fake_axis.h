@@ -147,6 +147,14 @@ bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id)
     return axis && axis->status[id % FAKE_COMMANDS].state == CM1E_COMMAND_ACTIVE;
 }
 
+bool cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id, cm1e_command_status_t *status)
+{
+    if (!cm1e_axis_runs(reference, id))
+        return false;
+    *status = cm1e_axis_command_status(cm1e_axis_from_reference(&reference), id);
+    return true;
+}
+
 cm1e_error_t cm1e_axis_reset(cm1e_axis_t *axis)
 {
     axis->resets++;
