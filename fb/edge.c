@@ -158,7 +158,7 @@ fb_outputs_t fb_motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, const
     fb_outputs_t out = fb_outputs(fb);
     out.reached = out.active && status.reached;
     out.synchronizing = out.active && status.synchronizing;
-    out.end_of_profile = status.end_of_profile;
+    out.ends = status.ends;
     out.covered = status.covered;
     return out;
 }

@@ -25,7 +25,8 @@ typedef struct fb_outputs {
     BOOL done, busy, active, aborted, error;
     WORD error_id;
     BOOL reached;  /**< InVelocity and its like (2.4.1): TRUE at times while Busy and Active */
-    BOOL synchronizing, end_of_profile; /**< StartSync, EndOfProfile */
+    BOOL synchronizing; /**< StartSync */
+    UDINT ends;    /**< of the profile of a cam, so far */
     LREAL covered; /**< CoveredDistance, AbsolutePhaseShift, CoveredPhaseShift */
 } fb_outputs_t;
 

@@ -1,11 +1,18 @@
 #include "coupling.h"
 
+/** In the first call after each, also of a task that runs more rarely than the bus. */
+static void show_ends(MC_CamIn_t *fb, UDINT ends)
+{
+    fb->EndOfProfile = ends > fb->Private.ends;
+    fb->Private.ends = ends;
+}
+
 void MC_CamIn(MC_CamIn_t *fb)
 {
     cm1e_command_status_t status;
     if (fb_follows(&fb->Private, fb->Slave, fb->Master, NULL, fb->Execute, &status)) {
         fb->InSync = status.reached;
-        fb->EndOfProfile = status.end_of_profile;
+        show_ends(fb, status.ends);
         return;
     }
     const cm1e_axis_coupling_t coupling = {
@@ -26,6 +33,6 @@ void MC_CamIn(MC_CamIn_t *fb)
     };
     const fb_outputs_t out = fb_couple(&fb->Private, fb->Slave, fb->Execute, fb->ContinuousUpdate, &command);
     fb->InSync = out.reached;
-    fb->EndOfProfile = out.end_of_profile;
+    show_ends(fb, out.ends);
     FB_SHOW_ACTIVE(fb, out);
 }

@@ -52,7 +52,7 @@ typedef struct MC_CamIn {
     BOOL InSync;                 /**< the slave is where the cam wants it */
     BOOL Busy, Active, CommandAborted, Error;
     WORD ErrorID;
-    BOOL EndOfProfile;           /**< TRUE in the call that finds the master gone over an end of the cam */
+    BOOL EndOfProfile;           /**< TRUE in the first call after the master went over an end of the cam */
     cm1e_coupling_private_t Private;
 } MC_CamIn_t;
 void MC_CamIn(MC_CamIn_t *fb);

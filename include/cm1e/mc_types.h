@@ -230,6 +230,7 @@ typedef struct cm1e_coupling_private {
     cm1e_fb_private_t common;
     UINT master;        /**< latched at the rising edge */
     UINT second_master; /**< ... as this one, of MC_CombineAxes */
+    UDINT ends;         /**< of the profile, that MC_CamIn has shown */
 } cm1e_coupling_private_t;
 
 /** State of MC_ReadMotionState that is not to be touched. */

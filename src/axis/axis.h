@@ -133,7 +133,7 @@ typedef struct cm1e_command_status {
     cm1e_error_t error;   /**< with CM1E_COMMAND_ERROR */
     bool reached;         /**< InVelocity, InEndVelocity, ProfileCompleted, InGear, InSync: set value = commanded value */
     bool synchronizing;   /**< GEAR_IN_POS: StartSync */
-    bool end_of_profile;  /**< CAM_IN: EndOfProfile, TRUE in the cycle that came over it */
+    uint32_t ends;        /**< CAM_IN: how often it came over an end of the profile; more than before is EndOfProfile */
     double covered;       /**< MOVE_SUPERIMPOSED: CoveredDistance, u; PHASING_*: the shift (absolute), or what of it was
                                covered (relative), u of the master */
 } cm1e_command_status_t;
@@ -183,7 +183,7 @@ cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_com
  *  happened. @rt cycle */
 bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id);
 /** The same for a block that follows a master: TRUE while this is what the axis follows by, then `reached`,
- *  `synchronizing` and `end_of_profile` are as cm1e_axis_command_status() has them, and nothing else is. @rt cycle */
+ *  `synchronizing` and `ends` are as cm1e_axis_command_status() has them, and nothing else is. @rt cycle */
 bool cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id, cm1e_command_status_t *status);
 /** MC_Stop.Execute is (still) TRUE: while it is, the axis stays Stopping. @rt cycle */
 void cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold);

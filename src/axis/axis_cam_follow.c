@@ -65,6 +65,7 @@ static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
     cm1e_cam_sample(&cam->slot->cam, &cam->place, place_in_cam(cam, link), &sample);
     if (came_over_end(cam, &sample)) {
         axis->coupling->end_of_profile = true;
+        axis->coupling->ends++;
         follow->ended = !cam->slot->cam.periodic;
     }
     cam->before = sample;

@@ -53,7 +53,7 @@ cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_com
     if (id != 0 && id == axis->active)
         return (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE, .reached = axis->reached,
                                        .synchronizing = axis_follows(axis) && axis->coupling->synchronizing,
-                                       .end_of_profile = axis_follows(axis) && axis->coupling->end_of_profile};
+                                       .ends = axis_follows(axis) ? axis->coupling->ends : 0};
     for (int i = 0; i < axis->waiting.count; i++)
         if (axis->waiting.moves[(axis->waiting.first + i) % CM1E_AXIS_BUFFER_DEPTH].id == id)
             return (cm1e_command_status_t){.state = CM1E_COMMAND_BUFFERED};
@@ -85,7 +85,7 @@ bool cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id, cm1e_comma
         return false;
     status->reached = axis->reached;
     status->synchronizing = axis->coupling->synchronizing;
-    status->end_of_profile = axis->coupling->end_of_profile;
+    status->ends = axis->coupling->ends;
     return true;
 }
 

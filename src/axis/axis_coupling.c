@@ -315,6 +315,7 @@ static void take(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling
     axis->kind = (cm1e_command_kind_t)move->kind;
     axis->move = *move;
     axis->coupling->inputs = *coupling;
+    axis->coupling->ends = 0;
     cm1e_axis_follow(axis, cm1e_axis_follow_spare(axis), from, limits);
 }
 

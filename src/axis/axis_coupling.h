@@ -136,6 +136,7 @@ typedef struct coupling {
     double f_acceleration;         /**< u/s2; of F, in the last cycle */
     bool synchronizing;            /**< GEAR_IN_POS: StartSync */
     bool end_of_profile;           /**< CAM_IN: F came over it in this cycle */
+    uint32_t ends;                 /**< ... so often since the command began */
     uint64_t mark;                 /**< of the last search that came here */
     uint32_t searches;
     cm1e_axis_coupling_t inputs;   /**< of the active command, for ContinuousUpdate */

@@ -162,7 +162,7 @@ START_TEST(test_outputs_in_step_come_and_go_in_every_kind_of_call)
             gear_in.ContinuousUpdate = cam_in.ContinuousUpdate = combine.ContinuousUpdate = update;
             gear_in_pos.Execute = n % 3 != 0; /* a new edge now and then */
             const cm1e_command_status_t now = {.state = CM1E_COMMAND_ACTIVE, .reached = n & 1, .synchronizing = n & 2,
-                                               .end_of_profile = n & 4};
+                                               .ends = n / 3};
             MC_GearIn(&gear_in);
             *status_of(axis_x) = now;
             MC_GearIn(&gear_in);
@@ -173,9 +173,15 @@ START_TEST(test_outputs_in_step_come_and_go_in_every_kind_of_call)
             ck_assert(!gear_in_pos.Busy || (gear_in_pos.Active && gear_in_pos.InSync == now.reached &&
                                             gear_in_pos.StartSync == now.synchronizing));
             MC_CamIn(&cam_in);
+            ck_assert(!cam_in.EndOfProfile);
             *status_of(axis_x) = now;
             MC_CamIn(&cam_in);
-            ck_assert(cam_in.InSync == now.reached && cam_in.EndOfProfile == now.end_of_profile);
+            ck_assert(cam_in.InSync == now.reached && cam_in.EndOfProfile == (now.ends > 0));
+            MC_CamIn(&cam_in);
+            ck_assert(!cam_in.EndOfProfile); /* shown once, */
+            status_of(axis_x)->ends += 2;    /* however many there were between two calls */
+            MC_CamIn(&cam_in);
+            ck_assert(cam_in.EndOfProfile);
             MC_CombineAxes(&combine);
             *status_of(axis_x) = now;
             MC_CombineAxes(&combine);

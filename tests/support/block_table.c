@@ -26,7 +26,7 @@ _Static_assert(sizeof(MC_CAMSWITCH_REF) == 1288, "MC_CAMSWITCH_REF");
 _Static_assert(sizeof(MC_TRACK) == 24, "MC_TRACK");
 _Static_assert(sizeof(MC_TRACK_REF) == 768, "MC_TRACK_REF");
 _Static_assert(sizeof(cm1e_fb_private_t) == 12, "cm1e_fb_private_t");
-_Static_assert(sizeof(cm1e_coupling_private_t) == 16, "cm1e_coupling_private_t");
+_Static_assert(sizeof(cm1e_coupling_private_t) == 20, "cm1e_coupling_private_t");
 _Static_assert(sizeof(cm1e_motion_private_t) == 40, "cm1e_motion_private_t");
 _Static_assert(sizeof(cm1e_jog_private_t) == 48, "cm1e_jog_private_t");
 _Static_assert(sizeof(cm1e_cam_point_t) == 16, "cm1e_cam_point_t");
@@ -398,7 +398,7 @@ AT(MC_GearInPos, CommandAborted, 104);
 AT(MC_GearInPos, Error, 105);
 AT(MC_GearInPos, ErrorID, 106);
 AT(MC_GearInPos, Private, 108);
-_Static_assert(sizeof(MC_PhasingAbsolute_t) == 104, "MC_PhasingAbsolute");
+_Static_assert(sizeof(MC_PhasingAbsolute_t) == 112, "MC_PhasingAbsolute");
 AT(MC_PhasingAbsolute, Master, 0);
 AT(MC_PhasingAbsolute, Slave, 8);
 AT(MC_PhasingAbsolute, Execute, 16);
@@ -416,7 +416,7 @@ AT(MC_PhasingAbsolute, Error, 72);
 AT(MC_PhasingAbsolute, ErrorID, 74);
 AT(MC_PhasingAbsolute, AbsolutePhaseShift, 80);
 AT(MC_PhasingAbsolute, Private, 88);
-_Static_assert(sizeof(MC_PhasingRelative_t) == 104, "MC_PhasingRelative");
+_Static_assert(sizeof(MC_PhasingRelative_t) == 112, "MC_PhasingRelative");
 AT(MC_PhasingRelative, Master, 0);
 AT(MC_PhasingRelative, Slave, 8);
 AT(MC_PhasingRelative, Execute, 16);
@@ -1378,6 +1378,9 @@ static const block_member_t members_of_MC_Power[] = {
 };
 static void call_MC_Power(void *fb) { MC_Power(fb); }
 static const cm1e_error_t errors_of_MC_Power[] = {
+    CM1E_ERROR_AXIS_COUPLED,
+    CM1E_ERROR_AXIS_COUPLING_LIMIT,
+    CM1E_ERROR_AXIS_MASTER_LOST,
     CM1E_ERROR_FB_SECOND_POWER,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
