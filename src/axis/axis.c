@@ -121,7 +121,7 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
 {
     cm1e_drive_t *drive = &axis->drive;
     axis->now_ns = now_ns;
-    axis->advanced = false;
+    axis->advanced = axis->resumed = false;
     cm1e_drive_read(drive, received == CM1E_OK, now_ns);
     if (drive->feedback.fresh)
         cm1e_axis_track(axis);

@@ -89,7 +89,8 @@ static from_t sum_of(const cm1e_axis_t *axis, const from_t *f)
     return sum;
 }
 
-static bool keeps_jerk(const coupling_t *c) { return !c->now->linear && !c->now->by_actual; }
+/* A ramp of ErrorStop has no limit of jerk, nor has who follows it. */
+static bool keeps_jerk(const coupling_t *c) { return !c->now->linear && !c->now->by_actual && !c->stopping; }
 
 /* How the rest may go on in a cycle: by its plan; planned anew beside what F has come to need, first with all its jerk,
  * which may go against F's; and without any jerk. */
@@ -119,7 +120,12 @@ static from_t with_rest(cm1e_axis_t *axis, const from_t *f, guard_t *guard)
     rest_t *rest = &axis->coupling->rest;
     const cm1e_motion_state_t before = rest->now;
     const bool disturbed = f->acceleration != 0.0 || axis->coupling->f_acceleration != 0.0;
-    from_t sum;
+    from_t sum = *f;
+    if (!rest->on) {
+        sum = sum_of(axis, f);
+        *guard = cm1e_axis_guard(axis, &sum, keeps_jerk(axis->coupling));
+        return sum;
+    }
     for (int attempt = rest->held_back ? WITH_ALL_JERK : AS_PLANNED; attempt < ATTEMPTS; attempt++) {
         rest->now = before;
         rest->on = true;
@@ -133,6 +139,23 @@ static from_t with_rest(cm1e_axis_t *axis, const from_t *f, guard_t *guard)
     return sum;
 }
 
+/* What is superimposed gives way too, by a cycle without jerk. */
+static from_t with_superimposed(cm1e_axis_t *axis, const from_t *f, guard_t *guard)
+{
+    rest_t *rest = &axis->coupling->rest;
+    const bool rests = rest->on;
+    const cm1e_motion_state_t rest_before = rest->now, before = axis->superimposed.now;
+    cm1e_motion_state_t unused = {0};
+    cm1e_axis_superimposed_step(axis, &unused);
+    const from_t sum = with_rest(axis, f, guard);
+    if (!guard->limit || !axis->superimposed.moving)
+        return sum;
+    rest->on = rests;
+    rest->now = rest_before;
+    cm1e_axis_superimposed_hold(axis, &before);
+    return with_rest(axis, f, guard);
+}
+
 static void emit(cm1e_axis_t *axis, const from_t *point)
 {
     axis->set = point->position;
@@ -140,6 +163,9 @@ static void emit(cm1e_axis_t *axis, const from_t *point)
     axis->set_acceleration = point->acceleration;
     if (point->velocity != 0.0)
         axis->positive_before = point->velocity > 0.0;
+    if (!cm1e_position_in_range(axis->set))
+        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->set),
+                       cm1e_axis_farthest(axis));
 }
 
 /* Lost distance is not made up (4.5, note 1). */
@@ -149,7 +175,8 @@ static void end_rest(cm1e_axis_t *axis)
     const double left = c->rest.profile.end.position;
     if (!c->now->to_position)
         c->now->anchor = cm1e_position_plus(c->now->anchor, left * axis->scale);
-    c->rest = (rest_t){.on = false};
+    c->rest.on = false;
+    c->rest.now = (cm1e_motion_state_t){0};
 }
 
 static void after_set_point(cm1e_axis_t *axis)
@@ -167,9 +194,26 @@ static void after_set_point(cm1e_axis_t *axis)
     }
 }
 
-static void master_lost(cm1e_axis_t *axis)
+/* FALSE always. In ErrorStop already there is nothing more to tell. */
+static bool stop_alone(cm1e_axis_t *axis, guard_t guard)
 {
-    cm1e_axis_fail(axis, CM1E_ERROR_AXIS_MASTER_LOST, 0.0, 0.0);
+    if (axis->coupling->stopping)
+        cm1e_axis_ramp_down(axis, &axis->emergency);
+    else if (guard.limit)
+        cm1e_axis_guard_fail(axis, guard);
+    else
+        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_MASTER_LOST, 0.0, 0.0);
+    axis->coupling->stopping = false;
+    return false;
+}
+
+/* At the end of keep_ratio. */
+static void stand_with_masters(cm1e_axis_t *axis, const from_t *f)
+{
+    if (!axis->coupling->stopping || axis->coupling->rest.on || f->velocity != 0.0 || f->acceleration != 0.0)
+        return;
+    axis->coupling->stopping = false;
+    axis->activity = ACTIVITY_HOLD;
 }
 
 bool cm1e_axis_coupled_step(cm1e_axis_t *axis)
@@ -177,33 +221,30 @@ bool cm1e_axis_coupled_step(cm1e_axis_t *axis)
     coupling_t *c = axis->coupling;
     from_t f, sum;
     const from_t *next = &f;
-    guard_t guard;
+    guard_t guard = {.limit = GUARD_KEPT};
     if (c->phasing.moving)
         cm1e_axis_phasing_step(axis);
-    if (cm1e_axis_see(axis, c->now)) {
-        master_lost(axis);
-        return false;
-    }
+    const master_trouble_t trouble = cm1e_axis_see(axis, c->now);
+    if (trouble && !(c->stopping && trouble == MASTER_STOPPING) && !cm1e_axis_follows_to_the_end(axis, trouble))
+        return stop_alone(axis, guard);
     c->end_of_profile = false;
     c->now->kind->evaluate(axis, c->now, &f);
-    if (axis->superimposed.id) {
-        cm1e_motion_state_t unused = {0};
-        cm1e_axis_superimposed_step(axis, &unused);
-    }
-    const bool in_step = !c->rest.on;
-    if (!in_step || axis->superimposed.id) {
-        sum = in_step ? sum_of(axis, &f) : with_rest(axis, &f, &guard);
+    if (c->rest.on || axis->superimposed.id) {
+        sum = axis->superimposed.id ? with_superimposed(axis, &f, &guard) : with_rest(axis, &f, &guard);
         next = &sum;
-    }
-    if (in_step)
+    } else {
         guard = cm1e_axis_guard(axis, next, keeps_jerk(c));
-    if (guard.limit) {
-        cm1e_axis_guard_fail(axis, guard);
-        return false;
     }
+    if (guard.limit)
+        return stop_alone(axis, guard);
     c->f_acceleration = f.acceleration;
     emit(axis, next);
-    after_set_point(axis);
+    if (axis_follows(axis))
+        after_set_point(axis);
+    if (axis->config->coupling_stop == CM1E_COUPLING_STOP_KEEP_RATIO && axis_follows(axis)) {
+        cm1e_axis_keep_ratio(axis);
+        stand_with_masters(axis, &f);
+    }
     return true;
 }
 
@@ -226,36 +267,27 @@ static bool is_nothing(const cm1e_axis_t *axis, const cm1e_motion_state_t *rest)
            fabs(rest->acceleration) * scale * t * t < counts;
 }
 
-/* The rest is what `from` differs from F as its masters are seen. */
+/* Where lost distance is not made up, F begins where the axis is; a difference of rounding would add up. */
 static void begin_rest(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *asked)
 {
+    static const double rounding_counts = 1e-3;
     coupling_t *c = axis->coupling;
     from_t f;
     c->now->kind->evaluate(axis, c->now, &f);
+    double counts = cm1e_position_minus(from->position, f.position);
+    if (!c->now->to_position) {
+        if (fabs(counts) > rounding_counts)
+            c->now->anchor = cm1e_position_plus(c->now->anchor, counts);
+        counts = 0.0;
+    }
     c->f_acceleration = f.acceleration;
     c->rest = (rest_t){.asked = *asked,
-                       .now = {cm1e_position_minus(from->position, f.position) / axis->scale,
-                               from->velocity - f.velocity, from->acceleration - f.acceleration},
+                       .now = {counts / axis->scale, from->velocity - f.velocity, from->acceleration - f.acceleration},
                        .held_back = f.acceleration != 0.0};
     if (is_nothing(axis, &c->rest.now))
         c->rest.now = (cm1e_motion_state_t){0};
     const cm1e_motion_limits_t limits = limits_beside(axis, &f, 0.0, true);
     plan_rest(axis, &limits);
-}
-
-/* Where all stand at their last targets, they are in step as before: the rest is none but what it was. */
-void cm1e_axis_coupled_after_pause(cm1e_axis_t *axis)
-{
-    coupling_t *c = axis->coupling;
-    const from_t from = from_set(axis);
-    cm1e_axis_phasing_rest(axis);
-    for (int i = 0; i < c->now->count; i++) {
-        link_t *link = &c->now->links[i];
-        if (link->source == mcSetValue && link->master && link->master->mode != CM1E_MODE_CSV)
-            link->seen.velocity = link->seen.acceleration = 0.0;
-    }
-    const cm1e_motion_limits_t asked = c->rest.on ? c->rest.asked : axis->maximum;
-    begin_rest(axis, &from, &asked);
 }
 
 void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked)
@@ -270,10 +302,32 @@ void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, c
     cm1e_axis_list_links(follow);
     c->now = follow;
     c->next = NULL;
-    c->synchronizing = c->end_of_profile = false;
+    c->synchronizing = c->end_of_profile = c->stopping = false;
     begin_rest(axis, from, asked);
     axis->activity = ACTIVITY_COUPLED;
     axis->reached = axis->paused = axis->stands = axis->along_table = false;
+}
+
+/* Where all stand at their last targets, they are in step as before: the rest is none but what it was. */
+void cm1e_axis_coupled_after_pause(cm1e_axis_t *axis)
+{
+    coupling_t *c = axis->coupling;
+    const from_t from = from_set(axis);
+    const cm1e_motion_limits_t asked = c->rest.asked;
+    cm1e_axis_phasing_rest(axis);
+    const master_trouble_t trouble = cm1e_axis_look(axis, c->now);
+    if (trouble && !(c->stopping && trouble == MASTER_STOPPING)) {
+        (void)stop_alone(axis, (guard_t){.limit = GUARD_KEPT});
+        return;
+    }
+    begin_rest(axis, &from, &asked);
+    axis->reached = false;
+}
+
+void cm1e_axis_coupling_shift(cm1e_axis_t *axis, double way)
+{
+    follow_t *now = axis->coupling->now;
+    now->anchor = cm1e_position_plus(now->anchor, way * axis->scale);
 }
 
 void cm1e_axis_coupled_begin(cm1e_axis_t *axis)
@@ -334,6 +388,48 @@ cm1e_error_t cm1e_axis_couple(cm1e_axis_t *axis, const cm1e_axis_command_t *comm
     return CM1E_OK;
 }
 
+static bool same_master(const cm1e_coupling_master_t *a, const cm1e_coupling_master_t *b)
+{
+    return a->axis.Handle == b->axis.Handle && a->source == b->source && a->numerator == b->numerator &&
+           a->denominator == b->denominator;
+}
+
+static bool same_inputs(const cm1e_axis_coupling_t *a, const cm1e_axis_coupling_t *b)
+{
+    return same_master(&a->master[0], &b->master[0]) && same_master(&a->master[1], &b->master[1]) &&
+           a->combine == b->combine && a->master_sync_position == b->master_sync_position &&
+           a->slave_sync_position == b->slave_sync_position && a->master_start_distance == b->master_start_distance &&
+           a->sync_mode == b->sync_mode && a->cam == b->cam && a->start_mode == b->start_mode &&
+           a->master_offset == b->master_offset && a->slave_offset == b->slave_offset &&
+           a->master_scaling == b->master_scaling && a->slave_scaling == b->slave_scaling;
+}
+
+/* Other inputs of these are another coupling, from the present set-point on. */
+static bool begins_anew(cm1e_command_kind_t kind)
+{
+    return kind == CM1E_COMMAND_GEAR_IN || kind == CM1E_COMMAND_COMBINE_AXES;
+}
+
+static cm1e_error_t update_active(cm1e_axis_t *axis, const cm1e_axis_command_t *command)
+{
+    coupling_t *c = axis->coupling;
+    const from_t from = from_base(axis);
+    move_t move = cm1e_axis_move_of(command);
+    cm1e_motion_limits_t limits;
+    if (!axis_follows(axis) || command->kind != axis->kind || !begins_anew(command->kind))
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    if (cm1e_axis_same_inputs(&axis->move, &move) && same_inputs(&c->inputs, command->coupling))
+        return CM1E_OK;
+    const cm1e_error_t error = prepare(axis, &move, command->coupling, &from, &limits);
+    if (error)
+        return error;
+    move.id = axis->move.id;
+    axis->move = move;
+    c->inputs = *command->coupling;
+    cm1e_axis_follow(axis, cm1e_axis_follow_spare(axis), &from, &limits);
+    return CM1E_OK;
+}
+
 /* ---- buffered ---------------------------------------------------------------------------------------------------- */
 
 static waiting_coupling_t *waiting_of(cm1e_axis_t *axis, cm1e_command_id_t id)
@@ -380,4 +476,23 @@ cm1e_error_t cm1e_axis_coupling_begin(cm1e_axis_t *axis, const move_t *move, con
     if (!error)
         take(axis, move, &waiting->coupling, &here, &limits);
     return error;
+}
+
+cm1e_error_t cm1e_axis_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
+{
+    if (!command->coupling)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    if (id == axis->active)
+        return update_active(axis, command);
+    move_t *waiting = cm1e_axis_find_waiting(axis, id);
+    if (!waiting)
+        return CM1E_OK; /* it has ended */
+    if (waiting->kind != (uint8_t)command->kind || !begins_anew(command->kind))
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    move_t move = cm1e_axis_move_of(command);
+    move.id = id;
+    move.buffer_mode = waiting->buffer_mode;
+    *waiting = move;
+    waiting_of(axis, id)->coupling = *command->coupling;
+    return CM1E_OK;
 }

@@ -89,8 +89,9 @@ typedef struct rest {
 /** Why a master cannot be followed; for the text. */
 typedef enum master_trouble {
     MASTER_GOOD = 0,
-    MASTER_GONE,                   /**< destroyed */
+    MASTER_DESTROYED,                   /**< destroyed */
     MASTER_ERROR_STOP,
+    MASTER_STOPPING,               /**< the same, but it is still on its ramp, which can be seen */
     MASTER_FREE,                   /**< no torque, so no set value */
     MASTER_HOMING,                 /**< its drive moves it */
     MASTER_UNSEEN,                 /**< its actual position is not known */
@@ -142,22 +143,29 @@ typedef struct coupling {
     cm1e_axis_coupling_t inputs;   /**< of the active command, for ContinuousUpdate */
     waiting_coupling_t waiting[COUPLINGS_WAITING];
     master_trouble_t trouble;      /**< what a master was lost for ... */
-    char master_name[CM1E_NAME_LENGTH]; /**< ... which one */
+    cm1e_error_t master_error;     /**< ... and by which error of it ... */
+    char other_name[CM1E_NAME_LENGTH]; /**< ... which one; or because of whom this one stops */
+    int32_t numerator;             /**< a ratio that was refused */
+    uint32_t denominator;
+    bool stopping;                 /**< in ErrorStop, but F goes on until the masters stand (keep_ratio) */
 } coupling_t;
 
 /* axis_master.c */
 /** Advances the masters of F, and of what waits to become it, where that has not been done in this cycle. */
 void cm1e_axis_advance_masters(cm1e_axis_t *axis);
+/** The same for a pause (axis_pause.c). */
+void cm1e_axis_resume_masters(cm1e_axis_t *axis, int64_t pause_ns);
 /** Fills in a master of a `follow` that is not in force yet: origin and sight as of the slave's present set-point.
  *  CM1E_ERROR_AXIS_MASTER, _COUPLING_CYCLE, _MASTER_LOST, _RATIO: nothing follows it. */
 cm1e_error_t cm1e_axis_link(cm1e_axis_t *slave, follow_t *follow, const cm1e_coupling_master_t *master);
-/** What the slave sees in this cycle, of all masters of F. */
+/** What the slave sees of all its masters in this cycle. */
 master_trouble_t cm1e_axis_see(cm1e_axis_t *slave, follow_t *follow);
+/** The same, without a look at how they got there. */
+master_trouble_t cm1e_axis_look(cm1e_axis_t *slave, follow_t *follow);
 void cm1e_axis_list_links(follow_t *follow);
 void cm1e_axis_unlist_links(follow_t *follow);
 /** Nobody follows it any more, and it nobody. @rt init */
 void cm1e_axis_unlink(cm1e_axis_t *axis);
-const char *cm1e_axis_trouble_name(master_trouble_t trouble);
 
 /* axis_coupling.c */
 cm1e_error_t cm1e_axis_coupling_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */
@@ -173,6 +181,10 @@ follow_t *cm1e_axis_follow_spare(cm1e_axis_t *axis);
 /** F is this from now on; what the state `from` differs from it becomes the rest. The active command is the caller's to
  *  change. */
 void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked);
+/** What was superimposed for so long has become part of the way; u. */
+void cm1e_axis_coupling_shift(cm1e_axis_t *axis, double way);
+/** ContinuousUpdate. */
+cm1e_error_t cm1e_axis_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command);
 /** Kinds of commands that the axis knows how to follow by. */
 bool cm1e_axis_can_couple(cm1e_command_kind_t kind);
 /** After a pause: the axis and its masters begin anew, each by itself from rest, or go on in CSV. */
@@ -218,5 +230,17 @@ cm1e_error_t cm1e_axis_cam_prepare(cm1e_axis_t *axis, const move_t *move, const 
 /** What the cam leaves of the axis's limits for the way onto it, with the master's present velocity. */
 cm1e_motion_limits_t cm1e_axis_cam_leaves(const cm1e_axis_t *axis, const follow_t *follow,
                                           const cm1e_motion_limits_t *asked);
+
+/* axis_coupling_stop.c */
+/** A follower has failed: what else stops. */
+void cm1e_axis_coupling_failed(cm1e_axis_t *axis);
+/** A master cannot be followed any more. TRUE: but to its standstill, and the axis is in ErrorStop. */
+bool cm1e_axis_follows_to_the_end(cm1e_axis_t *axis, master_trouble_t trouble);
+/** After the set-point: it may be the last one from which the axis can still be braked together with its master. */
+void cm1e_axis_keep_ratio(cm1e_axis_t *axis);
+
+/* axis_coupling_text.c */
+/** FALSE: this error is not one of couplings. `refused`: a command was; else the axis has failed by it. */
+bool cm1e_axis_coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool refused, char *text, size_t size);
 
 #endif

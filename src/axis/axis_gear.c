@@ -45,8 +45,11 @@ cm1e_error_t cm1e_axis_gear_prepare(cm1e_axis_t *axis, const move_t *move, const
     *follow = (follow_t){.kind = &gear, .anchor = from->position, .in_step = true};
     for (int i = 0; i < masters; i++) {
         const cm1e_coupling_master_t *master = &coupling->master[i];
-        if (master->numerator == 0 || master->denominator == 0)
+        if (master->numerator == 0 || master->denominator == 0) {
+            axis->coupling->numerator = master->numerator;
+            axis->coupling->denominator = master->denominator;
             return CM1E_ERROR_AXIS_RATIO;
+        }
         const cm1e_error_t error = cm1e_axis_link(axis, follow, master);
         if (error)
             return error;

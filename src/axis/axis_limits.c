@@ -290,6 +290,10 @@ bool cm1e_axis_limits_hold(const cm1e_axis_t *axis, double lower, double upper)
 {
     if (axis->activity == ACTIVITY_DRIVE || axis_led(axis)) /* of its way only the end is known, or nothing */
         return isinf(lower) && isinf(upper);
+    if (axis_follows(axis)) { /* nobody knows where to */
+        const double v = axis->set_velocity, stop = cm1e_axis_line(axis, axis->set) + v * fabs(v) * axis->emergency_way;
+        return stop <= upper + axis->tolerance && stop >= lower - axis->tolerance;
+    }
     if (axis->activity != ACTIVITY_PROFILE)
         return true;
     const double base = axis->base_line, now = cm1e_axis_line(axis, axis->set), v = axis->set_velocity;

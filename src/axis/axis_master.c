@@ -7,15 +7,30 @@
  * limit of jerk has its corner. */
 static const double same_way_counts = 1.0;
 
+static void advance_masters(follow_t *follow)
+{
+    for (int i = 0; follow && i < follow->count; i++)
+        if (follow->links[i].master && !follow->links[i].master->advanced)
+            cm1e_axis_advance(follow->links[i].master);
+}
+
 void cm1e_axis_advance_masters(cm1e_axis_t *axis)
 {
-    coupling_t *c = axis->coupling;
-    for (int i = 0; i < c->now->count; i++)
-        if (c->now->links[i].master && !c->now->links[i].master->advanced)
-            cm1e_axis_advance(c->now->links[i].master);
-    for (int i = 0; c->next && i < c->next->count; i++)
-        if (c->next->links[i].master && !c->next->links[i].master->advanced)
-            cm1e_axis_advance(c->next->links[i].master);
+    advance_masters(axis->coupling->now);
+    advance_masters(axis->coupling->next);
+}
+
+static void resume_masters(follow_t *follow, int64_t pause_ns)
+{
+    for (int i = 0; follow && i < follow->count; i++)
+        if (follow->links[i].master)
+            cm1e_axis_after_pause(follow->links[i].master, pause_ns);
+}
+
+void cm1e_axis_resume_masters(cm1e_axis_t *axis, int64_t pause_ns)
+{
+    resume_masters(axis->coupling->now, pause_ns);
+    resume_masters(axis->coupling->next, pause_ns);
 }
 
 /* ---- who follows whom -------------------------------------------------------------------------------------------- */
@@ -88,13 +103,14 @@ void cm1e_axis_unlink(cm1e_axis_t *axis)
 
 /* ---- what is seen of them ---------------------------------------------------------------------------------------- */
 
-static master_trouble_t look_at_set_value(const cm1e_axis_t *master)
+static master_trouble_t trouble_of_set_value(const cm1e_axis_t *master)
 {
-    if (master->state == CM1E_AXIS_ERROR_STOP)
-        return MASTER_ERROR_STOP;
+    const bool stopped = master->state == CM1E_AXIS_ERROR_STOP;
     if (drive_moves(master))
-        return MASTER_HOMING;
-    return master->activity == ACTIVITY_FREE ? MASTER_FREE : MASTER_GOOD;
+        return stopped ? MASTER_ERROR_STOP : MASTER_HOMING;
+    if (master->activity == ACTIVITY_FREE)
+        return stopped ? MASTER_ERROR_STOP : MASTER_FREE;
+    return stopped ? MASTER_STOPPING : MASTER_GOOD;
 }
 
 /* A set-point of the slave that has not advanced is that of the cycle before. */
@@ -116,16 +132,16 @@ static master_trouble_t see(link_t *link, position_t *position)
 {
     const cm1e_axis_t *master = link->master;
     if (!master)
-        return MASTER_GONE;
+        return MASTER_DESTROYED;
     if (link->source == mcActualValue)
         return see_actual(link, position);
-    const master_trouble_t trouble = look_at_set_value(master);
-    if (trouble)
+    const master_trouble_t trouble = trouble_of_set_value(master);
+    if (trouble && trouble != MASTER_STOPPING)
         return trouble;
     *position = master->set;
     link->seen.velocity = master->set_velocity;
     link->seen.acceleration = master->set_acceleration;
-    return MASTER_GOOD;
+    return trouble;
 }
 
 /* The slave's own: the shift against the first of its masters (4.8). */
@@ -157,34 +173,44 @@ static bool jumped(const link_t *link, const sight_t *before)
 static master_trouble_t trouble_with(cm1e_axis_t *slave, const link_t *link, master_trouble_t trouble)
 {
     coupling_t *c = slave->coupling;
+    if (c->stopping)
+        return trouble; /* the first cause is the one to tell */
     c->trouble = trouble;
-    memcpy(c->master_name, link->master ? link->master->config->name : "", link->master ? sizeof c->master_name : 1);
+    c->master_error = link->master ? link->master->error : CM1E_OK;
+    memcpy(c->other_name, link->master ? link->master->config->name : "", link->master ? sizeof c->other_name : 1);
     return trouble;
 }
 
-master_trouble_t cm1e_axis_see(cm1e_axis_t *slave, follow_t *follow)
+static inline master_trouble_t look(cm1e_axis_t *slave, follow_t *follow, bool on_the_way)
 {
+    master_trouble_t worst = MASTER_GOOD;
     for (int i = 0; i < follow->count; i++) {
         link_t *link = &follow->links[i];
         const sight_t before = link->seen;
         position_t position;
         const master_trouble_t trouble = see(link, &position);
         if (trouble)
-            return trouble_with(slave, link, trouble);
+            worst = trouble_with(slave, link, trouble);
+        if (trouble && trouble != MASTER_STOPPING)
+            return trouble;
         link->seen.counts = cm1e_position_minus(position, link->origin);
         if (i == 0)
             add_phase(slave, link);
-        if (jumped(link, &before))
+        if (on_the_way && jumped(link, &before))
             return trouble_with(slave, link, MASTER_JUMPED);
     }
-    return MASTER_GOOD;
+    return worst;
 }
+
+master_trouble_t cm1e_axis_look(cm1e_axis_t *slave, follow_t *follow) { return look(slave, follow, false); }
+master_trouble_t cm1e_axis_see(cm1e_axis_t *slave, follow_t *follow) { return look(slave, follow, true); }
 
 cm1e_error_t cm1e_axis_link(cm1e_axis_t *slave, follow_t *follow, const cm1e_coupling_master_t *asked)
 {
     cm1e_axis_t *master = cm1e_axis_from_reference(&asked->axis);
     if (!master || master->drive.bus != slave->drive.bus)
         return CM1E_ERROR_AXIS_MASTER;
+    memcpy(slave->coupling->other_name, master->config->name, sizeof slave->coupling->other_name);
     if (would_follow_itself(slave, master))
         return CM1E_ERROR_AXIS_COUPLING_CYCLE;
     if (asked->source != mcSetValue && asked->source != mcActualValue)

@@ -60,6 +60,11 @@ static cm1e_error_t move_anew(cm1e_axis_t *axis)
 void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
 {
     const bool goes_on = axis->mode == CM1E_MODE_CSV;
+    if (axis->resumed) /* a follower has asked for that */
+        return;
+    axis->resumed = true;
+    if (axis_follows(axis))
+        cm1e_axis_resume_masters(axis, pause_ns);
     if (!goes_on)
         axis->backlash.offset_velocity = 0.0;
     if (!set_points_move(axis))
@@ -73,6 +78,8 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
         cm1e_axis_lead_after_pause(axis);
         return;
     }
+    if (axis_follows(axis))
+        cm1e_axis_coupling_shift(axis, axis->superimposed.now.position);
     cm1e_axis_superimposed_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK); /* what is left of it belongs to the base now */
     if (axis_follows(axis)) {
         cm1e_axis_coupled_after_pause(axis);

@@ -46,21 +46,40 @@ static void wind_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp)
         cm1e_axis_ramp_down(axis, ramp);
 }
 
-void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound)
+static void fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound, const cm1e_motion_limits_t *ramp)
 {
     if (axis->state == CM1E_AXIS_ERROR_STOP)
         return; /* the first cause is the one to tell */
     const bool homing_broke = axis->activity == ACTIVITY_HOMING &&
                               (error == CM1E_ERROR_AXIS_HOMING_FAILED || error == CM1E_ERROR_AXIS_HOMING_TIMEOUT);
+    const bool followed = axis_follows(axis);
+    const bool coupling_broke = followed && (error == CM1E_ERROR_AXIS_COUPLING_LIMIT ||
+                                             error == CM1E_ERROR_AXIS_MASTER_LOST || error == CM1E_ERROR_AXIS_COUPLED);
     /* 2.2.2: the blocks that lose the axis show an error, not CommandAborted. */
-    cm1e_axis_commands_end(axis, CM1E_COMMAND_ERROR, homing_broke ? error : CM1E_ERROR_AXIS_ERROR_STOP);
+    cm1e_axis_commands_end(axis, CM1E_COMMAND_ERROR,
+                           homing_broke || coupling_broke ? error : CM1E_ERROR_AXIS_ERROR_STOP);
     axis->refusal = axis->not_set.error = CM1E_OK; /* old by the time of the reset */
     axis->error = error;
     axis->device_error = axis->drive.fault.device_code;
     axis->error_value = value;
     axis->error_bound = bound;
     axis->state = CM1E_AXIS_ERROR_STOP;
-    wind_down(axis, &axis->emergency);
+    if (!followed || !axis->coupling->stopping)
+        wind_down(axis, ramp);
+    if (followed)
+        cm1e_axis_coupling_failed(axis);
+}
+
+void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound)
+{
+    fail(axis, error, value, bound, &axis->emergency);
+}
+
+void cm1e_axis_fail_gently(cm1e_axis_t *axis, cm1e_error_t error, double deceleration)
+{
+    cm1e_motion_limits_t ramp = axis->emergency;
+    ramp.deceleration = fmin(ramp.deceleration, deceleration);
+    fail(axis, error, 0.0, 0.0, &ramp);
 }
 
 /* No faster and no farther than the set-point would have gone. For a moment at least: what the feedback shows is some

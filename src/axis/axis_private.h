@@ -387,6 +387,7 @@ struct cm1e_axis {
     bool stop_held;
     bool advanced;                  /**< its set-point is that of this cycle */
     bool observed;                  /**< somebody follows its actual value, or has; an encoder always is */
+    bool resumed;                   /**< a pause before this cycle has been dealt with */
     const void *power_owner;
     double cycle_s;
     int64_t profile_cycles;         /**< since it began ... */
@@ -577,6 +578,7 @@ void cm1e_axis_apply_limits(cm1e_axis_t *axis);
 void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what);
 void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size); /* axis_text.c */
+const char *cm1e_axis_kind_name(cm1e_command_kind_t kind);                            /* axis_text.c */
 void cm1e_axis_object_text(const cm1e_axis_t *axis, char *text, size_t size);
 int cm1e_axis_number_of_object(uint16_t index, uint8_t subindex);
 /** While one waits or is under way. */
@@ -720,6 +722,8 @@ cm1e_error_t cm1e_axis_superimpose(cm1e_axis_t *axis, const cm1e_axis_command_t 
 cm1e_error_t cm1e_axis_superimpose_update(cm1e_axis_t *axis, const move_t *inputs);
 /** Adds its part to the base's of this cycle. */
 void cm1e_axis_superimposed_step(cm1e_axis_t *axis, cm1e_motion_state_t *next);
+/** Instead of that: its part is what was `before`, without jerk, and it goes on from there. */
+void cm1e_axis_superimposed_hold(cm1e_axis_t *axis, const cm1e_motion_state_t *before);
 /** After the set-point: where it has come to its end, the base has all the limits again. */
 void cm1e_axis_superimposed_after(cm1e_axis_t *axis);
 /** What is superimposed becomes part of the one motion that is then planned from the set-point. */
@@ -741,6 +745,8 @@ static inline bool axis_acts(const cm1e_axis_t *axis)
 }
 void cm1e_axis_become_free(cm1e_axis_t *axis);
 void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound);
+/** The same; it brakes no harder than this, u/s2. */
+void cm1e_axis_fail_gently(cm1e_axis_t *axis, cm1e_error_t error, double deceleration);
 /** A ramp of ErrorStop begins anew, from the motor's own position and speed. */
 void cm1e_axis_brake_from_actual(cm1e_axis_t *axis);
 void cm1e_axis_power_step(cm1e_axis_t *axis);

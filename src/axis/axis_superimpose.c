@@ -108,7 +108,7 @@ static void give_to_base(cm1e_axis_t *axis)
     axis->base_line = cm1e_axis_line(axis, axis->base);
     axis->target = cm1e_position_plus(axis->target, counts);
     if (axis_follows(axis))
-        axis->coupling->now->anchor = cm1e_position_plus(axis->coupling->now->anchor, counts);
+        cm1e_axis_coupling_shift(axis, covered);
     if (axis->active) {
         axis->move.origin = cm1e_position_plus(axis->move.origin, counts);
         axis->move.target = cm1e_position_plus(axis->move.target, counts);
@@ -162,7 +162,7 @@ static bool inside(cm1e_axis_t *axis, double distance)
     const position_t base = from_base(axis).position;
     const bool rests = axis->stands || axis->activity == ACTIVITY_HOLD;
     position_t ends[CM1E_AXIS_BUFFER_DEPTH + 2] = {base, rests ? base : axis->target};
-    int count = axis->active && is_endless(axis->kind) ? 1 : 2;
+    int count = axis->active && (is_endless(axis->kind) || is_coupling(axis->kind)) ? 1 : 2;
     for (int i = 0; i < axis->waiting.count; i++)
         if (is_discrete_move((cm1e_command_kind_t)waiting_move(axis, i)->kind))
             ends[count++] = waiting_move(axis, i)->target;
@@ -316,6 +316,14 @@ void cm1e_axis_superimposed_step(cm1e_axis_t *axis, cm1e_motion_state_t *next)
     next->position += on_top->now.position;
     next->velocity += on_top->now.velocity;
     next->acceleration += on_top->now.acceleration;
+}
+
+void cm1e_axis_superimposed_hold(cm1e_axis_t *axis, const cm1e_motion_state_t *before)
+{
+    superimposed_t *on_top = &axis->superimposed;
+    const double t = axis->cycle_s, v = before->velocity, a = before->acceleration;
+    on_top->now = (cm1e_motion_state_t){before->position + t * (v + t * a / 2.0), v + t * a, a};
+    (void)plan(axis, on_top);
 }
 
 void cm1e_axis_superimposed_after(cm1e_axis_t *axis)

@@ -98,9 +98,17 @@ static const char *const kind_names[CM1E_COMMAND_KIND_COUNT] = {
     [CM1E_COMMAND_HOMING_STEP] = "a step of a homing",
     [CM1E_COMMAND_MOVE_SUPERIMPOSED] = "MC_MoveSuperimposed",
     [CM1E_COMMAND_HALT_SUPERIMPOSED] = "MC_HaltSuperimposed",
+    [CM1E_COMMAND_GEAR_IN] = "MC_GearIn",
+    [CM1E_COMMAND_GEAR_IN_POS] = "MC_GearInPos",
+    [CM1E_COMMAND_CAM_IN] = "MC_CamIn",
+    [CM1E_COMMAND_COMBINE_AXES] = "MC_CombineAxes",
+    [CM1E_COMMAND_GEAR_OUT] = "MC_GearOut",
+    [CM1E_COMMAND_CAM_OUT] = "MC_CamOut",
     [CM1E_COMMAND_PHASING_ABSOLUTE] = "MC_PhasingAbsolute",
     [CM1E_COMMAND_PHASING_RELATIVE] = "MC_PhasingRelative",
 };
+
+const char *cm1e_axis_kind_name(cm1e_command_kind_t kind) { return kind_names[kind]; }
 
 void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
@@ -212,14 +220,6 @@ static void refused_virtual_text(const cm1e_axis_t *axis, char *text, size_t siz
                  "MC_HomeDirect and MC_SetPosition say where it is.", axis->config->name);
 }
 
-static void refused_ratio_text(const cm1e_axis_t *axis, char *text, size_t size)
-{
-    snprintf(text, size, axis->refused.kind == CM1E_COMMAND_CAM_IN
-                 ? "Axis \"%s\": MasterScaling or SlaveScaling is not a number of 1e-9 ... 1e9, of either sign, nor 0, "
-                   "which acts as 1."
-                 : "Axis \"%s\": a numerator or denominator of a ratio is 0.", axis->config->name);
-}
-
 /* A command was refused; the axis itself has no error. */
 static const struct {
     cm1e_error_t error;
@@ -231,7 +231,6 @@ static const struct {
     {CM1E_ERROR_AXIS_VIRTUAL, refused_virtual_text},
     {CM1E_ERROR_AXIS_HOMING_METHOD, cm1e_axis_home_wrong_text},
     {CM1E_ERROR_AXIS_HOMING_PARAMETER, cm1e_axis_home_wrong_text},
-    {CM1E_ERROR_AXIS_RATIO, refused_ratio_text},
     {CM1E_ERROR_AXIS_CAM_ID, cm1e_axis_cam_id_text},
     {CM1E_ERROR_AXIS_CAM_START, cm1e_axis_cam_start_text},
 };
@@ -252,7 +251,8 @@ static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
             refusal_texts[i].text(axis, text, size);
             return;
         }
-    if (cm1e_axis_cool_muscle_text(axis, axis->refusal, text, size))
+    if (cm1e_axis_cool_muscle_text(axis, axis->refusal, text, size) ||
+        cm1e_axis_coupling_text(axis, axis->refusal, true, text, size))
         return;
     snprintf(text, size, "Axis \"%s\", %s: %s.%s", axis->config->name, cm1e_axis_state_name(axis->state),
              cm1e_strerror(axis->refusal),
@@ -294,5 +294,6 @@ void cm1e_axis_error_text(AXIS_REF_t reference, char *text, size_t size)
             texts[i].text(axis, text, size);
             return;
         }
-    other_text(axis, text, size);
+    if (!cm1e_axis_coupling_text(axis, axis->error, false, text, size))
+        other_text(axis, text, size);
 }

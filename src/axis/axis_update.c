@@ -2,7 +2,7 @@
  * ContinuousUpdate (2.4.6): new inputs of a command that runs or waits. What has not changed costs a comparison. What
  * has is planned anew from the present set-point; relative values go on counting from where the command began.
  */
-#include "axis/axis_private.h"
+#include "axis/axis_coupling.h"
 
 move_t cm1e_axis_move_of(const cm1e_axis_command_t *command)
 {
@@ -65,6 +65,8 @@ static cm1e_error_t update_active(cm1e_axis_t *axis, const move_t *inputs)
 static cm1e_error_t update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
 {
     const bool on_top = command->kind == CM1E_COMMAND_MOVE_SUPERIMPOSED;
+    if (id != 0 && is_coupling(command->kind))
+        return cm1e_axis_coupling_update(axis, id, command);
     if (id == 0 || (unsigned)command->kind >= CM1E_COMMAND_KIND_COUNT ||
         (!on_top && !cm1e_axis_can_plan(command->kind)))
         return CM1E_ERROR_INVALID_ARGUMENT;

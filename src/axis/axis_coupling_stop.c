@@ -1,0 +1,90 @@
+/*
+ * What stops with a follower that cannot go on, or whose master cannot: `coupling_stop` of its configuration.
+ *
+ * keep_ratio has the slave follow its master to the standstill, in ErrorStop: the ramp of a master that has failed by
+ * itself, as long as there is one; or one that its own limits need. In the latter case the master brakes no harder than
+ * the slave can follow, so that has to begin while the slave still can: a cycle before its limit. Where it cannot, the
+ * axis brakes alone.
+ */
+#include <string.h>
+
+#include "axis/axis_coupling.h"
+
+static bool keeps_ratio(const cm1e_axis_t *axis)
+{
+    return axis->config->coupling_stop == CM1E_COUPLING_STOP_KEEP_RATIO && axis->drive.feedback.enabled &&
+           !axis->superimposed.id && axis->coupling->phase.velocity == 0.0; /* they end with the commands */
+}
+
+/* For the text: because of whom it stops. */
+static void fail_with(cm1e_axis_t *axis, const cm1e_axis_t *cause, double deceleration)
+{
+    if (axis->state == CM1E_AXIS_ERROR_STOP || axis->activity == ACTIVITY_FREE)
+        return; /* without torque there is nothing to stop */
+    memcpy(axis->coupling->other_name, cause->config->name, sizeof axis->coupling->other_name);
+    cm1e_axis_fail_gently(axis, CM1E_ERROR_AXIS_COUPLED, deceleration);
+}
+
+void cm1e_axis_coupling_failed(cm1e_axis_t *axis)
+{
+    const follow_t *follow = axis->coupling->now;
+    if (axis->config->coupling_stop != CM1E_COUPLING_STOP_COUPLED)
+        return;
+    for (int i = 0; i < follow->count; i++) {
+        cm1e_axis_t *master = follow->links[i].master;
+        if (!master)
+            continue;
+        fail_with(master, axis, INFINITY);
+        for (const link_t *link = master->slaves; link; link = link->next)
+            if (axis_follows(link->slave))
+                fail_with(link->slave, axis, INFINITY);
+    }
+}
+
+bool cm1e_axis_follows_to_the_end(cm1e_axis_t *axis, master_trouble_t trouble)
+{
+    if (trouble != MASTER_STOPPING || !keeps_ratio(axis))
+        return false;
+    axis->coupling->stopping = true;
+    cm1e_axis_fail(axis, CM1E_ERROR_AXIS_MASTER_LOST, 0.0, 0.0);
+    return true;
+}
+
+/* u/s2; how hard the pair can brake: as the slave sees it. 0: not at all. */
+static double braking_together(const cm1e_axis_t *axis)
+{
+    const follow_t *follow = axis->coupling->now;
+    const link_t *link = &follow->links[0];
+    const double slope = follow->kind->steepest(axis, follow, 0);
+    if (follow->count != 1 || link->source != mcSetValue || !set_points_move(link->master) || !(slope > 0.0))
+        return 0.0;
+    return fmin(axis->emergency.deceleration, link->master->emergency.deceleration * slope);
+}
+
+/* The limit that the pair would run over if it went on for another cycle before it brakes. */
+static guard_t limit_ahead(const cm1e_axis_t *axis, double braking)
+{
+    const double t = axis->cycle_s, v = axis->set_velocity + axis->set_acceleration * t, most = axis->system.velocity;
+    const double line = cm1e_axis_line(axis, axis->set) + (axis->set_velocity + v) / 2.0 * t;
+    const double end = line + v * fabs(v) / (2.0 * braking) + v * t;
+    if (fabs(v) > most)
+        return (guard_t){.limit = GUARD_VELOCITY, .asked = fabs(v), .allowed = most};
+    if (axis->software_limits && ((v > 0.0 && end > axis->upper) || (v < 0.0 && end < axis->lower)))
+        return (guard_t){.limit = GUARD_SOFTWARE_LIMIT, .asked = line,
+                         .allowed = v > 0.0 ? axis->upper : axis->lower};
+    return (guard_t){.limit = GUARD_KEPT};
+}
+
+void cm1e_axis_keep_ratio(cm1e_axis_t *axis)
+{
+    coupling_t *c = axis->coupling;
+    if (!keeps_ratio(axis) || c->stopping)
+        return;
+    const double braking = braking_together(axis);
+    const guard_t guard = braking > 0.0 ? limit_ahead(axis, braking) : (guard_t){.limit = GUARD_KEPT};
+    if (!guard.limit)
+        return;
+    c->stopping = true;
+    fail_with(c->now->links[0].master, axis, braking / c->now->kind->steepest(axis, c->now, 0));
+    cm1e_axis_guard_fail(axis, guard);
+}

@@ -1,0 +1,83 @@
+/* Couplings in sentences: what was refused, and what they were lost for. */
+#include <stdio.h>
+
+#include "axis/axis_coupling.h"
+
+static const char *const troubles[] = {
+    [MASTER_GOOD] = "is well",
+    [MASTER_DESTROYED] = "does not exist any more: its scheduler has been destroyed",
+    [MASTER_ERROR_STOP] = "is in ErrorStop: look up its own error, and reset it with MC_Reset",
+    [MASTER_STOPPING] = "is in ErrorStop: look up its own error, and reset it with MC_Reset",
+    [MASTER_FREE] = "has no torque, and so no set value: enable it with MC_Power before, or follow its actual value "
+                    "(mcActualValue)",
+    [MASTER_HOMING] = "is moved by its drive, in a homing or a profile of the drive's, and has no set value: wait for "
+                      "its end, or follow its actual value (mcActualValue)",
+    [MASTER_UNSEEN] = "does not say where it is: its inputs are missing",
+    [MASTER_JUMPED] = "jumped: its position was set to where its motor is, which no slave can follow",
+};
+
+static void master_lost_text(const cm1e_axis_t *axis, bool refused, char *text, size_t size)
+{
+    const coupling_t *c = axis->coupling;
+    int used = snprintf(text, size, "Axis \"%s\" %s its master \"%s\", which %s", axis->config->name,
+                        refused ? "cannot follow" : "was braked, as it lost", c->other_name, troubles[c->trouble]);
+    if (c->master_error && used > 0 && (size_t)used < size)
+        used += snprintf(text + used, size - (size_t)used, " (%s)", cm1e_strerror(c->master_error));
+    if (used > 0 && (size_t)used < size)
+        snprintf(text + used, size - (size_t)used, "%s",
+                 refused ? "." : ". Then reset this axis with MC_Reset, and begin to follow again.");
+}
+
+static void not_coupled_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const cm1e_command_kind_t kind = axis->refused.kind;
+    snprintf(text, size, "Axis \"%s\", %s: %s was asked for, which is for an axis that follows a master by %s; this one "
+             "follows %s.", axis->config->name, cm1e_axis_state_name(axis->state), cm1e_axis_kind_name(kind),
+             kind == CM1E_COMMAND_CAM_OUT    ? "MC_CamIn"
+             : kind == CM1E_COMMAND_GEAR_OUT ? "MC_GearIn, MC_GearInPos or MC_CombineAxes"
+                                             : "MC_GearIn, MC_GearInPos, MC_CamIn or MC_CombineAxes",
+             axis_follows(axis) && axis->active ? cm1e_axis_kind_name(axis->kind) : "none");
+}
+
+static void ratio_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    if (axis->refused.kind == CM1E_COMMAND_CAM_IN)
+        snprintf(text, size, "Axis \"%s\": MasterScaling or SlaveScaling is not a number of 1e-9 ... 1e9, of either "
+                 "sign, nor 0, which acts as 1.", axis->config->name);
+    else
+        snprintf(text, size, "Axis \"%s\": the ratio %ld / %lu was asked for; neither may be 0, and the way back is a "
+                 "negative numerator.", axis->config->name, (long)axis->coupling->numerator,
+                 (unsigned long)axis->coupling->denominator);
+}
+
+bool cm1e_axis_coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool refused, char *text, size_t size)
+{
+    const char *name = axis->config->name, *other = axis->coupling->other_name;
+    switch (error) {
+    case CM1E_ERROR_AXIS_MASTER:
+        snprintf(text, size, "Axis \"%s\": Master names no axis of the scheduler of this one: right is the AXIS_REF of "
+                 "another axis in the same bus file.", name);
+        return true;
+    case CM1E_ERROR_AXIS_COUPLING_CYCLE:
+        snprintf(text, size, "Axis \"%s\" cannot follow \"%s\", which is this axis or follows it, perhaps by way of "
+                 "others: end that coupling first, or choose another master.", name, other);
+        return true;
+    case CM1E_ERROR_AXIS_MASTER_LOST:
+        master_lost_text(axis, refused, text, size);
+        return true;
+    case CM1E_ERROR_AXIS_NOT_COUPLED:
+        not_coupled_text(axis, text, size);
+        return true;
+    case CM1E_ERROR_AXIS_RATIO:
+        ratio_text(axis, text, size);
+        return true;
+    case CM1E_ERROR_AXIS_COUPLED:
+        if (other[0] == '\0')
+            return false;
+        snprintf(text, size, "Axis \"%s\" was braked because axis \"%s\", which it is coupled with, has failed: look up "
+                 "the error of that one and remove its cause; then reset both with MC_Reset.", name, other);
+        return true;
+    default:
+        return false;
+    }
+}
