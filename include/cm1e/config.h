@@ -147,7 +147,7 @@ typedef struct cm1e_axis_config {
     uint16_t cam_points;             /**< most points of a cam that the axis follows, 2 ... 4096; 0: 128 */
     cm1e_coupling_stop_t coupling_stop; /**< when it follows a master */
     double encoder_filter_s;         /**< s; time constant with which masters' actual values are smoothed, for this
-                                          axis as a master; 0: 4 cycles */
+                                          axis as a master; 0: 10 cycles */
     bool table_profiles;             /**< TRUE: MC_PositionProfile and its like have their 2 kB of memory */
     cm1e_input_config_t inputs;
     cm1e_homing_config_t homing;

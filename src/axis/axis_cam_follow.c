@@ -137,11 +137,30 @@ static cm1e_error_t take_numbers(const cm1e_axis_coupling_t *coupling, cam_place
     return CM1E_OK;
 }
 
-static void find_master_zero(follow_t *follow, cam_place_t *cam)
+/* A cam that waited for the end of the one before begins there, which was inside the present cycle: the master is so
+ * far beyond by now (its counts), and the slave was there. Else both stay as they are. */
+static void begins_at_end(const cm1e_axis_t *axis, const follow_t *follow, double *beyond, position_t *slave)
+{
+    const follow_t *before = axis->coupling->now;
+    if (!axis->coupling->at_end || before->kind != &cam_kind || before->links[0].master != follow->links[0].master)
+        return;
+    const cam_place_t *cam = &before->cam;
+    const cm1e_cam_t *table = &cam->slot->cam;
+    const cm1e_cam_knot_t *first = &table->knots[0], *last = &table->knots[table->count - 1];
+    const bool upper = table->periodic ? cam->before.phase > table->length / 2.0 : cam->before.turn > 0.0;
+    const double turns = !table->periodic ? 0.0 : cam->before.turn + (upper ? 1.0 : 0.0);
+    const double end = table->start + (table->periodic ? turns * table->length : upper ? table->length : 0.0);
+    const double place = table->periodic || !upper ? first->slave : last->slave;
+    *beyond = (place_in_cam(cam, &before->links[0]) - end) * cam->master_scaling * before->links[0].master->scale;
+    *slave = cm1e_position_plus(cam->slave_zero, (cam->slave_offset + cam->slave_scaling *
+                                                  (turns * table->advance + place)) * axis->scale);
+}
+
+static void find_master_zero(const follow_t *follow, cam_place_t *cam, double beyond)
 {
     const link_t *link = &follow->links[0];
     const double units = cm1e_axis_units(link->master, link->origin);
-    cam->away = cam->slot->master_absolute ? units * link->master->scale : -link->seen.counts;
+    cam->away = cam->slot->master_absolute ? units * link->master->scale : beyond - link->seen.counts;
 }
 
 /* Of the places of a modulo slave, the cam's that is nearest to it. */
@@ -206,13 +225,18 @@ cm1e_error_t cm1e_axis_cam_prepare(cm1e_axis_t *axis, const move_t *move, const 
     if (error)
         return error;
     cm1e_cam_sample_t sample;
-    from_t wanted;
+    from_t wanted, start = *from;
+    double beyond = 0.0;
     follow->linear = slot->cam.curve == mcCamLinear;
-    find_master_zero(follow, cam);
+    if (!slot->master_absolute)
+        begins_at_end(axis, follow, &beyond, &start.position);
+    find_master_zero(follow, cam, 0.0);
     cm1e_cam_sample(&slot->cam, &cam->place, place_in_cam(cam, &follow->links[0]), &sample);
-    error = find_slave_zero(axis, coupling, from, cam, height(cam, &sample));
+    error = find_slave_zero(axis, coupling, &start, cam, height(cam, &sample));
     if (error)
         return error;
+    find_master_zero(follow, cam, beyond);
+    cm1e_cam_sample(&slot->cam, &cam->place, place_in_cam(cam, &follow->links[0]), &sample);
     sample_point(axis, follow, &sample, &wanted);
     if (!cm1e_position_in_range(wanted.position) || !contained(axis, from, cam))
         return CM1E_ERROR_AXIS_POSITION_RANGE;

@@ -471,8 +471,10 @@ cm1e_error_t cm1e_axis_coupling_begin(cm1e_axis_t *axis, const move_t *move, con
     from_t here = *from;
     cm1e_motion_limits_t limits;
     here.position = cm1e_position_plus(from->position, from->velocity * late_s * axis->scale);
+    axis->coupling->at_end = axis_follows(axis) && axis->coupling->end_of_profile;
     const cm1e_error_t error = waiting ? prepare(axis, move, &waiting->coupling, &here, &limits)
                                        : CM1E_ERROR_AXIS_STATE;
+    axis->coupling->at_end = false;
     if (!error)
         take(axis, move, &waiting->coupling, &here, &limits);
     return error;

@@ -138,6 +138,7 @@ typedef struct coupling {
     bool synchronizing;            /**< GEAR_IN_POS: StartSync */
     bool end_of_profile;           /**< CAM_IN: F came over it in this cycle */
     uint32_t ends;                 /**< ... so often since the command began */
+    bool at_end;                   /**< what is being prepared waited for that */
     uint64_t mark;                 /**< of the last search that came here */
     uint32_t searches;
     cm1e_axis_coupling_t inputs;   /**< of the active command, for ContinuousUpdate */

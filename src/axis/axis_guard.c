@@ -39,7 +39,7 @@ static guard_t guard_step(const cm1e_axis_t *axis, const from_t *next, bool kept
     const double t = axis->cycle_s, step = cm1e_position_minus(next->position, axis->set) / axis->scale;
     const double mean = (axis->set_velocity + next->velocity) * 0.5 * t;
     const double most = fmax(axis->system.acceleration, axis->system.deceleration) * t * t /
-                        (kept_jerk ? 4.0 : 2.0); /* without, it may change at any moment of the cycle */
+                        (kept_jerk ? 4.0 : 1.0); /* without, it may change at any moment of the cycle, and be noise */
     /* A double of the whole way has this much noise. */
     const double far = 1e-15 * fabs(cm1e_axis_line(axis, next->position)) + slack_counts / fabs(axis->scale);
     if (!(fabs(step - mean) <= most * (1.0 + slack) + slack * fabs(mean) + far))

@@ -8,7 +8,7 @@
 
 #include "axis/axis_coupling.h"
 
-enum { DEFAULT_FILTER_CYCLES = 4 };
+enum { DEFAULT_FILTER_CYCLES = 10 };
 
 static void look(cm1e_axis_t *axis)
 {

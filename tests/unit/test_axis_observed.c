@@ -140,7 +140,7 @@ static void test_noise_of_the_encoder_is_smoothed(void)
 {
     double worst[2] = {0};
     for (int slow = 0; slow < 2; slow++) {
-        begin_with(steady, slow ? 0.03 : 0.0);
+        begin_with(steady, slow ? 0.03 : 0.004);
         encoder.noise = 2.0;
         axes_cycles(500);
         follow(1, 50, mcActualValue);

@@ -106,7 +106,7 @@ static void test_noise_gain(void)
         TEST_ASSERT_DOUBLE_WITHIN(0.04 * position, position, measured_variance(constants[i], false));
         TEST_ASSERT_DOUBLE_WITHIN(0.04 * velocity, velocity, measured_variance(constants[i], true));
     }
-    /* 4 cycles, the default: a little quieter than the samples in position */
+    /* 4 cycles: a little quieter than the samples in position */
     TEST_ASSERT_TRUE(measured_variance(4e-3, false) < 0.6);
 }
 
