@@ -402,7 +402,8 @@ int main(int argc, char **argv)
         else if (!strcmp(argv[i], "--only"))
             only = argv[i + 1];
     if (argc % 2 == 0 || rounds < 1 || rounds > MAX_ROUNDS)
-        fail("bench_blocks [--rounds 1 ... 200] [--peer LIBRARY] [--only move,gear,linear,cubic,polynomial,group,starts]");
+        fail("bench_blocks [--rounds 1 ... 200] [--peer LIBRARY]\n"
+             "             [--only move,gear,linear,cubic,polynomial,group,starts]");
     const int cpu = stay_on_this_cpu();
     time_the_clock();
     for (unsigned i = 0; i < subject_count; i++)

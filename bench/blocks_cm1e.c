@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "axis/axis_private.h"
 #include "cm1e/plcopen.h"
@@ -18,9 +19,12 @@ static MC_Power_t powers[BLOCKS_MAX_AXES];
 static MC_MoveAbsolute_t moves[BLOCKS_MAX_AXES];
 static MC_GearIn_t gears[BLOCKS_MAX_AXES];
 static MC_CamIn_t cams[BLOCKS_MAX_AXES];
+static AXES_GROUP_REF_t groups[BLOCKS_GROUPS];
+static MC_MoveLinearAbsolute_t lines[BLOCKS_GROUPS];
+static MC_MoveCircularAbsolute_t arcs[BLOCKS_GROUPS];
 static int64_t cycle_now_ns;
 static blocks_work_t work;
-static size_t axis_heap;
+static size_t axis_heap, group_heap;
 
 static void fail(const char *why)
 {
@@ -58,7 +62,12 @@ static cm1e_bus_t *start_bus(void)
 ALWAYS_INLINE void run_programs(blocks_work_t what, unsigned i)
 {
     MC_Power(&powers[i]);
-    if (!blocks_follows(what, i))
+    if (what == BLOCKS_GROUP) {
+        if (i % BLOCKS_MEMBERS == 0) {
+            MC_MoveLinearAbsolute(&lines[i / BLOCKS_MEMBERS]);
+            MC_MoveCircularAbsolute(&arcs[i / BLOCKS_MEMBERS]);
+        }
+    } else if (!blocks_follows(what, i))
         MC_MoveAbsolute(&moves[i]);
     else if (what == BLOCKS_GEAR)
         MC_GearIn(&gears[i]);
@@ -99,6 +108,7 @@ static void run_blocks(unsigned count, unsigned cycles)
     switch (work) {
     case BLOCKS_MOVE: run_blocks_of(BLOCKS_MOVE, count, cycles); break;
     case BLOCKS_GEAR: run_blocks_of(BLOCKS_GEAR, count, cycles); break;
+    case BLOCKS_GROUP: run_blocks_of(BLOCKS_GROUP, count, cycles); break;
     default: run_blocks_of(BLOCKS_CAM_CUBIC, count, cycles); break;
     }
 }
@@ -108,11 +118,25 @@ static void run_whole(unsigned count, unsigned cycles)
     switch (work) {
     case BLOCKS_MOVE: run_whole_of(BLOCKS_MOVE, count, cycles); break;
     case BLOCKS_GEAR: run_whole_of(BLOCKS_GEAR, count, cycles); break;
+    case BLOCKS_GROUP: run_whole_of(BLOCKS_GROUP, count, cycles); break;
     default: run_whole_of(BLOCKS_CAM_CUBIC, count, cycles); break;
     }
 }
 
 /* ---- axes -------------------------------------------------------------------------------------------------------- */
+
+static void make_groups(void)
+{
+    cm1e_diag_t diag = {0};
+    const cm1e_group_config_t config = {.name = ""};
+    for (unsigned i = 0; i < BLOCKS_GROUPS; i++) {
+        const size_t before = blocks_heap_bytes();
+        if (cm1e_group_create(&groups[i], &config, &diag))
+            fail(diag.text);
+        group_heap = blocks_heap_bytes() - before;
+        lines[i].AxesGroup = arcs[i].AxesGroup = &groups[i];
+    }
+}
 
 static bool make(unsigned count)
 {
@@ -133,6 +157,7 @@ static bool make(unsigned count)
         gears[i] = (MC_GearIn_t){.Master = master, .Slave = axis, .RatioNumerator = 1, .RatioDenominator = 2};
         cams[i] = (MC_CamIn_t){.Master = master, .Slave = axis, .StartMode = mcRampIn};
     }
+    make_groups();
     cycle_now_ns = cm1e_clock_now(cm1e_bus_clock(buses[0]));
     for (int cycle = 0; cycle < 200; cycle++) { /* the way to Operation enabled needs the frames */
         for (unsigned i = 0; i < BUSES; i++) {
@@ -157,6 +182,93 @@ static double position(unsigned i)
     return info.set_position;
 }
 
+/* ---- groups ------------------------------------------------------------------------------------------------------ */
+
+static bool begin_groups(unsigned count)
+{
+    for (unsigned i = 0; i < count / BLOCKS_MEMBERS; i++) {
+        for (unsigned k = 0; k < BLOCKS_MEMBERS; k++) {
+            MC_AddAxisToGroup_t add = {.AxesGroup = &groups[i], .Axis = &references[i * BLOCKS_MEMBERS + k],
+                                       .IdentInGroup = (MC_IDENT_IN_GROUP)(k + 1), .Execute = TRUE};
+            MC_AddAxisToGroup(&add);
+            if (!add.Done)
+                fail("MC_AddAxisToGroup: an error");
+        }
+        MC_GroupEnable_t enable = {.AxesGroup = &groups[i], .Execute = TRUE};
+        MC_GroupEnable(&enable);
+        if (!enable.Done)
+            fail("MC_GroupEnable: an error");
+    }
+    return true;
+}
+
+/* They come to rest first. */
+static void end_groups(void)
+{
+    for (unsigned i = 0; i < BLOCKS_GROUPS; i++) {
+        MC_UngroupAllAxes_t ungroup = {.AxesGroup = &groups[i], .Execute = TRUE};
+        for (int cycle = 0; cycle < 10000 && !ungroup.Done; cycle++) {
+            MC_UngroupAllAxes(&ungroup);
+            run_blocks((i + 1) * BLOCKS_MEMBERS, 1);
+        }
+        if (!ungroup.Done)
+            fail("MC_UngroupAllAxes: not done");
+    }
+}
+
+static void prepare_line(unsigned group, const double *end, const blocks_move_t *move, bool first)
+{
+    MC_MoveLinearAbsolute_t *line = &lines[group];
+    line->Execute = FALSE;
+    MC_MoveLinearAbsolute(line);
+    memcpy(line->Position, end, BLOCKS_MEMBERS * sizeof *end);
+    line->Velocity = move->velocity;
+    line->Acceleration = move->acceleration;
+    line->Deceleration = move->deceleration;
+    line->Jerk = move->jerk;
+    line->BufferMode = first ? mcAborting : mcBlendingHigh;
+    line->TransitionMode = first ? mcTMNone : mcTMMaxCornerDeviation;
+    line->TransitionParameter = first ? 0 : BLOCKS_TOLERANCE;
+    line->Execute = TRUE;
+}
+
+static void prepare_arc(unsigned group, const blocks_piece_t *piece, const blocks_move_t *move)
+{
+    MC_MoveCircularAbsolute_t *arc = &arcs[group];
+    arc->Execute = FALSE;
+    MC_MoveCircularAbsolute(arc);
+    arc->CircMode = mcBorder;
+    memcpy(arc->AuxPoint, piece->border, sizeof piece->border);
+    memcpy(arc->EndPoint, piece->end, sizeof piece->end);
+    arc->Velocity = move->velocity;
+    arc->Acceleration = move->acceleration;
+    arc->Deceleration = move->deceleration;
+    arc->Jerk = move->jerk;
+    arc->BufferMode = mcBlendingHigh;
+    arc->TransitionMode = mcTMMaxCornerDeviation;
+    arc->TransitionParameter = BLOCKS_TOLERANCE;
+    arc->Execute = TRUE;
+}
+
+static void give_path(unsigned group, const blocks_move_t *move)
+{
+    for (unsigned k = 0; k < BLOCKS_PIECES; k++) {
+        const blocks_piece_t piece = blocks_path(move->position != 0, k);
+        if (piece.arc) {
+            prepare_arc(group, &piece, move);
+            MC_MoveCircularAbsolute(&arcs[group]);
+        } else {
+            prepare_line(group, piece.end, move, k == 0);
+            MC_MoveLinearAbsolute(&lines[group]);
+        }
+        if (lines[group].Error || arcs[group].Error) {
+            char text[CM1E_GROUP_ERROR_TEXT_BYTES];
+            cm1e_group_error_text(groups[group], text, sizeof text);
+            fail(text);
+        }
+    }
+}
+
 /* ---- followers --------------------------------------------------------------------------------------------------- */
 
 static void select_cam(unsigned i)
@@ -175,8 +287,12 @@ static void select_cam(unsigned i)
     MC_CamTableSelect_t select = {.Slave = &references[i], .CamTable = &cam, .Execute = TRUE, .Periodic = TRUE,
                                   .MasterAbsolute = TRUE, .SlaveAbsolute = TRUE};
     MC_CamTableSelect(&select);
-    if (!select.Done)
-        fail("MC_CamTableSelect: an error");
+    MC_CamTableSelect(&select);
+    if (!select.Done) {
+        char text[CM1E_AXIS_ERROR_TEXT_BYTES];
+        cm1e_axis_error_text(references[i], text, sizeof text);
+        fail(text);
+    }
     cams[i].CamTableID = select.CamTableID;
     cams[i].SlaveOffset = 0;
 }
@@ -191,8 +307,8 @@ static void let_go(unsigned i)
 static bool begin(blocks_work_t what, unsigned count)
 {
     work = what;
-    if (what != BLOCKS_MOVE && what != BLOCKS_GEAR)
-        return false;
+    if (what == BLOCKS_GROUP)
+        return begin_groups(count);
     for (unsigned i = 0; i < BLOCKS_MAX_AXES && what != BLOCKS_MOVE; i++) {
         let_go(i);
         gears[i].RatioNumerator = 1;
@@ -210,6 +326,8 @@ static bool begin(blocks_work_t what, unsigned count)
 
 static void end(void)
 {
+    if (work == BLOCKS_GROUP)
+        end_groups();
     for (unsigned i = 0; i < BLOCKS_MAX_AXES; i++)
         let_go(i);
     work = BLOCKS_MOVE;
@@ -217,6 +335,11 @@ static void end(void)
 
 static void start(unsigned i, const blocks_move_t *move)
 {
+    if (work == BLOCKS_GROUP) {
+        const double target[] = {move->position, move->position / 2, -move->position / 3};
+        prepare_line(i / BLOCKS_MEMBERS, target, move, true);
+        return;
+    }
     let_go(i);
     gears[i].RatioNumerator = (DINT)(move->position * 1000);
     gears[i].RatioDenominator = 1000 * 1000;
@@ -231,7 +354,9 @@ static void start(unsigned i, const blocks_move_t *move)
 
 static void give(unsigned i, const blocks_move_t *move)
 {
-    if (blocks_follows(work, i))
+    if (work == BLOCKS_GROUP && i % BLOCKS_MEMBERS == 0)
+        give_path(i / BLOCKS_MEMBERS, move);
+    if (work == BLOCKS_GROUP || blocks_follows(work, i))
         return;
     moves[i].Execute = FALSE;
     MC_MoveAbsolute(&moves[i]);
@@ -243,10 +368,15 @@ static void give(unsigned i, const blocks_move_t *move)
     moves[i].Execute = TRUE;
 }
 
-static bool done(unsigned i) { return blocks_follows(work, i) || moves[i].Done; }
+static bool done(unsigned i)
+{
+    return work == BLOCKS_GROUP ? lines[i / BLOCKS_MEMBERS].Done : blocks_follows(work, i) || moves[i].Done;
+}
 
 static bool failed(unsigned i)
 {
+    if (work == BLOCKS_GROUP)
+        return lines[i / BLOCKS_MEMBERS].Error || lines[i / BLOCKS_MEMBERS].CommandAborted;
     if (!blocks_follows(work, i))
         return moves[i].Error || moves[i].CommandAborted;
     return work == BLOCKS_GEAR ? gears[i].Error || gears[i].CommandAborted : cams[i].Error || cams[i].CommandAborted;
@@ -260,8 +390,12 @@ static const blocks_bytes_t *bytes(void)
                                     {"MC_MoveAbsolute", sizeof(MC_MoveAbsolute_t)},
                                     {"MC_GearIn", sizeof(MC_GearIn_t)},
                                     {"MC_CamIn", sizeof(MC_CamIn_t)},
+                                    {"a group, with its path", 0},
+                                    {"MC_MoveLinearAbsolute", sizeof(MC_MoveLinearAbsolute_t)},
+                                    {"MC_MoveCircularAbsolute", sizeof(MC_MoveCircularAbsolute_t)},
                                     {NULL, 0}};
     list[0].bytes = axis_heap;
+    list[6].bytes = group_heap;
     return list;
 }
 

@@ -1,9 +1,9 @@
 // lusipad/plcopen (C++17, header-only) as a subject of bench_blocks. bench/blocks takes its source distribution from
 // PyPI and builds this file; the build of the library does not know it.
 //
-// Slaves and masters have to be members of one enabled group there, of at most eight axes. Its MC_CamIn has no input for
-// the curve and goes along straight lines; the cubic spline, which its axis has, is asked of the axis by a block with the
-// same edge logic. Polynomials of degree 5 it has not. A group runs its members itself.
+// Slaves and masters have to be members of one enabled group there, of at most eight axes. Its MC_CamIn has no input
+// for the curve and goes along straight lines; the cubic spline, which its axis has, is asked of the axis by a block
+// with the same edge logic. Polynomials of degree 5 it has not. A group runs its members itself.
 #include <cstdlib>
 #include <memory>
 #include <new>

@@ -103,16 +103,16 @@ typedef struct blocks_subject {
     const char *name;
     /** Once: makes the axes, powered, at rest at 0. */
     bool (*make)(unsigned axes);
-    /** The work of the first `axes` axes from now on: they stand at 0, slaves are in step before the first move. 0 axes:
-     *  slaves wait for start(). FALSE: it has nothing like that. */
+    /** The work of the first `axes` axes from now on: they stand at 0, slaves are in step before the first move. 0
+     *  axes: slaves wait for start(). FALSE: it has nothing like that. */
     bool (*begin)(blocks_work_t work, unsigned axes);
     /** Each axis by its MC_MoveAbsolute again, which may abort what still moves. */
     void (*end)(void);
     /** The next move of an axis, or path of the first axis of a group, which goes as far as blocks_path() says where
      *  `move->position` is not 0. Nothing for slaves, and for further axes of a group. Begins in the next cycle. */
     void (*give)(unsigned axis, const blocks_move_t *move);
-    /** A command of which the start is timed, for a slave or the first axis of a group: inputs of its block, with ratio,
-     *  offset or target by `move->position` (-200 ... 200). The next cycle sees a rising edge. */
+    /** A command of which the start is timed, for a slave or the first axis of a group: inputs of its block, with
+     *  ratio, offset or target by `move->position` (-200 ... 200). The next cycle sees a rising edge. */
     void (*start)(unsigned axis, const blocks_move_t *move);
     /** That many cycles of the first `axes` axes: all blocks called, then the axes' own work. */
     void (*run)(unsigned axes, unsigned cycles);
