@@ -21,8 +21,8 @@ static void look(cm1e_axis_t *axis)
     own->now.acceleration = (own->now.velocity - own->before.velocity) / axis->cycle_s;
 }
 
-/* Counts/s, of what nobody has looked at before: a motor goes as it is told to, or says how. An encoder is looked at from
- * its first counts on. */
+/* Counts/s, of what nobody has looked at before: a motor goes as it is told to, or says how. An encoder is looked at
+ * from its first counts on. */
 static double first_velocity(const cm1e_axis_t *axis)
 {
     if (axis->config->type == CM1E_AXIS_ENCODER)

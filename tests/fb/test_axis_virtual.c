@@ -4,6 +4,7 @@
 #include "axis/axis_parameters.h"
 #include "axis/axis_signals.h"
 #include "axis_segment.h"
+#undef axis /* it is a member here */
 
 enum { LINE = 0, MOTOR, ENCODER, AXES };
 static int owners[AXES];
@@ -342,6 +343,74 @@ START_TEST(test_encoder_is_never_enabled_nor_moved)
 }
 END_TEST
 
+/* ---- as masters -------------------------------------------------------------------------------------------------- */
+
+static cm1e_command_id_t gear_in(int slave, int master, int32_t numerator, uint32_t denominator)
+{
+    cm1e_command_id_t id;
+    const cm1e_axis_coupling_t coupling = {.master = {{.axis = cm1e_axis_reference(axes[master]),
+                                                       .numerator = numerator, .denominator = denominator}}};
+    const cm1e_axis_command_t c = {.kind = CM1E_COMMAND_GEAR_IN, .coupling = &coupling};
+    const cm1e_error_t error = cm1e_axis_start(axes[slave], &c, &id);
+    ck_assert_msg(error == CM1E_OK, "%s: %s", cm1e_strerror(error), text_of(slave));
+    return id;
+}
+
+/* A motor at a line shaft that is not there, and the shaft stopped by the motor's failure. */
+START_TEST(test_motor_follows_a_virtual_axis)
+{
+    start();
+    enable_both();
+    gear_in(MOTOR, LINE, -1, 2);
+    const cm1e_command_id_t id = go(LINE, CM1E_COMMAND_MOVE_ABSOLUTE, 8.0, 6.0);
+    for (int i = 0; i < 3000; i++) {
+        cycles(1);
+        ck_assert_double_eq_tol(info_of(MOTOR).set_position, -0.5 * info_of(LINE).set_position, 1e-9);
+    }
+    ck_assert_int_eq(cm1e_axis_command_status(axes[LINE], id).state, CM1E_COMMAND_DONE);
+    ck_assert_double_eq_tol(probe_of(0).position_counts, -4.0 * 50000.0, 100.0);
+    go(LINE, CM1E_COMMAND_MOVE_VELOCITY, 0.0, 6.0);
+    cycles(500);
+    simulate("error 1 2310");
+    cycles(100);
+    ck_assert_int_eq(info_of(MOTOR).state, CM1E_AXIS_ERROR_STOP);
+    ck_assert_int_eq(info_of(LINE).state, CM1E_AXIS_CONTINUOUS_MOTION); /* a master is not influenced */
+    close_segment();
+}
+END_TEST
+
+START_TEST(test_motor_follows_an_encoder_that_is_lost_for_some_cycles)
+{
+    for (int lost = 1; lost <= 5; lost++) {
+        start();
+        enable_both();
+        int64_t counts = 0;
+        for (int i = 0; i < 100; i++)
+            write_counts(counts, true);
+        gear_in(MOTOR, ENCODER, 1, 50);
+        for (int i = 0; i < 2000; i++) /* an even start */
+            write_counts(counts += i / 200, true);
+        ck_assert_msg(info_of(MOTOR).state == CM1E_AXIS_SYNCHRONIZED_MOTION, "%s", text_of(MOTOR));
+        for (int i = 0; i < lost; i++) {
+            counts += 9;
+            write_counts(7, false);
+        }
+        for (int i = 0; i < 2; i++)
+            write_counts(counts += 9, true);
+        const bool ridden_out = lost <= 3; /* lost_cycles_limit */
+        ck_assert_msg(info_of(MOTOR).state == (ridden_out ? CM1E_AXIS_SYNCHRONIZED_MOTION : CM1E_AXIS_ERROR_STOP),
+                      "%d: %s", lost, text_of(MOTOR));
+        for (int i = 0; i < 1500; i++)
+            write_counts(counts += i < 900 ? 9 - i / 100 : 0, true);
+        if (ridden_out)
+            ck_assert_double_eq_tol(info_of(MOTOR).set_position, (double)counts / 1000.0 / 50.0, 2.0 / 1000.0 / 50.0);
+        else
+            ck_assert_int_eq(info_of(MOTOR).error, CM1E_ERROR_AXIS_MASTER_LOST);
+        close_segment();
+    }
+}
+END_TEST
+
 START_TEST(test_shut_down_waits_for_none_of_them)
 {
     start();
@@ -378,6 +447,8 @@ int main(void)
     tcase_add_test(cases, test_encoder_is_where_the_program_says_over_the_end_of_its_counter);
     tcase_add_test(cases, test_encoder_that_is_not_written_is_offline_and_comes_back_where_it_is);
     tcase_add_test(cases, test_encoder_is_never_enabled_nor_moved);
+    tcase_add_test(cases, test_motor_follows_a_virtual_axis);
+    tcase_add_test(cases, test_motor_follows_an_encoder_that_is_lost_for_some_cycles);
     tcase_add_test(cases, test_shut_down_waits_for_none_of_them);
     suite_add_tcase(suite, cases);
     SRunner *runner = srunner_create(suite);

@@ -92,7 +92,10 @@ static double still(double t)
 static double steady(double t) { return 12345.6 * t; }
 static double backwards(double t) { return -300000.0 * t; }
 static double swinging(double t) { return 3000.0 * sin(2.0 * t); }
-static double starting(double t) { return t < 1.0 ? 0.0 : t < 2.0 ? 5000.0 * (t - 1.0) * (t - 1.0) : 10000.0 * t - 15000.0; }
+static double starting(double t)
+{
+    return t < 1.0 ? 0.0 : t < 2.0 ? 5000.0 * (t - 1.0) * (t - 1.0) : 10000.0 * t - 15000.0;
+}
 /* From 1 s on, for 4 s. */
 static double going_and_resting(double t)
 {

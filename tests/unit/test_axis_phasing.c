@@ -422,6 +422,90 @@ static void test_of_two_masters_the_first_is_shifted(void)
                                                       axes_info(OTHER).set_position);
 }
 
+/* ---- cams -------------------------------------------------------------------------------------------------------- */
+
+enum { POINTS = 41 };
+static MC_CAM_POINT points[2][POINTS];
+static cm1e_cam_knot_t knots[2][POINTS];
+static cm1e_cam_t cams[2];
+static MC_CAM_ID ids[2];
+
+/* Two waves on 10 u of the master, of another height and place; the axis has them, and the test for itself. */
+static void begin_with_cams(void)
+{
+    axes_begin(3);
+    for (int cam = 0; cam < 2; cam++) {
+        int at;
+        for (int i = 0; i < POINTS; i++)
+            points[cam][i] = (MC_CAM_POINT){.Master = i * 10.0 / (POINTS - 1), .Slave = (1.0 + cam) *
+                                            sin(6.283185307179586 * (i % (POINTS - 1)) / (POINTS - 1) + cam)};
+        const MC_CAM_REF table = {points[cam], POINTS, mcCamCubicSpline};
+        TEST_ASSERT_EQUAL(CM1E_CAM_GOOD, cm1e_cam_compile(&cams[cam], knots[cam], POINTS, &table, true, &at));
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_axis_cam_select(axes_axis(SLAVE), &table, true, true, true, &ids[cam]));
+    }
+    axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 3.0, .jerk = 100.0,
+                                                .acceleration = 20.0});
+}
+
+static cm1e_command_id_t cam_in(int cam)
+{
+    const cm1e_axis_coupling_t coupling = {.master = {{.axis = axes_reference(MASTER), .numerator = 1,
+                                                       .denominator = 1}}, .cam = ids[cam], .start_mode = mcRampIn};
+    return axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_CAM_IN, .coupling = &coupling});
+}
+
+/* Counts between where the slave is and where the cam has it for the master at `shifted` more. */
+static double off_cam(int cam, double shifted)
+{
+    static cm1e_cam_place_t place[2];
+    cm1e_cam_sample_t sample;
+    cm1e_cam_sample(&cams[cam], &place[cam], axes_info(MASTER).set_position + shifted, &sample);
+    return (axes_info(SLAVE).set_position - sample.point.position) * 50000.0;
+}
+
+static void test_a_cam_is_followed_with_the_ideal_shift_at_every_sample(void)
+{
+    static const double shifts[] = {2.5, -3.25, 14.0};
+    begin_with_cams();
+    axes_wait_reached(SLAVE, cam_in(0), 5000);
+    double from = 0.0;
+    for (int i = 0; i < 3; i++) {
+        cm1e_axis_command_t c = shift(false, shifts[i], 2.0);
+        const cm1e_motion_limits_t limits = {c.velocity, c.acceleration = 8.0, c.deceleration = 6.0, c.jerk = 100.0};
+        const cm1e_motion_state_t start = {.position = from};
+        cm1e_profile_t ideal;
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_profile_to_position(&ideal, &start, shifts[i], &limits));
+        const cm1e_command_id_t id = axes_command(SLAVE, &c);
+        for (int n = 1; n <= (int)(ideal.duration_s * 1000.0) + 500; n++) {
+            cm1e_motion_state_t now;
+            axes_cycles(1);
+            cm1e_profile_sample(&ideal, n * 1e-3, &now);
+            TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1.0, 0.0, off_cam(0, now.position), axes_text(SLAVE));
+        }
+        TEST_ASSERT_EQUAL(CM1E_COMMAND_DONE, state_of(id));
+        from = shifts[i];
+    }
+}
+
+/* Another cam, at any moment: the shift goes on, and the new cam has it. */
+static void test_a_shift_goes_on_through_a_change_of_cam(void)
+{
+    for (int at = 10; at < 1500; at += 150) {
+        begin_with_cams();
+        axes_wait_reached(SLAVE, cam_in(0), 5000);
+        const cm1e_command_id_t id = to_shift(2.5, 2.0);
+        axes_cycles(at);
+        const cm1e_command_id_t other = cam_in(1);
+        axes_wait(SLAVE, id, 5000);
+        TEST_ASSERT_EQUAL(CM1E_COMMAND_DONE, state_of(id));
+        axes_wait_reached(SLAVE, other, 5000);
+        for (int n = 0; n < 500; n++) {
+            axes_cycles(1);
+            TEST_ASSERT_DOUBLE_WITHIN(1.0, 0.0, off_cam(1, 2.5));
+        }
+    }
+}
+
 /* ---- refused ----------------------------------------------------------------------------------------------------- */
 
 static void test_it_needs_a_slave_and_its_master(void)
@@ -536,6 +620,8 @@ int main(void)
     RUN_TEST(test_it_ends_with_the_coupling);
     RUN_TEST(test_a_shift_does_not_outlive_its_coupling);
     RUN_TEST(test_of_two_masters_the_first_is_shifted);
+    RUN_TEST(test_a_cam_is_followed_with_the_ideal_shift_at_every_sample);
+    RUN_TEST(test_a_shift_goes_on_through_a_change_of_cam);
     RUN_TEST(test_it_needs_a_slave_and_its_master);
     RUN_TEST(test_numbers_that_the_slave_cannot_follow_are_refused_in_words);
     RUN_TEST(test_without_numbers_half_of_the_limits_are_the_shifts);
