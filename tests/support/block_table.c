@@ -1415,6 +1415,7 @@ static const block_member_t members_of_MC_Home[] = {
 };
 static void call_MC_Home(void *fb) { MC_Home(fb); }
 static const cm1e_error_t errors_of_MC_Home[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_HOMING_PARAMETER,
@@ -1474,6 +1475,7 @@ static const block_member_t members_of_MC_Halt[] = {
 };
 static void call_MC_Halt(void *fb) { MC_Halt(fb); }
 static const cm1e_error_t errors_of_MC_Halt[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_BUFFER_MODE,
@@ -1505,6 +1507,7 @@ static const block_member_t members_of_MC_MoveAbsolute[] = {
 };
 static void call_MC_MoveAbsolute(void *fb) { MC_MoveAbsolute(fb); }
 static const cm1e_error_t errors_of_MC_MoveAbsolute[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_BUFFER_MODE,
@@ -1539,6 +1542,7 @@ static const block_member_t members_of_MC_MoveRelative[] = {
 };
 static void call_MC_MoveRelative(void *fb) { MC_MoveRelative(fb); }
 static const cm1e_error_t errors_of_MC_MoveRelative[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_BUFFER_MODE,
@@ -1572,6 +1576,7 @@ static const block_member_t members_of_MC_MoveAdditive[] = {
 };
 static void call_MC_MoveAdditive(void *fb) { MC_MoveAdditive(fb); }
 static const cm1e_error_t errors_of_MC_MoveAdditive[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_BUFFER_MODE,
@@ -1604,6 +1609,7 @@ static const block_member_t members_of_MC_MoveSuperimposed[] = {
 };
 static void call_MC_MoveSuperimposed(void *fb) { MC_MoveSuperimposed(fb); }
 static const cm1e_error_t errors_of_MC_MoveSuperimposed[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_DIRECTION_DISABLED,
@@ -1631,6 +1637,7 @@ static const block_member_t members_of_MC_HaltSuperimposed[] = {
 };
 static void call_MC_HaltSuperimposed(void *fb) { MC_HaltSuperimposed(fb); }
 static const cm1e_error_t errors_of_MC_HaltSuperimposed[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_DYNAMICS_RANGE,
@@ -1659,6 +1666,7 @@ static const block_member_t members_of_MC_MoveVelocity[] = {
 };
 static void call_MC_MoveVelocity(void *fb) { MC_MoveVelocity(fb); }
 static const cm1e_error_t errors_of_MC_MoveVelocity[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_BUFFER_MODE,
@@ -1694,6 +1702,7 @@ static const block_member_t members_of_MC_MoveContinuousAbsolute[] = {
 };
 static void call_MC_MoveContinuousAbsolute(void *fb) { MC_MoveContinuousAbsolute(fb); }
 static const cm1e_error_t errors_of_MC_MoveContinuousAbsolute[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_BUFFER_MODE,
@@ -1729,6 +1738,7 @@ static const block_member_t members_of_MC_MoveContinuousRelative[] = {
 };
 static void call_MC_MoveContinuousRelative(void *fb) { MC_MoveContinuousRelative(fb); }
 static const cm1e_error_t errors_of_MC_MoveContinuousRelative[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_BUFFER_MODE,
@@ -1787,6 +1797,7 @@ static const block_member_t members_of_MC_PositionProfile[] = {
 };
 static void call_MC_PositionProfile(void *fb) { MC_PositionProfile(fb); }
 static const cm1e_error_t errors_of_MC_PositionProfile[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_AXIS_NO_TABLES,
     CM1E_ERROR_AXIS_TABLE_LATE,
     CM1E_ERROR_AXIS_TABLE,
@@ -1823,6 +1834,7 @@ static const block_member_t members_of_MC_VelocityProfile[] = {
 };
 static void call_MC_VelocityProfile(void *fb) { MC_VelocityProfile(fb); }
 static const cm1e_error_t errors_of_MC_VelocityProfile[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_AXIS_NO_TABLES,
     CM1E_ERROR_AXIS_TABLE_LATE,
     CM1E_ERROR_AXIS_TABLE,
@@ -1859,6 +1871,7 @@ static const block_member_t members_of_MC_AccelerationProfile[] = {
 };
 static void call_MC_AccelerationProfile(void *fb) { MC_AccelerationProfile(fb); }
 static const cm1e_error_t errors_of_MC_AccelerationProfile[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_AXIS_NO_TABLES,
     CM1E_ERROR_AXIS_TABLE_LATE,
     CM1E_ERROR_AXIS_TABLE,
@@ -1896,6 +1909,7 @@ static const block_member_t members_of_MC_Jog[] = {
 };
 static void call_MC_Jog(void *fb) { MC_Jog(fb); }
 static const cm1e_error_t errors_of_MC_Jog[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_DIRECTION_DISABLED,
@@ -1955,6 +1969,7 @@ static const block_member_t members_of_MC_CamIn[] = {
 };
 static void call_MC_CamIn(void *fb) { MC_CamIn(fb); }
 static const cm1e_error_t errors_of_MC_CamIn[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_AXIS_CAM_START,
     CM1E_ERROR_AXIS_CAM_ID,
     CM1E_ERROR_AXIS_SYNC_WAY,
@@ -2017,6 +2032,7 @@ static const block_member_t members_of_MC_GearIn[] = {
 };
 static void call_MC_GearIn(void *fb) { MC_GearIn(fb); }
 static const cm1e_error_t errors_of_MC_GearIn[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_AXIS_RATIO,
     CM1E_ERROR_AXIS_COUPLING_LIMIT,
     CM1E_ERROR_AXIS_MASTER_LOST,
@@ -2081,6 +2097,7 @@ static const block_member_t members_of_MC_GearInPos[] = {
 };
 static void call_MC_GearInPos(void *fb) { MC_GearInPos(fb); }
 static const cm1e_error_t errors_of_MC_GearInPos[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_AXIS_SYNC_WAY,
     CM1E_ERROR_AXIS_RATIO,
     CM1E_ERROR_AXIS_COUPLING_LIMIT,
@@ -2123,6 +2140,7 @@ static const block_member_t members_of_MC_PhasingAbsolute[] = {
 };
 static void call_MC_PhasingAbsolute(void *fb) { MC_PhasingAbsolute(fb); }
 static const cm1e_error_t errors_of_MC_PhasingAbsolute[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_AXIS_NOT_COUPLED,
     CM1E_ERROR_AXIS_MASTER,
     CM1E_ERROR_FB_AXIS_CHANGED,
@@ -2158,6 +2176,7 @@ static const block_member_t members_of_MC_PhasingRelative[] = {
 };
 static void call_MC_PhasingRelative(void *fb) { MC_PhasingRelative(fb); }
 static const cm1e_error_t errors_of_MC_PhasingRelative[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_AXIS_NOT_COUPLED,
     CM1E_ERROR_AXIS_MASTER,
     CM1E_ERROR_FB_AXIS_CHANGED,
@@ -2196,6 +2215,7 @@ static const block_member_t members_of_MC_CombineAxes[] = {
 };
 static void call_MC_CombineAxes(void *fb) { MC_CombineAxes(fb); }
 static const cm1e_error_t errors_of_MC_CombineAxes[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_AXIS_RATIO,
     CM1E_ERROR_AXIS_COUPLING_LIMIT,
     CM1E_ERROR_AXIS_MASTER_LOST,
@@ -2660,6 +2680,7 @@ static const block_member_t members_of_MC_SetPosition[] = {
 };
 static void call_MC_SetPosition(void *fb) { MC_SetPosition(fb); }
 static const cm1e_error_t errors_of_MC_SetPosition[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_OFFLINE,
@@ -3068,6 +3089,7 @@ static const block_member_t members_of_MC_StepAbsoluteSwitch[] = {
 };
 static void call_MC_StepAbsoluteSwitch(void *fb) { MC_StepAbsoluteSwitch(fb); }
 static const cm1e_error_t errors_of_MC_StepAbsoluteSwitch[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_AXIS_STEP_LIMIT_SWITCH,
     CM1E_ERROR_AXIS_STEP_TORQUE,
     CM1E_ERROR_AXIS_STEP_DISTANCE,
@@ -3110,6 +3132,7 @@ static const block_member_t members_of_MC_StepLimitSwitch[] = {
 };
 static void call_MC_StepLimitSwitch(void *fb) { MC_StepLimitSwitch(fb); }
 static const cm1e_error_t errors_of_MC_StepLimitSwitch[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_AXIS_STEP_LIMIT_SWITCH,
     CM1E_ERROR_AXIS_STEP_TORQUE,
     CM1E_ERROR_AXIS_STEP_DISTANCE,
@@ -3153,6 +3176,7 @@ static const block_member_t members_of_MC_StepBlock[] = {
 };
 static void call_MC_StepBlock(void *fb) { MC_StepBlock(fb); }
 static const cm1e_error_t errors_of_MC_StepBlock[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_AXIS_STEP_LIMIT_SWITCH,
     CM1E_ERROR_AXIS_STEP_DISTANCE,
     CM1E_ERROR_AXIS_STEP_TIME,
@@ -3235,6 +3259,7 @@ static const block_member_t members_of_MC_HomeDirect[] = {
 };
 static void call_MC_HomeDirect(void *fb) { MC_HomeDirect(fb); }
 static const cm1e_error_t errors_of_MC_HomeDirect[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_BUFFER_MODE,
@@ -3283,6 +3308,7 @@ static const block_member_t members_of_MC_FinishHoming[] = {
 };
 static void call_MC_FinishHoming(void *fb) { MC_FinishHoming(fb); }
 static const cm1e_error_t errors_of_MC_FinishHoming[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_BUFFER_MODE,
