@@ -12,7 +12,7 @@
 #include "example.h"
 
 enum { BELT = 0, CARRIAGE, AXES, CAMS = 2, POINTS = 4, CUTS_OF_EACH = 4, COUNTS_PER_MM = 100, MOST_CUTS = 16 };
-typedef enum step { STEP_POWER = 0, STEP_SELECT, STEP_CUT, STEP_OUT, STEP_HALT, STEP_BACK, STEP_OFF } step_t;
+typedef enum step { STEP_POWER = 0, STEP_SELECT, STEP_FOLLOW, STEP_OUT, STEP_HALT, STEP_BACK, STEP_OFF } step_t;
 
 /* mm. Up to the speed of the belt on the first 100 mm of it, with it on the next 100 mm, back on what is left. */
 static const LREAL lengths[CAMS] = {400, 600}, cut_from = 100, cut_to = 200;
@@ -49,7 +49,7 @@ static void describe_network(cm1e_bus_config_t *config)
 
 static void make_cam(int i)
 {
-    const LREAL sync = (cut_from + 0.0) / 2; /* half of the way that the belt goes meanwhile */
+    const LREAL sync = cut_from / 2; /* half of the way that the belt goes meanwhile */
     const MC_CAM_POINT p[POINTS] = {
         {0, 0, 0, 0}, {cut_from, sync, 1, 0}, {cut_to, sync + cut_to - cut_from, 1, 0}, {lengths[i], 0, 0, 0},
     };
@@ -64,7 +64,7 @@ static void make_cam(int i)
 /* The belt of this machine: it gets up to 150 mm/s, later to 250, and stops at the end. */
 static void drive_belt(void)
 {
-    const double wanted = step == STEP_CUT ? (turns < 2 ? 150 : 250) : 0, most = 0.1; /* mm/s, mm/s in a cycle */
+    const double wanted = step == STEP_FOLLOW ? (turns < 2 ? 150 : 250) : 0, most = 0.1; /* mm/s, mm/s in a cycle */
     belt_velocity += fmax(-most, fmin(wanted - belt_velocity, most));
     belt_mm += belt_velocity * 0.001;
     cm1e_axis_write_encoder(belt, (uint32_t)(int64_t)llround(belt_mm * COUNTS_PER_MM), true);
@@ -93,7 +93,7 @@ static void call_blocks(void)
         selects[i].Execute = step >= STEP_SELECT;
         MC_CamTableSelect(&selects[i]);
         cam_ins[i].CamTableID = selects[i].CamTableID;
-        cam_ins[i].Execute = step == STEP_CUT && cam >= i;
+        cam_ins[i].Execute = step == STEP_FOLLOW && cam >= i;
         MC_CamIn(&cam_ins[i]);
     }
     cam_out.Execute = step >= STEP_OUT;
@@ -119,7 +119,7 @@ static void watch(void)
 
 static void count_turns(void)
 {
-    if (step != STEP_CUT || !(cam_ins[0].EndOfProfile || cam_ins[1].EndOfProfile))
+    if (step != STEP_FOLLOW || !(cam_ins[0].EndOfProfile || cam_ins[1].EndOfProfile))
         return;
     turns++;
     if (turns == CUTS_OF_EACH - 1) /* the other cam waits for the end of the next turn */
@@ -131,7 +131,7 @@ static bool step_is_done(void)
     switch (step) {
     case STEP_POWER: return power.Status;
     case STEP_SELECT: return selects[0].Done && selects[1].Done;
-    case STEP_CUT: return turns == 2 * CUTS_OF_EACH;
+    case STEP_FOLLOW: return turns == 2 * CUTS_OF_EACH;
     case STEP_OUT: return cam_out.Done;
     case STEP_HALT: return halt.Done;
     case STEP_BACK: return back.Done;
@@ -141,7 +141,7 @@ static bool step_is_done(void)
 
 static void program(void *context)
 {
-    static const char *const marks[] = {"power", "select", "cut", "out", "halt", "back", "off"};
+    static const char *const marks[] = {"power", "select", "follow", "out", "halt", "back", "off"};
     (void)context;
     drive_belt();
     call_blocks();

@@ -89,8 +89,8 @@ static cm1e_error_t read_file(cm1e_diag_t *why)
         if (text[strspn(text, " \t\r\n")] == '\0' || text[0] == '#')
             continue;
         if (row_count == ROWS || !read_row(text, &rows[row_count]))
-            error = cm1e_diag_set(why, CM1E_ERROR_FILE, 0, "%s:%d: not \"line, x, y\" or \"arc, x, y, x, y\" with numbers "
-                                  "in mm, or more than %d of them.", file_name, number, ROWS);
+            error = cm1e_diag_set(why, CM1E_ERROR_FILE, 0, "%s:%d: not \"line, x, y\" or \"arc, x, y, x, y\" with "
+                                  "numbers in mm, or more than %d of them.", file_name, number, ROWS);
         row_count++;
     }
     fclose(file);
@@ -127,7 +127,7 @@ static void call_blocks(void)
     enable.Execute = step >= STEP_ENABLE;
     MC_GroupEnable(&enable);
     call_rows();
-    disable.Execute = step >= STEP_DISABLE;
+    disable.Execute = step == STEP_DISABLE;
     MC_GroupDisable(&disable);
 }
 
@@ -238,7 +238,8 @@ int main(int argc, char **argv)
     static cm1e_bus_config_t config; /* large: not on the stack */
     static const struct argp common = {example_option_list, example_option, NULL, NULL, NULL, NULL, NULL};
     static const struct argp_child children[] = {{&common, 0, NULL, 0}, {0}};
-    static const struct argp_option options[] = {{"outline", 'o', "FILE", 0, "draw where the table has been", 0}, {0}};
+    static const struct argp_option options[] = {
+        {"outline", 'o', "FILE", 0, "draw where the table has been", 0}, {0}};
     static const struct argp argp = {options, option, "[CSV FILE]", "An XY table that goes along an outline.", children,
                                      NULL, NULL};
     cm1e_diag_t why = {0};

@@ -23,6 +23,8 @@ typedef struct example {
     cm1e_bus_t *bus;
     cm1e_scheduler_t *scheduler;
     AXIS_REF_t axis;
+    AXIS_REF_t wrong;  /**< the first axis of which a block had an error, and which one */
+    WORD error_id;
 } example_t;
 
 static inline error_t example_option(int key, char *argument, struct argp_state *state)
@@ -37,16 +39,18 @@ static inline error_t example_option(int key, char *argument, struct argp_state 
     }
 }
 
+/** A program with options of its own has these as its argp's child, and &example as what they fill in. */
+static const struct argp_option example_option_list[] = {
+    {"interface", 'i', "NAME", 0, "network interface (the motor turns!); default: sim, the simulated segment", 0},
+    {"virtual-time", EXAMPLE_VIRTUAL_TIME, NULL, 0, "sim only: do not wait, run as fast as the machine can", 0},
+    {"csv", EXAMPLE_CSV, "FILE", 0, "write the trace as CSV", 0},
+    {"svg", EXAMPLE_SVG, "FILE", 0, "write the trace as a plot", 0},
+    {0},
+};
+
 static inline void example_options(example_t *e, int argc, char **argv, const char *purpose)
 {
-    static const struct argp_option options[] = {
-        {"interface", 'i', "NAME", 0, "network interface (the motor turns!); default: sim, the simulated segment", 0},
-        {"virtual-time", EXAMPLE_VIRTUAL_TIME, NULL, 0, "sim only: do not wait, run as fast as the machine can", 0},
-        {"csv", EXAMPLE_CSV, "FILE", 0, "write the trace as CSV", 0},
-        {"svg", EXAMPLE_SVG, "FILE", 0, "write the trace as a plot", 0},
-        {0},
-    };
-    const struct argp argp = {options, example_option, NULL, purpose, NULL, NULL, NULL};
+    const struct argp argp = {example_option_list, example_option, NULL, purpose, NULL, NULL, NULL};
     e->interface_name = "sim";
     argp_parse(&argp, argc, argv, 0, NULL, e);
 }
@@ -88,14 +92,14 @@ static inline cm1e_error_t example_run(example_t *e, cm1e_program_t program, cm1
     return error;
 }
 
-/** What main() returns. */
-static inline int example_end(example_t *e, cm1e_error_t error, const cm1e_diag_t *why, bool well)
+/** Looks at a block of an axis. TRUE: this or an earlier one has an error; the first one is told at the end. */
+static inline bool example_failed(example_t *e, AXIS_REF_t axis, BOOL error, WORD error_id)
 {
-    if (error != CM1E_OK)
-        fprintf(stderr, "%s\n", why->text);
-    cm1e_scheduler_destroy(e->scheduler);
-    cm1e_bus_close(e->bus);
-    return error == CM1E_OK && well ? EXIT_SUCCESS : EXIT_FAILURE;
+    if (error && e->error_id == 0) {
+        e->error_id = error_id;
+        e->wrong = axis;
+    }
+    return e->error_id != 0;
 }
 
 /** The sentences about an axis on which something went wrong. In the program's end, not in the cycle. */
@@ -103,8 +107,20 @@ static inline void example_tell_error_of(AXIS_REF_t axis, WORD error_id)
 {
     char text[CM1E_AXIS_ERROR_TEXT_BYTES];
     cm1e_axis_error_text(axis, text, sizeof text);
-    fprintf(stderr, "%s. %s\n", cm1e_strerror(cm1e_error_from_id(error_id)), text);
+    fprintf(stderr, "%s.%s%s\n", cm1e_strerror(cm1e_error_from_id(error_id)), text[0] ? " " : "", text);
 }
 static inline void example_tell_error(const example_t *e, WORD error_id) { example_tell_error_of(e->axis, error_id); }
+
+/** What main() returns. */
+static inline int example_end(example_t *e, cm1e_error_t error, const cm1e_diag_t *why, bool well)
+{
+    if (error != CM1E_OK)
+        fprintf(stderr, "%s\n", why->text);
+    if (e->error_id != 0)
+        example_tell_error_of(e->wrong, e->error_id);
+    cm1e_scheduler_destroy(e->scheduler);
+    cm1e_bus_close(e->bus);
+    return error == CM1E_OK && e->error_id == 0 && well ? EXIT_SUCCESS : EXIT_FAILURE;
+}
 
 #endif
