@@ -247,7 +247,7 @@ void cm1e_path_pause(cm1e_path_t *path)
         return;
     path->along.velocity = path->along.acceleration = 0;
     path->stopping = false; /* a stop that is wanted is planned in the next step */
-    (void)cm1e_path_plan(path);
+    (void)cm1e_path_plan(path, path->element_count);
 }
 
 /* ---- a cycle ----------------------------------------------------------------------------------------------------- */
@@ -304,7 +304,7 @@ static bool go_to_next(cm1e_path_t *path, cm1e_path_sample_t *sample)
         path->stop_wanted = path->cut = false;
         return false;
     }
-    (void)cm1e_path_plan(path);
+    (void)cm1e_path_plan(path, path->element_count);
     path->time_s = over_s;
     return true;
 }

@@ -224,6 +224,23 @@ static double length_between(const cm1e_path_piece_t *curve, double from, double
     return whole * half;
 }
 
+/** Where the inner points of the hull are, in parts of the way to the junction, by the cosine of the turn: what makes
+ *  the velocity that the curvature and its change allow highest, from straight on to nearly back. */
+static void hull_of(double cosine, double *first, double *second)
+{
+    const double bend = (1 - cosine) / 2;
+    *first = 0.40 - 0.12 * bend;
+    *second = 0.85 - 0.40 * bend;
+}
+
+double cm1e_path_reach_per_deviation(double cosine)
+{
+    double first, second;
+    hull_of(cosine, &first, &second);
+    const double middle = (1 + 5 * (1 - first) + 10 * (1 - second)) / 32; /* of the way, weights of the hull's points */
+    return 1 / (middle * sqrt(fmax(2 - 2 * cosine, 1e-12)));
+}
+
 void cm1e_path_make_curve(cm1e_path_piece_t *piece, const cm1e_path_frame_t *frame, const cm1e_path_piece_t *before,
                           double leave, const cm1e_path_piece_t *after, double enter)
 {
@@ -233,9 +250,8 @@ void cm1e_path_make_curve(cm1e_path_piece_t *piece, const cm1e_path_frame_t *fra
     double cosine = 0;
     for (int i = 0; i < before->measured; i++)
         cosine += a.tangent[i] * b.tangent[i];
-    /* Where the inner points of the hull are, in parts of the way to the junction: what makes the velocity that the
-     * curvature and its change allow highest, from straight on to nearly back. */
-    const double bend = (1 - cosine) / 2, first = 0.40 - 0.12 * bend, second = 0.85 - 0.40 * bend;
+    double first, second;
+    hull_of(cosine, &first, &second);
     piece->kind = CM1E_PATH_CURVE;
     piece->measured = before->measured;
     for (int i = 0; i < frame->axes; i++) {

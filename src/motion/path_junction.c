@@ -20,6 +20,10 @@ static const double MOST_OF_ARC = 0.7, BACK = -0.9;
 /** Between the points at which it is measured a curve may be further off. */
 static const double BETWEEN_POINTS = 0.98;
 
+/** Which part of the time in which the acceleration comes to 0 a junction between runs costs: one way or the other only
+ *  where it does not come to 0 there of itself. */
+static const double SAVED = 0.25;
+
 /** Which part of a limit of jerk is for steps of the acceleration. */
 static const double STEP_SHARE = 0.5;
 
@@ -99,7 +103,7 @@ static bool worth_joining(cm1e_path_t *path, int index)
     const double own_a = fmin(own.acceleration, own.deceleration);
     const double weaker = fmin(low.velocity / a, 2 * sqrt(2 * run.length / a)) * (1 - a / run_a) +
                           fmin(low.velocity / a, 2 * sqrt(2 * element->length / a)) * (1 - a / own_a);
-    return slower + weaker <= ease * (1 + 1e-9) || (slower <= 0 && weaker <= 0);
+    return slower + weaker <= SAVED * ease + 1e-9 * (run.length + element->length) / low.velocity;
 }
 
 static void set_entry(cm1e_path_t *path, int index, double passed, double junction)
@@ -174,7 +178,7 @@ static bool pass_slowly(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_pat
             part->highest = fmin(part->highest, velocity);
         set_entry(path, last + 1 + i, velocity, junction);
     }
-    if (cm1e_path_plan(path))
+    if (cm1e_path_plan(path, last))
         return true;
     pop_last(path, 3);
     element->length += zone;
@@ -185,7 +189,7 @@ static bool pass_slowly(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_pat
 static void stop_between(cm1e_path_t *path, cm1e_path_segment_t *segment)
 {
     push(path, &segment->piece, 0, segment->piece.length, &segment->command, 1);
-    (void)cm1e_path_plan(path);
+    (void)cm1e_path_plan(path, path->element_count - 1);
 }
 
 static void pass_exactly(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_segment_t *segment)
@@ -198,10 +202,10 @@ static void pass_exactly(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_pa
     const break_t found = look_at_break(path, &before->piece, &segment->piece, most);
     if (!found.corner && found.even) {
         set_entry(path, last + 1, most, junction);
-        if (cm1e_path_plan(path))
+        if (cm1e_path_plan(path, last))
             return;
         element->joined = false;
-        if (cm1e_path_plan(path))
+        if (cm1e_path_plan(path, last))
             return;
     }
     pop_last(path, 1);
@@ -246,6 +250,8 @@ static double reach_of(const cm1e_path_t *path, const cm1e_path_segment_t *befor
     const bool by_distance = segment->command.junction == CM1E_PATH_CORNER_DISTANCE;
     if (by_distance)
         reach = fmin(reach, segment->command.parameter);
+    else
+        reach = fmin(reach, segment->command.parameter * cm1e_path_reach_per_deviation(cosine));
     for (int i = 0; i < 2 * TRIES && reach > 0; i++) {
         cm1e_path_make_curve(&segment->transition, &frame, &before->piece, reach, &segment->piece, reach);
         const double deviation =
@@ -269,15 +275,14 @@ static double least_time(const cm1e_path_element_t *element, double way)
                                      isinf(element->limits.jerk) ? 0 : cbrt(6 * way / element->limits.jerk)));
 }
 
+/** The curve is made. */
 static bool try_transition(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_segment_t *segment, double reach)
 {
-    const cm1e_path_frame_t frame = frame_of(path);
     const int last = path->element_count - 1;
     cm1e_path_element_t *element = cm1e_path_element(path, last);
     const cm1e_path_element_t saved = *element;
     const double junction = blended(segment->command.blend, before->command.limits.velocity,
                                     segment->command.limits.velocity);
-    cm1e_path_make_curve(&segment->transition, &frame, &before->piece, reach, &segment->piece, reach);
     element->length = fmax(0, element->length - reach);
     cm1e_path_command_t command = segment->command;
     command.limits.velocity = junction;
@@ -290,7 +295,7 @@ static bool try_transition(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_
     set_entry(path, last + 2, fmin(curve->highest, main->highest), junction);
     const bool worth = slow <= least_time(&saved, reach) + least_time(main, reach); /* or it is sooner to stop */
     for (int i = 0; worth && i < 3; i++) {
-        if (cm1e_path_plan(path))
+        if (cm1e_path_plan(path, last))
             return true;
         curve->joined = false;
         if (i == 1)
@@ -303,11 +308,13 @@ static bool try_transition(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_
 
 static void pass_by_transition(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_segment_t *segment)
 {
+    const cm1e_path_frame_t frame = frame_of(path);
     double reach = reach_of(path, before, segment, room_on_last(path));
     for (int i = 0; i < TRIES && reach > 0; i++) {
         if (try_transition(path, before, segment, reach))
             return;
         reach /= 2;
+        cm1e_path_make_curve(&segment->transition, &frame, &before->piece, reach, &segment->piece, reach);
     }
     pass_exactly(path, before, segment);
 }

@@ -17,6 +17,9 @@ static const double BETWEEN_POINTS = 1.01;
 /** What rounding makes of a limit that is used up. */
 static const double ROUNDING = 1e-9;
 
+/** A velocity lower by this part is as good. */
+static const double ENOUGH = 1e-4;
+
 /** Sizes of the derivatives of an axis by the length, and its limits. */
 typedef struct {
     double first, second, third, acceleration, jerk;
@@ -24,6 +27,7 @@ typedef struct {
 
 typedef struct {
     cm1e_motion_limits_t straight; /**< what can be had as if nothing were bent */
+    double velocity; /**< beyond which the bends alone ask too much */
     bool round; /**< a circle: what is along and what is across are never at their most at the same time */
     int count;
     bend_t bend[BENDS_MAX];
@@ -79,18 +83,40 @@ static void look(bends_t *bends, const cm1e_path_piece_t *piece, const cm1e_path
         }
     }
     bends->straight.deceleration = bends->straight.acceleration;
+    double curvature = 0, change = 0;
+    for (int i = 0; i < bends->count; i++) {
+        curvature = fmax(curvature, bends->bend[i].second / bends->bend[i].acceleration);
+        change = fmax(change, bends->bend[i].third / bends->bend[i].jerk);
+    }
+    bends->velocity = fmin(bends->straight.velocity, fmin(1 / sqrt(curvature), 1 / cbrt(change)));
 }
 
-static double acceleration_of(const bends_t *bends, const bend_t *bend, double v, double a)
+/** The velocity at which the jerk is what it may be. Of a circle it is halved down to, else it is the root of a cubic
+ *  that Newton's method comes to from above. */
+static double velocity_for_jerk(const bends_t *bends, const bend_t *bend, double velocity, double a, double pushed)
 {
-    return bends->round ? hypot(bend->first * a, bend->second * v * v) : bend->first * a + bend->second * v * v;
-}
-
-static double jerk_of(const bends_t *bends, const bend_t *bend, double v, double a, double j)
-{
-    const double pushed = bend->first > 0 ? bend->first * j : 0; /* j may be infinite */
-    const double along = pushed + bend->third * v * v * v, across = 3 * bend->second * v * a;
-    return bends->round ? hypot(along, across) : along + across;
+    if (!bends->round) {
+        const double linear = 3 * bend->second * a;
+        for (int k = 0; k < SOLVER_STEPS; k++) {
+            const double square = velocity * velocity;
+            const double less = (velocity * (bend->third * square + linear) + pushed - bend->jerk) /
+                                (3 * bend->third * square + linear);
+            velocity -= less;
+            if (less <= ENOUGH * velocity)
+                break;
+        }
+        return fmax(0, velocity * (1 - ENOUGH));
+    }
+    const double jerk = bend->jerk * (1 + ROUNDING);
+    double low = 0, high = velocity;
+    for (int k = 0; k < SOLVER_STEPS && high - low > ENOUGH * high; k++) {
+        const double middle = (low + high) / 2;
+        if (hypot(pushed + bend->third * middle * middle * middle, 3 * bend->second * middle * a) <= jerk)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
 }
 
 /** The highest velocity up to `velocity` with this acceleration and jerk along the path. */
@@ -98,24 +124,19 @@ static double velocity_with(const bends_t *bends, double velocity, double a, dou
 {
     for (int i = 0; i < bends->count; i++) {
         const bend_t *bend = &bends->bend[i];
-        const double acceleration = bend->acceleration * (1 + ROUNDING), jerk = bend->jerk * (1 + ROUNDING);
-        if (acceleration_of(bends, bend, velocity, a) > acceleration) {
-            const double along = bend->first * a;
-            const double across = bends->round ? sqrt(fmax(0, (acceleration - along) * (acceleration + along)))
-                                               : fmax(0, acceleration - along);
-            velocity = sqrt(across / bend->second);
+        const double along = bend->first * a, pushed = bend->first > 0 ? bend->first * j : 0; /* j may be infinite */
+        const double square = velocity * velocity, across = bend->second * square;
+        const double whole = bends->round ? hypot(along, across) : along + across;
+        if (whole > bend->acceleration * (1 + ROUNDING)) {
+            const double most = bend->acceleration * (1 + ROUNDING);
+            const double left = bends->round ? sqrt(fmax(0, (most - along) * (most + along))) : fmax(0, most - along);
+            velocity = sqrt(left / bend->second);
         }
-        if (jerk_of(bends, bend, velocity, a, j) <= jerk)
-            continue;
-        double low = 0, high = velocity;
-        for (int k = 0; k < SOLVER_STEPS && high - low > 1e-6 * high; k++) {
-            const double middle = (low + high) / 2;
-            if (jerk_of(bends, bend, middle, a, j) <= jerk)
-                low = middle;
-            else
-                high = middle;
-        }
-        velocity = low;
+        const double turned = 3 * bend->second * velocity * a;
+        const double pushed_on = pushed + bend->third * velocity * velocity * velocity;
+        const double jerk = bends->round ? hypot(pushed_on, turned) : pushed_on + turned;
+        if (jerk > bend->jerk * (1 + ROUNDING))
+            velocity = velocity_for_jerk(bends, bend, velocity, a, pushed);
     }
     return velocity;
 }
@@ -132,18 +153,20 @@ static cm1e_motion_limits_t choose(const bends_t *bends, double length, const cm
 {
     static const double shares[] = {1, 0.7, 0.5, 0.35, 0.2, 0.1, 0.03};
     cm1e_motion_limits_t best = lower(wanted, &bends->straight, 1);
-    const double velocity = best.velocity;
+    const double velocity = fmin(best.velocity, bends->velocity);
     double soonest = INFINITY;
     for (size_t i = 0; bends->count > 0 && i < sizeof shares / sizeof *shares; i++) {
         cm1e_motion_limits_t limits = lower(wanted, &bends->straight, shares[i]);
         limits.velocity = velocity_with(bends, velocity, larger(&limits), limits.jerk);
         const double time = length / limits.velocity + limits.velocity / larger(&limits) / 2 +
                             (isinf(limits.jerk) ? 0 : larger(&limits) / limits.jerk / 2);
+        if (time > soonest)
+            break;
         if (time < soonest) {
             soonest = time;
             best = limits;
         }
-        if (i == 0 && limits.velocity == velocity)
+        if (limits.velocity == velocity)
             break;
     }
     return best;
@@ -157,7 +180,8 @@ void cm1e_path_allow(cm1e_path_allowance_t *allowance, const cm1e_path_piece_t *
     look(&bends, piece, config, jerk_share);
     allowance->most = choose(&bends, piece->length, &all);
     allowance->limits = choose(&bends, piece->length, wanted);
-    allowance->highest = velocity_with(&bends, bends.straight.velocity, larger(&allowance->limits),
-                                       allowance->limits.jerk);
+    allowance->highest = fmax(allowance->limits.velocity, velocity_with(&bends, bends.velocity,
+                                                                        larger(&allowance->limits),
+                                                                        allowance->limits.jerk));
     allowance->limits.velocity = wanted->velocity;
 }

@@ -27,6 +27,8 @@ bool cm1e_path_make_centre_arc(cm1e_path_piece_t *piece, const cm1e_path_frame_t
  *  curvature there. */
 void cm1e_path_make_curve(cm1e_path_piece_t *piece, const cm1e_path_frame_t *frame, const cm1e_path_piece_t *before,
                           double leave, const cm1e_path_piece_t *after, double enter);
+/** How far from the junction a curve begins per deviation from it, between lines whose directions have that cosine. */
+double cm1e_path_reach_per_deviation(double cosine);
 /** How far a curve stays away: from the junction that it goes round, the larger of the distance in space and that of
  *  any further axis where it is nearest; or from the nearer of both pieces, where that is more. */
 double cm1e_path_deviation(const cm1e_path_piece_t *curve, const cm1e_path_frame_t *frame,

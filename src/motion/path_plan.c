@@ -45,9 +45,13 @@ static double most_at_ends(cm1e_path_t *path, int first, const cm1e_path_run_t *
     return one ? run->highest : run->limits.velocity;
 }
 
-static void look_ahead(cm1e_path_t *path, int first)
+/** For the runs behind the one it is on, which is `first` long. Elements before `changed` are as they were: as soon as
+ *  one of them is to be entered as before, so are all before it. */
+static void look_ahead(cm1e_path_t *path, int first, int changed)
 {
     double soft = 0, hard = 0;
+    if (changed >= path->element_count)
+        return;
     for (int last = path->element_count; last > first;) {
         int start = last - 1;
         while (cm1e_path_element(path, start)->joined)
@@ -60,10 +64,13 @@ static void look_ahead(cm1e_path_t *path, int first)
         const double wanted = fmin(fmin(most, ends), factor(path) * element->junction);
         soft = fmin(soft, ends);
         hard = fmin(hard, run.highest);
+        const double soft_before = element->entry, hard_before = element->hard_entry;
         element->hard_entry = cm1e_profile_entry_velocity(run.length, most, hard, &run.limits);
         element->hard_entry = fmin(element->hard_entry, most);
         element->entry = cm1e_profile_entry_velocity(run.length, wanted, soft, &run.limits);
         element->entry = fmin(element->entry, fmin(wanted, element->hard_entry));
+        if (start < changed && element->entry == soft_before && element->hard_entry == hard_before)
+            break;
         soft = element->entry;
         hard = element->hard_entry;
         last = start;
@@ -170,10 +177,10 @@ static bool plan_anew(cm1e_path_t *path, const cm1e_path_run_t *run, double soft
     return true;
 }
 
-bool cm1e_path_plan(cm1e_path_t *path)
+bool cm1e_path_plan(cm1e_path_t *path, int changed)
 {
     const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
-    look_ahead(path, run.count);
+    look_ahead(path, run.count, changed);
     if (path->stopping || run.count == 0)
         return true;
     double soft, hard;
@@ -186,7 +193,7 @@ bool cm1e_path_plan(cm1e_path_t *path)
 void cm1e_path_change_pace(cm1e_path_t *path)
 {
     const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
-    look_ahead(path, run.count);
+    look_ahead(path, run.count, 0);
     double soft, hard;
     exits(path, 0, &run, &soft, &hard);
     (void)plan_anew(path, &run, soft, hard, true);
@@ -311,5 +318,5 @@ void cm1e_path_cut(cm1e_path_t *path)
             return;
         start.velocity = profile.end.velocity;
     }
-    (void)cm1e_path_plan(path);
+    (void)cm1e_path_plan(path, 0);
 }

@@ -32,9 +32,9 @@ static inline double cm1e_path_here(const cm1e_path_t *path)
 /** Puts a segment behind the one before it (NULL: there is none), as its command says, and plans. */
 void cm1e_path_join(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_segment_t *segment);
 
-/** Looks ahead and plans the way from here to the end of the run anew. FALSE: that cannot be done; the motion under way
- *  is as it was, and so it is a plan only if nothing of it has been changed. */
-bool cm1e_path_plan(cm1e_path_t *path);
+/** Looks ahead and plans the way from here to the end of the run anew, after elements from `changed` on have changed.
+ *  FALSE: that cannot be done; the motion under way is as it was, and no longer a plan. */
+bool cm1e_path_plan(cm1e_path_t *path, int changed);
 /** Plans the way on with another override, or from within a stop, if that can be done. */
 void cm1e_path_change_pace(cm1e_path_t *path);
 /** Tries to begin with the stop that is wanted. */

@@ -96,6 +96,203 @@ static void test_a_circle(void)
     TEST_ASSERT_EQUAL_DOUBLE(0, driven.now.position[0]);
 }
 
+static const double NO_LIMIT = INFINITY;
+
+static void expect_refused(cm1e_error_t error, const cm1e_path_problem_t *problem, cm1e_error_t expected,
+                           cm1e_path_refusal_t refusal)
+{
+    TEST_ASSERT_EQUAL(expected, error);
+    TEST_ASSERT_EQUAL(refusal, problem->refusal);
+    TEST_ASSERT_EQUAL(CM1E_PATH_SEGMENTS, cm1e_path_room(&driven.path));
+}
+
+static void test_what_makes_no_sense_is_refused(void)
+{
+    cm1e_path_config_t config = plain_config(3, 2, 1000, 2000, 1e5);
+    cm1e_path_problem_t problem;
+    begin_path(&config, ORIGIN);
+    cm1e_path_command_t fine = command_of(100, 1000, 20000, CM1E_PATH_STOP, 0), command;
+    const double end[] = {10, 0, 0}, odd[] = {10, NAN, 0};
+    expect_refused(cm1e_path_append_line(&driven.path, odd, &fine, &problem), &problem, CM1E_ERROR_INVALID_ARGUMENT,
+                   CM1E_PATH_NO_NUMBER);
+    command = fine, command.tag = 0;
+    expect_refused(cm1e_path_append_line(&driven.path, end, &command, &problem), &problem,
+                   CM1E_ERROR_INVALID_ARGUMENT, CM1E_PATH_NO_NUMBER);
+    command = fine, command.limits.jerk = -1;
+    expect_refused(cm1e_path_append_line(&driven.path, end, &command, &problem), &problem,
+                   CM1E_ERROR_INVALID_ARGUMENT, CM1E_PATH_NO_NUMBER);
+    command = fine, command.junction = CM1E_PATH_CORNER_DISTANCE;
+    expect_refused(cm1e_path_append_line(&driven.path, end, &command, &problem), &problem,
+                   CM1E_ERROR_INVALID_ARGUMENT, CM1E_PATH_NO_TRANSITION);
+    expect_refused(cm1e_path_append_arc_border(&driven.path, (double[]){5, 0}, end, &fine, &problem), &problem,
+                   CM1E_ERROR_INVALID_ARGUMENT, CM1E_PATH_NO_ARC);
+    expect_refused(cm1e_path_append_arc_border(&driven.path, (double[]){5, 5}, ORIGIN, &fine, &problem), &problem,
+                   CM1E_ERROR_INVALID_ARGUMENT, CM1E_PATH_NO_ARC);
+    expect_refused(cm1e_path_append_arc_centre(&driven.path, (double[]){5.1, 0}, end, CM1E_PATH_CLOCKWISE, &fine,
+                                               &problem), &problem, CM1E_ERROR_INVALID_ARGUMENT, CM1E_PATH_NO_ARC);
+    config.axes = 9;
+    TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, cm1e_path_begin(&driven.path, &config, ORIGIN));
+    config.axes = 3, config.axis[1].acceleration = NO_LIMIT;
+    TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, cm1e_path_begin(&driven.path, &config, ORIGIN));
+}
+
+static void test_an_arc_that_bulges_over_a_bound_is_refused(void)
+{
+    cm1e_path_config_t config = plain_config(2, 2, 1000, 2000, 1e5);
+    config.axis[1].highest = 4.9;
+    begin_path(&config, ORIGIN);
+    cm1e_path_problem_t problem;
+    const cm1e_path_command_t command = command_of(100, 1000, 20000, CM1E_PATH_STOP, 0);
+    const double centre[] = {5, 0}, end[] = {10, 0};
+    expect_refused(cm1e_path_append_arc_centre(&driven.path, centre, end, CM1E_PATH_CLOCKWISE, &command, &problem),
+                   &problem, CM1E_ERROR_AXIS_POSITION_RANGE, CM1E_PATH_OUT_OF_BOUNDS);
+    TEST_ASSERT_EQUAL(1, problem.axis);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 5, problem.position);
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_arc_centre(&driven.path, centre, end, CM1E_PATH_COUNTER_CLOCKWISE,
+                                                           &command, &problem));
+    double lowest = 0;
+    do {
+        step_path();
+        lowest = fmin(lowest, driven.now.position[1]);
+    } while (driven.now.phase != CM1E_PATH_IDLE);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, -5, lowest);
+}
+
+static void test_from_outside_the_bounds_only_back(void)
+{
+    cm1e_path_config_t config = plain_config(1, 1, 1000, 2000, 1e5);
+    config.axis[0].highest = 10;
+    begin_path(&config, (double[]){12});
+    cm1e_path_problem_t problem;
+    const cm1e_path_command_t command = command_of(100, 1000, 20000, CM1E_PATH_STOP, 0);
+    expect_refused(cm1e_path_append_line(&driven.path, (double[]){12.5}, &command, &problem), &problem,
+                   CM1E_ERROR_AXIS_POSITION_RANGE, CM1E_PATH_OUT_OF_BOUNDS);
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_line(&driven.path, (double[]){9}, &command, &problem));
+}
+
+static void test_a_line_into_an_arc_is_passed_without_a_stop(void)
+{
+    const cm1e_path_config_t config = plain_config(2, 2, 1000, 3000, 1e5);
+    begin_path(&config, ORIGIN);
+    line((double[]){50, 0}, 100, CM1E_PATH_STOP, 0);
+    const cm1e_path_command_t command = command_of(100, 1000, 20000, CM1E_PATH_EXACT, 0);
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_arc_centre(&driven.path, (double[]){50, 20}, (double[]){70, 20},
+                                                           CM1E_PATH_COUNTER_CLOCKWISE, &command, NULL));
+    double slowest = INFINITY;
+    do {
+        step_path();
+        if (driven.now.position[0] > 40 && driven.now.position[0] < 60)
+            slowest = fmin(slowest, driven.now.path_velocity);
+    } while (driven.now.phase != CM1E_PATH_IDLE);
+    /* The step of the acceleration is half of what the jerk allows in a cycle: v2 / 20 = 1e5 * 1e-3 / 2. */
+    TEST_ASSERT_DOUBLE_WITHIN(0.5, sqrt(20 * 50), slowest);
+}
+
+static void test_the_velocity_at_a_junction_is_that_of_its_mode(void)
+{
+    static const double first[] = {60, 120}, second[] = {120, 60};
+    for (int k = 0; k < 2; k++)
+        for (int blend = CM1E_PATH_BLEND_LOW; blend <= CM1E_PATH_BLEND_HIGH; blend++) {
+            const double expected[] = {60, first[k], second[k], 120};
+            const cm1e_path_config_t config = plain_config(2, 2, 1000, 10000, 1e6);
+            begin_path(&config, ORIGIN);
+            line((double[]){100, 0}, first[k], CM1E_PATH_STOP, 0);
+            cm1e_path_command_t command = command_of(second[k], 1000, 20000, CM1E_PATH_EXACT, 0);
+            command.blend = (cm1e_path_blend_t)blend;
+            TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_line(&driven.path, (double[]){200, 0}, &command, NULL));
+            do
+                step_path();
+            while (driven.now.done == 0);
+            TEST_ASSERT_DOUBLE_WITHIN(0.1, expected[blend], driven.now.path_velocity);
+            (void)run_path();
+        }
+}
+
+static void test_many_short_segments_keep_the_velocity(void)
+{
+    const cm1e_path_config_t config = plain_config(3, 3, 1000, 20000, 1e6);
+    begin_path(&config, ORIGIN);
+    int appended = 0;
+    double at_pace = 0;
+    do { /* an outline of chords of 1 mm of a circle of 300 mm, a few at a time */
+        while (appended < 1000 && cm1e_path_room(&driven.path) > 0) {
+            const double angle = ++appended / 300.0;
+            line((double[]){300 * sin(angle), 300 - 300 * cos(angle), 0}, 100, CM1E_PATH_CORNER_DEVIATION, 0.01);
+        }
+        step_path();
+        at_pace += driven.now.path_velocity >= 99.9 ? driven.path.config.cycle_s : 0;
+    } while (driven.now.phase != CM1E_PATH_IDLE);
+    TEST_ASSERT_EQUAL(1001, driven.done_tag);
+    TEST_ASSERT_TRUE(at_pace > 9.5);
+    TEST_ASSERT_TRUE(driven.time_s < 10.3);
+}
+
+static void test_override_slows_pauses_and_goes_on(void)
+{
+    const cm1e_path_config_t config = plain_config(2, 2, 1000, 10000, 1e6);
+    begin_path(&config, ORIGIN);
+    line((double[]){200, 0}, 100, CM1E_PATH_STOP, 0);
+    static const struct {
+        double factor, velocity;
+    } steps[] = {{1, 100}, {0.5, 50}, {0, 0}, {1.5, 150}};
+    for (int k = 0; k < 4; k++) {
+        cm1e_path_override(&driven.path, steps[k].factor);
+        for (int i = 0; i < 400; i++)
+            step_path();
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, steps[k].velocity, driven.now.path_velocity);
+        TEST_ASSERT_EQUAL(CM1E_PATH_MOVING, driven.now.phase);
+    }
+    (void)run_path();
+    TEST_ASSERT_EQUAL_DOUBLE(200, driven.now.position[0]);
+}
+
+static void test_what_is_cut_off_is_not_done_and_the_path_goes_on_from_there(void)
+{
+    const cm1e_path_config_t config = plain_config(2, 2, 1000, 10000, 1e6);
+    begin_path(&config, ORIGIN);
+    line((double[]){100, 0}, 100, CM1E_PATH_STOP, 0);
+    line((double[]){200, 0}, 100, CM1E_PATH_EXACT, 0);
+    for (int i = 0; i < 500; i++)
+        step_path();
+    cm1e_path_clear(&driven.path);
+    double end[2];
+    cm1e_path_end(&driven.path, end);
+    TEST_ASSERT_TRUE(end[0] > driven.now.position[0] && end[0] < 60);
+    TEST_ASSERT_EQUAL(CM1E_PATH_SEGMENTS - 1, cm1e_path_room(&driven.path));
+    driven.done_tag = 3; /* of the next one */
+    line((double[]){0, 50}, 100, CM1E_PATH_EXACT, 0);
+    double reached = 0;
+    do {
+        step_path();
+        reached = fmax(reached, driven.now.position[0]);
+    } while (driven.now.phase != CM1E_PATH_IDLE);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, end[0], reached);
+    TEST_ASSERT_EQUAL_DOUBLE(50, driven.now.position[1]);
+    TEST_ASSERT_EQUAL(4, driven.done_tag);
+}
+
+static void test_a_stop_keeps_its_deceleration_and_comes_to_an_end_in_corners(void)
+{
+    const cm1e_path_config_t config = plain_config(2, 2, 1000, 10000, 1e6);
+    for (int at = 1; at < 900; at += 7) { /* wherever it is asked for */
+        begin_path(&config, ORIGIN);
+        line((double[]){30, 0}, 100, CM1E_PATH_STOP, 0);
+        line((double[]){30, 30}, 100, CM1E_PATH_CORNER_DISTANCE, 3);
+        line((double[]){0, 30}, 100, CM1E_PATH_CORNER_DISTANCE, 3);
+        for (int i = 0; i < at; i++)
+            step_path();
+        cm1e_path_stop(&driven.path, 500, 10000);
+        for (int i = 0; i < 1500; i++)
+            step_path();
+        TEST_ASSERT_EQUAL_DOUBLE(0, driven.now.path_velocity);
+        TEST_ASSERT_TRUE(driven.now.phase == CM1E_PATH_STOPPED || driven.now.phase == CM1E_PATH_IDLE);
+        cm1e_path_go_on(&driven.path);
+        (void)run_path();
+        TEST_ASSERT_EQUAL_DOUBLE(30, driven.now.position[1]);
+        TEST_ASSERT_EQUAL(4, driven.done_tag);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -104,5 +301,14 @@ int main(void)
     RUN_TEST(test_a_stop_and_on);
     RUN_TEST(test_a_corner_with_a_transition_is_not_stopped_at);
     RUN_TEST(test_a_circle);
+    RUN_TEST(test_what_makes_no_sense_is_refused);
+    RUN_TEST(test_an_arc_that_bulges_over_a_bound_is_refused);
+    RUN_TEST(test_from_outside_the_bounds_only_back);
+    RUN_TEST(test_a_line_into_an_arc_is_passed_without_a_stop);
+    RUN_TEST(test_the_velocity_at_a_junction_is_that_of_its_mode);
+    RUN_TEST(test_many_short_segments_keep_the_velocity);
+    RUN_TEST(test_override_slows_pauses_and_goes_on);
+    RUN_TEST(test_what_is_cut_off_is_not_done_and_the_path_goes_on_from_there);
+    RUN_TEST(test_a_stop_keeps_its_deceleration_and_comes_to_an_end_in_corners);
     return UNITY_END();
 }

@@ -1,0 +1,189 @@
+/* The pieces of a path: lines, arcs and curves over their length, against what they are by definition. */
+#include <string.h>
+
+#include "motion/path_piece.h"
+#include "motion_check.h"
+
+enum { TRIALS = 3000 };
+
+static const cm1e_path_frame_t FRAME = {5, 3};
+static double from[CM1E_PATH_AXES], to[CM1E_PATH_AXES];
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static void random_point(double *point, double size)
+{
+    for (int i = 0; i < FRAME.axes; i++)
+        point[i] = random_between(-size, size);
+}
+
+/** A random line or arc that begins at `from`; FALSE: none that is well enough defined. */
+static bool random_piece(cm1e_path_piece_t *piece)
+{
+    double border[CM1E_PATH_AXES];
+    random_point(to, random_decade(1, 100));
+    random_point(border, 50);
+    if (!one_in(3)) {
+        cm1e_path_make_line(piece, &FRAME, from, to);
+        return true;
+    }
+    return cm1e_path_make_border_arc(piece, &FRAME, from, border, to) && piece->radius < 1e4;
+}
+
+static double measured_norm(const double *vector)
+{
+    return sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
+}
+
+/** The derivatives are those of the positions, and the length is the length. */
+static void check_derivatives(const cm1e_path_piece_t *piece)
+{
+    const double h = piece->length * 1e-4;
+    for (int k = 1; k < 20; k++) {
+        cm1e_path_point_t before, here, after;
+        const double l = piece->length * k / 20;
+        cm1e_path_point_at(piece, FRAME.axes, l - h, &before);
+        cm1e_path_point_at(piece, FRAME.axes, l, &here);
+        cm1e_path_point_at(piece, FRAME.axes, l + h, &after);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1, measured_norm(here.tangent));
+        double steepest = 1, sharpest = 0;
+        for (int i = 0; i < FRAME.axes; i++) {
+            steepest = fmax(steepest, fabs(here.tangent[i]));
+            sharpest = fmax(sharpest, fabs(here.curvature[i]));
+        }
+        for (int i = 0; i < FRAME.axes; i++) {
+            const double slope = (after.position[i] - before.position[i]) / (2 * h);
+            const double bend = (after.tangent[i] - before.tangent[i]) / (2 * h);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-4 * steepest, slope, here.tangent[i]);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-3 * sharpest + 1e-6 / piece->length, bend, here.curvature[i]);
+        }
+    }
+}
+
+static void check_same(const cm1e_path_point_t *a, const cm1e_path_point_t *b)
+{
+    for (int i = 0; i < FRAME.axes; i++) {
+        TEST_ASSERT_DOUBLE_WITHIN(1e-11 * (100 + fabs(a->position[i])), a->position[i], b->position[i]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9 * (1 + fabs(a->tangent[i])), a->tangent[i], b->tangent[i]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-8 * (1 + fabs(a->curvature[i])), a->curvature[i], b->curvature[i]);
+    }
+}
+
+static void test_a_curve_meets_both_pieces_with_tangent_and_curvature(void)
+{
+    int curves = 0;
+    for (int i = 0; i < TRIALS; i++) {
+        cm1e_path_piece_t before, after, curve;
+        random_point(from, 50);
+        if (!random_piece(&before))
+            continue;
+        memcpy(from, before.to, sizeof from);
+        if (!random_piece(&after))
+            continue;
+        cm1e_path_point_t end, begin, on_path, on_curve;
+        cm1e_path_point_at(&before, FRAME.axes, before.length, &end);
+        cm1e_path_point_at(&after, FRAME.axes, 0, &begin);
+        const double *a = end.tangent, *b = begin.tangent;
+        if (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] < -0.9)
+            continue;
+        const double reach = random_between(0.01, 0.4) * fmin(before.length, after.length);
+        cm1e_path_make_curve(&curve, &FRAME, &before, reach, &after, reach);
+        cm1e_path_point_at(&before, FRAME.axes, before.length - reach, &on_path);
+        cm1e_path_point_at(&curve, FRAME.axes, 0, &on_curve);
+        check_same(&on_path, &on_curve);
+        cm1e_path_point_at(&after, FRAME.axes, reach, &on_path);
+        cm1e_path_point_at(&curve, FRAME.axes, curve.length, &on_curve);
+        check_same(&on_path, &on_curve);
+        if (before.kind == CM1E_PATH_LINE && after.kind == CM1E_PATH_LINE)
+            check_derivatives(&curve);
+        curves++;
+    }
+    TEST_ASSERT_GREATER_THAN(TRIALS / 4, curves);
+}
+
+static void test_arcs_are_round_however_far_their_centre_is(void)
+{
+    for (int i = 0; i < TRIALS; i++) {
+        /* A chord along X; the border is high over its middle: radius = (c2 / 4 + h2) / (2 h). */
+        const double c = random_decade(0.1, 100), h = c * random_decade(1e-8, 0.4);
+        const double radius = (c * c / 4 + h * h) / (2 * h);
+        const double start[CM1E_PATH_AXES] = {0}, end[CM1E_PATH_AXES] = {c, 0, 0, 1, 2}, border[] = {c / 2, h, 0};
+        cm1e_path_piece_t arc;
+        TEST_ASSERT_TRUE(cm1e_path_make_border_arc(&arc, &FRAME, start, border, end));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12 * radius, radius, arc.radius);
+        for (int k = 0; k <= 20; k++) {
+            cm1e_path_point_t point;
+            cm1e_path_point_at(&arc, FRAME.axes, arc.length * k / 20, &point);
+            /* On the circle: x (c - x) = y (2 (radius - h) + y), which has no large differences. */
+            const double x = point.position[0], y = point.position[1];
+            TEST_ASSERT_DOUBLE_WITHIN(1e-13 * c, 0, (x * (c - x) - y * (2 * (radius - h) + y)) / (2 * radius));
+            TEST_ASSERT_DOUBLE_WITHIN(1e-14, k / 20.0, point.position[3]);
+        }
+        check_derivatives(&arc);
+    }
+}
+
+static void test_the_way_round_a_centre(void)
+{
+    static const struct {
+        cm1e_path_way_t way;
+        double end[3], angle;
+    } cases[] = {
+        {CM1E_PATH_COUNTER_CLOCKWISE, {0, 10, 0}, 90}, {CM1E_PATH_CLOCKWISE, {0, 10, 0}, 270},
+        {CM1E_PATH_COUNTER_CLOCKWISE, {-10, 0, 0}, 180}, {CM1E_PATH_CLOCKWISE, {-10, 0, 0}, 180},
+        {CM1E_PATH_COUNTER_CLOCKWISE, {10, 0, 0}, 360}, {CM1E_PATH_CLOCKWISE, {10, 0, 0}, 360},
+        {CM1E_PATH_COUNTER_CLOCKWISE, {0, -10, 0}, 270}, {CM1E_PATH_CLOCKWISE, {0, -10, 0}, 90},
+        {CM1E_PATH_CLOCKWISE, {0, 0, 10}, 90}, {CM1E_PATH_COUNTER_CLOCKWISE, {0, 0, 10}, 270}, /* seen from +Y */
+    };
+    static const double centre[3] = {0}, start[CM1E_PATH_AXES] = {10};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        double end[CM1E_PATH_AXES] = {cases[i].end[0], cases[i].end[1], cases[i].end[2]};
+        cm1e_path_piece_t arc;
+        TEST_ASSERT_TRUE(cm1e_path_make_centre_arc(&arc, &FRAME, start, centre, cases[i].way, end));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, cases[i].angle, arc.length / 10 * 57.29577951308232);
+    }
+    const double upright[CM1E_PATH_AXES] = {10, 0, 5}, high[] = {0, 0, 0};
+    cm1e_path_piece_t arc;
+    TEST_ASSERT_FALSE(cm1e_path_make_centre_arc(&arc, &FRAME, upright, high, CM1E_PATH_CLOCKWISE, upright));
+}
+
+static void test_the_extent_of_an_arc_is_that_of_its_points(void)
+{
+    for (int i = 0; i < TRIALS; i++) {
+        double border[CM1E_PATH_AXES];
+        random_point(from, 10);
+        random_point(to, 10);
+        random_point(border, 10);
+        cm1e_path_piece_t arc;
+        if (!cm1e_path_make_border_arc(&arc, &FRAME, from, border, to))
+            continue;
+        double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+        for (int k = 0; k <= 200; k++) {
+            cm1e_path_point_t point;
+            cm1e_path_point_at(&arc, FRAME.axes, arc.length * k / 200, &point);
+            for (int axis = 0; axis < 3; axis++) {
+                low[axis] = fmin(low[axis], point.position[axis]);
+                high[axis] = fmax(high[axis], point.position[axis]);
+            }
+        }
+        for (int axis = 0; axis < 3; axis++) {
+            double lowest, highest;
+            cm1e_path_extent(&arc, &FRAME, axis, &lowest, &highest);
+            TEST_ASSERT_TRUE(lowest <= low[axis] + 1e-9 * arc.radius && highest >= high[axis] - 1e-9 * arc.radius);
+            TEST_ASSERT_DOUBLE_WITHIN(2e-3 * arc.radius, low[axis], lowest);
+            TEST_ASSERT_DOUBLE_WITHIN(2e-3 * arc.radius, high[axis], highest);
+        }
+    }
+}
+
+int main(void)
+{
+    seed_random();
+    UNITY_BEGIN();
+    RUN_TEST(test_a_curve_meets_both_pieces_with_tangent_and_curvature);
+    RUN_TEST(test_arcs_are_round_however_far_their_centre_is);
+    RUN_TEST(test_the_way_round_a_centre);
+    RUN_TEST(test_the_extent_of_an_arc_is_that_of_its_points);
+    return UNITY_END();
+}
