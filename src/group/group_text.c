@@ -25,8 +25,8 @@ static void error_text(const cm1e_group_t *group, char *text, size_t size)
 {
     snprintf(text, size,
              "Axes group \"%s\" is in GroupErrorStop: axis \"%s\" (IdentInGroup %u) failed, was stopped by itself, "
-             "lost its power or does not exist any more. The other axes were braked along the path. Remove the cause, then "
-             "reset the group and its axes with MC_GroupReset.",
+             "lost its power or does not exist any more. The other axes were braked along the path. Remove the cause, "
+             "then reset the group and its axes with MC_GroupReset.",
              group->config.name, name_of(group, group->culprit), (unsigned)group->culprit);
     add_axis_text(group, group->culprit, text, size);
 }
@@ -82,8 +82,8 @@ static void refusal_text(const cm1e_group_t *group, char *text, size_t size)
     char asked[64] = "";
     if (refusal->value != 0.0)
         snprintf(asked, sizeof asked, " %.6g was asked for.", refusal->value);
-    snprintf(text, size, "Axes group \"%s\", %s: %s.%s%s%s%s%s", group->config.name, cm1e_group_state_name(group->state),
-             cm1e_strerror(refusal->error), about, asked, path_texts[refusal->path], refusal->why ? " " : "",
+    snprintf(text, size, "Axes group \"%s\", %s: %s.%s%s%s%s%s", group->config.name,
+             cm1e_group_state_name(group->state), cm1e_strerror(refusal->error), about, asked, path_texts[refusal->path], refusal->why ? " " : "",
              refusal->why ? refusal->why : "");
 }
 

@@ -339,6 +339,109 @@ START_TEST(test_cycle_calls_nothing_that_allocates_locks_formats_or_sleeps)
 }
 END_TEST
 
+/* ---- an axes group ----------------------------------------------------------------------------------------------- */
+
+static struct grouped {
+    AXES_GROUP_REF_t group;
+    MC_Power_t power[AXES];
+    MC_AddAxisToGroup_t add[AXES];
+    MC_GroupEnable_t enable;
+    MC_GroupDisable_t disable;
+    MC_GroupReset_t reset;
+    MC_GroupReadStatus_t status;
+    MC_GroupReadPosition_t position;
+    MC_GroupReadVelocity_t velocity;
+    MC_GroupSetOverride_t override;
+    MC_MoveLinearAbsolute_t line, blended;
+    MC_MoveLinearRelative_t relative;
+    MC_MoveCircularRelative_t circle;
+    MC_GroupHalt_t halt;
+    MC_GroupStop_t stop;
+    unsigned done, aborted, errors, resets;
+} grouped;
+
+/** A second of every kind of motion, each waiting for, blended with or aborting the one before. */
+static void group_program(void *context)
+{
+    struct grouped *g = context;
+    const int64_t phase = cycle_number % 1000;
+    for (int i = 0; i < AXES; i++) {
+        g->power[i].Enable = TRUE;
+        MC_Power(&g->power[i]);
+        g->add[i].Execute = TRUE;
+        MC_AddAxisToGroup(&g->add[i]);
+    }
+    g->enable.Execute = phase >= 5 && phase < 990;
+    g->disable.Execute = phase >= 995 && cycle_number % 3000 > 2900;
+    g->line.Execute = phase >= 10 && phase < 600;
+    g->blended.Execute = phase >= 12 && phase < 600;
+    g->relative.Execute = phase >= 150 && phase < 600;
+    g->circle.Execute = phase >= 160 && phase < 600;
+    g->halt.Execute = phase >= 400 && phase < 600;
+    g->stop.Execute = phase >= 700 && phase < 800;
+    g->reset.Execute = g->status.GroupErrorStop && phase % 100 < 50;
+    g->override.Enable = TRUE;
+    g->override.VelFactor = phase % 200 < 100 ? 1.0 : 0.7;
+    MC_GroupEnable(&g->enable);
+    MC_GroupReset(&g->reset);
+    MC_GroupSetOverride(&g->override);
+    MC_MoveLinearAbsolute(&g->line);
+    MC_MoveLinearAbsolute(&g->blended);
+    MC_MoveLinearRelative(&g->relative);
+    MC_MoveCircularRelative(&g->circle);
+    MC_GroupHalt(&g->halt);
+    MC_GroupStop(&g->stop);
+    MC_GroupDisable(&g->disable);
+    MC_GroupReadStatus(&g->status);
+    MC_GroupReadPosition(&g->position);
+    MC_GroupReadVelocity(&g->velocity);
+    g->done += g->line.Done + g->blended.Done + g->halt.Done + g->stop.Done;
+    g->aborted += g->relative.CommandAborted + g->circle.CommandAborted;
+    g->errors += g->status.GroupErrorStop;
+    g->resets += g->reset.Done;
+}
+
+START_TEST(test_an_axes_group_calls_nothing_of_that)
+{
+    struct grouped *g = &grouped;
+    machine = (machine_t){.axis_count = AXES};
+    machine_open(&machine);
+    *g = (struct grouped){
+        .line = {.Position = {1, 0.5}, .Velocity = 20},
+        .blended = {.Position = {1, 1.5}, .Velocity = 20, .BufferMode = mcBlendingHigh,
+                    .TransitionMode = mcTMMaxCornerDeviation, .TransitionParameter = 0.05},
+        .relative = {.Distance = {-1, -1.5}, .Velocity = 20},
+        .circle = {.AuxPoint = {1, 1}, .EndPoint = {2, 0}, .Velocity = 8, .BufferMode = mcBuffered},
+        .override = {MC_GROUPSETOVERRIDE_DEFAULTS},
+        .status = {.Enable = TRUE}, .position = {.Enable = TRUE}, .velocity = {.Enable = TRUE},
+    };
+    ck_assert_int_eq(cm1e_group_create(&g->group, NULL, NULL), CM1E_OK);
+    AXES_GROUP_REF_t **const references[] = {
+        &g->enable.AxesGroup, &g->disable.AxesGroup, &g->reset.AxesGroup, &g->status.AxesGroup, &g->position.AxesGroup,
+        &g->velocity.AxesGroup, &g->override.AxesGroup, &g->line.AxesGroup, &g->blended.AxesGroup,
+        &g->relative.AxesGroup, &g->circle.AxesGroup, &g->halt.AxesGroup, &g->stop.AxesGroup};
+    for (size_t i = 0; i < sizeof references / sizeof *references; i++)
+        *references[i] = &g->group;
+    for (int i = 0; i < AXES; i++) {
+        g->power[i] = (MC_Power_t){.Axis = &machine.axis[i], .EnablePositive = TRUE, .EnableNegative = TRUE};
+        g->add[i] = (MC_AddAxisToGroup_t){.AxesGroup = &g->group, .Axis = &machine.axis[i]};
+    }
+    machine_add(&machine, "", 0, 1, group_program, g);
+    machine_add(&machine, "", 0, 2, acting_program, NULL);
+    cycle_number = 0;
+    violations = 0;
+    running = true;
+    machine_run(&machine, 24000 * MS);
+    ck_assert_msg(violations == 0, "%u calls in the cycle; the first: %s from %p", violations, violator, caller);
+    ck_assert_uint_ge(g->done, 1000);
+    ck_assert_uint_ge(g->aborted, 100);
+    ck_assert_uint_ge(g->errors, 10);
+    ck_assert_uint_ge(g->resets, 1);
+    machine_close(&machine);
+    ck_assert_int_eq(cm1e_group_destroy(g->group), CM1E_OK);
+}
+END_TEST
+
 /* ---- behind a bridge --------------------------------------------------------------------------------------------- */
 
 static struct bridged {
@@ -409,6 +512,7 @@ int main(void)
     tcase_set_timeout(all, 60);
     tcase_add_test(all, test_wrapping_works);
     tcase_add_test(all, test_cycle_calls_nothing_that_allocates_locks_formats_or_sleeps);
+    tcase_add_test(all, test_an_axes_group_calls_nothing_of_that);
     tcase_add_test(all, test_blocks_behind_a_bridge_call_nothing_of_that);
     suite_add_tcase(suite, all);
     SRunner *runner = srunner_create(suite);

@@ -8,7 +8,7 @@ static void add_axis(void)
     MC_RemoveAxisFromGroup_t remove = {GROUP, .IdentInGroup = 2};
     MC_AddAxisToGroup_t add = {GROUP, MASTER, .IdentInGroup = 2};
     trace_begin_with_group("MC_AddAxisToGroup",
-                           "Refused in GroupStandby; in GroupDisabled, when its place is free, the axis becomes a member.");
+                           "Refused in GroupStandby; in GroupDisabled, at a free place, the axis becomes a member.");
     trace_block("MC_AddAxisToGroup", "MC_AddAxisToGroup", &add);
     trace_block("MC_GroupReadStatus", "MC_GroupReadStatus", &status);
     UNTIL(200) {
@@ -48,7 +48,7 @@ static void ungroup(void)
     MC_UngroupAllAxes_t ungroup = {GROUP};
     MC_GroupReadConfiguration_t read = {GROUP, .Enable = TRUE, .IdentInGroup = 1};
     trace_begin_with_group("MC_UngroupAllAxes",
-                           "In the middle of a line: the axes come to rest along it, and are no members any more then.");
+                           "In the middle of a line: the axes come to rest along it, and then are no members.");
     trace_block("MC_MoveLinearAbsolute", "MC_MoveLinearAbsolute", &line);
     trace_block("MC_UngroupAllAxes", "MC_UngroupAllAxes", &ungroup);
     trace_block("MC_GroupReadConfiguration", "MC_GroupReadConfiguration", &read);
@@ -103,7 +103,8 @@ static void disable(void)
     MC_GroupDisable_t disable = {GROUP};
     MC_MoveLinearAbsolute_t line = LINE;
     MC_GroupReadStatus_t status = {GROUP, .Enable = TRUE};
-    trace_begin_with_group("MC_GroupDisable", "In the middle of a line: GroupDisabled at once, the axes stop along it.");
+    trace_begin_with_group("MC_GroupDisable",
+                           "In the middle of a line: GroupDisabled at once, the axes stop along it.");
     trace_block("MC_MoveLinearAbsolute", "MC_MoveLinearAbsolute", &line);
     trace_block("MC_GroupDisable", "MC_GroupDisable", &disable);
     trace_block("MC_GroupReadStatus", "MC_GroupReadStatus", &status);
@@ -131,7 +132,7 @@ static void reset(void)
     MC_MoveLinearAbsolute_t line = LINE;
     MC_GroupReset_t reset = {GROUP};
     trace_begin_with_group("MC_GroupReset",
-                           "The motor of Y fails: X stops along the line. MC_GroupReset resets the group and both axes.");
+                           "The motor of Y fails: X stops along the line. MC_GroupReset resets group and axes.");
     trace_block("MC_MoveLinearAbsolute", "MC_MoveLinearAbsolute", &line);
     trace_block("MC_GroupReset", "MC_GroupReset", &reset);
     trace_curves(false, true);
@@ -259,8 +260,8 @@ static void linear_absolute(void)
 static void linear_relative(void)
 {
     MC_MoveLinearRelative_t line = {GROUP, .Distance = {1, 0.5}, .Velocity = 8};
-    trace_begin_with_group("MC_MoveLinearRelative", "Triggered again on the way: it stops, and Distance counts from where "
-                                                    "the axes were at the edge.");
+    trace_begin_with_group("MC_MoveLinearRelative",
+                           "Triggered again on the way: it stops, and Distance counts from where the axes were then.");
     trace_block("MC_MoveLinearRelative", "", &line);
     trace_curves(true, true);
     trace_master_curves(0, true, true);
@@ -288,7 +289,8 @@ static void circular_absolute(void)
 
 static void circular_relative(void)
 {
-    MC_MoveCircularRelative_t arc = {GROUP, .CircMode = mcBorder, .AuxPoint = {1, 1}, .EndPoint = {2, 0}, .Velocity = 6};
+    MC_MoveCircularRelative_t arc = {GROUP, .CircMode = mcBorder, .AuxPoint = {1, 1}, .EndPoint = {2, 0},
+                                     .Velocity = 6};
     MC_MoveLinearRelative_t line = {GROUP, .Distance = {0, -1}, .Velocity = 6, .BufferMode = mcBlendingLow};
     trace_begin_with_group("MC_MoveCircularRelative",
                            "A half circle by way of (1, 1), and a line in its direction: no stop between them.");

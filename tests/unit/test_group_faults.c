@@ -77,6 +77,7 @@ static void harm_in_motion(harm_t harm, int victim, int when)
         axes_cycles(1);
         stay_on_the_line(victim);
     }
+    TEST_ASSERT_LESS_THAN_INT_MESSAGE(150, waited, run); /* 4 u/s by 100 u/s2 and 2000 u/s3 */
     for (int n = 0; n < 3; n++)
         if (n != victim)
             axes_must_be(n, CM1E_AXIS_STANDSTILL);

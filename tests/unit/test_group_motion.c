@@ -70,7 +70,7 @@ static void test_arcs_by_border_and_by_centre(void)
     } cases[] = {
         {mcBorder, mcClockwise, {1.0, 1.0}, {2.0, 0.0}, {1.0, 0.0}, 1.0, {1.0, 1.0}},
         {mcBorder, mcClockwise, {1.0, -1.0}, {2.0, 0.0}, {1.0, 0.0}, 1.0, {1.0, -1.0}},
-        {mcCenter, mcCounterClockwise, {0.0, 2.0}, {2.0, 2.0}, {0.0, 2.0}, 2.0, {1.4142135623730951, 0.58578643762690485}},
+        {mcCenter, mcCounterClockwise, {0.0, 2.0}, {2.0, 2.0}, {0.0, 2.0}, 2.0, {1.41421356237, 0.58578643763}},
         {mcCenter, mcClockwise, {0.0, 2.0}, {2.0, 2.0}, {0.0, 2.0}, 2.0, {-2.0, 2.0}},
         {mcCenter, mcCounterClockwise, {0.0, 1.0}, {0.0, 0.0}, {0.0, 1.0}, 1.0, {0.0, 2.0}}, /* all the way round */
     };
@@ -139,9 +139,29 @@ static void test_modulo_and_inverted_axes(void)
     group_refused(&(cm1e_group_command_t){.kind = CM1E_GROUP_LINEAR_ABSOLUTE, .position = {1.0, 1.0}},
                   CM1E_ERROR_GROUP_PATH);
     group_told("range of this modulo axis");
-    group_refused(&(cm1e_group_command_t){.kind = CM1E_GROUP_CIRCULAR_RELATIVE, .auxiliary = {1, 1}, .position = {2, 0}},
-                  CM1E_ERROR_GROUP_PATH);
+    group_refused(&(cm1e_group_command_t){.kind = CM1E_GROUP_CIRCULAR_RELATIVE, .auxiliary = {1, 1},
+                                          .position = {2, 0}}, CM1E_ERROR_GROUP_PATH);
     group_told("A circle needs linear axes");
+}
+
+static void test_a_smaller_deceleration_of_one_axis_is_kept(void)
+{
+    group_end();
+    axes_describe(2);
+    axes_config(1)->max_deceleration = 20.0;
+    axes_make();
+    axes_enable_all();
+    group_form();
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_group_enable(group));
+    const cm1e_command_id_t id = group_command(&(cm1e_group_command_t){.kind = CM1E_GROUP_LINEAR_ABSOLUTE,
+                                                                       .position = {3.0, 3.0}});
+    double steepest = 0.0;
+    while (group_state_of(id) == CM1E_COMMAND_ACTIVE) {
+        axes_cycles(1);
+        steepest = fmin(steepest, axes_info(1).set_acceleration);
+    }
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, group_state_of(id));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -20.0, steepest);
 }
 
 /* ---- one behind the other ---------------------------------------------------------------------------------------- */
@@ -396,7 +416,8 @@ static void test_what_it_shows(void)
     TEST_ASSERT_EQUAL_INT(1, group_info().commands);
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_group_values(group, mcActualValue, position, velocity, &path));
     TEST_ASSERT_DOUBLE_WITHIN(0.01, group_at(1), position[1]);
-    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_UNSUPPORTED, cm1e_group_values(group, mcCommandedValue, position, velocity, &path));
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_UNSUPPORTED,
+                          cm1e_group_values(group, mcCommandedValue, position, velocity, &path));
 }
 
 /* Frames that were never sent: the motors stand at their last targets, and the path goes on from there. */
@@ -492,7 +513,8 @@ static void test_random_paths_keep_every_limit(void)
         if (chance(0, 1) < 0.05)
             cm1e_group_set_override(group, chance(0, 1) < 0.2 ? 0.0 : chance(0.1, 1));
         axes_cycles((int)chance(1.0, 400.0));
-        AXES_MUST(group_info().state == CM1E_GROUP_MOVING || group_info().state == CM1E_GROUP_STANDBY, "%s", group_text());
+        AXES_MUST(group_info().state == CM1E_GROUP_MOVING || group_info().state == CM1E_GROUP_STANDBY, "%s",
+                  group_text());
     }
     cm1e_group_set_override(group, 1.0);
     while (group_info().state == CM1E_GROUP_MOVING)
@@ -510,6 +532,7 @@ int main(void)
     RUN_TEST(test_further_axes_go_along);
     RUN_TEST(test_one_axis_is_a_group_too);
     RUN_TEST(test_modulo_and_inverted_axes);
+    RUN_TEST(test_a_smaller_deceleration_of_one_axis_is_kept);
     RUN_TEST(test_buffered_lines_come_to_rest_between);
     RUN_TEST(test_transitions_do_not_stop_and_keep_their_tolerance);
     RUN_TEST(test_exactly_along_both_it_stops_where_the_direction_breaks_only);

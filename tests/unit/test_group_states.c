@@ -32,7 +32,9 @@ static void into(cm1e_group_state_t state)
 
 /* ---- every command in every state -------------------------------------------------------------------------------- */
 
-typedef enum what { ADD = 0, REMOVE, UNGROUP, ENABLE, DISABLE, RESET, LINE, RELATIVE, ARC, BEND, HALT, STOP, WHATS } what_t;
+typedef enum what {
+    ADD = 0, REMOVE, UNGROUP, ENABLE, DISABLE, RESET, LINE, RELATIVE, ARC, BEND, HALT, STOP, WHATS
+} what_t;
 
 static cm1e_error_t post(what_t what)
 {
