@@ -166,8 +166,8 @@ static void begin(void)
 static fb_t *into(cm1e_group_state_t state)
 {
     begin();
-    fb_t *fb = make(state == CM1E_GROUP_STOPPING ? "MC_GroupStop" : state == CM1E_GROUP_DISABLED ? "MC_GroupDisable"
-                                                                                              : "MC_MoveLinearAbsolute");
+    fb_t *fb = make(state == CM1E_GROUP_STOPPING   ? "MC_GroupStop"
+                    : state == CM1E_GROUP_DISABLED ? "MC_GroupDisable" : "MC_MoveLinearAbsolute");
     if (state != CM1E_GROUP_STANDBY)
         start(fb);
     axes_cycles(50);
@@ -189,7 +189,7 @@ static const cm1e_error_t refusals[CM1E_GROUP_STATE_COUNT] = {
     [CM1E_GROUP_ERROR_STOP] = CM1E_ERROR_GROUP_ERROR_STOP,
 };
 
-/* ---- every block, state and mode ---------------------------------------------------------------------------------- */
+/* ---- every block, state and mode --------------------------------------------------------------------------------- */
 
 static bool halts_by_blending(int move, int mode) { return move == HALT && mode >= mcBlendingLow; }
 
@@ -281,8 +281,8 @@ START_TEST(test_every_move_behind_every_other_in_every_mode)
                 for (int phase = 1; phase < 900; phase += 211) {
                     if (first == STOP || (second == STOP && mode != mcAborting) || halts_by_blending(second, mode))
                         continue;
-                    snprintf(scene, sizeof scene, "%s, after %d cycles %s in mode %d", moves[first], phase, moves[second],
-                             mode);
+                    snprintf(scene, sizeof scene, "%s, after %d cycles %s in mode %d", moves[first], phase,
+                             moves[second], mode);
                     begin();
                     fb_t *a = make(moves[first]), *b = make(moves[second]);
                     ck_assert_uint_eq(start(a), 0);
@@ -417,8 +417,8 @@ START_TEST(test_power_loss_of_an_axis_in_every_phase)
             if (can_wait)
                 start(waiting);
             axes_cycles(phase);
-            const bool busy = fb->now.busy, waits = waiting->now.busy, moving = group_info().state == CM1E_GROUP_MOVING ||
-                                                                               (_i == STOP && busy);
+            const bool busy = fb->now.busy, waits = waiting->now.busy;
+            const bool moving = group_info().state == CM1E_GROUP_MOVING || (_i == STOP && busy);
             axes_power(victim, false);
             axes_cycles(2);
             const WORD lost = cm1e_error_id(CM1E_ERROR_GROUP_ERROR_STOP);
@@ -439,7 +439,7 @@ START_TEST(test_power_loss_of_an_axis_in_every_phase)
 }
 END_TEST
 
-/* ---- blocks with a single axis beside ----------------------------------------------------------------------------- */
+/* ---- blocks with a single axis beside ---------------------------------------------------------------------------- */
 
 START_TEST(test_the_group_s_axes_and_their_own_blocks)
 {
