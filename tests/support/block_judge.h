@@ -48,6 +48,7 @@ static struct judged_axis {
     AXIS_REF_t master;              /**< what its slaves' blocks name as their masters */
     cm1e_axis_state_t state;        /**< last judged */
     bool reset_asked;               /**< since ErrorStop */
+    bool waited;                    /**< a command did, maybe of a block that has lost it by an error of its own */
     long long number;               /**< of the cycle */
     int64_t cycle_ns;
     char scene[200];                /**< which run this is, for messages */
@@ -436,9 +437,10 @@ static void judge_cycle(void)
                             1u << CM1E_AXIS_HOMING | 1u << CM1E_AXIS_SYNCHRONIZED_MOTION |
                             1u << CM1E_AXIS_STANDSTILL; /* a halt that ends at once */
     const cm1e_axis_state_t before = judged.state, after = judged.axis->state;
+    bool waits = judged.waited;
+    judged.waited = judged.axis->waiting.count > 0;
     if (after == before)
         return;
-    bool waits = false;
     for (int i = 0; i < called_count; i++)
         waits = waits || (called[i]->of == judged_at &&
                           ((called[i]->before.busy && !called[i]->before.active) ||

@@ -57,6 +57,7 @@ typedef struct sync {
     bool asked;        /**< its inputs were such that a position is kept */
     bool known;
     int master;
+    cm1e_command_id_t id;
     double ratio;      /**< counts of the slave in one of the master */
     position_t master_at, slave_at;
 } sync_t;
@@ -272,14 +273,17 @@ static sync_t sync_of(const instance_t *fb)
                     .ratio = ratio * judged.axis->scale / judged_axes[n].axis->scale};
 }
 
-/** InGear: the slave is where it has to be by where both were when that began. */
+/** InGear: the slave is where it has to be by where both were when that began. After the set-points. */
 static void judge_sync(int n)
 {
     const instance_t *fb = &instances[n];
+    judged_at = fb->of;
     sync_t *sync = &syncs[n];
     const cm1e_axis_t *slave = judged.axis, *master = judged_axes[sync->master].axis;
     const bool moved_else = slave->superimposed.id != 0 || slave->coupling->phasing.moving;
-    if (!sync->asked || !fb->now.reached || moved_else) {
+    const bool in_gear = fb->now.reached && slave->reached && slave->kind == CM1E_COMMAND_GEAR_IN;
+    if (!sync->asked || !in_gear || moved_else || slave->active != sync->id) {
+        sync->id = fb->now.active ? slave->active : 0;
         sync->known = false;
         return;
     }
@@ -327,8 +331,6 @@ static void play(int n)
         judge_arrival(n);
     if (is(fb, "MC_CamTableSelect") && fb->now.done)
         player.cam = (MC_CAM_ID)integer_of(fb, "CamTableID");
-    if (is(fb, "MC_GearIn"))
-        judge_sync(n);
 }
 
 /** An idle block needs no call; now and then it gets one. */
@@ -524,6 +526,9 @@ static void one_cycle(void)
         judged_at = n;
         judge_axis();
     }
+    for (int i = 0; i < count && axis_count > 1; i++)
+        if (syncs[i].asked)
+            judge_sync(i);
     judged_at = 0;
 }
 
