@@ -56,7 +56,7 @@ static void plan_rest(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits)
         c->now->to_position ? cm1e_profile_to_position(&rest->profile, &rest->now, 0.0, limits)
                             : cm1e_profile_to_velocity(&rest->profile, &rest->now, 0.0, limits);
     rest->cycles = 0;
-    rest->on = error || rest->profile.duration_s > 0.0;
+    rest->on = error || rest->profile.duration_s > 0.0 || rest->now.position != 0.0;
     if (error) { /* numbers that doubles cannot hold: as it is, for the guard to judge */
         rest->profile.segment_count = 0;
         rest->profile.duration_s = INFINITY;
@@ -133,7 +133,8 @@ static from_t with_rest(cm1e_axis_t *axis, const from_t *f, guard_t *guard)
         go_on(axis, f, (attempt_t)attempt);
         sum = sum_of(axis, f);
         *guard = cm1e_axis_guard(axis, &sum, keeps_jerk(axis->coupling));
-        if (!guard->limit)
+        /* At a border that F leads over, the rest could hold the axis for ever. */
+        if (!guard->limit || guard->limit == GUARD_DIRECTION || guard->limit == GUARD_SOFTWARE_LIMIT)
             break;
     }
     return sum;

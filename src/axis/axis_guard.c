@@ -15,17 +15,10 @@ static guard_t broken(guard_limit_t limit, double asked, double allowed)
     return (guard_t){.limit = limit, .asked = asked, .allowed = allowed};
 }
 
-/* A follower keeps what the application allows at present; what a leader has planned, what the axis can do: its leader
- * knew the rest. */
-static const cm1e_motion_limits_t *limits_of(const cm1e_axis_t *axis)
-{
-    return axis_led(axis) ? &axis->system : &axis->maximum;
-}
-
 /* From velocity to velocity within one cycle: through zero both limits are used. */
 static guard_t guard_acceleration(const cm1e_axis_t *axis, const from_t *next)
 {
-    const cm1e_motion_limits_t *most = limits_of(axis);
+    const cm1e_motion_limits_t *most = &axis->system;
     const double v0 = axis->set_velocity, v1 = next->velocity, a = next->acceleration, t = axis->cycle_s;
     const bool turns = v0 * v1 < 0.0, grows = fabs(v1) >= fabs(v0);
     const double bound = turns ? fmax(most->acceleration, most->deceleration)
@@ -56,7 +49,7 @@ static guard_t guard_step(const cm1e_axis_t *axis, const from_t *next, bool kept
 
 CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
 {
-    const cm1e_motion_limits_t *most = limits_of(axis);
+    const cm1e_motion_limits_t *most = &axis->system;
     const double v = next->velocity, a = next->acceleration, line = cm1e_axis_line(axis, next->position);
     if (!isfinite(v) || !isfinite(a))
         return broken(GUARD_FINITE, 0.0, 0.0);

@@ -365,6 +365,8 @@ static const cm1e_motion_limits_t *limits_in_force(void)
         watched.most = watched.maximum;
     watched.resting = judged.axis->activity == ACTIVITY_HOLD;
     watched.maximum = *now;
+    if (judged.axis->activity == ACTIVITY_COUPLED) /* the bounds of commands are lowered by parameters, not these */
+        now = &judged.axis->system;
     watched.most.velocity = fmax(watched.most.velocity, now->velocity);
     watched.most.acceleration = fmax(watched.most.acceleration, now->acceleration);
     watched.most.deceleration = fmax(watched.most.deceleration, now->deceleration);
