@@ -28,6 +28,8 @@ static struct run {
     bool coupled;               /**< the slave's command was taken */
     bool failed_with_it;        /**< ... and axis 2 followed when the fault came */
     int struck;                 /**< cycle of the run, or -1 */
+    bool known;                 /**< it was in gear; and where both were then */
+    position_t master_at, slave_at;
 } run;
 
 static cm1e_command_id_t couple(int n, const cm1e_axis_command_t *command, cm1e_axis_coupling_t coupling)
@@ -240,10 +242,35 @@ static bool is_of_master(int n)
            (error == CM1E_ERROR_AXIS_MASTER_LOST || error == CM1E_ERROR_AXIS_COUPLED);
 }
 
+/** As long as the slave follows, in ErrorStop too, it keeps the ratio. */
+static void judge_ratio(void)
+{
+    const cm1e_axis_t *master = axes_axis(MASTER), *slave = axes_axis(SLAVE);
+    const bool follows = run.kind == 0 && slave->activity == ACTIVITY_COUPLED;
+    if (follows && !run.known && axes_status(SLAVE, run.slave).reached) {
+        run.known = true;
+        run.master_at = master->set;
+        run.slave_at = slave->set;
+    }
+    run.known = run.known && follows;
+    if (!run.known)
+        return;
+    const double way = cm1e_position_minus(master->set, run.master_at) / master->scale * 1.5 * slave->scale;
+    const double off = cm1e_position_minus(slave->set, run.slave_at) - way;
+    AXES_MUST(fabs(off) <= 0.1, "the slave is %g counts beside its gear, %s", off,
+              cm1e_axis_state_name(slave->state));
+}
+
 static void judge_others_of_slave(bool slave_followed)
 {
     const bool together = slave_followed && run.mode != CM1E_COUPLING_STOP_THIS;
-    if (!together) {
+    if (slave_followed && run.mode == CM1E_COUPLING_STOP_COUPLED && axes_state(SLAVE) == CM1E_AXIS_ERROR_STOP) {
+        AXES_MUST(axes_info(MASTER).error == CM1E_ERROR_AXIS_COUPLED, "the master: %s", axes_text(MASTER));
+        AXES_MUST(is_of_master(BESIDE), "axis 2: %s", axes_text(BESIDE));
+    } else if (slave_followed && run.mode == CM1E_COUPLING_STOP_KEEP_RATIO && run.fault == TOO_FAST && run.kind == 0) {
+        AXES_MUST(axes_info(MASTER).error == CM1E_ERROR_AXIS_COUPLED, "the master does not brake with its slave: %s",
+                  axes_text(MASTER));
+    } else if (!together) {
         AXES_MUST(axes_state(MASTER) == CM1E_AXIS_CONTINUOUS_MOTION, "the master is in %s: %s",
                   cm1e_axis_state_name(axes_state(MASTER)), axes_text(MASTER));
         AXES_MUST(active(BESIDE, run.beside), "the other slave is in %s: %s",
@@ -346,6 +373,7 @@ static void one_run(int kind, int fault, int fault_cycle, cm1e_coupling_stop_t m
             strike(cycle - run.struck);
         }
         axes_outputs();
+        judge_ratio();
         after = cycle > fault_cycle && cycle > 300 ? after + 1 : 0;
         AXES_MUST(after < CONCERNED_CYCLES, "it does not come to rest");
     }
