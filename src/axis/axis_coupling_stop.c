@@ -13,7 +13,7 @@
 static bool keeps_ratio(const cm1e_axis_t *axis)
 {
     return axis->config->coupling_stop == CM1E_COUPLING_STOP_KEEP_RATIO && axis->drive.feedback.enabled &&
-           !axis->superimposed.id && axis->coupling->phase.velocity == 0.0; /* they end with the commands */
+           !axis->superimposed.id; /* it ends with the commands */
 }
 
 /* For the text: because of whom it stops. */
@@ -78,7 +78,7 @@ static guard_t limit_ahead(const cm1e_axis_t *axis, double braking)
 void cm1e_axis_keep_ratio(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
-    if (!keeps_ratio(axis) || c->stopping)
+    if (!keeps_ratio(axis) || c->stopping || c->phase.velocity != 0.0) /* a shift has its own way to its rest */
         return;
     const double braking = braking_together(axis);
     const guard_t guard = braking > 0.0 ? limit_ahead(axis, braking) : (guard_t){.limit = GUARD_KEPT};

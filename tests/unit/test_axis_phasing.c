@@ -381,6 +381,37 @@ static void test_it_ends_with_the_coupling(void)
     }
 }
 
+/* keep_ratio: the slave follows a master that brakes, and the shift comes to rest on the way. */
+static void test_a_shift_comes_to_rest_while_the_ratio_is_kept_to_the_end(void)
+{
+    axes_describe(3);
+    axes_config(MASTER)->software_limit_negative = -100.0;
+    axes_config(MASTER)->software_limit_positive = 10.0;
+    axes_config(MASTER)->max_deceleration = 30.0;
+    axes_config(SLAVE)->coupling_stop = CM1E_COUPLING_STOP_KEEP_RATIO;
+    axes_make();
+    axes_enable_all();
+    in_step(1, 1);
+    axes_move_velocity(MASTER, 5.0);
+    axes_cycles(1000);
+    const cm1e_command_id_t id = to_shift(30.0, 3.0), waits = then_shift(true, 1.0, 1.0);
+    AXES_UNTIL(axes_state(MASTER) == CM1E_AXIS_ERROR_STOP);
+    axes_cycles(1);
+    axes_must_be(SLAVE, CM1E_AXIS_ERROR_STOP);
+    TEST_ASSERT_EQUAL(CM1E_ERROR_AXIS_MASTER_LOST, axes_info(SLAVE).error);
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_ERROR, state_of(id));
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_ERROR, state_of(waits));
+    const double covered = axes_status(SLAVE, id).covered;
+    while (axes_axis(SLAVE)->activity == ACTIVITY_COUPLED) {
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, off(axes_axis(SLAVE)->coupling->phase.position));
+        TEST_ASSERT_TRUE(axes_axis(SLAVE)->coupling->phase.position >= covered - 1e-9);
+        axes_cycles(1);
+    }
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, axes_info(SLAVE).set_velocity);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, axes_info(MASTER).set_velocity);
+    TEST_ASSERT_TRUE(axes_info(SLAVE).set_position - axes_info(MASTER).set_position > covered);
+}
+
 /* A new coupling begins without the shift of the one before. */
 static void test_a_shift_does_not_outlive_its_coupling(void)
 {
@@ -618,6 +649,7 @@ int main(void)
     RUN_TEST(test_it_goes_on_through_a_change_of_ratio);
     RUN_TEST(test_another_master_ends_it);
     RUN_TEST(test_it_ends_with_the_coupling);
+    RUN_TEST(test_a_shift_comes_to_rest_while_the_ratio_is_kept_to_the_end);
     RUN_TEST(test_a_shift_does_not_outlive_its_coupling);
     RUN_TEST(test_of_two_masters_the_first_is_shifted);
     RUN_TEST(test_a_cam_is_followed_with_the_ideal_shift_at_every_sample);
