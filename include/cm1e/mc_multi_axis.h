@@ -140,7 +140,7 @@ typedef struct MC_PhasingAbsolute {
     BOOL Execute;
     LREAL PhaseShift;         /**< u of the master; what the slave sees is the master's position and this */
     LREAL Velocity;           /**< u/s of the master, > 0; largest of the shift */
-    LREAL Acceleration;       /**< u/s2 of the master, 0 ... maximum; 0: as much as the slave can follow */
+    LREAL Acceleration;       /**< u/s2 of the master, 0 ... maximum; 0: half of what the slave can follow */
     LREAL Deceleration;       /**< u/s2 of the master, 0 ... maximum; in the same way */
     LREAL Jerk;               /**< u/s3 of the master, 0 ... maximum; in the same way */
     MC_BUFFER_MODE BufferMode;
@@ -160,7 +160,7 @@ typedef struct MC_PhasingRelative {
     BOOL Execute;
     LREAL PhaseShift;        /**< u of the master; added to the phase shift that there is */
     LREAL Velocity;          /**< u/s of the master, > 0; largest of the shift */
-    LREAL Acceleration;      /**< u/s2 of the master, 0 ... maximum; 0: as much as the slave can follow */
+    LREAL Acceleration;      /**< u/s2 of the master, 0 ... maximum; 0: half of what the slave can follow */
     LREAL Deceleration;      /**< u/s2 of the master, 0 ... maximum; in the same way */
     LREAL Jerk;              /**< u/s3 of the master, 0 ... maximum; in the same way */
     MC_BUFFER_MODE BufferMode;
