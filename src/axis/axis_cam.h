@@ -29,6 +29,35 @@ typedef struct cam_slot {
 /** Those that stay, and one more to take the next one in. */
 enum { CAM_SLOTS = CM1E_AXIS_CAMS + 1 };
 
+/** What the way into step waits for. */
+typedef enum awaited {
+    AWAIT_NOTHING = 0,
+    AWAIT_PLACE,                   /**< the master comes over the place where the way begins */
+    AWAIT_MOTION,                  /**< the master goes towards the place where it ends */
+} awaited_t;
+
+/** A way into step: a curve over the master's position, from what the slave does to what it shall do when the master is
+ *  at a place. Counts of the master are those of the link. */
+typedef struct way {
+    const struct follow_kind *then; /**< F behind it */
+    awaited_t awaited;             /**< it is still to come */
+    double start_distance;         /**< counts of the master, signed as the way it goes; 0: from where it is */
+    double sync;                   /**< counts of the master where the way ends */
+    double again;                  /**< counts after which that place comes again; 0: it does not */
+    MC_SYNC_MODE mode;
+    double turn;                   /**< u of the slave, whose places so far apart are the same; 0: there are none */
+    position_t begin, end;         /**< of the slave */
+    double first;                  /**< u of the master, counted from the end: where the way begins */
+    cm1e_curve_t curve;            /**< u of the slave from `begin` over u of the master from the end */
+} way_t;
+
+/** What a way into step would have asked of the slave, for the text. */
+typedef struct way_refused {
+    const char *what;              /**< NULL: the master stands while the slave moves, or has gone over it */
+    const char *unit;
+    double asked, allowed;
+} way_refused_t;
+
 /** Where a slave was that should have been on its cam, and where that wanted it; u, u/s; for the text. */
 typedef struct cam_refused {
     double position, wanted_position, velocity, wanted_velocity;
@@ -42,6 +71,7 @@ typedef struct cams {
     cm1e_cam_fault_t fault;        /**< of the last cam that was refused, for the text ... */
     int wrong;                     /**< ... at which point, from 0 */
     cam_refused_t refused;
+    way_refused_t way_refused;
     cm1e_cam_knot_t knots[];
 } cams_t;
 
@@ -59,6 +89,7 @@ typedef struct cam_place {
 cm1e_error_t cm1e_axis_cams_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */
 /** NULL: there is none of that number. */
 const cam_slot_t *cm1e_axis_cam_of(const cm1e_axis_t *axis, MC_CAM_ID id);
+void cm1e_axis_way_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_axis_cam_id_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_axis_cam_start_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_axis_cam_table_text(const cm1e_axis_t *axis, char *text, size_t size);

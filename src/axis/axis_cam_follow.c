@@ -11,9 +11,14 @@ static const double largest_scaling = 1e9;
 
 /* ---- F ----------------------------------------------------------------------------------------------------------- */
 
-static double place_in_cam(const cam_place_t *cam, const link_t *link)
+static double place_in_cam(const cam_place_t *cam, const link_t *link, double counts)
 {
-    return ((link->seen.counts + cam->away) / link->master->scale - cam->master_offset) / cam->master_scaling;
+    return ((counts + cam->away) / link->master->scale - cam->master_offset) / cam->master_scaling;
+}
+
+static double place_now(const follow_t *follow)
+{
+    return place_in_cam(&follow->cam, &follow->links[0], follow->links[0].seen.counts);
 }
 
 /* u, from the slave's zero. */
@@ -60,9 +65,8 @@ static void sample_point(const cm1e_axis_t *axis, const follow_t *follow, const 
 static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
 {
     cam_place_t *cam = &follow->cam;
-    const link_t *link = &follow->links[0];
     cm1e_cam_sample_t sample;
-    cm1e_cam_sample(&cam->slot->cam, &cam->place, place_in_cam(cam, link), &sample);
+    cm1e_cam_sample(&cam->slot->cam, &cam->place, place_now(follow), &sample);
     if (came_over_end(cam, &sample)) {
         axis->coupling->end_of_profile = true;
         axis->coupling->ends++;
@@ -82,6 +86,24 @@ static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link
 }
 
 static const follow_kind_t cam_kind = {evaluate, steepest};
+
+/* At the ends of a single-shot, from within: that is where the master is on it. */
+void cm1e_axis_cam_point(const cm1e_axis_t *axis, const follow_t *follow, double counts, position_t *position,
+                         cm1e_curve_point_t *point)
+{
+    const cam_place_t *cam = &follow->cam;
+    const cm1e_cam_t *table = &cam->slot->cam;
+    const double within = 1e-12 * table->length, once = 1.0 / cam->master_scaling;
+    double place = place_in_cam(cam, &follow->links[0], counts);
+    cm1e_cam_place_t unused = {0};
+    cm1e_cam_sample_t sample;
+    if (!table->periodic && place >= table->start - within && place <= table->start + table->length + within)
+        place = fmax(table->start + within, fmin(place, table->start + table->length - within));
+    cm1e_cam_sample(table, &unused, place, &sample);
+    *position = cm1e_position_plus(cam->slave_zero, height(cam, &sample) * axis->scale);
+    *point = (cm1e_curve_point_t){.slope = cam->slave_scaling * once * sample.point.slope,
+                                  .curvature = cam->slave_scaling * once * once * sample.point.curvature};
+}
 
 /* A cam may need all of this before long, at the master's present velocity. */
 static cm1e_motion_limits_t cam_demand(const follow_t *follow)
@@ -107,7 +129,8 @@ static double part_of(double asked, double most, double needed)
 cm1e_motion_limits_t cm1e_axis_cam_leaves(const cm1e_axis_t *axis, const follow_t *follow,
                                           const cm1e_motion_limits_t *asked)
 {
-    const cm1e_motion_limits_t *most = &axis->maximum, needed = cam_demand(follow);
+    const cm1e_motion_limits_t nothing = {0}, *most = &axis->maximum;
+    const cm1e_motion_limits_t needed = follow->cam.slot ? cam_demand(follow) : nothing;
     return (cm1e_motion_limits_t){
         .velocity = part_of(asked->velocity, most->velocity, needed.velocity),
         .acceleration = part_of(asked->acceleration, most->acceleration, needed.acceleration),
@@ -151,7 +174,7 @@ static void begins_at_end(const cm1e_axis_t *axis, const follow_t *follow, doubl
     const double turns = !table->periodic ? 0.0 : cam->before.turn + (upper ? 1.0 : 0.0);
     const double end = table->start + (table->periodic ? turns * table->length : upper ? table->length : 0.0);
     const double place = table->periodic || !upper ? first->slave : last->slave;
-    *beyond = (place_in_cam(cam, &before->links[0]) - end) * cam->master_scaling * before->links[0].master->scale;
+    *beyond = (place_now(before) - end) * cam->master_scaling * before->links[0].master->scale;
     *slave = cm1e_position_plus(cam->slave_zero, (cam->slave_offset + cam->slave_scaling *
                                                   (turns * table->advance + place)) * axis->scale);
 }
@@ -206,10 +229,29 @@ static bool on_it(cm1e_axis_t *axis, const from_t *from, const from_t *wanted)
                                                                        axis->maximum.deceleration);
 }
 
+/* MasterSyncPosition is a place in the cam; of a periodic one it comes again. */
+static cm1e_error_t by_way(cm1e_axis_t *axis, follow_t *follow, const move_t *move,
+                           const cm1e_axis_coupling_t *coupling, const from_t *from)
+{
+    const cam_place_t *cam = &follow->cam;
+    const cm1e_cam_t *table = &cam->slot->cam;
+    const bool absolute = cam->slot->slave_absolute && coupling->start_mode != mcRelative;
+    const double scale = follow->links[0].master->scale;
+    if (!isfinite(coupling->master_start_distance) || !isfinite(coupling->master_sync_position))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    way_t *way = &follow->way;
+    way->then = follow->kind;
+    way->mode = mcShortest;
+    way->turn = absolute ? axis->modulo_range : 0.0;
+    way->start_distance = coupling->master_start_distance * scale;
+    way->sync = (coupling->master_sync_position * cam->master_scaling + cam->master_offset) * scale - cam->away;
+    way->again = table->periodic ? fabs(table->length * cam->master_scaling * scale) : 0.0;
+    return cm1e_axis_way_prepare(axis, follow, move, from);
+}
+
 cm1e_error_t cm1e_axis_cam_prepare(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
                                    const from_t *from)
 {
-    (void)move;
     follow_t *follow = cm1e_axis_follow_spare(axis);
     const cam_slot_t *slot = cm1e_axis_cam_of(axis, coupling->cam);
     *follow = (follow_t){.kind = &cam_kind, .cam.slot = slot, .to_position = true, .in_step = true,
@@ -231,14 +273,16 @@ cm1e_error_t cm1e_axis_cam_prepare(cm1e_axis_t *axis, const move_t *move, const 
     if (!slot->master_absolute)
         begins_at_end(axis, follow, &beyond, &start.position);
     find_master_zero(follow, cam, 0.0);
-    cm1e_cam_sample(&slot->cam, &cam->place, place_in_cam(cam, &follow->links[0]), &sample);
+    cm1e_cam_sample(&slot->cam, &cam->place, place_now(follow), &sample);
     error = find_slave_zero(axis, coupling, &start, cam, height(cam, &sample));
     if (error)
         return error;
     find_master_zero(follow, cam, beyond);
-    cm1e_cam_sample(&slot->cam, &cam->place, place_in_cam(cam, &follow->links[0]), &sample);
+    cm1e_cam_sample(&slot->cam, &cam->place, place_now(follow), &sample);
     sample_point(axis, follow, &sample, &wanted);
     if (!cm1e_position_in_range(wanted.position) || !contained(axis, from, cam))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
+    if (coupling->master_start_distance != 0.0)
+        return by_way(axis, follow, move, coupling, from);
     return coupling->start_mode == mcRampIn || on_it(axis, from, &wanted) ? CM1E_OK : CM1E_ERROR_AXIS_CAM_START;
 }

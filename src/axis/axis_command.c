@@ -35,6 +35,15 @@ void cm1e_axis_remember_end(cm1e_axis_t *axis, cm1e_command_kind_t kind, cm1e_er
         cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_FINISHED, .number = (int)kind});
 }
 
+void cm1e_axis_waiting_end(cm1e_axis_t *axis, cm1e_command_state_t state)
+{
+    cm1e_axis_await_nothing(axis);
+    for (int i = 0; i < axis->waiting.count; i++)
+        cm1e_axis_record(axis, waiting_move(axis, i)->id, state,
+                         state == CM1E_COMMAND_ERROR ? CM1E_ERROR_AXIS_ERROR_STOP : CM1E_OK);
+    axis->waiting.count = 0;
+}
+
 void cm1e_axis_commands_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
 {
     cm1e_axis_command_end(axis, state, error);
@@ -42,17 +51,14 @@ void cm1e_axis_commands_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_
     cm1e_axis_superimposed_end(axis, state, state == CM1E_COMMAND_ERROR ? CM1E_ERROR_AXIS_ERROR_STOP : CM1E_OK);
     if (state == CM1E_COMMAND_ERROR) /* else it ends when its master is left */
         cm1e_axis_phasing_end(axis, state, CM1E_ERROR_AXIS_ERROR_STOP);
-    for (int i = 0; i < axis->waiting.count; i++)
-        cm1e_axis_record(axis, waiting_move(axis, i)->id, state,
-                         state == CM1E_COMMAND_ERROR ? CM1E_ERROR_AXIS_ERROR_STOP : CM1E_OK);
-    axis->waiting.count = 0;
+    cm1e_axis_waiting_end(axis, state);
 }
 
 cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_command_id_t id)
 {
     if (id != 0 && id == axis->active)
         return (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE, .reached = axis->reached,
-                                       .synchronizing = axis_follows(axis) && axis->coupling->synchronizing,
+                                       .synchronizing = axis_follows(axis) && !axis->coupling->now->in_step,
                                        .ends = axis_follows(axis) ? axis->coupling->ends : 0};
     for (int i = 0; i < axis->waiting.count; i++)
         if (axis->waiting.moves[(axis->waiting.first + i) % CM1E_AXIS_BUFFER_DEPTH].id == id)
@@ -84,7 +90,7 @@ bool cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id, cm1e_comma
     if (!axis || id == 0 || axis->active != id || !axis_follows(axis))
         return false;
     status->reached = axis->reached;
-    status->synchronizing = axis->coupling->synchronizing;
+    status->synchronizing = !axis->coupling->now->in_step;
     status->ends = axis->coupling->ends;
     return true;
 }
@@ -323,7 +329,7 @@ static cm1e_error_t buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command
 static bool has_to_wait(const cm1e_axis_t *axis, const cm1e_axis_command_t *command)
 {
     return command->buffer_mode != mcAborting && command->kind != CM1E_COMMAND_STOP &&
-           !is_decoupling(command->kind) && axis->active && axis->state != CM1E_AXIS_STOPPING;
+           !is_decoupling(command->kind) && (axis->active || axis->coupling->next) && axis->state != CM1E_AXIS_STOPPING;
 }
 
 /* With nothing to wait for. */
@@ -375,7 +381,8 @@ static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command,
     const cm1e_error_t error = on_top ? cm1e_axis_superimpose(axis, command, id)
                                : is_phasing(command->kind) ? cm1e_axis_phasing(axis, command, id)
                                                            : start_now(axis, command, id);
-    if (!error && command->kind != CM1E_COMMAND_HOMING_STEP) /* MC_HomeDirect may be over already */
+    const bool later = is_coupling(command->kind) && cm1e_axis_find_waiting(axis, *id); /* 4.7, note 1 */
+    if (!error && !later && command->kind != CM1E_COMMAND_HOMING_STEP) /* MC_HomeDirect may be over already */
         axis->state = rule->next;
     return error;
 }

@@ -303,7 +303,7 @@ void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, c
     cm1e_axis_list_links(follow);
     c->now = follow;
     c->next = NULL;
-    c->synchronizing = c->end_of_profile = c->stopping = false;
+    c->end_of_profile = c->stopping = c->due = false;
     begin_rest(axis, from, asked);
     axis->activity = ACTIVITY_COUPLED;
     axis->reached = axis->paused = axis->stands = axis->along_table = false;
@@ -328,7 +328,10 @@ void cm1e_axis_coupled_after_pause(cm1e_axis_t *axis)
 void cm1e_axis_coupling_shift(cm1e_axis_t *axis, double way)
 {
     follow_t *now = axis->coupling->now;
-    now->anchor = cm1e_position_plus(now->anchor, way * axis->scale);
+    const double counts = way * axis->scale;
+    position_t *const places[] = {&now->anchor, &now->cam.slave_zero, &now->way.begin, &now->way.end};
+    for (int i = 0; i < 4; i++)
+        *places[i] = cm1e_position_plus(*places[i], counts);
 }
 
 void cm1e_axis_coupled_begin(cm1e_axis_t *axis)
@@ -349,6 +352,7 @@ typedef cm1e_error_t prepare_t(cm1e_axis_t *axis, const move_t *move, const cm1e
 
 static prepare_t *const preparers[CM1E_COMMAND_KIND_COUNT] = {
     [CM1E_COMMAND_GEAR_IN] = cm1e_axis_gear_prepare,
+    [CM1E_COMMAND_GEAR_IN_POS] = cm1e_axis_gear_in_pos_prepare,
     [CM1E_COMMAND_CAM_IN] = cm1e_axis_cam_prepare,
     [CM1E_COMMAND_COMBINE_AXES] = cm1e_axis_gear_prepare,
 };
@@ -362,8 +366,8 @@ static cm1e_error_t prepare(cm1e_axis_t *axis, const move_t *move, const cm1e_ax
     return error ? error : preparers[move->kind](axis, move, coupling, from);
 }
 
-static void take(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling, const from_t *from,
-                 const cm1e_motion_limits_t *limits)
+static void take(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling, follow_t *follow,
+                 const from_t *from, const cm1e_motion_limits_t *limits)
 {
     cm1e_axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     axis->active = move->id;
@@ -371,22 +375,7 @@ static void take(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling
     axis->move = *move;
     axis->coupling->inputs = *coupling;
     axis->coupling->ends = 0;
-    cm1e_axis_follow(axis, cm1e_axis_follow_spare(axis), from, limits);
-}
-
-cm1e_error_t cm1e_axis_couple(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
-{
-    const from_t from = from_set(axis);
-    move_t move = cm1e_axis_move_of(command);
-    cm1e_motion_limits_t limits;
-    const cm1e_error_t error = command->coupling ? prepare(axis, &move, command->coupling, &from, &limits)
-                                                 : CM1E_ERROR_INVALID_ARGUMENT;
-    if (error)
-        return error;
-    cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    *id = move.id = cm1e_axis_next_id(axis);
-    take(axis, &move, command->coupling, &from, &limits);
-    return CM1E_OK;
+    cm1e_axis_follow(axis, follow, from, limits);
 }
 
 static bool same_master(const cm1e_coupling_master_t *a, const cm1e_coupling_master_t *b)
@@ -449,6 +438,55 @@ static waiting_coupling_t *free_place(cm1e_axis_t *axis)
     return NULL;
 }
 
+static void await(cm1e_axis_t *axis, follow_t *follow)
+{
+    coupling_t *c = axis->coupling;
+    c->next = follow;
+    c->due = false;
+    cm1e_axis_list_links(follow);
+}
+
+void cm1e_axis_await_nothing(cm1e_axis_t *axis)
+{
+    coupling_t *c = axis->coupling;
+    if (c->next)
+        cm1e_axis_unlist_links(c->next);
+    c->next = NULL;
+}
+
+/* What runs goes on, as the active command, until the master is where the way begins; all that waits is aborted. */
+static void take_later(cm1e_axis_t *axis, move_t *move, const cm1e_axis_coupling_t *coupling, follow_t *follow)
+{
+    cm1e_axis_waiting_end(axis, CM1E_COMMAND_ABORTED);
+    move->id = cm1e_axis_next_id(axis);
+    *free_place(axis) = (waiting_coupling_t){move->id, *coupling};
+    *waiting_move(axis, axis->waiting.count++) = *move;
+    await(axis, follow);
+}
+
+cm1e_error_t cm1e_axis_couple(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+{
+    const from_t from = from_set(axis);
+    move_t move = cm1e_axis_move_of(command);
+    cm1e_motion_limits_t limits;
+    const cm1e_error_t error = command->coupling ? prepare(axis, &move, command->coupling, &from, &limits)
+                                                 : CM1E_ERROR_INVALID_ARGUMENT;
+    if (error)
+        return error;
+    follow_t *follow = cm1e_axis_follow_spare(axis);
+    if (follow->way.awaited) {
+        take_later(axis, &move, command->coupling, follow);
+        *id = move.id;
+        return CM1E_OK;
+    }
+    cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+    *id = move.id = cm1e_axis_next_id(axis);
+    take(axis, &move, command->coupling, follow, &from, &limits);
+    return CM1E_OK;
+}
+
+/* ---- buffered ---------------------------------------------------------------------------------------------------- */
+
 /* Before it waits it has its place: what it waits for may be there already, and it begins at once. */
 cm1e_error_t cm1e_axis_coupling_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
@@ -465,19 +503,60 @@ cm1e_error_t cm1e_axis_coupling_buffer(cm1e_axis_t *axis, const cm1e_axis_comman
     return error;
 }
 
-/* It follows from the present set-point on, which is where the command before it has come to since its end. */
+/* Where the command before it has come to since its end. */
+static from_t at_present(const cm1e_axis_t *axis, const from_t *from, double late_s)
+{
+    from_t here = *from;
+    here.position = cm1e_position_plus(from->position, from->velocity * late_s * axis->scale);
+    return here;
+}
+
+bool cm1e_axis_coupling_awaits(cm1e_axis_t *axis, const from_t *from, double late_s)
+{
+    coupling_t *c = axis->coupling;
+    if (c->next)
+        return !c->due;
+    const move_t *move = waiting_move(axis, 0);
+    const waiting_coupling_t *waiting = waiting_of(axis, move->id);
+    const from_t here = at_present(axis, from, late_s);
+    follow_t *follow = cm1e_axis_follow_spare(axis);
+    cm1e_motion_limits_t limits;
+    if (!waiting || prepare(axis, move, &waiting->coupling, &here, &limits) || !follow->way.awaited)
+        return false;
+    await(axis, follow);
+    return true;
+}
+
+/* What was awaited is there: as it was placed when it came to be awaited. */
+static cm1e_error_t begin_awaited(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
+                                  const from_t *from)
+{
+    coupling_t *c = axis->coupling;
+    cm1e_motion_limits_t limits;
+    cm1e_error_t error = c->due_error ? c->due_error : cm1e_axis_limits_of(axis, from, move, &limits);
+    if (!error)
+        error = cm1e_axis_way_begin(axis, c->next, move, from);
+    if (error)
+        cm1e_axis_await_nothing(axis);
+    else
+        take(axis, move, coupling, c->next, from, &limits);
+    return error;
+}
+
+/* It follows from the present set-point on. */
 cm1e_error_t cm1e_axis_coupling_begin(cm1e_axis_t *axis, const move_t *move, const from_t *from, double late_s)
 {
     const waiting_coupling_t *waiting = waiting_of(axis, move->id);
-    from_t here = *from;
+    const from_t here = at_present(axis, from, late_s);
     cm1e_motion_limits_t limits;
-    here.position = cm1e_position_plus(from->position, from->velocity * late_s * axis->scale);
+    if (waiting && axis->coupling->next)
+        return begin_awaited(axis, move, &waiting->coupling, &here);
     axis->coupling->at_end = axis_follows(axis) && axis->coupling->end_of_profile;
     const cm1e_error_t error = waiting ? prepare(axis, move, &waiting->coupling, &here, &limits)
                                        : CM1E_ERROR_AXIS_STATE;
     axis->coupling->at_end = false;
     if (!error)
-        take(axis, move, &waiting->coupling, &here, &limits);
+        take(axis, move, &waiting->coupling, cm1e_axis_follow_spare(axis), &here, &limits);
     return error;
 }
 

@@ -65,6 +65,7 @@ typedef struct follow {
     bool ended;                    /**< a single-shot cam has come over one of its ends */
     bool linear;                   /**< F's acceleration jumps by its nature: no limit of jerk holds */
     cam_place_t cam;
+    way_t way;
 } follow_t;
 
 /** A kind of F. */
@@ -129,13 +130,15 @@ typedef struct observed {
 typedef struct coupling {
     follow_t follows[FOLLOWS];     /**< links are in lists: they keep their place */
     follow_t *now;                 /**< F; NULL: never was one */
-    follow_t *next;                /**< takes F's place at a position of its master (StartSync); NULL: none does */
+    follow_t *next;                /**< of the first waiting command: begins at a place of its master (StartSync), until
+                                        when what runs goes on; NULL: none does */
     rest_t rest;
     cm1e_motion_state_t phase;     /**< u of the master: shift of links[0], as long as that one is followed ... */
     phasing_t phasing;             /**< ... and what changes it */
     observed_t own;
     double f_acceleration;         /**< u/s2; of F, in the last cycle */
-    bool synchronizing;            /**< GEAR_IN_POS: StartSync */
+    bool due;                      /**< it is now that `next` takes F's place ... */
+    cm1e_error_t due_error;        /**< ... or fails so */
     bool end_of_profile;           /**< CAM_IN: F came over it in this cycle */
     uint32_t ends;                 /**< ... so often since the command began */
     bool at_end;                   /**< what is being prepared waited for that */
@@ -224,10 +227,29 @@ cm1e_error_t cm1e_axis_gear_prepare(cm1e_axis_t *axis, const move_t *move, const
 /** MC_GearOut, MC_CamOut: leaves the masters and keeps the velocity. */
 cm1e_error_t cm1e_axis_decouple(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
 
+/** Whether the first waiting command, a coupling that could begin there, waits for its master. */
+bool cm1e_axis_coupling_awaits(cm1e_axis_t *axis, const from_t *from, double late_s);
+/** Nothing is awaited any more. */
+void cm1e_axis_await_nothing(cm1e_axis_t *axis);
+
+/* axis_way.c */
+/** Prepares a gear that is in step from a place of both axes on. */
+cm1e_error_t cm1e_axis_gear_in_pos_prepare(cm1e_axis_t *axis, const move_t *move,
+                                           const cm1e_axis_coupling_t *coupling, const from_t *from);
+/** Puts a way before an F that is prepared: begun (`way.awaited` nothing), or to be awaited. */
+cm1e_error_t cm1e_axis_way_prepare(cm1e_axis_t *axis, follow_t *follow, const move_t *move, const from_t *from);
+/** It begins there, with the master as seen. CM1E_ERROR_AXIS_SYNC_WAY: not within these limits. */
+cm1e_error_t cm1e_axis_way_begin(cm1e_axis_t *axis, follow_t *follow, const move_t *move, const from_t *from);
+/** While something is awaited, after the set-point of every cycle. */
+void cm1e_axis_await_step(cm1e_axis_t *axis);
+
 /* axis_cam_follow.c */
 /** Prepares a cam in the same way. */
 cm1e_error_t cm1e_axis_cam_prepare(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
                                    const from_t *from);
+/** Where the cam has the slave when the master is there (counts of the link), and how it goes on: but for the place. */
+void cm1e_axis_cam_point(const cm1e_axis_t *axis, const follow_t *follow, double counts, position_t *position,
+                         cm1e_curve_point_t *point);
 /** What the cam leaves of the axis's limits for the way onto it, with the master's present velocity. */
 cm1e_motion_limits_t cm1e_axis_cam_leaves(const cm1e_axis_t *axis, const follow_t *follow,
                                           const cm1e_motion_limits_t *asked);

@@ -25,6 +25,13 @@ static void fail_with(cm1e_axis_t *axis, const cm1e_axis_t *cause, double decele
     cm1e_axis_fail_gently(axis, CM1E_ERROR_AXIS_COUPLED, deceleration);
 }
 
+/* Its slave follows by it, and does not only wait to do so. */
+static bool in_force(const link_t *link)
+{
+    const follow_t *now = link->slave->coupling->now;
+    return axis_follows(link->slave) && (link == &now->links[0] || link == &now->links[1]);
+}
+
 void cm1e_axis_coupling_failed(cm1e_axis_t *axis)
 {
     const follow_t *follow = axis->coupling->now;
@@ -36,7 +43,7 @@ void cm1e_axis_coupling_failed(cm1e_axis_t *axis)
             continue;
         fail_with(master, axis, INFINITY);
         for (const link_t *link = master->slaves; link; link = link->next)
-            if (axis_follows(link->slave))
+            if (in_force(link))
                 fail_with(link->slave, axis, INFINITY);
     }
 }

@@ -149,7 +149,7 @@ static cm1e_error_t asked_limits(const cm1e_axis_t *axis, const move_t *move, cm
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
     limits->velocity = most->velocity;
     const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
-    if (stopping || is_decoupling(kind) || (is_coupling(kind) && move->velocity == 0.0))
+    if (stopping || is_decoupling(kind) || (is_coupling(kind) && kind != CM1E_COMMAND_GEAR_IN_POS))
         return CM1E_OK;
     /* The sign of a velocity is a direction, and only MC_MoveVelocity's has one (3.10). */
     const double speed = move->kind == CM1E_COMMAND_MOVE_VELOCITY ? fabs(move->velocity) : move->velocity;

@@ -16,7 +16,8 @@ static void advance_masters(follow_t *follow)
 
 void cm1e_axis_advance_masters(cm1e_axis_t *axis)
 {
-    advance_masters(axis->coupling->now);
+    if (axis_follows(axis))
+        advance_masters(axis->coupling->now);
     advance_masters(axis->coupling->next);
 }
 
@@ -51,10 +52,10 @@ static bool search(cm1e_axis_t *from, const cm1e_axis_t *goal, uint64_t mark)
     coupling_t *c = from->coupling;
     if (from == goal)
         return true;
-    if (!axis_follows(from) || c->mark == mark)
+    if (c->mark == mark)
         return false;
     c->mark = mark;
-    return search_masters(c->now, goal, mark) || search_masters(c->next, goal, mark);
+    return search_masters(axis_follows(from) ? c->now : NULL, goal, mark) || search_masters(c->next, goal, mark);
 }
 
 static bool would_follow_itself(cm1e_axis_t *slave, cm1e_axis_t *master)
@@ -144,6 +145,12 @@ static master_trouble_t see(link_t *link, position_t *position)
     return trouble;
 }
 
+/* The slave follows that master already, and is shifted against it. */
+static bool keeps_phase(const cm1e_axis_t *slave, const link_t *link)
+{
+    return axis_follows(slave) && slave->coupling->now->links[0].master == link->master;
+}
+
 /* The slave's own: the shift against the first of its masters (4.8). */
 static void add_phase(const cm1e_axis_t *slave, link_t *link)
 {
@@ -194,7 +201,7 @@ static inline master_trouble_t look(cm1e_axis_t *slave, follow_t *follow, bool o
         if (trouble && trouble != MASTER_STOPPING)
             return trouble;
         link->seen.counts = cm1e_position_minus(position, link->origin);
-        if (i == 0)
+        if (i == 0 && (follow == slave->coupling->now || keeps_phase(slave, link)))
             add_phase(slave, link);
         if (on_the_way && jumped(link, &before))
             return trouble_with(slave, link, MASTER_JUMPED);
@@ -228,7 +235,7 @@ cm1e_error_t cm1e_axis_link(cm1e_axis_t *slave, follow_t *follow, const cm1e_cou
         trouble_with(slave, link, trouble);
         return CM1E_ERROR_AXIS_MASTER_LOST;
     }
-    if (follow->count++ == 0 && axis_follows(slave) && slave->coupling->now->links[0].master == master)
+    if (follow->count++ == 0 && keeps_phase(slave, link))
         add_phase(slave, link);
     return CM1E_OK;
 }

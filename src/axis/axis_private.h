@@ -683,6 +683,7 @@ void cm1e_axis_remember_refusal(cm1e_axis_t *axis, const cm1e_axis_command_t *co
 /** The active command ends; those that wait are for cm1e_axis_begin_waiting(). */
 void cm1e_axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
 /** All end, the waiting ones with CM1E_ERROR_AXIS_ERROR_STOP where `state` is an error. */
+void cm1e_axis_waiting_end(cm1e_axis_t *axis, cm1e_command_state_t state);
 void cm1e_axis_commands_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
 /** For the text: one that was taken ended with this error. That of ErrorStop is told by the axis's own. */
 void cm1e_axis_remember_end(cm1e_axis_t *axis, cm1e_command_kind_t kind, cm1e_error_t error);

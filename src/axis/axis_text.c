@@ -115,6 +115,8 @@ void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t siz
     const not_set_t *ended = &axis->not_set;
     if (ended->number == CM1E_COMMAND_HOME && ended->error == axis->home.refused)
         refused_homing_text(axis, text, size);
+    else if (ended->error == CM1E_ERROR_AXIS_SYNC_WAY)
+        cm1e_axis_way_text(axis, text, size);
     else
         snprintf(text, size, "Axis \"%s\": %s, running or waiting, was ended: %s.", axis->config->name,
                  kind_names[ended->number], cm1e_strerror(ended->error));
@@ -231,6 +233,7 @@ static const struct {
     {CM1E_ERROR_AXIS_VIRTUAL, refused_virtual_text},
     {CM1E_ERROR_AXIS_HOMING_METHOD, cm1e_axis_home_wrong_text},
     {CM1E_ERROR_AXIS_HOMING_PARAMETER, cm1e_axis_home_wrong_text},
+    {CM1E_ERROR_AXIS_SYNC_WAY, cm1e_axis_way_text},
     {CM1E_ERROR_AXIS_CAM_ID, cm1e_axis_cam_id_text},
     {CM1E_ERROR_AXIS_CAM_START, cm1e_axis_cam_start_text},
 };

@@ -239,7 +239,10 @@ static void judge_state(instance_t *fb, cm1e_axis_state_t before, bool may_wait)
     const bool ends_homing = strcmp(type->name, "MC_HomeDirect") == 0 && before == CM1E_AXIS_HOMING &&
                              after == CM1E_AXIS_STANDSTILL;
     const bool ends_at_once = ends_homing || (type->rules && type->rules[before].next == CM1E_AXIS_STANDSTILL);
-    if (after != before && !in_words)
+    /* Its state is that of what goes on until StartSync, which may be at once (4.7, note 1). */
+    const bool begins_at_once = strcmp(type->name, "MC_GearInPos") == 0 && edge && !now->error &&
+                                after == CM1E_AXIS_SYNCHRONIZED_MOTION;
+    if (after != before && !in_words && !begins_at_once)
         MUST(free_to_change && type->rules[before].refusal == CM1E_OK &&
                  (type->rules[before].next == after || ends_at_once),
              "%s: from %s to %s (edge %d, Error 0x%04X)", type->name, cm1e_axis_state_name(before),

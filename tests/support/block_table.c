@@ -1307,11 +1307,11 @@ static const block_rule_t rules_couple[CM1E_AXIS_STATE_COUNT] = {
 };
 static const block_rule_t rules_couple_later[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
-    [CM1E_AXIS_STANDSTILL] = {.refusal = CM1E_ERROR_UNSUPPORTED},
+    [CM1E_AXIS_STANDSTILL] = {.unchanged = true},
     [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_HOMING},
-    [CM1E_AXIS_DISCRETE_MOTION] = {.refusal = CM1E_ERROR_UNSUPPORTED},
-    [CM1E_AXIS_CONTINUOUS_MOTION] = {.refusal = CM1E_ERROR_UNSUPPORTED},
-    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.refusal = CM1E_ERROR_UNSUPPORTED},
+    [CM1E_AXIS_DISCRETE_MOTION] = {.unchanged = true},
+    [CM1E_AXIS_CONTINUOUS_MOTION] = {.unchanged = true},
+    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.unchanged = true},
     [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
     [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
 };
@@ -2115,7 +2115,6 @@ static const cm1e_error_t errors_of_MC_GearInPos[] = {
     CM1E_ERROR_AXIS_STOPPING,
     CM1E_ERROR_AXIS_ERROR_STOP,
     CM1E_ERROR_AXIS_NOT_POWERED,
-    CM1E_ERROR_UNSUPPORTED,
     CM1E_ERROR_FULL,
     CM1E_ERROR_INVALID_ARGUMENT,
     CM1E_OK,

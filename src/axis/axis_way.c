@@ -1,0 +1,286 @@
+/*
+ * Ways into step over the master's position: MC_GearInPos (4.7), and MC_CamIn with a MasterStartDistance. Until the
+ * master comes to where the way begins, whatever the slave does goes on (4.7, note 1): the command waits, first of all,
+ * with its masters seen in every cycle. Then F is the curve, and behind its end the gear or the cam, for good.
+ */
+#include <math.h>
+#include <stdio.h>
+
+#include "axis/axis_coupling.h"
+
+/* Counts of a master that are none, and what of a limit is rounding. */
+static const double same_place = 1e-3;
+static const double relative_tolerance = 1e-6;
+
+/* Repetitions of the place, farther and farther away, that are tried: each leaves the slave more way. */
+enum { REPETITIONS = 4 };
+
+/* ---- F ----------------------------------------------------------------------------------------------------------- */
+
+static void arrive(follow_t *follow)
+{
+    link_t *link = &follow->links[0];
+    const way_t *way = &follow->way;
+    follow->kind = way->then;
+    follow->in_step = true;
+    if (follow->cam.slot)
+        return;
+    follow->anchor = way->end; /* from here on the gear counts from where they met */
+    link->origin = cm1e_position_plus(link->origin, way->sync);
+    link->seen.counts -= way->sync;
+}
+
+/* Before its beginning, where a master comes to that turns round on the way, the slave goes on as it began. */
+static cm1e_curve_point_t point_at(const way_t *way, double master)
+{
+    const double beyond = (master - way->first) * (way->first < 0.0 ? 1.0 : -1.0);
+    if (beyond >= 0.0)
+        return cm1e_curve_at(&way->curve, master);
+    const cm1e_curve_point_t first = cm1e_curve_at(&way->curve, way->first);
+    return (cm1e_curve_point_t){.position = first.position + first.slope * (master - way->first), .slope = first.slope};
+}
+
+static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
+{
+    const way_t *way = &follow->way;
+    const link_t *link = &follow->links[0];
+    const double counts = link->seen.counts - way->sync, master = counts / link->master->scale;
+    const double left = (way->first < 0.0 ? -master : master) * fabs(link->master->scale);
+    if (left <= same_place) {
+        arrive(follow);
+        follow->kind->evaluate(axis, follow, point);
+        return;
+    }
+    const cm1e_curve_point_t here = point_at(way, master);
+    const cm1e_motion_state_t motion = cm1e_curve_motion(&here, link->seen.velocity, link->seen.acceleration);
+    const double most = (double)CM1E_FARTHEST_COUNTS, height = motion.position * axis->scale;
+    *point = (from_t){.position = cm1e_position_plus(way->begin, fmax(-most, fmin(height, most))),
+                      .velocity = motion.velocity, .acceleration = motion.acceleration};
+}
+
+static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link)
+{
+    cm1e_curve_extremes_t extremes;
+    cm1e_curve_extremes(&follow->way.curve, &extremes);
+    return fmax(fmax(fabs(extremes.least_slope), fabs(extremes.most_slope)),
+                follow->way.then->steepest(axis, follow, link));
+}
+
+static const follow_kind_t way_kind = {evaluate, steepest};
+
+/* ---- its beginning ----------------------------------------------------------------------------------------------- */
+
+static bool beyond(cm1e_axis_t *axis, const char *what, const char *unit, double asked, double allowed, double now)
+{
+    if (asked <= fmax(allowed, fabs(now)) * (1.0 + relative_tolerance))
+        return false;
+    axis->cams->way_refused = (way_refused_t){what, unit, asked, allowed};
+    return true;
+}
+
+/* What the curve asks of the slave at the master's present velocity. */
+static bool keeps_limits(cm1e_axis_t *axis, const follow_t *follow, const from_t *from,
+                         const cm1e_motion_limits_t *limits, const cm1e_curve_extremes_t *extremes)
+{
+    cm1e_motion_limits_t demand;
+    cm1e_approach_demand(extremes, follow->links[0].seen.velocity, &demand);
+    return !beyond(axis, "velocity", "u/s", demand.velocity, limits->velocity, from->velocity) &&
+           !beyond(axis, "acceleration", "u/s2", demand.acceleration, fmin(limits->acceleration, limits->deceleration),
+                   from->acceleration) &&
+           !beyond(axis, "jerk", "u/s3", demand.jerk, limits->jerk, 0.0);
+}
+
+static cm1e_error_t plan(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *limits,
+                         double sync)
+{
+    way_t *way = &follow->way;
+    const link_t *link = &follow->links[0];
+    const cm1e_motion_state_t slave = {0.0, from->velocity, from->acceleration};
+    const double first = (link->seen.counts - sync) / link->master->scale;
+    cm1e_curve_point_t begin, end = {.slope = link->ratio};
+    cm1e_curve_t curve;
+    cm1e_curve_extremes_t extremes;
+    position_t meeting = way->end;
+    if (follow->cam.slot)
+        cm1e_axis_cam_point(axis, follow, sync, &meeting, &end);
+    const double place = cm1e_position_minus(meeting, from->position) / axis->scale;
+    axis->cams->way_refused = (way_refused_t){0};
+    if (!cm1e_curve_point_of(&begin, &slave, link->seen.velocity, link->seen.acceleration))
+        return CM1E_ERROR_AXIS_SYNC_WAY;
+    end.position = cm1e_approach_end(way->mode, 0.0, begin.slope, place, end.slope, -first, way->turn);
+    if (!cm1e_curve_between(&curve, first, &begin, 0.0, &end))
+        return CM1E_ERROR_AXIS_SYNC_WAY;
+    cm1e_curve_extremes(&curve, &extremes);
+    if (!keeps_limits(axis, follow, from, limits, &extremes))
+        return CM1E_ERROR_AXIS_SYNC_WAY;
+    if (!cm1e_axis_limits_contain_way(axis, from, extremes.lowest, extremes.highest))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    const double shift = (end.position - place) * axis->scale; /* turns of a modulo slave */
+    way->curve = curve;
+    way->first = first;
+    way->sync = sync;
+    way->begin = from->position;
+    way->end = cm1e_position_plus(meeting, shift);
+    way->awaited = AWAIT_NOTHING;
+    follow->cam.slave_zero = cm1e_position_plus(follow->cam.slave_zero, shift);
+    return CM1E_OK;
+}
+
+/* In counts: which way the master goes, or is to go, on the way into step. */
+static double direction(const follow_t *follow)
+{
+    const double distance = follow->way.start_distance;
+    const link_t *link = &follow->links[0];
+    return copysign(1.0, distance != 0.0 ? distance : link->seen.velocity * link->master->scale);
+}
+
+/* Counts of the master since it was where the way begins; where that comes again, since the last time. */
+static double since_start(const follow_t *follow, double counts)
+{
+    const way_t *way = &follow->way;
+    const double since = (counts - (way->sync - way->start_distance)) * direction(follow);
+    return way->again > 0.0 ? since - floor(since / way->again + 1e-12) * way->again : since;
+}
+
+/* Counts of the master to where the way ends, in the direction in which it goes. */
+static double ahead(const follow_t *follow)
+{
+    const way_t *way = &follow->way;
+    const double left = (way->sync - follow->links[0].seen.counts) * direction(follow);
+    const double next = way->again > 0.0 ? left - floor(left / way->again) * way->again : left;
+    return way->again > 0.0 && next <= same_place ? next + way->again : next;
+}
+
+cm1e_error_t cm1e_axis_way_begin(cm1e_axis_t *axis, follow_t *follow, const move_t *move, const from_t *from)
+{
+    const way_t *way = &follow->way;
+    const double counts = follow->links[0].seen.counts, sign = direction(follow);
+    cm1e_motion_limits_t limits;
+    cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
+    if (error)
+        return error;
+    if (way->start_distance != 0.0) {
+        const double left = fabs(way->start_distance) - since_start(follow, counts);
+        if (left > same_place)
+            return plan(axis, follow, from, &limits, counts + sign * left);
+        axis->cams->way_refused = (way_refused_t){0}; /* it has gone over all of it in one cycle */
+        return CM1E_ERROR_AXIS_SYNC_WAY;
+    }
+    const double next = ahead(follow);
+    error = CM1E_ERROR_AXIS_SYNC_WAY;
+    for (int i = 0; i < REPETITIONS && error == CM1E_ERROR_AXIS_SYNC_WAY && (i == 0 || way->again > 0.0); i++)
+        error = plan(axis, follow, from, &limits, counts + sign * (next + i * way->again));
+    return error;
+}
+
+/* ---- until it begins --------------------------------------------------------------------------------------------- */
+
+/* Both stand where they are to meet. */
+static bool met_already(const cm1e_axis_t *axis, follow_t *follow, const from_t *from)
+{
+    const way_t *way = &follow->way;
+    const link_t *link = &follow->links[0];
+    const double few_counts = 2.0, left = way->sync - link->seen.counts;
+    const double master = way->again > 0.0 ? remainder(left, way->again) : left;
+    const double u = cm1e_position_minus(way->end, from->position) / axis->scale;
+    const double slave = (way->turn > 0.0 ? remainder(u, way->turn) : u);
+    if (fabs(master) > few_counts || fabs(slave * axis->scale) > few_counts || link->seen.velocity != 0.0 ||
+        from->velocity != 0.0)
+        return false;
+    follow->way.sync = link->seen.counts + master;
+    follow->way.end = cm1e_position_plus(from->position, slave * axis->scale);
+    return true;
+}
+
+cm1e_error_t cm1e_axis_way_prepare(cm1e_axis_t *axis, follow_t *follow, const move_t *move, const from_t *from)
+{
+    way_t *way = &follow->way;
+    const link_t *link = &follow->links[0];
+    follow->kind = &way_kind;
+    follow->in_step = false;
+    follow->to_position = true;
+    if (way->start_distance != 0.0) {
+        const double since = since_start(follow, link->seen.counts), all = fabs(way->start_distance);
+        const bool under_way = way->again > 0.0 ? since <= same_place : since >= -same_place && since < all - same_place;
+        way->awaited = under_way ? AWAIT_NOTHING : AWAIT_PLACE;
+    } else if (met_already(axis, follow, from)) {
+        arrive(follow);
+        return CM1E_OK;
+    } else {
+        way->awaited = link->seen.velocity == 0.0 || ahead(follow) <= same_place ? AWAIT_MOTION : AWAIT_NOTHING;
+    }
+    return way->awaited ? CM1E_OK : cm1e_axis_way_begin(axis, follow, move, from);
+}
+
+/* The master has come over the beginning of the way, or goes towards its end. */
+static bool due(const follow_t *follow, double before)
+{
+    const way_t *way = &follow->way;
+    const link_t *link = &follow->links[0];
+    if (way->awaited == AWAIT_MOTION)
+        return link->seen.velocity != 0.0 && ahead(follow) > same_place;
+    const double moved = (link->seen.counts - before) * direction(follow);
+    const double since = since_start(follow, link->seen.counts);
+    return moved > 0.0 && since >= 0.0 && since < moved * (1.0 + relative_tolerance);
+}
+
+void cm1e_axis_await_step(cm1e_axis_t *axis)
+{
+    coupling_t *c = axis->coupling;
+    follow_t *next = c->next;
+    const double before = next->links[0].seen.counts;
+    const from_t from = from_base(axis);
+    const master_trouble_t trouble = cm1e_axis_look(axis, next);
+    if (!trouble && !due(next, before))
+        return;
+    const bool may_come = !trouble && next->way.awaited == AWAIT_MOTION && next->links[0].seen.acceleration != 0.0;
+    if (may_come && cm1e_axis_way_begin(axis, next, waiting_move(axis, 0), &from) == CM1E_ERROR_AXIS_SYNC_WAY)
+        return; /* it becomes faster, or slower */
+    c->due = true;
+    c->due_error = trouble ? CM1E_ERROR_AXIS_MASTER_LOST : CM1E_OK;
+    (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
+}
+
+/* ---- MC_GearInPos ------------------------------------------------------------------------------------------------ */
+
+static bool is_place(const cm1e_axis_t *axis, double units)
+{
+    position_t unused;
+    return isfinite(units) && cm1e_axis_position_from_units(axis, units, &unused);
+}
+
+cm1e_error_t cm1e_axis_gear_in_pos_prepare(cm1e_axis_t *axis, const move_t *move,
+                                           const cm1e_axis_coupling_t *coupling, const from_t *from)
+{
+    follow_t *follow = cm1e_axis_follow_spare(axis);
+    const cm1e_error_t error = cm1e_axis_gear_prepare(axis, move, coupling, from);
+    if (error)
+        return error;
+    if ((unsigned)coupling->sync_mode > mcSlowDown)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    const link_t *link = &follow->links[0];
+    const cm1e_axis_t *master = link->master;
+    way_t *way = &follow->way;
+    if (!is_place(master, coupling->master_sync_position) || !isfinite(coupling->master_start_distance) ||
+        !cm1e_axis_position_from_units(axis, coupling->slave_sync_position, &way->end))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    way->then = follow->kind;
+    way->mode = coupling->sync_mode;
+    way->turn = axis->modulo_range;
+    way->start_distance = coupling->master_start_distance * master->scale;
+    way->sync = (coupling->master_sync_position - cm1e_axis_units(master, link->origin)) * master->scale;
+    way->again = master->modulo_range * fabs(master->scale);
+    return cm1e_axis_way_prepare(axis, follow, move, from);
+}
+
+void cm1e_axis_way_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const way_refused_t *r = &axis->cams->way_refused;
+    if (r->what)
+        snprintf(text, size, "Axis \"%s\": the way into step needs a %s of %.6g %s at the master's present velocity; up "
+                 "to %.6g is allowed. Give it more way (MasterStartDistance), or let the master go slower.",
+                 axis->config->name, r->what, r->asked, r->unit, r->allowed);
+    else
+        snprintf(text, size, "Axis \"%s\": no way leads into step, because the master stands while the slave moves, or "
+                 "goes over all of the way within a cycle.", axis->config->name);
+}
