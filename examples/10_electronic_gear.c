@@ -60,7 +60,7 @@ static LREAL behind(int roller)
 static void measure(void)
 {
     for (int i = LEFT; i < AXES; i++) {
-        if (step == STEP_PHASING && !phasing.Busy)
+        if (step == STEP_GEAR_IN)
             before[i] = behind(i);
         if (step == STEP_PHASING && phasing.Done)
             after[i] = behind(i);
@@ -126,7 +126,7 @@ static void program(void *context)
                                         "off"};
     (void)context;
     if (step == STEP_PHASING && !phasing.Execute)
-        phasing.PhaseShift = behind(LEFT) - behind(RIGHT); /* what is missing to the one in register */
+        phasing.PhaseShift = before[LEFT] - before[RIGHT]; /* what is missing to the one in register */
     call_blocks();
     measure();
     watch();

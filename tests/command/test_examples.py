@@ -46,12 +46,13 @@ def crossings(trace, position):
             if (before["set_position"] < position) != (now["set_position"] < position)]
 
 
-def check_follows(name, trace, acceleration=80, lag=0.1):
+def check_follows(name, trace, acceleration=80, lag=0.1, turn=math.inf):
     """No step of the set velocity is beyond the acceleration, and the motor is where it should be."""
     for before, now in zip(trace, trace[1:]):
         change = abs(now["set_velocity"] - before["set_velocity"])
         expect(change <= acceleration * 0.001 * (1 + 1e-6), f"{name}: the set velocity steps by {change} at {now['time']} s")
-    worst = max(abs(sample["set_position"] - sample["actual_position"]) for sample in trace)
+    lags = (sample["set_position"] - sample["actual_position"] for sample in trace)
+    worst = max(abs(math.remainder(one, turn)) for one in lags)
     expect(worst < lag, f"{name}: the motor is {worst} u away from its set position")
 
 
@@ -254,7 +255,7 @@ def check_electronic_gear():
     for roller, way in (("left", left), ("right", right)):
         off = max(abs((way[i] - way[begin]) - (shaft[i] - shaft[begin])) for i in range(begin, end))
         expect(off <= count, f"{name}: {roller} is {off} degrees out of gear")
-        check_follows(name, traces[roller], 36000, 3)
+        check_follows(name, traces[roller], 36000, 3, 360)
     expect(max(s["set_velocity"] for s in traces["left"]) > 700 and min(s["set_velocity"] for s in traces["left"]) < -350,
            f"{name}: the rollers do not turn both ways")
     expect("phasing" in words and "reverse" in words, f"{name}: {words}")
@@ -336,6 +337,7 @@ def main():
     check_buffer_modes()
     check_cool_muscle_bridge()
     check_mixed_network()
+    check_electronic_gear()
     check_flying_shear()
     check_winder()
     check_xy_table()
