@@ -1,0 +1,303 @@
+/* Followers that cannot go on: limits, directions, masters that fail in every way, and who stops with them. */
+#include "unity.h"
+
+#include "../support/axes_bench.h"
+
+void setUp(void) {}
+void tearDown(void) { axes_end(); }
+
+enum { MASTER = 0, SLAVE = 1, OTHER = 2 };
+
+static void begin(cm1e_coupling_stop_t stop)
+{
+    axes_describe(3);
+    axes_config(SLAVE)->coupling_stop = stop;
+    axes_make();
+    axes_enable_all();
+}
+
+static void failed(int n, cm1e_error_t error, const char *words)
+{
+    axes_must_be(n, CM1E_AXIS_ERROR_STOP);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(error, axes_info(n).error, axes_text(n));
+    axes_told(n, words);
+}
+
+/* Every axis comes to rest within its limits (the bench watches) and loses its torque; the reset leads back. */
+static void stands_and_can_be_reset(int n)
+{
+    axes_cycles(400);
+    TEST_ASSERT_EQUAL_INT(ACTIVITY_FREE, axes_axis(n)->activity);
+    (void)cm1e_axis_reset(axes_axis(n));
+    axes_cycles(100);
+    axes_must_be(n, CM1E_AXIS_STANDSTILL);
+}
+
+/* ---- the guard --------------------------------------------------------------------------------------------------- */
+
+typedef struct limit_case {
+    const char *words;
+    double velocity, acceleration, jerk; /* of the master; the slave goes twice as fast */
+} limit_case_t;
+
+static void test_a_set_point_beyond_a_limit_is_not_given_out(void)
+{
+    static const limit_case_t cases[] = {
+        {"a velocity of", 40.0, 20.0, 200.0},
+        {"an acceleration of", 20.0, 80.0, 400.0},
+        {"a jerk of", 1.0, 40.0, 1500.0},
+    };
+    for (int i = 0; i < 3; i++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            begin(CM1E_COUPLING_STOP_THIS);
+            const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, 2 * sign, 1);
+            axes_cycles(1);
+            axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY,
+                                                        .velocity = cases[i].velocity,
+                                                        .acceleration = cases[i].acceleration, .jerk = cases[i].jerk});
+            axes_cycles(3000);
+            failed(SLAVE, CM1E_ERROR_AXIS_COUPLING_LIMIT, cases[i].words);
+            TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, axes_status(SLAVE, gear).state);
+            TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_COUPLING_LIMIT, axes_status(SLAVE, gear).error);
+            TEST_ASSERT_EQUAL_DOUBLE(cases[i].velocity, axes_info(MASTER).set_velocity); /* nothing happens to it */
+            stands_and_can_be_reset(SLAVE);
+        }
+}
+
+static void test_it_stops_before_a_software_limit(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        axes_describe(2);
+        axes_config(SLAVE)->software_limit_negative = -20.0;
+        axes_config(SLAVE)->software_limit_positive = 20.0;
+        axes_make();
+        axes_enable_all();
+        axes_gear_in(SLAVE, MASTER, sign, 1);
+        axes_move_velocity(MASTER, 10.0);
+        axes_cycles(4000);
+        failed(SLAVE, CM1E_ERROR_AXIS_COUPLING_LIMIT, "the software limit at");
+        TEST_ASSERT_TRUE(axes_bench.witness[SLAVE].highest <= 20.0 && axes_bench.witness[SLAVE].lowest >= -20.0);
+        TEST_ASSERT_DOUBLE_WITHIN(0.05, 20.0 * sign, axes_info(SLAVE).set_position); /* not before it must */
+    }
+}
+
+static void test_a_direction_that_is_not_enabled_stops_it(void)
+{
+    begin(CM1E_COUPLING_STOP_THIS);
+    axes_bench.positive[SLAVE] = false;
+    axes_cycles(1);
+    axes_gear_in(SLAVE, MASTER, 1, 1);
+    axes_move_velocity(MASTER, -2.0);
+    axes_cycles(300);
+    axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
+    axes_move_velocity(MASTER, 2.0);
+    axes_cycles(300);
+    failed(SLAVE, CM1E_ERROR_AXIS_COUPLING_LIMIT, "in a direction that MC_Power does not enable");
+}
+
+static void test_a_direction_that_is_taken_away_stops_it(void)
+{
+    begin(CM1E_COUPLING_STOP_THIS);
+    axes_gear_in(SLAVE, MASTER, 1, 1);
+    axes_move_velocity(MASTER, 5.0);
+    axes_cycles(300);
+    axes_bench.positive[SLAVE] = false;
+    axes_cycles(2);
+    failed(SLAVE, CM1E_ERROR_AXIS_COUPLING_LIMIT, "in a direction that MC_Power does not enable");
+    stands_and_can_be_reset(SLAVE);
+}
+
+/* ---- masters that fail ------------------------------------------------------------------------------------------- */
+
+static void fault_of_drive(void) { fake_bus_fault(axes_motor(MASTER), 0x2310); }
+static void blocked_shaft(void) { axes_motor(MASTER)->blocked = true; }
+static void no_power(void) { axes_power(MASTER, false); }
+static void lost_enable(void) { axes_motor(MASTER)->state = SWITCH_ON_DISABLED; }
+static void away(void) { axes_motor(MASTER)->watch.lost = true; }
+
+static void homing(void)
+{
+    static const cm1e_homing_config_t hard_stop = {.method = -1};
+    axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT});
+    axes_cycles(300);
+    axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HOME, .homing = &hard_stop});
+}
+
+static const struct {
+    void (*act)(void);
+    const char *words;
+} failures[] = {
+    {fault_of_drive, "is in ErrorStop"}, {blocked_shaft, ""}, {no_power, "has no torque"},
+    {lost_enable, "is in ErrorStop"}, {away, "is in ErrorStop"}, {homing, "is moved by its drive"},
+};
+
+/* Whatever happens, at whatever moment: never a step of the slave's set-point, one error with a sentence, a reset. */
+static void test_every_failure_of_a_master_stops_the_slave_by_itself(void)
+{
+    for (size_t i = 0; i < sizeof failures / sizeof failures[0]; i++)
+        for (int moment = 1; moment < 250; moment += 31)
+            for (int mode = CM1E_COUPLING_STOP_THIS; mode <= CM1E_COUPLING_STOP_KEEP_RATIO; mode++) {
+                begin((cm1e_coupling_stop_t)mode);
+                axes_bench.witness[MASTER].strictness = AXES_UNWATCHED;
+                axes_gear_in(SLAVE, MASTER, -1, 1);
+                axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 8.0,
+                                                            .jerk = 1500.0});
+                axes_cycles(moment);
+                failures[i].act();
+                for (int n = 0; n < 2000 && axes_state(SLAVE) != CM1E_AXIS_ERROR_STOP; n++)
+                    axes_cycles(1);
+                failed(SLAVE, CM1E_ERROR_AXIS_MASTER_LOST, failures[i].words);
+                axes_told(SLAVE, "\"axis0\"");
+                stands_and_can_be_reset(SLAVE);
+                axes_must_be(OTHER, CM1E_AXIS_STANDSTILL);
+            }
+}
+
+static void test_a_master_that_is_destroyed_is_lost(void)
+{
+    begin(CM1E_COUPLING_STOP_KEEP_RATIO);
+    axes_gear_in(SLAVE, MASTER, 1, 1);
+    axes_move_velocity(MASTER, 5.0);
+    axes_cycles(300);
+    cm1e_axis_destroy(axes_bench.axes[MASTER]);
+    axes_bench.axes[MASTER] = NULL;
+    axes_bench.cycle = 0;
+    cm1e_axis_inputs(axes_axis(SLAVE), CM1E_OK, CM1E_OK, axes_bench.bus.clock.virtual_now_ns);
+    cm1e_axis_outputs(axes_axis(SLAVE));
+    failed(SLAVE, CM1E_ERROR_AXIS_MASTER_LOST, "does not exist any more");
+}
+
+/* ---- coupling_stop ----------------------------------------------------------------------------------------------- */
+
+static void test_coupled_axes_stop_together(void)
+{
+    begin(CM1E_COUPLING_STOP_COUPLED);
+    axes_gear_in(SLAVE, MASTER, 2, 1);
+    axes_gear_in(OTHER, MASTER, 1, 2);
+    axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 40.0,
+                                                .acceleration = 20.0, .jerk = 200.0});
+    axes_cycles(3000);
+    failed(SLAVE, CM1E_ERROR_AXIS_COUPLING_LIMIT, "a velocity of");
+    failed(MASTER, CM1E_ERROR_AXIS_COUPLED, "because axis \"axis1\"");
+    failed(OTHER, CM1E_ERROR_AXIS_COUPLED, "because axis \"axis1\"");
+    for (int n = 0; n < 3; n++)
+        stands_and_can_be_reset(n);
+}
+
+/* Also for an error of the slave's own. */
+static void test_coupled_axes_stop_with_a_slave_whose_drive_fails(void)
+{
+    for (int mode = CM1E_COUPLING_STOP_THIS; mode <= CM1E_COUPLING_STOP_COUPLED; mode++) {
+        begin((cm1e_coupling_stop_t)mode);
+        axes_gear_in(SLAVE, MASTER, 1, 1);
+        axes_move_velocity(MASTER, 5.0);
+        axes_cycles(300);
+        fake_bus_fault(axes_motor(SLAVE), 0x2310);
+        axes_cycles(5);
+        axes_must_be(SLAVE, CM1E_AXIS_ERROR_STOP);
+        axes_must_be(MASTER, mode == CM1E_COUPLING_STOP_COUPLED ? CM1E_AXIS_ERROR_STOP : CM1E_AXIS_CONTINUOUS_MOTION);
+        axes_must_be(OTHER, CM1E_AXIS_STANDSTILL);
+    }
+}
+
+/* The pair brakes so that the ratio holds to the standstill, before the slave's limit. */
+static void keeps_ratio_before_a_limit(int32_t numerator, uint32_t denominator, double limit)
+{
+    axes_describe(2);
+    axes_config(SLAVE)->coupling_stop = CM1E_COUPLING_STOP_KEEP_RATIO;
+    axes_config(SLAVE)->software_limit_negative = -limit;
+    axes_config(SLAVE)->software_limit_positive = limit;
+    axes_make();
+    axes_enable_all();
+    axes_gear_in(SLAVE, MASTER, numerator, denominator);
+    axes_cycles(1);
+    axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 5.0,
+                                                .acceleration = 20.0, .jerk = 400.0});
+    for (int n = 0; n < 20000 && axes_axis(SLAVE)->activity != ACTIVITY_FREE; n++) {
+        axes_cycles(1);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-5, axes_info(MASTER).set_position * numerator / denominator,
+                                  axes_info(SLAVE).set_position);
+    }
+    failed(SLAVE, CM1E_ERROR_AXIS_COUPLING_LIMIT, "the software limit at");
+    failed(MASTER, CM1E_ERROR_AXIS_COUPLED, "because axis \"axis1\"");
+    TEST_ASSERT_TRUE(fabs(axes_info(SLAVE).set_position) <= limit);
+    TEST_ASSERT_TRUE(fabs(axes_info(SLAVE).set_position) > limit - 0.1);
+    stands_and_can_be_reset(MASTER);
+}
+
+static void test_the_ratio_is_kept_to_the_standstill_before_a_software_limit(void)
+{
+    keeps_ratio_before_a_limit(1, 1, 10.0);
+    keeps_ratio_before_a_limit(-3, 1, 10.0);
+    keeps_ratio_before_a_limit(1, 4, 3.0);
+}
+
+static void test_the_ratio_is_kept_where_the_master_becomes_too_fast(void)
+{
+    begin(CM1E_COUPLING_STOP_KEEP_RATIO);
+    axes_gear_in(SLAVE, MASTER, 2, 1);
+    axes_cycles(1);
+    axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 40.0,
+                                                .acceleration = 20.0, .jerk = 200.0});
+    for (int n = 0; n < 5000 && axes_axis(SLAVE)->activity != ACTIVITY_FREE; n++) {
+        axes_cycles(1);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-5, axes_info(MASTER).set_position * 2.0, axes_info(SLAVE).set_position);
+    }
+    failed(SLAVE, CM1E_ERROR_AXIS_COUPLING_LIMIT, "a velocity of");
+    failed(MASTER, CM1E_ERROR_AXIS_COUPLED, "because axis \"axis1\"");
+}
+
+/* A master that brakes by its own error is followed to its standstill. */
+static void test_the_ratio_is_kept_on_the_ramp_of_a_master_that_fails(void)
+{
+    axes_describe(2);
+    axes_config(SLAVE)->coupling_stop = CM1E_COUPLING_STOP_KEEP_RATIO;
+    axes_config(MASTER)->software_limit_negative = -8.0;
+    axes_config(MASTER)->software_limit_positive = 8.0;
+    axes_make();
+    axes_enable_all();
+    axes_gear_in(SLAVE, MASTER, -1, 2);
+    axes_move_velocity(MASTER, 8.0);
+    for (int n = 0; n < 5000 && axes_axis(SLAVE)->activity != ACTIVITY_FREE; n++) {
+        axes_cycles(1);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-5, axes_info(MASTER).set_position / -2.0, axes_info(SLAVE).set_position);
+    }
+    failed(MASTER, CM1E_ERROR_AXIS_POSITION_RANGE, "limit");
+    failed(SLAVE, CM1E_ERROR_AXIS_MASTER_LOST, "\"axis0\"");
+    stands_and_can_be_reset(SLAVE);
+}
+
+/* ... as far as the slave can: a ramp that is too steep for it is left. */
+static void test_a_ramp_that_is_too_steep_is_not_followed(void)
+{
+    axes_describe(2);
+    axes_config(SLAVE)->coupling_stop = CM1E_COUPLING_STOP_KEEP_RATIO;
+    axes_config(SLAVE)->max_deceleration = 30.0;
+    axes_config(MASTER)->software_limit_negative = -8.0;
+    axes_config(MASTER)->software_limit_positive = 8.0;
+    axes_make();
+    axes_enable_all();
+    axes_gear_in(SLAVE, MASTER, 1, 1);
+    axes_move_velocity(MASTER, 8.0);
+    axes_cycles(3000);
+    failed(SLAVE, CM1E_ERROR_AXIS_MASTER_LOST, "\"axis0\"");
+    stands_and_can_be_reset(SLAVE);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_set_point_beyond_a_limit_is_not_given_out);
+    RUN_TEST(test_it_stops_before_a_software_limit);
+    RUN_TEST(test_a_direction_that_is_not_enabled_stops_it);
+    RUN_TEST(test_a_direction_that_is_taken_away_stops_it);
+    RUN_TEST(test_every_failure_of_a_master_stops_the_slave_by_itself);
+    RUN_TEST(test_a_master_that_is_destroyed_is_lost);
+    RUN_TEST(test_coupled_axes_stop_together);
+    RUN_TEST(test_coupled_axes_stop_with_a_slave_whose_drive_fails);
+    RUN_TEST(test_the_ratio_is_kept_to_the_standstill_before_a_software_limit);
+    RUN_TEST(test_the_ratio_is_kept_where_the_master_becomes_too_fast);
+    RUN_TEST(test_the_ratio_is_kept_on_the_ramp_of_a_master_that_fails);
+    RUN_TEST(test_a_ramp_that_is_too_steep_is_not_followed);
+    return UNITY_END();
+}
