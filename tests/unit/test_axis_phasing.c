@@ -308,6 +308,29 @@ static void test_it_goes_on_through_a_change_of_ratio(void)
     }
 }
 
+/* The same by ContinuousUpdate (2.4.6), in every hundredth cycle. */
+static void test_it_goes_on_while_the_ratio_is_updated_again_and_again(void)
+{
+    axes_move_velocity(MASTER, 6.0);
+    axes_cycles(500);
+    cm1e_axis_coupling_t coupling = {.master = {{.axis = axes_reference(MASTER), .numerator = 100,
+                                                 .denominator = 100}}};
+    const cm1e_axis_command_t c = {.kind = CM1E_COMMAND_GEAR_IN, .coupling = &coupling};
+    const cm1e_command_id_t gear = axes_command(SLAVE, &c);
+    axes_wait_reached(SLAVE, gear, 2000);
+    const cm1e_command_id_t id = to_shift(-6.0, 4.0);
+    for (int n = 0; n < 2000; n++) {
+        if (n % 100 == 0)
+            coupling.master[0].numerator -= 7;
+        TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_axis_update(axes_axis(SLAVE), gear, &c), axes_text(SLAVE));
+        axes_cycles(1);
+    }
+    TEST_ASSERT_EQUAL(CM1E_COMMAND_DONE, state_of(id));
+    TEST_ASSERT_EQUAL_DOUBLE(-6.0, axes_status(SLAVE, id).covered);
+    axes_wait_reached(SLAVE, gear, 2000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 6.0 * -0.4, axes_info(SLAVE).set_velocity);
+}
+
 static void test_another_master_ends_it(void)
 {
     axes_move_velocity(MASTER, 6.0);
@@ -647,6 +670,7 @@ int main(void)
     RUN_TEST(test_a_waiting_one_that_does_not_fit_any_more_fails_alone);
     RUN_TEST(test_it_runs_while_the_slave_gets_into_step);
     RUN_TEST(test_it_goes_on_through_a_change_of_ratio);
+    RUN_TEST(test_it_goes_on_while_the_ratio_is_updated_again_and_again);
     RUN_TEST(test_another_master_ends_it);
     RUN_TEST(test_it_ends_with_the_coupling);
     RUN_TEST(test_a_shift_comes_to_rest_while_the_ratio_is_kept_to_the_end);
