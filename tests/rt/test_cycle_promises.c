@@ -3,6 +3,7 @@
  * wrapped at link time (the list is in tests/CMakeLists.txt) and counted between cm1e_bus_receive() and
  * cm1e_bus_stop(). Enabling, homing, moves, stops, faults and resets of three axes, a lost bus and the orderly end.
  */
+#include <math.h>
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -442,6 +443,124 @@ START_TEST(test_an_axes_group_calls_nothing_of_that)
 }
 END_TEST
 
+/* ---- slaves and masters ------------------------------------------------------------------------------------------ */
+
+enum { WHEEL = 0, LINE, GEARED, CAMMED };
+static struct coupled {
+    MC_Power_t power[3];
+    MC_MoveAbsolute_t line, home[2];
+    MC_GearIn_t gear;
+    MC_GearInPos_t gear_at;
+    MC_GearOut_t gear_out;
+    MC_CombineAxes_t combine;
+    MC_PhasingRelative_t phasing, phasing_behind;
+    MC_PhasingAbsolute_t phasing_back;
+    MC_CamTableSelect_t table;
+    MC_CamIn_t cam;
+    MC_CamOut_t cam_out;
+    MC_Reset_t reset[2];
+    unsigned in_gear, in_sync, shifted, cams, lost, ended;
+} coupled;
+
+/* Four seconds: a gear and a cam of the same master, shifted, and out again; then two masters, one of them an encoder,
+ * which is silent in the end. */
+static void coupled_program(void *context)
+{
+    struct coupled *c = context;
+    const int64_t phase = cycle_number++ % 4000;
+    if (phase < 3800)
+        (void)cm1e_axis_write_encoder(machine.axis[WHEEL], (uint32_t)(int32_t)(500.0 * sin((double)phase * 4e-3)),
+                                      true);
+    for (int i = 0; i < 3; i++) {
+        c->power[i].Enable = TRUE;
+        MC_Power(&c->power[i]);
+    }
+    c->line.Position = phase < 2000 ? 4.0 : 0.0;
+    c->line.Execute = phase % 2000 > 60 && phase % 2000 < 1900;
+    c->gear.Execute = phase > 50 && phase < 1000;
+    c->gear.RatioNumerator = phase < 500 ? 1 : -1;
+    c->gear.ContinuousUpdate = TRUE;
+    c->phasing.Execute = phase > 300 && phase < 900;
+    c->phasing_behind.Execute = phase > 301 && phase < 900;
+    c->phasing_back.Execute = phase > 700 && phase < 900;
+    c->gear_out.Execute = phase > 1000 && phase < 1100;
+    c->home[0].Execute = (phase > 1150 && phase < 1500) || phase > 3900;
+    c->gear_at.Execute = phase > 1500 && phase < 1600;
+    c->combine.Execute = phase > 2100 && phase < 2500;
+    c->table.Execute = phase > 20;
+    c->cam.Execute = phase > 100 && phase < 3000;
+    c->cam.CamTableID = c->table.CamTableID;
+    c->cam_out.Execute = phase > 3000 && phase < 3100;
+    c->home[1].Execute = phase > 3100;
+    MC_MoveAbsolute(&c->line);
+    MC_GearIn(&c->gear);
+    MC_PhasingRelative(&c->phasing);
+    MC_PhasingRelative(&c->phasing_behind);
+    MC_PhasingAbsolute(&c->phasing_back);
+    MC_GearOut(&c->gear_out);
+    MC_GearInPos(&c->gear_at);
+    MC_CombineAxes(&c->combine);
+    MC_CamTableSelect(&c->table);
+    MC_CamIn(&c->cam);
+    MC_CamOut(&c->cam_out);
+    for (int i = 0; i < 2; i++) {
+        MC_MoveAbsolute(&c->home[i]);
+        c->reset[i].Execute = phase % 500 > 450;
+        MC_Reset(&c->reset[i]);
+    }
+    c->in_gear += c->gear.InGear;
+    c->in_sync += c->combine.InSync;
+    c->shifted += c->phasing_behind.Done;
+    c->cams += c->cam.InSync;
+    c->lost += c->combine.Error;
+    c->ended += c->gear_out.Done + c->cam_out.Done;
+}
+
+START_TEST(test_slaves_and_masters_call_nothing_of_that)
+{
+    static const MC_CAM_POINT points[] = {{0, 0, 0, 0}, {2, 1, 0, 0}, {4, -0.5, 0, 0}, {8, 0, 0, 0}};
+    static const MC_CAM_REF table = {points, 4, mcCamCubicSpline};
+    struct coupled *c = &coupled;
+    machine = (machine_t){.axis_count = 4, .types = {CM1E_AXIS_ENCODER, CM1E_AXIS_VIRTUAL}};
+    machine_open(&machine);
+    AXIS_REF_t *wheel = &machine.axis[WHEEL], *line = &machine.axis[LINE], *geared = &machine.axis[GEARED],
+               *cammed = &machine.axis[CAMMED];
+    *c = (struct coupled){
+        .line = {.Axis = line, .Velocity = 8, .Acceleration = 100, .Jerk = 5000},
+        .home = {{.Axis = geared, .Velocity = 5}, {.Axis = cammed, .Velocity = 5}},
+        .gear = {.Master = line, .Slave = geared, .RatioDenominator = 2},
+        .gear_at = {.Master = line, .Slave = geared, .RatioNumerator = 1, .RatioDenominator = 2, .Velocity = 5},
+        .gear_out = {.Slave = geared},
+        .combine = {.Master1 = line, .Master2 = wheel, .Slave = geared, .GearRatioNumeratorM1 = 1,
+                    .GearRatioDenominatorM1 = 2, .GearRatioNumeratorM2 = 1, .GearRatioDenominatorM2 = 4},
+        .phasing = {.Master = line, .Slave = geared, .PhaseShift = 1, .Velocity = 5},
+        .phasing_behind = {.Master = line, .Slave = geared, .PhaseShift = -0.5, .Velocity = 5,
+                           .BufferMode = mcBuffered},
+        .phasing_back = {.Master = line, .Slave = geared, .Velocity = 5},
+        .table = {.Master = line, .Slave = cammed, .CamTable = &table, .Periodic = TRUE, .MasterAbsolute = TRUE,
+                  .SlaveAbsolute = TRUE},
+        .cam = {.Master = line, .Slave = cammed, .StartMode = mcRampIn},
+        .cam_out = {.Slave = cammed},
+        .reset = {{.Axis = geared}, {.Axis = cammed}},
+    };
+    for (int i = 0; i < 3; i++)
+        c->power[i] = (MC_Power_t){.Axis = &machine.axis[LINE + i], .EnablePositive = TRUE, .EnableNegative = TRUE};
+    machine_add(&machine, "", 0, 1, coupled_program, c);
+    cycle_number = 0;
+    violations = 0;
+    running = true;
+    machine_run(&machine, 16000 * MS);
+    ck_assert_msg(violations == 0, "%u calls in the cycle; the first: %s from %p", violations, violator, caller);
+    ck_assert_uint_ge(c->in_gear, 1000);
+    ck_assert_uint_ge(c->in_sync, 1000);
+    ck_assert_uint_ge(c->shifted, 100);
+    ck_assert_uint_ge(c->cams, 4000);
+    ck_assert_uint_ge(c->lost, 1);
+    ck_assert_uint_ge(c->ended, 100);
+    machine_close(&machine);
+}
+END_TEST
+
 /* ---- behind a bridge --------------------------------------------------------------------------------------------- */
 
 static struct bridged {
@@ -513,6 +632,7 @@ int main(void)
     tcase_add_test(all, test_wrapping_works);
     tcase_add_test(all, test_cycle_calls_nothing_that_allocates_locks_formats_or_sleeps);
     tcase_add_test(all, test_an_axes_group_calls_nothing_of_that);
+    tcase_add_test(all, test_slaves_and_masters_call_nothing_of_that);
     tcase_add_test(all, test_blocks_behind_a_bridge_call_nothing_of_that);
     suite_add_tcase(suite, all);
     SRunner *runner = srunner_create(suite);

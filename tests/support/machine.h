@@ -21,6 +21,7 @@ typedef struct machine {
     bool real_time;                      /**< FALSE: virtual time */
     int64_t cycle_time_ns;               /**< 0: 1 ms */
     bool bridged;                        /**< all axes are CM1 behind one bridge */
+    cm1e_axis_type_t types[MACHINE_AXES];
     cm1e_scheduler_config_t config;
     cm1e_bus_t *bus;
     cm1e_scheduler_t *scheduler;
@@ -37,6 +38,9 @@ static void machine_open(machine_t *machine)
         config.axes[i] = (cm1e_axis_config_t){.address = 1, .channel = (uint8_t)(i + 1), .motor = "CM1", .k37 = 10,
                                               .k37_stated = true};
     }
+    for (uint32_t i = 0; i < machine->axis_count; i++)
+        if (machine->types[i] != CM1E_AXIS_MOTOR)
+            config.axes[i] = (cm1e_axis_config_t){.type = machine->types[i], .counts_per_unit = 1000};
     config.virtual_time = !machine->real_time;
     config.cycle_time_ns = machine->cycle_time_ns;
     ck_assert_msg(cm1e_bus_open(&machine->bus, &config, &diag) == CM1E_OK, "%s", diag.text);
