@@ -226,7 +226,7 @@ cm1e_error_t cm1e_axis_link(cm1e_axis_t *slave, follow_t *follow, const cm1e_cou
         cm1e_axis_advance(master);
     link_t *link = &follow->links[follow->count];
     *link = (link_t){.master = master, .slave = slave, .source = asked->source};
-    if (master->config->type == CM1E_AXIS_ENCODER) /* it has no other */
+    if (master->config->type == CM1E_AXIS_ENCODER || drive_profiles(master)) /* it has no other */
         link->source = mcActualValue;
     follow->by_actual |= link->source == mcActualValue;
     know_ways(link, slave->cycle_s);

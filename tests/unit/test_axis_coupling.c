@@ -178,6 +178,29 @@ static void test_modulo_axes_turn_on_and_on(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, fmod(-turned / 3.0, 360.0) + 360.0, set_of(1));
 }
 
+/* An axis whose motions are its drive's has no set-point: as a master it is seen where its motor is. */
+static void test_an_axis_moved_by_its_drive_is_a_master_by_its_actual_value_and_no_slave(void)
+{
+    axes_describe(2);
+    axes_config(0)->motion = CM1E_MOTION_DRIVE;
+    axes_make();
+    axes_power(1, true);
+    axes_cycles(20);
+    const cm1e_command_id_t id = axes_gear_in(1, 0, 1, 1); /* also of a Disabled one */
+    axes_bench.witness[1].strictness = AXES_STEEP;
+    for (int n = 0; n < 1000; n++) {
+        axes_motor(0)->position += n < 100 ? n / 2 : 50;
+        axes_cycles(1);
+    }
+    TEST_ASSERT_TRUE_MESSAGE(axes_status(1, id).reached, axes_text(1));
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 1.0, axes_info(1).set_velocity);
+    const cm1e_axis_coupling_t coupling = {.master = {by_ratio(1, 1, 1)}};
+    axes_power(0, true);
+    axes_cycles(20);
+    axes_refused(0, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN, .coupling = &coupling},
+                 CM1E_ERROR_UNSUPPORTED);
+}
+
 static double shaft;
 
 static void turn_shaft(void)
@@ -388,6 +411,7 @@ int main(void)
     RUN_TEST(test_a_million_revolutions_lose_no_count);
     RUN_TEST(test_other_coordinates_move_nobody);
     RUN_TEST(test_modulo_axes_turn_on_and_on);
+    RUN_TEST(test_an_axis_moved_by_its_drive_is_a_master_by_its_actual_value_and_no_slave);
     RUN_TEST(test_a_slave_in_csv_keeps_up);
     RUN_TEST(test_a_gear_waits_and_others_wait_for_it);
     RUN_TEST(test_a_gear_waits_for_a_velocity);
