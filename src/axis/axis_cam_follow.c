@@ -131,10 +131,14 @@ cm1e_motion_limits_t cm1e_axis_cam_leaves(const cm1e_axis_t *axis, const follow_
 {
     const cm1e_motion_limits_t nothing = {0}, *most = &axis->maximum;
     const cm1e_motion_limits_t needed = follow->cam.slot ? cam_demand(follow) : nothing;
+    /* What slows down beside a cam may speed up the axis. */
+    const double change = part_of(fmin(asked->acceleration, asked->deceleration),
+                                  fmin(most->acceleration, most->deceleration),
+                                  fmax(needed.acceleration, needed.deceleration));
     return (cm1e_motion_limits_t){
         .velocity = part_of(asked->velocity, most->velocity, needed.velocity),
-        .acceleration = part_of(asked->acceleration, most->acceleration, needed.acceleration),
-        .deceleration = part_of(asked->deceleration, most->deceleration, needed.deceleration),
+        .acceleration = change,
+        .deceleration = change,
         .jerk = part_of(asked->jerk, most->jerk, needed.jerk),
     };
 }

@@ -7,6 +7,7 @@
 #include "unity.h"
 
 #include "../support/axes_bench.h"
+#include "../support/ideal_cam.h"
 #include "../support/random_master.h"
 
 /* Counts: what the issue demands is 1; what is kept is the rounding of the target to whole counts, not seen here. */
@@ -14,6 +15,8 @@ static const long double largest_error = 0.01L;
 
 void setUp(void) {}
 void tearDown(void) { axes_end(); }
+
+static long double worst;
 
 /* ---- the ideal function ------------------------------------------------------------------------------------------ */
 
@@ -54,8 +57,6 @@ static long double gear_error(const gear_t *gear)
     return fabsl(way(gear->slave_at, axes_axis(gear->slave)->set) - ideal);
 }
 
-static long double worst;
-
 static void judge_gear(const gear_t *gear)
 {
     const cm1e_axis_t *m = axes_axis(gear->master), *s = axes_axis(gear->slave);
@@ -71,6 +72,110 @@ static void judge_gear(const gear_t *gear)
               v);
     AXES_MUST(fabs(s->set_acceleration - a) <= 1e-9 * fabs(a) + 1e-9, "acceleration %.15g instead of %.15g",
               s->set_acceleration, a);
+}
+
+/* ---- cams -------------------------------------------------------------------------------------------------------- */
+
+/** A cam as it was placed: the slave's counts at the master's. */
+typedef struct placed_cam {
+    int master, slave;
+    ideal_cam_t table;
+    long double master_scaling, slave_scaling, master_offset, slave_offset;
+    position_t master_zero, slave_zero; /**< where both were when MC_CamIn began; from there relative cams count */
+} placed_cam_t;
+
+static long double cam_error(const placed_cam_t *cam)
+{
+    const long double m = counts_per_u(axes_config(cam->master)), s = counts_per_u(axes_config(cam->slave));
+    const long double way_of_master = way(cam->master_zero, axes_axis(cam->master)->set) / m;
+    const long double begin = ideal_cam_at(&cam->table, -cam->master_offset / cam->master_scaling);
+    const long double now = ideal_cam_at(&cam->table, (way_of_master - cam->master_offset) / cam->master_scaling);
+    const long double ideal = (cam->slave_offset + cam->slave_scaling * (now - begin)) * s;
+    return fabsl(way(cam->slave_zero, axes_axis(cam->slave)->set) - ideal);
+}
+
+static void judge_cam(const placed_cam_t *cam)
+{
+    const long double error = cam_error(cam);
+    worst = fmaxl(worst, error);
+    axes_must_be(cam->slave, CM1E_AXIS_SYNCHRONIZED_MOTION);
+    AXES_MUST(error <= largest_error, "slave %d is %Lg counts beside its cam, curve %d", cam->slave, error,
+              cam->table.curve);
+}
+
+/** Derivatives of the cam, as far as dense samples show them. */
+static void steepness(const ideal_cam_t *cam, double *slope, double *curvature, double *third)
+{
+    const long double first = cam->points[0].Master, length = cam->points[cam->count - 1].Master - first;
+    const int parts = 3000;
+    const long double h = length / parts;
+    *slope = *curvature = *third = 0;
+    for (int i = 0; i < parts; i++) {
+        long double y[4];
+        for (int k = 0; k < 4; k++)
+            y[k] = ideal_cam_at(cam, first + (i + k) * h);
+        *slope = fmax(*slope, fabs((double)((y[1] - y[0]) / h)));
+        *curvature = fmax(*curvature, fabs((double)((y[2] - 2 * y[1] + y[0]) / (h * h))));
+        *third = fmax(*third, fabs((double)((y[3] - 3 * y[2] + 3 * y[1] - y[0]) / (h * h * h))));
+    }
+}
+
+/** A periodic cam, or one that is run once and rests at both ends. */
+static MC_CAM_REF random_table(MC_CAM_POINT *points, double length, bool periodic)
+{
+    const int count = 3 + pick(6);
+    const MC_CAM_CURVE curve = periodic ? (MC_CAM_CURVE)pick(3) : mcCamPolynomial5;
+    for (int i = 0; i < count; i++) {
+        const bool end = i == 0 || i == count - 1;
+        points[i] = (MC_CAM_POINT){.Master = length * (i + (end ? 0 : uniform(-0.2, 0.2))) / (count - 1),
+                                   .Slave = uniform(-1, 1), .Velocity = end ? 0 : uniform(-1, 1) / length,
+                                   .Acceleration = end ? 0 : uniform(-4, 4) / (length * length)};
+    }
+    if (one_in(2))
+        points[count - 1].Slave = points[0].Slave;
+    return (MC_CAM_REF){.Points = points, .NumberOfPoints = (UINT)count, .Curve = curve};
+}
+
+/** The slave scaling with which the slave needs a third of its limits where the master needs all of its own. */
+static double scaling_for(const ideal_cam_t *cam, double master_scaling, int slave, const random_master_t *master)
+{
+    const cm1e_motion_limits_t *most = &axes_axis(slave)->maximum, *its = &master->most;
+    const double k = 1.0 / fabs(master_scaling), v = its->velocity * k, a = its->acceleration * k, j = its->jerk * k;
+    double slope, curvature, third;
+    steepness(cam, &slope, &curvature, &third);
+    if (cam->curve == mcCamLinear) /* twice the slope in a cycle */
+        curvature = 2 * slope / (v * axes_axis(slave)->cycle_s), third = 0;
+    const double needs_a = curvature * v * v + slope * a;
+    const double needs_j = third * v * v * v + 3 * curvature * v * a + slope * j;
+    const double least_a = fmin(most->acceleration, most->deceleration);
+    const double by_jerk = cam->curve == mcCamLinear ? INFINITY : most->jerk / needs_j;
+    return 0.3 * fmin(fmin(most->velocity / (slope * v), least_a / needs_a), by_jerk);
+}
+
+/** Lets the slave follow a random cam; what it is to be from InSync on. */
+static placed_cam_t random_cam_in(int slave, int master_axis, const random_master_t *master, cm1e_command_id_t *id)
+{
+    MC_CAM_POINT points[IDEAL_POINTS];
+    const bool periodic = !one_in(4);
+    const MC_CAM_REF table = random_table(points, master->most.velocity * uniform(0.2, 3), periodic);
+    MC_CAM_ID cam_id = 0;
+    placed_cam_t cam = {.master = master_axis, .slave = slave, .master_scaling = uniform(0.5, 2) * (one_in(2) ? 1 : -1),
+                        .master_offset = uniform(-1, 1) * master->most.velocity,
+                        .master_zero = axes_axis(master_axis)->set, .slave_zero = axes_axis(slave)->set};
+    ideal_cam_init(&cam.table, &table, periodic);
+    const double scaling = scaling_for(&cam.table, (double)cam.master_scaling, slave, master);
+    cam.slave_scaling = scaling * (one_in(2) ? 1 : -1);
+    cam.slave_offset = uniform(-0.2, 0.2) * scaling;
+    AXES_MUST(cm1e_axis_cam_select(axes_axis(slave), &table, periodic, false, false, &cam_id) == CM1E_OK, "%s",
+              axes_text(slave));
+    const cm1e_axis_coupling_t coupling = {
+        .master = {{.axis = axes_reference(master_axis)}}, .cam = cam_id, .start_mode = mcRampIn,
+        .master_offset = (double)cam.master_offset, .slave_offset = (double)cam.slave_offset,
+        .master_scaling = (double)cam.master_scaling, .slave_scaling = (double)cam.slave_scaling};
+    const bool linear = table.Curve == mcCamLinear;
+    axes_bench.witness[slave].strictness = linear ? AXES_STEEP : axes_bench.witness[slave].strictness;
+    *id = axes_command(slave, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_CAM_IN, .coupling = &coupling});
+    return cam;
 }
 
 /* ---- random axes ------------------------------------------------------------------------------------------------- */
@@ -151,7 +256,7 @@ static void rename_positions(int n)
 /* The way into the gear, the gear, another ratio while it runs, and the way out: the witness sees every step. */
 static void test_slave_of_a_gear_is_where_its_master_says_in_every_cycle(void)
 {
-    const int runs = seed_count(240);
+    const int runs = seed_count(120);
     worst = 0;
     for (int run = 0; run < runs; run++) {
         char scene[40];
@@ -243,6 +348,51 @@ static void test_chain_of_gears_keeps_the_product_of_its_ratios(void)
     printf("chains: %d runs, worst error %Lg counts\n", runs, worst);
 }
 
+/* Into a cam, along it, into another one while it runs, and out: the witness sees every step. */
+static void test_slave_of_a_cam_is_where_its_table_says_in_every_cycle(void)
+{
+    const int runs = seed_count(120);
+    worst = 0;
+    for (int run = 0; run < runs; run++) {
+        char scene[40];
+        chance_seed(seed_of(run));
+        snprintf(scene, sizeof scene, "seed %u", seed_of(run));
+        axes_bench.run = NULL;
+        random_axes(2);
+        axes_bench.run = scene;
+        random_master_t master = random_master_for(0, 1, 1e-9, 0.5);
+        master.most.velocity *= 0.3; /* a cam needs time */
+        random_master_command(&master);
+        for (int cams = 0; cams < 3; cams++) {
+            cm1e_command_id_t id;
+            const placed_cam_t cam = random_cam_in(1, 0, &master, &id);
+            for (int n = 0; n < 20000 && !axes_status(1, id).reached; n++) {
+                random_master_drive(&master);
+                axes_cycles(1);
+            }
+            AXES_MUST(axes_status(1, id).reached, "never InSync, %s: %s", cm1e_axis_state_name(axes_state(1)),
+                      axes_text(1));
+            for (int n = 0; n < 4000; n++) {
+                random_master_drive(&master);
+                if (one_in(1000))
+                    rename_positions(pick(2));
+                axes_cycles(1);
+                judge_cam(&cam);
+            }
+            if (one_in(3)) {
+                const double velocity = axes_axis(1)->set_velocity;
+                cm1e_command_id_t out = 0;
+                const cm1e_axis_command_t cam_out = {.kind = CM1E_COMMAND_CAM_OUT};
+                AXES_MUST(cm1e_axis_start(axes_axis(1), &cam_out, &out) == CM1E_OK, "MC_CamOut is refused");
+                axes_cycles(1500);
+                AXES_MUST(fabs(axes_axis(1)->set_velocity - velocity) <= 1e-9 * fabs(velocity),
+                          "MC_CamOut at %.12g u/s, it goes on with %.12g", velocity, axes_axis(1)->set_velocity);
+            }
+        }
+    }
+    printf("cams: %d runs, worst error %Lg counts\n", runs, worst);
+}
+
 /* In real cycles, 50 revolutions a second: a rotary master behind a gear whose turn is no whole number of counts, and a
  * rotary slave with another such turn. */
 static void test_million_revolutions_of_the_master_leave_no_drift(void)
@@ -287,6 +437,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_slave_of_a_gear_is_where_its_master_says_in_every_cycle);
     RUN_TEST(test_chain_of_gears_keeps_the_product_of_its_ratios);
+    RUN_TEST(test_slave_of_a_cam_is_where_its_table_says_in_every_cycle);
     RUN_TEST(test_million_revolutions_of_the_master_leave_no_drift);
     return UNITY_END();
 }
