@@ -124,6 +124,14 @@ static void fill(const block_t *block)
         if (member && member->section == BLOCK_INPUT && member->type == BLOCK_LREAL)
             memcpy(memory + member->offset, &numbers[i].value, sizeof(double));
     }
+    if (strcmp(block->name, "MC_GearInPos") == 0 && bench.master) {
+        MC_GearInPos_t *in = (MC_GearInPos_t *)memory;
+        cm1e_axis_info_t master;
+        cm1e_axis_get(bench.master, &master);
+        in->MasterSyncPosition = master.set_position + 2;
+        in->SlaveSyncPosition = bench.info.set_position + 1;
+        in->Velocity = 30;
+    }
     if (strcmp(block->name, "MC_CamIn") == 0 && bench.axis) {
         MC_CamIn_t *in = (MC_CamIn_t *)memory;
         (void)cm1e_axis_cam_select(bench.axis, &cam, true, false, true, &in->CamTableID);
@@ -149,9 +157,6 @@ static void enter_homing(void)
 
 static void enter_gear(void)
 {
-    MC_MoveVelocity_t turn = {.Axis = &bench.master_reference, .Execute = TRUE, .Velocity = 0.1};
-    MC_MoveVelocity(&turn);
-    scans(100);
     MC_GearIn_t gear = {.Slave = &bench.reference, .Master = &bench.master_reference, .Execute = TRUE,
                         MC_GEARIN_DEFAULTS};
     MC_GearIn(&gear);
@@ -167,6 +172,9 @@ static void enter(cm1e_axis_state_t state)
     if (state == CM1E_AXIS_DISABLED)
         return;
     bench_power_on();
+    MC_MoveVelocity_t turn = {.Axis = &bench.master_reference, .Execute = TRUE, .Velocity = 1};
+    MC_MoveVelocity(&turn);
+    scans(100);
     if (state == CM1E_AXIS_ERROR_STOP)
         simulate("error 1 2310");
     else if (state == CM1E_AXIS_HOMING)

@@ -8,7 +8,8 @@
 static const char *const movers[] = {
     "MC_MoveAbsolute", "MC_MoveRelative", "MC_MoveAdditive", "MC_MoveVelocity", "MC_MoveContinuousAbsolute",
     "MC_MoveContinuousRelative", "MC_PositionProfile", "MC_VelocityProfile", "MC_AccelerationProfile", "MC_Halt",
-    "MC_Stop", "MC_Home", "MC_GearIn", "MC_CombineAxes", "MC_CamIn"};
+    "MC_Stop", "MC_Home", "MC_GearIn", "MC_CombineAxes", "MC_CamIn",
+    "MC_GearInPos"};
 enum { MOVERS = sizeof movers / sizeof movers[0] };
 static const int phases[] = {1, 2, 40, 200};
 enum { PHASES = sizeof phases / sizeof phases[0] };
@@ -150,6 +151,8 @@ static void pair(const char *a, const char *b, int mode, int phase)
     if (mode != mcAborting && second.view->buffer_mode == NOWHERE)
         return;
     put(&second, "BufferMode", mode);
+    if (mode != mcAborting && is(&first, "MC_GearInPos"))
+        put_out_of_reach_of_another(&second);
     if (mode > mcBuffered && strstr(b, "Profile") && judged.axis->active)
         check_no_blending();
     else if (mode == mcAborting || first_is_through())

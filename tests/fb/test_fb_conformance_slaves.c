@@ -51,14 +51,6 @@ static void make_follower(instance_t *fb, const char *name)
     point_at(fb, "Master2", &judged_axes[2].reference);
 }
 
-/** MC_GearInPos: from where axes 1 and 0 are. Others have no such inputs. */
-static void put_way(instance_t *fb, double master, double slave, double distance)
-{
-    put(fb, "MasterSyncPosition", axes_info(1).set_position + master);
-    put(fb, "SlaveSyncPosition", axes_info(0).set_position + slave);
-    put(fb, "MasterStartDistance", is(fb, "MC_GearInPos") ? distance : 0.0);
-}
-
 /** FALSE: this block has no such phase. */
 static bool into_phase(const char *name, phase_t phase)
 {
@@ -70,18 +62,16 @@ static bool into_phase(const char *name, phase_t phase)
         make_and_start(0, -1, &mover, "MC_MoveAbsolute");
     make_follower(&follower, name);
     put(&follower, "BufferMode", phase == WAITING ? mcBuffered : mcAborting);
-    if (phase == WAITING) /* the way is to begin after the move */
-        put_way(&follower, 12.0, 1.0, 6.0);
+    if (phase == BEFORE_THE_WAY)
+        put(&follower, "MasterStartDistance", 10);
     trigger(&follower, true);
     cycles(5);
-    /* Until StartSync what ran before goes on, and has the axis (4.7, note 1). */
-    const bool active = phase != WAITING && !is(&follower, "MC_GearInPos");
-    MUST(follower.now.busy && follower.now.active == active, "Busy %d, Active %d, Error 0x%04X: %s",
+    MUST(follower.now.busy && follower.now.active == (phase > BEFORE_THE_WAY), "Busy %d, Active %d, Error 0x%04X: %s",
          follower.now.busy, follower.now.active, follower.now.error_id, axes_text(0));
-    if (phase == INTO_STEP && is(&follower, "MC_GearInPos"))
-        CYCLE_UNTIL(follower.memory[place_of(follower.view->type, "StartSync")]);
-    else if (phase == IN_STEP)
+    if (phase == IN_STEP)
         CYCLE_UNTIL(follower.now.reached);
+    if (is(&follower, "MC_GearInPos"))
+        MUST(follower.memory[place_of(follower.view->type, "StartSync")] == (phase == INTO_STEP), "StartSync");
     MUST(follower.now.reached == (phase == IN_STEP), "InGear or InSync is %d", follower.now.reached);
     return true;
 }
@@ -103,8 +93,6 @@ static bool scene(const char *what, const char *name, phase_t phase)
 
 static void check_taken_over(void)
 {
-    if (is(&other, "MC_GearInPos")) /* it has the axis from StartSync on */
-        CYCLE_UNTIL(other.now.active || other.now.error);
     MUST(other.now.busy && other.now.active, "Busy %d, Active %d, Error 0x%04X: %s", other.now.busy, other.now.active,
          other.now.error_id, axes_text(0));
     cycle();
@@ -155,18 +143,18 @@ START_TEST(test_block_that_waits_behind_a_follower_begins_when_it_is_in_step)
             make_follower(&other, next);
             if (other.view->buffer_mode == NOWHERE)
                 continue;
-            if (is(&other, "MC_GearInPos")) /* the way is to begin when the other one is in step */
-                put_way(&other, 24.0, 12.0, 12.0);
+            put_out_of_reach_of_another(&other);
             put(&other, "BufferMode", mode);
             trigger(&other, true);
             cycle();
+            const bool later = phase == BEFORE_THE_WAY;
             if (other.now.error) { /* it needs a rest to begin from, or another mode: said at once, no harm done */
-                MUST(follower.now.busy, "the follower is disturbed");
+                MUST(follower.now.busy && (follower.now.active || later), "the follower is disturbed");
                 continue;
             }
             for (int n = 0; n < 8000 && !other.now.active && !other.now.done; n++) {
-                MUST(follower.now.busy && other.now.busy, "mode %d: the follower: Busy %d; %s: "
-                     "Error 0x%04X", mode, follower.now.busy, next, other.now.error_id);
+                MUST(follower.now.busy && (follower.now.active || later) && other.now.busy,
+                     "mode %d: the follower: Busy %d; %s: Error 0x%04X", mode, follower.now.busy, next, other.now.error_id);
                 cycle();
             }
             MUST(other.now.active || other.now.done, "mode %d: never Active", mode);
@@ -358,9 +346,8 @@ START_TEST(test_slave_follows_again_after_reset)
         MUST(axes_info(0).set_velocity == 0.0 && !follower.now.busy, "it follows by itself");
         trigger(&follower, false);
         cycle();
+        about(0, 1);
         put_in_reach(&follower, name);
-        if (is(&follower, "MC_GearInPos"))
-            put_way(&follower, 4.0, 1.0, 3.0);
         trigger(&follower, true);
         CYCLE_UNTIL(follower.now.reached);
     }

@@ -194,8 +194,10 @@ static inline void bench_power_up(void)
 {
     bench.power.Enable = bench.master_power.Enable = TRUE;
     CYCLE_UNTIL(bench.power.Status && (!bench.master || bench.master_power.Status));
-    if (bench.master)
+    if (bench.master) {
         bench_turn_master(4);
+        CYCLE_UNTIL(bench.master->reached);
+    }
     MUST(judged.axis->state == CM1E_AXIS_STANDSTILL, "not in Standstill");
 }
 

@@ -239,10 +239,7 @@ static void judge_state(instance_t *fb, cm1e_axis_state_t before, bool may_wait)
     const bool ends_homing = strcmp(type->name, "MC_HomeDirect") == 0 && before == CM1E_AXIS_HOMING &&
                              after == CM1E_AXIS_STANDSTILL;
     const bool ends_at_once = ends_homing || (type->rules && type->rules[before].next == CM1E_AXIS_STANDSTILL);
-    /* Its state is that of what goes on until StartSync, which may be at once (4.7, note 1). */
-    const bool begins_at_once = strcmp(type->name, "MC_GearInPos") == 0 && edge && !now->error &&
-                                after == CM1E_AXIS_SYNCHRONIZED_MOTION;
-    if (after != before && !in_words && !begins_at_once)
+    if (after != before && !in_words)
         MUST(free_to_change && type->rules[before].refusal == CM1E_OK &&
                  (type->rules[before].next == after || ends_at_once),
              "%s: from %s to %s (edge %d, Error 0x%04X)", type->name, cm1e_axis_state_name(before),
@@ -496,9 +493,18 @@ static void put_in_reach(instance_t *fb, const char *name)
         return;
     cm1e_axis_get(judged.axis, &slave);
     cm1e_axis_get(followed, &master);
-    put(fb, "MasterSyncPosition", master.set_position + 4.0);
-    put(fb, "SlaveSyncPosition", slave.set_position + 1.0);
-    put(fb, "MasterStartDistance", 3.0);
+    put(fb, "MasterSyncPosition", master.set_position + 20.0);
+    put(fb, "SlaveSyncPosition", slave.set_position + 3.0);
+    put(fb, "Velocity", 30);
+}
+
+/** For what waits behind another one that has its point there: a point of synchronisation farther on. */
+static inline void put_out_of_reach_of_another(instance_t *fb)
+{
+    if (!member_of(fb->view->type, "SlaveSyncPosition"))
+        return;
+    put(fb, "MasterSyncPosition", real_of(fb, "MasterSyncPosition") + 20.0);
+    put(fb, "SlaveSyncPosition", real_of(fb, "SlaveSyncPosition") + 10.0);
 }
 
 /** The axis that it is about. */

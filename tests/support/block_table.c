@@ -1305,16 +1305,6 @@ static const block_rule_t rules_couple[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
     [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
 };
-static const block_rule_t rules_couple_later[CM1E_AXIS_STATE_COUNT] = {
-    [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
-    [CM1E_AXIS_STANDSTILL] = {.unchanged = true},
-    [CM1E_AXIS_HOMING] = {.refusal = CM1E_ERROR_AXIS_HOMING},
-    [CM1E_AXIS_DISCRETE_MOTION] = {.unchanged = true},
-    [CM1E_AXIS_CONTINUOUS_MOTION] = {.unchanged = true},
-    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {.unchanged = true},
-    [CM1E_AXIS_STOPPING] = {.refusal = CM1E_ERROR_AXIS_STOPPING},
-    [CM1E_AXIS_ERROR_STOP] = {.refusal = CM1E_ERROR_AXIS_ERROR_STOP},
-};
 static const block_rule_t rules_phasing[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_DISABLED] = {.refusal = CM1E_ERROR_AXIS_NOT_POWERED},
     [CM1E_AXIS_STANDSTILL] = {.refusal = CM1E_ERROR_AXIS_NOT_COUPLED},
@@ -3599,7 +3589,7 @@ const block_t block_table[] = {
     BLOCK(MC_CamOut, rules_decouple),
     BLOCK(MC_GearIn, rules_couple),
     BLOCK(MC_GearOut, rules_decouple),
-    BLOCK(MC_GearInPos, rules_couple_later),
+    BLOCK(MC_GearInPos, rules_couple),
     BLOCK(MC_PhasingAbsolute, rules_phasing),
     BLOCK(MC_PhasingRelative, rules_phasing),
     BLOCK(MC_CombineAxes, rules_couple),
