@@ -290,3 +290,38 @@ cm1e_error_t cm1e_axis_cam_prepare(cm1e_axis_t *axis, const move_t *move, const 
         return by_way(axis, follow, move, coupling, from);
     return coupling->start_mode == mcRampIn || on_it(axis, from, &wanted) ? CM1E_OK : CM1E_ERROR_AXIS_CAM_START;
 }
+
+static bool same_numbers(const cm1e_axis_coupling_t *a, const cm1e_axis_coupling_t *b)
+{
+    return a->master_offset == b->master_offset && a->slave_offset == b->slave_offset &&
+           a->master_scaling == b->master_scaling && a->slave_scaling == b->slave_scaling;
+}
+
+cm1e_error_t cm1e_axis_cam_update(cm1e_axis_t *axis, const cm1e_axis_coupling_t *coupling)
+{
+    cm1e_axis_coupling_t *inputs = &axis->coupling->inputs;
+    const follow_t *now = axis->coupling->now;
+    if (now->kind != &cam_kind || same_numbers(inputs, coupling))
+        return CM1E_OK;
+    const from_t from = from_base(axis);
+    cam_place_t cam = now->cam; /* zeros and all: relative values count from where the command began (2.4.6) */
+    cm1e_motion_limits_t limits;
+    cm1e_error_t error = take_numbers(coupling, &cam);
+    if (!error)
+        error = cm1e_axis_limits_of(axis, &from, &axis->move, &limits);
+    if (error)
+        return error;
+    if (!contained(axis, &from, &cam))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    follow_t *follow = cm1e_axis_follow_spare(axis);
+    *follow = *now;
+    follow->links[0].listed = false;
+    follow->cam = cam;
+    follow->cam.sampled = false; /* a period that is over by other numbers is none that has ended */
+    inputs->master_offset = coupling->master_offset;
+    inputs->slave_offset = coupling->slave_offset;
+    inputs->master_scaling = coupling->master_scaling;
+    inputs->slave_scaling = coupling->slave_scaling;
+    cm1e_axis_follow(axis, follow, &from, &limits);
+    return CM1E_OK;
+}

@@ -406,6 +406,8 @@ static cm1e_error_t update_active(cm1e_axis_t *axis, const cm1e_axis_command_t *
     const from_t from = from_base(axis);
     move_t move = cm1e_axis_move_of(command);
     cm1e_motion_limits_t limits;
+    if (axis_follows(axis) && command->kind == axis->kind && command->kind == CM1E_COMMAND_CAM_IN)
+        return cm1e_axis_cam_update(axis, command->coupling);
     if (!axis_follows(axis) || command->kind != axis->kind || !begins_anew(command->kind))
         return CM1E_ERROR_INVALID_ARGUMENT;
     if (cm1e_axis_same_inputs(&axis->move, &move) && same_inputs(&c->inputs, command->coupling))
@@ -569,8 +571,10 @@ cm1e_error_t cm1e_axis_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, 
     move_t *waiting = cm1e_axis_find_waiting(axis, id);
     if (!waiting)
         return CM1E_OK; /* it has ended */
-    if (waiting->kind != (uint8_t)command->kind || !begins_anew(command->kind))
+    if (waiting->kind != (uint8_t)command->kind || command->kind == CM1E_COMMAND_GEAR_IN_POS)
         return CM1E_ERROR_INVALID_ARGUMENT;
+    if (waiting == waiting_move(axis, 0) && axis->coupling->next)
+        return CM1E_OK; /* it is placed already, and waits for its master only */
     move_t move = cm1e_axis_move_of(command);
     move.id = id;
     move.buffer_mode = waiting->buffer_mode;

@@ -247,6 +247,9 @@ void cm1e_axis_await_step(cm1e_axis_t *axis);
 /** Prepares a cam in the same way. */
 cm1e_error_t cm1e_axis_cam_prepare(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
                                    const from_t *from);
+/** Other offsets and scalings, from the present set-point on; what else may have changed is for the next edge. On a way
+ *  into step they wait for its end. CM1E_ERROR_AXIS_RATIO, _POSITION_RANGE: nothing has changed. */
+cm1e_error_t cm1e_axis_cam_update(cm1e_axis_t *axis, const cm1e_axis_coupling_t *coupling);
 /** Where the cam has the slave when the master is there (counts of the link), and how it goes on: but for the place. */
 void cm1e_axis_cam_point(const cm1e_axis_t *axis, const follow_t *follow, double counts, position_t *position,
                          cm1e_curve_point_t *point);

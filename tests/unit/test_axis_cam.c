@@ -440,6 +440,77 @@ static void test_modulo_axes_over_many_turns(void)
     TEST_ASSERT_TRUE(fabs((double)way) > 800 * 360);
 }
 
+static cm1e_error_t updated(cm1e_command_id_t id, const cm1e_axis_coupling_t *coupling)
+{
+    return cm1e_axis_update(axes_axis(SLAVE), id, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_CAM_IN,
+                                                                         .coupling = coupling});
+}
+
+/* ContinuousUpdate: other offsets and scalings, without a step (the bench watches), and as if they had been there from
+ * the beginning. */
+static void test_offsets_and_scalings_change_while_it_runs(void)
+{
+    axes_begin(2);
+    axes_wait(MASTER, axes_move_to(MASTER, 3, 10), 5000);
+    axes_wait(SLAVE, axes_move_to(SLAVE, -2, 10), 5000);
+    cm1e_axis_coupling_t coupling = by_cam(select_hill(0.6, 1, true, false, false), mcRelative);
+    const cm1e_command_id_t id = cam_in(&coupling);
+    axes_move_velocity(MASTER, 4);
+    for (int i = 0; i < 60; i++) {
+        coupling.master_offset = i % 5 * 0.7;
+        coupling.slave_offset = i % 3 * 0.2;
+        coupling.master_scaling = i % 4 ? 0 : 1.5;
+        coupling.slave_scaling = i % 7 ? 1 : -0.5;
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, updated(id, &coupling));
+        axes_cycles(1);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, axes_status(SLAVE, id).state);
+        axes_cycles(i % 6 ? 97 : 1000);
+        if (i % 6)
+            continue; /* the next ones come on the way */
+        axes_wait_reached(SLAVE, id, 5000);
+        for (int n = 0; n < 100; n++) {
+            TEST_ASSERT_EQUAL_INT(CM1E_OK, updated(id, &coupling)); /* the same again changes nothing */
+            axes_cycles(1);
+            const double x = (set_of(MASTER) - 3 - coupling.master_offset) / (i % 4 ? 1 : 1.5);
+            const double ideal = -2 + coupling.slave_offset + coupling.slave_scaling * hill(x, 0.6, 1);
+            TEST_ASSERT_DOUBLE_WITHIN(2e-8, ideal, set_of(SLAVE));
+            TEST_ASSERT_TRUE(axes_status(SLAVE, id).reached);
+        }
+    }
+    axes_wait_reached(SLAVE, id, 5000);
+    cm1e_axis_coupling_t bad = coupling;
+    bad.slave_offset = NAN;
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, updated(id, &bad));
+    bad = coupling;
+    bad.master_scaling = INFINITY;
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_RATIO, updated(id, &bad));
+    axes_cycles(10);
+    TEST_ASSERT_TRUE(axes_status(SLAVE, id).reached);
+}
+
+/* The phase shift goes through the cam: the slave sees the master where it is, and the shift more. */
+static void test_a_phase_shift_acts_through_the_cam(void)
+{
+    axes_begin(2);
+    const cm1e_axis_coupling_t coupling = by_cam(select_hill(0.6, 1, true, true, true), mcAbsolute);
+    (void)cam_in(&coupling);
+    axes_move_velocity(MASTER, 2);
+    axes_cycles(500);
+    axes_wait(SLAVE, axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_PHASING_ABSOLUTE, .position = 3,
+                                                                .velocity = 1, .coupling = &coupling}), 0);
+    axes_cycles(8000);
+    for (int n = 0; n < 3000; n++) {
+        axes_cycles(1);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-8, hill(set_of(MASTER) + 3, 0.6, 1), set_of(SLAVE));
+    }
+    /* and into another one */
+    const cm1e_axis_coupling_t same = by_cam(select_hill(0.6, 1, true, true, true), mcAbsolute);
+    const cm1e_command_id_t id = cam_in(&same);
+    axes_cycles(1);
+    TEST_ASSERT_TRUE(axes_status(SLAVE, id).reached);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-8, hill(set_of(MASTER) + 3, 0.6, 1), set_of(SLAVE));
+}
+
 /* The whole range of the cam is looked at before it begins, also what lies between its points. */
 static void test_a_cam_that_leaves_the_software_limits_is_refused(void)
 {
@@ -531,6 +602,8 @@ int main(void)
     RUN_TEST(test_what_waits_begins_at_the_end_of_the_profile);
     RUN_TEST(test_out_of_a_cam_the_velocity_stays);
     RUN_TEST(test_modulo_axes_over_many_turns);
+    RUN_TEST(test_offsets_and_scalings_change_while_it_runs);
+    RUN_TEST(test_a_phase_shift_acts_through_the_cam);
     RUN_TEST(test_a_cam_that_leaves_the_software_limits_is_refused);
     RUN_TEST(test_a_cam_that_is_needed_is_not_overwritten);
     RUN_TEST(test_wrong_inputs_are_refused);

@@ -167,8 +167,8 @@ static void test_a_stop_before_start_sync_inhibits_it(void)
     }
 }
 
-/* A master that turns round on the way is followed back along the same curve; before its beginning the slave stands as it
- * did. */
+/* A master that turns round on the way is followed back along the same curve; before its beginning the slave stands as
+ * it did. */
 static void test_a_master_that_turns_round_on_the_way(void)
 {
     axes_begin(2);
