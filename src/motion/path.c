@@ -304,7 +304,8 @@ static bool go_to_next(cm1e_path_t *path, cm1e_path_sample_t *sample)
         path->stop_wanted = path->cut = false;
         return false;
     }
-    (void)cm1e_path_plan(path, path->element_count);
+    if (!cm1e_path_plan(path, path->element_count))
+        cm1e_path_keep_going(path);
     path->time_s = over_s;
     return true;
 }

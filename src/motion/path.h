@@ -144,6 +144,14 @@ typedef struct cm1e_path_point {
     double position[CM1E_PATH_AXES], tangent[CM1E_PATH_AXES], curvature[CM1E_PATH_AXES];
 } cm1e_path_point_t;
 
+/** Elements that are planned in one. */
+typedef struct cm1e_path_run {
+    int count;
+    double length;
+    cm1e_motion_limits_t limits; /**< of all of them, override included */
+    double highest;              /**< the velocity that the axes allow on all of them */
+} cm1e_path_run_t;
+
 /** A stretch of path with limits of its own: a segment without what its junctions took, a transition, or what is next
  *  to a step of the curvature. */
 typedef struct cm1e_path_element {
@@ -152,6 +160,7 @@ typedef struct cm1e_path_element {
     bool last_of_tag;             /**< its end is the end of the segment */
     bool dropped;                 /**< with the segment cut off, so it is not reported as done */
     bool joined;                  /**< planned in one with the element before, so that the acceleration goes on */
+    double lost;                  /**< s, about: what the run up to here takes longer for being one */
     double skipped, length;       /**< of the piece: where it begins, and how far it goes */
     cm1e_motion_limits_t limits;  /**< of the command; but for the velocity as far as the axes allow */
     double highest;               /**< the velocity that the axes allow with them */
@@ -159,6 +168,7 @@ typedef struct cm1e_path_element {
     double passed;                /**< the highest velocity with which its beginning can be passed */
     double junction;              /**< and the one that the command wants there, at an override of 1 */
     double entry, hard_entry;     /**< looked ahead, where it begins a run: to keep all, and to keep the axes' limits */
+    cm1e_path_run_t braking, hard_braking; /**< over what it then is planned in one */
 } cm1e_path_element_t;
 
 typedef struct cm1e_path_segment {

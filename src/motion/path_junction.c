@@ -22,7 +22,7 @@ static const double BETWEEN_POINTS = 0.98;
 
 /** Which part of the time in which the acceleration comes to 0 a junction between runs costs: one way or the other only
  *  where it does not come to 0 there of itself. */
-static const double SAVED = 0.25;
+static const double SAVED = 0.15;
 
 /** Which part of a limit of jerk is for steps of the acceleration. */
 static const double STEP_SHARE = 0.5;
@@ -62,15 +62,6 @@ static double blended(cm1e_path_blend_t blend, double first, double second)
 
 /* ---- one run ----------------------------------------------------------------------------------------------------- */
 
-static double time_over(double length, double velocity, const cm1e_motion_limits_t *limits)
-{
-    if (velocity >= limits->velocity)
-        return length / velocity;
-    const cm1e_motion_state_t start = {0, velocity, 0};
-    cm1e_profile_t profile;
-    return cm1e_profile_to_state(&profile, &start, length, velocity, limits) ? INFINITY : profile.duration_s;
-}
-
 /** Whether to plan an element in one with those before: they get the lowest of all limits, but the acceleration along
  *  the path need not come to 0 in between. What that takes is compared with what it saves. */
 static bool worth_joining(cm1e_path_t *path, int index)
@@ -78,7 +69,7 @@ static bool worth_joining(cm1e_path_t *path, int index)
     int first = index - 1;
     while (first > 0 && cm1e_path_element(path, first)->joined)
         first--;
-    const cm1e_path_element_t *element = cm1e_path_element(path, index);
+    cm1e_path_element_t *element = cm1e_path_element(path, index);
     const cm1e_path_run_t run = cm1e_path_run(path, first, index);
     cm1e_motion_limits_t own = element->limits, low = run.limits;
     own.velocity = fmin(own.velocity * (path->override > 0 ? path->override : 1), element->highest);
@@ -97,13 +88,14 @@ static bool worth_joining(cm1e_path_t *path, int index)
         return false; /* it is on the way already */
     const double a = fmin(low.acceleration, low.deceleration);
     const double ease = isinf(low.jerk) ? 0 : fmin(a / low.jerk, sqrt(low.velocity / low.jerk));
-    const double slower = run.length / low.velocity - time_over(run.length, low.velocity, &run.limits) +
-                          element->length / low.velocity - time_over(element->length, low.velocity, &own);
+    const double slower = run.length * (1 / low.velocity - 1 / run.limits.velocity) +
+                          element->length * (1 / low.velocity - 1 / own.velocity);
     const double run_a = fmin(run.limits.acceleration, run.limits.deceleration);
     const double own_a = fmin(own.acceleration, own.deceleration);
     const double weaker = fmin(low.velocity / a, 2 * sqrt(2 * run.length / a)) * (1 - a / run_a) +
                           fmin(low.velocity / a, 2 * sqrt(2 * element->length / a)) * (1 - a / own_a);
-    return slower + weaker <= SAVED * ease + 1e-9 * (run.length + element->length) / low.velocity;
+    element->lost = cm1e_path_element(path, index - 1)->lost + fmax(0, slower + weaker);
+    return element->lost <= SAVED * ease + 1e-9 * (run.length + element->length) / low.velocity;
 }
 
 static void set_entry(cm1e_path_t *path, int index, double passed, double junction)
@@ -112,6 +104,7 @@ static void set_entry(cm1e_path_t *path, int index, double passed, double juncti
     element->passed = passed;
     element->junction = junction;
     element->joined = passed > 0 && worth_joining(path, index);
+    element->lost = element->joined ? element->lost : 0;
 }
 
 /** What of the last element is not needed for the motion under way. */

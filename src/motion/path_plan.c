@@ -9,7 +9,7 @@
 
 #include "motion/path_private.h"
 
-enum { SLOWEST_STEPS = 16, FIND_STEPS = 60 };
+enum { SLOWEST_STEPS = 16, FIND_STEPS = 60, WIDER_MOST = 6 };
 
 /** A way longer by this part of it is as long. */
 static const double AS_LONG = 1e-9;
@@ -45,11 +45,65 @@ static double most_at_ends(cm1e_path_t *path, int first, const cm1e_path_run_t *
     return one ? run->highest : run->limits.velocity;
 }
 
+/** Both in one, with the lower of their limits. */
+static cm1e_path_run_t together(const cm1e_path_run_t *a, const cm1e_path_run_t *b)
+{
+    return (cm1e_path_run_t){
+        a->count + b->count, a->length + b->length,
+        {fmin(a->limits.velocity, b->limits.velocity), fmin(a->limits.acceleration, b->limits.acceleration),
+         fmin(a->limits.deceleration, b->limits.deceleration), fmin(a->limits.jerk, b->limits.jerk)},
+        fmin(a->highest, b->highest)};
+}
+
+/** How fast a run may be entered, of at most `most`, when it is left with `exit`; or that run and what the next one
+ *  brakes over in one, without easing between them, to leave that with `wide_exit`, where this is faster. */
+static double enter(const cm1e_path_run_t *run, double exit, const cm1e_path_run_t *next, double wide_exit,
+                    double most, bool commanded, cm1e_path_run_t *braking)
+{
+    const double alone = fmin(most, cm1e_profile_entry_velocity(run->length, most, exit, &run->limits));
+    *braking = *run;
+    if (!next || alone >= most)
+        return alone;
+    const cm1e_path_run_t wide = together(run, next);
+    const double limit = fmin(most, commanded ? wide.limits.velocity : wide.highest);
+    const double entry = fmin(limit, cm1e_profile_entry_velocity(wide.length, limit, wide_exit, &wide.limits));
+    if (!(entry > alone * (1 + AS_LONG)))
+        return alone;
+    *braking = wide;
+    return entry;
+}
+
+/** The velocity at which the elements before that one are left. */
+static double exit_at(cm1e_path_t *path, int index, bool commanded)
+{
+    if (index >= path->element_count)
+        return 0;
+    const cm1e_path_element_t *element = cm1e_path_element(path, index);
+    return commanded ? element->entry : element->hard_entry;
+}
+
+static void look_at_run(cm1e_path_t *path, int start, int last)
+{
+    cm1e_path_element_t *element = cm1e_path_element(path, start);
+    cm1e_path_element_t *next = last < path->element_count ? cm1e_path_element(path, last) : NULL;
+    const cm1e_path_run_t run = cm1e_path_run(path, start, last);
+    const double ends = most_at_ends(path, start, &run), most = fmin(element->passed, run.highest);
+    const double wanted = fmin(fmin(most, ends), factor(path) * element->junction);
+    const bool stops = !next || next->passed == 0;
+    const cm1e_path_run_t *soft = stops ? NULL : &next->braking, *hard = stops ? NULL : &next->hard_braking;
+    element->hard_entry = enter(&run, fmin(exit_at(path, last, false), run.highest), hard,
+                                hard ? fmin(exit_at(path, last + hard->count, false), run.highest) : 0, most, false,
+                                &element->hard_braking);
+    element->entry = enter(&run, fmin(exit_at(path, last, true), ends), soft,
+                           soft ? fmin(exit_at(path, last + soft->count, true),
+                                       fmin(run.limits.velocity, soft->limits.velocity)) : 0,
+                           fmin(wanted, element->hard_entry), true, &element->braking);
+}
+
 /** For the runs behind the one it is on, which is `first` long. Elements before `changed` are as they were: as soon as
  *  one of them is to be entered as before, so are all before it. */
 static void look_ahead(cm1e_path_t *path, int first, int changed)
 {
-    double soft = 0, hard = 0;
     if (changed >= path->element_count)
         return;
     for (int last = path->element_count; last > first;) {
@@ -59,20 +113,12 @@ static void look_ahead(cm1e_path_t *path, int first, int changed)
         if (start < first)
             break;
         cm1e_path_element_t *element = cm1e_path_element(path, start);
-        const cm1e_path_run_t run = cm1e_path_run(path, start, last);
-        const double ends = most_at_ends(path, start, &run), most = fmin(element->passed, run.highest);
-        const double wanted = fmin(fmin(most, ends), factor(path) * element->junction);
-        soft = fmin(soft, ends);
-        hard = fmin(hard, run.highest);
-        const double soft_before = element->entry, hard_before = element->hard_entry;
-        element->hard_entry = cm1e_profile_entry_velocity(run.length, most, hard, &run.limits);
-        element->hard_entry = fmin(element->hard_entry, most);
-        element->entry = cm1e_profile_entry_velocity(run.length, wanted, soft, &run.limits);
-        element->entry = fmin(element->entry, fmin(wanted, element->hard_entry));
-        if (start < changed && element->entry == soft_before && element->hard_entry == hard_before)
+        const double soft = element->entry, hard = element->hard_entry;
+        const int count = element->braking.count, hard_count = element->hard_braking.count;
+        look_at_run(path, start, last);
+        if (start < changed && element->entry == soft && element->hard_entry == hard &&
+            element->braking.count == count && element->hard_braking.count == hard_count)
             break;
-        soft = element->entry;
-        hard = element->hard_entry;
         last = start;
     }
 }
@@ -165,13 +211,68 @@ static void follow(cm1e_path_t *path, const cm1e_profile_t *profile, const cm1e_
     path->stretch.until_s = -1;
 }
 
+/** Plans it in one with what follows, where it is within the limits of that already. */
+static bool plan_wide(cm1e_path_t *path, const cm1e_motion_state_t *start, const cm1e_path_run_t *wide,
+                      double velocity, cm1e_profile_t *profile)
+{
+    const double a = start->acceleration;
+    if (fmax(start->velocity, eased(start, wide->limits.jerk)) > velocity || a > wide->limits.acceleration ||
+        -a > wide->limits.deceleration)
+        return false;
+    double soft, hard;
+    exits(path, 0, wide, &soft, &hard);
+    return plan_run(profile, start, wide, soft, hard, false);
+}
+
+/** The time over a run of its own that begins with that element. */
+static double time_over(cm1e_path_t *path, int first, const cm1e_path_run_t *run, double velocity)
+{
+    const cm1e_motion_state_t start = {0, velocity, 0};
+    double soft, hard;
+    cm1e_profile_t profile;
+    exits(path, first, run, &soft, &hard);
+    return plan_run(&profile, &start, run, soft, hard, false) ? profile.duration_s : INFINITY;
+}
+
+/** The run that it is on takes in what follows as long as that is no later: where it gets faster or slower over more
+ *  than one run, its acceleration need not come to 0 between them. `planned`: there is a profile as it is. If not, it
+ *  was entered with a velocity that it can only come down from over more. */
+static bool widen(cm1e_path_t *path, const cm1e_motion_state_t *start, cm1e_path_run_t *run, cm1e_profile_t *profile,
+                  bool planned)
+{
+    for (int i = 0; i < WIDER_MOST && run->count < path->element_count; i++) {
+        const cm1e_path_element_t *next = cm1e_path_element(path, run->count);
+        const bool at_pace = planned && profile->end.velocity >= fmin(run->limits.velocity, next->highest) * 0.999;
+        if (next->passed == 0 || at_pace)
+            break;
+        cm1e_path_run_t wide = together(run, &next->braking);
+        cm1e_profile_t wider;
+        if (!plan_wide(path, start, &wide, wide.limits.velocity, &wider)) {
+            wide = together(run, &next->hard_braking);
+            if (planned || !plan_wide(path, start, &wide, wide.highest, &wider))
+                break;
+        }
+        if (planned && wider.duration_s > (profile->duration_s + time_over(path, run->count, &next->braking,
+                                                                           profile->end.velocity)) * (1 + AS_LONG))
+            break;
+        *profile = wider;
+        *run = wide;
+        planned = true;
+    }
+    return planned;
+}
+
 /** FALSE: nothing has changed. */
-static bool plan_anew(cm1e_path_t *path, const cm1e_path_run_t *run, double soft, double hard, bool faster)
+static bool plan_anew(cm1e_path_t *path, const cm1e_path_run_t *on, double soft, double hard, bool faster)
 {
     const cm1e_motion_state_t start = {cm1e_path_here(path), path->along.velocity, path->along.acceleration};
+    cm1e_path_run_t run = *on;
     cm1e_profile_t profile;
-    if (!plan_run(&profile, &start, run, soft, hard, faster))
+    const bool planned = plan_run(&profile, &start, &run, soft, hard, faster);
+    if (!widen(path, &start, &run, &profile, planned))
         return false;
+    for (int i = 1; i < run.count; i++)
+        cm1e_path_element(path, i)->joined = true;
     follow(path, &profile, &start);
     path->stopping = false;
     return true;
@@ -188,6 +289,17 @@ bool cm1e_path_plan(cm1e_path_t *path, int changed)
     return plan_anew(path, &run, soft, hard, false) ||
            (fabs(path->profile.end.position - path->begin - run.length) <= AS_LONG * run.length &&
             path->profile.end.velocity <= hard * (1 + AS_LONG));
+}
+
+void cm1e_path_keep_going(cm1e_path_t *path)
+{
+    const cm1e_path_run_t run = cm1e_path_run(path, 0, path->element_count);
+    const cm1e_motion_state_t start = {cm1e_path_here(path), path->along.velocity, path->along.acceleration};
+    double soft, hard;
+    cm1e_profile_t profile;
+    exits(path, 0, &run, &soft, &hard);
+    if (!cm1e_profile_to_state(&profile, &start, run.length, fmin(hard, start.velocity), &run.limits))
+        follow(path, &profile, &start);
 }
 
 void cm1e_path_change_pace(cm1e_path_t *path)
@@ -304,7 +416,7 @@ void cm1e_path_cut(cm1e_path_t *path)
     cm1e_motion_state_t start = {0, path->profile.end.velocity, 0};
     double begin = current.length;
     for (int next = current.count; next < path->element_count;) {
-        const cm1e_path_run_t run = cm1e_path_run(path, next, path->element_count);
+        const cm1e_path_run_t run = cm1e_path_element(path, next)->hard_braking;
         cm1e_profile_t profile;
         if (!cm1e_profile_to_velocity(&profile, &start, 0, &run.limits) && profile.end.position <= run.length) {
             cut_at(path, begin + profile.end.position * (1 + AS_LONG));

@@ -12,14 +12,6 @@ static inline cm1e_path_element_t *cm1e_path_element(cm1e_path_t *path, int inde
     return &path->element[(path->first_element + index) % CM1E_PATH_ELEMENTS];
 }
 
-/** Elements that are planned in one. */
-typedef struct cm1e_path_run {
-    int count;
-    double length;
-    cm1e_motion_limits_t limits; /**< of all of them, override included */
-    double highest;              /**< the velocity that the axes allow on all of them */
-} cm1e_path_run_t;
-
 /** The run from that element on: to the first one that is not joined, or before `until`. */
 cm1e_path_run_t cm1e_path_run(cm1e_path_t *path, int first, int until);
 
@@ -35,6 +27,8 @@ void cm1e_path_join(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_se
 /** Looks ahead and plans the way from here to the end of the run anew, after elements from `changed` on have changed.
  *  FALSE: that cannot be done; the motion under way is as it was, and no longer a plan. */
 bool cm1e_path_plan(cm1e_path_t *path, int changed);
+/** Where rounding has left no plan that keeps everything: the velocity goes on without a step all the same. */
+void cm1e_path_keep_going(cm1e_path_t *path);
 /** Plans the way on with another override, or from within a stop, if that can be done. */
 void cm1e_path_change_pace(cm1e_path_t *path);
 /** Tries to begin with the stop that is wanted. */

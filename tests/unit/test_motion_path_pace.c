@@ -1,0 +1,111 @@
+/* How soon paths are through: against the soonest way, which without a limit of jerk is known. */
+#include "path_check.h"
+
+enum { PATHS = 12, SEGMENTS = 24, PARTS = 20000 };
+
+void setUp(void) {}
+void tearDown(void) {}
+
+/** Forwards and backwards over the velocities that every element allows: the soonest way with its accelerations. */
+static double soonest(void)
+{
+    static double velocity[PARTS + 1], faster[PARTS + 1], slower[PARTS + 1];
+    const cm1e_path_t *path = &driven.path;
+    const double part = cm1e_path_left(path) / PARTS;
+    double end = path->element[0].length;
+    int on = 0;
+    for (int i = 0; i <= PARTS; i++) {
+        bool stops = i == 0 || i == PARTS;
+        while (i * part >= end && on < path->element_count - 1) {
+            end += path->element[++on].length;
+            stops = stops || path->element[on].passed == 0;
+        }
+        const cm1e_path_element_t *element = &path->element[on];
+        velocity[i] = stops ? 0 : fmin(element->limits.velocity, element->highest);
+        faster[i] = element->limits.acceleration;
+        slower[i] = element->limits.deceleration;
+    }
+    for (int i = 1; i <= PARTS; i++)
+        velocity[i] = fmin(velocity[i], sqrt(velocity[i - 1] * velocity[i - 1] + 2 * faster[i] * part));
+    double time = 0;
+    for (int i = PARTS - 1; i >= 0; i--) {
+        velocity[i] = fmin(velocity[i], sqrt(velocity[i + 1] * velocity[i + 1] + 2 * slower[i] * part));
+        time += 2 * part / (velocity[i] + velocity[i + 1]);
+    }
+    return time;
+}
+
+/** Lines of these lengths and turns, with arcs between them or without. */
+static void append_outline(double shortest, double longest, double turn_most, bool arcs, double jerk)
+{
+    double x = 0, y = 0, heading = 0;
+    for (int i = 0; i < SEGMENTS; i++) {
+        cm1e_path_command_t command = command_of(random_between(100, 300), random_between(1000, 4000), jerk,
+                                                 CM1E_PATH_CORNER_DEVIATION, 0.1);
+        const double before[] = {x, y, 0}, radius = random_between(5, 30), turn = random_between(0.3, 2);
+        if (arcs && i % 2) {
+            const double centre[] = {x - radius * sin(heading), y + radius * cos(heading), 0};
+            heading += turn;
+            x = centre[0] + radius * sin(heading), y = centre[1] - radius * cos(heading);
+            TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_arc_centre(&driven.path, centre, (double[]){x, y, 0},
+                                                                   CM1E_PATH_COUNTER_CLOCKWISE, &command, NULL));
+            continue;
+        }
+        const double length = random_between(shortest, longest);
+        heading += arcs ? 0 : random_between(-turn_most, turn_most);
+        x = before[0] + length * cos(heading), y = before[1] + length * sin(heading);
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_line(&driven.path, (double[]){x, y, 0}, &command, NULL));
+    }
+}
+
+static void compare(double shortest, double longest, double turn_most, bool arcs)
+{
+    for (int i = 0; i < PATHS; i++) {
+        cm1e_path_config_t config = plain_config(3, 3, 500, 3000, INFINITY);
+        config.axis[1].acceleration = 1500;
+        begin_path(&config, (double[CM1E_PATH_AXES]){0});
+        append_outline(shortest, longest, turn_most, arcs, INFINITY);
+        const double bound = soonest(), time = run_path();
+        CHECK_PATH(time >= bound * 0.99);
+        CHECK_PATH(time <= bound * 1.02 + config.cycle_s);
+    }
+}
+
+static void test_long_lines_and_corners(void) { compare(20, 50, 2, false); }
+static void test_short_lines_and_corners(void) { compare(1, 3, 1.5, false); }
+static void test_short_lines_that_hardly_turn(void) { compare(0.5, 2, 0.05, false); }
+static void test_lines_and_arcs(void) { compare(5, 30, 0, true); }
+
+/** With jerk, what is joined is not worse for a piece with less acceleration, nor for one that may go slower only. */
+static void test_a_piece_with_other_limits_costs_what_it_must(void)
+{
+    const cm1e_path_config_t config = plain_config(2, 2, 500, 3000, 60000);
+    double time[3];
+    for (int other = 0; other < 3; other++) {
+        begin_path(&config, (double[CM1E_PATH_AXES]){0});
+        for (int i = 1; i <= 20; i++) {
+            cm1e_path_command_t command = command_of(200, 2000, 20000, CM1E_PATH_EXACT, 0);
+            if (i == 10 && other == 1)
+                command.limits.acceleration = command.limits.deceleration = 1000;
+            if (i == 10 && other == 2)
+                command.limits.velocity = 150;
+            TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_line(&driven.path, (double[]){10 * i, 0}, &command, NULL));
+        }
+        time[other] = run_path();
+    }
+    TEST_ASSERT_TRUE(time[1] <= time[0] * 1.01);
+    /* 10 mm more slowly, and two changes by 50 mm/s, which take 0.1 s each, at 175 in the mean. */
+    TEST_ASSERT_TRUE(time[2] <= time[0] + 10 / 150.0 - 10 / 200.0 + 2 * 0.1 * 25 / 200 + 0.005);
+}
+
+int main(void)
+{
+    seed_random();
+    UNITY_BEGIN();
+    RUN_TEST(test_long_lines_and_corners);
+    RUN_TEST(test_short_lines_and_corners);
+    RUN_TEST(test_short_lines_that_hardly_turn);
+    RUN_TEST(test_lines_and_arcs);
+    RUN_TEST(test_a_piece_with_other_limits_costs_what_it_must);
+    return UNITY_END();
+}
