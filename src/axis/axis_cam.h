@@ -48,6 +48,7 @@ typedef struct way {
     double turn;                   /**< u of the slave, whose places so far apart are the same; 0: there are none */
     position_t begin, end;         /**< of the slave */
     double first;                  /**< u of the master, counted from the end: where the way begins */
+    double steepest;               /**< largest slope of it, without sign */
     cm1e_curve_t curve;            /**< u of the slave from `begin` over u of the master from the end */
 } way_t;
 

@@ -60,10 +60,7 @@ static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
 
 static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link)
 {
-    cm1e_curve_extremes_t extremes;
-    cm1e_curve_extremes(&follow->way.curve, &extremes);
-    return fmax(fmax(fabs(extremes.least_slope), fabs(extremes.most_slope)),
-                follow->way.then->steepest(axis, follow, link));
+    return fmax(follow->way.steepest, follow->way.then->steepest(axis, follow, link));
 }
 
 static const follow_kind_t way_kind = {evaluate, steepest};
@@ -118,6 +115,7 @@ static cm1e_error_t plan(cm1e_axis_t *axis, follow_t *follow, const from_t *from
     const double shift = (end.position - place) * axis->scale; /* turns of a modulo slave */
     way->curve = curve;
     way->first = first;
+    way->steepest = fmax(fabs(extremes.least_slope), fabs(extremes.most_slope));
     way->sync = sync;
     way->begin = from->position;
     way->end = cm1e_position_plus(meeting, shift);
@@ -221,7 +219,7 @@ static bool due(const follow_t *follow, double before)
         return link->seen.velocity != 0.0 && ahead(follow) > same_place;
     const double moved = (link->seen.counts - before) * direction(follow);
     const double since = since_start(follow, link->seen.counts);
-    return moved > 0.0 && since >= 0.0 && since < moved * (1.0 + relative_tolerance);
+    return since >= 0.0 && since < moved * (1.0 + relative_tolerance);
 }
 
 void cm1e_axis_await_step(cm1e_axis_t *axis)

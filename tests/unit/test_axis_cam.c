@@ -2,6 +2,7 @@
 #include "unity.h"
 
 #include "../support/axes_bench.h"
+#include "motion_check.h"
 #include "axis/axis_cam.h"
 
 void setUp(void) {}
@@ -273,6 +274,25 @@ static void test_ramp_in_has_no_step(void)
                 TEST_ASSERT_DOUBLE_WITHIN(2e-8, 0.3 + hill(set_of(MASTER) - begin, 0.6, 1), set_of(SLAVE));
             }
         }
+}
+
+/* Any cam that the slave can follow at this velocity: from anywhere, at any moment, it gets onto it. */
+static void test_random_cams_are_got_onto(void)
+{
+    for (int n = 0; n < 200; n++) {
+        axes_begin(2);
+        const double velocity = random_between(-10, 10), height = random_between(-0.6, 0.6), end = random_between(-1, 1);
+        axes_move_velocity(MASTER, velocity);
+        if (!one_in(3))
+            axes_move_velocity(SLAVE, random_between(-15, 15));
+        axes_cycles((int)random_between(1, 2500));
+        cm1e_axis_coupling_t coupling = by_cam(select_hill(height, end, true, one_in(2), one_in(2)), mcRampIn);
+        coupling.slave_offset = random_between(-20, 20);
+        const cm1e_command_id_t id = cam_in(&coupling);
+        axes_wait_reached(SLAVE, id, 40000);
+        axes_cycles(500);
+        axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
+    }
 }
 
 static void test_a_cam_is_changed_for_another_while_it_runs(void)
@@ -587,6 +607,7 @@ static void test_wrong_inputs_are_refused(void)
 int main(void)
 {
     UNITY_BEGIN();
+    seed_random();
     RUN_TEST(test_the_last_four_cams_stay);
     RUN_TEST(test_a_bad_cam_costs_no_good_one_and_is_told);
     RUN_TEST(test_a_cam_is_a_copy);
@@ -595,6 +616,7 @@ int main(void)
     RUN_TEST(test_relative_to_where_they_are);
     RUN_TEST(test_where_the_slave_is_not_on_the_cam_it_is_refused);
     RUN_TEST(test_ramp_in_has_no_step);
+    RUN_TEST(test_random_cams_are_got_onto);
     RUN_TEST(test_a_cam_is_changed_for_another_while_it_runs);
     RUN_TEST(test_a_cam_that_goes_on_where_the_other_is_needs_no_ramp);
     RUN_TEST(test_end_of_profile_of_a_periodic_cam);

@@ -2,6 +2,7 @@
 #include "unity.h"
 
 #include "../support/axes_bench.h"
+#include "motion_check.h"
 
 void setUp(void) {}
 void tearDown(void) { axes_end(); }
@@ -404,6 +405,51 @@ static void test_two_that_wait_for_each_other_are_refused(void)
                  CM1E_ERROR_AXIS_COUPLING_CYCLE);
 }
 
+/* Whatever both do: a way that is taken is gone to its end, within the slave's limits (the bench watches), while the
+ * master keeps its velocity. */
+static void test_random_ways_that_begin_come_to_their_end(void)
+{
+    int begun = 0, refused = 0;
+    for (int n = 0; n < 300; n++) {
+        axes_begin(2);
+        const double direction = one_in(2) ? 1 : -1, velocity = direction * random_decade(0.5, 12);
+        axes_move_velocity(MASTER, velocity);
+        axes_cycles(500);
+        if (!one_in(3))
+            axes_move_velocity(SLAVE, random_between(-12, 12));
+        axes_cycles((int)random_between(1, 1200));
+        const double way = direction * random_decade(0.3, 30), start = one_in(3) ? 0 : way * random_between(0.1, 1);
+        const double slave = set_of(SLAVE) + random_between(-2, 2) * way;
+        cm1e_axis_coupling_t coupling = meet(set_of(MASTER) + way, slave, start);
+        coupling.master[0].numerator = one_in(2) ? 1 : -2;
+        coupling.master[0].denominator = one_in(2) ? 1 : 3;
+        const cm1e_axis_command_t command = in_pos(&coupling);
+        cm1e_command_id_t id;
+        const cm1e_error_t error = cm1e_axis_start(axes_axis(SLAVE), &command, &id);
+        if (error) {
+            TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_SYNC_WAY, error);
+            refused++;
+            continue;
+        }
+        int cycles = 0;
+        while (axes_status(SLAVE, id).state <= CM1E_COMMAND_ACTIVE && !axes_status(SLAVE, id).reached) {
+            axes_cycles(1);
+            AXES_MUST(++cycles < 100000, "run %d: never InSync", n);
+        }
+        const cm1e_command_status_t status = axes_status(SLAVE, id);
+        if (status.state == CM1E_COMMAND_ERROR && status.error == CM1E_ERROR_AXIS_SYNC_WAY) {
+            refused++;
+            continue;
+        }
+        AXES_MUST(status.reached, "run %d: %s", n, axes_text(SLAVE));
+        begun++;
+        const double ratio = (double)coupling.master[0].numerator / coupling.master[0].denominator;
+        meets(id, coupling.master_sync_position, coupling.slave_sync_position, ratio, 300);
+    }
+    printf("%d ways gone, %d refused\n", begun, refused);
+    TEST_ASSERT_TRUE(begun > 50 && refused > 20);
+}
+
 /* ---- MC_CamIn by way --------------------------------------------------------------------------------------------- */
 
 static double smooth_step(double t) { return t * t * t * (10 + t * (-15 + t * 6)); }
@@ -452,6 +498,27 @@ static void test_a_cam_by_way_is_in_step_at_its_place(void)
         }
 }
 
+/* Of the turns of a modulo slave the one in which its slope changes least, also where another one is nearer now. */
+static void test_a_cam_by_way_on_a_modulo_slave(void)
+{
+    axes_describe(2);
+    axes_config(SLAVE)->modulo_range = 1;
+    axes_make();
+    axes_enable_all();
+    axes_move_velocity(MASTER, 4);
+    axes_move_velocity(SLAVE, 6);
+    axes_cycles(3210);
+    const cm1e_axis_coupling_t coupling = by_stairs(3, 6, mcRampIn, true);
+    const cm1e_command_id_t id =
+        axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_CAM_IN, .coupling = &coupling});
+    axes_wait_reached(SLAVE, id, 20000);
+    for (int n = 0; n < 6000; n++) {
+        axes_cycles(1);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-8, 0, remainder(set_of(SLAVE) - stairs(set_of(MASTER)), 1));
+    }
+    axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
+}
+
 /* A cam that is run once, and rises from its first point on: that is where the way ends when nothing else is said. */
 static void test_a_single_shot_that_begins_with_a_slope(void)
 {
@@ -476,6 +543,7 @@ static void test_a_single_shot_that_begins_with_a_slope(void)
 int main(void)
 {
     UNITY_BEGIN();
+    seed_random();
     RUN_TEST(test_figure_44);
     RUN_TEST(test_the_way_is_the_polynomial_over_the_master);
     RUN_TEST(test_the_motion_before_goes_on_until_start_sync);
@@ -493,6 +561,8 @@ int main(void)
     RUN_TEST(test_buffered_itself);
     RUN_TEST(test_wrong_inputs_are_refused);
     RUN_TEST(test_two_that_wait_for_each_other_are_refused);
+    RUN_TEST(test_random_ways_that_begin_come_to_their_end);
+    RUN_TEST(test_a_cam_by_way_on_a_modulo_slave);
     RUN_TEST(test_a_cam_by_way_is_in_step_at_its_place);
     RUN_TEST(test_a_single_shot_that_begins_with_a_slope);
     return UNITY_END();
