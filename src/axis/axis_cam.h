@@ -82,8 +82,9 @@ typedef struct cam_place {
     position_t slave_zero;
     double away;                   /**< counts of the master from its zero to where its slave began to follow it */
     double master_offset, master_scaling, slave_offset, slave_scaling;
+    double finer;                  /**< 1 / master_scaling */
     cm1e_cam_place_t place;
-    cm1e_cam_sample_t before;      /**< of the last cycle ... */
+    cm1e_cam_sample_t before;      /**< of the last cycle, without its point ... */
     bool sampled;                  /**< ... if there was one */
 } cam_place_t;
 

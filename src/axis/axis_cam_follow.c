@@ -11,9 +11,11 @@ static const double largest_scaling = 1e9;
 
 /* ---- F ----------------------------------------------------------------------------------------------------------- */
 
+/* Divided, so that a master at an end of the cam is exactly there. */
 static double place_in_cam(const cam_place_t *cam, const link_t *link, double counts)
 {
-    return ((counts + cam->away) / link->master->scale - cam->master_offset) / cam->master_scaling;
+    const double way = (counts + cam->away) / link->master->scale - cam->master_offset;
+    return cam->master_scaling == 1.0 ? way : way / cam->master_scaling;
 }
 
 static double place_now(const follow_t *follow)
@@ -42,6 +44,8 @@ static bool came_over_end(const cam_place_t *cam, const cm1e_cam_sample_t *now)
     const cm1e_cam_t *table = &cam->slot->cam;
     if (!cam->sampled)
         return false;
+    if (now->turn == cam->before.turn && now->phase != 0.0 && cam->before.phase != 0.0)
+        return false;
     if (!table->periodic)
         return now->turn != cam->before.turn && now->turn != 0.0;
     return ends_below(table, now, true) > ends_below(table, &cam->before, true) ||
@@ -53,12 +57,14 @@ static void sample_point(const cm1e_axis_t *axis, const follow_t *follow, const 
 {
     const cam_place_t *cam = &follow->cam;
     const sight_t *seen = &follow->links[0].seen;
-    const double steeper = cam->slave_scaling / cam->master_scaling;
+    const double steeper = cam->slave_scaling * cam->finer;
     const cm1e_curve_point_t here = {.slope = steeper * sample->point.slope,
-                                     .curvature = steeper * sample->point.curvature / cam->master_scaling};
+                                     .curvature = steeper * sample->point.curvature * cam->finer};
     const cm1e_motion_state_t motion = cm1e_curve_motion(&here, seen->velocity, seen->acceleration);
-    const double most = (double)CM1E_FARTHEST_COUNTS, counts = height(cam, sample) * axis->scale;
-    *point = (from_t){.position = cm1e_position_plus(cam->slave_zero, fmax(-most, fmin(counts, most))),
+    double counts = height(cam, sample) * axis->scale;
+    if (!(fabs(counts) < (double)CM1E_FARTHEST_COUNTS)) /* the guard finds it too fast */
+        counts = copysign((double)CM1E_FARTHEST_COUNTS, counts);
+    *point = (from_t){.position = cm1e_position_plus(cam->slave_zero, counts),
                       .velocity = motion.velocity, .acceleration = motion.acceleration};
 }
 
@@ -72,7 +78,8 @@ static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
         axis->coupling->ends++;
         follow->ended = !cam->slot->cam.periodic;
     }
-    cam->before = sample;
+    cam->before.turn = sample.turn;
+    cam->before.phase = sample.phase;
     cam->sampled = true;
     sample_point(axis, follow, &sample, point);
 }
@@ -159,6 +166,7 @@ static cm1e_error_t take_numbers(const cm1e_axis_coupling_t *coupling, cam_place
     if (!isfinite(coupling->master_offset) || !isfinite(coupling->slave_offset) ||
         !isfinite(coupling->master_start_distance) || !isfinite(coupling->master_sync_position))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
+    cam->finer = 1.0 / cam->master_scaling;
     cam->master_offset = coupling->master_offset;
     cam->slave_offset = coupling->slave_offset;
     return CM1E_OK;

@@ -1,5 +1,6 @@
 /* Followers: their commands, and their set-point of every cycle (axis_coupling.h). */
 #include "axis/axis_coupling.h"
+#include "core/rare.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -217,27 +218,38 @@ static void stand_with_masters(cm1e_axis_t *axis, const from_t *f)
     axis->activity = ACTIVITY_HOLD;
 }
 
+/* Seldom there is something beside F, or a set-point that has to be looked at twice. */
+CM1E_RARE static guard_t judge(cm1e_axis_t *axis, const from_t *f, from_t *next)
+{
+    guard_t guard;
+    *next = *f;
+    if (axis->superimposed.id)
+        *next = with_superimposed(axis, f, &guard);
+    else if (axis->coupling->rest.on)
+        *next = with_rest(axis, f, &guard);
+    else
+        guard = cm1e_axis_look_closely(axis, f, keeps_jerk(axis->coupling));
+    return guard;
+}
+
 bool cm1e_axis_coupled_step(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
     from_t f, sum;
     const from_t *next = &f;
-    guard_t guard = {.limit = GUARD_KEPT};
     if (c->phasing.moving)
         cm1e_axis_phasing_step(axis);
     const master_trouble_t trouble = cm1e_axis_see(axis, c->now);
     if (trouble && !(c->stopping && trouble == MASTER_STOPPING) && !cm1e_axis_follows_to_the_end(axis, trouble))
-        return stop_alone(axis, guard);
+        return stop_alone(axis, (guard_t){.limit = GUARD_KEPT});
     c->end_of_profile = false;
     c->now->kind->evaluate(axis, c->now, &f);
-    if (c->rest.on || axis->superimposed.id) {
-        sum = axis->superimposed.id ? with_superimposed(axis, &f, &guard) : with_rest(axis, &f, &guard);
+    if (c->rest.on || axis->superimposed.id || !cm1e_axis_well_within(axis, &f, keeps_jerk(c))) {
+        const guard_t guard = judge(axis, &f, &sum);
+        if (guard.limit)
+            return stop_alone(axis, guard);
         next = &sum;
-    } else {
-        guard = cm1e_axis_guard(axis, next, keeps_jerk(c));
     }
-    if (guard.limit)
-        return stop_alone(axis, guard);
     c->f_acceleration = f.acceleration;
     emit(axis, next);
     if (axis_follows(axis))

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/rare.h"
 #include "motion/cam.h"
 
 /* Of what is known already: an interval that could add no more to the extremes is not looked into. */
@@ -202,6 +203,10 @@ static void find(const cm1e_cam_t *cam, cm1e_cam_place_t *place, double phase)
         low = near + 1;
         high = near + 2;
     }
+    if (near >= 1 && near < cam->count && cam->knots[near - 1].master <= master && master < cam->knots[near].master) {
+        low = near - 1;
+        high = near;
+    }
     while (high - low > 1) {
         const int middle = (low + high) / 2;
         if (cam->knots[middle].master <= master)
@@ -213,21 +218,36 @@ static void find(const cm1e_cam_t *cam, cm1e_cam_place_t *place, double phase)
     (void)interval(cam, low, &place->curve); /* it was possible when the cam was compiled */
 }
 
+/** In a period, of the one that `place` has found. */
+static double phase_of(const cm1e_cam_place_t *place, double way) { return (way - place->turn_way) - place->turn_rest; }
+
+static double take_turn(const cm1e_cam_t *cam, cm1e_cam_place_t *place, double turn, double way)
+{
+    place->turn = turn;
+    place->turn_way = turn * cam->length;
+    place->turn_rest = fma(turn, cam->length, -place->turn_way);
+    return phase_of(place, way);
+}
+
+CM1E_RARE static double find_turn(const cm1e_cam_t *cam, cm1e_cam_place_t *place, double way)
+{
+    double phase = take_turn(cam, place, floor(way / cam->length), way);
+    if (phase < 0) /* the quotient was rounded to a whole number */
+        phase = take_turn(cam, place, place->turn - 1, way);
+    if (phase >= cam->length)
+        phase = fmax(take_turn(cam, place, place->turn + 1, way), 0);
+    return phase;
+}
+
 void cm1e_cam_sample(const cm1e_cam_t *cam, cm1e_cam_place_t *place, double master, cm1e_cam_sample_t *sample)
 {
     const double way = master - cam->start;
     double phase = way, turn = 0;
     if (cam->periodic) {
-        turn = floor(way / cam->length);
-        phase = fma(-turn, cam->length, way);
-        if (phase < 0) { /* the quotient was rounded to a whole number */
-            turn -= 1;
-            phase += cam->length;
-        }
-        if (phase >= cam->length) {
-            turn += 1;
-            phase = 0;
-        }
+        phase = phase_of(place, way);
+        if (!(phase >= 0 && phase < cam->length))
+            phase = find_turn(cam, place, way);
+        turn = place->turn;
     } else if (!(way > 0) || way >= cam->length) {
         const bool behind = way > 0;
         *sample = (cm1e_cam_sample_t){{.position = cam->knots[behind ? cam->count - 1 : 0].slave}, behind ? 1 : -1,

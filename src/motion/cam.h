@@ -48,6 +48,8 @@ cm1e_cam_fault_t cm1e_cam_compile(cm1e_cam_t *cam, cm1e_cam_knot_t *knots, int c
 typedef struct cm1e_cam_place {
     cm1e_curve_t curve;     /**< between two points, its positions counted from `start` of the cam */
     int knot;
+    double turn;            /**< of a periodic cam, and its way from `start`: so much, and what doubles leave of it */
+    double turn_way, turn_rest;
 } cm1e_cam_place_t;
 
 typedef struct cm1e_cam_sample {
