@@ -104,11 +104,80 @@ START_TEST(test_program_with_the_names_of_tc2_mc2_runs)
 }
 END_TEST
 
+/* ---- a cam ------------------------------------------------------------------------------------------------------- */
+
+static struct cam_program {
+    AXIS_REF Master, Slave;
+    MC_Power_t fbPowerMaster, fbPowerSlave;
+    MC_CamTableSelect_t fbSelect;
+    MC_CamIn_t fbCamIn;
+    MC_MoveRelative_t fbMove;
+    int ends;
+    cm1e_scheduler_t *scheduler;
+} cam;
+
+static const MC_CAM_POINT out_and_back[] = {{0, 0, 0, 0}, {1, 0.5, 0, 0}, {2, 0, 0, 0}};
+static const MC_CAM_REF table = {.Points = out_and_back, .NumberOfPoints = 3};
+
+static void MAIN_OF_CAM(void *context)
+{
+    (void)context;
+    MC_Power(&cam.fbPowerMaster);
+    MC_Power(&cam.fbPowerSlave);
+    cam.fbSelect.Execute = cam.fbPowerMaster.Status && cam.fbPowerSlave.Status;
+    MC_CamTableSelect(&cam.fbSelect);
+    cam.fbCamIn.CamTableID = cam.fbSelect.CamTableID;
+    cam.fbCamIn.Execute = cam.fbSelect.Done;
+    MC_CamIn(&cam.fbCamIn);
+    cam.fbMove.Execute = cam.fbCamIn.InSync || cam.fbMove.Busy || cam.fbMove.Done;
+    MC_MoveRelative(&cam.fbMove);
+    cam.ends += cam.fbCamIn.EndOfProfile;
+    ck_assert_msg(!cam.fbSelect.Error && !cam.fbCamIn.Error && !cam.fbMove.Error, "%#x, %#x, %#x", cam.fbSelect.ErrorID,
+                  cam.fbCamIn.ErrorID, cam.fbMove.ErrorID);
+    if (cam.fbMove.Done)
+        cm1e_scheduler_stop(cam.scheduler);
+}
+
+static void declare_cam(void)
+{
+    cam.Slave = cm1e_scheduler_axis(cam.scheduler, 0);
+    cam.Master = cm1e_scheduler_axis(cam.scheduler, 1);
+    cam.fbPowerMaster = (MC_Power_t){.Axis = &cam.Master, .Enable = TRUE, .Enable_Positive = TRUE,
+                                     .Enable_Negative = TRUE};
+    cam.fbPowerSlave = cam.fbPowerMaster;
+    cam.fbPowerSlave.Axis = &cam.Slave;
+    cam.fbSelect = (MC_CamTableSelect_t){.Slave = &cam.Slave, .CamTable = &table, .Periodic = TRUE};
+    cam.fbCamIn = (MC_CamIn_t){.Master = &cam.Master, .Slave = &cam.Slave, .StartMode = MC_STARTMODE_RELATIVE};
+    cam.fbMove = (MC_MoveRelative_t){.Axis = &cam.Master, .Distance = 7, .Velocity = 4};
+}
+
+/** In a task that runs in every tenth cycle only: the slave follows in all of them, and no end of the cam is lost. */
+START_TEST(test_cam_is_followed_and_its_ends_are_seen_by_a_slow_task)
+{
+    static cm1e_bus_config_t config;
+    cm1e_bus_t *bus;
+    cm1e_diag_t diag = {0};
+    describe_axes(&config, 2);
+    ck_assert_msg(cm1e_bus_open(&bus, &config, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_int_eq(cm1e_scheduler_create(&cam.scheduler, bus, NULL, &diag), CM1E_OK);
+    declare_cam();
+    const cm1e_task_config_t slow = {.program = MAIN_OF_CAM, .interval_ns = 10000000};
+    ck_assert_msg(cm1e_scheduler_add_task(cam.scheduler, &slow, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert_msg(cm1e_scheduler_run(cam.scheduler, 20 * SECOND * 1000000LL, &diag) == CM1E_OK, "%s", diag.text);
+    ck_assert(cam.fbMove.Done);
+    ck_assert_int_eq(cam.ends, 3); /* 7 u are three periods and a half */
+    cm1e_scheduler_destroy(cam.scheduler);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("Tc2_MC2");
     TCase *test = tcase_create("Tc2_MC2");
     tcase_add_test(test, test_program_with_the_names_of_tc2_mc2_runs);
+    tcase_add_test(test, test_cam_is_followed_and_its_ends_are_seen_by_a_slow_task);
     suite_add_tcase(suite, test);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_NORMAL);
