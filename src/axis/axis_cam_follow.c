@@ -158,13 +158,23 @@ static bool take_scaling(double asked, double *scaling)
     return fabs(*scaling) <= largest_scaling && fabs(*scaling) >= 1.0 / largest_scaling;
 }
 
-static cm1e_error_t take_numbers(const cm1e_axis_coupling_t *coupling, cam_place_t *cam)
+/* Not what is no number either. */
+static bool can_be_counted(const cm1e_axis_t *axis, double units)
 {
+    return fabs(units * axis->scale) < (double)CM1E_FARTHEST_COUNTS;
+}
+
+static cm1e_error_t take_numbers(const cm1e_axis_t *axis, const cm1e_axis_coupling_t *coupling, cam_place_t *cam)
+{
+    const cm1e_axis_t *master = cm1e_axis_from_reference(&coupling->master[0].axis);
+    if (!master)
+        return CM1E_ERROR_AXIS_MASTER;
     if (!take_scaling(coupling->master_scaling, &cam->master_scaling) ||
         !take_scaling(coupling->slave_scaling, &cam->slave_scaling))
         return CM1E_ERROR_AXIS_RATIO;
-    if (!isfinite(coupling->master_offset) || !isfinite(coupling->slave_offset) ||
-        !isfinite(coupling->master_start_distance) || !isfinite(coupling->master_sync_position))
+    if (!can_be_counted(axis, coupling->slave_offset) || !can_be_counted(master, coupling->master_offset) ||
+        !can_be_counted(master, coupling->master_start_distance) ||
+        !can_be_counted(master, coupling->master_sync_position))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     cam->finer = 1.0 / cam->master_scaling;
     cam->master_offset = coupling->master_offset;
@@ -273,7 +283,7 @@ cm1e_error_t cm1e_axis_cam_prepare(cm1e_axis_t *axis, const move_t *move, const 
         return CM1E_ERROR_AXIS_CAM_ID;
     if ((unsigned)coupling->start_mode > mcRampIn)
         return CM1E_ERROR_INVALID_ARGUMENT;
-    cm1e_error_t error = take_numbers(coupling, cam);
+    cm1e_error_t error = take_numbers(axis, coupling, cam);
     if (!error)
         error = cm1e_axis_link(axis, follow, &coupling->master[0]);
     if (error)
@@ -314,7 +324,7 @@ cm1e_error_t cm1e_axis_cam_update(cm1e_axis_t *axis, const cm1e_axis_coupling_t 
     const from_t from = from_base(axis);
     cam_place_t cam = now->cam; /* zeros and all: relative values count from where the command began (2.4.6) */
     cm1e_motion_limits_t limits;
-    cm1e_error_t error = take_numbers(coupling, &cam);
+    cm1e_error_t error = take_numbers(axis, coupling, &cam);
     if (!error)
         error = cm1e_axis_limits_of(axis, &from, &axis->move, &limits);
     if (error)

@@ -36,6 +36,8 @@ static void change_inputs(instance_t *fb, double factor)
             put(fb, m->name, mcNegativeDirection);
         if (m->section == BLOCK_INPUT && m->type == BLOCK_DINT)
             put(fb, m->name, 3);
+        if (m->section == BLOCK_INPUT && strcmp(m->name, "SlaveOffset") == 0)
+            put(fb, m->name, 0.25);
     }
 }
 
@@ -127,7 +129,9 @@ START_TEST(test_continuous_update_acts_while_it_is_true)
             continue; /* said so, and nothing moved by it */
         MUST(!subject.now.error, "Error 0x%04X", subject.now.error_id);
         run(type, true, change_later, &disturbed);
-        MUST(first_difference() >= 20 && first_difference() < 80, "the inputs act in cycle %d", first_difference());
+        /* On its way into a cam a slave may brake at its limit for as long by the old inputs as by the new ones. */
+        const int latest = strcmp(type->name, "MC_CamIn") == 0 ? 400 : 80;
+        MUST(first_difference() >= 20 && first_difference() < latest, "the inputs act in cycle %d", first_difference());
         MUST(!subject.now.error, "Error 0x%04X", subject.now.error_id);
         run(type, true, end_updates_then_change, &disturbed);
         MUST(first_difference() == RECORDED, "the inputs act in cycle %d, without ContinuousUpdate",
