@@ -25,15 +25,16 @@ void cm1e_group_brake(cm1e_group_t *group, double deceleration, double jerk)
 static void after_step(cm1e_group_t *group)
 {
     const cm1e_path_sample_t *sample = &group->sample;
-    for (int i = 0; i < sample->done; i++)
-        cm1e_group_finish(group, sample->done_tags[i]);
-    if (!cm1e_group_at_rest(group))
-        return;
-    if (group->halting) {
+    const bool at_rest = cm1e_group_at_rest(group);
+    if (group->halting && at_rest) { /* before what waited for it, which may be done in the same step */
         group->halting = false;
         cm1e_group_finish(group, group->queue.ids[group->queue.first]);
         cm1e_path_go_on(&group->path);
     }
+    for (int i = 0; i < sample->done; i++)
+        cm1e_group_finish(group, sample->done_tags[i]);
+    if (!at_rest)
+        return;
     if (group->state == CM1E_GROUP_STOPPING && group->queue.count > 0)
         cm1e_group_finish(group, group->stop);
     const bool held = group->state == CM1E_GROUP_STOPPING && group->stop_held;

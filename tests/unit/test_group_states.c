@@ -357,6 +357,19 @@ static void test_a_buffered_halt_lets_the_line_end(void)
                   CM1E_ERROR_AXIS_BUFFER_MODE);
 }
 
+static void test_a_halt_that_waits_for_a_halt(void)
+{
+    group_line(5.0, 2.0, 1.0, mcAborting);
+    axes_cycles(300);
+    const cm1e_command_id_t first = group_command(&(cm1e_group_command_t){.kind = CM1E_GROUP_HALT});
+    const cm1e_command_id_t second =
+        group_command(&(cm1e_group_command_t){.kind = CM1E_GROUP_HALT, .buffer_mode = mcBuffered});
+    axes_cycles(1000);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, group_state_of(first));
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, group_state_of(second));
+    group_must_be(CM1E_GROUP_STANDBY);
+}
+
 static void test_disable_stops_along_the_path(void)
 {
     const cm1e_command_id_t line = group_line(5.0, 2.0, 2.0, mcAborting);
@@ -501,6 +514,7 @@ int main(void)
     RUN_TEST(test_stop_without_power_holds_the_group);
     RUN_TEST(test_halt_may_be_aborted_and_be_waited_for);
     RUN_TEST(test_a_buffered_halt_lets_the_line_end);
+    RUN_TEST(test_a_halt_that_waits_for_a_halt);
     RUN_TEST(test_disable_stops_along_the_path);
     RUN_TEST(test_ungrouped_in_motion_the_axes_are_members_until_they_stand);
     RUN_TEST(test_a_fault_in_standby_is_the_groups);
