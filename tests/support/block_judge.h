@@ -265,7 +265,8 @@ static void call(instance_t *fb)
     const block_view_t *v = fb->view;
     judged_at = fb->of;
     const cm1e_axis_state_t state = judged.axis->state;
-    const bool may_wait = judged.axis->active && v->buffer_mode != NOWHERE && fb->memory[v->buffer_mode] != mcAborting;
+    const bool before_it = judged.axis->active || judged.axis->waiting.count > 0; /* MC_GearInPos, until StartSync */
+    const bool may_wait = before_it && v->buffer_mode != NOWHERE && fb->memory[v->buffer_mode] != mcAborting;
     MUST(state == judged.state, "the state changed from %s to %s between two calls", cm1e_axis_state_name(judged.state),
          cm1e_axis_state_name(state));
     fb->before = fb->now;
