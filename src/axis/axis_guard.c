@@ -47,6 +47,15 @@ static guard_t guard_step(const cm1e_axis_t *axis, const from_t *next, bool kept
     return broken(GUARD_KEPT, 0.0, 0.0);
 }
 
+/* An estimated master creeps, with a velocity of about none: its slave's position says where to. An axis that stands
+ * outside may come back. */
+static bool leaves_limits(const cm1e_axis_t *axis, double line)
+{
+    const double before = cm1e_axis_line(axis, axis->set);
+    return axis->software_limits && ((line > axis->upper + axis->tolerance && line > before) ||
+                                     (line < axis->lower - axis->tolerance && line < before));
+}
+
 CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
 {
     const cm1e_motion_limits_t *most = &axis->system;
@@ -69,6 +78,8 @@ CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *
         return guard;
     if (!cm1e_axis_limits_can_stop(axis, line, (cm1e_motion_state_t){0.0, v, a}))
         return broken(GUARD_SOFTWARE_LIMIT, line, v > 0.0 ? axis->upper : axis->lower);
+    if (leaves_limits(axis, line))
+        return broken(GUARD_SOFTWARE_LIMIT, line, line > axis->upper ? axis->upper : axis->lower);
     return guard;
 }
 

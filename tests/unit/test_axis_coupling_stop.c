@@ -81,6 +81,29 @@ static void test_it_stops_before_a_software_limit(void)
     }
 }
 
+/* At its limit already, by a master that hardly moves: a velocity of about none is no way out. */
+static void test_it_does_not_creep_over_a_software_limit(void)
+{
+    axes_describe(2);
+    axes_config(SLAVE)->software_limit_negative = -1.0;
+    axes_config(SLAVE)->software_limit_positive = 1.0;
+    axes_make();
+    axes_enable_all();
+    axes_wait(SLAVE, axes_move_to(SLAVE, -1.0, 5.0), 2000);
+    axes_power(MASTER, false);
+    axes_cycles(20);
+    axes_bench.witness[SLAVE].strictness = AXES_STEEP;
+    const cm1e_axis_coupling_t coupling = {.master = {{.axis = axes_reference(MASTER), .source = mcActualValue,
+                                                       .numerator = 1, .denominator = 40}}};
+    axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN, .coupling = &coupling});
+    for (int n = 0; n < 2000; n++) {
+        axes_motor(MASTER)->position -= n % 50 == 0;
+        axes_cycles(1);
+    }
+    TEST_ASSERT_TRUE(axes_bench.witness[SLAVE].lowest >= -1.0 - 0.011 / 50000.0);
+    failed(SLAVE, CM1E_ERROR_AXIS_COUPLING_LIMIT, "the software limit at -1 u");
+}
+
 static void test_a_direction_that_is_not_enabled_stops_it(void)
 {
     begin(CM1E_COUPLING_STOP_THIS);
@@ -289,6 +312,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_set_point_beyond_a_limit_is_not_given_out);
     RUN_TEST(test_it_stops_before_a_software_limit);
+    RUN_TEST(test_it_does_not_creep_over_a_software_limit);
     RUN_TEST(test_a_direction_that_is_not_enabled_stops_it);
     RUN_TEST(test_a_direction_that_is_taken_away_stops_it);
     RUN_TEST(test_every_failure_of_a_master_stops_the_slave_by_itself);
