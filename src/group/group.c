@@ -135,6 +135,8 @@ cm1e_error_t cm1e_group_add(cm1e_group_t *group, AXIS_REF_t reference, uint32_t 
     if (cm1e_axis_configuration(axis)->motion == CM1E_MOTION_DRIVE)
         return refuse_member(group, CM1E_ERROR_UNSUPPORTED, 0, "The axis moves by profiles of its drive: it needs "
                              "`motion: host` in the bus file.");
+    if (cm1e_axis_configuration(axis)->type == CM1E_AXIS_ENCODER)
+        return refuse_member(group, CM1E_ERROR_AXIS_VIRTUAL, 0, "An encoder cannot be moved.");
     for (uint32_t other = 1; other <= CM1E_GROUP_AXES; other++)
         if (group->member[other - 1].Handle == reference.Handle)
             return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, other, "The axis has this place in it already.");

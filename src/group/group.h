@@ -19,7 +19,8 @@ cm1e_group_t *cm1e_group_from_reference(const AXES_GROUP_REF_t *reference);
 /* ---- members: in GroupDisabled, and while none of them is moved any more ----------------------------------------- */
 
 /** `ident` 1 ... CM1E_GROUP_AXES; 0: the first free one. CM1E_ERROR_GROUP_MEMBER: taken, in a group already, or of
- *  another bus; CM1E_ERROR_FB_AXIS_REF; CM1E_ERROR_UNSUPPORTED: the axis's motions are the drive's. @rt cycle */
+ *  another bus; CM1E_ERROR_FB_AXIS_REF; CM1E_ERROR_UNSUPPORTED: the axis's motions are the drive's;
+ *  CM1E_ERROR_AXIS_VIRTUAL: it is an encoder. @rt cycle */
 cm1e_error_t cm1e_group_add(cm1e_group_t *group, AXIS_REF_t axis, uint32_t ident);
 /** @rt cycle */
 cm1e_error_t cm1e_group_remove(cm1e_group_t *group, uint32_t ident);

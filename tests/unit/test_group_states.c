@@ -197,6 +197,17 @@ static void test_motions_of_the_drive_are_no_members(void)
     group_told("motion: host");
 }
 
+static void test_encoders_are_no_members(void)
+{
+    group_end();
+    axes_describe(1);
+    axes_config(0)->type = CM1E_AXIS_ENCODER;
+    axes_make();
+    group_create();
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_VIRTUAL, cm1e_group_add(group, axes_reference(0), 0));
+    group_told("cannot be moved");
+}
+
 static void test_handles(void)
 {
     AXES_GROUP_REF_t groups[GROUP_HANDLES], one;
@@ -505,6 +516,7 @@ int main(void)
     RUN_TEST(test_an_axis_is_in_one_group);
     RUN_TEST(test_axes_of_another_bus_are_refused);
     RUN_TEST(test_motions_of_the_drive_are_no_members);
+    RUN_TEST(test_encoders_are_no_members);
     RUN_TEST(test_handles);
     RUN_TEST(test_a_group_that_moves_is_not_destroyed);
     RUN_TEST(test_axes_may_go_before_their_group);
