@@ -387,6 +387,12 @@ START_TEST(test_master_without_torque_is_followed_by_its_actual_value)
         const double way = 10000.0 / axes_axis(1)->scale * (i == 0 ? 0.5 : 0.75);
         MUST(fabs(axes_info(0).set_position - from - way) < 2.0 / fabs(axes_axis(0)->scale), "it has gone %g u, not %g",
              axes_info(0).set_position - from, way);
+        for (int on = 1; on >= 0; on--) { /* its torque is of no matter, whenever that comes and goes */
+            axes_power(1, on);
+            cycles(100);
+            MUST(follower.now.reached && axes_state(1) == (on ? CM1E_AXIS_STANDSTILL : CM1E_AXIS_DISABLED),
+                 "InGear %d, the master is in %s", follower.now.reached, cm1e_axis_state_name(axes_state(1)));
+        }
         make_and_start(0, -1, &other, "MC_Halt");
         cycles(2);
         MUST(follower.now.aborted && axes_state(1) == CM1E_AXIS_DISABLED, "CommandAborted %d", follower.now.aborted);
