@@ -17,6 +17,9 @@ static const double NO_STEP = 1e-6;
 /** How much of an arc a transition may take (rad), and how far back a corner may turn that it goes round (cosine). */
 static const double MOST_OF_ARC = 0.7, BACK = -0.9;
 
+/** A transition over less than this part of the segments is none. */
+static const double NO_REACH = 1e-6;
+
 /** Between the points at which it is measured a curve may be further off. */
 static const double BETWEEN_POINTS = 0.98;
 
@@ -245,7 +248,8 @@ static double reach_of(const cm1e_path_t *path, const cm1e_path_segment_t *befor
         reach = fmin(reach, segment->command.parameter);
     else
         reach = fmin(reach, segment->command.parameter * cm1e_path_reach_per_deviation(cosine));
-    for (int i = 0; i < 2 * TRIES && reach > 0; i++) {
+    const double least = NO_REACH * fmin(before->piece.length, segment->piece.length);
+    for (int i = 0; i < 2 * TRIES && reach > least; i++) {
         cm1e_path_make_curve(&segment->transition, &frame, &before->piece, reach, &segment->piece, reach);
         const double deviation =
             by_distance ? 0

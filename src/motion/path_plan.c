@@ -334,10 +334,12 @@ static bool stop_keeps(cm1e_path_t *path, const cm1e_profile_t *stop, const cm1e
 {
     if (!keeps(stop, start, length, fmax(run->limits.velocity, start->velocity)))
         return false;
-    double begin = run->length;
+    double begin = run->length, slowest, fastest;
+    velocities(stop, &slowest, &fastest);
     for (int i = run->count; i < count; i++) {
         const cm1e_path_element_t *element = cm1e_path_element(path, i);
-        if (velocity_at(stop, begin) > fmin(element->highest, element->passed) * (1 + 1e-9))
+        const double most = start->acceleration > 0 ? fastest : velocity_at(stop, begin); /* it may yet get faster */
+        if (most > fmin(element->highest, element->passed) * (1 + 1e-9))
             return false;
         begin += element->length;
     }
