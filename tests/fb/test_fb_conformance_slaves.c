@@ -1,7 +1,7 @@
 /**
  * Slaves and masters (PLCopen Part 1 v2.0, chapter 4): each block that follows, waiting, getting in step and in step,
- * met by each block that moves, by itself again, by the loss of its own axis and of its master; chains of slaves, in
- * any order of calls; what must be refused. Every call is judged by 2.4.1, every set-point by the limits of its axis.
+ * met by each block that moves, by itself again, by the loss of its own axis and of its master; what must be refused.
+ * Every call is judged by 2.4.1, every set-point by the limits of its axis. Chains: test_fb_conformance_chains.
  */
 #include <check.h>
 
@@ -17,19 +17,7 @@ enum { MOVERS = sizeof movers / sizeof *movers };
 
 static instance_t mover, follower, other, more[8];
 
-/** Blocks that this axis can do. */
-static bool can(const char *name)
-{
-    return view_of(name)->type->rules[CM1E_AXIS_STANDSTILL].refusal != CM1E_ERROR_UNSUPPORTED;
-}
-
 static bool is(const instance_t *fb, const char *name) { return strcmp(name_of(fb), name) == 0; }
-
-static void expect_error(const instance_t *fb, cm1e_error_t error)
-{
-    MUST(fb->now.error && fb->now.error_id == cm1e_error_id(error), "%s: Error 0x%04X, 0x%04X is right", name_of(fb),
-         fb->now.error_id, cm1e_error_id(error));
-}
 
 /* ---- phases of a follower ---------------------------------------------------------------------------------------- */
 
@@ -54,7 +42,7 @@ static void make_follower(instance_t *fb, const char *name)
 /** FALSE: this block has no such phase. */
 static bool into_phase(const char *name, phase_t phase)
 {
-    if (!can(name) || (phase == BEFORE_THE_WAY && strcmp(name, "MC_GearInPos") != 0))
+    if (phase == BEFORE_THE_WAY && strcmp(name, "MC_GearInPos") != 0)
         return false;
     begin_turning();
     memset(&mover, 0, sizeof mover);
@@ -115,8 +103,6 @@ static void check_refused(cm1e_error_t refusal)
 START_TEST(test_follower_is_aborted_by_every_block_that_moves)
 {
     const char *by = movers[_i];
-    if (!can(by))
-        return;
     FOR_EACH_PHASE (name, phase, by) {
         make_follower(&other, by);
         const block_rule_t rule = other.view->type->rules[axes_state(0)];
@@ -134,8 +120,6 @@ END_TEST
 START_TEST(test_block_that_waits_behind_a_follower_begins_when_it_is_in_step)
 {
     const char *next = movers[_i];
-    if (!can(next))
-        return;
     for (int mode = mcBuffered; mode <= mcBlendingHigh; mode++)
         FOR_EACH_PHASE (name, phase, next) {
             if (phase == WAITING)
@@ -154,7 +138,8 @@ START_TEST(test_block_that_waits_behind_a_follower_begins_when_it_is_in_step)
             }
             for (int n = 0; n < 8000 && !other.now.active && !other.now.done; n++) {
                 MUST(follower.now.busy && (follower.now.active || later) && other.now.busy,
-                     "mode %d: the follower: Busy %d; %s: Error 0x%04X", mode, follower.now.busy, next, other.now.error_id);
+                     "mode %d: the follower: Busy %d; %s: Error 0x%04X", mode, follower.now.busy, next,
+                     other.now.error_id);
                 cycle();
             }
             MUST(other.now.active || other.now.done, "mode %d: never Active", mode);
@@ -400,165 +385,7 @@ START_TEST(test_master_without_torque_is_followed_by_its_actual_value)
 }
 END_TEST
 
-/* ---- chains ------------------------------------------------------------------------------------------------------ */
-
-/** Axis 0 follows 1, which follows 2, which turns. */
-static void begin_chain(void)
-{
-    slaves_begin(3);
-    turn(2, 4);
-    make_and_start(1, 2, &more[1], "MC_GearIn");
-    make_and_start(0, 1, &more[0], "MC_GearIn");
-    CYCLE_UNTIL(more[0].now.reached && more[1].now.reached);
-}
-
-START_TEST(test_chain_ends_where_it_is_broken)
-{
-    static const struct {
-        const char *what;
-        bool first_goes_on; /**< axis 0 still follows axis 1 */
-        cm1e_axis_state_t middle;
-    } breaks[] = {
-        {"MC_MoveVelocity", true, CM1E_AXIS_CONTINUOUS_MOTION}, {"MC_MoveAbsolute", true, CM1E_AXIS_DISCRETE_MOTION},
-        {"MC_Halt", true, CM1E_AXIS_DISCRETE_MOTION},           {"MC_GearOut", true, CM1E_AXIS_CONTINUOUS_MOTION},
-        {"MC_Stop", true, CM1E_AXIS_STOPPING},                  {"power", false, CM1E_AXIS_DISABLED},
-        {"fault", false, CM1E_AXIS_ERROR_STOP},                 {"master's fault", false, CM1E_AXIS_ERROR_STOP},
-    };
-    const bool power = strcmp(breaks[_i].what, "power") == 0;
-    snprintf(judged_axes[0].scene, sizeof judged_axes[0].scene, "chain, broken by %s", breaks[_i].what);
-    begin_chain();
-    if (strstr(breaks[_i].what, "fault"))
-        fake_bus_fault(axes_motor(strstr(breaks[_i].what, "master") ? 2 : 1), 0x2310);
-    else if (power)
-        axes_power(1, false);
-    else
-        make_and_start(1, -1, &other, breaks[_i].what);
-    cycles(3);
-    MUST(axes_state(1) == breaks[_i].middle, "the middle is in %s: %s", cm1e_axis_state_name(axes_state(1)),
-         axes_text(1));
-    MUST(breaks[_i].middle == CM1E_AXIS_ERROR_STOP ? more[1].now.error : more[1].now.aborted,
-         "the middle: CommandAborted %d, Error 0x%04X", more[1].now.aborted, more[1].now.error_id);
-    for (int n = 0; n < 2000; n++) {
-        cycle();
-        if (!breaks[_i].first_goes_on)
-            continue;
-        MUST(more[0].now.busy && more[0].now.reached, "the first: Busy %d, InGear %d, Error 0x%04X: %s",
-             more[0].now.busy, more[0].now.reached, more[0].now.error_id, axes_text(0));
-        MUST(fabs(axes_info(0).set_velocity - axes_info(1).set_velocity / 2) < 1e-9, "it is not in gear");
-    }
-    if (!breaks[_i].first_goes_on)
-        MUST(more[0].now.error && axes_state(0) == CM1E_AXIS_ERROR_STOP && axes_info(0).set_velocity == 0.0,
-             "the first: Busy %d, Error 0x%04X, in %s", more[0].now.busy, more[0].now.error_id,
-             cm1e_axis_state_name(axes_state(0)));
-    MUST(axes_state(2) == CM1E_AXIS_CONTINUOUS_MOTION || strstr(breaks[_i].what, "master"), "the master is disturbed");
-}
-END_TEST
-enum { BREAKS = 8 };
-
-/* ---- order of calls ---------------------------------------------------------------------------------------------- */
-
-enum { RECORDED = 1500, CHAIN = 4 };
-static int64_t recorded[ORDERS][CHAIN][RECORDED];
-
-/** A chain of four that begins, turns round, changes its ratio, and comes apart, all at given cycles. */
-static void record_chain(call_order_t order, bool axes_backwards)
-{
-    slaves_begin(CHAIN);
-    for (int n = 0; n < CHAIN; n++)
-        axes_bench.order[n] = axes_backwards ? CHAIN - 1 - n : n;
-    call_order = order;
-    for (int n = 0; n < CHAIN - 1; n++)
-        made_about(n, n + 1, &more[n], "MC_GearIn");
-    made_about(CHAIN - 1, -1, &mover, "MC_MoveVelocity");
-    for (int i = 0; i < called_count; i++) { /* who follows goes by up to 27/8 of it */
-        put(called[i], "Acceleration", 10);
-        put(called[i], "Deceleration", 10);
-        put(called[i], "Jerk", 200);
-    }
-    made_about(1, -1, &other, "MC_GearOut");
-    for (int cycle_now = 0; cycle_now < RECORDED; cycle_now++) {
-        trigger(&mover, cycle_now % 400 < 390);
-        put(&mover, "Velocity", cycle_now < 400 ? 3 : -3);
-        for (int n = 0; n < CHAIN - 1; n++) {
-            trigger(&more[n], cycle_now % 700 < 690);
-            put(&more[n], "RatioNumerator", cycle_now < 700 ? 1 : 3);
-        }
-        trigger(&other, cycle_now == 1200);
-        cycle();
-        for (int n = 0; n < CHAIN; n++)
-            recorded[order][n][cycle_now] = axes_axis(n)->set.counts;
-    }
-}
-
-START_TEST(test_order_of_calls_and_of_axes_does_not_matter)
-{
-    snprintf(judged_axes[0].scene, sizeof judged_axes[0].scene, "order of calls");
-    record_chain(ORDER_MADE, false);
-    for (int order = ORDER_BACKWARDS; order < ORDERS; order++) {
-        record_chain((call_order_t)order, order == ORDER_MIXED);
-        for (int n = 0; n < CHAIN; n++)
-            for (int i = 0; i < RECORDED; i++)
-                MUST(recorded[order][n][i] == recorded[0][n][i], "order %d: axis %d is elsewhere in cycle %d", order,
-                     n, i);
-    }
-    for (int n = 0; n < CHAIN; n++)
-        MUST(recorded[0][n][1400] != recorded[0][n][1300], "axis %d has not moved: %s", n, axes_text(n));
-}
-END_TEST
-
 /* ---- what is refused --------------------------------------------------------------------------------------------- */
-
-START_TEST(test_nobody_follows_itself)
-{
-    static const char *const names[] = {"MC_GearIn", "MC_CombineAxes", "MC_CamIn", "MC_GearInPos"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        if (!can(names[i]))
-            continue;
-        snprintf(judged_axes[0].scene, sizeof judged_axes[0].scene, "%s in a circle", names[i]);
-        slaves_begin(4);
-        make_and_start(0, 0, &other, names[i]);
-        expect_error(&other, CM1E_ERROR_AXIS_COUPLING_CYCLE);
-        make_and_start(0, 1, &more[0], "MC_GearIn");
-        make_and_start(1, 2, &more[1], "MC_GearIn");
-        make_and_start(1, 0, &more[2], names[i]);
-        expect_error(&more[2], CM1E_ERROR_AXIS_COUPLING_CYCLE);
-        make_and_start(2, 0, &more[3], names[i]);
-        expect_error(&more[3], CM1E_ERROR_AXIS_COUPLING_CYCLE);
-        cycles(5);
-        MUST(more[0].now.reached && more[1].now.reached, "who is in gear is disturbed");
-        MUST(axes_state(2) == CM1E_AXIS_STANDSTILL, "the last is in %s", cm1e_axis_state_name(axes_state(2)));
-        made_about(2, 3, &more[4], "MC_CombineAxes"); /* by way of its second master */
-        point_at(&more[4], "Master2", &judged_axes[0].reference);
-        trigger(&more[4], true);
-        cycle();
-        expect_error(&more[4], CM1E_ERROR_AXIS_COUPLING_CYCLE);
-        make_and_start(2, 3, &more[5], names[i]); /* no circle */
-        MUST(more[5].now.busy, "Error 0x%04X", more[5].now.error_id);
-        cycles(50);
-    }
-}
-END_TEST
-
-/** A circle that closes only when what waits begins: one of them ends with the error, nothing hangs. */
-START_TEST(test_circle_of_waiting_commands_ends_with_an_error)
-{
-    snprintf(judged_axes[0].scene, sizeof judged_axes[0].scene, "a circle of commands that wait");
-    slaves_begin(2);
-    for (int n = 0; n < 2; n++) {
-        make_and_start(n, -1, &more[n], "MC_MoveAbsolute");
-        made_about(n, 1 - n, &more[2 + n], "MC_GearIn");
-        put(&more[2 + n], "BufferMode", mcBuffered);
-        trigger(&more[2 + n], true);
-        cycle();
-    }
-    cycles(2000);
-    MUST(more[2].now.error + more[3].now.error == 1, "Error 0x%04X, 0x%04X", more[2].now.error_id,
-         more[3].now.error_id);
-    const instance_t *refused = more[2].now.error ? &more[2] : &more[3];
-    expect_error(refused, CM1E_ERROR_AXIS_COUPLING_CYCLE);
-    MUST(axes_state(0) != CM1E_AXIS_ERROR_STOP && axes_state(1) != CM1E_AXIS_ERROR_STOP, "ErrorStop");
-}
-END_TEST
 
 START_TEST(test_wrong_masters_and_ratios_are_refused_and_move_nothing)
 {
@@ -585,8 +412,6 @@ START_TEST(test_wrong_masters_and_ratios_are_refused_and_move_nothing)
         {"MC_CamIn", "Master", 0, CM1E_ERROR_AXIS_MASTER},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        if (!can(wrong[i].name))
-            continue;
         snprintf(judged_axes[0].scene, sizeof judged_axes[0].scene, "%s.%s = %g", wrong[i].name, wrong[i].input,
                  wrong[i].value);
         begin_turning();
@@ -644,8 +469,6 @@ END_TEST
 START_TEST(test_phasing_is_beside_the_follower_and_ends_with_it)
 {
     static const char *const ends[] = {"Done", "aborted", "MC_Halt", "MC_GearOut", "fault", "power", "master"};
-    if (view_of("MC_PhasingAbsolute")->type->rules[CM1E_AXIS_SYNCHRONIZED_MOTION].refusal == CM1E_ERROR_UNSUPPORTED)
-        return;
     for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
         for (int relative = 0; relative < 2; relative++) {
             const char *name = relative ? "MC_PhasingRelative" : "MC_PhasingAbsolute";
@@ -721,7 +544,6 @@ int main(void)
     tcase_add_loop_test(all, test_follower_is_aborted_by_every_block_that_moves, 0, MOVERS);
     tcase_add_loop_test(all, test_block_that_waits_behind_a_follower_begins_when_it_is_in_step, 0, MOVERS);
     tcase_add_loop_test(all, test_loss_of_an_axis_in_every_phase, 0, LOSSES);
-    tcase_add_loop_test(all, test_chain_ends_where_it_is_broken, 0, BREAKS);
     const TTest *const single[] = {
         test_edge_on_a_busy_follower_shows_nothing_of_the_first_command,
         test_follower_goes_on_when_its_block_is_gone,
@@ -729,9 +551,6 @@ int main(void)
         test_slave_follows_again_after_reset,
         test_master_that_is_homed_is_lost_and_one_that_is_renamed_is_not,
         test_master_without_torque_is_followed_by_its_actual_value,
-        test_order_of_calls_and_of_axes_does_not_matter,
-        test_nobody_follows_itself,
-        test_circle_of_waiting_commands_ends_with_an_error,
         test_wrong_masters_and_ratios_are_refused_and_move_nothing,
         test_way_out_keeps_the_velocity_and_is_for_its_own_kind,
         test_phasing_is_beside_the_follower_and_ends_with_it,

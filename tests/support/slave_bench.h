@@ -93,6 +93,12 @@ static inline void make_and_start(int n, int master, instance_t *fb, const char 
     cycle();
 }
 
+static inline void expect_error(const instance_t *fb, cm1e_error_t error)
+{
+    MUST(fb->now.error && fb->now.error_id == cm1e_error_id(error), "%s: Error 0x%04X, 0x%04X is right", name_of(fb),
+         fb->now.error_id, cm1e_error_id(error));
+}
+
 /** So many axes as axes_describe() makes them, changed by `configure` before, in Standstill; no blocks yet. */
 static void slaves_begin_with(int count, void (*configure)(void))
 {
