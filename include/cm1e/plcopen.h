@@ -1,8 +1,9 @@
 /**
  * @file plcopen.h
  * The function blocks of PLCopen Motion Control, Part 1 v2.0, the core of Part 4 v2.0 (axes groups) and Part 5 v2.0,
- * and those of ours for motors behind a bridge (CM_...). Each block is a plain struct, valid when zeroed (see the defaults beside the inputs), and a function
- * of the same name that a program calls once a scan, also while nothing happens:
+ * and those of ours for motors behind a bridge (CM_...). Each block is a plain struct, valid when zeroed (see the
+ * defaults beside the inputs), and a function of the same name that a program calls once a scan, also while nothing
+ * happens:
  *
  *     static MC_Power_t power = {.Axis = &axis, .EnablePositive = TRUE, .EnableNegative = TRUE};
  *     power.Enable = TRUE;
