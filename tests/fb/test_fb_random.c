@@ -26,6 +26,8 @@ static struct bench {
     cm1e_error_t received, health;
     int homing_cycles;              /**< what the drive's own homing takes */
     int homing_cycle[JUDGED_MOST];  /**< -1: none runs; -2: it is over */
+    uint32_t encoder;               /**< what all encoders count, and how fast they do */
+    int encoder_speed;
 } bench;
 
 static void cycle_begin(void);
@@ -34,6 +36,8 @@ static void cycle_end(void);
 #include "random_program.h"
 
 static cm1e_bus_t *motor_of(int n) { return n == 0 ? &bench.bus : &bench.others[n - 1]; }
+
+static cm1e_axis_type_t type_of(int n) { return cm1e_axis_configuration(judged_axes[n].axis)->type; }
 
 /* ---- the drives -------------------------------------------------------------------------------------------------- */
 
@@ -73,9 +77,21 @@ static void turn_shafts(void)
     }
 }
 
+/** Hand wheels, that somebody turns; now and then nobody reads them. */
+static void turn_encoders(void)
+{
+    if (one_in(300))
+        bench.encoder_speed = one_in(3) ? 0 : (int)uniform(-300, 300);
+    bench.encoder += (uint32_t)bench.encoder_speed;
+    for (int n = 0; n < axis_count; n++)
+        if (type_of(n) == CM1E_AXIS_ENCODER && !one_in(3000))
+            (void)cm1e_axis_write_encoder(judged_axes[n].reference, bench.encoder, !one_in(3000));
+}
+
 static void cycle_begin(void)
 {
     turn_shafts();
+    turn_encoders();
     fake_bus_cycle(&bench.bus, judged_axes[0].cycle_ns);
     for (int n = 0; n < axis_count; n++)
         cm1e_axis_inputs(judged_axes[n].axis, bench.received, bench.health, bench.bus.clock.virtual_now_ns);
@@ -110,6 +126,10 @@ static void describe_motor(int n)
     axis.mapping = one_in(4) ? (cm1e_mapping_t)pick(4) : CM1E_MAPPING_DYNAMIC;
     axis.coupling_stop = (cm1e_coupling_stop_t)pick(3);
     axis.cam_points = one_in(2) ? 0 : 8;
+    if (n > 0 && one_in(3)) {
+        axis.type = one_in(4) ? CM1E_AXIS_ENCODER : CM1E_AXIS_VIRTUAL;
+        axis.mapping = CM1E_MAPPING_DYNAMIC;
+    }
     fake_bus_init(motor_of(n), axis.mapping, (cm1e_pdo_order_t)pick(2), (cm1e_firmware_t)pick(CM1E_FIRMWARE_COUNT));
     snprintf(axis.name, sizeof axis.name, "axis%d", n);
     motor_of(n)->config.axes[0] = axis;
@@ -199,7 +219,10 @@ static void time_passes(int64_t time_ns)
         turn_shafts();
 }
 
-static bool has_torque(void) { return motor_of(judged_at)->state == OPERATION_ENABLED; }
+static bool has_torque(void)
+{
+    return type_of(judged_at) == CM1E_AXIS_MOTOR && motor_of(judged_at)->state == OPERATION_ENABLED;
+}
 static bool is_deaf(void) { return bench.health != CM1E_OK; }
 
 /** Under torque in its own mode the drive has what the axis wants; without, it has its own position. */
@@ -209,7 +232,7 @@ static void judge_motor(void)
     const cm1e_image_slot_t slot =
         cm1e_bus_find_output(&bench.bus, (uint16_t)(judged_at + 1), OBJ_607A_TARGET_POSITION, 0);
     const bool holding = bus->state == OPERATION_ENABLED && bus->mode == CM1E_MODE_CSP && slot.bytes;
-    if (!holding || bus->blocked)
+    if (!holding || bus->blocked || type_of(judged_at) != CM1E_AXIS_MOTOR)
         return;
     const double fastest = judged.axis->maximum.velocity * fabs(judged.axis->scale) * (double)judged.cycle_ns * 1e-9;
     const uint32_t target = (uint32_t)cm1e_get_uint(bench.bus.outputs + slot.offset, slot.bytes);

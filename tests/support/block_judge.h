@@ -339,10 +339,9 @@ static bool follows_roughly(const cm1e_axis_t *axis, int depth)
     const follow_t *follow = axis->activity == ACTIVITY_COUPLED ? axis->coupling->now : NULL;
     if (!follow || depth == 0)
         return false;
-    bool rough = follow->linear;
+    bool rough = follow->linear || follow->by_actual;
     for (int i = 0; i < follow->count; i++)
-        rough = rough || follow->links[i].source != mcSetValue ||
-                (follow->links[i].master && follows_roughly(follow->links[i].master, depth - 1));
+        rough = rough || (follow->links[i].master && follows_roughly(follow->links[i].master, depth - 1));
     return rough;
 }
 

@@ -282,7 +282,7 @@ static void judge_sync(int n)
     const cm1e_axis_t *slave = judged.axis, *master = judged_axes[sync->master].axis;
     const bool moved_else = slave->superimposed.id != 0 || slave->coupling->phasing.moving;
     const bool in_gear = fb->now.reached && slave->reached && slave->kind == CM1E_COMMAND_GEAR_IN;
-    if (!sync->asked || !in_gear || moved_else || slave->active != sync->id) {
+    if (!sync->asked || !in_gear || slave->coupling->now->by_actual || moved_else || slave->active != sync->id) {
         sync->id = fb->now.active ? slave->active : 0;
         sync->known = false;
         return;
