@@ -139,6 +139,14 @@ static void brake_after(cm1e_axis_t *axis, const from_t *end, double late_s)
         ramp_down_from(axis, end, &axis->maximum, late_s);
 }
 
+/* The motion of a command goes on only while it could still be stopped before a software limit. Moves to a position
+ * were checked as a whole when they were planned; velocities, and what changes on the way, meet a limit here. */
+static bool may_go_on(const cm1e_axis_t *axis, cm1e_motion_state_t next)
+{
+    return !axis->software_limits || !commanded_motion(axis) ||
+           cm1e_axis_limits_can_stop(axis, axis->base_line, next);
+}
+
 /* The profile ended `late_s` ago, inside the present cycle. Where its command ends with it, the next one has begun at
  * that very moment. TRUE: there is a profile to go on with. */
 static bool profile_ended(cm1e_axis_t *axis, double late_s)
@@ -149,7 +157,8 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
     if (cm1e_axis_step_profile_ended(axis))
         return axis->activity == ACTIVITY_PROFILE;
     if (axis->active && is_endless(axis->kind)) {
-        if (cm1e_axis_begin_waiting(axis, &end, late_s))
+        /* What begins where nothing can stop any more would go beyond the limit. */
+        if (may_go_on(axis, axis->profile.end) && cm1e_axis_begin_waiting(axis, &end, late_s))
             return axis->activity == ACTIVITY_PROFILE; /* not what follows a master */
         axis->reached = true;
         axis->move.passing = true; /* the position lies behind now, whatever else changes */
@@ -168,14 +177,6 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
             brake_after(axis, &end, late_s);
     }
     return axis->activity == ACTIVITY_PROFILE;
-}
-
-/* The motion of a command goes on only while it could still be stopped before a software limit. Moves to a position
- * were checked as a whole when they were planned; velocities, and what changes on the way, meet a limit here. */
-static bool may_go_on(const cm1e_axis_t *axis, cm1e_motion_state_t next)
-{
-    return !axis->software_limits || !commanded_motion(axis) ||
-           cm1e_axis_limits_can_stop(axis, axis->base_line, next);
 }
 
 /* Reckoned a cycle ahead, since the set-point of a cycle waits for it. */

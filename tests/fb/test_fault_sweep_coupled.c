@@ -13,7 +13,7 @@
 enum { MASTER = 0, SLAVE, BESIDE, OTHER, AXES };
 enum { ENABLED = 300, COUPLED = 40, SECOND = 340, TURN = 440, LEAVE = 600, OVER = 680 }; /* from ENABLED on, the rest */
 enum { FAULT_CYCLES = 250, SETTLED = 500, HEALED = 520, RESET = 1700, AGAIN = 1900, END = 2300 };
-enum { STRIDE = 67, SAMPLED_STRIDE = 331 };
+enum { STRIDE = 149, SAMPLED_STRIDE = 601 };
 
 /* ---- the program ------------------------------------------------------------------------------------------------- */
 
@@ -24,31 +24,43 @@ static MC_Stop_t stop[AXES];
 static MC_MoveVelocity_t drive, drive_other;
 static MC_GearIn_t gear, gear_second, gear_beside;
 static MC_CombineAxes_t combine, combine_second;
+static MC_GearInPos_t in_pos;
+static MC_CamTableSelect_t cam_select;
+static MC_CamIn_t cam_in;
+static MC_PhasingRelative_t phasing;
 static MC_GearOut_t gear_out;
+static const MC_CAM_POINT cam_points[] = {{0, 0, 0, 0}, {20, 5, 0, 0}, {40, 0, 0, 0}};
+static const MC_CAM_REF cam_table = {.Points = cam_points, .NumberOfPoints = 3};
 
-typedef enum kind { A_GEAR = 0, A_COMBINATION, KINDS } kind_t;
-static const char *const kind_names[KINDS] = {"MC_GearIn", "MC_CombineAxes"};
+typedef enum kind { A_GEAR = 0, A_COMBINATION, A_GEAR_IN_POS, A_CAM, A_PHASED_GEAR, KINDS } kind_t;
+static const char *const kind_names[KINDS] = {"MC_GearIn", "MC_CombineAxes", "MC_GearInPos", "MC_CamIn",
+                                              "MC_PhasingRelative"};
 static kind_t kind;
 static cm1e_coupling_stop_t mode;
 
 static void couple(void)
 {
-    if (kind == A_GEAR)
-        gear.Execute = TRUE;
-    else
-        combine.Execute = TRUE;
+    gear.Execute = kind == A_GEAR || kind == A_PHASED_GEAR;
+    combine.Execute = kind == A_COMBINATION;
+    cam_in.Execute = kind == A_CAM;
+    cam_in.CamTableID = cam_select.CamTableID;
+    if (kind == A_GEAR_IN_POS) { /* the master accelerates still */
+        in_pos.MasterSyncPosition = bench_info(&bench, MASTER).set_position + 40;
+        in_pos.SlaveSyncPosition = bench_info(&bench, SLAVE).set_position + 12;
+        in_pos.MasterStartDistance = 30;
+        in_pos.Execute = TRUE;
+    }
 }
 
 /** While it runs another one takes over. */
 static void second(void)
 {
-    if (kind == A_GEAR)
-        gear_second.Execute = TRUE;
-    else
-        combine_second.Execute = TRUE;
+    gear_second.Execute = kind == A_GEAR || kind == A_GEAR_IN_POS || kind == A_CAM;
+    combine_second.Execute = kind == A_COMBINATION;
+    phasing.Execute = kind == A_PHASED_GEAR;
 }
 
-static void leave(void) { gear_out.Execute = kind == A_GEAR; }
+static void leave(void) { gear_out.Execute = kind != A_COMBINATION; }
 
 static void call_blocks(void)
 {
@@ -64,11 +76,19 @@ static void call_blocks(void)
     MC_GearIn(&gear_second);
     MC_CombineAxes(&combine);
     MC_CombineAxes(&combine_second);
+    MC_GearInPos(&in_pos);
+    MC_CamTableSelect(&cam_select);
+    MC_CamIn(&cam_in);
+    MC_PhasingRelative(&phasing);
     MC_GearOut(&gear_out);
 }
 
-static bool coupled(void) { return gear.Busy || gear_second.Busy || combine.Busy || combine_second.Busy; }
-static bool in_step(void) { return gear.InGear || combine.InSync; }
+static bool coupled(void)
+{
+    return gear.Busy || gear_second.Busy || combine.Busy || combine_second.Busy || in_pos.Busy ||
+           cam_in.Busy;
+}
+static bool in_step(void) { return gear.InGear || combine.InSync || in_pos.InSync || cam_in.InSync; }
 
 /* ---- faults ------------------------------------------------------------------------------------------------------ */
 
@@ -141,7 +161,7 @@ static void stall(bench_t *b, int ms)
 static void inject(bench_t *b)
 {
     armed_cycles = FAULT_CYCLES;
-    coupled_then = coupled();
+    coupled_then = coupled() && fault_cycle < LEAVE;
     for (uint32_t n = 0; n < AXES; n++)
         bench_probe_reset(b, n);
     if (faults[fault].console)
@@ -181,7 +201,8 @@ static void judge_settled(bench_t *b)
         MUST(b, !failed || settled[n].set_velocity == 0, "axis %u: %g u/s in ErrorStop", n, settled[n].set_velocity);
     }
     const bool master_failed = faults[fault].fails & M || fault == FAULT_MASTER_OFF;
-    if (coupled_then && master_failed && faults[fault].fails != ALL)
+    const bool waited = in_pos.Error && settled[SLAVE].state == CM1E_AXIS_STANDSTILL; /* for its StartSync */
+    if (coupled_then && master_failed && faults[fault].fails != ALL && !waited)
         MUST(b, settled[SLAVE].state == CM1E_AXIS_ERROR_STOP && is_coupling_error(settled[SLAVE].error),
              "the slave of a master that failed: %s, %s", cm1e_axis_state_name(settled[SLAVE].state), text[SLAVE]);
     MUST(b, settled[SLAVE].state != CM1E_AXIS_ERROR_STOP || !coupled(), "the slave failed, and its block is Busy");
@@ -196,7 +217,7 @@ static void recover(bench_t *b)
         if (faults[fault].heal)
             bench_console(b, "%s", faults[fault].heal);
         drive.Execute = drive_other.Execute = gear.Execute = gear_beside.Execute = combine.Execute = FALSE;
-        gear_second.Execute = combine_second.Execute = FALSE;
+        gear_second.Execute = combine_second.Execute = in_pos.Execute = cam_in.Execute = FALSE;
         for (int n = 0; n < AXES; n++) { /* whoever still moves is stopped */
             stop[n].Execute = TRUE;
             power[n].Enable = TRUE;
@@ -255,7 +276,7 @@ static void program(bench_t *b)
             MUST(b, power[n].Status, "axis %u is not enabled: %s", n, text[n]);
         }
     const bool clean = fault == FAULT_NONE || fault == FAULT_FRAME_LOST;
-    if (clean && since > COUPLED + 260 && since < SECOND)
+    if (clean && kind != A_GEAR_IN_POS && since > COUPLED + 260 && since < SECOND)
         MUST(b, in_step(), "not in step, %s", cm1e_axis_state_name(bench_info(b, SLAVE).state));
     if (over_cycle < 0 && (clean ? since == OVER : since == fault_cycle + FAULT_CYCLES))
         over_cycle = b->cycle;
@@ -314,6 +335,12 @@ static void start(void)
     gear_second.RatioNumerator = -3;
     combine_second = combine;
     combine_second.CombineMode = mcSubAxes;
+    in_pos = (MC_GearInPos_t){.Master = &axis[MASTER], .Slave = &axis[SLAVE], MC_GEARINPOS_DEFAULTS, .Velocity = 400};
+    cam_select = (MC_CamTableSelect_t){.Master = &axis[MASTER], .Slave = &axis[SLAVE], .CamTable = &cam_table,
+                                       .Execute = TRUE, .Periodic = TRUE};
+    cam_in = (MC_CamIn_t){.Master = &axis[MASTER], .Slave = &axis[SLAVE], .StartMode = mcRampIn, .SlaveOffset = 1};
+    phasing = (MC_PhasingRelative_t){.Master = &axis[MASTER], .Slave = &axis[SLAVE], .PhaseShift = -3, .Velocity = 40,
+                                     .Acceleration = 300, .Deceleration = 300, .Jerk = 6000};
     gear_out = (MC_GearOut_t){.Slave = &axis[SLAVE]};
     bench_open(&bench);
     cm1e_nic_set_tap(cm1e_bus_nic(bench.bus), sweep_tap, &bench);

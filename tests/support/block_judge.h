@@ -265,7 +265,8 @@ static void call(instance_t *fb)
     const block_view_t *v = fb->view;
     judged_at = fb->of;
     const cm1e_axis_state_t state = judged.axis->state;
-    const bool before_it = judged.axis->active || judged.axis->waiting.count > 0; /* MC_GearInPos, until StartSync */
+    /* MC_GearInPos waits for its StartSync, alone or behind another command. */
+    const bool before_it = judged.axis->active || judged.axis->waiting.count > 0 || judged.axis->coupling->next;
     const bool may_wait = before_it && v->buffer_mode != NOWHERE && fb->memory[v->buffer_mode] != mcAborting;
     MUST(state == judged.state, "the state changed from %s to %s between two calls", cm1e_axis_state_name(judged.state),
          cm1e_axis_state_name(state));
@@ -291,6 +292,7 @@ static struct watched_axis {
     position_t set;
     double velocity, acceleration;
     bool searched;             /**< a homing, or the stop that ended it */
+    bool rough;                /**< it followed roughly, and has not been at rest since */
     bool hard;                 /**< it had no limit of jerk */
     bool resting;
     cm1e_motion_limits_t maximum, most; /**< of the axis; largest since it was at rest */
@@ -394,8 +396,9 @@ static inline void watch_set_point(void)
     const bool stop = !axis->active || axis->kind == CM1E_COMMAND_HALT || axis->kind == CM1E_COMMAND_STOP ||
                       axis->paused;
     const bool ours = set_point_is_ours(), stepping = watched.searched; /* lets go of what it pushes at */
+    watched.rough = follows_roughly(axis, JUDGED_MOST) || (watched.rough && ours && watched.velocity != 0.0);
     const bool is_hard = axis->state == CM1E_AXIS_ERROR_STOP || stepping || (stop && axis->software_limits) ||
-                         follows_roughly(axis, JUDGED_MOST);
+                         watched.rough;
     const bool hard = is_hard || watched.hard;
     const double largest = fmax(most->acceleration, most->deceleration), slack = 1.0 + 1e-6;
     if (ours && watched.ours && !hard && !watched.lost) {
