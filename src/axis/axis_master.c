@@ -194,7 +194,7 @@ static inline master_trouble_t look(cm1e_axis_t *slave, follow_t *follow, bool o
     for (int i = 0; i < follow->count; i++) {
         link_t *link = &follow->links[i];
         const sight_t before = link->seen;
-        position_t position;
+        position_t position = {0};
         const master_trouble_t trouble = see(link, &position);
         if (trouble)
             worst = trouble_with(slave, link, trouble);
