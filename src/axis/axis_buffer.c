@@ -271,8 +271,8 @@ bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offse
 {
     while (axis->waiting.count > 0) {
         const cm1e_command_kind_t kind = (cm1e_command_kind_t)waiting_move(axis, 0)->kind;
-        if (axis->superimposed.id && (is_homing(kind) || is_table(kind)))
-            return false; /* nothing goes on top of these: they wait for its end */
+        if (axis->superimposed.id && (axis->superimposed.alone || is_homing(kind) || is_table(kind)))
+            return false; /* nothing goes on top of these, or it has all the limits: they wait for its end */
         if (is_coupling(kind) && cm1e_axis_coupling_awaits(axis, from, offset_s))
             return false;
         move_t move = take_first(axis);
