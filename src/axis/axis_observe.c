@@ -60,6 +60,8 @@ void cm1e_axis_observe(cm1e_axis_t *axis)
         return;
     }
     own->lost = fresh ? 0 : own->lost + (own->lost < UINT32_MAX);
+    if (own->lost > limit) /* nobody is shown it, and an estimate that went on for days could not be counted */
+        return;
     cm1e_observer_step(&own->filter, axis_actual(axis).counts, fresh);
     look(axis);
 }

@@ -279,6 +279,19 @@ static void test_after_a_long_silence_an_encoder_is_where_it_says(void)
     TEST_ASSERT_EQUAL_DOUBLE(0.0, axes_info(SLAVE).set_position);
 }
 
+/* It would be farther and farther away, in the end than numbers are. */
+static void test_an_estimate_does_not_go_on_through_a_long_silence(void)
+{
+    begin_with(steady, 0.0);
+    axes_cycles(500);
+    encoder.silent = 10000;
+    axes_cycles(100);
+    const observed_t before = axes_axis(MASTER)->coupling->own;
+    TEST_ASSERT_TRUE(before.filter.velocity != 0.0);
+    axes_cycles(9000);
+    TEST_ASSERT_EQUAL_INT64(before.filter.counts, axes_axis(MASTER)->coupling->own.filter.counts);
+}
+
 /* ---- motors ------------------------------------------------------------------------------------------------------ */
 
 static void begin_motors(void)
@@ -377,6 +390,7 @@ int main(void)
     RUN_TEST(test_an_encoder_is_shifted);
     RUN_TEST(test_a_coupling_from_a_program_begins_without_a_step);
     RUN_TEST(test_after_a_long_silence_an_encoder_is_where_it_says);
+    RUN_TEST(test_an_estimate_does_not_go_on_through_a_long_silence);
     RUN_TEST(test_actual_value_of_a_motor_that_moves);
     RUN_TEST(test_a_master_by_its_actual_value_may_be_disabled);
     RUN_TEST(test_a_virtual_master_by_its_actual_value);
