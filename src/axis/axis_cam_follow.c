@@ -61,10 +61,7 @@ static void sample_point(const cm1e_axis_t *axis, const follow_t *follow, const 
     const cm1e_curve_point_t here = {.slope = steeper * sample->point.slope,
                                      .curvature = steeper * sample->point.curvature * cam->finer};
     const cm1e_motion_state_t motion = cm1e_curve_motion(&here, seen->velocity, seen->acceleration);
-    double counts = height(cam, sample) * axis->scale;
-    if (!(fabs(counts) < (double)CM1E_FARTHEST_COUNTS)) /* the guard finds it too fast */
-        counts = copysign((double)CM1E_FARTHEST_COUNTS, counts);
-    *point = (from_t){.position = cm1e_position_plus(cam->slave_zero, counts),
+    *point = (from_t){.position = cm1e_position_towards(cam->slave_zero, height(cam, sample) * axis->scale),
                       .velocity = motion.velocity, .acceleration = motion.acceleration};
 }
 
@@ -107,7 +104,7 @@ void cm1e_axis_cam_point(const cm1e_axis_t *axis, const follow_t *follow, double
     if (!table->periodic && place >= table->start - within && place <= table->start + table->length + within)
         place = fmax(table->start + within, fmin(place, table->start + table->length - within));
     cm1e_cam_sample(table, &unused, place, &sample);
-    *position = cm1e_position_plus(cam->slave_zero, height(cam, &sample) * axis->scale);
+    *position = cm1e_position_towards(cam->slave_zero, height(cam, &sample) * axis->scale);
     *point = (cm1e_curve_point_t){.slope = cam->slave_scaling * once * sample.point.slope,
                                   .curvature = cam->slave_scaling * once * once * sample.point.curvature};
 }
@@ -158,23 +155,17 @@ static bool take_scaling(double asked, double *scaling)
     return fabs(*scaling) <= largest_scaling && fabs(*scaling) >= 1.0 / largest_scaling;
 }
 
-/* Not what is no number either. */
-static bool can_be_counted(const cm1e_axis_t *axis, double units)
+static cm1e_error_t take_numbers(const cm1e_axis_t *axis, const cm1e_axis_t *master,
+                                 const cm1e_axis_coupling_t *coupling, cam_place_t *cam)
 {
-    return fabs(units * axis->scale) < (double)CM1E_FARTHEST_COUNTS;
-}
-
-static cm1e_error_t take_numbers(const cm1e_axis_t *axis, const cm1e_axis_coupling_t *coupling, cam_place_t *cam)
-{
-    const cm1e_axis_t *master = cm1e_axis_from_reference(&coupling->master[0].axis);
     if (!master)
         return CM1E_ERROR_AXIS_MASTER;
     if (!take_scaling(coupling->master_scaling, &cam->master_scaling) ||
         !take_scaling(coupling->slave_scaling, &cam->slave_scaling))
         return CM1E_ERROR_AXIS_RATIO;
-    if (!can_be_counted(axis, coupling->slave_offset) || !can_be_counted(master, coupling->master_offset) ||
-        !can_be_counted(master, coupling->master_start_distance) ||
-        !can_be_counted(master, coupling->master_sync_position))
+    if (!cm1e_axis_counts_as_far(axis, coupling->slave_offset) || !cm1e_axis_counts_as_far(master, coupling->master_offset) ||
+        !cm1e_axis_counts_as_far(master, coupling->master_start_distance) ||
+        !cm1e_axis_counts_as_far(master, coupling->master_sync_position))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     cam->finer = 1.0 / cam->master_scaling;
     cam->master_offset = coupling->master_offset;
@@ -213,7 +204,10 @@ static cm1e_error_t find_slave_zero(const cm1e_axis_t *axis, const cm1e_axis_cou
                                     cam_place_t *cam, double here)
 {
     if (coupling->start_mode == mcRelative || !cam->slot->slave_absolute) {
-        cam->slave_zero = cm1e_position_plus(from->position, (cam->slave_offset - here) * axis->scale);
+        const double way = (cam->slave_offset - here) * axis->scale;
+        if (!cm1e_position_reaches(from->position, way))
+            return CM1E_ERROR_AXIS_POSITION_RANGE;
+        cam->slave_zero = cm1e_position_plus(from->position, way);
         return CM1E_OK;
     }
     if (axis->modulo_range == 0.0)
@@ -259,8 +253,6 @@ static cm1e_error_t by_way(cm1e_axis_t *axis, follow_t *follow, const move_t *mo
     const cm1e_cam_t *table = &cam->slot->cam;
     const bool absolute = cam->slot->slave_absolute && coupling->start_mode != mcRelative;
     const double scale = follow->links[0].master->scale;
-    if (!isfinite(coupling->master_start_distance) || !isfinite(coupling->master_sync_position))
-        return CM1E_ERROR_AXIS_POSITION_RANGE;
     way_t *way = &follow->way;
     way->then = follow->kind;
     way->mode = mcShortest;
@@ -283,7 +275,7 @@ cm1e_error_t cm1e_axis_cam_prepare(cm1e_axis_t *axis, const move_t *move, const 
         return CM1E_ERROR_AXIS_CAM_ID;
     if ((unsigned)coupling->start_mode > mcRampIn)
         return CM1E_ERROR_INVALID_ARGUMENT;
-    cm1e_error_t error = take_numbers(axis, coupling, cam);
+    cm1e_error_t error = take_numbers(axis, cm1e_axis_from_reference(&coupling->master[0].axis), coupling, cam);
     if (!error)
         error = cm1e_axis_link(axis, follow, &coupling->master[0]);
     if (error)
@@ -324,7 +316,7 @@ cm1e_error_t cm1e_axis_cam_update(cm1e_axis_t *axis, const cm1e_axis_coupling_t 
     const from_t from = from_base(axis);
     cam_place_t cam = now->cam; /* zeros and all: relative values count from where the command began (2.4.6) */
     cm1e_motion_limits_t limits;
-    cm1e_error_t error = take_numbers(axis, coupling, &cam);
+    cm1e_error_t error = take_numbers(axis, now->links[0].master, coupling, &cam);
     if (!error)
         error = cm1e_axis_limits_of(axis, &from, &axis->move, &limits);
     if (error)

@@ -58,11 +58,8 @@ static void plan_rest(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits)
                             : cm1e_profile_to_velocity(&rest->profile, &rest->now, 0.0, limits);
     rest->cycles = 0;
     rest->on = error || rest->profile.duration_s > 0.0 || rest->now.position != 0.0;
-    if (error) { /* numbers that doubles cannot hold: as it is, for the guard to judge */
-        rest->profile.segment_count = 0;
-        rest->profile.duration_s = INFINITY;
-        rest->profile.end = rest->now;
-    }
+    if (error) /* numbers that doubles cannot hold: it ends as it is, for the guard to judge */
+        rest->profile = (cm1e_profile_t){.end = rest->now};
 }
 
 static void next_of_rest(cm1e_axis_t *axis)

@@ -13,10 +13,7 @@ static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
         velocity += link->seen.velocity * link->ratio;
         acceleration += link->seen.acceleration * link->ratio;
     }
-    /* What is beyond all that can be counted, the guard finds too fast. */
-    if (!(fabs(counts) < (double)CM1E_FARTHEST_COUNTS))
-        counts = copysign((double)CM1E_FARTHEST_COUNTS, counts);
-    *point = (from_t){cm1e_position_plus(follow->anchor, counts), velocity, acceleration, false};
+    *point = (from_t){cm1e_position_towards(follow->anchor, counts), velocity, acceleration, false};
 }
 
 static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link)

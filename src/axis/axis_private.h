@@ -48,6 +48,13 @@ static inline bool cm1e_position_reaches(position_t from, double counts)
     return fabs(counts) < (double)CM1E_FARTHEST_COUNTS && cm1e_position_in_range(cm1e_position_plus(from, counts));
 }
 
+/** As far there as the axis counts: for what is judged by how fast it is, and found too fast. */
+static inline position_t cm1e_position_towards(position_t from, double counts)
+{
+    const double most = (double)CM1E_FARTHEST_COUNTS;
+    return cm1e_position_plus(from, fabs(counts) < most ? counts : copysign(most, counts));
+}
+
 /** Where the set-point comes from. */
 typedef enum activity {
     ACTIVITY_FREE = 0, /**< nowhere: no torque, the set-point is the actual position */
@@ -500,6 +507,11 @@ cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, 
                                       position_t from, double velocity, double stop, position_t *target);
 /** From now on the axis is at `units` when it is at `at`; on a modulo axis `units` is less than a turn. */
 void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units);
+/** Whether a way of so many u can be counted; what is not a number cannot. */
+static inline bool cm1e_axis_counts_as_far(const cm1e_axis_t *axis, double units)
+{
+    return fabs(units * axis->scale) < (double)CM1E_FARTHEST_COUNTS;
+}
 /** u; about where that range ends. */
 double cm1e_axis_farthest(const cm1e_axis_t *axis);
 void cm1e_axis_track(cm1e_axis_t *axis);

@@ -53,8 +53,7 @@ static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
     }
     const cm1e_curve_point_t here = point_at(way, master);
     const cm1e_motion_state_t motion = cm1e_curve_motion(&here, link->seen.velocity, link->seen.acceleration);
-    const double most = (double)CM1E_FARTHEST_COUNTS, height = motion.position * axis->scale;
-    *point = (from_t){.position = cm1e_position_plus(way->begin, fmax(-most, fmin(height, most))),
+    *point = (from_t){.position = cm1e_position_towards(way->begin, motion.position * axis->scale),
                       .velocity = motion.velocity, .acceleration = motion.acceleration};
 }
 
@@ -113,6 +112,8 @@ static cm1e_error_t plan(cm1e_axis_t *axis, follow_t *follow, const from_t *from
     if (!cm1e_axis_limits_contain_way(axis, from, extremes.lowest, extremes.highest))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     const double shift = (end.position - place) * axis->scale; /* turns of a modulo slave */
+    if (!cm1e_position_reaches(meeting, shift))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
     way->curve = curve;
     way->first = first;
     way->steepest = fmax(fabs(extremes.least_slope), fabs(extremes.most_slope));
@@ -259,7 +260,8 @@ cm1e_error_t cm1e_axis_gear_in_pos_prepare(cm1e_axis_t *axis, const move_t *move
     const link_t *link = &follow->links[0];
     const cm1e_axis_t *master = link->master;
     way_t *way = &follow->way;
-    if (!is_place(master, coupling->master_sync_position) || !isfinite(coupling->master_start_distance) ||
+    if (!is_place(master, coupling->master_sync_position) ||
+        !cm1e_axis_counts_as_far(master, coupling->master_start_distance) ||
         !cm1e_axis_position_from_units(axis, coupling->slave_sync_position, &way->end))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     way->then = follow->kind;

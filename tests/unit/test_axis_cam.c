@@ -598,6 +598,11 @@ static void test_wrong_inputs_are_refused(void)
         coupling.slave_offset = i < 3 ? 0 : bad[0];
         cam_refused(&coupling, CM1E_ERROR_AXIS_POSITION_RANGE);
     }
+    points[0] = (MC_CAM_POINT){0, 1e30, 0, 0};
+    points[1] = (MC_CAM_POINT){1, 2e30, 0, 0};
+    const MC_CAM_REF far = {points, 2, mcCamPolynomial5};
+    coupling = by_cam(selected(SLAVE, &far, true, false), mcRelative);
+    cam_refused(&coupling, CM1E_ERROR_AXIS_POSITION_RANGE);
     coupling = by_cam(id, mcRampIn);
     coupling.slave_offset = 1e300;
     cam_refused(&coupling, CM1E_ERROR_AXIS_POSITION_RANGE);
