@@ -18,7 +18,7 @@ typedef struct MC_CamTableSelect {
     AXIS_REF_t *Slave;          /**< whose memory takes the cam */
     const MC_CAM_REF *CamTable; /**< copied at the edge */
     BOOL Execute;
-    BOOL Periodic;              /**< TRUE: the cam begins again at its end; FALSE: once */
+    BOOL Periodic;              /**< TRUE: the cam begins again at its end; FALSE: it is run once */
     BOOL MasterAbsolute;        /**< TRUE: its master positions are those of the master; FALSE: they count from the
                                      start */
     BOOL SlaveAbsolute;         /**< TRUE: its slave positions are those of the slave; FALSE: they count from the

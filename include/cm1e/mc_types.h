@@ -70,10 +70,10 @@ typedef enum E_JogMode {
     MC_JOGMODE_INCHING_MODULO = 4, /**< as INCHING, to the next multiple of Position */
 } E_JogMode;
 
-/** How MC_CamIn places a cam (4.3). */
+/** How MC_CamIn places a cam, and how the slave gets there (4.3). */
 typedef enum MC_START_MODE {
-    mcAbsolute = 0, /**< where its positions say */
-    mcRelative = 1, /**< from where master or slave are at the start */
+    mcAbsolute = 0, /**< as MC_CamTableSelect says; the slave is there already */
+    mcRelative = 1, /**< ... but the slave's positions count from where it is at the start */
     mcRampIn = 2,   /**< as MC_CamTableSelect says; the slave gets into it while the master goes on */
 } MC_START_MODE;
 

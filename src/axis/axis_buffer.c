@@ -206,7 +206,7 @@ static cm1e_error_t check_behind(cm1e_axis_t *axis, int index, move_t *move)
 static bool hands_over(const cm1e_axis_t *axis)
 {
     const follow_t *follow = axis->coupling->now;
-    return is_coupling(axis->kind) ? !follow->waits_for_end || follow->ended : is_endless(axis->kind);
+    return is_coupling(axis->kind) ? !follow->waits_for_end || follow->cam.left != 0.0 : is_endless(axis->kind);
 }
 
 cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move)

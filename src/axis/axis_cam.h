@@ -86,6 +86,8 @@ typedef struct cam_place {
     cm1e_cam_place_t place;
     cm1e_cam_sample_t before;      /**< of the last cycle, without its point ... */
     bool sampled;                  /**< ... if there was one */
+    double entered;                /**< turn from which the master came onto a single-shot cam; 0: it began on it */
+    double left;                   /**< ... and to which it left it, having gone through it; 0: not yet */
 } cam_place_t;
 
 cm1e_error_t cm1e_axis_cams_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */

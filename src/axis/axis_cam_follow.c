@@ -23,6 +23,13 @@ static double place_now(const follow_t *follow)
     return place_in_cam(&follow->cam, &follow->links[0], follow->links[0].seen.counts);
 }
 
+/* A single-shot that was gone through is not run again, whatever the master does: its slave stays at that end (4.1). */
+static double place_to_be(const follow_t *follow)
+{
+    const cam_place_t *cam = &follow->cam;
+    return cam->left == 0.0 ? place_now(follow) : cam->left * INFINITY;
+}
+
 /* u, from the slave's zero. */
 static double height(const cam_place_t *cam, const cm1e_cam_sample_t *sample)
 {
@@ -52,6 +59,18 @@ static bool came_over_end(const cam_place_t *cam, const cm1e_cam_sample_t *now)
            ends_below(table, now, false) < ends_below(table, &cam->before, false);
 }
 
+/* Back where it came onto the cam, the master may begin it again; a little way to and fro there does no harm. */
+static void remember(cam_place_t *cam, const cm1e_cam_sample_t *now)
+{
+    if (!cam->sampled)
+        cam->entered = now->turn;
+    else if (!cam->slot->cam.periodic && cam->left == 0.0 && now->turn != 0.0 && now->turn != cam->entered)
+        cam->left = now->turn;
+    cam->before.turn = now->turn;
+    cam->before.phase = now->phase;
+    cam->sampled = true;
+}
+
 static void sample_point(const cm1e_axis_t *axis, const follow_t *follow, const cm1e_cam_sample_t *sample,
                          from_t *point)
 {
@@ -69,15 +88,12 @@ static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
 {
     cam_place_t *cam = &follow->cam;
     cm1e_cam_sample_t sample;
-    cm1e_cam_sample(&cam->slot->cam, &cam->place, place_now(follow), &sample);
+    cm1e_cam_sample(&cam->slot->cam, &cam->place, place_to_be(follow), &sample);
     if (came_over_end(cam, &sample)) {
         axis->coupling->end_of_profile = true;
         axis->coupling->ends++;
-        follow->ended = !cam->slot->cam.periodic;
     }
-    cam->before.turn = sample.turn;
-    cam->before.phase = sample.phase;
-    cam->sampled = true;
+    remember(cam, &sample);
     sample_point(axis, follow, &sample, point);
 }
 

@@ -187,7 +187,8 @@ static void after_set_point(cm1e_axis_t *axis)
     if (axis->superimposed.id)
         cm1e_axis_superimposed_after(axis);
     axis->reached = !rest->on && c->now->in_step;
-    if (axis->reached && axis->waiting.count > 0 && (!c->now->waits_for_end || c->end_of_profile || c->now->ended)) {
+    if (axis->reached && axis->waiting.count > 0 &&
+        (!c->now->waits_for_end || c->end_of_profile || c->now->cam.left != 0.0)) {
         const from_t from = from_base(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
     }

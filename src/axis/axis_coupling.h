@@ -62,7 +62,6 @@ typedef struct follow {
     bool in_step;                  /**< F itself is what was commanded: no way into step any more */
     bool by_actual;                /**< of one master at least: what is seen has no limit of jerk */
     bool waits_for_end;            /**< commands that wait do so until EndOfProfile (cams) instead of InSync */
-    bool ended;                    /**< a single-shot cam has come over one of its ends */
     bool linear;                   /**< F's acceleration jumps by its nature: no limit of jerk holds */
     cam_place_t cam;
     way_t way;

@@ -170,7 +170,14 @@ static void master_wanders(int cycles, double (*ideal)(double master))
 
 static double hill_back(double x) { return hill(x, 0.6, 0); }
 static double hill_on(double x) { return hill(x, 0.6, 1); }
-static double hill_once(double x) { return x <= 0 ? 0 : x >= 10 ? 1 : hill(x, 0.6, 1); }
+
+/* 4.1: run only once; the slave stays at the end, also when the master comes back. */
+static bool gone_through;
+static double hill_once(double x)
+{
+    gone_through = gone_through || x >= 10;
+    return gone_through ? 1 : x <= 0 ? 0 : hill(x, 0.6, 1);
+}
 
 static void test_at_every_sample_the_slave_is_on_the_cam(void)
 {
@@ -178,6 +185,7 @@ static void test_at_every_sample_the_slave_is_on_the_cam(void)
         {0, true, hill_back}, {1, true, hill_on}, {1, false, hill_once}};
     for (int i = 0; i < 3; i++)
         for (int slave_first = 0; slave_first < 2; slave_first++) {
+            gone_through = false;
             axes_begin(2);
             axes_bench.order[0] = slave_first ? SLAVE : MASTER;
             axes_bench.order[1] = slave_first ? MASTER : SLAVE;
@@ -354,24 +362,45 @@ static void test_end_of_profile_of_a_periodic_cam(void)
     }
 }
 
-static void test_end_of_profile_of_a_single_shot(void)
+typedef struct single_move {
+    double stop;  /* of the master */
+    int ends;     /* that were shown on the way */
+    double slave; /* at its end */
+} single_move_t;
+
+/* From where master and slave are. */
+static void go_over_single_shot(double master, double slave, const single_move_t *moves, int count)
 {
     axes_begin(2);
+    axes_wait(MASTER, axes_move_to(MASTER, master, 8), 10000);
+    axes_wait(SLAVE, axes_move_to(SLAVE, slave, 8), 10000);
     const cm1e_axis_coupling_t coupling = by_cam(select_hill(0.6, 1, false, true, true), mcAbsolute);
     const cm1e_command_id_t id = cam_in(&coupling);
-    static const struct { double stop; int ends; double slave; } moves[] = {
-        {-5, 0, 0}, {5, 0, 0.6}, {15, 1, 1}, {30, 0, 1}, {8, 0, NAN}, {10, 1, 1}, {-3, 1, 0}, {20, 1, 1}, {10, 0, 1}};
-    for (int i = 0; i < 9; i++) {
+    for (int i = 0; i < count; i++) {
         const uint32_t ends = axes_status(SLAVE, id).ends;
         const cm1e_command_id_t move = axes_move_to(MASTER, moves[i].stop, 8);
         while (axes_status(MASTER, move).state == CM1E_COMMAND_ACTIVE)
             axes_cycles(1);
         TEST_ASSERT_EQUAL_INT(moves[i].ends, axes_status(SLAVE, id).ends - ends);
-        if (!isnan(moves[i].slave))
-            TEST_ASSERT_DOUBLE_WITHIN(1e-9, moves[i].slave, set_of(SLAVE));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, moves[i].slave, set_of(SLAVE));
         TEST_ASSERT_TRUE(axes_status(SLAVE, id).reached);
         axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
     }
+}
+
+/* 4.1, 4.3: run only once, in either direction. Back over the end by which it came, a master has not run it. */
+static void test_end_of_profile_of_a_single_shot(void)
+{
+    static const single_move_t up[] = {{-5, 0, 0}, {5, 0, 0.6}, {-3, 1, 0}, {5, 0, 0.6}, {15, 1, 1},
+                                       {30, 0, 1}, {8, 0, 1},   {-3, 0, 1}, {20, 0, 1}};
+    static const single_move_t down[] = {{15, 0, 1}, {5, 0, 0.6}, {11, 1, 1}, {-3, 1, 0}, {5, 0, 0}, {15, 0, 0}};
+    static const single_move_t from_within[] = {{7, 0, NAN}, {-1, 1, 0}, {5, 0, 0}, {15, 0, 0}};
+    single_move_t within[4];
+    memcpy(within, from_within, sizeof within);
+    within[0].slave = hill(7, 0.6, 1);
+    go_over_single_shot(0, 0, up, 9);
+    go_over_single_shot(10, 1, down, 6);
+    go_over_single_shot(5, 0.6, within, 4);
 }
 
 /* Table 4: a command behind a cam begins at EndOfProfile. A relative one counts from that very end, which lay inside a
