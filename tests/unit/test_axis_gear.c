@@ -98,6 +98,32 @@ static void test_out_of_gear_while_it_accelerates(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, velocity, axes_info(SLAVE).set_velocity);
 }
 
+/* Table 4: what waits behind begins at Done, but not in the middle of an acceleration. */
+static void test_what_waits_behind_the_way_out_begins_when_the_velocity_is_there(void)
+{
+    const cm1e_axis_command_t behind = {.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 1.0, .buffer_mode = mcBuffered};
+    for (int accelerating = 0; accelerating < 2; accelerating++) {
+        if (accelerating)
+            axes_end(), axes_begin(2);
+        axes_gear_in(SLAVE, MASTER, 1, 1);
+        axes_move_velocity(MASTER, 10.0);
+        axes_cycles(accelerating ? 60 : 2000);
+        const double velocity = axes_info(SLAVE).set_velocity;
+        axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_OUT});
+        const cm1e_command_id_t id = axes_command(SLAVE, &behind);
+        int waited = 0;
+        while (axes_status(SLAVE, id).state == CM1E_COMMAND_BUFFERED) {
+            axes_cycles(1);
+            waited++;
+        }
+        TEST_ASSERT_EQUAL(accelerating, waited > 1);
+        TEST_ASSERT_TRUE(waited < 500);
+        TEST_ASSERT_DOUBLE_WITHIN(1.0, velocity, axes_info(SLAVE).set_velocity);
+        axes_wait_reached(SLAVE, id, 2000);
+        TEST_ASSERT_EQUAL_DOUBLE(1.0, axes_info(SLAVE).set_velocity);
+    }
+}
+
 static void test_gear_out_does_not_end_a_cam_nor_anything_else(void)
 {
     const cm1e_axis_command_t gear_out = {.kind = CM1E_COMMAND_GEAR_OUT}, cam_out = {.kind = CM1E_COMMAND_CAM_OUT};
@@ -151,6 +177,7 @@ int main(void)
     RUN_TEST(test_it_gets_into_step_with_a_master_that_accelerates);
     RUN_TEST(test_out_of_gear_it_keeps_its_velocity);
     RUN_TEST(test_out_of_gear_while_it_accelerates);
+    RUN_TEST(test_what_waits_behind_the_way_out_begins_when_the_velocity_is_there);
     RUN_TEST(test_gear_out_does_not_end_a_cam_nor_anything_else);
     RUN_TEST(test_another_ratio_takes_over_without_a_step);
     RUN_TEST(test_what_cannot_be_followed_is_refused);
