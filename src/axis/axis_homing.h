@@ -1,0 +1,146 @@
+/**
+ * @file axis_homing.h
+ * Homings, of the drive and in steps of the axis, and the motions that a drive makes by itself.
+ */
+#ifndef CM1E_AXIS_AXIS_HOMING_H
+#define CM1E_AXIS_AXIS_HOMING_H
+
+#include "axis/axis_move.h"
+
+enum { HOMING_PARAMETERS = 5 };
+
+/** Drives that home in different ways (axis_home.c). */
+typedef enum homing_kind_id { HOMING_CM1E = 0, HOMING_CM1, HOMING_CM2 } homing_kind_id_t;
+
+typedef enum home_step {
+    HOME_READ = 0,  /**< the unit of the offset over SDO; the axis holds its position */
+    HOME_REST,      /**< it holds its position until the motor stands */
+    HOME_WRITE,     /**< parameters over SDO; the axis holds its position, or stands in homing mode */
+    HOME_SWITCH,    /**< to homing mode */
+    HOME_TAKEN,     /**< the drive takes the parameters over */
+    HOME_START,     /**< start bit set; the status bits are still those of before */
+    HOME_RUN,
+    HOME_SETTLE,    /**< the drive has ended: until the motor stands */
+    HOME_HALT,      /**< halt bit set, or start bit taken away, until the motor stands */
+    HOME_RETURN,    /**< back to the axis's own mode */
+} home_step_t;
+
+/** What comes after the drive has stopped homing. */
+typedef enum home_goal { HOME_GOAL_DONE = 0, HOME_GOAL_HOLD, HOME_GOAL_OFF } home_goal_t;
+
+typedef struct homing {
+    home_step_t step;
+    home_goal_t goal;
+    double position;       /**< u, at the reference */
+    double offset;         /**< counts, as asked for */
+    int32_t raw[HOMING_PARAMETERS]; /**< in the order of homing_objects (axis_home.c) */
+    int32_t k45;           /**< of a CM2: its second digit says what the offset counts in; < 0: not read */
+    uint8_t next;          /**< parameter to write next */
+    uint8_t place;         /**< of the step in the order of its kind */
+    bool submitted;
+    bool away;             /**< the axis's own mode is left */
+    bool unstoppable;      /**< for the text: it did not stop in time */
+    cm1e_sdo_t sdo;
+    uint8_t data[4];
+    int64_t timeout_ns, deadline_ns, step_ns; /**< step_ns: when the step began */
+    int64_t quiet_ns;      /**< since when the motor stands */
+    int64_t told_ns;       /**< since when the bits say "interrupted" */
+    int32_t quiet_position;
+    uint8_t bits_before;   /**< statusword bits 13, 12, 10 before the start */
+    cm1e_error_t refused;  /**< why the last homing could not start, for the text; with the numbers in `sdo` */
+    uint8_t wrong;         /**< for the text: the last parameter that was out of its range, and its value */
+    double wrong_value;
+} homing_t;
+
+typedef enum stepping_phase {
+    STEPPING_SEARCH = 0, /**< it moves, or presses against a stop */
+    STEPPING_STOP,       /**< decided; it brakes, or makes the move of MC_FinishHoming */
+    STEPPING_SETTLE,     /**< the set-point stands: the motor comes to it, or is held up */
+    STEPPING_RELIEVE,    /**< the set-point goes back from where the motor was held up */
+    STEPPING_RELIEVED,
+} stepping_phase_t;
+
+/** A homing in steps (axis_homing_steps.c), in force while CM1E_COMMAND_HOMING_STEP is the active command. */
+typedef struct stepping {
+    cm1e_homing_step_t step;
+    cm1e_motion_limits_t limits;
+    stepping_phase_t phase;
+    cm1e_error_t outcome;           /**< from STEPPING_STOP on */
+    double position;                /**< u, to set at the reference; NAN: none */
+    position_t reference;           /**< where the event was */
+    double search, way;             /**< +-1: direction of the search, and the one it goes now */
+    double travel;                  /**< u */
+    double pace;                    /**< u/s, of the set-point while the motor is pressed */
+    int64_t deadline_ns, pressed_ns;
+    int64_t settled_ns;             /**< a motor that is not at its set-point by then is held up */
+    position_t actual_before;       /**< at the last look */
+    bool level, seen_on, pressed;
+    bool turned_positive, turned_negative; /**< at a limit switch */
+    bool pushing;                   /**< the set-point may be where the motor cannot go */
+    bool after_stop;                /**< MC_Stop ended the step, and the motor is relieved before it is Done */
+    bool referenced;                /**< the last step set a position */
+    bool finishing;                 /**< positions are valid again: software limits hold */
+} stepping_t;
+
+typedef enum drive_step {
+    DRIVE_WRITE = 0, /**< parameters; the axis still holds its position */
+    DRIVE_SWITCH,    /**< to the mode of the motion */
+    DRIVE_GO,        /**< the set-point is announced */
+    DRIVE_MOVE,
+    DRIVE_HALT,      /**< halt bit set, until the motor stands */
+    DRIVE_RETURN,    /**< back to the axis's own mode */
+} drive_step_t;
+
+enum { DRIVE_PARAMETERS = 2 };
+
+/** A motion that the drive does by itself. */
+typedef struct driving {
+    drive_step_t step;
+    home_goal_t goal;
+    bool velocity_mode;      /**< profile velocity instead of profile position */
+    double way;              /**< sign of its direction, in u */
+    int32_t target;          /**< counts of the drive */
+    int32_t target_velocity; /**< counts/s */
+    double speed, braking;   /**< counts/s, counts/s2 */
+    uint32_t raw[DRIVE_PARAMETERS];
+    uint8_t next;            /**< parameter to write next */
+    bool submitted;
+    uint8_t data[4];
+    cm1e_sdo_t sdo;
+    int64_t step_ns, quiet_ns; /**< when the step began; since when the motor stands */
+    int32_t quiet_position;
+} driving_t;
+
+/* axis_home.c */
+/** A method that looks for a switch and not for a stop. */
+bool cm1e_axis_homes_by_switch(const cm1e_axis_t *axis, int method);
+cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *command);
+/** In words: what cm1e_axis_home_prepare() refused for its method or another parameter. */
+void cm1e_axis_home_wrong_text(const cm1e_axis_t *axis, char *text, size_t size);
+void cm1e_axis_home_begin(cm1e_axis_t *axis);
+void cm1e_axis_home_abort(cm1e_axis_t *axis, home_goal_t goal);
+void cm1e_axis_home_step(cm1e_axis_t *axis);
+
+/* axis_homing_steps.c */
+/** What is wrong with a step whatever the state of the axis. */
+cm1e_error_t cm1e_axis_step_check(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move);
+/** Decides how a step begins: `*next` and `*profile`, nothing else. It is in force with cm1e_axis_step_begin(). */
+cm1e_error_t cm1e_axis_step_prepare(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move,
+                                    stepping_t *next, cm1e_profile_t *profile);
+void cm1e_axis_step_begin(cm1e_axis_t *axis, const stepping_t *next, const cm1e_profile_t *profile);
+/** Before every set-point: looks, and decides what the profile is. */
+void cm1e_axis_step_cycle(cm1e_axis_t *axis);
+/** The profile of a step, or of the MC_Stop that ended one, has come to its end. TRUE: what comes next is decided. */
+bool cm1e_axis_step_profile_ended(cm1e_axis_t *axis);
+
+/* axis_drive_profile.c */
+bool cm1e_axis_drive_takes(cm1e_command_kind_t kind);
+/** Checks a command that begins at standstill; nothing has changed then. */
+cm1e_error_t cm1e_axis_drive_prepare(cm1e_axis_t *axis, const from_t *from, move_t *move, driving_t *d);
+void cm1e_axis_drive_begin(cm1e_axis_t *axis, const driving_t *d);
+void cm1e_axis_drive_abort(cm1e_axis_t *axis, home_goal_t goal);
+void cm1e_axis_drive_direction_disabled(cm1e_axis_t *axis, double sign);
+void cm1e_axis_drive_step(cm1e_axis_t *axis);
+void cm1e_axis_drive_write(cm1e_axis_t *axis);
+
+#endif
