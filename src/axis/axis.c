@@ -42,7 +42,7 @@ cm1e_error_t cm1e_axis_create(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t in
     }
     const int64_t cycle_ns = cm1e_bus_configuration(bus)->cycle_time_ns;
     axis->cycle_s = (double)(cycle_ns > 0 ? cycle_ns : MS_IN_NS) * 1e-9;
-    cm1e_axis_guard_init(axis);
+    cm1e_axis_guard_renew(axis);
     axis->drive.command.mode = axis->mode;
     axis->positive_before = true;
     axis->reset_state = CM1E_COMMAND_DONE;

@@ -316,6 +316,7 @@ void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, c
     c->end_of_profile = c->stopping = c->due = false;
     begin_rest(axis, from, asked);
     axis->activity = ACTIVITY_COUPLED;
+    cm1e_axis_guard_renew(axis);
     axis->reached = axis->paused = axis->stands = axis->along_table = false;
 }
 

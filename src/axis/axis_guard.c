@@ -15,10 +15,17 @@ static guard_t broken(guard_limit_t limit, double asked, double allowed)
     return (guard_t){.limit = limit, .asked = asked, .allowed = allowed};
 }
 
+/* A follower keeps what the application allows at present. An axis that is led keeps what it can do: its leader planned
+ * by what was allowed when it began. */
+static const cm1e_motion_limits_t *limits_of(const cm1e_axis_t *axis)
+{
+    return axis_led(axis) ? &axis->system : &axis->maximum;
+}
+
 /* From velocity to velocity within one cycle: through zero both limits are used. */
 static guard_t guard_acceleration(const cm1e_axis_t *axis, const from_t *next)
 {
-    const cm1e_motion_limits_t *most = &axis->system;
+    const cm1e_motion_limits_t *most = limits_of(axis);
     const double v0 = axis->set_velocity, v1 = next->velocity, a = next->acceleration, t = axis->cycle_s;
     const bool turns = v0 * v1 < 0.0, grows = fabs(v1) >= fabs(v0);
     const double bound = turns ? fmax(most->acceleration, most->deceleration)
@@ -38,7 +45,7 @@ static guard_t guard_step(const cm1e_axis_t *axis, const from_t *next, bool kept
 {
     const double t = axis->cycle_s, step = cm1e_position_minus(next->position, axis->set) / axis->scale;
     const double mean = (axis->set_velocity + next->velocity) * 0.5 * t;
-    const double most = fmax(axis->system.acceleration, axis->system.deceleration) * t * t /
+    const double most = fmax(limits_of(axis)->acceleration, limits_of(axis)->deceleration) * t * t /
                         (kept_jerk ? 4.0 : 1.0); /* without, it may change at any moment of the cycle, and be noise */
     /* A double of the whole way has this much noise. */
     const double far = 1e-15 * fabs(cm1e_axis_line(axis, next->position)) + slack_counts / fabs(axis->scale);
@@ -58,7 +65,7 @@ static bool leaves_limits(const cm1e_axis_t *axis, double line)
 
 CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
 {
-    const cm1e_motion_limits_t *most = &axis->system;
+    const cm1e_motion_limits_t *most = limits_of(axis);
     const double v = next->velocity, a = next->acceleration, line = cm1e_axis_line(axis, next->position);
     if (!isfinite(v) || !isfinite(a))
         return broken(GUARD_FINITE, 0.0, 0.0);
@@ -83,9 +90,9 @@ CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *
     return guard;
 }
 
-void cm1e_axis_guard_init(cm1e_axis_t *axis)
+void cm1e_axis_guard_renew(cm1e_axis_t *axis)
 {
-    const cm1e_motion_limits_t *most = &axis->system;
+    const cm1e_motion_limits_t *most = limits_of(axis);
     const double t = axis->cycle_s, either = fmax(most->acceleration, most->deceleration);
     axis->guarding = (guarding_t){
         .velocity = most->velocity,

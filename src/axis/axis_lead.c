@@ -15,6 +15,7 @@ cm1e_error_t cm1e_axis_lead(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader)
         return CM1E_ERROR_AXIS_STATE;
     axis->leader = *leader;
     axis->activity = ACTIVITY_LED;
+    cm1e_axis_guard_renew(axis);
     axis->state = CM1E_AXIS_SYNCHRONIZED_MOTION;
     return CM1E_OK;
 }

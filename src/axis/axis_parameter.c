@@ -125,6 +125,7 @@ static cm1e_error_t write_number(cm1e_axis_t *axis, const parameter_t *parameter
     if (!(value * fabs(axis->scale) >= least_counts * (1.0 - 1e-9)) || !(value <= largest))
         return CM1E_ERROR_AXIS_PARAMETER_RANGE;
     *(double *)((char *)axis + parameter->value) = value;
+    cm1e_axis_guard_renew(axis);
     return CM1E_OK;
 }
 

@@ -425,7 +425,8 @@ static inline guard_t cm1e_axis_guard(const cm1e_axis_t *axis, const from_t *nex
     return cm1e_axis_well_within(axis, next, kept_jerk) ? (guard_t){.limit = GUARD_KEPT}
                                                         : cm1e_axis_look_closely(axis, next, kept_jerk);
 }
-void cm1e_axis_guard_init(cm1e_axis_t *axis); /* @rt init */
+/** When the axis begins to follow or to be led, and when its limits are written. */
+void cm1e_axis_guard_renew(cm1e_axis_t *axis);
 /** ErrorStop with CM1E_ERROR_AXIS_COUPLING_LIMIT, which tells what was asked for and allowed. */
 void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t broken);
 void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size);

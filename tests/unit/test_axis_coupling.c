@@ -2,6 +2,7 @@
 #include "unity.h"
 
 #include "../support/axes_bench.h"
+#include "axis/axis_parameters.h"
 
 void setUp(void) {}
 void tearDown(void) { axes_end(); }
@@ -401,6 +402,39 @@ static void test_after_a_pause_it_is_still_in_step(void)
     }
 }
 
+static void allow(double velocity)
+{
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axes_axis(1), CM1E_PARAMETER_MAX_VELOCITY_APPL, velocity));
+}
+
+/* What the application allows at present bounds a follower too, also when it is lowered on the way. */
+static void test_a_follower_keeps_what_the_application_allows(void)
+{
+    for (int lowered = 0; lowered < 2; lowered++) {
+        axes_begin(2);
+        const cm1e_axis_coupling_t coupling = {.master = {by_ratio(0, 1, 1)}};
+        if (!lowered)
+            allow(2.0);
+        axes_command(1, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN, .coupling = &coupling});
+        axes_move_velocity(0, 1.9);
+        axes_cycles(1000);
+        axes_must_be(1, CM1E_AXIS_SYNCHRONIZED_MOTION);
+        axes_move_velocity(0, 2.5);
+        axes_cycles(lowered ? 1000 : 20);
+        if (lowered) {
+            axes_must_be(1, CM1E_AXIS_SYNCHRONIZED_MOTION);
+            allow(2.0);
+            axes_cycles(1);
+        }
+        while (axes_info(1).set_velocity != 0.0) {
+            TEST_ASSERT_TRUE(axes_info(1).set_velocity <= (lowered ? 2.5 : 2.0) * (1.0 + 1e-6));
+            axes_cycles(1);
+        }
+        axes_must_be(1, CM1E_AXIS_ERROR_STOP);
+        axes_told(1, "up to 2 u/s is right");
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -422,5 +456,6 @@ int main(void)
     RUN_TEST(test_other_commands_take_over_from_a_follower);
     RUN_TEST(test_power_off_ends_it);
     RUN_TEST(test_after_a_pause_it_is_still_in_step);
+    RUN_TEST(test_a_follower_keeps_what_the_application_allows);
     return UNITY_END();
 }
