@@ -1991,6 +1991,7 @@ static const block_member_t members_of_MC_CamOut[] = {
 };
 static void call_MC_CamOut(void *fb) { MC_CamOut(fb); }
 static const cm1e_error_t errors_of_MC_CamOut[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_AXIS_NOT_COUPLED,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
@@ -2051,6 +2052,7 @@ static const block_member_t members_of_MC_GearOut[] = {
 };
 static void call_MC_GearOut(void *fb) { MC_GearOut(fb); }
 static const cm1e_error_t errors_of_MC_GearOut[] = {
+    CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_AXIS_NOT_COUPLED,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
