@@ -254,7 +254,8 @@ int main(int argc, char **argv)
     for (uint32_t i = 0; error == CM1E_OK && i < AXES; i++) {
         axes[i] = cm1e_scheduler_axis(example.scheduler, i);
         power[i] = (MC_Power_t){.Axis = &axes[i], .EnablePositive = TRUE, .EnableNegative = TRUE};
-        add[i] = (MC_AddAxisToGroup_t){.AxesGroup = &group, .Axis = &axes[i], .IdentInGroup = (MC_IDENT_IN_GROUP)(i + 1)};
+        add[i] = (MC_AddAxisToGroup_t){.AxesGroup = &group, .Axis = &axes[i],
+                                       .IdentInGroup = (MC_IDENT_IN_GROUP)(i + 1)};
     }
     if (error == CM1E_OK)
         error = example_run(&example, program, &why);

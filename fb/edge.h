@@ -93,7 +93,8 @@ void fb_fail(cm1e_fb_private_t *fb, cm1e_error_t error);
 
 /** The Enable type: what is to be read, or NULL when disabled or in error. */
 void *fb_enable_on(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle, BOOL enable);
-/** The same for an axis: the axis to be read, or NULL when disabled or in error (2.2.3: such an error needs a new edge). */
+/** The same for an axis: the axis to be read, or NULL when disabled or in error (2.2.3: such an error needs a new
+ *  edge). */
 const cm1e_axis_t *fb_enable(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable);
 /** The same for blocks that read: TRUE and a copy of the axis's data when it can be read. */
 BOOL fb_read(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, cm1e_axis_info_t *info);

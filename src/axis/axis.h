@@ -131,7 +131,8 @@ typedef enum cm1e_command_state {
 typedef struct cm1e_command_status {
     cm1e_command_state_t state;
     cm1e_error_t error;   /**< with CM1E_COMMAND_ERROR */
-    bool reached;         /**< InVelocity, InEndVelocity, ProfileCompleted, InGear, InSync: set value = commanded value */
+    bool reached;         /**< InVelocity, InEndVelocity, ProfileCompleted, InGear, InSync: set value =
+                               commanded value */
     bool synchronizing;   /**< GEAR_IN_POS: StartSync */
     uint32_t ends;        /**< CAM_IN: how often it came over an end of the profile; more than before is EndOfProfile */
     double covered;       /**< MOVE_SUPERIMPOSED: CoveredDistance, u; PHASING_*: the shift (absolute), or what of it was
@@ -218,8 +219,8 @@ typedef struct cm1e_axis_leader {
     /** The axis is led no longer, by MC_Stop, MC_Power, an error of it: `error` as its commands end with, CM1E_OK
      *  where they would be aborted. */
     void (*lost)(void *context, uint32_t index, cm1e_error_t error);
-    /** The motor has come to rest at its last set-point, because no frame was sent for a while: cm1e_axis_after_pause(),
-     *  before the next set-point is asked for. The next ones begin there, from rest. */
+    /** The motor has come to rest at its last set-point, because no frame was sent for a while:
+     *  cm1e_axis_after_pause(), before the next set-point is asked for. The next ones begin there, from rest. */
     void (*paused)(void *context, uint32_t index);
     void *context;
     uint32_t index;                 /**< of the axis, as the leader counts */

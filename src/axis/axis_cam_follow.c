@@ -179,9 +179,10 @@ static cm1e_error_t take_numbers(const cm1e_axis_t *axis, const cm1e_axis_t *mas
     if (!take_scaling(coupling->master_scaling, &cam->master_scaling) ||
         !take_scaling(coupling->slave_scaling, &cam->slave_scaling))
         return CM1E_ERROR_AXIS_RATIO;
-    if (!cm1e_axis_counts_as_far(axis, coupling->slave_offset) || !cm1e_axis_counts_as_far(master, coupling->master_offset) ||
-        !cm1e_axis_counts_as_far(master, coupling->master_start_distance) ||
-        !cm1e_axis_counts_as_far(master, coupling->master_sync_position))
+    if (!cm1e_axis_can_count(axis, coupling->slave_offset) ||
+        !cm1e_axis_can_count(master, coupling->master_offset) ||
+        !cm1e_axis_can_count(master, coupling->master_start_distance) ||
+        !cm1e_axis_can_count(master, coupling->master_sync_position))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     cam->finer = 1.0 / cam->master_scaling;
     cam->master_offset = coupling->master_offset;

@@ -15,8 +15,8 @@
  * acceleration, and whatever the masters do meanwhile.
  *
  * Seams:
- *   - A new kind of F fills the spare `follow_t` (cm1e_axis_follow_spare()), takes its masters in (cm1e_axis_link()) and
- *     calls cm1e_axis_follow(). Nothing has changed before that, so a refusal leaves what runs alone.
+ *   - A new kind of F fills the spare `follow_t` (cm1e_axis_follow_spare()), takes its masters in (cm1e_axis_link())
+ *     and calls cm1e_axis_follow(). Nothing has changed before that, so a refusal leaves what runs alone.
  *   - What a slave sees of a master is made in one place, cm1e_axis_see() (axis_master.c): by its set value, by its
  *     actual value, and with the phase shift, which is a state of motion of its own (`phase`, axis_phasing.c).
  */
@@ -89,7 +89,7 @@ typedef struct rest {
 /** Why a master cannot be followed; for the text. */
 typedef enum master_trouble {
     MASTER_GOOD = 0,
-    MASTER_DESTROYED,                   /**< destroyed */
+    MASTER_DESTROYED,
     MASTER_ERROR_STOP,
     MASTER_STOPPING,               /**< the same, but it is still on its ramp, which can be seen */
     MASTER_FREE,                   /**< no torque, so no set value */
@@ -159,7 +159,7 @@ void cm1e_axis_advance_masters(cm1e_axis_t *axis);
 /** The same for a pause (axis_pause.c). */
 void cm1e_axis_resume_masters(cm1e_axis_t *axis, int64_t pause_ns);
 /** Fills in a master of a `follow` that is not in force yet: origin and sight as of the slave's present set-point.
- *  CM1E_ERROR_AXIS_MASTER, _COUPLING_CYCLE, _MASTER_LOST, _RATIO: nothing follows it. */
+ *  CM1E_ERROR_AXIS_MASTER, _COUPLING_CYCLE, _MASTER_LOST, CM1E_ERROR_INVALID_ARGUMENT: nothing follows it. */
 cm1e_error_t cm1e_axis_link(cm1e_axis_t *slave, follow_t *follow, const cm1e_coupling_master_t *master);
 /** What the slave sees of all its masters in this cycle. */
 master_trouble_t cm1e_axis_see(cm1e_axis_t *slave, follow_t *follow);
@@ -173,10 +173,6 @@ void cm1e_axis_unlink(cm1e_axis_t *axis);
 /* axis_coupling.c */
 cm1e_error_t cm1e_axis_coupling_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */
 void cm1e_axis_coupling_free(cm1e_axis_t *axis);                            /* @rt init */
-cm1e_error_t cm1e_axis_couple(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
-cm1e_error_t cm1e_axis_coupling_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
-/** A waiting one begins; `from` is where the command before it ended, `late_s` before the present set-point. */
-cm1e_error_t cm1e_axis_coupling_begin(cm1e_axis_t *axis, const move_t *move, const from_t *from, double late_s);
 /** The set-point of the cycle. FALSE: it does not come from F any more, but from the axis's profile. */
 bool cm1e_axis_coupled_step(cm1e_axis_t *axis);
 /** An empty place for an F that is being prepared. */
@@ -186,14 +182,24 @@ follow_t *cm1e_axis_follow_spare(cm1e_axis_t *axis);
 void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked);
 /** What was superimposed for so long has become part of the way; u. */
 void cm1e_axis_coupling_shift(cm1e_axis_t *axis, double way);
-/** ContinuousUpdate. */
-cm1e_error_t cm1e_axis_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command);
-/** Kinds of commands that the axis knows how to follow by. */
-bool cm1e_axis_can_couple(cm1e_command_kind_t kind);
 /** After a pause: the axis and its masters begin anew, each by itself from rest, or go on in CSV. */
 void cm1e_axis_coupled_after_pause(cm1e_axis_t *axis);
 /** In a cycle in which F has begun: its set-point, without going on. */
 void cm1e_axis_coupled_begin(cm1e_axis_t *axis);
+
+/* axis_couple.c */
+cm1e_error_t cm1e_axis_couple(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+cm1e_error_t cm1e_axis_coupling_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+/** A waiting one begins; `from` is where the command before it ended, `late_s` before the present set-point. */
+cm1e_error_t cm1e_axis_coupling_begin(cm1e_axis_t *axis, const move_t *move, const from_t *from, double late_s);
+/** Whether the first waiting command, a coupling that could begin there, waits for its master. */
+bool cm1e_axis_coupling_awaits(cm1e_axis_t *axis, const from_t *from, double late_s);
+/** Nothing is awaited any more. */
+void cm1e_axis_await_nothing(cm1e_axis_t *axis);
+/** ContinuousUpdate. */
+cm1e_error_t cm1e_axis_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command);
+/** Kinds of commands that the axis knows how to follow by. */
+bool cm1e_axis_can_couple(cm1e_command_kind_t kind);
 
 /* axis_observe.c */
 /** In every cycle in which somebody may follow its actual value: with the inputs. */
@@ -225,11 +231,6 @@ cm1e_error_t cm1e_axis_gear_prepare(cm1e_axis_t *axis, const move_t *move, const
                                     const from_t *from);
 /** MC_GearOut, MC_CamOut: leaves the masters and keeps the velocity. */
 cm1e_error_t cm1e_axis_decouple(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
-
-/** Whether the first waiting command, a coupling that could begin there, waits for its master. */
-bool cm1e_axis_coupling_awaits(cm1e_axis_t *axis, const from_t *from, double late_s);
-/** Nothing is awaited any more. */
-void cm1e_axis_await_nothing(cm1e_axis_t *axis);
 
 /* axis_way.c */
 /** Prepares a gear that is in step from a place of both axes on. */

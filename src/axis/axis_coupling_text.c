@@ -31,8 +31,8 @@ static void master_lost_text(const cm1e_axis_t *axis, bool refused, char *text, 
 static void not_coupled_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const cm1e_command_kind_t kind = axis->refused.kind;
-    snprintf(text, size, "Axis \"%s\", %s: %s was asked for, which is for an axis that follows a master by %s; this one "
-             "follows %s.", axis->config->name, cm1e_axis_state_name(axis->state), cm1e_axis_kind_name(kind),
+    snprintf(text, size, "Axis \"%s\", %s: %s was asked for, which is for an axis that follows a master by %s; this "
+             "one follows %s.", axis->config->name, cm1e_axis_state_name(axis->state), cm1e_axis_kind_name(kind),
              kind == CM1E_COMMAND_CAM_OUT    ? "MC_CamIn"
              : kind == CM1E_COMMAND_GEAR_OUT ? "MC_GearIn, MC_GearInPos or MC_CombineAxes"
                                              : "MC_GearIn, MC_GearInPos, MC_CamIn or MC_CombineAxes",
@@ -74,8 +74,8 @@ bool cm1e_axis_coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool r
     case CM1E_ERROR_AXIS_COUPLED:
         if (other[0] == '\0')
             return false;
-        snprintf(text, size, "Axis \"%s\" was braked because axis \"%s\", which it is coupled with, has failed: look up "
-                 "the error of that one and remove its cause; then reset both with MC_Reset.", name, other);
+        snprintf(text, size, "Axis \"%s\" was braked because axis \"%s\", which it is coupled with, has failed: look "
+                 "up the error of that one and remove its cause; then reset both with MC_Reset.", name, other);
         return true;
     default:
         return false;

@@ -134,8 +134,8 @@ void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size)
     snprintf(asked, sizeof asked, said[axis->guard.limit], axis->guard.asked, axis->guard.allowed);
     snprintf(text, size,
              "Axis \"%s\": what it was coupled with, or its axes group, asked it for %s. That set-point was not given "
-             "to the motor, which was braked. Reduce the dynamics of what leads it, or raise the limits of this axis%s; "
-             "then reset the axis with MC_Reset.",
+             "to the motor, which was braked. Reduce the dynamics of what leads it, or raise the limits of this "
+             "axis%s; then reset the axis with MC_Reset.",
              axis->config->name, asked,
              axis->guard.by_actual ? ", or smooth the actual value of its master more (encoder_filter_s of the master)"
                                    : "");

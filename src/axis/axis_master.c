@@ -160,8 +160,8 @@ static void add_phase(const cm1e_axis_t *slave, link_t *link)
     link->seen.acceleration += phase->acceleration;
 }
 
-/* What velocities explain of a way, and what they do not: within a cycle both limits may be met. What an actual value may
- * do, the guard of the slave has to say. */
+/* What velocities explain of a way, and what they do not: within a cycle both limits may be met. What an actual value
+ * may do, the guard of the slave has to say. */
 static void know_ways(link_t *link, double cycle_s)
 {
     const cm1e_axis_t *master = link->master;

@@ -171,7 +171,8 @@ static void range_text(const cm1e_axis_t *axis, const parameter_t *parameter, ch
     switch (parameter->rule) {
     case APPLICATION:
         snprintf(text, size, "%.6g was to be written; %.6g ... %.6g is right, which is %s.", value,
-                 parameter->least_counts * axis->count / scale, double_at(axis, parameter->system), (parameter - 1)->name);
+                 parameter->least_counts * axis->count / scale, double_at(axis, parameter->system),
+                 (parameter - 1)->name);
         break;
     case LAG:
         snprintf(text, size, "%.6g was to be written; %.6g ... %.6g u is right.", value, CM1E_LEAST_LAG_COUNTS / scale,

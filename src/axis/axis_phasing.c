@@ -57,7 +57,7 @@ static cm1e_error_t check(const cm1e_axis_t *axis, const move_t *move)
 {
     const cm1e_axis_t *master = axis->coupling->now->links[0].master;
     cm1e_motion_limits_t unused;
-    if (!cm1e_axis_counts_as_far(master, move->position))
+    if (!cm1e_axis_can_count(master, move->position))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     return limits_of(axis, move, &unused);
 }

@@ -1,7 +1,7 @@
 /**
  * @file axis_private.h
- * The axis as the sources of its room see it, with the headers of its parts. Everything in them runs in the cycle unless
- * marked otherwise.
+ * The axis as the sources of its room see it, with the headers of its parts. Everything in them runs in the cycle
+ * unless marked otherwise.
  */
 #ifndef CM1E_AXIS_AXIS_PRIVATE_H
 #define CM1E_AXIS_AXIS_PRIVATE_H
@@ -208,7 +208,7 @@ cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, 
 /** From now on the axis is at `units` when it is at `at`; on a modulo axis `units` is less than a turn. */
 void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units);
 /** Whether a way of so many u can be counted; what is not a number cannot. */
-static inline bool cm1e_axis_counts_as_far(const cm1e_axis_t *axis, double units)
+static inline bool cm1e_axis_can_count(const cm1e_axis_t *axis, double units)
 {
     return fabs(units * axis->scale) < (double)CM1E_FARTHEST_COUNTS;
 }

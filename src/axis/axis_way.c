@@ -200,7 +200,8 @@ cm1e_error_t cm1e_axis_way_prepare(cm1e_axis_t *axis, follow_t *follow, const mo
     follow->to_position = true;
     if (way->start_distance != 0.0) {
         const double since = since_start(follow, link->seen.counts), all = fabs(way->start_distance);
-        const bool under_way = way->again > 0.0 ? since <= same_place : since >= -same_place && since < all - same_place;
+        const bool under_way = way->again > 0.0 ? since <= same_place
+                                                : since >= -same_place && since < all - same_place;
         way->awaited = under_way ? AWAIT_NOTHING : AWAIT_PLACE;
     } else if (met_already(axis, follow, from)) {
         arrive(follow);
@@ -261,7 +262,7 @@ cm1e_error_t cm1e_axis_gear_in_pos_prepare(cm1e_axis_t *axis, const move_t *move
     const cm1e_axis_t *master = link->master;
     way_t *way = &follow->way;
     if (!is_place(master, coupling->master_sync_position) ||
-        !cm1e_axis_counts_as_far(master, coupling->master_start_distance) ||
+        !cm1e_axis_can_count(master, coupling->master_start_distance) ||
         !cm1e_axis_position_from_units(axis, coupling->slave_sync_position, &way->end))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     way->then = follow->kind;
@@ -277,8 +278,8 @@ void cm1e_axis_way_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const way_refused_t *r = &axis->cams->way_refused;
     if (r->what)
-        snprintf(text, size, "Axis \"%s\": the way into step needs a %s of %.6g %s at the master's present velocity; up "
-                 "to %.6g is allowed. Give it more way (MasterStartDistance), or let the master go slower.",
+        snprintf(text, size, "Axis \"%s\": the way into step needs a %s of %.6g %s at the master's present velocity; "
+                 "up to %.6g is allowed. Give it more way (MasterStartDistance), or let the master go slower.",
                  axis->config->name, r->what, r->asked, r->unit, r->allowed);
     else
         snprintf(text, size, "Axis \"%s\": no way leads into step, because the master stands while the slave moves, or "

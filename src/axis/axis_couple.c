@@ -1,0 +1,240 @@
+/* Commands of followers: those that begin at once, those that wait, and those that wait for their master. */
+#include "axis/axis_coupling.h"
+
+typedef cm1e_error_t prepare_t(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
+                               const from_t *from);
+
+static prepare_t *const preparers[CM1E_COMMAND_KIND_COUNT] = {
+    [CM1E_COMMAND_GEAR_IN] = cm1e_axis_gear_prepare,
+    [CM1E_COMMAND_GEAR_IN_POS] = cm1e_axis_gear_in_pos_prepare,
+    [CM1E_COMMAND_CAM_IN] = cm1e_axis_cam_prepare,
+    [CM1E_COMMAND_COMBINE_AXES] = cm1e_axis_gear_prepare,
+};
+
+bool cm1e_axis_can_couple(cm1e_command_kind_t kind) { return preparers[kind] != NULL; }
+
+static cm1e_error_t prepare(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
+                            const from_t *from, cm1e_motion_limits_t *limits)
+{
+    const cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, limits);
+    return error ? error : preparers[move->kind](axis, move, coupling, from);
+}
+
+static void take(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling, follow_t *follow,
+                 const from_t *from, const cm1e_motion_limits_t *limits)
+{
+    cm1e_axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+    axis->active = move->id;
+    axis->kind = (cm1e_command_kind_t)move->kind;
+    axis->move = *move;
+    axis->coupling->inputs = *coupling;
+    axis->coupling->ends = 0;
+    cm1e_axis_follow(axis, follow, from, limits);
+}
+
+static bool same_master(const cm1e_coupling_master_t *a, const cm1e_coupling_master_t *b)
+{
+    return a->axis.Handle == b->axis.Handle && a->source == b->source && a->numerator == b->numerator &&
+           a->denominator == b->denominator;
+}
+
+static bool same_inputs(const cm1e_axis_coupling_t *a, const cm1e_axis_coupling_t *b)
+{
+    return same_master(&a->master[0], &b->master[0]) && same_master(&a->master[1], &b->master[1]) &&
+           a->combine == b->combine && a->master_sync_position == b->master_sync_position &&
+           a->slave_sync_position == b->slave_sync_position && a->master_start_distance == b->master_start_distance &&
+           a->sync_mode == b->sync_mode && a->cam == b->cam && a->start_mode == b->start_mode &&
+           a->master_offset == b->master_offset && a->slave_offset == b->slave_offset &&
+           a->master_scaling == b->master_scaling && a->slave_scaling == b->slave_scaling;
+}
+
+/* Other inputs of these are another coupling, from the present set-point on. */
+static bool begins_anew(cm1e_command_kind_t kind)
+{
+    return kind == CM1E_COMMAND_GEAR_IN || kind == CM1E_COMMAND_COMBINE_AXES;
+}
+
+static cm1e_error_t update_active(cm1e_axis_t *axis, const cm1e_axis_command_t *command)
+{
+    coupling_t *c = axis->coupling;
+    const from_t from = from_base(axis);
+    move_t move = cm1e_axis_move_of(command);
+    cm1e_motion_limits_t limits;
+    if (axis_follows(axis) && command->kind == axis->kind && command->kind == CM1E_COMMAND_CAM_IN)
+        return cm1e_axis_cam_update(axis, command->coupling);
+    if (!axis_follows(axis) || command->kind != axis->kind || !begins_anew(command->kind))
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    if (cm1e_axis_same_inputs(&axis->move, &move) && same_inputs(&c->inputs, command->coupling))
+        return CM1E_OK;
+    const cm1e_error_t error = prepare(axis, &move, command->coupling, &from, &limits);
+    if (error)
+        return error;
+    move.id = axis->move.id;
+    axis->move = move;
+    c->inputs = *command->coupling;
+    cm1e_axis_follow(axis, cm1e_axis_follow_spare(axis), &from, &limits);
+    return CM1E_OK;
+}
+
+/* ---- those that wait --------------------------------------------------------------------------------------------- */
+
+static waiting_coupling_t *waiting_of(cm1e_axis_t *axis, cm1e_command_id_t id)
+{
+    for (int i = 0; i < COUPLINGS_WAITING; i++)
+        if (axis->coupling->waiting[i].id == id)
+            return &axis->coupling->waiting[i];
+    return NULL;
+}
+
+static waiting_coupling_t *free_place(cm1e_axis_t *axis)
+{
+    for (int i = 0; i < COUPLINGS_WAITING; i++)
+        if (!cm1e_axis_find_waiting(axis, axis->coupling->waiting[i].id))
+            return &axis->coupling->waiting[i];
+    return NULL;
+}
+
+static void await(cm1e_axis_t *axis, follow_t *follow)
+{
+    coupling_t *c = axis->coupling;
+    c->next = follow;
+    c->due = false;
+    cm1e_axis_list_links(follow);
+}
+
+void cm1e_axis_await_nothing(cm1e_axis_t *axis)
+{
+    coupling_t *c = axis->coupling;
+    if (c->next)
+        cm1e_axis_unlist_links(c->next);
+    c->next = NULL;
+}
+
+/* What runs goes on, as the active command, until the master is where the way begins; all that waits is aborted. */
+static void take_later(cm1e_axis_t *axis, move_t *move, const cm1e_axis_coupling_t *coupling, follow_t *follow)
+{
+    cm1e_axis_waiting_end(axis, CM1E_COMMAND_ABORTED);
+    move->id = cm1e_axis_next_id(axis);
+    *free_place(axis) = (waiting_coupling_t){move->id, *coupling};
+    *waiting_move(axis, axis->waiting.count++) = *move;
+    await(axis, follow);
+}
+
+cm1e_error_t cm1e_axis_couple(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+{
+    const from_t from = from_set(axis);
+    move_t move = cm1e_axis_move_of(command);
+    cm1e_motion_limits_t limits;
+    const cm1e_error_t error = command->coupling ? prepare(axis, &move, command->coupling, &from, &limits)
+                                                 : CM1E_ERROR_INVALID_ARGUMENT;
+    if (error)
+        return error;
+    follow_t *follow = cm1e_axis_follow_spare(axis);
+    if (follow->way.awaited) {
+        take_later(axis, &move, command->coupling, follow);
+        *id = move.id;
+        return CM1E_OK;
+    }
+    cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+    *id = move.id = cm1e_axis_next_id(axis);
+    take(axis, &move, command->coupling, follow, &from, &limits);
+    return CM1E_OK;
+}
+
+/* ---- buffered ---------------------------------------------------------------------------------------------------- */
+
+/* Before it waits it has its place: what it waits for may be there already, and it begins at once. */
+cm1e_error_t cm1e_axis_coupling_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+{
+    move_t move = cm1e_axis_move_of(command);
+    waiting_coupling_t *place = free_place(axis);
+    if (!command->coupling)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    if (!place)
+        return CM1E_ERROR_FULL;
+    *place = (waiting_coupling_t){axis->last_id + 1 ? axis->last_id + 1 : 1, *command->coupling};
+    const cm1e_error_t error = cm1e_axis_buffer(axis, &move);
+    if (error)
+        place->id = 0; /* the number will be another command's */
+    else
+        *id = move.id;
+    return error;
+}
+
+/* Where the command before it has come to since its end. */
+static from_t at_present(const cm1e_axis_t *axis, const from_t *from, double late_s)
+{
+    from_t here = *from;
+    here.position = cm1e_position_plus(from->position, from->velocity * late_s * axis->scale);
+    return here;
+}
+
+bool cm1e_axis_coupling_awaits(cm1e_axis_t *axis, const from_t *from, double late_s)
+{
+    coupling_t *c = axis->coupling;
+    if (c->next)
+        return !c->due;
+    const move_t *move = waiting_move(axis, 0);
+    const waiting_coupling_t *waiting = waiting_of(axis, move->id);
+    const from_t here = at_present(axis, from, late_s);
+    follow_t *follow = cm1e_axis_follow_spare(axis);
+    cm1e_motion_limits_t limits;
+    if (!waiting || prepare(axis, move, &waiting->coupling, &here, &limits) || !follow->way.awaited)
+        return false;
+    await(axis, follow);
+    return true;
+}
+
+/* What was awaited is there: as it was placed when it came to be awaited. */
+static cm1e_error_t begin_awaited(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
+                                  const from_t *from)
+{
+    coupling_t *c = axis->coupling;
+    cm1e_motion_limits_t limits;
+    cm1e_error_t error = c->due_error ? c->due_error : cm1e_axis_limits_of(axis, from, move, &limits);
+    if (!error)
+        error = cm1e_axis_way_begin(axis, c->next, move, from);
+    if (error)
+        cm1e_axis_await_nothing(axis);
+    else
+        take(axis, move, coupling, c->next, from, &limits);
+    return error;
+}
+
+/* It follows from the present set-point on. */
+cm1e_error_t cm1e_axis_coupling_begin(cm1e_axis_t *axis, const move_t *move, const from_t *from, double late_s)
+{
+    const waiting_coupling_t *waiting = waiting_of(axis, move->id);
+    const from_t here = at_present(axis, from, late_s);
+    cm1e_motion_limits_t limits;
+    if (waiting && axis->coupling->next)
+        return begin_awaited(axis, move, &waiting->coupling, &here);
+    axis->coupling->at_end = axis_follows(axis) && axis->coupling->end_of_profile;
+    const cm1e_error_t error = waiting ? prepare(axis, move, &waiting->coupling, &here, &limits)
+                                       : CM1E_ERROR_AXIS_STATE;
+    axis->coupling->at_end = false;
+    if (!error)
+        take(axis, move, &waiting->coupling, cm1e_axis_follow_spare(axis), &here, &limits);
+    return error;
+}
+
+cm1e_error_t cm1e_axis_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
+{
+    if (!command->coupling)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    if (id == axis->active)
+        return update_active(axis, command);
+    move_t *waiting = cm1e_axis_find_waiting(axis, id);
+    if (!waiting)
+        return CM1E_OK; /* it has ended */
+    if (waiting->kind != (uint8_t)command->kind || command->kind == CM1E_COMMAND_GEAR_IN_POS)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    if (waiting == waiting_move(axis, 0) && axis->coupling->next)
+        return CM1E_OK; /* it is placed already, and waits for its master only */
+    move_t move = cm1e_axis_move_of(command);
+    move.id = id;
+    move.buffer_mode = waiting->buffer_mode;
+    *waiting = move;
+    waiting_of(axis, id)->coupling = *command->coupling;
+    return CM1E_OK;
+}
