@@ -93,7 +93,7 @@ typedef enum master_trouble {
     MASTER_ERROR_STOP,
     MASTER_STOPPING,               /**< the same, but it is still on its ramp, which can be seen */
     MASTER_FREE,                   /**< no torque, so no set value */
-    MASTER_HOMING,                 /**< its drive moves it */
+    MASTER_HOMING,                 /**< by its drive */
     MASTER_UNSEEN,                 /**< its actual position is not known */
     MASTER_JUMPED,
 } master_trouble_t;

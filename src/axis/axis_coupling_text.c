@@ -10,8 +10,7 @@ static const char *const troubles[] = {
     [MASTER_STOPPING] = "is in ErrorStop: look up its own error, and reset it with MC_Reset",
     [MASTER_FREE] = "has no torque, and so no set value: enable it with MC_Power before, or follow its actual value "
                     "(mcActualValue)",
-    [MASTER_HOMING] = "is moved by its drive, in a homing or a profile of the drive's, and has no set value: wait for "
-                      "its end, or follow its actual value (mcActualValue)",
+    [MASTER_HOMING] = "is homed by its drive, which then counts from another place: wait for its end",
     [MASTER_UNSEEN] = "does not say where it is: its inputs are missing",
     [MASTER_JUMPED] = "jumped: its position was set to where its motor is, which no slave can follow",
 };

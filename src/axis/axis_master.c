@@ -107,7 +107,7 @@ void cm1e_axis_unlink(cm1e_axis_t *axis)
 static master_trouble_t trouble_of_set_value(const cm1e_axis_t *master)
 {
     const bool stopped = master->state == CM1E_AXIS_ERROR_STOP;
-    if (drive_moves(master))
+    if (master->activity == ACTIVITY_HOMING)
         return stopped ? MASTER_ERROR_STOP : MASTER_HOMING;
     if (master->activity == ACTIVITY_FREE)
         return stopped ? MASTER_ERROR_STOP : MASTER_FREE;

@@ -21,13 +21,19 @@ static void look(cm1e_axis_t *axis)
     own->now.acceleration = (own->now.velocity - own->before.velocity) / axis->cycle_s;
 }
 
+/* By set-points of ours, not by hand and not by a profile of its drive. */
+static bool goes_as_told(const cm1e_axis_t *axis)
+{
+    return axis->activity != ACTIVITY_FREE && axis->activity != ACTIVITY_DRIVE;
+}
+
 /* Counts/s, of what nobody has looked at before: a motor goes as it is told to, or says how. An encoder is looked at
  * from its first counts on. */
 static double first_velocity(const cm1e_axis_t *axis)
 {
     if (axis->config->type == CM1E_AXIS_ENCODER)
         return 0.0;
-    return axis->activity == ACTIVITY_FREE ? axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis)
+    return !goes_as_told(axis) ? axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis)
                                            : axis->set_velocity * axis->scale;
 }
 
@@ -39,7 +45,7 @@ static void begin(cm1e_axis_t *axis)
     cm1e_observer_init(&own->filter, cycle_s, constant_s > 0.0 ? constant_s : DEFAULT_FILTER_CYCLES * cycle_s, cycle_s,
                        axis_actual(axis).counts);
     own->filter.velocity = velocity;
-    if (axis->activity != ACTIVITY_FREE)
+    if (goes_as_told(axis))
         own->filter.acceleration = axis->set_acceleration * axis->scale;
     look(axis);
     own->now = own->before = (from_t){.position = own->now.position, .velocity = velocity / axis->scale};
@@ -71,7 +77,7 @@ master_trouble_t cm1e_axis_see_actual(cm1e_axis_t *master, bool of_this_cycle, f
     const observed_t *own = &master->coupling->own;
     if (master->state == CM1E_AXIS_ERROR_STOP)
         return MASTER_ERROR_STOP;
-    if (drive_moves(master))
+    if (master->activity == ACTIVITY_HOMING)
         return MASTER_HOMING;
     if (!own->begun && master->drive.feedback.fresh)
         begin(master);

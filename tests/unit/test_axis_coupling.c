@@ -202,6 +202,27 @@ static void test_an_axis_moved_by_its_drive_is_a_master_by_its_actual_value_and_
                  CM1E_ERROR_UNSUPPORTED);
 }
 
+static void test_a_master_may_be_moved_by_a_profile_of_its_drive(void)
+{
+    axes_describe(2);
+    axes_config(0)->motion = CM1E_MOTION_DRIVE;
+    axes_make();
+    axes_power(0, true);
+    axes_power(1, true);
+    axes_cycles(20);
+    axes_bench.witness[0].strictness = AXES_UNWATCHED;
+    axes_bench.witness[1].strictness = AXES_STEEP;
+    const cm1e_command_id_t id = axes_gear_in(1, 0, 1, 1);
+    axes_move_velocity(0, 1.0);
+    for (int n = 0; n < 1000; n++) {
+        axes_motor(0)->position += n < 100 ? n / 2 : 50;
+        axes_cycles(1);
+    }
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_CONTINUOUS_MOTION, axes_state(0));
+    TEST_ASSERT_TRUE_MESSAGE(axes_status(1, id).reached, axes_text(1));
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 1.0, axes_info(1).set_velocity);
+}
+
 static double shaft;
 
 static void turn_shaft(void)
@@ -446,6 +467,7 @@ int main(void)
     RUN_TEST(test_other_coordinates_move_nobody);
     RUN_TEST(test_modulo_axes_turn_on_and_on);
     RUN_TEST(test_an_axis_moved_by_its_drive_is_a_master_by_its_actual_value_and_no_slave);
+    RUN_TEST(test_a_master_may_be_moved_by_a_profile_of_its_drive);
     RUN_TEST(test_a_slave_in_csv_keeps_up);
     RUN_TEST(test_a_gear_waits_and_others_wait_for_it);
     RUN_TEST(test_a_gear_waits_for_a_velocity);

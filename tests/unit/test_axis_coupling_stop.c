@@ -144,7 +144,7 @@ static const struct {
     const char *words;
 } failures[] = {
     {fault_of_drive, "is in ErrorStop"}, {blocked_shaft, ""}, {no_power, "has no torque"},
-    {lost_enable, "is in ErrorStop"}, {away, "is in ErrorStop"}, {homing, "is moved by its drive"},
+    {lost_enable, "is in ErrorStop"}, {away, "is in ErrorStop"}, {homing, "is homed by its drive"},
 };
 
 /* Whatever happens, at whatever moment: never a step of the slave's set-point, one error with a sentence, a reset. */
