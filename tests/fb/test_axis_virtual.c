@@ -335,8 +335,12 @@ START_TEST(test_encoder_is_never_enabled_nor_moved)
     ck_assert(!info_of(ENCODER).powered);
     ck_assert(!cm1e_axis_condition(axes[ENCODER]).ready_for_power_on);
     ck_assert_int_eq(try_power(ENCODER, false), CM1E_OK);
-    ck_assert_int_ne(refused(ENCODER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 1.0}),
-                     CM1E_OK);
+    const cm1e_axis_coupling_t gear = {
+        .master = {{.axis = cm1e_axis_reference(axes[LINE]), .numerator = 1, .denominator = 1}}};
+    ck_assert_int_eq(refused(ENCODER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 1.0}),
+                     CM1E_ERROR_AXIS_NOT_POWERED);
+    ck_assert_int_eq(refused(ENCODER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN, .coupling = &gear}),
+                     CM1E_ERROR_AXIS_NOT_POWERED);
     ck_assert_int_eq(cm1e_axis_write_encoder(cm1e_axis_reference(axes[LINE]), 0, true), CM1E_ERROR_UNSUPPORTED);
     ck_assert_int_eq(cm1e_axis_write_encoder((AXIS_REF_t){0}, 0, true), CM1E_ERROR_FB_AXIS_REF);
     close_segment();

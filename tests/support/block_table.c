@@ -1368,6 +1368,7 @@ static const block_member_t members_of_MC_Power[] = {
 };
 static void call_MC_Power(void *fb) { MC_Power(fb); }
 static const cm1e_error_t errors_of_MC_Power[] = {
+    CM1E_ERROR_AXIS_VIRTUAL,
     CM1E_ERROR_AXIS_COUPLED,
     CM1E_ERROR_AXIS_COUPLING_LIMIT,
     CM1E_ERROR_AXIS_MASTER_LOST,
@@ -1405,6 +1406,7 @@ static const block_member_t members_of_MC_Home[] = {
 };
 static void call_MC_Home(void *fb) { MC_Home(fb); }
 static const cm1e_error_t errors_of_MC_Home[] = {
+    CM1E_ERROR_AXIS_VIRTUAL,
     CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
@@ -2712,6 +2714,7 @@ static const block_member_t members_of_MC_ReadParameter[] = {
 };
 static void call_MC_ReadParameter(void *fb) { MC_ReadParameter(fb); }
 static const cm1e_error_t errors_of_MC_ReadParameter[] = {
+    CM1E_ERROR_AXIS_VIRTUAL,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_PARAMETER,
@@ -2750,6 +2753,7 @@ static const block_member_t members_of_MC_WriteParameter[] = {
 };
 static void call_MC_WriteParameter(void *fb) { MC_WriteParameter(fb); }
 static const cm1e_error_t errors_of_MC_WriteParameter[] = {
+    CM1E_ERROR_AXIS_VIRTUAL,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_PARAMETER_RANGE,
@@ -2794,6 +2798,7 @@ static const block_member_t members_of_MC_ReadDigitalInput[] = {
 };
 static void call_MC_ReadDigitalInput(void *fb) { MC_ReadDigitalInput(fb); }
 static const cm1e_error_t errors_of_MC_ReadDigitalInput[] = {
+    CM1E_ERROR_AXIS_VIRTUAL,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_SIGNAL,
@@ -2813,6 +2818,7 @@ static const block_member_t members_of_MC_ReadDigitalOutput[] = {
 };
 static void call_MC_ReadDigitalOutput(void *fb) { MC_ReadDigitalOutput(fb); }
 static const cm1e_error_t errors_of_MC_ReadDigitalOutput[] = {
+    CM1E_ERROR_AXIS_VIRTUAL,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_SIGNAL,
@@ -2832,6 +2838,7 @@ static const block_member_t members_of_MC_WriteDigitalOutput[] = {
 };
 static void call_MC_WriteDigitalOutput(void *fb) { MC_WriteDigitalOutput(fb); }
 static const cm1e_error_t errors_of_MC_WriteDigitalOutput[] = {
+    CM1E_ERROR_AXIS_VIRTUAL,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_SIGNAL,
@@ -2883,6 +2890,7 @@ static const block_member_t members_of_MC_ReadActualTorque[] = {
 };
 static void call_MC_ReadActualTorque(void *fb) { MC_ReadActualTorque(fb); }
 static const cm1e_error_t errors_of_MC_ReadActualTorque[] = {
+    CM1E_ERROR_AXIS_VIRTUAL,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_OFFLINE,
@@ -3006,6 +3014,7 @@ static const block_member_t members_of_MC_DigitalCamSwitch[] = {
 };
 static void call_MC_DigitalCamSwitch(void *fb) { MC_DigitalCamSwitch(fb); }
 static const cm1e_error_t errors_of_MC_DigitalCamSwitch[] = {
+    CM1E_ERROR_AXIS_VIRTUAL,
     CM1E_ERROR_FB_CAM_SWITCH,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
@@ -3032,6 +3041,7 @@ static const block_member_t members_of_MC_TouchProbe[] = {
 };
 static void call_MC_TouchProbe(void *fb) { MC_TouchProbe(fb); }
 static const cm1e_error_t errors_of_MC_TouchProbe[] = {
+    CM1E_ERROR_AXIS_VIRTUAL,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_PROBE,
@@ -3081,6 +3091,7 @@ static const block_member_t members_of_MC_StepAbsoluteSwitch[] = {
 };
 static void call_MC_StepAbsoluteSwitch(void *fb) { MC_StepAbsoluteSwitch(fb); }
 static const cm1e_error_t errors_of_MC_StepAbsoluteSwitch[] = {
+    CM1E_ERROR_AXIS_VIRTUAL,
     CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_AXIS_STEP_LIMIT_SWITCH,
     CM1E_ERROR_AXIS_STEP_TORQUE,
@@ -3124,6 +3135,7 @@ static const block_member_t members_of_MC_StepLimitSwitch[] = {
 };
 static void call_MC_StepLimitSwitch(void *fb) { MC_StepLimitSwitch(fb); }
 static const cm1e_error_t errors_of_MC_StepLimitSwitch[] = {
+    CM1E_ERROR_AXIS_VIRTUAL,
     CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_AXIS_STEP_LIMIT_SWITCH,
     CM1E_ERROR_AXIS_STEP_TORQUE,
@@ -3168,6 +3180,7 @@ static const block_member_t members_of_MC_StepBlock[] = {
 };
 static void call_MC_StepBlock(void *fb) { MC_StepBlock(fb); }
 static const cm1e_error_t errors_of_MC_StepBlock[] = {
+    CM1E_ERROR_AXIS_VIRTUAL,
     CM1E_ERROR_AXIS_IN_GROUP,
     CM1E_ERROR_AXIS_STEP_LIMIT_SWITCH,
     CM1E_ERROR_AXIS_STEP_DISTANCE,
@@ -3394,6 +3407,7 @@ static const block_member_t members_of_CM_SendCML[] = {
 };
 static void call_CM_SendCML(void *fb) { CM_SendCML(fb); }
 static const cm1e_error_t errors_of_CM_SendCML[] = {
+    CM1E_ERROR_AXIS_VIRTUAL,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_OFFLINE,
@@ -3430,6 +3444,7 @@ static const block_member_t members_of_CM_SetMode[] = {
 };
 static void call_CM_SetMode(void *fb) { CM_SetMode(fb); }
 static const cm1e_error_t errors_of_CM_SetMode[] = {
+    CM1E_ERROR_AXIS_VIRTUAL,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_OFFLINE,
@@ -3455,6 +3470,7 @@ static const block_member_t members_of_CM_Command[] = {
 };
 static void call_CM_Command(void *fb) { CM_Command(fb); }
 static const cm1e_error_t errors_of_CM_Command[] = {
+    CM1E_ERROR_AXIS_VIRTUAL,
     CM1E_ERROR_FB_AXIS_CHANGED,
     CM1E_ERROR_FB_AXIS_REF,
     CM1E_ERROR_AXIS_OFFLINE,
