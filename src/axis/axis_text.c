@@ -222,6 +222,13 @@ static void refused_virtual_text(const cm1e_axis_t *axis, char *text, size_t siz
                  "MC_HomeDirect and MC_SetPosition say where it is.", axis->config->name);
 }
 
+static void refused_by_drive_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    snprintf(text, size, "Axis \"%s\" moves by profiles of its drive (motion: drive): single moves from standstill, "
+             "whose Jerk is 0 and whose Deceleration, if it goes to a position, is 0 or Acceleration. To follow a "
+             "master, and for all other motions, it needs `motion: host` in the bus file.", axis->config->name);
+}
+
 /* A command was refused; the axis itself has no error. */
 static const struct {
     cm1e_error_t error;
@@ -257,6 +264,10 @@ static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
     if (cm1e_axis_cool_muscle_text(axis, axis->refusal, text, size) ||
         cm1e_axis_coupling_text(axis, axis->refusal, true, text, size))
         return;
+    if (axis->refusal == CM1E_ERROR_UNSUPPORTED && drive_profiles(axis)) {
+        refused_by_drive_text(axis, text, size);
+        return;
+    }
     snprintf(text, size, "Axis \"%s\", %s: %s.%s", axis->config->name, cm1e_axis_state_name(axis->state),
              cm1e_strerror(axis->refusal),
              axis->refusal == CM1E_ERROR_PDO_MAPPING ? cm1e_axis_signals_advice(axis, axis->refusal) : "");

@@ -200,6 +200,7 @@ static void test_an_axis_moved_by_its_drive_is_a_master_by_its_actual_value_and_
     axes_cycles(20);
     axes_refused(0, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN, .coupling = &coupling},
                  CM1E_ERROR_UNSUPPORTED);
+    axes_told(0, "it needs `motion: host` in the bus file");
 }
 
 static void test_a_master_may_be_moved_by_a_profile_of_its_drive(void)
