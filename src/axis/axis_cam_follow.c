@@ -71,6 +71,18 @@ static void remember(cam_place_t *cam, const cm1e_cam_sample_t *now)
     cam->sampled = true;
 }
 
+/* A way into step has led to here, a moment ago: at an end of a single-shot the master comes by that end. */
+void cm1e_axis_cam_enter(follow_t *follow, double counts)
+{
+    cam_place_t *cam = &follow->cam;
+    const cm1e_cam_t *table = &cam->slot->cam;
+    const double way = place_in_cam(cam, &follow->links[0], counts) - table->start, rounding = 1e-9 * table->length;
+    if (table->periodic)
+        return;
+    cam->entered = cam->before.turn = way <= rounding ? -1.0 : way >= table->length - rounding ? 1.0 : 0.0;
+    cam->sampled = true;
+}
+
 static void sample_point(const cm1e_axis_t *axis, const follow_t *follow, const cm1e_cam_sample_t *sample,
                          from_t *point)
 {

@@ -251,6 +251,7 @@ cm1e_error_t cm1e_axis_cam_prepare(cm1e_axis_t *axis, const move_t *move, const 
  *  into step they wait for its end. CM1E_ERROR_AXIS_RATIO, _POSITION_RANGE: nothing has changed. */
 cm1e_error_t cm1e_axis_cam_update(cm1e_axis_t *axis, const cm1e_axis_coupling_t *coupling);
 /** Where the cam has the slave when the master is there (counts of the link), and how it goes on: but for the place. */
+void cm1e_axis_cam_enter(follow_t *follow, double counts);
 void cm1e_axis_cam_point(const cm1e_axis_t *axis, const follow_t *follow, double counts, position_t *position,
                          cm1e_curve_point_t *point);
 /** What the cam leaves of the axis's limits for the way onto it, with the master's present velocity. */

@@ -23,8 +23,10 @@ static void arrive(follow_t *follow)
     const way_t *way = &follow->way;
     follow->kind = way->then;
     follow->in_step = true;
-    if (follow->cam.slot)
+    if (follow->cam.slot) {
+        cm1e_axis_cam_enter(follow, way->sync);
         return;
+    }
     follow->anchor = way->end; /* from here on the gear counts from where they met */
     link->origin = cm1e_position_plus(link->origin, way->sync);
     link->seen.counts -= way->sync;

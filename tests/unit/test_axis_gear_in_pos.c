@@ -538,6 +538,29 @@ static void test_a_single_shot_that_begins_with_a_slope(void)
     axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
 }
 
+/* It is run once, but not over before the master was through: a little to and fro at its beginning does not end it. */
+static void test_a_single_shot_whose_master_hesitates_at_its_beginning(void)
+{
+    axes_begin(2);
+    MC_CAM_POINT points[] = {{0, 0, 0, 0}, {10, 4, 0, 0}};
+    const MC_CAM_REF table = {points, 2, mcCamPolynomial5};
+    cm1e_axis_coupling_t coupling = {.master = {{.axis = axes_reference(MASTER), .numerator = 1, .denominator = 1}},
+                                     .master_start_distance = 5, .start_mode = mcRampIn};
+    axes_wait(MASTER, axes_move_to(MASTER, -10, 10), 5000);
+    axes_wait(SLAVE, axes_move_to(SLAVE, -3, 10), 5000);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_cam_select(axes_axis(SLAVE), &table, false, true, true, &coupling.cam));
+    const cm1e_command_id_t id =
+        axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_CAM_IN, .coupling = &coupling});
+    axes_move_velocity(MASTER, 4);
+    axes_wait_reached(SLAVE, id, 8000);
+    static const struct { double master, slave; } moves[] = {{-0.5, 0}, {5, 2}, {-0.5, 0}, {12, 4}, {5, 4}, {-3, 4}};
+    for (int i = 0; i < 6; i++) {
+        axes_wait(MASTER, axes_move_to(MASTER, moves[i].master, 4), 8000);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, moves[i].slave, set_of(SLAVE));
+    }
+    axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -563,5 +586,6 @@ int main(void)
     RUN_TEST(test_a_cam_by_way_on_a_modulo_slave);
     RUN_TEST(test_a_cam_by_way_is_in_step_at_its_place);
     RUN_TEST(test_a_single_shot_that_begins_with_a_slope);
+    RUN_TEST(test_a_single_shot_whose_master_hesitates_at_its_beginning);
     return UNITY_END();
 }
