@@ -49,6 +49,23 @@ static void ratio_text(const cm1e_axis_t *axis, char *text, size_t size)
                  (unsigned long)axis->coupling->denominator);
 }
 
+/* FALSE: another command. */
+static bool mode_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    static const char *const modes[CM1E_COMMAND_KIND_COUNT] = {
+        [CM1E_COMMAND_GEAR_IN] = "",
+        [CM1E_COMMAND_GEAR_IN_POS] = "; SyncMode is mcShortest, mcCatchUp or mcSlowDown",
+        [CM1E_COMMAND_CAM_IN] = "; StartMode is mcAbsolute, mcRelative or mcRampIn",
+        [CM1E_COMMAND_COMBINE_AXES] = "; CombineMode is mcAddAxes or mcSubAxes",
+    };
+    const unsigned kind = axis->refused.kind;
+    const char *mode = kind < CM1E_COMMAND_KIND_COUNT ? modes[kind] : NULL;
+    if (mode)
+        snprintf(text, size, "Axis \"%s\": %s was asked for in a mode that there is not. MasterValueSource is "
+                 "mcSetValue or mcActualValue%s.", axis->config->name, cm1e_axis_kind_name(axis->refused.kind), mode);
+    return mode != NULL;
+}
+
 bool cm1e_axis_coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool refused, char *text, size_t size)
 {
     const char *name = axis->config->name, *other = axis->coupling->other_name;
@@ -67,6 +84,8 @@ bool cm1e_axis_coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool r
     case CM1E_ERROR_AXIS_NOT_COUPLED:
         not_coupled_text(axis, text, size);
         return true;
+    case CM1E_ERROR_INVALID_ARGUMENT:
+        return refused && mode_text(axis, text, size);
     case CM1E_ERROR_AXIS_RATIO:
         ratio_text(axis, text, size);
         return true;

@@ -88,7 +88,9 @@ static cm1e_error_t refused_by_state(cm1e_group_t *group, group_trigger_t trigge
     cm1e_group_refresh(group);
     const group_rule_t *rule = cm1e_group_rule(group->state, trigger);
     if (rule->refusal)
-        return cm1e_group_refuse(group, (group_refusal_t){.error = rule->refusal});
+        return cm1e_group_refuse(group, (group_refusal_t){
+            .error = rule->refusal,
+            .why = trigger == TRIGGER_CONFIGURE ? "Axes come and go in GroupDisabled: MC_GroupDisable first." : NULL});
     if (group->state == CM1E_GROUP_DISABLED && group->led)
         return cm1e_group_refuse(group, (group_refusal_t){.error = CM1E_ERROR_GROUP_STATE,
                                                           .why = "Its axes still come to rest."});

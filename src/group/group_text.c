@@ -47,10 +47,11 @@ static void axis_text(const cm1e_group_t *group, char *text, size_t size)
     cm1e_axis_info_t info;
     const bool there = cm1e_axis_read(group->member[ident - 1], &info) == CM1E_OK;
     snprintf(text, size,
-             "Axes group \"%s\": axis \"%s\" (IdentInGroup %u) is in %s; for a motion of the group every axis has to "
-             "be powered and in Standstill.",
+             "Axes group \"%s\": axis \"%s\" (IdentInGroup %u) is in %s%s; for a motion of the group every axis has "
+             "to be powered and in Standstill.",
              group->config.name, name_of(group, ident), (unsigned)ident,
-             there ? cm1e_axis_state_name(info.state) : "no state, as it does not exist any more");
+             there ? cm1e_axis_state_name(info.state) : "no state, as it does not exist any more",
+             there && info.state == CM1E_AXIS_STANDSTILL ? ", but waits for a master, or is not ready yet" : "");
     add_axis_text(group, ident, text, size);
 }
 

@@ -88,6 +88,10 @@ static void test_nobody_follows_itself_by_way_of_others(void)
     const cm1e_axis_command_t combine = {.kind = CM1E_COMMAND_COMBINE_AXES, .coupling = &coupling};
     axes_refused(0, &combine, CM1E_ERROR_AXIS_COUPLING_CYCLE);
     axes_told(0, "\"axis0\" cannot follow \"axis2\"");
+    coupling.combine = (MC_COMBINE_MODE)7;
+    axes_refused(0, &combine, CM1E_ERROR_INVALID_ARGUMENT);
+    axes_told(0, "CombineMode is mcAddAxes or mcSubAxes");
+    coupling.combine = mcAddAxes;
     coupling.master[1] = by_ratio(0, 1, 1);
     axes_refused(0, &combine, CM1E_ERROR_AXIS_COUPLING_CYCLE);
     axes_command(3, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_COMBINE_AXES,

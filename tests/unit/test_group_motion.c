@@ -327,6 +327,15 @@ static void test_axes_have_to_stand_and_to_be_powered(void)
     axes_must_be(0, CM1E_AXIS_STANDSTILL); /* taken, and let go again */
     axes_command(1, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT});
     axes_cycles(500);
+    const cm1e_axis_coupling_t in_pos = {
+        .master = {{.axis = axes_reference(0), .numerator = 1, .denominator = 1}},
+        .master_sync_position = 50.0, .slave_sync_position = 10.0, .master_start_distance = 20.0,
+    };
+    axes_command(1, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN_POS, .velocity = 1.0, .coupling = &in_pos});
+    group_refused(&command, CM1E_ERROR_GROUP_AXIS);
+    group_told("is in Standstill, but waits for a master");
+    axes_command(1, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT});
+    axes_cycles(10);
     axes_power(2, false);
     axes_cycles(50);
     group_refused(&command, CM1E_ERROR_GROUP_AXIS);

@@ -122,6 +122,8 @@ static void test_names_of_states(void)
 static void test_members_by_place(void)
 {
     AXIS_REF_t axis;
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_GROUP_STATE, cm1e_group_remove(group, 2));
+    group_told("MC_GroupDisable first");
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_group_disable(group));
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_group_remove(group, 2));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_GROUP_MEMBER, cm1e_group_member(group, 2, &axis));
