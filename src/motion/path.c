@@ -5,6 +5,8 @@
 #include "motion/path_private.h"
 
 static const double LARGEST = 1e15;
+/** Of what the axes can do. What is asked to be slower would last for longer than a number can say. */
+static const double LEAST = 1e-12;
 
 static bool is_limit(double value) { return value >= 0; } /* also infinite */
 
@@ -29,6 +31,23 @@ cm1e_error_t cm1e_path_begin(cm1e_path_t *path, const cm1e_path_config_t *config
         path->end[i] = position[i];
     return CM1E_OK;
 }
+
+/** The slowest that a path goes by, for what is slower. */
+static cm1e_motion_limits_t least_limits(const cm1e_path_t *path)
+{
+    cm1e_motion_limits_t least = {INFINITY, INFINITY, INFINITY, INFINITY};
+    for (int i = 0; i < path->config.axes; i++) {
+        const cm1e_path_axis_t *axis = &path->config.axis[i];
+        least.velocity = fmin(least.velocity, LEAST * axis->velocity);
+        least.acceleration = fmin(least.acceleration, LEAST * axis->acceleration);
+        least.jerk = fmin(least.jerk, LEAST * (isinf(axis->jerk) ? axis->acceleration : axis->jerk));
+    }
+    least.deceleration = least.acceleration;
+    return least;
+}
+
+/** 0: none but the axes'. */
+static double limit_of(double wanted, double least) { return wanted > 0 ? fmax(wanted, least) : INFINITY; }
 
 /* ---- appending --------------------------------------------------------------------------------------------------- */
 
@@ -79,12 +98,11 @@ static cm1e_error_t take_in(cm1e_path_t *path, const cm1e_path_command_t *comman
         if (high > fmax(axis->highest, path->end[i]))
             return refuse(problem, CM1E_PATH_OUT_OF_BOUNDS, i, high);
     }
-    double *limit[] = {&segment->command.limits.velocity, &segment->command.limits.acceleration,
-                       &segment->command.limits.deceleration, &segment->command.limits.jerk};
+    const cm1e_motion_limits_t *wanted = &command->limits, least = least_limits(path);
     segment->command = *command;
-    for (int i = 0; i < 4; i++)
-        if (*limit[i] == 0)
-            *limit[i] = INFINITY;
+    segment->command.limits = (cm1e_motion_limits_t){
+        limit_of(wanted->velocity, least.velocity), limit_of(wanted->acceleration, least.acceleration),
+        limit_of(wanted->deceleration, least.deceleration), limit_of(wanted->jerk, least.jerk)};
     const bool at_rest = path->element_count == 0;
     cm1e_path_segment_t *before = at_rest ? NULL : segment_at(path, path->segment_count - 1);
     path->segment_count++;
@@ -190,7 +208,7 @@ void cm1e_path_override(cm1e_path_t *path, double factor)
 {
     if (!(factor >= 0) || factor == path->override)
         return;
-    path->override = fmin(factor, LARGEST);
+    path->override = factor > 0 ? fmin(fmax(factor, LEAST), LARGEST) : 0;
     if (path->element_count == 0 || is_at_rest(path))
         return;
     if (factor == 0 && !path->stopping) {
@@ -208,9 +226,10 @@ void cm1e_path_stop(cm1e_path_t *path, double deceleration, double jerk)
 {
     if (path->element_count == 0)
         return;
+    const cm1e_motion_limits_t least = least_limits(path);
     path->stop_wanted = true;
-    path->stop.deceleration = deceleration > 0 ? deceleration : INFINITY;
-    path->stop.jerk = jerk > 0 ? jerk : INFINITY;
+    path->stop.deceleration = limit_of(deceleration, least.deceleration);
+    path->stop.jerk = limit_of(jerk, least.jerk);
     if (!is_at_rest(path))
         (void)cm1e_path_plan_stop(path);
 }

@@ -246,6 +246,29 @@ static void test_override_slows_pauses_and_goes_on(void)
     TEST_ASSERT_EQUAL_DOUBLE(200, driven.now.position[0]);
 }
 
+/** Slower than numbers can say how long it lasts: it hardly moves, and does not jump to its end. */
+static void test_absurdly_slow_commands_do_not_jump(void)
+{
+    static const cm1e_motion_limits_t slow[] = {
+        {1e-300, 0, 0, 0}, {1e-60, 0, 0, 0}, {100, 1e-300, 1e-300, 0}, {100, 0, 1e-300, 0}, {0, 0, 0, 1e-300},
+        {1e-300, 1e-300, 1e-300, 1e-300}};
+    const cm1e_path_config_t config = plain_config(2, 2, 1000, 10000, 1e6);
+    for (size_t k = 0; k < sizeof slow / sizeof slow[0]; k++) {
+        begin_path(&config, ORIGIN);
+        const cm1e_path_command_t command = {.limits = slow[k], .junction = CM1E_PATH_STOP, .tag = 1};
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_line(&driven.path, (double[]){200, 100}, &command, NULL));
+        for (int i = 0; i < 20; i++)
+            step_path();
+        TEST_ASSERT_EQUAL(CM1E_PATH_MOVING, driven.now.phase);
+        TEST_ASSERT_TRUE(driven.now.position[0] < 2);
+        cm1e_path_stop(&driven.path, 1e-300, 1e-300);
+        cm1e_path_override(&driven.path, 1e-300);
+        for (int i = 0; i < 20; i++)
+            step_path();
+        TEST_ASSERT_TRUE(driven.now.position[0] < 10);
+    }
+}
+
 static void test_what_is_cut_off_is_not_done_and_the_path_goes_on_from_there(void)
 {
     const cm1e_path_config_t config = plain_config(2, 2, 1000, 10000, 1e6);
@@ -308,6 +331,7 @@ int main(void)
     RUN_TEST(test_the_velocity_at_a_junction_is_that_of_its_mode);
     RUN_TEST(test_many_short_segments_keep_the_velocity);
     RUN_TEST(test_override_slows_pauses_and_goes_on);
+    RUN_TEST(test_absurdly_slow_commands_do_not_jump);
     RUN_TEST(test_what_is_cut_off_is_not_done_and_the_path_goes_on_from_there);
     RUN_TEST(test_a_stop_keeps_its_deceleration_and_comes_to_an_end_in_corners);
     return UNITY_END();
