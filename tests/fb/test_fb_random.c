@@ -1,7 +1,7 @@
 /**
  * Random programs on one to four axes, millions of cycles: every block of the table with random inputs, nonsense among
- * them, at any time and in any order; power, directions, faults of the drives, lost frames; axes that follow each other.
- * What must hold after every cycle:
+ * them, at any time and in any order; power, directions, faults of the drives, lost frames; axes that follow each other,
+ * up to two axes groups whose members come and go. What must hold after every cycle:
  *
  *  - position, velocity, acceleration and jerk of the set-point keep the axis's limits, and fit together;
  *  - the motor follows: the drive is sent the set-point, and only under torque;
@@ -9,6 +9,8 @@
  *  - the state goes only the ways of figure 2; a refused command changes nothing;
  *  - a move that is Done has arrived where it was to; nothing stands still for ever that should move;
  *  - a slave that is InGear is where its master and the ratio say;
+ *  - a group goes only the ways of its diagram, has a command while it moves, comes to rest without, and leads exactly
+ *    those axes that are in SynchronizedMotion for it; a line that is Done has arrived;
  *  - in Standstill nothing moves, and without MC_Power or in ErrorStop the torque ends in time.
  *
  * CM1E_TEST_SEED=<n> repeats one run, CM1E_TEST_RUNS=<n> makes more of them.
@@ -16,7 +18,7 @@
 #include "block_judge.h"
 #include "fake_bus.h"
 
-enum { CYCLES = 20000, RUNS = 520, BATCHES = 8 };
+enum { CYCLES = 20000, RUNS = 320, BATCHES = 8 };
 
 /** The axes and their drives without frames. */
 static struct bench {
@@ -161,6 +163,7 @@ static void prepare(unsigned seed, int axes)
         judged_axes[n].axis = NULL;
         snprintf(judged_axes[n].scene, sizeof judged_axes[n].scene, "seed %u", seed);
     }
+    end_groups();
     chance_seed(seed);
     memset(&bench, 0, sizeof bench);
     axis_count = axes;
@@ -241,14 +244,23 @@ static void judge_motor(void)
          "the target is %.0f counts from the motor", off);
 }
 
+static unsigned long long moving_of_all(void)
+{
+    unsigned long long cycles = 0;
+    for (int n = 0; n < JUDGED_MOST; n++)
+        cycles += watched_axes[n].moving;
+    return cycles;
+}
+
 /** Every other program has several axes. */
 static void run(unsigned seed)
 {
-    prepare(seed, seed % 2 ? 1 : 2 + (int)(seed / 2 % 3));
+    const int axes = seed % 2 ? 1 : 2 + (int)(seed / 2 % 3);
+    prepare(seed, axes);
     const int length = CYCLES / 2 + pick(CYCLES);
     for (int i = 0; i < length; i++)
         one_cycle();
-    cycles_total += (unsigned long long)length;
+    cycles_total += (unsigned long long)length * (unsigned)axes;
 }
 
 START_TEST(test_random_programs_keep_every_rule)
@@ -258,11 +270,15 @@ START_TEST(test_random_programs_keep_every_rule)
     for (int i = _i; i < runs; i += BATCHES)
         run(seed_of(i));
 
-    printf("batch %d: %llu cycles, %llu of them moving, %llu synchronised, %llu edges, %llu times Done\n", _i,
-           cycles_total, watched.moving, synchronised_total, edges_total, done_total);
-    if (getenv("CM1E_TEST_SEED"))
+    printf("batch %d: %llu axis-cycles, %llu of them moving, %llu in gear, %llu led by a group, %llu edges, "
+           "%llu times Done, %llu of groups\n", _i, cycles_total, moving_of_all(), synchronised_total, led_total,
+           edges_total, done_total, group_done_total);
+    if (getenv("CM1E_TEST_SEED") || runs < RUNS)
         return;
-    MUST(watched.moving > cycles_total / 8, "too wild to test anything");
+    MUST(moving_of_all() > cycles_total / 8, "too wild to test anything");
+    MUST(led_total > cycles_total / 200 && group_done_total > 0, "groups have moved nothing");
+    for (int state = 0; state < CM1E_GROUP_STATE_COUNT; state++)
+        MUST(group_seen[state] > 0, "never in %s", cm1e_group_state_name((cm1e_group_state_t)state));
     for (int state = 0; state < CM1E_AXIS_STATE_COUNT; state++)
         MUST(seen[state] > 0 || state == CM1E_AXIS_SYNCHRONIZED_MOTION, "never in %s",
              cm1e_axis_state_name((cm1e_axis_state_t)state));

@@ -361,6 +361,7 @@ static void run(unsigned seed, bool bridge)
     cm1e_axis_destroy(judged.axis);
     for (int i = 0; i < bench.other_count; i++)
         cm1e_axis_destroy(bench.others[i].axis);
+    end_groups();
     cm1e_bus_close(bench.bus);
 }
 

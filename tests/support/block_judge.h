@@ -16,6 +16,7 @@
 #include "axis/axis.h"
 #include "axis/axis_coupling.h"
 #include "block_table.h"
+#include "group/group.h"
 
 enum { BLOCK_BYTES = 4096, BLOCKS_MOST = 160, JUDGED_MOST = 4, INSTANCES_MOST = JUDGED_MOST * BLOCKS_MOST };
 
@@ -49,6 +50,7 @@ static struct judged_axis {
     cm1e_axis_state_t state;        /**< last judged */
     bool reset_asked;               /**< since ErrorStop */
     bool waited;                    /**< a command did, maybe of a block that has lost it by an error of its own */
+    bool led;                       /**< by an axes group, when it was judged last */
     long long number;               /**< of the cycle */
     int64_t cycle_ns;
     char scene[200];                /**< which run this is, for messages */
@@ -251,6 +253,46 @@ static void judge_state(instance_t *fb, cm1e_axis_state_t before, bool may_wait)
     judged.state = after;
 }
 
+/** The axes group of a block of Part 4; NULL: it is a block of an axis, or names none. */
+static const cm1e_group_t *group_of(const instance_t *fb)
+{
+    const block_member_t *m = member_of(fb->view->type, "AxesGroup");
+    const AXES_GROUP_REF_t *reference = NULL;
+    if (m)
+        memcpy(&reference, fb->memory + m->offset, sizeof reference);
+    return cm1e_group_from_reference(reference);
+}
+
+/** A block of a group may take its members while they stand, let them go again, and reset them; nothing else, and no
+ *  other axis. `members`: bits of those it had before the call. */
+static void judge_members(const instance_t *fb, unsigned members)
+{
+    const bool resets = strcmp(name_of(fb), "MC_GroupReset") == 0 && fb->now.trigger && !fb->before.trigger;
+    for (int n = 0; n < JUDGED_MOST; n++) {
+        struct judged_axis *one = &judged_axes[n];
+        if (!one->axis)
+            continue;
+        const cm1e_axis_state_t before = one->state, after = one->axis->state;
+        const bool member = members >> n & 1u;
+        const bool taken = before == CM1E_AXIS_STANDSTILL && after == CM1E_AXIS_SYNCHRONIZED_MOTION;
+        const bool freed = before == CM1E_AXIS_SYNCHRONIZED_MOTION && after == CM1E_AXIS_STANDSTILL && one->led;
+        MUST(after == before || (member && (taken || freed)), "%s brings axis %d, member %d, from %s to %s",
+             name_of(fb), n, member, cm1e_axis_state_name(before), cm1e_axis_state_name(after));
+        one->reset_asked = one->reset_asked || (resets && member && !fb->now.error);
+        one->state = after;
+        one->led = one->axis->activity == ACTIVITY_LED;
+    }
+}
+
+static unsigned members_of(const cm1e_group_t *group)
+{
+    unsigned members = 0;
+    for (int n = 0; n < JUDGED_MOST && group; n++)
+        if (judged_axes[n].axis && judged_axes[n].axis->group == group)
+            members |= 1u << n;
+    return members;
+}
+
 /** A block acts on its own axis only; what it makes others do comes with the cycle. */
 static void judge_others(const instance_t *fb)
 {
@@ -270,6 +312,8 @@ static void call(instance_t *fb)
     const bool may_wait = before_it && v->buffer_mode != NOWHERE && fb->memory[v->buffer_mode] != mcAborting;
     MUST(state == judged.state, "the state changed from %s to %s between two calls", cm1e_axis_state_name(judged.state),
          cm1e_axis_state_name(state));
+    const cm1e_group_t *group = group_of(fb);
+    const unsigned members = members_of(group);
     fb->before = fb->now;
     v->type->call(fb->memory);
     fb->now = look(fb);
@@ -281,6 +325,10 @@ static void call(instance_t *fb)
         judge_execute(fb);
     else if (v->valid != NOWHERE && v->busy != NOWHERE)
         judge_enable(fb);
+    if (group) {
+        judge_members(fb, members);
+        return;
+    }
     judge_state(fb, state, may_wait);
     judge_others(fb);
 }
@@ -347,6 +395,17 @@ static bool follows_roughly(const cm1e_axis_t *axis, int depth)
     return rough;
 }
 
+/** u; by how much its set-point may be rounded: a slave's as much as its master's too, by the ratio. */
+static double rounding_of(const cm1e_axis_t *axis, int depth)
+{
+    const follow_t *follow = axis->activity == ACTIVITY_COUPLED ? axis->coupling->now : NULL;
+    double rounding = 1e-3 / fabs(axis->scale);
+    for (int i = 0; follow && depth > 0 && i < follow->count; i++)
+        if (follow->links[i].master)
+            rounding += fabs(follow->links[i].ratio) * rounding_of(follow->links[i].master, depth - 1);
+    return rounding;
+}
+
 /** The master was late by so much: the motor stands, or in CSV has gone on. */
 static inline void pause_of_master(int64_t pause_ns)
 {
@@ -393,8 +452,8 @@ static inline void watch_set_point(void)
     watch_limits();
     const cm1e_motion_limits_t *most = limits_in_force();
     const double t = (double)judged.cycle_ns * 1e-9, v = axis->set_velocity, a = axis->set_acceleration;
-    const bool stop = !axis->active || axis->kind == CM1E_COMMAND_HALT || axis->kind == CM1E_COMMAND_STOP ||
-                      axis->paused;
+    const bool stop = axis->activity != ACTIVITY_LED && (!axis->active || axis->kind == CM1E_COMMAND_HALT ||
+                                                         axis->kind == CM1E_COMMAND_STOP || axis->paused);
     const bool ours = set_point_is_ours(), stepping = watched.searched; /* lets go of what it pushes at */
     watched.rough = follows_roughly(axis, JUDGED_MOST) || (watched.rough && ours && watched.velocity != 0.0);
     const bool is_hard = axis->state == CM1E_AXIS_ERROR_STOP || stepping || (stop && axis->software_limits) ||
@@ -405,7 +464,7 @@ static inline void watch_set_point(void)
         const double way = cm1e_position_minus(axis->set, watched.set) / axis->scale;
         const double jerk = fabs(a - watched.acceleration) / t, gain = fabs(v - watched.velocity);
         const double far = cm1e_position_minus(axis->target, axis->set) / axis->scale;
-        const double rounding = 1e-3 / fabs(axis->scale) + 4e-16 * fabs(far);
+        const double rounding = rounding_of(axis, JUDGED_MOST) + 4e-16 * fabs(far);
         const double off = fabs(way - (v + watched.velocity) * t / 2.0);
         KEEPS(fabs(v) <= most->velocity * slack, "velocity %.12g, limit %.12g", v, most->velocity);
         KEEPS(fabs(a) <= largest * slack, "acceleration %.12g, limit %.12g", a, largest);
@@ -443,6 +502,8 @@ static void judge_cycle(void)
                             1u << CM1E_AXIS_STANDSTILL; /* a halt that ends at once */
     const cm1e_axis_state_t before = judged.state, after = judged.axis->state;
     bool waits = judged.waited;
+    const bool led = judged.led; /* its group has come to rest, and lets it go with the last set-point */
+    judged.led = judged.axis->activity == ACTIVITY_LED;
     judged.waited = judged.axis->waiting.count > 0;
     if (after == before)
         return;
@@ -450,7 +511,9 @@ static void judge_cycle(void)
         waits = waits || (called[i]->of == judged_at &&
                           ((called[i]->before.busy && !called[i]->before.active) ||
                            (called[i]->now.busy && !called[i]->now.active)));
-    const unsigned allowed = to[before] | 1u << CM1E_AXIS_ERROR_STOP | (waits ? begins : 0);
+    const bool let_go = led && before == CM1E_AXIS_SYNCHRONIZED_MOTION;
+    const unsigned allowed = to[before] | 1u << CM1E_AXIS_ERROR_STOP | (waits ? begins : 0) |
+                             (let_go ? 1u << CM1E_AXIS_STANDSTILL : 0);
     MUST(allowed >> after & 1u, "from %s to %s in the cycle, a command waits: %d", cm1e_axis_state_name(before),
          cm1e_axis_state_name(after), waits);
     MUST(before != CM1E_AXIS_ERROR_STOP || judged.reset_asked, "ErrorStop was left without MC_Reset");

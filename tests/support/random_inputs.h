@@ -34,6 +34,8 @@ static double random_real(const char *name, const ranges_t *axis)
     for (size_t i = 0; i < sizeof plain / sizeof plain[0]; i++)
         if (strcmp(name, plain[i].name) == 0)
             return absurd(one_in(4) ? 0 : uniform(plain[i].low, plain[i].high));
+    if (strcmp(name, "TransitionParameter") == 0)
+        return absurd(spread(axis->reach * 0.3));
     if (strcmp(name, "VelFactor") == 0)
         return absurd(one_in(3) ? (double)pick(2) : uniform(0, 1));
     if (strstr(name, "Factor"))
@@ -60,6 +62,12 @@ static int random_enum(const char *name)
         return pick(2); /* CMD and CPIO are dead ends */
     if (strcmp(name, "BufferMode") == 0)
         return one_in(2) ? mcAborting : pick(6);
+    if (strcmp(name, "TransitionMode") == 0)
+        return one_in(2) ? mcTMNone : mcTMCornerDistance + pick(2);
+    if (strcmp(name, "CoordSystem") == 0)
+        return mcACS;
+    if (strncmp(name, "Circ", 4) == 0 || strcmp(name, "PathChoice") == 0)
+        return pick(2);
     return pick(3);
 }
 
@@ -84,16 +92,19 @@ static void random_text(char *text, size_t size)
 static void random_member(instance_t *fb, const block_member_t *m, const ranges_t *axis)
 {
     void *place = fb->memory + m->offset;
-    const double real = m->type == BLOCK_LREAL ? random_real(m->name, axis) : 0;
+    double reals[CM1E_GROUP_AXES] = {0}; /* an array, of groups */
+    for (size_t i = 0; m->type == BLOCK_LREAL && i < m->size / sizeof(LREAL); i++)
+        reals[i] = random_real(m->name, axis);
     const int number = m->type == BLOCK_ENUM ? random_enum(m->name) : 0;
     const INT small = m->type == BLOCK_INT ? random_integer(m->name) : 0;
     const TIME time = one_in(3) ? 0 : one_in(30) ? (TIME)chance() : (TIME)uniform(0, 2e9);
     switch (m->type) {
-    case BLOCK_LREAL: memcpy(place, &real, sizeof real); break;
+    case BLOCK_LREAL: memcpy(place, reals, m->size); break;
     case BLOCK_ENUM: memcpy(place, &number, sizeof number); break;
     case BLOCK_INT: memcpy(place, &small, sizeof small); break;
     case BLOCK_TIME: memcpy(place, &time, sizeof time); break;
     case BLOCK_BOOL: *(BOOL *)place = one_in(3); break;
+    case BLOCK_UINT: *(UINT *)place = one_in(20) ? (UINT)chance() : (UINT)pick(6); break;
     case BLOCK_STRING: random_text(place, m->size); break;
     case BLOCK_DINT: *(DINT *)place = one_in(20) ? (DINT)chance() : (DINT)pick(9) - 4; break;
     case BLOCK_UDINT: *(UDINT *)place = one_in(20) ? (UDINT)chance() : (UDINT)pick(6); break;

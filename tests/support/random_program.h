@@ -65,12 +65,15 @@ static sync_t syncs[INSTANCES_MOST];
 
 enum { STUCK = 3000 };
 static int calls_in_turn;
+static bool stories_touched[JUDGED_MOST]; /**< a block of the axis itself was taken in this cycle */
 
 static bool is(const instance_t *fb, const char *name) { return strcmp(name_of(fb), name) == 0; }
 static bool is_superimposed(const instance_t *fb) { return strstr(name_of(fb), "Superimposed") != NULL; }
 /** Has a record of its own beside that of the active command. */
 static bool is_on_top(const instance_t *fb) { return is_superimposed(fb) || strstr(name_of(fb), "MC_Phasing"); }
 static bool is_multi(const block_t *type) { return member_of(type, "Slave") != NULL; }
+
+#include "random_group.h"
 
 /** Any axis that is allowed. */
 static void random_axis(cm1e_axis_config_t *axis)
@@ -141,7 +144,7 @@ static void make_blocks(void)
 {
     for (size_t i = 0; i < block_count; i++) {
         const block_t *type = &block_table[i];
-        if (!member_of(type, "Error") || strcmp(type->name, "MC_Power") == 0)
+        if (!member_of(type, "Error") || strcmp(type->name, "MC_Power") == 0 || member_of(type, "AxesGroup"))
             continue;
         if (axis_count > 1 && !is_multi(type) && strcmp(type->name, "MC_Reset") != 0 && one_in(2))
             continue;
@@ -169,7 +172,7 @@ static void begin_program(void)
         judged.master = named[pick(axis_count)];
         make_blocks();
     }
-    judged_at = 0;
+    make_groups();
     memset(stories, 0, sizeof stories);
     memset(syncs, 0, sizeof syncs);
     calls_in_turn = 0;
@@ -239,12 +242,13 @@ static void tell(const instance_t *fb, const from_t *from)
     if (judged.number < first)
         return;
     fprintf(stderr, "%lld: axis %d: %s from %.17g, %.17g u/s, %.17g u/s2: ErrorID 0x%04X, %s;", judged.number,
-            judged_at, name_of(fb), cm1e_axis_units(judged.axis, from->position), from->velocity, from->acceleration, fb->now.error_id,
-            cm1e_axis_state_name(judged.axis->state));
+            judged_at, name_of(fb), cm1e_axis_units(judged.axis, from->position), from->velocity, from->acceleration,
+            fb->now.error_id, cm1e_axis_state_name(judged.axis->state));
     for (size_t i = 0; i < fb->view->type->member_count; i++) {
         const block_member_t *m = &fb->view->type->members[i];
         if (m->type == BLOCK_LREAL && m->section == BLOCK_INPUT)
-            fprintf(stderr, " %s %.17g", m->name, real_of(fb, m->name));
+            for (size_t k = 0; k < m->size / sizeof(LREAL); k++)
+                fprintf(stderr, " %s %.17g", m->name, ((const LREAL *)(const void *)(fb->memory + m->offset))[k]);
         else if (m->type == BLOCK_ENUM && m->section == BLOCK_INPUT)
             fprintf(stderr, " %s %d", m->name, *(const int *)(const void *)(fb->memory + m->offset));
         else if (m->type == BLOCK_BOOL && m->section == BLOCK_INPUT && fb->memory[m->offset])
@@ -311,11 +315,26 @@ static void play(int n)
     const bool busy = fb->now.busy;
     const from_t from = from_set(judged.axis);
     const double set = cm1e_axis_units(judged.axis, judged.axis->set);
+    double sets[JUDGED_MOST];
+    for (int a = 0; a < axis_count && group_count > 0; a++)
+        sets[a] = cm1e_axis_units(judged_axes[a].axis, judged_axes[a].axis->set);
+    const struct random_group *group = random_group_of(fb);
+    const cm1e_group_state_t group_state = group ? group->group->state : CM1E_GROUP_DISABLED;
     call(fb);
-    if (edge_to_come) {
+    judge_group_states(fb);
+    if (edge_to_come && group) {
+        tell(fb, &from);
+        edges_total++;
+        if (!fb->now.error) {
+            begin_group_story(fb, n, sets, group_state);
+            for (int i = 0; i < count; i++)
+                stories[i].known = false;
+        }
+    } else if (edge_to_come) {
         tell(fb, &from);
         edges_total++;
         player.edge_in_cycle = true;
+        stories_touched[fb->of] = stories_touched[fb->of] || !fb->now.error;
         stories[n] = story_of(fb, set);
         if (is(fb, "MC_GearIn"))
             syncs[n] = sync_of(fb);
@@ -327,7 +346,9 @@ static void play(int n)
         if (!fb->now.error && (is_superimposed(fb) || is(fb, "MC_SetPosition")))
             forget_stories();
     }
-    if (fb->now.done && busy)
+    if (fb->now.done && (busy || edge_to_come) && group)
+        judge_group_arrival(n);
+    else if (fb->now.done && busy)
         judge_arrival(n);
     if (is(fb, "MC_CamTableSelect") && fb->now.done)
         player.cam = (MC_CAM_ID)integer_of(fb, "CamTableID");
@@ -385,6 +406,8 @@ static void act_on(instance_t *fb)
     const uint16_t place = fb->view->execute != NOWHERE ? fb->view->execute : fb->view->enable;
     if (is(fb, "MC_Stop") && !fb->now.trigger && !one_in(8))
         return;
+    if (group_count > 0 && !fb->now.trigger && !leaves_groups_alone(fb))
+        return;
     if (is(fb, "MC_SetOverride") && !one_in(4))
         return;
     if (place == NOWHERE || one_in(12)) { /* inputs at any time, also without an edge */
@@ -395,6 +418,7 @@ static void act_on(instance_t *fb)
         random_tables();
         random_inputs(fb, &player.ranges, true);
         choose_masters(fb);
+        choose_of_group(fb);
         put(fb, "ContinuousUpdate", one_in(4));
     }
     fb->memory[place] = !fb->memory[place];
@@ -407,6 +431,9 @@ static void act(void)
         if (is_multi(instances[n].view->type))
             act_on(&instances[n]);
     }
+    for (int g = 0; g < group_count; g++)
+        if (one_in(groups[g].state == CM1E_GROUP_MOVING ? 200 : 40))
+            bring_on(&groups[g]);
     if (one_in(20))
         for (int burst = one_in(4) ? 1 + pick(6) : 1; burst > 0; burst--)
             act_on(&instances[pick(count)]);
@@ -414,7 +441,7 @@ static void act(void)
         instance_t *fb = &instances[pick(count)];
         if (flag(fb, fb->view->execute) && (fb->now.done || fb->now.error || fb->now.aborted))
             trigger(fb, false);
-        if (is(fb, "MC_Stop") && one_in(50))
+        if ((is(fb, "MC_Stop") || is(fb, "MC_GroupStop")) && one_in(50))
             trigger(fb, false);
     }
     for (int i = 0; i < count; i++)
@@ -490,12 +517,27 @@ static void pause_for(int64_t time_ns)
         judged_axes[n].state = judged_axes[n].axis->state;
     for (int i = 0; i < count; i++)
         syncs[i].known = false;
+    judge_group_states(NULL);
+}
+
+/** A path of axes that brake as slowly as the slowest, with the others' units, needs its time. */
+static void judge_groups(void)
+{
+    double longest_s = 0;
+    for (int n = 0; n < axis_count; n++) {
+        const cm1e_motion_limits_t *most = &judged_axes[n].axis->maximum;
+        longest_s = fmax(longest_s, most->velocity / most->deceleration + 2 * most->deceleration / most->jerk +
+                                        2 * sqrt(most->velocity / most->jerk) + 0.2);
+    }
+    for (int g = 0; g < group_count; g++)
+        judge_group(&groups[g], (int)(10 * longest_s * 1e9 / (double)judged.cycle_ns), STUCK);
 }
 
 static void judge_axis(void)
 {
     judge_active();
     judge_rest();
+    judge_led();
     judge_motor();
     judge_progress();
     seen[judged.axis->state]++;
@@ -517,15 +559,19 @@ static void one_cycle(void)
         MUST(powered == before[n] || bench.powers[n].Enable || powered == CM1E_AXIS_DISABLED ||
                  powered == CM1E_AXIS_ERROR_STOP, "MC_Power of axis %d: to %s", n, cm1e_axis_state_name(powered));
     }
+    judge_group_states(NULL);
+    memset(stories_touched, 0, sizeof stories_touched);
     act();
     play_all();
     if (one_in(2000))
         pause_for(pick(95) * 1000000);
     cycle_end();
+    judge_group_states(NULL);
     for (int n = 0; n < axis_count; n++) {
         judged_at = n;
         judge_axis();
     }
+    judge_groups();
     for (int i = 0; i < count && axis_count > 1; i++)
         if (syncs[i].asked)
             judge_sync(i);
