@@ -54,6 +54,7 @@ void cm1e_axis_destroy(cm1e_axis_t *axis)
 {
     if (!axis)
         return;
+    cm1e_axis_lead_end(axis, CM1E_ERROR_FB_AXIS_REF);
     cm1e_axis_handle_give_back(axis->handle);
     cm1e_drive_free(&axis->drive);
     free(axis->tables);

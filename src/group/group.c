@@ -64,9 +64,6 @@ static void refresh_members(cm1e_group_t *group)
         if (group->member[ident - 1].Handle != 0 && (!axis || state_of(axis) == CM1E_AXIS_ERROR_STOP))
             cm1e_group_fail(group, CM1E_ERROR_GROUP_AXIS, ident);
     }
-    for (int i = 0; i < group->axes; i++) /* an axis that was destroyed tells nobody */
-        if (!cm1e_group_axis(group, group->ident[i]))
-            group->led &= ~(1u << i);
 }
 
 void cm1e_group_refresh(cm1e_group_t *group)

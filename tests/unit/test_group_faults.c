@@ -201,6 +201,26 @@ static void test_the_end_of_a_run_shuts_all_axes_down(void)
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_group_destroy(group_reference));
 }
 
+/* Nobody asks the group what became of it: the others brake along the path all the same. */
+static void test_an_axis_that_is_destroyed_on_the_way(void)
+{
+    group_begin(3);
+    group_line(3.0, 1.0, 3.0, mcAborting);
+    axes_cycles(400);
+    cm1e_axis_destroy(axes_bench.axes[1]);
+    axes_bench.axes[1] = NULL;
+    TEST_ASSERT_EQUAL_INT(CM1E_GROUP_ERROR_STOP, group->state);
+    TEST_ASSERT_EQUAL_UINT(1u << 0 | 1u << 2, group->led);
+    for (int i = 0; i < 2000 && group->led; i++)
+        for (int n = 0; n < 3; n += 2) {
+            cm1e_axis_inputs(axes_axis(n), CM1E_OK, CM1E_OK, axes_bench.bus.clock.virtual_now_ns);
+            cm1e_axis_outputs(axes_axis(n));
+        }
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, axes_axis(0)->set_velocity);
+    group_must_be(CM1E_GROUP_ERROR_STOP);
+    group_told("does not exist any more");
+}
+
 /* The last look of the axis: a path that asks for too much stops all. */
 static void test_a_limit_that_is_lowered_on_the_way_stops_it(void)
 {
@@ -231,6 +251,7 @@ int main(void)
     RUN_TEST(test_several_axes_fail_together);
     RUN_TEST(test_a_bus_that_is_lost_is_braked_by_every_axis);
     RUN_TEST(test_the_end_of_a_run_shuts_all_axes_down);
+    RUN_TEST(test_an_axis_that_is_destroyed_on_the_way);
     RUN_TEST(test_a_limit_that_is_lowered_on_the_way_stops_it);
     return UNITY_END();
 }
