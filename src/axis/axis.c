@@ -160,7 +160,7 @@ static bool moves_on(const cm1e_axis_t *axis)
 void cm1e_axis_advance(cm1e_axis_t *axis)
 {
     axis->advanced = true;
-    if (axis_follows(axis) || axis->coupling->next)
+    if (axis_follows(axis) || axis->awaited)
         cm1e_axis_advance_masters(axis);
     if (axis->kept != 0 || axis->drive.command.digital_outputs != 0)
         cm1e_axis_signals_step(axis);
@@ -170,7 +170,7 @@ void cm1e_axis_advance(cm1e_axis_t *axis)
         cm1e_axis_power_step(axis);
     }
     cm1e_axis_motion_step(axis);
-    if (axis->coupling->next)
+    if (axis->awaited)
         cm1e_axis_await_step(axis);
     if (axis->backlash.gap > 0.0)
         cm1e_axis_backlash_step(axis);

@@ -32,7 +32,7 @@ const cam_slot_t *cm1e_axis_cam_of(const cm1e_axis_t *axis, MC_CAM_ID id)
 static bool used(cm1e_axis_t *axis, const cam_slot_t *slot)
 {
     const coupling_t *c = axis->coupling;
-    if ((axis_follows(axis) && c->now->cam.slot == slot) || (c->next && c->next->cam.slot == slot))
+    if ((axis_follows(axis) && c->now->cam.slot == slot) || (axis->awaited && axis->awaited->cam.slot == slot))
         return true;
     for (int i = 0; i < COUPLINGS_WAITING; i++)
         if (c->waiting[i].coupling.cam == slot->id && cm1e_axis_find_waiting(axis, c->waiting[i].id))

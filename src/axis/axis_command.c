@@ -329,7 +329,7 @@ static cm1e_error_t buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command
 static bool has_to_wait(const cm1e_axis_t *axis, const cm1e_axis_command_t *command)
 {
     return command->buffer_mode != mcAborting && command->kind != CM1E_COMMAND_STOP &&
-           !is_decoupling(command->kind) && (axis->active || axis->coupling->next) && axis->state != CM1E_AXIS_STOPPING;
+           !is_decoupling(command->kind) && (axis->active || axis->awaited) && axis->state != CM1E_AXIS_STOPPING;
 }
 
 /* With nothing to wait for. */

@@ -96,18 +96,16 @@ static waiting_coupling_t *free_place(cm1e_axis_t *axis)
 
 static void await(cm1e_axis_t *axis, follow_t *follow)
 {
-    coupling_t *c = axis->coupling;
-    c->next = follow;
-    c->due = false;
+    axis->awaited = follow;
+    axis->coupling->due = false;
     cm1e_axis_list_links(follow);
 }
 
 void cm1e_axis_await_nothing(cm1e_axis_t *axis)
 {
-    coupling_t *c = axis->coupling;
-    if (c->next)
-        cm1e_axis_unlist_links(c->next);
-    c->next = NULL;
+    if (axis->awaited)
+        cm1e_axis_unlist_links(axis->awaited);
+    axis->awaited = NULL;
 }
 
 /* What runs goes on, as the active command, until the master is where the way begins; all that waits is aborted. */
@@ -172,7 +170,7 @@ static from_t at_present(const cm1e_axis_t *axis, const from_t *from, double lat
 bool cm1e_axis_coupling_awaits(cm1e_axis_t *axis, const from_t *from, double late_s)
 {
     coupling_t *c = axis->coupling;
-    if (c->next)
+    if (axis->awaited)
         return !c->due;
     const move_t *move = waiting_move(axis, 0);
     const waiting_coupling_t *waiting = waiting_of(axis, move->id);
@@ -193,11 +191,11 @@ static cm1e_error_t begin_awaited(cm1e_axis_t *axis, const move_t *move, const c
     cm1e_motion_limits_t limits;
     cm1e_error_t error = c->due_error ? c->due_error : cm1e_axis_limits_of(axis, from, move, &limits);
     if (!error)
-        error = cm1e_axis_way_begin(axis, c->next, move, from);
+        error = cm1e_axis_way_begin(axis, axis->awaited, move, from);
     if (error)
         cm1e_axis_await_nothing(axis);
     else
-        take(axis, move, coupling, c->next, from, &limits);
+        take(axis, move, coupling, axis->awaited, from, &limits);
     return error;
 }
 
@@ -207,7 +205,7 @@ cm1e_error_t cm1e_axis_coupling_begin(cm1e_axis_t *axis, const move_t *move, con
     const waiting_coupling_t *waiting = waiting_of(axis, move->id);
     const from_t here = at_present(axis, from, late_s);
     cm1e_motion_limits_t limits;
-    if (waiting && axis->coupling->next)
+    if (waiting && axis->awaited)
         return begin_awaited(axis, move, &waiting->coupling, &here);
     axis->coupling->at_end = axis_follows(axis) && axis->coupling->end_of_profile;
     const cm1e_error_t error = waiting ? prepare(axis, move, &waiting->coupling, &here, &limits)
@@ -229,7 +227,7 @@ cm1e_error_t cm1e_axis_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, 
         return CM1E_OK; /* it has ended */
     if (waiting->kind != (uint8_t)command->kind || command->kind == CM1E_COMMAND_GEAR_IN_POS)
         return CM1E_ERROR_INVALID_ARGUMENT;
-    if (waiting == waiting_move(axis, 0) && axis->coupling->next)
+    if (waiting == waiting_move(axis, 0) && axis->awaited)
         return CM1E_OK; /* it is placed already, and waits for its master only */
     move_t move = cm1e_axis_move_of(command);
     move.id = id;

@@ -265,7 +265,7 @@ follow_t *cm1e_axis_follow_spare(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
     follow_t *spare = c->follows;
-    while (spare == c->now || spare == c->next)
+    while (spare == c->now || spare == axis->awaited)
         spare++;
     return spare;
 }
@@ -308,11 +308,9 @@ void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, c
         cm1e_axis_phasing_forget(axis);
     if (c->now)
         cm1e_axis_unlist_links(c->now);
-    if (c->next)
-        cm1e_axis_unlist_links(c->next);
+    cm1e_axis_await_nothing(axis);
     cm1e_axis_list_links(follow);
     c->now = follow;
-    c->next = NULL;
     c->end_of_profile = c->stopping = c->due = false;
     begin_rest(axis, from, asked);
     axis->activity = ACTIVITY_COUPLED;

@@ -129,14 +129,12 @@ typedef struct observed {
 typedef struct coupling {
     follow_t follows[FOLLOWS];     /**< links are in lists: they keep their place */
     follow_t *now;                 /**< F; NULL: never was one */
-    follow_t *next;                /**< of the first waiting command: begins at a place of its master (StartSync), until
-                                        when what runs goes on; NULL: none does */
     rest_t rest;
     cm1e_motion_state_t phase;     /**< u of the master: shift of links[0], as long as that one is followed ... */
     phasing_t phasing;             /**< ... and what changes it */
     observed_t own;
     double f_acceleration;         /**< u/s2; of F, in the last cycle */
-    bool due;                      /**< it is now that `next` takes F's place ... */
+    bool due;                      /**< it is now that the awaited one takes F's place ... */
     cm1e_error_t due_error;        /**< ... or fails so */
     bool end_of_profile;           /**< CAM_IN: F came over it in this cycle */
     uint32_t ends;                 /**< ... so often since the command began */

@@ -18,7 +18,7 @@ void cm1e_axis_advance_masters(cm1e_axis_t *axis)
 {
     if (axis_follows(axis))
         advance_masters(axis->coupling->now);
-    advance_masters(axis->coupling->next);
+    advance_masters(axis->awaited);
 }
 
 static void resume_masters(follow_t *follow, int64_t pause_ns)
@@ -31,7 +31,7 @@ static void resume_masters(follow_t *follow, int64_t pause_ns)
 void cm1e_axis_resume_masters(cm1e_axis_t *axis, int64_t pause_ns)
 {
     resume_masters(axis->coupling->now, pause_ns);
-    resume_masters(axis->coupling->next, pause_ns);
+    resume_masters(axis->awaited, pause_ns);
 }
 
 /* ---- who follows whom -------------------------------------------------------------------------------------------- */
@@ -55,7 +55,7 @@ static bool search(cm1e_axis_t *from, const cm1e_axis_t *goal, uint64_t mark)
     if (c->mark == mark)
         return false;
     c->mark = mark;
-    return search_masters(axis_follows(from) ? c->now : NULL, goal, mark) || search_masters(c->next, goal, mark);
+    return search_masters(axis_follows(from) ? c->now : NULL, goal, mark) || search_masters(from->awaited, goal, mark);
 }
 
 static bool would_follow_itself(cm1e_axis_t *slave, cm1e_axis_t *master)

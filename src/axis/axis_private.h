@@ -95,6 +95,8 @@ struct cm1e_axis {
     bool advanced;                  /**< its set-point is that of this cycle */
     bool observed;                  /**< somebody follows its actual value, or has; an encoder always is */
     bool resumed;                   /**< a pause before this cycle has been dealt with */
+    struct follow *awaited;         /**< F of the first waiting command: it begins at a place of its master (StartSync),
+                                         until when what runs goes on; NULL: none does */
     const void *power_owner;
     double cycle_s;
     int64_t profile_cycles;         /**< since it began ... */

@@ -229,7 +229,7 @@ static bool due(const follow_t *follow, double before)
 void cm1e_axis_await_step(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
-    follow_t *next = c->next;
+    follow_t *next = axis->awaited;
     const double before = next->links[0].seen.counts;
     const from_t from = from_base(axis);
     const master_trouble_t trouble = cm1e_axis_look(axis, next);
