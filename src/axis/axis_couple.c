@@ -13,10 +13,22 @@ static prepare_t *const preparers[CM1E_COMMAND_KIND_COUNT] = {
 
 bool cm1e_axis_can_couple(cm1e_command_kind_t kind) { return preparers[kind] != NULL; }
 
+/* Some numbers are too small to compute with, whatever the masters do when it begins. */
+static cm1e_error_t check_size(const cm1e_axis_t *axis, const cm1e_motion_limits_t *asked)
+{
+    const double most = axis->maximum.velocity;
+    const cm1e_motion_state_t fastest = {.velocity = most};
+    const cm1e_motion_limits_t limits = {2.0 * most, asked->acceleration, asked->deceleration, asked->jerk};
+    cm1e_profile_t profile;
+    return cm1e_profile_to_velocity(&profile, &fastest, 0.0, &limits) ? CM1E_ERROR_AXIS_DYNAMICS_RANGE : CM1E_OK;
+}
+
 static cm1e_error_t prepare(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
                             const from_t *from, cm1e_motion_limits_t *limits)
 {
-    const cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, limits);
+    cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, limits);
+    if (!error)
+        error = check_size(axis, limits);
     return error ? error : preparers[move->kind](axis, move, coupling, from);
 }
 

@@ -228,6 +228,17 @@ static void test_a_master_may_be_moved_by_a_profile_of_its_drive(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 1.0, axes_info(1).set_velocity);
 }
 
+static void test_dynamics_too_small_to_compute_with_are_refused(void)
+{
+    axes_begin(2);
+    axes_move_velocity(0, 1.0);
+    axes_cycles(1000);
+    const cm1e_axis_coupling_t coupling = {.master = {by_ratio(0, 1, 1)}};
+    axes_refused(1, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN, .jerk = 1e-300, .coupling = &coupling},
+                 CM1E_ERROR_AXIS_DYNAMICS_RANGE);
+    axes_told(1, "too small to compute with");
+}
+
 static double shaft;
 
 static void turn_shaft(void)
@@ -473,6 +484,7 @@ int main(void)
     RUN_TEST(test_modulo_axes_turn_on_and_on);
     RUN_TEST(test_an_axis_moved_by_its_drive_is_a_master_by_its_actual_value_and_no_slave);
     RUN_TEST(test_a_master_may_be_moved_by_a_profile_of_its_drive);
+    RUN_TEST(test_dynamics_too_small_to_compute_with_are_refused);
     RUN_TEST(test_a_slave_in_csv_keeps_up);
     RUN_TEST(test_a_gear_waits_and_others_wait_for_it);
     RUN_TEST(test_a_gear_waits_for_a_velocity);
