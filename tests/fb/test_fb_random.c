@@ -18,7 +18,7 @@
 #include "block_judge.h"
 #include "fake_bus.h"
 
-enum { CYCLES = 20000, RUNS = 320, BATCHES = 8 };
+enum { CYCLES = 20000, RUNS = 256, BATCHES = 8 };
 
 /** The axes and their drives without frames. */
 static struct bench {
