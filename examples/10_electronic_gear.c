@@ -132,11 +132,7 @@ static void program(void *context)
     watch();
     if (!step_is_done())
         return;
-    if (step == STEP_OFF) {
-        cm1e_scheduler_stop(example.scheduler);
-        return;
-    }
-    cm1e_scheduler_mark(example.scheduler, marks[++step]);
+    step = (step_t)example_next_step(&example, marks, step, STEP_OFF);
     step_began_ns = cm1e_scheduler_time_ns(example.scheduler);
 }
 

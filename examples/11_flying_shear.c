@@ -148,12 +148,8 @@ static void program(void *context)
     watch();
     cut();
     count_turns();
-    if (!step_is_done())
-        return;
-    if (step == STEP_OFF)
-        cm1e_scheduler_stop(example.scheduler);
-    else
-        cm1e_scheduler_mark(example.scheduler, marks[++step]);
+    if (step_is_done())
+        step = (step_t)example_next_step(&example, marks, step, STEP_OFF);
 }
 
 static void print_report(void)

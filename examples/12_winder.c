@@ -123,12 +123,8 @@ static void program(void *context)
     call_blocks();
     measure();
     watch();
-    if (!step_is_done())
-        return;
-    if (step == STEP_OFF)
-        cm1e_scheduler_stop(example.scheduler);
-    else
-        cm1e_scheduler_mark(example.scheduler, marks[++step]);
+    if (step_is_done())
+        step = (step_t)example_next_step(&example, marks, step, STEP_OFF);
 }
 
 int main(int argc, char **argv)

@@ -111,6 +111,17 @@ static inline void example_tell_error_of(AXIS_REF_t axis, WORD error_id)
 }
 static inline void example_tell_error(const example_t *e, WORD error_id) { example_tell_error_of(e->axis, error_id); }
 
+/** What follows a step that is done: the next one, with its mark in the plot; behind the last one the run ends. */
+static inline int example_next_step(example_t *e, const char *const *marks, int step, int last)
+{
+    if (step == last) {
+        cm1e_scheduler_stop(e->scheduler);
+        return step;
+    }
+    cm1e_scheduler_mark(e->scheduler, marks[step + 1]);
+    return step + 1;
+}
+
 /** What main() returns. */
 static inline int example_end(example_t *e, cm1e_error_t error, const cm1e_diag_t *why, bool well)
 {

@@ -517,11 +517,11 @@ static void test_a_cam_by_way_on_a_modulo_slave(void)
     axes_must_be(SLAVE, CM1E_AXIS_SYNCHRONIZED_MOTION);
 }
 
-/* A cam that is run once, and rises from its first point on: that is where the way ends when nothing else is said. */
-static void test_a_single_shot_that_begins_with_a_slope(void)
+/* In step with a cam that is run once, from 0 to 4 u on 10 u of the master, by a way of 5 u before it. */
+static void into_single_shot(double slope_at_begin)
 {
     axes_begin(2);
-    MC_CAM_POINT points[] = {{0, 0, 1, 0}, {10, 4, 0, 0}};
+    const MC_CAM_POINT points[] = {{0, 0, slope_at_begin, 0}, {10, 4, 0, 0}};
     const MC_CAM_REF table = {points, 2, mcCamPolynomial5};
     cm1e_axis_coupling_t coupling = {.master = {{.axis = axes_reference(MASTER), .numerator = 1, .denominator = 1}},
                                      .master_start_distance = 5, .start_mode = mcRampIn};
@@ -532,6 +532,12 @@ static void test_a_single_shot_that_begins_with_a_slope(void)
         axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_CAM_IN, .coupling = &coupling});
     axes_move_velocity(MASTER, 4);
     axes_wait_reached(SLAVE, id, 8000);
+}
+
+/* A cam that is run once, and rises from its first point on: that is where the way ends when nothing else is said. */
+static void test_a_single_shot_that_begins_with_a_slope(void)
+{
+    into_single_shot(1);
     TEST_ASSERT_DOUBLE_WITHIN(0.005, 0, set_of(MASTER));
     AXES_UNTIL(set_of(MASTER) > 12);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 4, set_of(SLAVE));
@@ -541,18 +547,7 @@ static void test_a_single_shot_that_begins_with_a_slope(void)
 /* It is run once, but not over before the master was through: a little to and fro at its beginning does not end it. */
 static void test_a_single_shot_whose_master_hesitates_at_its_beginning(void)
 {
-    axes_begin(2);
-    MC_CAM_POINT points[] = {{0, 0, 0, 0}, {10, 4, 0, 0}};
-    const MC_CAM_REF table = {points, 2, mcCamPolynomial5};
-    cm1e_axis_coupling_t coupling = {.master = {{.axis = axes_reference(MASTER), .numerator = 1, .denominator = 1}},
-                                     .master_start_distance = 5, .start_mode = mcRampIn};
-    axes_wait(MASTER, axes_move_to(MASTER, -10, 10), 5000);
-    axes_wait(SLAVE, axes_move_to(SLAVE, -3, 10), 5000);
-    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_cam_select(axes_axis(SLAVE), &table, false, true, true, &coupling.cam));
-    const cm1e_command_id_t id =
-        axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_CAM_IN, .coupling = &coupling});
-    axes_move_velocity(MASTER, 4);
-    axes_wait_reached(SLAVE, id, 8000);
+    into_single_shot(0);
     static const struct { double master, slave; } moves[] = {{-0.5, 0}, {5, 2}, {-0.5, 0}, {12, 4}, {5, 4}, {-3, 4}};
     for (int i = 0; i < 6; i++) {
         axes_wait(MASTER, axes_move_to(MASTER, moves[i].master, 4), 8000);
