@@ -97,7 +97,7 @@ static void watch_lag(cm1e_axis_t *axis)
     const bool lost = axis->lag_seen > axis->max_lag * fabs(axis->scale);
     if (axis->state == CM1E_AXIS_ERROR_STOP && blind_before && was_deaf(axis, axis->lag_seen, lag_before)) {
         cm1e_axis_brake_from_actual(axis);
-    } else if (lost && powered_state(axis->state)) {
+    } else if (lost && axis->state != CM1E_AXIS_ERROR_STOP) { /* in Disabled: the ramp before the torque goes */
         if (!axis->lag_monitoring)
             return;
         cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, lag / axis->scale, axis->max_lag);

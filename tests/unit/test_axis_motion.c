@@ -505,6 +505,31 @@ static void test_a_motor_that_does_not_follow_ends_in_error_stop(void)
     TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
 }
 
+/** MC_Power.Enable FALSE, a motor that does not follow the ramp, and TRUE again in any cycle: the lag is told. */
+static void test_lag_in_the_ramp_to_disabled_is_an_error_whenever_power_comes_again(void)
+{
+    for (int again = 0; again < 150; again++) {
+        bench_start();
+        bench_enable();
+        bench_move_velocity(20.0);
+        bench_cycles(500);
+        bus.blocked = true;
+        bench_power(false);
+        bench_cycles(again);
+        bench_inputs(); /* Enable comes between inputs and outputs of a cycle */
+        bench_power(true);
+        bench_outputs();
+        bench_cycles(200);
+        TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_LAG, bench_info().error);
+        TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
+        cm1e_axis_reset(axis);
+        bus.blocked = false;
+        bench_cycles(50);
+        TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+    }
+}
+
 /* ---- the bus goes ------------------------------------------------------------------------------------------------ */
 
 static void test_bus_trouble_while_moving_ramps_down_blindly_then_disables(void)
@@ -708,6 +733,7 @@ int main(void)
     RUN_TEST(test_a_reversal_into_a_direction_disabled_meanwhile_is_stopped);
     RUN_TEST(test_a_direction_that_a_motion_does_not_need_may_be_disabled);
     RUN_TEST(test_a_motor_that_does_not_follow_ends_in_error_stop);
+    RUN_TEST(test_lag_in_the_ramp_to_disabled_is_an_error_whenever_power_comes_again);
     RUN_TEST(test_bus_trouble_while_moving_ramps_down_blindly_then_disables);
     RUN_TEST(test_bus_trouble_while_disabled_is_no_error_until_enable);
     RUN_TEST(test_a_slave_that_was_away_is_no_longer_homed);
