@@ -49,7 +49,7 @@ static cm1e_error_t run(const char *interface_name, cm1e_bus_t **bus, cm1e_diag_
     if (error != CM1E_OK)
         return error;
     axis = cm1e_scheduler_axis(scheduler, 0);
-    cm1e_scheduler_stop_on_signals(scheduler); /* Ctrl-C ramps down and disables, as the end of the run does */
+    cm1e_scheduler_stop_on_signals(scheduler); /* Ctrl-C, or a closed terminal, ramps down and disables */
     error = cm1e_scheduler_add_task(scheduler, &task, why);
     return error == CM1E_OK ? cm1e_scheduler_run(scheduler, 0, why) : error;
 }

@@ -17,7 +17,6 @@
  */
 #include <poll.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <string.h>
 #include <termios.h>
@@ -198,7 +197,6 @@ static cm1e_error_t run_with_terminal(cm1e_diag_t *why)
 {
     struct termios before, raw;
     pthread_t thread;
-    signal(SIGHUP, SIG_IGN); /* a terminal that is closed reads as its end, which ends the run in order */
     tcgetattr(STDIN_FILENO, &before);
     raw = before;
     raw.c_lflag &= ~(tcflag_t)(ICANON | ECHO); /* Ctrl-C stays what it is */

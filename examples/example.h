@@ -82,7 +82,7 @@ static inline cm1e_error_t example_run(example_t *e, cm1e_program_t program, cm1
 {
     const cm1e_task_config_t task = {.name = "example", .program = program};
     cm1e_error_t error = cm1e_scheduler_add_task(e->scheduler, &task, why);
-    cm1e_scheduler_stop_on_signals(e->scheduler); /* Ctrl-C ramps down and disables, as the end of the run does */
+    cm1e_scheduler_stop_on_signals(e->scheduler); /* Ctrl-C, or a closed terminal, ramps down and disables */
     if (error == CM1E_OK)
         error = cm1e_scheduler_run(e->scheduler, 0, why);
     if (error == CM1E_OK && e->csv_file)

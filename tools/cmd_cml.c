@@ -315,9 +315,12 @@ static int run_session(session_t *session, const cm1e_bus_config_t *config, cm1e
 static void end_in_order(void)
 {
     const struct sigaction end = {.sa_handler = on_signal}, ignore = {.sa_handler = SIG_IGN};
+    struct sigaction before;
     sigaction(SIGINT, &end, NULL);
     sigaction(SIGTERM, &end, NULL);
-    sigaction(SIGHUP, &end, NULL);
+    sigaction(SIGQUIT, &end, NULL);
+    if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) /* else: nohup */
+        sigaction(SIGHUP, &end, NULL);
     sigaction(SIGPIPE, &ignore, NULL);
 }
 

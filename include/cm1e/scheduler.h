@@ -81,7 +81,11 @@ AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *scheduler, const 
 cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns, cm1e_diag_t *diag);
 /** Asks the run to end in order. Any thread, any program, any signal handler. @rt any */
 void cm1e_scheduler_stop(cm1e_scheduler_t *scheduler);
-/** SIGINT and SIGTERM stop this scheduler in order, until it is destroyed. One scheduler per process. @rt init */
+/** Signals that would end or suspend the program stop this scheduler in order, until it is destroyed: SIGINT, SIGTERM,
+ *  SIGHUP (terminal closed), SIGQUIT, SIGTSTP (Ctrl-Z), SIGPIPE, SIGXCPU, SIGXFSZ. A second and every further signal
+ *  changes nothing: the ramp is not shortened, and is bounded by `stop_timeout_ns`; only SIGKILL ends it. A signal that
+ *  the program ignores stays ignored (SIGHUP under nohup), but for SIGINT and SIGTERM; handlers of the program are
+ *  replaced, and act again afterwards. One scheduler per process. @rt init */
 void cm1e_scheduler_stop_on_signals(cm1e_scheduler_t *scheduler);
 /** Planned time of this cycle since the first one, the same for a whole scan. @rt cycle */
 int64_t cm1e_scheduler_time_ns(const cm1e_scheduler_t *scheduler);

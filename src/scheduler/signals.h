@@ -1,6 +1,6 @@
 /**
  * @file signals.h
- * SIGINT and SIGTERM end one scheduler's run in order.
+ * What would end or suspend the program from outside (Ctrl-C, a closed terminal ...) ends one scheduler's run in order.
  */
 #ifndef CM1E_SCHEDULER_SIGNALS_H
 #define CM1E_SCHEDULER_SIGNALS_H

@@ -280,7 +280,7 @@ def check_cml(folder):
         refused = cml(*words)
         expect(refused.returncode == status and word in refused.stderr and refused.stdout == "" and
                "\x1b" not in refused.stderr, f"cml {words}: \"{word}\"", refused)
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         check_cml_ended(bus, number)
     none = run("cm1e", "cml", "-i", "sim", "?99.1")
     expect(none.returncode == FAILED and "no EtherCAT Cool MUSCLE Bridge" in none.stderr, "cml without a bridge", none)
