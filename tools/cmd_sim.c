@@ -19,33 +19,42 @@ static void request_stop(int signal_number)
     stop_requested = 1;
 }
 
-enum { KEY_SII = 0x400, KEY_BRIDGE };
+enum { KEY_SII = 0x400, KEY_BRIDGE, KEY_IO };
 
 typedef struct sim_options {
     const char *interface_name, *bus_file, *order;
     const char *sii[CM1E_MAX_SLAVES]; /* files, by place on the line */
     uint32_t sii_count;
-    cm1e_device_model_t bridges[CM1E_MAX_SLAVES]; /* behind the other slaves */
-    uint32_t bridge_count;
+    const struct extra *extras[CM1E_MAX_SLAVES]; /* behind the other slaves, in the order of the command line */
+    uint32_t extra_count;
+    bool has_bridges;
 } sim_options_t;
 
-static const struct {
+static const struct extra {
+    int key;
     const char *word;
-    cm1e_device_model_t model;
-} bridges[] = {{"eb01", CM1E_DEVICE_EB01}, {"eb02", CM1E_DEVICE_EB02}, {"eb12", CM1E_DEVICE_EB12}};
-enum { BRIDGES = sizeof bridges / sizeof bridges[0] };
+    int model; /* cm1e_device_model_t of a bridge, cm1e_sim_io_t */
+} extras[] = {
+    {KEY_BRIDGE, "eb01", CM1E_DEVICE_EB01}, {KEY_BRIDGE, "eb02", CM1E_DEVICE_EB02},
+    {KEY_BRIDGE, "eb12", CM1E_DEVICE_EB12}, {KEY_IO, "module", CM1E_SIM_IO_MODULE},
+    {KEY_IO, "terminal", CM1E_SIM_IO_TERMINAL}, {KEY_IO, "coupler", CM1E_SIM_IO_COUPLER},
+};
+enum { EXTRAS = sizeof extras / sizeof extras[0] };
 
-static void take_bridge(sim_options_t *options, const char *word, struct argp_state *state)
+static void take_extra(sim_options_t *options, int key, const char *word, struct argp_state *state)
 {
     int i = 0;
-    while (i < BRIDGES && strcmp(bridges[i].word, word) != 0)
+    while (i < EXTRAS && (extras[i].key != key || strcmp(extras[i].word, word) != 0))
         i++;
-    if (i == BRIDGES)
+    if (i == EXTRAS && key == KEY_BRIDGE)
         argp_error(state, "there is no bridge \"%s\"; there are eb01, eb02 and eb12", word);
-    else if (options->bridge_count == CM1E_MAX_SLAVES)
+    else if (i == EXTRAS)
+        argp_error(state, "there is no simple device \"%s\"; there are module, terminal and coupler", word);
+    else if (options->extra_count == CM1E_MAX_SLAVES)
         argp_error(state, "a segment has %d slaves at most", CM1E_MAX_SLAVES);
     else
-        options->bridges[options->bridge_count++] = bridges[i].model;
+        options->extras[options->extra_count++] = &extras[i];
+    options->has_bridges |= key == KEY_BRIDGE;
 }
 
 static error_t parse(int key, char *arg, struct argp_state *state)
@@ -59,7 +68,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "a segment has %d slaves at most", CM1E_MAX_SLAVES);
         options->sii[options->sii_count++] = arg;
         return 0;
-    case KEY_BRIDGE: take_bridge(options, arg, state); return 0;
+    case KEY_BRIDGE:
+    case KEY_IO: take_extra(options, key, arg, state); return 0;
     case ARGP_KEY_ARG:
         if (options->bus_file)
             argp_error(state, "one bus file is enough; \"%s\" is too many", arg);
@@ -76,8 +86,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 static bool describe(const sim_options_t *options, cm1e_bus_config_t *config)
 {
     cm1e_diag_t diag = {0};
-    const uint32_t bridges_only = options->bridge_count;
-    cm1e_bus_config_init(config, "sim", bridges_only ? 0 : options->sii_count > 0 ? options->sii_count : 1);
+    cm1e_bus_config_init(config, "sim", options->has_bridges ? 0 : options->sii_count > 0 ? options->sii_count : 1);
     if (options->bus_file && cm1e_bus_config_load(config, options->bus_file, &diag) != CM1E_OK) {
         fail(&diag);
         return false;
@@ -91,13 +100,16 @@ static bool describe(const sim_options_t *options, cm1e_bus_config_t *config)
     return true;
 }
 
-static bool add_bridges(cm1e_sim_segment_t *segment, const sim_options_t *options)
+static bool add_extras(cm1e_sim_segment_t *segment, const sim_options_t *options)
 {
-    for (uint32_t i = 0; i < options->bridge_count; i++) {
-        cm1e_sim_slave_t *slave = cm1e_sim_bridge_create(options->bridges[i], NULL, 0);
+    for (uint32_t i = 0; i < options->extra_count; i++) {
+        const struct extra *extra = options->extras[i];
+        cm1e_sim_slave_t *slave = extra->key == KEY_BRIDGE
+                                      ? cm1e_sim_bridge_create((cm1e_device_model_t)extra->model, NULL, 0)
+                                      : cm1e_sim_io_create((cm1e_sim_io_t)extra->model);
         if (cm1e_sim_segment_add(segment, slave) != CM1E_OK) {
             cm1e_sim_slave_destroy(slave);
-            complain("the simulated bridge %u cannot be made: out of memory, or more than %d slaves", i + 1,
+            complain("the simulated slave \"%s\" cannot be made: out of memory, or more than %d slaves", extra->word,
                      CM1E_MAX_SLAVES);
             return false;
         }
@@ -131,11 +143,14 @@ int command_sim(int argc, char **argv)
          "first slave, again for the second ...", 0},
         {"bridge", KEY_BRIDGE, "MODEL", 0, "A Cool MUSCLE Bridge with four motors behind the other slaves: eb01, eb02 "
          "or eb12; again for another one", 0},
+        {"io", KEY_IO, "KIND", 0, "A simple device behind the other slaves: module (8 outputs wired to 8 inputs), "
+         "terminal (4 and 4, with device emulation) or coupler (no process data, with device emulation); again for "
+         "another one", 0},
         {0}};
     static const struct argp argp = {
         table, parse, "[BUS-FILE]",
         "Serves a simulated network until SIGINT or SIGTERM; without a bus file one CM1-E-17S30D, firmware 1.3.5, or "
-        "as many as there are SII images, or the bridges alone. "
+        "as many as there are SII images, or, with --bridge, none. "
         "Lines on standard input act on it; `help` lists them.", NULL, NULL, NULL};
     sim_options_t options = {0};
     if (argp_parse(&argp, argc, argv, 0, NULL, &options))
@@ -148,7 +163,7 @@ int command_sim(int argc, char **argv)
     cm1e_sim_segment_t *segment = cm1e_sim_segment_create(&config, &diag);
     if (!segment)
         return fail(&diag);
-    if (!add_bridges(segment, &options) || !boot(segment, &options)) {
+    if (!add_extras(segment, &options) || !boot(segment, &options)) {
         cm1e_sim_segment_destroy(segment);
         return EXIT_FAILED;
     }

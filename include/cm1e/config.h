@@ -56,6 +56,14 @@ typedef enum cm1e_pdo_order {
     CM1E_PDO_ORDER_UG_7_2,
 } cm1e_pdo_order_t;
 
+/** A simple device that is no motor and has no mailbox, as the simulated segment plays it. */
+typedef enum cm1e_sim_io {
+    CM1E_SIM_IO_MODULE = 0, /**< 8 outputs wired to 8 inputs; a state machine of its own */
+    CM1E_SIM_IO_TERMINAL,   /**< 4 outputs wired to 4 inputs, each a bit; device emulation: its controller copies AL
+                                 control to AL status, the acknowledge bit too */
+    CM1E_SIM_IO_COUPLER,    /**< no process data; device emulation */
+} cm1e_sim_io_t;
+
 /** Defaults of MC_Home for one axis; values in axis units (u). */
 typedef struct cm1e_homing_config {
     int8_t method;       /**< 0 none, -1/-2 hard stop CW/CCW, -3/-4 input 2 CW/CCW, -5/-6 input 3 CW/CCW (UG 6.2.4);
@@ -165,6 +173,7 @@ typedef struct cm1e_bus_config {
                                           none */
     bool virtual_time;               /**< simulated segment only: time passes only inside the cycle and in waits */
     cm1e_pdo_order_t sim_pdo_order;  /**< simulated segment only */
+    cm1e_sim_io_t sim_gaps;          /**< simulated segment only: the device at each place where no motor is */
     uint32_t axis_count;
     cm1e_axis_config_t axes[CM1E_MAX_AXES];
 } cm1e_bus_config_t;

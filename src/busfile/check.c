@@ -88,6 +88,8 @@ static bool check_bus(const check_t *check)
         return bus_wrong(check, "lost_cycles_limit", "is %u; expected 1 ... 1000", config->lost_cycles_limit);
     if (config->sim_pdo_order != CM1E_PDO_ORDER_UG_4_4 && config->sim_pdo_order != CM1E_PDO_ORDER_UG_7_2)
         return bus_wrong(check, "sim_pdo_order", "is %d; expected one of the enumeration", (int)config->sim_pdo_order);
+    if ((unsigned)config->sim_gaps > CM1E_SIM_IO_COUPLER)
+        return bus_wrong(check, "sim_gaps", "is %d; expected one of the enumeration", (int)config->sim_gaps);
     return check_cycle_time(check);
 }
 

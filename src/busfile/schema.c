@@ -43,6 +43,11 @@ static const cyaml_strval_t pdo_orders[] = {
     {"ug_4_4", CM1E_PDO_ORDER_UG_4_4},
     {"ug_7_2", CM1E_PDO_ORDER_UG_7_2},
 };
+static const cyaml_strval_t gaps[] = {
+    {"module", CM1E_SIM_IO_MODULE},
+    {"terminal", CM1E_SIM_IO_TERMINAL},
+    {"coupler", CM1E_SIM_IO_COUPLER},
+};
 static const cyaml_strval_t velocity_units[] = {
     {"counts_per_s", CM1E_BUSFILE_VELOCITY_COUNTS_PER_S},
     {"counts_per_ms", CM1E_BUSFILE_VELOCITY_COUNTS_PER_MS},
@@ -61,6 +66,7 @@ static const cyaml_schema_field_t bus_fields[] = {
     BUS_STRING("pcap_file", config.pcap_file),
     BUS_BOOL("virtual_time", config.virtual_time),
     ENUM_OF("sim_pdo_order", cm1e_busfile_t, config.sim_pdo_order, pdo_orders),
+    ENUM_OF("sim_gaps", cm1e_busfile_t, config.sim_gaps, gaps),
     CYAML_FIELD_END,
 };
 

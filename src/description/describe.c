@@ -85,6 +85,8 @@ static const char *mapped_type(cm1e_arena_t *arena, const cm1e_described_entry_t
     if (entry && entry->bits == bits)
         return entry->type;
     const bool is_signed = entry && (strcmp(entry->type, "DINT") == 0 || strcmp(entry->type, "INT") == 0);
+    if (bits == 1)
+        return "BOOL";
     const cm1e_data_type_t type = bits == 8    ? is_signed ? CM1E_TYPE_SINT : CM1E_TYPE_USINT
                                   : bits == 16 ? is_signed ? CM1E_TYPE_INT : CM1E_TYPE_UINT
                                                : is_signed ? CM1E_TYPE_DINT : CM1E_TYPE_UDINT;

@@ -13,8 +13,13 @@
 cm1e_error_t cm1e_describe(cm1e_description_file_t *file, const cm1e_device_options_t *options,
                            cm1e_esi_layout_t layout, cm1e_diag_t *diag);
 
-/** Appends the plain I/O module of the simulator: no mailbox, 1 byte out and 1 byte in, vendor 0. */
-void cm1e_describe_io_module(cm1e_description_file_t *file);
+/** Appends a simple device of the simulator: no mailbox, vendor 0. */
+void cm1e_describe_io(cm1e_description_file_t *file, cm1e_sim_io_t kind);
+/** The one of 1 byte out and 1 byte in, with a state machine of its own. */
+static inline void cm1e_describe_io_module(cm1e_description_file_t *file)
+{
+    cm1e_describe_io(file, CM1E_SIM_IO_MODULE);
+}
 
 /** The sync managers that carry process data: 0x1C12 and 0x1C13 assign PDOs to them. */
 enum { CM1E_SM_NUMBER_OUTPUTS = 2, CM1E_SM_NUMBER_INPUTS = 3 };

@@ -7,6 +7,8 @@
 
 /* AL control and status bits beside the state. */
 enum { STATE = 0x0F, ACKNOWLEDGE = 0x10, ERROR = 0x10, ID = 0x20 };
+/* ESC configuration 0x0141, from the SII. */
+enum { DEVICE_EMULATION = 0x01 };
 /* Long enough that a master must poll. */
 enum { DECISION_NS = 200000 };
 
@@ -161,6 +163,24 @@ static uint16_t decide(cm1e_sim_slave_t *slave, uint8_t to)
     return code;
 }
 
+static bool emulates_device(const cm1e_sim_slave_t *slave)
+{
+    return slave->memory[ESC_PDI_CONTROL + 1] & DEVICE_EMULATION;
+}
+
+/* A slave without a processor: its controller copies what AL control has to AL status at once, also an acknowledgement
+ * (which then reads as an error) and a state that there is not. Nothing is checked, and there is no AL status code. */
+static void emulate_device(cm1e_sim_slave_t *slave, uint16_t request)
+{
+    const uint8_t to = request & STATE;
+    if (to != slave->al_state)
+        ask_application(slave, to);
+    slave->al_state = to;
+    slave->al_error = request & ACKNOWLEDGE;
+    slave->al_id = request & ID;
+    show(slave, AL_CODE_NONE);
+}
+
 void cm1e_sim_al_power_on(cm1e_sim_slave_t *slave)
 {
     slave->al_due_ns = ESC_NEVER;
@@ -170,7 +190,7 @@ void cm1e_sim_al_power_on(cm1e_sim_slave_t *slave)
     slave->al_request = CM1E_AL_INIT;
     slave->memory[ESC_AL_CONTROL] = CM1E_AL_INIT;
     for (unsigned role = ESC_ROLE_MAILBOX_OUT; role < ESC_ROLES; role++)
-        cm1e_sim_esc_sm_lock(slave, role, true);
+        cm1e_sim_esc_sm_lock(slave, role, !emulates_device(slave)); /* a processor does that */
     show(slave, AL_CODE_NONE);
 }
 
@@ -180,6 +200,10 @@ void cm1e_sim_al_control(cm1e_sim_slave_t *slave)
     /* Without a valid SII the slave's processor does not run: nobody reads the request. */
     if (!slave->sii_valid || (slave->al_due_ns != ESC_NEVER && request == slave->al_request))
         return;
+    if (emulates_device(slave)) {
+        emulate_device(slave, request);
+        return;
+    }
     slave->al_request = request;
     slave->al_due_ns = slave->now_ns + DECISION_NS;
 }
@@ -202,8 +226,8 @@ void cm1e_sim_al_due(cm1e_sim_slave_t *slave)
 
 void cm1e_sim_slave_fall_back(cm1e_sim_slave_t *slave, uint8_t al_state, uint16_t al_status_code)
 {
-    if (slave->changing_state)
-        return; /* the application says so by its answer */
+    if (slave->changing_state || emulates_device(slave))
+        return; /* the application says so by its answer; with device emulation AL status is the master's alone */
     slave->al_due_ns = ESC_NEVER;
     if (al_state < slave->al_state && find_transition(slave->al_state, al_state)) {
         ask_application(slave, al_state);

@@ -101,7 +101,8 @@ static const char *al_state_name(uint8_t state)
     case 2: return "PREOP";
     case 4: return "SAFEOP";
     case 8: return "OP";
-    default: return "BOOT";
+    case 3: return "BOOT";
+    default: return "no state"; /* with device emulation it is what the master wrote */
     }
 }
 

@@ -5,22 +5,29 @@
 #include "description/sii.h"
 #include "sim/esc.h"
 
-/* A plain module with eight outputs and eight inputs, each input wired to the output of its number. */
+/* A plain module with digital outputs and inputs, each input wired to the output of its number. */
 typedef struct io_module {
+    uint16_t bytes; /* of process data in each direction */
+    uint8_t mask;   /* the outputs that there are */
     uint8_t outputs;
 } io_module_t;
 
+static const io_module_t models[] = {
+    [CM1E_SIM_IO_MODULE] = {.bytes = 1, .mask = 0xFF},
+    [CM1E_SIM_IO_TERMINAL] = {.bytes = 1, .mask = 0x0F},
+    [CM1E_SIM_IO_COUPLER] = {.bytes = 0},
+};
+
 static void process_data_sizes(void *app, uint16_t *output_bytes, uint16_t *input_bytes)
 {
-    (void)app;
-    *output_bytes = *input_bytes = 1;
+    *output_bytes = *input_bytes = ((io_module_t *)app)->bytes;
 }
 
 static void take_outputs(void *app, const uint8_t *data, uint16_t size, int64_t now_ns)
 {
     (void)now_ns;
     if (size)
-        ((io_module_t *)app)->outputs = data[0];
+        ((io_module_t *)app)->outputs = data[0] & ((io_module_t *)app)->mask;
 }
 
 static void give_inputs(void *app, uint8_t *data, uint16_t size)
@@ -55,16 +62,17 @@ static const cm1e_sim_app_ops_t ops = {
     .destroy = free,
 };
 
-cm1e_sim_slave_t *cm1e_sim_io_module_create(void)
+cm1e_sim_slave_t *cm1e_sim_io_create(cm1e_sim_io_t kind)
 {
     uint8_t sii[CM1E_SII_SIZE];
     cm1e_description_file_t file = {0};
-    cm1e_describe_io_module(&file);
+    cm1e_describe_io(&file, kind);
     const size_t size = file.arena.failed ? 0 : cm1e_sii_write(sii, sizeof sii, &file.devices.at[0], NULL);
     cm1e_description_file_free(&file);
     io_module_t *module = size > 0 ? calloc(1, sizeof *module) : NULL;
     if (!module)
         return NULL;
+    *module = models[kind];
     cm1e_sim_slave_t *slave = cm1e_sim_slave_create(sii, size, &ops, module);
     if (!slave) {
         free(module);

@@ -5,7 +5,7 @@
 
 enum { EXPLICIT_ID_MAX = 254 };
 
-/* What stands at one place: a CM1-E, which is one axis, or a bridge with up to four. Empty: an I/O module. */
+/* What stands at one place: a CM1-E, which is one axis, or a bridge with up to four. Empty: a device that is no motor. */
 typedef struct place {
     const cm1e_axis_config_t *axis;                        /* the first of the list */
     const cm1e_axis_config_t *channels[CM1E_BRIDGE_AXES];  /* behind a bridge */
@@ -68,7 +68,7 @@ static bool place_axes(const cm1e_bus_config_t *config, place_t *places, cm1e_di
     return true;
 }
 
-/* An axis at position 3 says that two slaves stand before it: where they are no axes, they are I/O modules. */
+/* An axis at position 3 says that two slaves stand before it: where they are no motors, they are `sim_gaps`. */
 static uint32_t last_place(const place_t *places)
 {
     uint32_t count = CM1E_MAX_SLAVES;
@@ -113,7 +113,7 @@ static cm1e_error_t add_place(cm1e_sim_segment_t *segment, const cm1e_bus_config
         return error;
     cm1e_sim_slave_t *slave = bridge ? cm1e_sim_bridge_create(model, place->channels, alias)
                               : axis ? cm1e_sim_cm1e_create(axis, config->sim_pdo_order, alias, (uint8_t)id)
-                                     : cm1e_sim_io_module_create();
+                                     : cm1e_sim_io_create(config->sim_gaps);
     error = cm1e_sim_segment_add(segment, slave);
     if (error != CM1E_OK) {
         cm1e_sim_slave_destroy(slave);

@@ -39,7 +39,8 @@ typedef struct cm1e_sim_app_ops {
     /** Simulated time has reached now_ns; called at least before every frame. Integrates the mechanics. */
     void (*advance)(void *app, int64_t now_ns);
     /** A state change asked for and allowed by the controller; 0 to agree, or an AL status code. Also called with
-     *  to = from's lower state when the controller falls back by itself. */
+     *  to = from's lower state when the controller falls back by itself. With device emulation (0x0141 bit 0) nobody
+     *  is asked: it tells, and `to` is whatever the master wrote. */
     uint16_t (*state_change)(void *app, uint8_t from, uint8_t to);
     /** Sizes of the process data in bytes as the present PDO assignment makes them (checked against SM2/SM3). */
     void (*process_data_sizes)(void *app, uint16_t *output_bytes, uint16_t *input_bytes);
@@ -85,10 +86,11 @@ void cm1e_sim_slave_fall_back(cm1e_sim_slave_t *slave, uint8_t al_state, uint16_
 void cm1e_sim_slave_reset(cm1e_sim_slave_t *slave, int64_t until_ns);
 uint8_t cm1e_sim_slave_al_state(const cm1e_sim_slave_t *slave);
 
-/** The applications: a CM1-E with its mechanical axis; a plain I/O module without mailbox (1 byte out, 1 byte in). */
+/** The applications: a CM1-E with its mechanical axis; simple devices without mailbox. */
 cm1e_sim_slave_t *cm1e_sim_cm1e_create(const cm1e_axis_config_t *config, cm1e_pdo_order_t order, uint16_t alias,
                                        uint8_t rotary_switches);
-cm1e_sim_slave_t *cm1e_sim_io_module_create(void);
+cm1e_sim_slave_t *cm1e_sim_io_create(cm1e_sim_io_t kind);
+static inline cm1e_sim_slave_t *cm1e_sim_io_module_create(void) { return cm1e_sim_io_create(CM1E_SIM_IO_MODULE); }
 /** A Cool MUSCLE Bridge (CM1E_DEVICE_EB01 ... EB12) with its four motors. Of the axis at each connector K37 and `sim`
  *  are played; NULL, one or all of them: the defaults of cm1e/config.h, and K37 = 10. NULL: no bridge, or no memory. */
 cm1e_sim_slave_t *cm1e_sim_bridge_create(cm1e_device_model_t model,

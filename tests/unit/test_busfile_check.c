@@ -107,6 +107,9 @@ static void test_enumerations_out_of_range_are_refused(void)
     config.sim_pdo_order = (cm1e_pdo_order_t)2;
     expect_wrong("sim_pdo_order");
     setUp();
+    config.sim_gaps = (cm1e_sim_io_t)3;
+    expect_wrong("sim_gaps");
+    setUp();
     config.axes[0].mapping = (cm1e_mapping_t)4;
     expect_wrong("mapping");
     config.axes[0].mapping = (cm1e_mapping_t)-1;

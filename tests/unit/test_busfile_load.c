@@ -72,6 +72,7 @@ static void test_documented_example_fills_every_field_of_the_bus(void)
     TEST_ASSERT_EQUAL_STRING("cell.pcap", config.pcap_file);
     TEST_ASSERT_FALSE(config.virtual_time);
     TEST_ASSERT_EQUAL(CM1E_PDO_ORDER_UG_7_2, config.sim_pdo_order);
+    TEST_ASSERT_EQUAL(CM1E_SIM_IO_TERMINAL, config.sim_gaps);
     TEST_ASSERT_EQUAL(3, config.axis_count);
 }
 

@@ -58,11 +58,12 @@ static void test_every_bridge_is_right(void)
             }
 }
 
-static void test_the_io_module_is_right(void)
+static void test_the_simple_devices_are_right(void)
 {
     cm1e_description_file_t file = {0};
     cm1e_findings_t *findings = cm1e_findings_create();
-    cm1e_describe_io_module(&file);
+    for (int kind = CM1E_SIM_IO_MODULE; kind <= CM1E_SIM_IO_COUPLER; kind++)
+        cm1e_describe_io(&file, (cm1e_sim_io_t)kind);
     cm1e_check_description(findings, &file);
     TEST_ASSERT_EQUAL(0, cm1e_findings_count(findings));
     cm1e_findings_free(findings);
@@ -74,6 +75,6 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_every_cm1e_is_right);
     RUN_TEST(test_every_bridge_is_right);
-    RUN_TEST(test_the_io_module_is_right);
+    RUN_TEST(test_the_simple_devices_are_right);
     return UNITY_END();
 }

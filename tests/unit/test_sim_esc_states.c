@@ -242,6 +242,83 @@ static void test_random_requests_never_leave_the_states(void)
     }
 }
 
+/* ---- device emulation: a slave without a processor -------------------------------------------------------------- */
+
+enum { EMULATING = 1 }; /* behind the slave with a state machine */
+
+static void add_emulating(cm1e_sim_io_t kind)
+{
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_sim_segment_add(b.segment, cm1e_sim_io_create(kind)));
+    TEST_ASSERT_EQUAL_HEX8(0x01, read_u8(&b, EMULATING, 0x0141));
+}
+
+/* Its controller copies AL control to AL status: whatever the request, at once, the acknowledge bit too. */
+static void test_device_emulation_copies_al_control_to_al_status(void)
+{
+    for (int kind = CM1E_SIM_IO_TERMINAL; kind <= CM1E_SIM_IO_COUPLER; kind++) {
+        tearDown();
+        setUp();
+        add_emulating((cm1e_sim_io_t)kind);
+        TEST_ASSERT_EQUAL_HEX16(CM1E_AL_INIT, read_u16(&b, EMULATING, 0x0130));
+        for (uint16_t before = 0; before <= 0x3F; before++)
+            for (uint16_t request = 0; request <= 0x3F; request++) {
+                write_u16(&b, EMULATING, 0x0120, before);
+                write_u16(&b, EMULATING, 0x0120, request);
+                TEST_ASSERT_EQUAL_HEX16(request, read_u16(&b, EMULATING, 0x0130));
+                TEST_ASSERT_EQUAL_HEX16(0, read_u16(&b, EMULATING, 0x0134));
+            }
+        TEST_ASSERT_EQUAL_HEX16(CM1E_AL_INIT, read_u16(&b, 0, 0x0130));
+    }
+}
+
+/* INIT with the acknowledge bit, as masters broadcast it, shows an error, and each further acknowledgement keeps it. */
+static void test_device_emulation_shows_an_acknowledgement_as_an_error(void)
+{
+    uint8_t init_and_acknowledge[2] = {CM1E_AL_INIT | CM1E_AL_ERROR, 0};
+    add_emulating(CM1E_SIM_IO_TERMINAL);
+    TEST_ASSERT_EQUAL_INT(2, send_to(&b, BWR, 0, 0x0120, init_and_acknowledge, 2));
+    bench_wait(&b, 1000000);
+    TEST_ASSERT_EQUAL_HEX16(CM1E_AL_INIT, read_u16(&b, 0, 0x0130));
+    TEST_ASSERT_EQUAL_HEX16(CM1E_AL_INIT | CM1E_AL_ERROR, read_u16(&b, EMULATING, 0x0130));
+    TEST_ASSERT_EQUAL_HEX16(CM1E_AL_INIT | CM1E_AL_ERROR,
+                            request_state(&b, EMULATING, CM1E_AL_INIT | CM1E_AL_ERROR));
+    TEST_ASSERT_EQUAL_HEX16(CM1E_AL_INIT, request_state(&b, EMULATING, CM1E_AL_INIT));
+}
+
+/* Nobody falls back: the watchdog switches the outputs off, and AL status stays what the master wrote. */
+static void test_device_emulation_has_outputs_in_operational_with_a_watchdog(void)
+{
+    add_emulating(CM1E_SIM_IO_TERMINAL);
+    write_sm(&b, EMULATING, 0, 0x1000, 1, 0x44, 1);
+    write_sm(&b, EMULATING, 1, 0x1100, 1, 0x00, 1);
+    write_fmmu(&b, EMULATING, 0, 0, 1, 0, 3, 0x1000, 0, 2); /* outputs in bits 0-3, inputs in bits 4-7 of one byte */
+    write_fmmu(&b, EMULATING, 1, 0, 1, 4, 7, 0x1100, 0, 1);
+    static const uint8_t requests[] = {CM1E_AL_OP, CM1E_AL_SAFE_OP, CM1E_AL_PRE_OP, CM1E_AL_INIT, CM1E_AL_OP};
+    for (unsigned i = 0; i < sizeof requests; i++) {
+        write_u16(&b, EMULATING, 0x0120, requests[i]);
+        uint8_t data[1] = {0x0A};
+        TEST_ASSERT_EQUAL_INT(3, send_logical(&b, LRW, 0, data, 1));
+        data[0] = 0x0A;
+        bench_wait(&b, 1000);
+        TEST_ASSERT_EQUAL_INT(3, send_logical(&b, LRW, 0, data, 1));
+        if (requests[i] >= CM1E_AL_SAFE_OP)
+            TEST_ASSERT_EQUAL_HEX8(requests[i] == CM1E_AL_OP ? 0xAA : 0x0A, data[0]);
+    }
+    bench_wait(&b, 100000000);
+    uint8_t data[1] = {0x0F};
+    TEST_ASSERT_EQUAL_INT(3, send_logical(&b, LRW, 0, data, 1));
+    TEST_ASSERT_EQUAL_HEX8(0x0F, data[0]);
+    TEST_ASSERT_EQUAL_HEX16(CM1E_AL_OP, read_u16(&b, EMULATING, 0x0130));
+}
+
+static void test_a_coupler_has_no_process_data(void)
+{
+    add_emulating(CM1E_SIM_IO_COUPLER);
+    TEST_ASSERT_EQUAL_HEX16(CM1E_AL_OP, request_state(&b, EMULATING, CM1E_AL_OP));
+    uint8_t data[1] = {0x55};
+    TEST_ASSERT_EQUAL_INT(0, send_logical(&b, LRW, 0, data, 1));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -257,5 +334,9 @@ int main(void)
     RUN_TEST(test_al_control_takes_one_or_two_bytes);
     RUN_TEST(test_leaving_pre_operational_empties_the_mailboxes);
     RUN_TEST(test_random_requests_never_leave_the_states);
+    RUN_TEST(test_device_emulation_copies_al_control_to_al_status);
+    RUN_TEST(test_device_emulation_shows_an_acknowledgement_as_an_error);
+    RUN_TEST(test_device_emulation_has_outputs_in_operational_with_a_watchdog);
+    RUN_TEST(test_a_coupler_has_no_process_data);
     return UNITY_END();
 }

@@ -89,6 +89,22 @@ static void test_positions_are_kept_and_gaps_filled_with_io_modules(void)
     TEST_ASSERT_EQUAL_HEX32(CM1E_PRODUCT_CODE, product(3));
 }
 
+static void test_gaps_are_filled_with_what_the_configuration_says(void)
+{
+    static const uint32_t products[] = {
+        [CM1E_SIM_IO_MODULE] = 0x808, [CM1E_SIM_IO_TERMINAL] = 0x404, [CM1E_SIM_IO_COUPLER] = 0x100};
+    for (int kind = CM1E_SIM_IO_MODULE; kind <= CM1E_SIM_IO_COUPLER; kind++) {
+        tearDown();
+        setUp();
+        open_axes(1);
+        config.axes[0].address = 2;
+        config.sim_gaps = (cm1e_sim_io_t)kind;
+        create(2);
+        TEST_ASSERT_EQUAL_HEX32(products[kind], product(0));
+        TEST_ASSERT_EQUAL_HEX32(CM1E_PRODUCT_CODE, product(1));
+    }
+}
+
 static void test_alias_and_id_fill_the_places_between(void)
 {
     open_axes(4);
@@ -224,6 +240,7 @@ int main(void)
     RUN_TEST(test_axes_without_address_stand_in_the_order_of_the_list);
     RUN_TEST(test_no_axes_is_an_empty_segment);
     RUN_TEST(test_positions_are_kept_and_gaps_filled_with_io_modules);
+    RUN_TEST(test_gaps_are_filled_with_what_the_configuration_says);
     RUN_TEST(test_alias_and_id_fill_the_places_between);
     RUN_TEST(test_contradictions_are_refused_in_words);
     RUN_TEST(test_axes_with_channels_share_a_bridge_of_the_model_that_fits);
