@@ -13,7 +13,7 @@
  *    those axes that are in SynchronizedMotion for it; a line that is Done has arrived;
  *  - in Standstill nothing moves, and without MC_Power or in ErrorStop the torque ends in time.
  *
- * CM1E_TEST_SEED=<n> repeats one run, CM1E_TEST_RUNS=<n> makes more of them.
+ * Seeds: seeds.h.
  */
 #include "block_judge.h"
 #include "fake_bus.h"
@@ -263,17 +263,18 @@ static void run(unsigned seed)
     cycles_total += (unsigned long long)length * (unsigned)axes;
 }
 
+static int batches(void) { return seeds_given() ? 1 : BATCHES; }
+
 START_TEST(test_random_programs_keep_every_rule)
 {
-    const char *more = getenv("CM1E_TEST_RUNS");
-    const int runs = more ? atoi(more) : seed_count(RUNS);
-    for (int i = _i; i < runs; i += BATCHES)
+    const int runs = seed_count(RUNS);
+    for (int i = _i; i < runs; i += batches())
         run(seed_of(i));
 
     printf("batch %d: %llu axis-cycles, %llu of them moving, %llu in gear, %llu led by a group, %llu edges, "
            "%llu times Done, %llu of groups\n", _i, cycles_total, moving_of_all(), synchronised_total, led_total,
            edges_total, done_total, group_done_total);
-    if (getenv("CM1E_TEST_SEED") || runs < RUNS)
+    if (seeds_given() || runs < RUNS)
         return;
     MUST(moving_of_all() > cycles_total / 8, "too wild to test anything");
     MUST(led_total > cycles_total / 200 && group_done_total > 0, "groups have moved nothing");
@@ -290,7 +291,7 @@ int main(void)
     Suite *suite = suite_create("random programs");
     TCase *all = tcase_create("all");
     tcase_set_timeout(all, 250);
-    tcase_add_loop_test(all, test_random_programs_keep_every_rule, 0, getenv("CM1E_TEST_SEED") ? 1 : BATCHES);
+    tcase_add_loop_test(all, test_random_programs_keep_every_rule, 0, batches());
     suite_add_tcase(suite, all);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);

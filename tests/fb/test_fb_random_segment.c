@@ -5,7 +5,7 @@
  * behind a bridge (EB01, EB02, EB12; any K37) among up to three others there and a CM1-E, which move to and fro: what
  * happens to one motor is nothing to them.
  *
- * CM1E_TEST_SEED=<n> repeats one run, CM1E_TEST_RUNS=<n> makes more of them.
+ * Seeds: seeds.h.
  */
 #include "block_judge.h"
 #include "bus/bus_image.h"
@@ -365,15 +365,16 @@ static void run(unsigned seed, bool bridge)
     cm1e_bus_close(bench.bus);
 }
 
+static int batches(void) { return seeds_given() ? 1 : BATCHES; }
+
 static void run_seeds(int batch, int wanted, bool bridge)
 {
-    const char *more = getenv("CM1E_TEST_RUNS");
-    const int runs = more ? atoi(more) : seed_count(wanted);
-    for (int i = batch; i < runs; i += BATCHES)
+    const int runs = seed_count(wanted);
+    for (int i = batch; i < runs; i += batches())
         run(seed_of(i), bridge);
     printf("%s, batch %d: %llu cycles, %llu of them moving, %llu edges, %llu times Done\n",
            bridge ? "bridge" : "CM1-E", batch, cycles_total, watched.moving, edges_total, done_total);
-    if (!getenv("CM1E_TEST_SEED") && runs >= wanted)
+    if (!seeds_given() && runs >= wanted)
         MUST(watched.moving > cycles_total / 8, "too wild to test anything");
 }
 
@@ -385,13 +386,12 @@ END_TEST
 
 int main(void)
 {
-    const int batches = getenv("CM1E_TEST_SEED") ? 1 : BATCHES;
     Suite *suite = suite_create("random programs on the segment");
     TCase *all = tcase_create("CM1-E"), *bridge = tcase_create("bridge");
     tcase_set_timeout(all, 250);
     tcase_set_timeout(bridge, 250);
-    tcase_add_loop_test(all, test_random_programs_on_the_segment_keep_every_rule, 0, batches);
-    tcase_add_loop_test(bridge, test_random_programs_behind_a_bridge_keep_every_rule, 0, batches);
+    tcase_add_loop_test(all, test_random_programs_on_the_segment_keep_every_rule, 0, batches());
+    tcase_add_loop_test(bridge, test_random_programs_behind_a_bridge_keep_every_rule, 0, batches());
     suite_add_tcase(suite, all);
     suite_add_tcase(suite, bridge);
     SRunner *runner = srunner_create(suite);

@@ -11,7 +11,7 @@
  *  - in ErrorStop the set-point only slows down; after MC_Reset nothing goes on;
  *  - an error has a sentence that names axis and cause.
  *
- * CM1E_TEST_SEED=<n> repeats one run.
+ * Seeds: seeds.h.
  */
 #include "safety_bench.h"
 

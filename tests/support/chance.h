@@ -1,16 +1,14 @@
 /**
  * @file chance.h
- * Random numbers that a seed repeats, and how many runs of a random test there are. Include it once in a test program.
- * CM1E_TEST_SEED=<n> in the environment repeats one run.
+ * Random numbers that a seed repeats, with the seeds of seeds.h. Include it once in a test program.
  */
 #ifndef CM1E_TESTS_CHANCE_H
 #define CM1E_TESTS_CHANCE_H
 
 #include <stdbool.h>
 #include <stdint.h>
-#include <stdlib.h>
 
-#include "effort.h"
+#include "seeds.h"
 
 static uint64_t chance_state;
 
@@ -35,18 +33,5 @@ static inline double uniform(double low, double high)
 
 static inline bool one_in(unsigned n) { return (chance() >> 11) % n == 0; }
 static inline int pick(int count) { return (int)((chance() >> 11) % (unsigned)count); }
-
-/** Runs of a random test: all seeds, or the one that the environment names. */
-static inline int seed_count(int count)
-{
-    const int all = count / slowness();
-    return getenv("CM1E_TEST_SEED") ? 1 : all > 0 ? all : 1;
-}
-
-static inline unsigned seed_of(int run)
-{
-    const char *word = getenv("CM1E_TEST_SEED");
-    return word ? (unsigned)strtoul(word, NULL, 10) : (unsigned)run + 1;
-}
 
 #endif

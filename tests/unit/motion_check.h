@@ -12,6 +12,8 @@
 #include "motion/profile.h"
 #include "unity.h"
 
+#include "../support/seeds.h"
+
 typedef struct {
     cm1e_motion_state_t start;
     double target;
@@ -26,6 +28,19 @@ static inline void seed_random(void)
     const char *seed = getenv("CM1E_TEST_SEED");
     random_state = seed ? strtoull(seed, NULL, 0) : 20260802;
     printf("CM1E_TEST_SEED=%llu\n", (unsigned long long)random_state);
+}
+
+/* All tests of a program, by the seeds of seeds.h. */
+static inline void run_seeds(void (*run_tests)(void))
+{
+    seed_random();
+    const uint64_t first = random_state;
+    for (int run = 0; run < seeds_of(1); run++) {
+        random_state = first + (uint64_t)run;
+        if (run > 0)
+            printf("CM1E_TEST_SEED=%llu\n", (unsigned long long)random_state);
+        run_tests();
+    }
 }
 
 static inline uint64_t random_bits(void) /* splitmix64 */
@@ -191,6 +206,12 @@ static inline void check_continuity(const cm1e_profile_t *profile, const problem
 }
 
 enum { SAMPLES = 40 };
+
+/* The last one is the end itself: of a profile that takes 1e15 s a rounding is a quarter of a second. */
+static inline double sample_time(const cm1e_profile_t *profile, int k)
+{
+    return profile->duration_s * (k / (double)SAMPLES);
+}
 
 /** What a rounded position costs: it has to be made good by a move of that length, with any limit in its way. */
 static inline double detour(const cm1e_profile_t *profile, const problem_t *problem)

@@ -309,12 +309,16 @@ static void test_paths_that_are_stopped_slowed_and_cut(void)
     }
 }
 
-int main(void)
+static void run_tests(void)
 {
-    seed_random();
-    UNITY_BEGIN();
     RUN_TEST(test_paths_that_are_appended_at_once);
     RUN_TEST(test_paths_that_are_appended_on_the_way);
     RUN_TEST(test_paths_that_are_stopped_slowed_and_cut);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    run_seeds(run_tests);
     return UNITY_END();
 }

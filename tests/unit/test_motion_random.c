@@ -44,7 +44,7 @@ static void test_start_outside_the_limits_is_brought_inside_and_stays_there(void
         bool inside = false;
         for (int k = 0; k <= SAMPLES; k++) {
             cm1e_motion_state_t state;
-            cm1e_profile_sample(&profile, profile.duration_s * k / SAMPLES, &state);
+            cm1e_profile_sample(&profile, sample_time(&profile, k), &state);
             if (inside)
                 CHECK(is_inside(&state, limits, 1 + 1e-6), &problem);
             inside = inside || is_inside(&state, &tighter, 1);
@@ -85,7 +85,7 @@ static void test_numbers_of_any_size_give_a_profile_or_a_refusal(void)
             check_continuity(&profile, &problem);
         for (int k = 0; k <= SAMPLES; k++) {
             cm1e_motion_state_t state;
-            cm1e_profile_sample(&profile, profile.duration_s * k / SAMPLES, &state);
+            cm1e_profile_sample(&profile, sample_time(&profile, k), &state);
             CHECK(isfinite(state.position) && isfinite(state.velocity) && isfinite(state.acceleration), &problem);
         }
         double low, high;
@@ -113,7 +113,7 @@ static void test_from_rest_the_position_stays_between_start_and_target(void)
             CHECK(low == least && high == most, &problem);
         for (int k = 0; k <= SAMPLES; k++) {
             cm1e_motion_state_t state;
-            cm1e_profile_sample(&profile, profile.duration_s * k / SAMPLES, &state);
+            cm1e_profile_sample(&profile, sample_time(&profile, k), &state);
             CHECK(state.position >= low && state.position <= high, &problem);
             CHECK((problem.target - problem.start.position) * state.velocity >= 0, &problem);
         }
@@ -133,8 +133,8 @@ static void test_a_mirrored_problem_gives_the_mirrored_profile(void)
         CHECK(profile.duration_s == mirrored.duration_s, &problem);
         for (int k = 0; k < SAMPLES; k++) {
             cm1e_motion_state_t a, b;
-            cm1e_profile_sample(&profile, profile.duration_s * k / SAMPLES, &a);
-            cm1e_profile_sample(&mirrored, profile.duration_s * k / SAMPLES, &b);
+            cm1e_profile_sample(&profile, sample_time(&profile, k), &a);
+            cm1e_profile_sample(&mirrored, sample_time(&profile, k), &b);
             CHECK(a.position == -b.position && a.velocity == -b.velocity && a.acceleration == -b.acceleration,
                   &problem);
         }
@@ -172,10 +172,8 @@ static void test_no_random_motion_is_shorter(void)
     TEST_ASSERT_GREATER_THAN(PROBLEMS / 4, compared);
 }
 
-int main(void)
+static void run_tests(void)
 {
-    seed_random();
-    UNITY_BEGIN();
     RUN_TEST(test_every_profile_keeps_limits_and_ends_exactly);
     RUN_TEST(test_start_outside_the_limits_is_brought_inside_and_stays_there);
     RUN_TEST(test_numbers_of_any_size_give_a_profile_or_a_refusal);
@@ -183,5 +181,11 @@ int main(void)
     RUN_TEST(test_a_mirrored_problem_gives_the_mirrored_profile);
     RUN_TEST(test_replanning_on_the_way_takes_the_remaining_time);
     RUN_TEST(test_no_random_motion_is_shorter);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    run_seeds(run_tests);
     return UNITY_END();
 }

@@ -102,7 +102,7 @@ static void test_start_outside_the_limits_is_brought_inside_and_stays_there(void
         bool inside = false;
         for (int k = 0; k <= SAMPLES; k++) {
             cm1e_motion_state_t state;
-            cm1e_profile_sample(&profile, profile.duration_s * k / SAMPLES, &state);
+            cm1e_profile_sample(&profile, sample_time(&profile, k), &state);
             if (inside)
                 CHECK(is_inside(&state, limits, 1 + 1e-6), &problem);
             inside = inside || is_inside(&state, &tighter, 1);
@@ -238,7 +238,7 @@ static void test_target_velocity_beyond_the_limit_is_reached_at_the_end_only(voi
         cm1e_motion_state_t before = problem.start;
         for (int k = 0; k < SAMPLES; k++) {
             cm1e_motion_state_t state;
-            cm1e_profile_sample(&profile, profile.duration_s * k / SAMPLES, &state);
+            cm1e_profile_sample(&profile, sample_time(&profile, k), &state);
             CHECK(!beyond || sign * (state.velocity - before.velocity) >= -1e-9 * fabs(wish), &problem);
             beyond = beyond || fabs(state.velocity) > limits->velocity * (1 + 1e-9);
             before = state;

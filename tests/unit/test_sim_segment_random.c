@@ -1,6 +1,7 @@
 /* Hostile input: frames, registers and mailboxes at random, from printed seeds. What counts is that nothing is read or
  * written out of bounds (address and undefined behaviour sanitizers) and that a power cycle brings every slave back. */
 #include "sim/esc.h"
+#include "seeds.h"
 #include "sim_fake_app.h"
 
 enum { SLAVES = 3, ROUNDS = 60, FRAMES = 1500 };
@@ -187,9 +188,9 @@ static void attack(void)
         random_frame, well_formed_frame, well_formed_frame, reconfigure, random_mailbox, random_mailbox, random_mailbox,
         from_the_application, change_state, change_cables,
     };
-    for (uint32_t round = 0; round < ROUNDS; round++) {
-        state = 0x9E3779B9u * (round + 1);
-        printf("seed 0x%08X\n", state);
+    for (int round = 0; round < seeds_of(ROUNDS); round++) {
+        state = 0x9E3779B9u * seed_of(round);
+        printf("seed %u\n", seed_of(round));
         for (int i = 0; i < FRAMES; i++)
             acts[below(sizeof acts / sizeof acts[0])]();
         power_cycle_brings_them_back();
