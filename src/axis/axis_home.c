@@ -343,7 +343,8 @@ static void submit_parameter(cm1e_axis_t *axis)
 {
     homing_t *home = &axis->home;
     const homing_object_t object = object_of(axis, home->next, home->raw[METHOD]);
-    const unsigned bytes = cm1e_drive_entry(&axis->drive, object.index, object.subindex)->bits / 8u;
+    const unsigned bits = cm1e_drive_entry(&axis->drive, object.index, object.subindex)->bits;
+    const unsigned bytes = bits <= 8 * sizeof home->data ? bits / 8 : (unsigned)sizeof home->data;
     cm1e_put_uint(home->data, bytes, (uint32_t)home->raw[home->next]);
     submit(axis, object.index, object.subindex, bytes, true);
 }

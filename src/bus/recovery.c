@@ -23,7 +23,7 @@ typedef struct cm1e_recovery_action {
     void (*result)(cm1e_bus_slave_t *slave, const cm1e_datagram_t *datagram, int64_t now_ns);
 } cm1e_recovery_action_t;
 
-static const cm1e_recovery_action_t actions[];
+static const cm1e_recovery_action_t actions[RECOVERY_STEPS];
 
 static void enter(cm1e_bus_slave_t *slave, cm1e_recovery_step_t step, int64_t now_ns)
 {
@@ -379,7 +379,7 @@ static void result_coe(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_
 
 /* ---- the sequence ---------------------------------------------------------------------------------------------- */
 
-static const cm1e_recovery_action_t actions[] = {
+static const cm1e_recovery_action_t actions[RECOVERY_STEPS] = {
     [RECOVERY_FIND] = {STEP_NS, next_find, result_find},
     [RECOVERY_ADDRESS] = {STEP_NS, next_address, result_next_step},
     [RECOVERY_LOOK] = {STEP_NS, next_look, result_look},

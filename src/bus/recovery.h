@@ -35,6 +35,7 @@ typedef enum cm1e_recovery_step {
     RECOVERY_SAFE_OP,
     RECOVERY_OP,
     RECOVERY_RELEASE,        /**< take the station address back from a device that did not prove to be ours */
+    RECOVERY_STEPS,
 } cm1e_recovery_step_t;
 
 typedef struct cm1e_recovery {

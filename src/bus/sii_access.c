@@ -212,7 +212,7 @@ static cm1e_error_t check_configuration(const session_t *session, const uint8_t 
 
 static cm1e_error_t check_size(session_t *session, const uint8_t *image, size_t size, cm1e_diag_t *diag)
 {
-    size_t of_slave;
+    size_t of_slave = 0;
     const size_t of_image = stated_size(word_at(image, WORD_SIZE));
     const cm1e_error_t error = read_size(session, &of_slave, diag);
     if (error != CM1E_OK)

@@ -31,17 +31,17 @@ static inline void cm1e_put_u64(uint8_t *p, uint64_t v)
     cm1e_put_u32(p, (uint32_t)v);
     cm1e_put_u32(p + 4, (uint32_t)(v >> 32));
 }
-/** An unsigned little-endian number of 1 ... 8 bytes. */
+/** An unsigned little-endian number of 1 ... 8 bytes; a larger count is taken as 8. */
 static inline uint64_t cm1e_get_uint(const uint8_t *p, unsigned bytes)
 {
     uint64_t v = 0;
-    for (unsigned i = 0; i < bytes; i++)
+    for (unsigned i = 0; i < bytes && i < sizeof v; i++)
         v |= (uint64_t)p[i] << (8 * i);
     return v;
 }
 static inline void cm1e_put_uint(uint8_t *p, unsigned bytes, uint64_t v)
 {
-    for (unsigned i = 0; i < bytes; i++)
+    for (unsigned i = 0; i < bytes && i < sizeof v; i++)
         p[i] = (uint8_t)(v >> (8 * i));
 }
 

@@ -20,7 +20,7 @@ static const char head[] =
     "'\n"
     "' Made for:\n";
 
-static const char body[] =
+static const char settings[] =
     "' ---- what you may want to change ------------------------------------------------------------------------\n"
     "\n"
     "first_axis = 0\n"
@@ -32,7 +32,9 @@ static const char body[] =
     "run_input = 0 '[UG]\n"
     "reset_input = 1\n"
     "state_vr = 100 'a VR that no other program uses\n"
-    "\n"
+    "\n";
+
+static const char program[] =
     "' ---- the program ----------------------------------------------------------------------------------------\n"
     "\n"
     "WDOG = 0\n"
@@ -174,7 +176,8 @@ static void put_program(FILE *out, const cm1e_ec_extend_t *document)
               "' change travel_counts, slow_speed, ramp_rate and fe_most by it.\n",
               out);
     fputs("\n", out);
-    fprintf(out, body, axes - 1, TRAVEL, CM1E_COUNTS_PER_REVOLUTION, SPEED, RAMP, FE_LIMIT);
+    fprintf(out, settings, axes - 1, TRAVEL, CM1E_COUNTS_PER_REVOLUTION, SPEED, RAMP, FE_LIMIT);
+    fputs(program, out);
 }
 
 cm1e_error_t cm1e_generate_trio_program(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag)

@@ -5,7 +5,8 @@
 /* Distributed clocks: the local clock starts at power-on, the system time adds the offset that the master writes. All
  * local clocks of the simulation tick alike, so the control loop has only a remaining offset to remove. */
 
-enum { LOOP_STEP_NS = 64, SIGN = 0x80000000u };
+enum { LOOP_STEP_NS = 64 };
+#define SIGN 0x80000000u
 
 static uint64_t local_time(const cm1e_sim_slave_t *slave, int64_t when_ns)
 {

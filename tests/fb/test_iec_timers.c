@@ -50,7 +50,8 @@ static int events;
 
 static bool over(int since, int i)
 {
-    return (__int128)history[i].now - history[since].now >= (history[i].pt > 0 ? history[i].pt : 0);
+    __extension__ typedef __int128 wide_t;
+    return (wide_t)history[i].now - history[since].now >= (history[i].pt > 0 ? history[i].pt : 0);
 }
 
 static TIME bounded(TIME pt) { return pt > 0 ? pt : 0; }

@@ -145,7 +145,8 @@ static void test_a_million_revolutions_lose_no_count(void)
     }
     axes_must_be(1, CM1E_AXIS_SYNCHRONIZED_MOTION);
     /* 1080 u of the master are 350000 counts, 127 u of the slave -250000. */
-    const __int128 exact = -(__int128)counts * (1080 * 17 * INT64_C(250000)) / (350000 * INT64_C(997) * 127);
+    __extension__ typedef __int128 wide_t;
+    const wide_t exact = -(wide_t)counts * (1080 * 17 * INT64_C(250000)) / (350000 * INT64_C(997) * 127);
     TEST_ASSERT_INT64_WITHIN(1, (int64_t)exact, axes_axis(1)->set.counts - slave.counts);
 }
 
