@@ -122,6 +122,8 @@ static int64_t value_of_axis(const cm1e_sim_bridge_t *bridge, const cm1e_sim_bri
     case OBJ_607A_TARGET_POSITION: return axis->target_position;
     case OBJ_60FD_DIGITAL_INPUTS:
         return cm1e_sim_bridge_io_available(axis) ? cm1e_sim_bridge_inputs_of(axis) : 0;
+    case OBJ_60FE_DIGITAL_OUTPUTS: /* "identified by Cool Muscle's CPU" (BR 6.5.2), not what was written */
+        return cell->entry->subindex == 1 ? axis->outputs : *cell->value;
     default: return k ? *cm1e_sim_bridge_k(bridge, axis->number, k) : *cell->value;
     }
 }

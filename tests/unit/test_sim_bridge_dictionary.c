@@ -99,6 +99,7 @@ static void test_identity_modules_and_motors(void)
     TEST_ASSERT_EQUAL_HEX32(0x219800, bench_read(&b, 0xF050, 3));
     for (unsigned axis = 0; axis < CM1E_BRIDGE_AXES; axis++)
         TEST_ASSERT_EQUAL(axis < 2 ? 1 : 2, bench_read(&b, (uint16_t)(0xF511 + axis), 1));
+    TEST_ASSERT_EQUAL(1, bench_read(&b, 0xF540, 6)); /* ms: "1 msec, not changeable" (BR 7.3) */
 }
 
 static void test_three_objects_are_k_parameters_by_another_name(void)

@@ -136,6 +136,25 @@ static void test_outputs_are_set_through_the_mask_in_csp_with_power_only(void)
     TEST_ASSERT_EQUAL_HEX8(0x02, b.bridge->axes[0].outputs);
 }
 
+/* "Outputs status identified by Cool Muscle's CPU is indicated" (BR 6.5.2): what is written where it does nothing, or
+ * does not pass the mask, does not read back as if it were on. */
+static void test_outputs_read_back_as_the_motor_has_them(void)
+{
+    bench_write(&b, 0x70FE, 2, 0x0F);
+    bench_write(&b, 0x70FE, 1, 0x03);
+    TEST_ASSERT_EQUAL_HEX32(0, bench_read(&b, 0x70FE, 1)); /* state A */
+    bench_enable(&b, 2);
+    TEST_ASSERT_EQUAL_HEX32(0, bench_read(&b, 0x70FE, 1));
+    bench_write(&b, 0x70FE, 1, 0xF3);
+    TEST_ASSERT_EQUAL_HEX32(0x03, bench_read(&b, 0x70FE, 1)); /* a motor has four outputs */
+    bench_write(&b, 0x70FE, 2, 0x01);
+    TEST_ASSERT_EQUAL_HEX32(0x01, bench_read(&b, 0x70FE, 1));
+    TEST_ASSERT_EQUAL_HEX32(0x01, bench_read(&b, 0x70FE, 2));
+    TEST_ASSERT_EQUAL(HM, switched(2, HM));
+    bench_write(&b, 0x70FE, 1, 0);
+    TEST_ASSERT_EQUAL_HEX32(0x01, bench_read(&b, 0x70FE, 1));
+}
+
 static void test_inputs_are_shown_in_csp_with_power_only(void)
 {
     cm1e_sim_bridge_axis_t *axis = &b.bridge->axes[3];
@@ -158,6 +177,7 @@ int main(void)
     RUN_TEST(test_no_switch_with_an_error_except_to_cmd);
     RUN_TEST(test_back_in_csp_the_target_holds_again);
     RUN_TEST(test_outputs_are_set_through_the_mask_in_csp_with_power_only);
+    RUN_TEST(test_outputs_read_back_as_the_motor_has_them);
     RUN_TEST(test_inputs_are_shown_in_csp_with_power_only);
     return UNITY_END();
 }
