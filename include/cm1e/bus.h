@@ -81,7 +81,8 @@ cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag);
 cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Scan, identify, configure, operate. @rt init */
 cm1e_error_t cm1e_bus_start(cm1e_bus_t *bus, cm1e_diag_t *diag);
-/** Safe-Operational, then Init. The drives must be disabled before. Never fails: does what it still can. @rt init */
+/** Safe-Operational, then Init. The drives must be disabled before. Never fails: does what it still can. Refused in a
+ *  task of a scheduler, as cm1e_bus_close(): the run ends in order, with an error. @rt init */
 void cm1e_bus_stop(cm1e_bus_t *bus);
 /** Stops if need be, closes the interface, frees. NULL is allowed. @rt init */
 void cm1e_bus_close(cm1e_bus_t *bus);
@@ -125,7 +126,8 @@ cm1e_sdo_state_t cm1e_sdo_state(const cm1e_sdo_t *sdo);
 /** Hands a transfer to the bus; it is worked on within the cycle, one datagram at a time, never blocking it.
  *  CM1E_ERROR_FULL when 64 transfers wait. Any thread may submit, several at a time. @rt cycle */
 cm1e_error_t cm1e_sdo_submit(cm1e_bus_t *bus, cm1e_sdo_t *sdo);
-/** Reads and waits, before the cycle runs (the caller owns the bus). `*size`: room, then bytes read. @rt block */
+/** Reads and waits, before the cycle runs (the caller owns the bus). `*size`: room, then bytes read. In a task of a
+ *  scheduler CM1E_ERROR_STATE, as everything that waits: cm1e_sdo_submit() is for that. @rt block */
 cm1e_error_t cm1e_sdo_read(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex, void *data,
                            size_t *size, cm1e_diag_t *diag);
 /** Writes and waits, as cm1e_sdo_read(). @rt block */

@@ -19,7 +19,8 @@ extern "C" {
 
 typedef struct cm1e_scheduler cm1e_scheduler_t;
 
-/** A program: called in the cycle; must return soon, allocate nothing, wait for nothing. */
+/** A program: called in the cycle; must return soon, allocate nothing, wait for nothing. Functions that wait for slaves
+ *  or files (cm1e_sdo_read() ...) are refused in it with CM1E_ERROR_STATE. */
 typedef void (*cm1e_program_t)(void *context);
 
 typedef struct cm1e_task_config {
@@ -62,7 +63,7 @@ typedef struct cm1e_scheduler_statistics {
  *  bus must outlive it. The slaves' watchdog is running: add the tasks and run soon. @rt init */
 cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus, const cm1e_scheduler_config_t *config,
                                    cm1e_diag_t *diag);
-/** NULL is allowed. Not while it runs. @rt init */
+/** NULL is allowed. Not while it runs: in a task it is refused, and the run ends in order with an error. @rt init */
 void cm1e_scheduler_destroy(cm1e_scheduler_t *scheduler);
 /** Before the scheduler runs. The interval must be a multiple of the bus cycle. @rt init */
 cm1e_error_t cm1e_scheduler_add_task(cm1e_scheduler_t *scheduler, const cm1e_task_config_t *task, cm1e_diag_t *diag);
@@ -76,8 +77,9 @@ AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *scheduler, const 
  *  out, never caught up. A lost bus does not end the run: the axes are in ErrorStop, programs see it, and what comes
  *  back can be reset. CM1E_ERROR_STATE: it ran before, or the bus was stopped or started again since it was made;
  *  CM1E_ERROR_PERMISSION: real time is required and refused, no cycle was run; CM1E_ERROR_TIMEOUT: an axis was not
- *  disabled within the stop timeout. But for wrong arguments and CM1E_ERROR_STATE the bus is stopped afterwards.
- *  @rt init */
+ *  disabled within the stop timeout. Also CM1E_ERROR_STATE: a task called cm1e_scheduler_destroy(), cm1e_bus_close() or
+ *  cm1e_bus_stop(), which was refused and ended the run. Where cycles were run, and after CM1E_ERROR_PERMISSION, the
+ *  bus is stopped. @rt init */
 cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns, cm1e_diag_t *diag);
 /** Asks the run to end in order. Any thread, any program, any signal handler. @rt any */
 void cm1e_scheduler_stop(cm1e_scheduler_t *scheduler);

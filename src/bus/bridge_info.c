@@ -2,6 +2,7 @@
 
 #include "cm1e/bridge.h"
 #include "core/bytes.h"
+#include "core/in_task.h"
 #include "device/bridge.h"
 
 /* Where a value comes from; of a channel the first one's, and what is added for each next. */
@@ -79,6 +80,8 @@ static void read_values(reading_t *reading, const source_t *sources, size_t coun
 
 cm1e_error_t cm1e_bridge_read(cm1e_bus_t *bus, uint16_t position, cm1e_bridge_info_t *info, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_bridge_read()", "", diag);
     memset(info, 0, sizeof *info);
     info->position = position;
     const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, position);

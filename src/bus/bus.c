@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "bus/bus_internal.h"
+#include "core/in_task.h"
 #include "device/place.h"
 
 enum { DEFAULT_CYCLE_NS = 1000000, DEFAULT_LOST_CYCLES = 3 };
@@ -49,6 +50,8 @@ cm1e_error_t cm1e_bus_open(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
                              "cm1e_bus_open() needs a place for the bus and a configuration.");
     *bus = NULL;
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_bus_open()", "", diag);
     cm1e_error_t error = cm1e_bus_config_check(config, diag);
     if (error != CM1E_OK)
         return error;
@@ -76,7 +79,7 @@ void cm1e_bus_free_image(cm1e_bus_t *bus)
 
 void cm1e_bus_close(cm1e_bus_t *bus)
 {
-    if (!bus)
+    if (!bus || cm1e_in_task_note("cm1e_bus_close()"))
         return;
     cm1e_bus_stop(bus);
     cm1e_soem_destroy(bus->soem);

@@ -3,6 +3,7 @@
 
 #include "bus/bus_internal.h"
 #include "core/bytes.h"
+#include "core/in_task.h"
 
 /** Some 40 transfers of at most CM1E_START_SDO_TIMEOUT_NS each, all slaves at once; in practice some milliseconds. */
 #define MAPPING_TIMEOUT_NS INT64_C(60000000000)
@@ -171,6 +172,8 @@ static cm1e_error_t set_watchdogs(cm1e_bus_t *bus, cm1e_diag_t *diag)
 
 cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_bus_configure()", "", diag);
     if (bus->phase < BUS_IDENTIFIED || bus->phase >= BUS_OPERATING)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Configuring the slaves needs them identified before.");
     if (bus->phase == BUS_CONFIGURED)

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "bus/bus_internal.h"
+#include "core/in_task.h"
 #include "device/place.h"
 
 /** "alias 17", "position 3" ...: how the configuration finds an axis. */
@@ -231,6 +232,8 @@ static cm1e_error_t check_extra(const cm1e_bus_t *bus, cm1e_diag_t *diag)
 
 cm1e_error_t cm1e_bus_identify(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_bus_identify()", "", diag);
     if (bus->phase < BUS_SCANNED || bus->phase >= BUS_OPERATING)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Identifying the slaves needs a scan before.");
     cm1e_bus_set_phase(bus, BUS_SCANNED);

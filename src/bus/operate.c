@@ -1,5 +1,6 @@
 #include "bus/bus_internal.h"
 #include "core/bytes.h"
+#include "core/in_task.h"
 
 /** Exchanges in a row before Operational is requested, when the slaves must have valid outputs; and good ones after. */
 enum { EXCHANGES = 3 };
@@ -30,6 +31,8 @@ static cm1e_error_t exchange(cm1e_bus_t *bus, bool operational, cm1e_diag_t *dia
 
 cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_bus_operate()", "", diag);
     if (bus->phase != BUS_CONFIGURED)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Going to OP needs the slaves configured before.");
     bus->next_cycle_ns = cm1e_bus_enter(bus);
@@ -51,6 +54,8 @@ cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag)
 
 cm1e_error_t cm1e_bus_start(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_bus_start()", "", diag);
     cm1e_error_t error = cm1e_bus_scan(bus, diag);
     if (error == CM1E_OK)
         error = cm1e_bus_identify(bus, diag);
@@ -96,7 +101,7 @@ static void look_at_states(cm1e_bus_t *bus)
 
 void cm1e_bus_stop(cm1e_bus_t *bus)
 {
-    if (!bus || bus->phase < BUS_OPEN || !bus->soem)
+    if (!bus || bus->phase < BUS_OPEN || !bus->soem || cm1e_in_task_note("cm1e_bus_stop()"))
         return;
     cm1e_bus_enter(bus);
     if (bus->in_flight)

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "bus/bus_internal.h"
+#include "core/in_task.h"
 #include "core/text.h"
 
 /** For all slaves together. A bridge answers its 15 questions within some milliseconds each. */
@@ -119,6 +120,8 @@ static cm1e_error_t diagnose_scan(const cm1e_bus_t *bus, int result, uint16_t po
 
 cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_bus_scan()", "", diag);
     if (bus->phase >= BUS_OPERATING)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The bus is in operation: stop it before scanning.");
     cm1e_bus_enter(bus);

@@ -1,4 +1,7 @@
 #include "bus/bus_internal.h"
+#include "core/in_task.h"
+
+#define INSTEAD "In a task: cm1e_sdo_submit(), then cm1e_sdo_state() in the cycles that follow."
 
 enum { SDO_MAX_BYTES = 1 << 24 };
 
@@ -149,6 +152,8 @@ static cm1e_error_t transfer(cm1e_bus_t *bus, cm1e_sdo_t *sdo, cm1e_diag_t *diag
 cm1e_error_t cm1e_sdo_read(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex, void *data,
                            size_t *size, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_sdo_read()", INSTEAD, diag);
     if (!size || (!data && *size > 0))
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_sdo_read() needs a buffer and its size.");
     cm1e_sdo_t sdo = {.position = position, .index = index, .subindex = subindex, .data = data, .size = *size};
@@ -161,6 +166,8 @@ cm1e_error_t cm1e_sdo_read(cm1e_bus_t *bus, uint16_t position, uint16_t index, u
 cm1e_error_t cm1e_sdo_write(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex, const void *data,
                             size_t size, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_sdo_write()", INSTEAD, diag);
     union { /* the transfer reads only when it writes */
         const void *in;
         void *out;

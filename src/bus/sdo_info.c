@@ -5,6 +5,7 @@
 
 #include "bus/bus_internal.h"
 #include "bus/info_answer.h"
+#include "core/in_task.h"
 
 /* The list type and all indexes that there can be. */
 enum { LIST_BYTES_MAX = 2 + 2 * 0x10000 };
@@ -63,6 +64,8 @@ static cm1e_error_t malformed(uint16_t position, const char *what, cm1e_diag_t *
 cm1e_error_t cm1e_sdo_info_list(cm1e_bus_t *bus, uint16_t position, cm1e_info_list_t list, uint16_t *indexes,
                                 size_t *count, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_sdo_info_list()", "", diag);
     if (!count || (!indexes && *count > 0) || list < CM1E_OBJECTS_ALL || list > CM1E_OBJECTS_SETTINGS)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_sdo_info_list() needs a list and a buffer.");
     uint8_t *answer = malloc(LIST_BYTES_MAX);
@@ -83,6 +86,8 @@ cm1e_error_t cm1e_sdo_info_list(cm1e_bus_t *bus, uint16_t position, cm1e_info_li
 cm1e_error_t cm1e_sdo_info_object(cm1e_bus_t *bus, uint16_t position, uint16_t index, cm1e_object_info_t *info,
                                   cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_sdo_info_object()", "", diag);
     uint8_t answer[CM1E_DATAGRAM_MAX];
     cm1e_info_request_t request = {.kind = INFO_OBJECT, .index = index, .answer = answer, .size = sizeof answer};
     const cm1e_error_t error = ask(bus, position, &request, diag);
@@ -94,6 +99,8 @@ cm1e_error_t cm1e_sdo_info_object(cm1e_bus_t *bus, uint16_t position, uint16_t i
 cm1e_error_t cm1e_sdo_info_entry(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex,
                                  cm1e_entry_info_t *info, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_sdo_info_entry()", "", diag);
     uint8_t answer[CM1E_DATAGRAM_MAX];
     /* A slave whose values do not have the length that it says itself is asked for the description alone. */
     static const uint8_t values[] = {INFO_VALUES, 0};

@@ -8,6 +8,7 @@
 #include "bus/eeprom.h"
 #include "bus/sii.h"
 #include "core/bytes.h"
+#include "core/in_task.h"
 #include "description/sii.h"
 
 /* An EEPROM is addressed by words. */
@@ -107,6 +108,8 @@ static cm1e_error_t read_image(session_t *session, uint8_t *image, size_t *size,
 
 cm1e_error_t cm1e_sii_read_device(cm1e_bus_t *bus, uint16_t position, uint8_t *image, size_t *size, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_sii_read_device()", "", diag);
     session_t session;
     if (!size || (!image && *size > 0))
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "cm1e_sii_read_device() needs a buffer, its size.");
@@ -307,6 +310,8 @@ static cm1e_error_t write_image(session_t *session, const uint8_t *image, uint8_
 cm1e_error_t cm1e_sii_write_device(cm1e_bus_t *bus, uint16_t position, const uint8_t *image, size_t size,
                                    const cm1e_sii_write_options_t *options, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_sii_write_device()", "", diag);
     static const cm1e_sii_write_options_t nothing;
     session_t session;
     if (!options)

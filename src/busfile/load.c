@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "busfile/busfile.h"
+#include "core/in_task.h"
 #include "device/place.h"
 
 /* ---- libcyaml ---------------------------------------------------------------------------------------------------- */
@@ -162,6 +163,8 @@ static cm1e_error_t report(cm1e_diag_t *diag, cm1e_error_t error, const char *pa
 
 cm1e_error_t cm1e_bus_config_load(cm1e_bus_config_t *config, const char *path, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_bus_config_load()", "", diag);
     if (!config || !path)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "no configuration or no path given");
     cm1e_busfile_problem_t problem = {0};

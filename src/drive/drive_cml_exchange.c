@@ -6,10 +6,12 @@
 #include "bus/bus_image.h"
 #include "core/bytes.h"
 #include "core/clock.h"
+#include "core/in_task.h"
 #include "device/bridge_status.h"
 #include "drive/drive_cml.h"
 
 #define MS_IN_NS INT64_C(1000000)
+#define INSTEAD "In a task: the block CM_SendCML."
 
 enum { OWN_MODE = CM1E_BRIDGE_MODE_CSP };
 static const int64_t switch_ns = 1000 * MS_IN_NS;
@@ -216,6 +218,8 @@ static void free_motor(const place_t *at, cm1e_drive_cml_t *cml)
 
 cm1e_error_t cm1e_cml_exchange(cm1e_bus_t *bus, cm1e_cml_exchange_t *exchange, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_cml_exchange()", INSTEAD, diag);
     uint32_t ticket;
     exchange->count = exchange->lost = exchange->strays = 0;
     if (!bus)
@@ -244,6 +248,8 @@ cm1e_error_t cm1e_cml_exchange(cm1e_bus_t *bus, cm1e_cml_exchange_t *exchange, c
 
 cm1e_error_t cm1e_cml_leave(cm1e_bus_t *bus, uint16_t position, uint8_t channel, bool free_it, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_cml_leave()", INSTEAD, diag);
     const place_t at = {bus, position, channel, diag};
     int8_t mode = 0;
     if (!bus)

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "cm1e/generate.h"
+#include "core/in_task.h"
 #include "description/compare.h"
 #include "description/expand.h"
 #include "description/sii.h"
@@ -201,6 +202,8 @@ cm1e_error_t cm1e_diff_file(cm1e_findings_t **findings, const void *bytes, size_
                             uint16_t position, cm1e_diag_t *diag)
 {
     *findings = NULL;
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_diff_file()", "", diag);
     cm1e_findings_t *found = cm1e_findings_create();
     if (!found)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "description/describe.h"
+#include "core/in_task.h"
 #include "device/bridge.h"
 #include "device/place.h"
 #include "generate/file.h"
@@ -103,6 +104,8 @@ cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_m
 {
     const uint32_t count = cm1e_bus_slave_count(bus);
     *file = (cm1e_file_t){0};
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_generate_eni_of_bus()", "", diag);
     if (count == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "no slave is known: scan the network first");
     cm1e_description_file_t described = {0};

@@ -7,6 +7,7 @@
 #include "axis/axis.h"
 #include "bus/bus_image.h"
 #include "cm1e/scan_time.h"
+#include "core/in_task.h"
 #include "scheduler/realtime.h"
 #include "scheduler/signals.h"
 #include "scheduler/statistics.h"
@@ -29,6 +30,7 @@ struct cm1e_scheduler {
     atomic_bool stop;      /**< asked for, by anybody */
     bool run;              /**< cm1e_scheduler_run() was called */
     bool shutting_down;    /**< programs no longer run */
+    const char *refused;   /**< what a task called that would have ended all this under the cycle; NULL: nothing */
     bool shut_down;        /**< every drive is disabled, or gone */
     int64_t start_ns;      /**< of cycle 0 */
     int64_t number;        /**< of this cycle; skipped ones count */
@@ -71,6 +73,19 @@ static void set_outputs(cm1e_scheduler_t *s)
         cm1e_axis_outputs(s->axes[i]);
 }
 
+/** A task that asked for the end of what it runs on gets the end of the run, in order. */
+static void run_tasks(cm1e_scheduler_t *s)
+{
+    cm1e_in_task_begin();
+    tasks_run(&s->tasks, s->number);
+    cm1e_in_task_end();
+    const char *function = cm1e_in_task_noted();
+    if (!function)
+        return;
+    s->refused = s->refused ? s->refused : function;
+    cm1e_scheduler_stop(s);
+}
+
 /** receive -> inputs -> programs -> axes -> outputs -> send. At the end of a run the programs' place is taken by the
  *  axes' shut-down. */
 static void scan(cm1e_scheduler_t *s)
@@ -80,7 +95,7 @@ static void scan(cm1e_scheduler_t *s)
     if (s->shutting_down)
         shut_down_axes(s);
     else
-        tasks_run(&s->tasks, s->number);
+        run_tasks(s);
     set_outputs(s);
     cm1e_bus_send(s->bus);
 }
@@ -133,6 +148,11 @@ static cm1e_error_t shut_down(cm1e_scheduler_t *s, cm1e_diag_t *diag)
     s->shutting_down = true;
     while (!s->shut_down && cm1e_scheduler_time_ns(s) - begin_ns <= s->config.stop_timeout_ns)
         cycle(s);
+    if (s->shut_down && s->refused)
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
+                             "%s was called in a task, which is refused there: it frees or stops what the cycle works "
+                             "with. The run was ended in order instead; in a task cm1e_scheduler_stop() does that.",
+                             s->refused);
     if (s->shut_down)
         return CM1E_OK;
     return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0,
@@ -181,6 +201,8 @@ static cm1e_error_t check_operation(const cm1e_scheduler_t *s, cm1e_diag_t *diag
 
 cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_scheduler_run()", "", diag);
     if (duration_ns < 0)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The duration of the run is negative.");
     if (scheduler->run)
@@ -222,11 +244,15 @@ void cm1e_scheduler_statistics(const cm1e_scheduler_t *scheduler, cm1e_scheduler
 
 cm1e_error_t cm1e_scheduler_write_csv(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_scheduler_write_csv()", "", diag);
     return trace_write_file(&scheduler->trace, path, trace_print_csv, diag);
 }
 
 cm1e_error_t cm1e_scheduler_write_svg(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag)
 {
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_scheduler_write_svg()", "", diag);
     return trace_write_file(&scheduler->trace, path, trace_print_svg, diag);
 }
 
@@ -265,6 +291,8 @@ cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus
                                    cm1e_diag_t *diag)
 {
     *scheduler = NULL;
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_scheduler_create()", "", diag);
     if (!bus)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A scheduler needs a bus.");
     cm1e_scheduler_t *s = calloc(1, sizeof *s);
@@ -291,7 +319,7 @@ cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus
 
 void cm1e_scheduler_destroy(cm1e_scheduler_t *scheduler)
 {
-    if (!scheduler)
+    if (!scheduler || cm1e_in_task_note("cm1e_scheduler_destroy()"))
         return;
     signals_detach(scheduler);
     trace_free(&scheduler->trace);
