@@ -16,7 +16,7 @@
 #include "axis/axis.h"
 #include "axis/axis_coupling.h"
 #include "block_table.h"
-#include "group/group.h"
+#include "group/group_private.h"
 
 enum { BLOCK_BYTES = 4096, BLOCKS_MOST = 160, JUDGED_MOST = 4, INSTANCES_MOST = JUDGED_MOST * BLOCKS_MOST };
 
@@ -49,6 +49,7 @@ static struct judged_axis {
     AXIS_REF_t master;              /**< what its slaves' blocks name as their masters */
     cm1e_axis_state_t state;        /**< last judged */
     bool reset_asked;               /**< since ErrorStop */
+    bool searched;                  /**< a call of this cycle found or left it in Homing, which may end in the cycle */
     bool waited;                    /**< a command did, maybe of a block that has lost it by an error of its own */
     bool led;                       /**< by an axes group, when it was judged last */
     long long number;               /**< of the cycle */
@@ -229,6 +230,7 @@ static void judge_state(instance_t *fb, cm1e_axis_state_t before, bool may_wait)
     const shown_t *now = &fb->now;
     const cm1e_axis_state_t after = judged.axis->state;
     const bool edge = now->trigger && !fb->before.trigger;
+    judged.searched = judged.searched || after == CM1E_AXIS_HOMING;
     const bool free_to_change = edge && !now->error && type->rules && !type->rules[before].unchanged;
     /* MC_Reset, MC_Jog, the ends of a homing: tested where they are. A command that cannot go on under another override
      * ends with that error, and the next one begins (2.2.2, case 2). */
@@ -346,6 +348,7 @@ static struct watched_axis {
     cm1e_motion_limits_t maximum, most; /**< of the axis; largest since it was at rest */
     bool lost;                 /**< the motor did not follow it */
     double units;              /**< u; what its position was called */
+    double far;                /**< u; largest_number() */
     double lower, upper;       /**< u; software limits */
     double lowest, highest;    /**< u; where it may be */
     unsigned long long moving; /**< cycles */
@@ -370,10 +373,17 @@ static void watch_limits(void)
                          cm1e_axis_units(axis, watched.set) != watched.units;
     /* Where the limits are is not known before a homing; what follows it begins wherever it was. */
     const bool searches = axis->state == CM1E_AXIS_HOMING || (watched.searched && axis->state == CM1E_AXIS_STOPPING);
+    const bool searched = searches || judged.searched; /* it may have failed in the cycle in which it began */
     watched.searched = searches;
-    if (!axis->software_limits || !watched.ours || axis->set_velocity == 0.0 || changed || searches) {
+    judged.searched = false;
+    if (!axis->software_limits || !watched.ours || axis->set_velocity == 0.0 || changed || searched) {
         watched.lowest = fmin(axis->lower, now - way) - tolerance;
         watched.highest = fmax(axis->upper, now + way) + tolerance;
+    }
+    if (axis->state == CM1E_AXIS_ERROR_STOP && watched.lost) { /* it brakes where a load has turned the motor to */
+        const double actual = cm1e_axis_units(axis, axis_actual(axis));
+        watched.lowest = fmin(watched.lowest, actual - way - tolerance);
+        watched.highest = fmax(watched.highest, actual + way + tolerance);
     }
     watched.lower = axis->lower;
     watched.upper = axis->upper;
@@ -404,6 +414,16 @@ static double rounding_of(const cm1e_axis_t *axis, int depth)
         if (follow->links[i].master)
             rounding += fabs(follow->links[i].ratio) * rounding_of(follow->links[i].master, depth - 1);
     return rounding;
+}
+
+/** u; the largest number that its set position is computed with, and rounded as: an axis counts from its target; the
+ *  path of a group goes in u from the zero of the coordinates to its ends, which may be at 4e9 u. */
+static double largest_number(const cm1e_axis_t *axis)
+{
+    const cm1e_group_t *group = axis->group;
+    if (axis->activity == ACTIVITY_LED && group)
+        return fmax(fabs(group->path.end[axis->leader.index]), fabs(cm1e_axis_place(axis, false)));
+    return fabs(cm1e_position_minus(axis->target, axis->set) / axis->scale);
 }
 
 /** The master was late by so much: the motor stands, or in CSV has gone on. */
@@ -450,6 +470,7 @@ static inline void watch_set_point(void)
 {
     const cm1e_axis_t *axis = judged.axis;
     watch_limits();
+    const double far = largest_number(axis);
     const cm1e_motion_limits_t *most = limits_in_force();
     const double t = (double)judged.cycle_ns * 1e-9, v = axis->set_velocity, a = axis->set_acceleration;
     const bool stop = axis->activity != ACTIVITY_LED && (!axis->active || axis->kind == CM1E_COMMAND_HALT ||
@@ -463,8 +484,7 @@ static inline void watch_set_point(void)
     if (ours && watched.ours && !hard && !watched.lost) {
         const double way = cm1e_position_minus(axis->set, watched.set) / axis->scale;
         const double jerk = fabs(a - watched.acceleration) / t, gain = fabs(v - watched.velocity);
-        const double far = cm1e_position_minus(axis->target, axis->set) / axis->scale;
-        const double rounding = rounding_of(axis, JUDGED_MOST) + 4e-16 * fabs(far);
+        const double rounding = rounding_of(axis, JUDGED_MOST) + 4e-16 * fmax(far, watched.far);
         const double off = fabs(way - (v + watched.velocity) * t / 2.0);
         KEEPS(fabs(v) <= most->velocity * slack, "velocity %.12g, limit %.12g", v, most->velocity);
         KEEPS(fabs(a) <= largest * slack, "acceleration %.12g, limit %.12g", a, largest);
@@ -479,6 +499,7 @@ static inline void watch_set_point(void)
     watched.moving += ours && v != 0.0;
     watched.ours = ours;
     watched.set = axis->set;
+    watched.far = far;
     watched.units = cm1e_axis_units(axis, axis->set);
     watched.velocity = v;
     watched.acceleration = a;
