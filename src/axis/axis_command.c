@@ -125,17 +125,27 @@ static void hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id)
     axis->stop_held = true;
 }
 
+static cm1e_error_t plan_move(cm1e_axis_t *axis, const from_t *from, const cm1e_axis_command_t *command, move_t *move,
+                              cm1e_profile_t *profile)
+{
+    *move = cm1e_axis_move_of(command);
+    move->origin = move->kind == CM1E_COMMAND_MOVE_ADDITIVE ? commanded_position(axis) : from->position;
+    move->exit_velocity = is_endless(command->kind) ? cm1e_axis_exit_velocity(axis, from, move) : 0.0;
+    const cm1e_error_t error = cm1e_axis_resolve(axis, from, move);
+    return error ? error : cm1e_axis_plan(axis, from, move, profile);
+}
+
 /* Whatever there is, it goes on from the present set-point. */
 static cm1e_error_t start_move(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
-    const from_t from = from_set(axis);
-    move_t move = cm1e_axis_move_of(command);
+    from_t from = from_set(axis);
+    move_t move;
     cm1e_profile_t profile;
-    move.origin = move.kind == CM1E_COMMAND_MOVE_ADDITIVE ? commanded_position(axis) : from.position;
-    move.exit_velocity = is_endless(command->kind) ? cm1e_axis_exit_velocity(axis, &from, &move) : 0.0;
-    cm1e_error_t error = cm1e_axis_resolve(axis, &from, &move);
-    if (!error)
-        error = cm1e_axis_plan(axis, &from, &move, &profile);
+    cm1e_error_t error = plan_move(axis, &from, command, &move, &profile);
+    if (error && from.acceleration != axis->set_acceleration) { /* a way back from a limit may need all the braking */
+        from.acceleration = axis->set_acceleration;
+        error = plan_move(axis, &from, command, &move, &profile);
+    }
     if (error)
         return error;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);

@@ -369,6 +369,57 @@ static void test_velocity_into_a_limit_is_braked_before_it(void)
         }
 }
 
+/** Fast towards a limit, with so little jerk that a stop there has to do without a limit of jerk. */
+static void brake_hard_for(int cycles)
+{
+    fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+    bus.config.axes[0].max_velocity = 20.0;
+    bus.config.axes[0].max_jerk = 300.0;
+    bus.config.axes[0].software_limit_negative = -30.0;
+    bus.config.axes[0].software_limit_positive = 22.0;
+    bench_create();
+    bench_enable();
+    bench_move_velocity(20.0);
+    while (bench_info().set_position < 19.0)
+        bench_cycles(1);
+    bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT});
+    bench_cycles(1 + cycles);
+    TEST_ASSERT_EQUAL_DOUBLE(-100.0, bench_info().set_acceleration);
+}
+
+/** What takes over from a ramp without limit of jerk does not carry its acceleration through standstill and back. */
+static void test_a_stop_without_limit_of_jerk_never_swings_back(void)
+{
+    for (int cycles = 0; cycles < 190; cycles += 3)
+        for (int way = 0; way < 4; way++) {
+            brake_hard_for(cycles);
+            if (way < 2)
+                bench_start_command(&(cm1e_axis_command_t){.kind = way ? CM1E_COMMAND_STOP : CM1E_COMMAND_HALT});
+            else if (way == 2)
+                TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_override(axis, 0.9, 0.9, 0.9));
+            cm1e_command_id_t id;
+            if (way == 3) /* refused where only the present ramp is short enough */
+                (void)cm1e_axis_start(axis, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 0.1},
+                                      &id);
+            for (int n = 0; n < 1500; n++) {
+                bench_cycles(1);
+                TEST_ASSERT_TRUE(bench_info().set_velocity >= 0.0 && bench_info().set_position <= 22.0 + 1e-6);
+            }
+            bench_end();
+        }
+}
+
+/** It is on its way there. */
+static void test_a_move_back_inside_is_taken_while_braking_without_limit_of_jerk(void)
+{
+    for (int cycles = 0; cycles < 190; cycles += 3) {
+        brake_hard_for(cycles);
+        const cm1e_command_id_t id = bench_move_to(0.0, 20.0);
+        bench_wait(id, 9000);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
+    }
+}
+
 static void test_an_axis_outside_its_limits_may_only_come_back(void)
 {
     bus.position = 500000; /* 10 u */
@@ -726,6 +777,8 @@ int main(void)
     RUN_TEST(test_targets_outside_the_limits_are_refused_inside_accepted);
     RUN_TEST(test_a_retarget_that_would_overshoot_a_limit_is_refused);
     RUN_TEST(test_velocity_into_a_limit_is_braked_before_it);
+    RUN_TEST(test_a_stop_without_limit_of_jerk_never_swings_back);
+    RUN_TEST(test_a_move_back_inside_is_taken_while_braking_without_limit_of_jerk);
     RUN_TEST(test_an_axis_outside_its_limits_may_only_come_back);
     RUN_TEST(test_motion_in_a_disabled_direction_is_refused);
     RUN_TEST(test_refused_numbers_are_told_as_they_are_judged);
