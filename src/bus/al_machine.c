@@ -3,6 +3,8 @@
 #include "core/bytes.h"
 
 enum { AL_STATUS_BYTES = 6 }; /**< status, 2 reserved bytes, status code */
+/** Looks at AL status, in which a slave with a processor takes an acknowledgement. */
+enum { ACKNOWLEDGE_LOOKS = 10 };
 
 static void end(cm1e_al_machine_t *machine, cm1e_error_t error)
 {
@@ -15,6 +17,7 @@ void cm1e_al_request(cm1e_al_machine_t *machine, uint8_t target, int64_t deadlin
     machine->target = target;
     machine->deadline_ns = deadline_ns;
     machine->answered = false;
+    machine->without_bit = false;
     machine->state = machine->code = 0;
     machine->error = CM1E_OK;
     machine->step = AL_LOOK;
@@ -36,6 +39,15 @@ static void write_control(const cm1e_al_machine_t *machine, cm1e_datagram_t *d, 
 {
     cm1e_datagram_set(d, COMMAND_FPWR, machine->station, REG_AL_CONTROL, 2);
     cm1e_put_u16(d->data, (uint16_t)value);
+}
+
+/** The present state and the acknowledge bit; on the way to Init at once Init, which needs no configuration. A slave
+ *  with device emulation copies AL control to AL status, so it shows the bit as an error that every acknowledgement
+ *  renews: an error that is still shown is answered without the bit, in turns. */
+static unsigned acknowledgement(const cm1e_al_machine_t *machine)
+{
+    const unsigned state = machine->target == CM1E_AL_INIT ? CM1E_AL_INIT : machine->state & AL_STATE_MASK;
+    return machine->without_bit ? state : state | AL_ERROR_FLAG;
 }
 
 bool cm1e_al_next(cm1e_al_machine_t *machine, cm1e_datagram_t *d, int64_t now_ns)
@@ -62,7 +74,7 @@ bool cm1e_al_next(cm1e_al_machine_t *machine, cm1e_datagram_t *d, int64_t now_ns
         cm1e_datagram_set(d, COMMAND_FPRD, machine->station, REG_AL_STATUS, AL_STATUS_BYTES);
         return true;
     case AL_ACKNOWLEDGE:
-        write_control(machine, d, present | AL_ERROR_FLAG);
+        write_control(machine, d, acknowledgement(machine));
         return true;
     case AL_REQUEST:
         write_control(machine, d, machine->target);
@@ -94,6 +106,16 @@ static void after_look(cm1e_al_machine_t *machine)
         machine->step = AL_REQUEST;
 }
 
+static void after_acknowledgement(cm1e_al_machine_t *machine)
+{
+    if (!(machine->state & AL_ERROR_FLAG)) {
+        machine->step = AL_REQUEST;
+    } else if (++machine->looks >= ACKNOWLEDGE_LOOKS) {
+        machine->without_bit = !machine->without_bit;
+        machine->step = AL_ACKNOWLEDGE;
+    }
+}
+
 static void after_wait(cm1e_al_machine_t *machine)
 {
     if (machine->state & AL_ERROR_FLAG)
@@ -115,11 +137,12 @@ void cm1e_al_result(cm1e_al_machine_t *machine, const cm1e_datagram_t *d, int64_
         after_look(machine);
         break;
     case AL_ACKNOWLEDGE:
+        machine->looks = 0;
         machine->step = AL_ACKNOWLEDGED;
         break;
     case AL_ACKNOWLEDGED:
         take_status(machine, d);
-        machine->step = machine->state & AL_ERROR_FLAG ? AL_ACKNOWLEDGE : AL_REQUEST;
+        after_acknowledgement(machine);
         break;
     case AL_REQUEST:
         machine->step = AL_WAIT;

@@ -1,7 +1,7 @@
 /**
  * @file al_machine.h
- * Brings one slave to an EtherCAT state (ETG.1000.6 section 6.4): acknowledges an old error, requests, waits; and
- * reads the explicit device ID (ETG.1020). One datagram at a time, no clock inside.
+ * Brings one slave to an EtherCAT state (ETG.1000.6 section 6.4): acknowledges an error where AL status shows one,
+ * requests, waits; and reads the explicit device ID (ETG.1020). One datagram at a time, no clock inside.
  */
 #ifndef CM1E_BUS_AL_MACHINE_H
 #define CM1E_BUS_AL_MACHINE_H
@@ -27,6 +27,8 @@ typedef struct cm1e_al_machine {
     uint8_t target;
     int64_t deadline_ns;
     bool answered;          /**< the slave has answered at its address since the start */
+    bool without_bit;       /**< the next acknowledgement has no acknowledge bit */
+    unsigned looks;         /**< since the last acknowledgement */
     uint16_t state, code;   /**< AL status and status code, as last read */
     uint16_t explicit_id;   /**< result of cm1e_al_read_id(); 0: none or not supported */
     cm1e_error_t error;     /**< result, valid when idle */

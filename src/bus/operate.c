@@ -7,6 +7,8 @@ enum { EXCHANGES = 3 };
 #define EXCHANGE_NS INT64_C(2000000000)
 /** For each of the two steps down of cm1e_bus_stop(). */
 #define STOP_STEP_NS INT64_C(500000000)
+/** In which a slave takes an acknowledgement. */
+#define ACKNOWLEDGE_NS INT64_C(20000000)
 
 /** Exchanges until the process data comes back. Whether all slaves count is asked in Operational only: a slave may keep
  *  its outputs closed until then (ETG.1000.4: sync manager deactivated by the device), and they do not count. */
@@ -68,20 +70,39 @@ cm1e_error_t cm1e_bus_start(cm1e_bus_t *bus, cm1e_diag_t *diag)
     return error;
 }
 
-/** All slaves, also those that the scan does not know, in one broadcast; waits until none is above `state`. */
-static void all_down_to(cm1e_bus_t *bus, uint8_t state)
+static void request_of_all(cm1e_bus_t *bus, unsigned al_control)
 {
-    const int64_t deadline_ns = cm1e_clock_now(bus->clock) + STOP_STEP_NS;
-    const unsigned above = AL_STATE_MASK & ~(2u * state - 1u); /* the broadcast read gives the states of all, ORed */
-    uint8_t control[2], status[2];
-    cm1e_put_u16(control, (uint16_t)(state | AL_ERROR_FLAG)); /* acknowledges errors on the way */
+    uint8_t control[2];
+    cm1e_put_u16(control, (uint16_t)al_control);
     cm1e_soem_transfer(bus->soem, COMMAND_BWR, 0, REG_AL_CONTROL, control, sizeof control);
-    while (cm1e_clock_now(bus->clock) < deadline_ns) {
-        const int answered = cm1e_soem_transfer(bus->soem, COMMAND_BRD, 0, REG_AL_STATUS, status, sizeof status);
-        if (answered <= 0 || !(status[0] & above))
-            return;
+}
+
+/** Until no slave shows one of these bits of AL status, or the time is over. Returns what they show, ORed. */
+static unsigned wait_for_all(cm1e_bus_t *bus, unsigned bits, int64_t time_ns)
+{
+    const int64_t deadline_ns = cm1e_clock_now(bus->clock) + time_ns;
+    uint8_t status[2];
+    while (cm1e_soem_transfer(bus->soem, COMMAND_BRD, 0, REG_AL_STATUS, status, sizeof status) > 0) {
+        if (!(status[0] & bits) || cm1e_clock_now(bus->clock) >= deadline_ns)
+            return status[0];
         cm1e_clock_sleep_until(bus->clock, cm1e_clock_now(bus->clock) + CM1E_PUMP_PERIOD_NS);
     }
+    return 0;
+}
+
+/** All slaves, also those that the scan does not know, in one broadcast; waits until none is above `state`. A slave that
+ *  shows an error may keep its state until the error is acknowledged. One with device emulation shows the acknowledge
+ *  bit as an error, so it gets the request without it last. */
+static void all_down_to(cm1e_bus_t *bus, uint8_t state)
+{
+    const unsigned above = AL_STATE_MASK & ~(2u * state - 1u);
+    request_of_all(bus, state);
+    if (wait_for_all(bus, above | AL_ERROR_FLAG, ACKNOWLEDGE_NS) & AL_ERROR_FLAG) {
+        request_of_all(bus, state | AL_ERROR_FLAG);
+        wait_for_all(bus, above | AL_ERROR_FLAG, ACKNOWLEDGE_NS);
+        request_of_all(bus, state);
+    }
+    wait_for_all(bus, above, STOP_STEP_NS);
 }
 
 /** What is left of each slave; ends at the first lost frame: then nothing can be said of the others either. */

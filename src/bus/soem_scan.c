@@ -39,7 +39,7 @@ static void set_defaults(cm1e_soem_t *soem)
     } settings[] = {
         {ECT_REG_DLALIAS, 1, {0, 0}},                            /* configured addresses count, not the alias */
         {ECT_REG_STADR, 2, {0, 0}},                              /* old ones would be doubled where places changed */
-        {ECT_REG_ALCTL, 2, {EC_STATE_INIT | EC_STATE_ACK, 0}},
+        {ECT_REG_ALCTL, 2, {EC_STATE_INIT, 0}},                  /* errors: al_machine.c, where one is shown */
         {ECT_REG_DLPORT, 1, {0, 0}},                             /* all ports automatic */
         {ECT_REG_IRQMASK, 2, {0x04, 0}},
         {ECT_REG_DCSYNCACT, 1, {0, 0}},                          /* no SYNC signals */
