@@ -83,6 +83,19 @@ static void take_mappings(cm1e_arena_t *arena, cm1e_description_t *device, const
     device->revision = live->revision;
 }
 
+/* Which protocols its mailbox speaks, and whether it has one in Bootstrap, is the device's own word too. */
+static void take_mailbox(cm1e_description_t *device, const cm1e_description_t *live)
+{
+    cm1e_mailbox_protocols_t *mailbox = &device->mailbox;
+    mailbox->coe = live->mailbox.coe;
+    mailbox->foe = live->mailbox.foe;
+    mailbox->eoe = live->mailbox.eoe;
+    mailbox->soe = live->mailbox.soe;
+    mailbox->voe = live->mailbox.voe;
+    mailbox->aoe = live->mailbox.aoe;
+    device->eeprom.bootstrap = live->eeprom.bootstrap;
+}
+
 /* Appends what stands at `position`: a CM1-E with the chosen mapping, a bridge, another device as its SII has it. */
 static cm1e_error_t describe_slave(cm1e_description_file_t *file, cm1e_bus_t *bus, const cm1e_slave_info_t *slave,
                                    cm1e_mapping_t mapping, cm1e_findings_t *findings, cm1e_diag_t *diag)
@@ -95,6 +108,7 @@ static cm1e_error_t describe_slave(cm1e_description_file_t *file, cm1e_bus_t *bu
         return error;
     cm1e_description_t *device = &file->devices.at[file->devices.count - 1], *live = device - 1;
     take_mappings(&file->arena, device, live);
+    take_mailbox(device, live);
     *live = *device;
     file->devices.count--;
     return CM1E_OK;

@@ -161,6 +161,30 @@ START_TEST(the_eni_of_a_scan_is_that_of_the_configuration_of_a_bridge)
 }
 END_TEST
 
+static bool contains(const cm1e_file_t *file, const char *text)
+{
+    return memmem(file->bytes, file->size, text, strlen(text)) != NULL;
+}
+
+START_TEST(the_eni_of_a_scan_has_the_protocols_of_the_sii)
+{
+    enum { PROTOCOLS = 0x38, FOE = 0x08 };
+    cm1e_bus_t *bus = scanned_bus(1);
+    cm1e_file_t file = {0};
+    cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(segment_of(bus), 1);
+    const bool has_foe = slave->sii[PROTOCOLS] & FOE;
+    ck_assert_int_eq(cm1e_generate_eni_of_bus(&file, bus, CM1E_MAPPING_DYNAMIC, &diag), CM1E_OK);
+    ck_assert(has_foe == contains(&file, "<Protocol>FoE</Protocol>"));
+    cm1e_file_free(&file);
+    slave->sii[PROTOCOLS] &= (uint8_t)~FOE;
+    ck_assert_int_eq(cm1e_generate_eni_of_bus(&file, bus, CM1E_MAPPING_DYNAMIC, &diag), CM1E_OK);
+    ck_assert(contains(&file, "<Protocol>CoE</Protocol>"));
+    ck_assert(!contains(&file, "FoE") && !contains(&file, "Bootstrap"));
+    cm1e_file_free(&file);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 static void compare_modular(cm1e_bus_t *bus, const char *firmware)
 {
     cm1e_file_t file = {0};
@@ -513,6 +537,7 @@ int main(void)
     tcase_add_test(equal, the_esi_of_every_firmware_differs_in_nothing);
     tcase_add_loop_test(equal, a_file_of_every_format_that_is_made_for_a_bridge_differs_in_nothing, 0, 3);
     tcase_add_loop_test(equal, the_eni_of_a_scan_is_that_of_the_configuration_of_a_bridge, 0, 3);
+    tcase_add_test(equal, the_eni_of_a_scan_has_the_protocols_of_the_sii);
     tcase_add_test(equal, the_sii_of_the_device_itself_differs_in_nothing);
     tcase_add_test(equal, a_modular_file_differs_in_nothing);
     tcase_add_test(equal, a_lost_frame_changes_no_finding);

@@ -198,6 +198,38 @@ static void test_registers_of_a_cm1e(void)
     }
 }
 
+/* A slave with device emulation copies the acknowledge bit of AL control to AL status: a check of the error bit after
+ * such a request would never hold. Slaves with a mailbox have a processor, but Init is asked before anything is known
+ * of them. After a request without the bit, an error has to be seen. */
+static void test_checks_of_a_state_go_with_what_was_requested(void)
+{
+    for (size_t n = 0; n < ENI_NETWORKS; n++) {
+        make(&eni_networks[n]);
+        for (size_t d = 0; d < document.devices.count; d++) {
+            const cm1e_eni_command_list_t *list = &document.devices.at[d].commands;
+            uint8_t requested[16] = {0}, checks = 0; /* AL control by transition (its bit) */
+            for (size_t i = 0; i < list->count; i++) {
+                const cm1e_eni_command_t *command = &list->at[i];
+                for (unsigned t = 0; t < 16; t++) {
+                    if (!(command->transitions & 1u << t))
+                        continue;
+                    if (command->ado == 0x0120)
+                        requested[t] = command->data.data[0];
+                    if (command->ado != 0x0130)
+                        continue;
+                    checks++;
+                    TEST_ASSERT_EQUAL_HEX8(requested[t] & 0x0F, command->expected.data[0]);
+                    const bool forward = command->count == 1, processor = document.devices.at[d].mailbox.present;
+                    const bool may_copy = requested[t] & 0x10 && (requested[t] == 0x11 || !processor);
+                    TEST_ASSERT_EQUAL_HEX8(forward && !may_copy ? 0x1F : 0x0F, command->mask.data[0]);
+                }
+            }
+            TEST_ASSERT_GREATER_OR_EQUAL_UINT8(9, checks);
+        }
+        tearDown();
+    }
+}
+
 static void test_start_up_commands_of_the_description_go_through_the_mailbox(void)
 {
     make(&eni_networks[ENI_ONE]);
@@ -360,6 +392,7 @@ int main(void)
     RUN_TEST(test_a_bus_file_gives_the_network_of_its_axes);
     RUN_TEST(test_slaves_are_addressed_in_the_order_of_the_wire);
     RUN_TEST(test_registers_of_a_cm1e);
+    RUN_TEST(test_checks_of_a_state_go_with_what_was_requested);
     RUN_TEST(test_start_up_commands_of_the_description_go_through_the_mailbox);
     RUN_TEST(test_an_io_module_has_no_mailbox_and_no_sdo);
     RUN_TEST(test_variables_lie_where_their_slaves_data_do);

@@ -144,6 +144,14 @@ def from_a_scan(cm1e):
         succeeds(segment, path, move("CM1-E 3"), "scan, objects in the order of UG 7.2")
 
 
+def beside_device_emulation(cm1e):
+    """Simple terminals, whose AL status shows the acknowledge bit of AL control, before and between the motors."""
+    text = "bus: {sim_gaps: terminal}\naxes: [{position: 2}, {position: 4}]\n"
+    with segment_of(cm1e, text) as segment:
+        path = generate(segment, cm1e, "-i", wire.MASTER_INTERFACE)
+        succeeds(segment, path, move("CM1-E 4"), "scan, beside device emulation")
+
+
 def runs(cm1e, path, *programs):
     with segment_of(cm1e, NETWORKS[os.path.basename(path)]) as segment:
         for program in programs:
@@ -172,6 +180,7 @@ if __name__ == "__main__":
     runs(command, mixed, move("Z"), OUTPUTS)
     from_bus_files(command)
     from_a_scan(command)
+    beside_device_emulation(command)
     is_refused(command, one, "<Data>02204144</Data>", "<Data>03204144</Data>", "check product code")
     is_refused(command, one, "<Cnt>3</Cnt>", "<Cnt>2</Cnt>", "working counter 3, not 2")
     is_refused(command, one, "<Data>00110D0064000100</Data>", "<Data>00110E0064000100</Data>", "SAFEOP")
