@@ -18,6 +18,12 @@ enum {
     SDO_ABORT = 0x80, SPECIFIER_MASK = 0xE0,
     BIT_COMPLETE_ACCESS = 0x10, BIT_TOGGLE = 0x10, BIT_EXPEDITED = 0x02, BIT_SIZE_GIVEN = 0x01, BIT_LAST = 0x01,
 };
+/** What a slave is told of a transfer that is given up (ETG.1000.6 table 41). */
+#define ABORT_TOGGLE 0x05030000u
+#define ABORT_TIMEOUT 0x05040000u
+#define ABORT_COMMAND 0x05040001u
+#define ABORT_NO_MEMORY 0x05040005u
+#define ABORT_GENERAL 0x08000000u
 /** CoE header, command byte, index, sub-index, four bytes of data: the shortest SDO message. */
 enum { COE_HEADER = 2, SDO_BYTES = 10, SEGMENT_HEADER = 3, SEGMENT_MIN_DATA = 7 };
 /** SDO information: CoE header, opcode, reserved, fragments left (ETG.1000.6 section 5.6.3). */
@@ -53,12 +59,31 @@ static void finish(cm1e_coe_client_t *client, cm1e_error_t error, uint32_t abort
     info->done = true;
 }
 
-/** Ends the transfer from our side; what the slave still sends for it must not be taken for the next one's answer. */
-static void give_up(cm1e_coe_client_t *client, cm1e_error_t error)
+static bool is_transfer(const cm1e_coe_client_t *client)
+{
+    return client->phase >= COE_UPLOAD && client->phase <= COE_DOWNLOAD_SEGMENT;
+}
+
+/** What the slave still sends for this transfer must not be taken for the next one's answer. */
+static void distrust(cm1e_coe_client_t *client)
 {
     client->doubtful = true;
     client->last_index = client->sdo ? client->sdo->index : 0;
-    finish(client, error, 0);
+}
+
+/** The slave may hold the transfer open: it has to be told. */
+static void owe_abort(cm1e_coe_client_t *client, uint32_t code)
+{
+    client->abort = (cm1e_owed_abort_t){true, client->awaited_index, client->awaited_subindex, code};
+}
+
+/** Ends the transfer from our side, without another datagram. */
+static void give_up(cm1e_coe_client_t *client, cm1e_error_t error)
+{
+    distrust(client);
+    if (is_transfer(client))
+        owe_abort(client, error == CM1E_ERROR_TIMEOUT ? ABORT_TIMEOUT : ABORT_GENERAL);
+    finish(client, client->phase == COE_ABORT && client->failure != CM1E_OK ? client->failure : error, 0);
 }
 
 void cm1e_coe_reset(cm1e_coe_client_t *client, cm1e_error_t error)
@@ -66,7 +91,7 @@ void cm1e_coe_reset(cm1e_coe_client_t *client, cm1e_error_t error)
     if (!cm1e_coe_idle(client))
         finish(client, error, 0);
     client->phase = COE_IDLE;
-    client->doubtful = false; /* the transition empties the slave's mailbox */
+    client->doubtful = client->abort.owed = client->abort_sent = false; /* the transition empties the slave's mailbox */
     cm1e_mailbox_reset(&client->mailbox);
 }
 
@@ -115,6 +140,13 @@ static void request_fence(cm1e_coe_client_t *client)
     client->phase = COE_FENCE;
     start_initiate(client, REQUEST_UPLOAD, fences[client->fence].index, fences[client->fence].subindex);
     send_message(client, SDO_BYTES);
+}
+
+/** Before the first request after a transfer that was given up. */
+static void start_fence(cm1e_coe_client_t *client)
+{
+    client->phase = COE_DRAIN;
+    cm1e_mailbox_drain(&client->mailbox);
 }
 
 static void request_upload(cm1e_coe_client_t *client)
@@ -186,6 +218,30 @@ static void request_information(cm1e_coe_client_t *client)
     send_message(client, INFO_HEADER + (info->kind == INFO_ENTRY ? 4u : 2u));
 }
 
+static void request_abort(cm1e_coe_client_t *client, cm1e_error_t failure)
+{
+    client->phase = COE_ABORT;
+    client->failure = failure;
+    uint8_t *body = start_message(client);
+    body[2] = SDO_ABORT;
+    cm1e_put_u16(body + 3, client->abort.index);
+    body[5] = client->abort.subindex;
+    cm1e_put_u32(body + 6, client->abort.code);
+    send_message(client, SDO_BYTES);
+}
+
+/** Gives the transfer up while there is time to tell the slave: it ends when the abort is delivered. */
+static void abandon(cm1e_coe_client_t *client, cm1e_error_t error, uint32_t abort_code)
+{
+    if (!is_transfer(client)) {
+        give_up(client, error);
+        return;
+    }
+    distrust(client);
+    owe_abort(client, abort_code);
+    request_abort(client, error);
+}
+
 static void start_transfer(cm1e_coe_client_t *client)
 {
     if (client->info)
@@ -207,10 +263,23 @@ static void begin(cm1e_coe_client_t *client, int64_t timeout_ns, int64_t now_ns)
     if (mailbox->in_length < CM1E_MAILBOX_HEADER + SDO_BYTES || mailbox->out_length < CM1E_MAILBOX_HEADER + SDO_BYTES ||
         mailbox->in_length > CM1E_DATAGRAM_MAX || mailbox->out_length > CM1E_DATAGRAM_MAX)
         finish(client, CM1E_ERROR_UNSUPPORTED, 0);
+    else if (client->abort.owed)
+        request_abort(client, CM1E_OK);
     else if (client->doubtful)
-        request_fence(client);
+        start_fence(client);
     else
         start_transfer(client);
+}
+
+/** No answer comes; the next one may be the link layer's word that the slave did not want the abort. */
+static void after_abort(cm1e_coe_client_t *client)
+{
+    client->abort.owed = false;
+    client->abort_sent = true;
+    if (client->failure != CM1E_OK)
+        finish(client, client->failure, 0);
+    else
+        start_fence(client);
 }
 
 void cm1e_coe_begin(cm1e_coe_client_t *client, cm1e_sdo_t *sdo, int64_t now_ns)
@@ -263,7 +332,7 @@ static void on_upload(cm1e_coe_client_t *client, const uint8_t *body, size_t siz
 {
     cm1e_sdo_t *sdo = client->sdo;
     if ((body[2] & SPECIFIER_MASK) != RESPONSE_UPLOAD) {
-        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+        abandon(client, CM1E_ERROR_BUS_MAILBOX, ABORT_COMMAND);
         return;
     }
     if (body[2] & BIT_EXPEDITED) {
@@ -272,7 +341,7 @@ static void on_upload(cm1e_coe_client_t *client, const uint8_t *body, size_t siz
     }
     client->total = cm1e_get_u32(body + 6);
     if (client->total > sdo->size) {
-        give_up(client, CM1E_ERROR_INVALID_ARGUMENT); /* the caller's buffer is too small */
+        abandon(client, CM1E_ERROR_INVALID_ARGUMENT, ABORT_NO_MEMORY); /* the caller's buffer is too small */
         return;
     }
     const size_t given = size - SDO_BYTES;
@@ -293,7 +362,7 @@ static void on_upload_segment(cm1e_coe_client_t *client, const uint8_t *body, si
     const size_t bytes = size == SDO_BYTES ? SEGMENT_MIN_DATA - (body[2] >> 1 & 7u) : size - SEGMENT_HEADER;
     if ((body[2] & SPECIFIER_MASK) != RESPONSE_UPLOAD_SEGMENT || toggle != client->toggle ||
         bytes > client->total - client->done || (bytes == 0 && !last)) {
-        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+        abandon(client, CM1E_ERROR_BUS_MAILBOX, toggle != client->toggle ? ABORT_TOGGLE : ABORT_COMMAND);
         return;
     }
     memcpy((uint8_t *)client->sdo->data + client->done, body + SEGMENT_HEADER, bytes);
@@ -302,7 +371,7 @@ static void on_upload_segment(cm1e_coe_client_t *client, const uint8_t *body, si
     if (!last) {
         request_upload_segment(client);
     } else if (client->done != client->total) {
-        give_up(client, CM1E_ERROR_BUS_MAILBOX); /* less than announced is not the object */
+        abandon(client, CM1E_ERROR_BUS_MAILBOX, ABORT_GENERAL); /* less than announced is not the object */
     } else {
         client->sdo->size = client->total;
         finish(client, CM1E_OK, 0);
@@ -320,7 +389,7 @@ static void after_download(cm1e_coe_client_t *client)
 static void on_download(cm1e_coe_client_t *client, const uint8_t *body)
 {
     if ((body[2] & SPECIFIER_MASK) != RESPONSE_DOWNLOAD)
-        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+        abandon(client, CM1E_ERROR_BUS_MAILBOX, ABORT_COMMAND);
     else
         after_download(client);
 }
@@ -329,7 +398,7 @@ static void on_download_segment(cm1e_coe_client_t *client, const uint8_t *body)
 {
     const bool toggle = body[2] & BIT_TOGGLE;
     if ((body[2] & SPECIFIER_MASK) != RESPONSE_DOWNLOAD_SEGMENT || toggle != client->toggle) {
-        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+        abandon(client, CM1E_ERROR_BUS_MAILBOX, toggle != client->toggle ? ABORT_TOGGLE : ABORT_COMMAND);
         return;
     }
     client->toggle = !client->toggle;
@@ -351,7 +420,7 @@ static void on_abort(cm1e_coe_client_t *client, const uint8_t *body)
     if (!addressed(client, body)) {
         discard(client);
     } else if (client->phase == COE_FENCE) {
-        client->doubtful = false; /* an abort is an answer, too */
+        client->doubtful = client->abort_sent = false; /* an abort is an answer, too */
         start_transfer(client);
     } else {
         finish(client, CM1E_ERROR_SDO_ABORT, cm1e_get_u32(body + 6));
@@ -369,9 +438,11 @@ static void on_sdo(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
     switch (client->phase) {
     case COE_IDLE:
     case COE_INFORMATION:
+    case COE_ABORT:
+    case COE_DRAIN:
         break;
     case COE_FENCE:
-        client->doubtful = false;
+        client->doubtful = client->abort_sent = false;
         start_transfer(client);
         break;
     case COE_UPLOAD:
@@ -439,6 +510,8 @@ static void on_coe(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
     if (service == SERVICE_EMERGENCY) {
         on_emergency(client, body, size);
         discard(client);
+    } else if (client->phase == COE_ABORT || client->phase == COE_DRAIN) {
+        discard(client);
     } else if (client->phase == COE_INFORMATION) {
         if (service == SERVICE_SDO_INFORMATION)
             on_information(client, body, size);
@@ -447,7 +520,7 @@ static void on_coe(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
     } else if (service != SERVICE_SDO_REQUEST && service != SERVICE_SDO_RESPONSE) {
         discard(client);
     } else if (size < SDO_BYTES) {
-        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+        abandon(client, CM1E_ERROR_BUS_MAILBOX, ABORT_COMMAND);
     } else if ((body[2] & SPECIFIER_MASK) == SDO_ABORT) {
         on_abort(client, body);
     } else if (service == SERVICE_SDO_REQUEST) {
@@ -457,18 +530,36 @@ static void on_coe(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
     }
 }
 
+/** The slave's link layer refused a message: the request, or an abort of which it wants to know nothing. */
+static void on_mailbox_error(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
+{
+    const bool old = client->phase == COE_ABORT || client->phase == COE_DRAIN;
+    if (old || (client->phase == COE_FENCE && client->abort_sent)) {
+        client->abort_sent = false;
+        discard(client);
+        return;
+    }
+    client->mailbox_error = size >= 4 ? cm1e_get_u16(body + 2) : 0;
+    const bool began = client->phase == COE_UPLOAD_SEGMENT || client->phase == COE_DOWNLOAD_SEGMENT;
+    if (began) {
+        abandon(client, CM1E_ERROR_BUS_MAILBOX, ABORT_GENERAL);
+    } else {
+        distrust(client);
+        finish(client, CM1E_ERROR_BUS_MAILBOX, 0);
+    }
+}
+
 static void on_message(cm1e_coe_client_t *client, const uint8_t *message)
 {
     const size_t size = cm1e_get_u16(message);
     const uint8_t *body = message + CM1E_MAILBOX_HEADER;
     const uint8_t type = message[5] & 0x0F;
     if (size > (size_t)(client->mailbox.in_length - CM1E_MAILBOX_HEADER)) {
-        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+        abandon(client, CM1E_ERROR_BUS_MAILBOX, ABORT_COMMAND);
     } else if (type == MAILBOX_TYPE_COE) {
         on_coe(client, body, size);
     } else if (type == MAILBOX_TYPE_ERROR) {
-        client->mailbox_error = size >= 4 ? cm1e_get_u16(body + 2) : 0;
-        give_up(client, CM1E_ERROR_BUS_MAILBOX);
+        on_mailbox_error(client, body, size);
     } else {
         discard(client);
     }
@@ -495,6 +586,10 @@ void cm1e_coe_result(cm1e_coe_client_t *client, const cm1e_datagram_t *datagram,
         return; /* ended while the datagram was on its way */
     if (cm1e_mailbox_result(&client->mailbox, datagram))
         on_message(client, datagram->data);
+    if (client->phase == COE_ABORT && cm1e_mailbox_delivered(&client->mailbox))
+        after_abort(client);
+    else if (client->phase == COE_DRAIN && cm1e_mailbox_drained(&client->mailbox))
+        request_fence(client);
     if (!cm1e_coe_idle(client) && now_ns >= client->deadline_ns)
         give_up(client, CM1E_ERROR_TIMEOUT);
 }

@@ -25,7 +25,7 @@ void cm1e_mailbox_reset(cm1e_mailbox_t *mailbox)
     mailbox->sent_counter = 0;
     mailbox->received_counter = 0;
     mailbox->repeat_bit = false;
-    mailbox->write_lost = false;
+    mailbox->write_lost = mailbox->draining = false;
     mailbox->suspects = 0;
     mailbox->counting = COUNTING_UNKNOWN;
     mailbox->tries = 0;
@@ -47,8 +47,15 @@ void cm1e_mailbox_send(cm1e_mailbox_t *mailbox, uint8_t type, uint16_t size)
     mailbox->message[4] = 0;               /* channel, priority */
     mailbox->message[5] = (uint8_t)(type | mailbox->sent_counter << 4);
     mailbox->size = (uint16_t)(CM1E_MAILBOX_HEADER + size);
-    mailbox->write_lost = false;
+    mailbox->write_lost = mailbox->draining = false;
     enter(mailbox, MAILBOX_WRITE);
+}
+
+void cm1e_mailbox_drain(cm1e_mailbox_t *mailbox)
+{
+    mailbox->write_lost = false;
+    mailbox->draining = true;
+    enter(mailbox, MAILBOX_POLL);
 }
 
 void cm1e_mailbox_stop(cm1e_mailbox_t *mailbox) { enter(mailbox, MAILBOX_IDLE); }
@@ -65,7 +72,7 @@ bool cm1e_mailbox_next(cm1e_mailbox_t *mailbox, cm1e_datagram_t *d)
         memset(d->data + mailbox->size, 0, (size_t)(mailbox->out_length - mailbox->size));
         return true;
     case MAILBOX_POLL:
-        if (mailbox->write_lost) {
+        if (mailbox->write_lost || mailbox->draining) {
             cm1e_datagram_set(d, COMMAND_FPRD, mailbox->station, REG_SM0, 2 * SYNC_MANAGER_BYTES);
             return true;
         }
@@ -102,10 +109,13 @@ static void after_poll(cm1e_mailbox_t *mailbox, const cm1e_datagram_t *d)
 {
     if (d->working_counter != 1)
         return;
-    const uint8_t *in = mailbox->write_lost ? d->data + SYNC_MANAGER_BYTES : d->data;
-    const bool out_full = mailbox->write_lost && d->data[SM_STATUS] & SM_STATUS_FULL;
+    const bool both = mailbox->write_lost || mailbox->draining;
+    const uint8_t *in = both ? d->data + SYNC_MANAGER_BYTES : d->data;
+    const bool out_full = both && d->data[SM_STATUS] & SM_STATUS_FULL;
     if (out_full)
         mailbox->write_lost = false; /* it is there, the slave will read it */
+    else
+        mailbox->draining = false;
     if (in[SM_STATUS] & SM_STATUS_FULL)
         enter(mailbox, MAILBOX_READ);
     else if (mailbox->write_lost && ++mailbox->tries >= DOUBT_LOOKS)

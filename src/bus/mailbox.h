@@ -31,6 +31,7 @@ typedef struct cm1e_mailbox {
     uint8_t sent_counter;             /**< 1 ... 7, of the last message sent; 0: none yet */
     uint8_t received_counter;         /**< of the last message accepted */
     bool repeat_bit;                  /**< as last written to SM1 activate */
+    bool draining;                    /**< looks until the slave has read what is in SM0 */
     bool write_lost;                  /**< nobody knows whether the message was delivered */
     unsigned suspects;                /**< so many of the next answers may be ones that we have already */
     enum { COUNTING_UNKNOWN = 0, COUNTING, NOT_COUNTING } counting; /**< does the slave number its answers? */
@@ -48,6 +49,18 @@ uint8_t *cm1e_mailbox_body(cm1e_mailbox_t *mailbox);
 /** Starts to send the message whose body has `size` bytes; afterwards answers are fetched until cm1e_mailbox_stop(). */
 void cm1e_mailbox_send(cm1e_mailbox_t *mailbox, uint8_t type, uint16_t size);
 void cm1e_mailbox_stop(cm1e_mailbox_t *mailbox);
+/** Looks, and fetches answers, until the slave has read what is in its mailbox: a lost write of the next message could
+ *  not be told from it. Then cm1e_mailbox_drained() is true. */
+void cm1e_mailbox_drain(cm1e_mailbox_t *mailbox);
+static inline bool cm1e_mailbox_drained(const cm1e_mailbox_t *mailbox)
+{
+    return mailbox->state == MAILBOX_POLL && !mailbox->draining;
+}
+/** The message is in the slave's mailbox, for certain. */
+static inline bool cm1e_mailbox_delivered(const cm1e_mailbox_t *mailbox)
+{
+    return mailbox->state == MAILBOX_POLL && !mailbox->write_lost;
+}
 
 /** Fills the datagram that is to be sent next; false: none. */
 bool cm1e_mailbox_next(cm1e_mailbox_t *mailbox, cm1e_datagram_t *datagram);

@@ -33,6 +33,12 @@ struct slave {
     unsigned requests;      /* SDO requests executed */
     lie_fn lie;
     unsigned lies, lie_from; /* answers seen by `lie`; from which one on it lies */
+    bool strict;            /* refuses (mailbox error 7, no more memory) to begin while a transfer is open */
+    bool open;              /* a transfer in segments */
+    unsigned aborts;        /* received */
+    uint32_t abort_code;    /* of the last */
+    uint16_t abort_index;
+    bool rejects_aborts;    /* answers them by a mailbox error */
     unsigned emergency_before; /* an emergency goes out before that answer */
     void (*serve_information)(slave_t *slave, const uint8_t *request, uint16_t length); /* NULL: it has none */
     void (*send_more)(slave_t *slave); /* when SM1 is empty: what else there is to send */
@@ -74,6 +80,17 @@ static void send_emergency(slave_t *s)
     put_in(s, message);
 }
 
+static void answer_mailbox_error(slave_t *s, uint16_t detail)
+{
+    uint8_t message[MAILBOX] = {0};
+    cm1e_put_u16(message, 4);
+    s->counter = (uint8_t)(s->counter % 7 + 1);
+    message[5] = (uint8_t)(s->counter << 4);
+    cm1e_put_u16(message + 6, 1);
+    cm1e_put_u16(message + 8, detail);
+    put_in(s, message);
+}
+
 static void answer_abort(slave_t *s, const uint8_t *request, uint32_t code)
 {
     uint8_t answer[MAILBOX] = {0};
@@ -104,6 +121,7 @@ static void serve_upload(slave_t *s, const uint8_t *request)
     cm1e_put_u32(answer + 12, (uint32_t)size);
     memcpy(answer + 16, value, first);
     s->outgoing = first;
+    s->open = first < size;
     send_answer(s, answer, (uint16_t)(10 + first));
 }
 
@@ -116,6 +134,7 @@ static void serve_upload_segment(slave_t *s, const uint8_t *request)
     answer[8] = (uint8_t)((request[8] & 0x10) | unused << 1 | (bytes == rest));
     memcpy(answer + 9, s->store + s->outgoing, bytes);
     s->outgoing += bytes;
+    s->open = s->outgoing < s->size;
     send_answer(s, answer, (uint16_t)(3 + bytes + unused));
 }
 
@@ -143,6 +162,7 @@ static void serve_download(slave_t *s, const uint8_t *request, uint16_t length)
         s->incoming_total = cm1e_get_u32(request + 12);
         const size_t given = length - 10u;
         take_bytes(s, request + 16, given, given == s->incoming_total);
+        s->open = given < s->incoming_total;
     }
     cm1e_put_u16(answer + 6, 3 << 12);
     answer[8] = 0x60;
@@ -155,9 +175,22 @@ static void serve_download_segment(slave_t *s, const uint8_t *request, uint16_t 
     uint8_t answer[MAILBOX] = {0};
     const size_t bytes = length == 10 ? 7u - (request[8] >> 1 & 7) : length - 3u;
     take_bytes(s, request + 9, bytes, request[8] & 1);
+    s->open = !(request[8] & 1);
     cm1e_put_u16(answer + 6, 3 << 12);
     answer[8] = (uint8_t)(0x20 | (request[8] & 0x10));
     send_answer(s, answer, 10);
+}
+
+static void take_abort(slave_t *s, const uint8_t *request)
+{
+    TEST_ASSERT_EQUAL_UINT16(10, cm1e_get_u16(request));
+    TEST_ASSERT_EQUAL_HEX8(0x80, request[8]);
+    s->open = false;
+    s->aborts++;
+    s->abort_index = cm1e_get_u16(request + 9);
+    s->abort_code = cm1e_get_u32(request + 12);
+    if (s->rejects_aborts)
+        answer_mailbox_error(s, 2);
 }
 
 static void serve(slave_t *s)
@@ -184,7 +217,11 @@ static void serve(slave_t *s)
     }
     const unsigned specifier = request[8] >> 5;
     const bool initiates = specifier == 1 || specifier == 2;
-    if (initiates && index != 0x2000 && index != 0x1000 && index != 0x1018)
+    if (specifier == 4)
+        take_abort(s, request);
+    else if (initiates && s->strict && s->open)
+        answer_mailbox_error(s, 7);
+    else if (initiates && index != 0x2000 && index != 0x1000 && index != 0x1018)
         answer_abort(s, request, 0x06020000);
     else if (specifier == 2)
         serve_upload(s, request);

@@ -493,6 +493,99 @@ static void test_lies_of_a_slave_are_refused_with_the_right_error(void)
     }
 }
 
+/* What is in the slave's mailbox gets read. */
+static void let_slave_work(void)
+{
+    static cm1e_datagram_t d;
+    for (int n = 0; n < 5; n++) {
+        cm1e_datagram_set(&d, COMMAND_FPRD, STATION, REG_SM1, SYNC_MANAGER_BYTES);
+        handle(&slave, &d);
+    }
+}
+
+/* A slave that has room for one transfer, and holds it open until its end or an abort. */
+static void test_slave_is_told_of_a_transfer_that_is_given_up(void)
+{
+    for (size_t i = 0; i < sizeof lies / sizeof lies[0]; i++) {
+        const lie_case_t *c = &lies[i];
+        for (int rejects = 0; rejects <= 1; rejects++) {
+            setUp();
+            slave.strict = true;
+            slave.rejects_aborts = rejects;
+            slave.size = c->size;
+            slave.lie = c->lie;
+            slave.lie_from = c->from;
+            cm1e_sdo_t sdo = c->write ? writing(c->size) : reading(400);
+            run(&sdo);
+            TEST_ASSERT_EQUAL_INT_MESSAGE(c->error, sdo.error, c->name);
+            let_slave_work();
+            const bool can_tell = c->error != CM1E_ERROR_TIMEOUT && c->lie != lie_error_reply;
+            TEST_ASSERT_FALSE_MESSAGE(can_tell && slave.open, c->name); /* at once */
+            slave.lie = NULL;
+            slave.size = 4;
+            sdo = reading(4);
+            run(&sdo);
+            TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, sdo.error, c->name);
+            const bool never_began = (c->lie == lie_error_reply || c->lie == lie_everything_zero) && c->from == 1;
+            TEST_ASSERT_EQUAL_UINT_MESSAGE(never_began ? 0 : 1, slave.aborts, c->name);
+            TEST_ASSERT_TRUE_MESSAGE(slave.aborts == 0 || slave.abort_index == 0x2000, c->name);
+        }
+    }
+}
+
+static void test_value_too_large_for_the_buffer_is_aborted_as_such(void)
+{
+    slave.strict = true;
+    slave.size = 150;
+    cm1e_sdo_t sdo = reading(100);
+    run(&sdo);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, sdo.error);
+    let_slave_work();
+    TEST_ASSERT_EQUAL_UINT(1, slave.aborts);
+    TEST_ASSERT_EQUAL_HEX32(0x05040005, slave.abort_code); /* out of memory */
+    sdo = reading(150);
+    run(&sdo);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, sdo.error);
+    TEST_ASSERT_EQUAL_UINT(1, slave.aborts);
+}
+
+static bool say_nothing_more(slave_t *s, uint8_t *answer)
+{
+    (void)s;
+    (void)answer;
+    return false;
+}
+
+/* Time over, or cancelled: the transfer ends at once, and the next one begins with the abort, whichever frames are lost. */
+static void test_abort_that_could_not_be_sent_comes_before_the_next_transfer(void)
+{
+    for (lost_1 = 1; lost_1 <= 20; lost_1++)
+        for (int way = WAY_OK; way <= WAY_BACK; way++) {
+            setUp();
+            slave.strict = true;
+            slave.size = 150;
+            slave.lie = say_nothing_more;
+            slave.lie_from = 2;
+            cm1e_sdo_t sdo = reading(400);
+            sdo.timeout_ns = 100 * STEP_NS;
+            const int64_t begin_ns = now_ns;
+            run(&sdo);
+            TEST_ASSERT_EQUAL_INT(CM1E_ERROR_TIMEOUT, sdo.error);
+            TEST_ASSERT_EQUAL_INT64(100 * STEP_NS, now_ns - begin_ns);
+            TEST_ASSERT_TRUE(slave.open);
+            slave.lie = NULL;
+            loss = two_losses;
+            way_1 = way;
+            lost_2 = 0;
+            sdo = reading(400);
+            run(&sdo);
+            TEST_ASSERT_EQUAL_INT(CM1E_OK, sdo.error);
+            TEST_ASSERT_EQUAL_UINT(1, slave.aborts);
+            TEST_ASSERT_EQUAL_HEX32(0x05040000, slave.abort_code); /* time out */
+            TEST_ASSERT_EQUAL_INT(0, memcmp(slave.store, buffer, 150));
+        }
+}
+
 static bool lie_at_random(slave_t *s, uint8_t *a)
 {
     (void)s;
@@ -567,6 +660,9 @@ int main(void)
     RUN_TEST(test_slave_that_does_not_count_its_answers_is_understood);
     RUN_TEST(test_mailbox_that_is_too_small_is_unsupported);
     RUN_TEST(test_lies_of_a_slave_are_refused_with_the_right_error);
+    RUN_TEST(test_slave_is_told_of_a_transfer_that_is_given_up);
+    RUN_TEST(test_value_too_large_for_the_buffer_is_aborted_as_such);
+    RUN_TEST(test_abort_that_could_not_be_sent_comes_before_the_next_transfer);
     RUN_TEST(test_random_answers_never_overrun_nor_hang);
     RUN_TEST(test_slave_that_never_stops_talking_is_given_up);
     return UNITY_END();
