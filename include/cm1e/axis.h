@@ -44,6 +44,8 @@ typedef struct cm1e_axis_info {
     double actual_position, actual_velocity, actual_torque;
     double position_lag;
     bool powered, homed, online;
+    bool in_position;          /**< under torque, the set-point stands, and the motor has been within the window around
+                                    it for the time that the configuration states (in_position) */
     /* FALSE: not in the process data of this motor, the value is 0. Behind a bridge torque, temperature and DC link
      * never are, and digital inputs are known while somebody has read them within the last second. */
     bool torque_known, digital_known, temperature_known, dc_link_known;

@@ -148,6 +148,12 @@ typedef struct cm1e_axis_config {
     double software_limit_positive;  /**< u; both limits 0: none; +INFINITY: none on this side */
     double software_limit_negative;  /**< u; -INFINITY: none on this side */
     double max_position_lag;         /**< u; 0: 25,000 counts (half a revolution) */
+    double in_position_window;       /**< u to either side of a set-point that stands, within which the motor is there;
+                                          0: 10 counts of 50,000 a revolution, at least 2 (docs/BUS-FILE.md) */
+    double in_position_time_s;       /**< s that the motor stays inside the window to be there; 0: 0.02 */
+    double in_position_timeout_s;    /**< s after which a motor that a Done waits for is an error; 0: 2 */
+    bool in_position_done_waits;     /**< TRUE: Done of what ends at a position waits until the motor is there; FALSE:
+                                          it comes with the set-point */
     bool velocity_in_counts_per_ms;  /**< states the unit of 0x60FF/0x606C where object 0x100A cannot be read */
     bool velocity_unit_stated;       /**< TRUE: the field above is used instead of the firmware version */
     bool acceleration_in_kpulses;    /**< TRUE: 0x6083/0x6084 take kpulses/s2 on the wire (UG 7.3.17/6.2.3) */

@@ -78,6 +78,7 @@ extern "C" {
     X(ERROR_AXIS_HOMING_PARAMETER, -75, "a homing parameter is out of the device's range")                          \
     X(ERROR_AXIS_OFFLINE, -76, "the axis does not take part in the bus cycle")                                      \
     X(ERROR_AXIS_NOT_AT_REST, -77, "the motor does not come to rest")                                               \
+    X(ERROR_AXIS_NOT_IN_POSITION, -78, "the motor did not get to its set-point in time")                            \
     X(ERROR_AXIS_PARAMETER, -80, "the axis has no such parameter, or it is not of type BOOL")                       \
     X(ERROR_AXIS_PARAMETER_READ_ONLY, -81, "the parameter cannot be written")                                       \
     X(ERROR_AXIS_PARAMETER_RANGE, -82, "the value is out of the parameter's range")                                 \

@@ -43,6 +43,7 @@ cm1e_error_t cm1e_axis_create(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t in
     const int64_t cycle_ns = cm1e_bus_configuration(bus)->cycle_time_ns;
     axis->cycle_s = (double)(cycle_ns > 0 ? cycle_ns : MS_IN_NS) * 1e-9;
     cm1e_axis_guard_renew(axis);
+    cm1e_axis_in_position_init(axis);
     axis->drive.command.mode = axis->mode;
     axis->positive_before = true;
     axis->reset_state = CM1E_COMMAND_DONE;
@@ -202,6 +203,7 @@ void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info)
         .position_lag = cm1e_position_minus(axis->set, axis_actual(axis)) / axis->scale,
         .powered = cm1e_axis_powered(axis),
         .homed = axis->homed,
+        .in_position = cm1e_axis_in_position(axis),
         .online = f->online,
         .torque_known = axis->drive.in_torque.bytes > 0,
         .digital_known = f->digital_known,

@@ -46,6 +46,7 @@ void cm1e_axis_waiting_end(cm1e_axis_t *axis, cm1e_command_state_t state)
 
 void cm1e_axis_commands_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
 {
+    cm1e_axis_in_position_ended(axis, state == CM1E_COMMAND_ERROR);
     cm1e_axis_command_end(axis, state, error);
     cm1e_axis_lead_end(axis, error);
     cm1e_axis_superimposed_end(axis, state, state == CM1E_COMMAND_ERROR ? CM1E_ERROR_AXIS_ERROR_STOP : CM1E_OK);

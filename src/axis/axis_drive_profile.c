@@ -127,6 +127,8 @@ void cm1e_axis_drive_begin(cm1e_axis_t *axis, const driving_t *d)
 static void leave(cm1e_axis_t *axis)
 {
     axis->activity = ACTIVITY_HOLD;
+    if (cm1e_axis_settle(axis))
+        return;
     if (axis->active)
         cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK); /* of the move, or of what ended it */
     if (axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION)

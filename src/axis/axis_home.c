@@ -293,6 +293,8 @@ static void leave(cm1e_axis_t *axis)
 {
     axis->activity = ACTIVITY_HOLD;
     axis->home.away = false;
+    if (cm1e_axis_settle(axis))
+        return;
     if (axis->active)
         cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK); /* of MC_Home, or of the MC_Stop that ended it */
     if (axis->state == CM1E_AXIS_HOMING)

@@ -19,7 +19,8 @@ static cm1e_error_t check_configuration(const cm1e_axis_t *axis, cm1e_diag_t *di
     const cm1e_axis_config_t *c = axis->config;
     const double numbers[] = {c->counts_per_unit, c->units_per_revolution, c->modulo_range, c->backlash,
                               c->backlash_velocity, c->max_velocity, c->max_acceleration, c->max_deceleration,
-                              c->max_jerk, c->max_position_lag};
+                              c->max_jerk, c->max_position_lag, c->in_position_window, c->in_position_time_s,
+                              c->in_position_timeout_s};
     bool good = !isnan(c->software_limit_negative) && !isnan(c->software_limit_positive);
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
         good = good && isfinite(numbers[i]) && numbers[i] >= 0.0;

@@ -164,6 +164,11 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
         axis->move.passing = true; /* the position lies behind now, whatever else changes */
         return true;
     }
+    if (axis->active && !goes_on && cm1e_axis_settle(axis)) {
+        cm1e_axis_stand(axis);
+        axis->state = CM1E_AXIS_DISCRETE_MOTION;
+        return false;
+    }
     if (axis->active)
         cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
     if (!goes_on && axis->superimposed.id)
@@ -295,11 +300,14 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
 {
     if (axis_stepping(axis) || (axis->state == CM1E_AXIS_STOPPING && axis->stepping.after_stop))
         cm1e_axis_step_cycle(axis);
+    if (axis->activity != ACTIVITY_HOLD)
+        axis->in_position.inside = false;
     switch (axis->activity) {
     case ACTIVITY_FREE:
         cm1e_axis_set_to_actual(axis);
         break;
     case ACTIVITY_HOLD:
+        cm1e_axis_in_position_step(axis);
         break;
     case ACTIVITY_PROFILE:
         profile_step(axis);

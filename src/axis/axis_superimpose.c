@@ -198,6 +198,7 @@ static void stand_as_base(cm1e_axis_t *axis)
     const from_t from = from_set(axis);
     const cm1e_motion_state_t rest = {0};
     cm1e_profile_t profile;
+    cm1e_axis_settled(axis);
     (void)cm1e_profile_to_velocity(&profile, &rest, 0.0, &axis->maximum);
     cm1e_axis_run(axis, &from, &profile, axis->set, 0.0);
     axis->stands = true;

@@ -278,6 +278,7 @@ static const struct {
     void (*text)(const cm1e_axis_t *axis, char *text, size_t size);
 } texts[] = {
     {CM1E_ERROR_AXIS_LAG, lag_text},
+    {CM1E_ERROR_AXIS_NOT_IN_POSITION, cm1e_axis_in_position_text},
     {CM1E_ERROR_AXIS_POSITION_RANGE, range_text},
     {CM1E_ERROR_AXIS_HOMING_FAILED, homing_text},
     {CM1E_ERROR_AXIS_HOMING_TIMEOUT, homing_text},
@@ -301,6 +302,8 @@ void cm1e_axis_error_text(AXIS_REF_t reference, char *text, size_t size)
     }
     if (axis->error == axis->drive.fault.error) {
         cm1e_drive_fault_text(&axis->drive, text, size);
+        if (axis->error == CM1E_ERROR_DRIVE_FAULT)
+            cm1e_axis_in_position_add(axis, text, size);
         return;
     }
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)

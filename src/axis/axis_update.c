@@ -44,20 +44,21 @@ static move_t merged(const move_t *old, const move_t *inputs)
 
 static cm1e_error_t update_active(cm1e_axis_t *axis, const move_t *inputs)
 {
-    if (axis->activity == ACTIVITY_DRIVE && !cm1e_axis_same_inputs(&axis->move, inputs))
-        return CM1E_ERROR_UNSUPPORTED;
-    if (axis->activity == ACTIVITY_DRIVE)
-        return CM1E_OK;
-    if (axis->activity != ACTIVITY_PROFILE || inputs->kind != axis->kind)
+    if (drive_profiles(axis))
+        return cm1e_axis_same_inputs(&axis->move, inputs) ? CM1E_OK : CM1E_ERROR_UNSUPPORTED;
+    if ((axis->activity != ACTIVITY_PROFILE && !axis_settling(axis)) || inputs->kind != axis->kind)
         return CM1E_ERROR_INVALID_ARGUMENT;
     if (cm1e_axis_same_inputs(&axis->move, inputs))
         return CM1E_OK;
     move_t move = merged(&axis->move, inputs);
+    const from_t from = from_base(axis);
     if (!same_way(&axis->move, inputs)) {
-        const from_t from = from_base(axis);
         const cm1e_error_t error = cm1e_axis_resolve(axis, &from, &move);
         if (error)
             return error;
+    } else if (axis_settling(axis)) { /* it stands where it was to go: there is nothing to plan */
+        cm1e_motion_limits_t unused;
+        return cm1e_axis_limits_of(axis, &from, &move, &unused);
     }
     return cm1e_axis_replan_as(axis, &move);
 }

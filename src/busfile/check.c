@@ -121,6 +121,10 @@ static const number_t numbers[] = {
     {"limits.jerk", FIELD(max_jerk), BY_REVOLUTION, "counts/s3", CM1E_LEAST_JERK_COUNTS, 1e15, 0, 0, 0},
     {"limits.position_lag", FIELD(max_position_lag), IN_COUNTS, "counts", CM1E_LEAST_LAG_COUNTS,
      CM1E_LARGEST_LAG_COUNTS, 0, 0, 0},
+    {"in_position.window", FIELD(in_position_window), IN_COUNTS, "counts", CM1E_LEAST_LAG_COUNTS,
+     CM1E_LARGEST_LAG_COUNTS, 0, 0, 0},
+    {"in_position.time_s", FIELD(in_position_time_s), AS_IS, "s", 1e-3, 10, 0, 0, 0},
+    {"in_position.timeout_s", FIELD(in_position_timeout_s), AS_IS, "s", 0.01, 3600, 0, 0, 0},
     {"backlash.gap", FIELD(backlash), IN_COUNTS, "counts", 1, 500000, 0, 0, 0},
     {"homing.offset", FIELD(homing.offset), IN_COUNTS, "counts", 0, 0, OBJ_607C_HOME_OFFSET, 0,
      CM1E_BRIDGE_OFFSET_UNIT},
@@ -469,6 +473,21 @@ static bool check_jog(const check_t *check)
                                               CM1E_LEAST_VELOCITY_COUNTS, most, "counts/s");
 }
 
+static bool check_in_position(const check_t *check)
+{
+    const cm1e_axis_config_t *axis = check->axis;
+    const double time_s = axis->in_position_time_s, timeout_s = axis->in_position_timeout_s;
+    if (axis->max_position_lag != 0 && axis->in_position_window > axis->max_position_lag)
+        return axis_wrong(check, "in_position.window", "is %.10g, and limits.position_lag %.10g, beyond which the axis "
+                          "stops with an error; expected no larger a window", axis->in_position_window,
+                          axis->max_position_lag);
+    const double time = time_s != 0 ? time_s : CM1E_IN_POSITION_TIME_S;
+    const double timeout = timeout_s != 0 ? timeout_s : CM1E_IN_POSITION_TIMEOUT_S;
+    return timeout > time || axis_wrong(check, timeout_s != 0 ? "in_position.timeout_s" : "in_position.time_s",
+                                        "is %.10g; expected a timeout_s, %.10g, longer than time_s, %.10g",
+                                        timeout_s != 0 ? timeout_s : time_s, timeout, time);
+}
+
 static bool check_sim(const check_t *check)
 {
     const cm1e_sim_axis_config_t *sim = &check->axis->sim;
@@ -598,7 +617,8 @@ static bool check_axis(check_t *check)
     if ((unsigned)check->axis->mapping > CM1E_MAPPING_PROFILE)
         return axis_wrong(check, "mapping", "is %d; expected one of the enumeration", (int)check->axis->mapping);
     return check_motion(check) && check_velocity(check) && check_numbers(check) && check_software_limits(check) &&
-           check_modulo(check) && check_homing(check) && check_inputs(check) && check_jog(check) && check_sim(check);
+           check_modulo(check) && check_homing(check) && check_inputs(check) && check_jog(check) &&
+           check_in_position(check) && check_sim(check);
 }
 
 bool cm1e_busfile_check(const cm1e_bus_config_t *config, cm1e_busfile_problem_t *problem)

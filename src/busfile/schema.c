@@ -87,6 +87,13 @@ static const cyaml_schema_field_t limit_fields[] = {
     AXIS_FLOAT("position_lag", max_position_lag),
     CYAML_FIELD_END,
 };
+static const cyaml_schema_field_t in_position_fields[] = {
+    AXIS_FLOAT("window", in_position_window),
+    AXIS_FLOAT("time_s", in_position_time_s),
+    AXIS_FLOAT("timeout_s", in_position_timeout_s),
+    AXIS_BOOL("done_waits", in_position_done_waits),
+    CYAML_FIELD_END,
+};
 /* Pointers, because 0 is a limit too and tells nothing of a key that is not there. */
 #define LIMIT(key, member) CYAML_FIELD_FLOAT_PTR(key, OPTIONAL | CYAML_FLAG_POINTER, cm1e_busfile_axis_t, member)
 static const cyaml_schema_field_t software_limit_fields[] = {
@@ -157,6 +164,7 @@ static const cyaml_schema_field_t axis_fields[] = {
     ENUM_OF("motion", cm1e_busfile_axis_t, axis.motion, motions),
     AXIS_GROUP("unit", unit_fields),
     AXIS_GROUP("limits", limit_fields),
+    AXIS_GROUP("in_position", in_position_fields),
     AXIS_GROUP("software_limits", software_limit_fields),
     AXIS_GROUP("backlash", backlash_fields),
     AXIS_GROUP("jog", jog_fields),

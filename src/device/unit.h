@@ -29,6 +29,9 @@ typedef struct cm1e_fraction {
 #define CM1E_LEAST_JERK_COUNTS 1e3         /**< counts/s3: 0.02 revolutions/s3 */
 #define CM1E_LEAST_LAG_COUNTS 1.0          /**< counts of the motor: one is what it sees */
 #define CM1E_LARGEST_LAG_COUNTS 2147483647.0
+/* Defaults of in_position: so long in the window, and an error after so long. */
+#define CM1E_IN_POSITION_TIME_S 0.02
+#define CM1E_IN_POSITION_TIMEOUT_S 2.0
 /** counts/s, of a virtual axis: at most a million counts a cycle, far from where 32 bits wrap around. */
 #define CM1E_VIRTUAL_MOST_VELOCITY_COUNTS 1e9
 

@@ -664,11 +664,12 @@ static void test_configurations_that_contradict_themselves_are_refused(void)
     cm1e_diag_t diag;
     const double bad[] = {-1.0, NAN, INFINITY};
     for (int i = 0; i < 3; i++)
-        for (int field = 0; field < 6; field++) {
+        for (int field = 0; field < 9; field++) {
             fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
             cm1e_axis_config_t *c = &bus.config.axes[0];
             double *fields[] = {&c->counts_per_unit, &c->max_velocity, &c->max_acceleration, &c->max_deceleration,
-                                &c->max_jerk, &c->max_position_lag};
+                                &c->max_jerk, &c->max_position_lag, &c->in_position_window, &c->in_position_time_s,
+                                &c->in_position_timeout_s};
             *fields[field] = bad[i];
             TEST_ASSERT_EQUAL_INT(CM1E_ERROR_CONFIG, cm1e_axis_create(&made, &bus, 0, &diag));
             TEST_ASSERT_NULL(made);

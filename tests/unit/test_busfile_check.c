@@ -233,6 +233,9 @@ static const struct {
     NUMBER(modulo_range, "unit.modulo_range"),
     NUMBER(backlash, "backlash.gap"),
     NUMBER(backlash_velocity, "backlash.velocity"),
+    NUMBER(in_position_window, "in_position.window"),
+    NUMBER(in_position_time_s, "in_position.time_s"),
+    NUMBER(in_position_timeout_s, "in_position.timeout_s"),
 };
 enum { NUMBERS = sizeof numbers / sizeof numbers[0] };
 
@@ -275,6 +278,8 @@ static void test_bounds_are_the_devices_in_counts(void)
         {9, 0.2, 0.1998},          {9, 100, 100.0002},       {10, 0.2, 0.1998},      {10, 1000, 1000.0002},
         {11, 10, 9.999},           {11, 100, 100.001},       {2, 0.2, 0.1998},       {3, 0.2, 0.1998},
         {12, 0.1, 0.0999},         {12, 3600, 3600.1},       {20, 500, 500.0002},    {21, 0.0002, 0.00001},
+        {25, 0.0002, 0.00009},     {26, 0.001, 0.0009},      {26, 1.9, 10.1},        {27, 0.021, 0.0099},
+        {27, 3600, 3600.1},
     };
     for (size_t i = 0; i < sizeof bounds / sizeof bounds[0]; i++) {
         setUp();

@@ -95,6 +95,10 @@ static void test_documented_example_fills_every_field_of_an_axis(void)
     ASSERT_DOUBLE(950.5, axis->max_deceleration);
     ASSERT_DOUBLE(20000, axis->max_jerk);
     ASSERT_DOUBLE(4, axis->max_position_lag);
+    ASSERT_DOUBLE(0.01, axis->in_position_window);
+    ASSERT_DOUBLE(0.05, axis->in_position_time_s);
+    ASSERT_DOUBLE(1.5, axis->in_position_timeout_s);
+    TEST_ASSERT_TRUE(axis->in_position_done_waits);
     ASSERT_DOUBLE(-20, axis->software_limit_negative);
     ASSERT_DOUBLE(180, axis->software_limit_positive);
     TEST_ASSERT_EQUAL(-1, axis->homing.method);

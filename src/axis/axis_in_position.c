@@ -1,0 +1,172 @@
+/*
+ * In position: the set-point stands, and the motor has been within a window around it for some time. CiA 402 has
+ * objects for that, 0x6067 and 0x6068, which neither the CM1-E nor the bridge has, so the axis looks itself.
+ *
+ * PLCopen leaves open whether Done of a move means its set-point or its motor. By default it means the set-point. With
+ * in_position.done_waits the commands that end at a position stay active until the motor is there, and the axis keeps
+ * torque and set-point meanwhile; a motor that is not there in time is an error. Another command behind it is not kept
+ * waiting: it begins when the set-point arrives, and then the one before it is Done.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "axis/axis_private.h"
+
+/* Counts of a CM1-E: a fiftieth of a percent of a revolution, which a servo in good order keeps at rest. */
+static const double default_window_counts = 10.0;
+/* A mapping without target position has a velocity in counts/ms before V1.3.3: the position loop of the axis (20/s)
+ * rounds what corrects less than 25 counts to 0. */
+static const double coarse_window_counts = 50.0;
+
+/* % of rated torque from which on a motor at rest pushes against something. */
+static const float pushing_torque = 80.0f;
+
+/* 3600 s are less than 2^32 us. */
+static uint32_t in_us(double seconds, double otherwise)
+{
+    return (uint32_t)lround(fmin(seconds > 0.0 ? seconds : otherwise, 4000.0) * 1e6);
+}
+
+void cm1e_axis_in_position_init(cm1e_axis_t *axis)
+{
+    const cm1e_axis_config_t *c = axis->config;
+    in_position_t *p = &axis->in_position;
+    const bool coarse = axis->mode == CM1E_MODE_CSV && axis->drive.velocity_unit > 1;
+    const double window = cm1e_axis_few(axis, coarse ? coarse_window_counts : default_window_counts);
+    p->window = c->in_position_window > 0.0 ? c->in_position_window : window / fabs(axis->scale);
+    p->time_us = in_us(c->in_position_time_s, CM1E_IN_POSITION_TIME_S);
+    p->timeout_us = in_us(c->in_position_timeout_s, CM1E_IN_POSITION_TIMEOUT_S);
+    p->done_waits = c->in_position_done_waits;
+}
+
+/* u; how far the motor is beyond its set-point. */
+static double deviation(const cm1e_axis_t *axis)
+{
+    return cm1e_position_minus(axis_actual(axis), axis->set) / axis->scale;
+}
+
+bool cm1e_axis_in_position(const cm1e_axis_t *axis)
+{
+    const in_position_t *p = &axis->in_position;
+    return axis->activity == ACTIVITY_HOLD && p->inside && p->there;
+}
+
+static bool passed(const cm1e_axis_t *axis, int64_t since_ns, uint32_t time_us)
+{
+    return axis->now_ns - since_ns >= (int64_t)time_us * 1000;
+}
+
+/* ---- Done waits for it ------------------------------------------------------------------------------------------- */
+
+static bool ends_at_position(cm1e_command_kind_t kind)
+{
+    return is_discrete_move(kind) || kind == CM1E_COMMAND_HOME;
+}
+
+bool cm1e_axis_settle(cm1e_axis_t *axis)
+{
+    in_position_t *p = &axis->in_position;
+    if (!p->done_waits || !axis->active || !ends_at_position(axis->kind) || axis->waiting.count > 0 ||
+        axis->superimposed.id || cm1e_drive_is_virtual(&axis->drive))
+        return false;
+    p->settling = axis->active;
+    p->arrived_ns = axis->now_ns;
+    p->torque = NAN;
+    return true;
+}
+
+void cm1e_axis_settled(cm1e_axis_t *axis)
+{
+    if (!axis_settling(axis))
+        return;
+    cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
+    if (axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_HOMING)
+        axis->state = CM1E_AXIS_STANDSTILL;
+}
+
+/* What the text tells is as it is now: without torque the motor will be elsewhere. */
+static void remember(cm1e_axis_t *axis)
+{
+    in_position_t *p = &axis->in_position;
+    p->missed_actual = cm1e_axis_units(axis, axis_actual(axis));
+    p->missed_by = deviation(axis);
+}
+
+void cm1e_axis_in_position_ended(cm1e_axis_t *axis, bool by_error)
+{
+    axis->in_position.missed = by_error && axis_settling(axis);
+    if (axis->in_position.missed)
+        remember(axis);
+}
+
+static void fail(cm1e_axis_t *axis)
+{
+    remember(axis);
+    cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_NOT_IN_POSITION);
+    cm1e_axis_fail(axis, CM1E_ERROR_AXIS_NOT_IN_POSITION, axis->in_position.missed_by, axis->in_position.window);
+}
+
+void cm1e_axis_in_position_step(cm1e_axis_t *axis)
+{
+    in_position_t *p = &axis->in_position;
+    if (!axis->drive.feedback.fresh)
+        return;
+    const bool inside = fabs(deviation(axis)) <= p->window && cm1e_axis_backlash_at_rest(axis);
+    if (inside && !p->inside)
+        p->inside_ns = axis->now_ns;
+    p->inside = inside;
+    p->there = inside && passed(axis, p->inside_ns, p->time_us);
+    if (!axis_settling(axis))
+        return;
+    p->torque = axis->drive.in_torque.bytes > 0 ? 0.1f * (float)abs(axis->drive.feedback.torque) : NAN;
+    if (axis->waiting.count > 0 || p->there)
+        cm1e_axis_settled(axis);
+    else if (passed(axis, p->arrived_ns, p->timeout_us))
+        fail(axis);
+}
+
+/* ---- in words ---------------------------------------------------------------------------------------------------- */
+
+static const char *probable_cause(float torque)
+{
+    if (isnan(torque))
+        return "Look for a mechanical stop or an obstacle, a load or a friction that is too large for the motor, and a "
+               "torque limit in the drive";
+    return torque >= pushing_torque
+               ? "It pushes, so look for a mechanical stop, an obstacle or a load that is too heavy"
+               : "It does not push, so look for a torque limit in the drive or for friction, and whether the window "
+                 "and the time suit this axis";
+}
+
+static void where(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const in_position_t *p = &axis->in_position;
+    const double turn = axis->modulo_range, line = p->missed_actual - p->missed_by;
+    const double set = turn > 0.0 ? line - turn * floor(line / turn) : line;
+    char torque[48] = "";
+    if (!isnan(p->torque))
+        snprintf(torque, sizeof torque, ", with %.0f %% of its rated torque", (double)p->torque);
+    snprintf(text, size, "Its set-point stood at %.6g u, the motor was at %.6g u, %.6g u %s it%s; in_position.window "
+             "is %.6g u. %s", set, p->missed_actual, fabs(p->missed_by), p->missed_by < 0.0 ? "below" : "above", torque,
+             p->window, probable_cause(p->torque));
+}
+
+void cm1e_axis_in_position_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    char place[400];
+    where(axis, place, sizeof place);
+    snprintf(text, size, "Axis \"%s\": %s, which is %.6g s. %s; then reset the axis with MC_Reset.", axis->config->name,
+             cm1e_strerror(axis->error), axis->in_position.timeout_us * 1e-6, place);
+}
+
+void cm1e_axis_in_position_add(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const size_t used = strlen(text);
+    char place[400];
+    if (!axis->in_position.missed || used >= size)
+        return;
+    where(axis, place, sizeof place);
+    snprintf(text + used, size - used, " %s.", place);
+}
