@@ -143,7 +143,7 @@ static cm1e_error_t start_move(cm1e_axis_t *axis, const cm1e_axis_command_t *com
     move_t move;
     cm1e_profile_t profile;
     cm1e_error_t error = plan_move(axis, &from, command, &move, &profile);
-    if (error && from.acceleration != axis->set_acceleration) { /* a way back from a limit may need all the braking */
+    if (error && axis->brakes_hard) { /* a way back from a limit may need all the braking */
         from.acceleration = axis->set_acceleration;
         error = plan_move(axis, &from, command, &move, &profile);
     }

@@ -296,6 +296,16 @@ static void profile_step(cm1e_axis_t *axis)
         follow(axis, time_s);
 }
 
+/* Such a ramp ends with a step of its acceleration. */
+static bool on_hard_ramp(const cm1e_axis_t *axis)
+{
+    const cm1e_profile_t *profile = &axis->profile;
+    if (axis->activity != ACTIVITY_PROFILE || axis->along_table || profile->segment_count == 0)
+        return false;
+    const cm1e_profile_segment_t *last = &profile->segments[profile->segment_count - 1];
+    return profile->end.velocity == 0.0 && last->jerk == 0.0 && last->start.acceleration != 0.0;
+}
+
 void cm1e_axis_motion_step(cm1e_axis_t *axis)
 {
     if (axis_stepping(axis) || (axis->state == CM1E_AXIS_STOPPING && axis->stepping.after_stop))
@@ -327,6 +337,7 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
         cm1e_axis_drive_step(axis);
         break;
     }
+    axis->brakes_hard = on_hard_ramp(axis);
     /* Note 6: MC_Stop done and its Execute FALSE. */
     if (axis->state == CM1E_AXIS_STOPPING && axis->activity == ACTIVITY_HOLD && !axis->stop_held &&
         !axis->stepping.after_stop)

@@ -99,6 +99,7 @@ struct cm1e_axis {
     bool paused;                    /**< its end is not that of its command, which waits (MC_SetOverride) */
     bool stands;                    /**< the base has come to its end, only a superimposed motion goes on */
     bool along_table;               /**< tables->running is what moves it */
+    bool brakes_hard;               /**< the set-point is one of a ramp without limit of jerk */
     bool software_limits;           /**< one of them at least; those in force are ... */
     bool lag_monitoring;
     bool blind;                     /**< they are not, and the set-point goes on */
@@ -318,20 +319,11 @@ typedef struct state_rule {
 const state_rule_t *cm1e_axis_state_rule(cm1e_axis_state_t state, cm1e_command_kind_t kind);
 
 /* axis_plan.c */
-/** The motion is a ramp without limit of jerk: it ends with a step of its acceleration. */
-static inline bool brakes_hard(const cm1e_axis_t *axis)
-{
-    const cm1e_profile_t *profile = &axis->profile;
-    if (axis->activity != ACTIVITY_PROFILE || axis->along_table || profile->segment_count == 0)
-        return false;
-    const cm1e_profile_segment_t *last = &profile->segments[profile->segment_count - 1];
-    return profile->end.velocity == 0.0 && last->jerk == 0.0 && last->start.acceleration != 0.0;
-}
 /** The set-point, all that moves taken together. What takes over from a ramp without limit of jerk ends its acceleration
  *  with the step that the ramp would have ended with: a limited jerk would carry the axis through standstill and back. */
 static inline from_t from_set(const cm1e_axis_t *axis)
 {
-    return (from_t){axis->set, axis->set_velocity, brakes_hard(axis) ? 0.0 : axis->set_acceleration, false};
+    return (from_t){axis->set, axis->set_velocity, axis->brakes_hard ? 0.0 : axis->set_acceleration, false};
 }
 /** Without what is superimposed. */
 static inline from_t from_base(const cm1e_axis_t *axis)
@@ -341,7 +333,7 @@ static inline from_t from_base(const cm1e_axis_t *axis)
         return from_set(axis);
     return (from_t){cm1e_position_plus(axis->set, -on_top->position * axis->scale),
                     axis->set_velocity - on_top->velocity,
-                    brakes_hard(axis) ? 0.0 : axis->set_acceleration - on_top->acceleration,
+                    axis->brakes_hard ? 0.0 : axis->set_acceleration - on_top->acceleration,
                     axis->superimposed.moving && !axis->superimposed.alone};
 }
 static inline bool is_continuous_move(cm1e_command_kind_t kind)

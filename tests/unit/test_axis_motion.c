@@ -409,6 +409,27 @@ static void test_a_stop_without_limit_of_jerk_never_swings_back(void)
         }
 }
 
+/** A stop without limit of jerk that has not begun yet is none: what takes over in the same cycle makes no step. */
+static void test_a_stop_that_is_taken_over_at_once_makes_no_step(void)
+{
+    for (int cycles = 0; cycles < 100; cycles++) {
+        fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        bus.config.axes[0].max_jerk = 300.0;
+        bus.config.axes[0].software_limit_positive = 20.0;
+        bus.config.axes[0].software_limit_negative = -30.0;
+        bench_create();
+        bench_enable();
+        bench_move_to(2.95, 20.0);
+        bench_cycles(400 + cycles);
+        const double before = bench_info().set_acceleration;
+        bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT, .deceleration = 0.1});
+        bench_move_to(2.95, 20.0);
+        bench_cycles(1);
+        TEST_ASSERT_DOUBLE_WITHIN(0.3 * (1 + 1e-6), before, bench_info().set_acceleration);
+        bench_end();
+    }
+}
+
 /** It is on its way there. */
 static void test_a_move_back_inside_is_taken_while_braking_without_limit_of_jerk(void)
 {
@@ -779,6 +800,7 @@ int main(void)
     RUN_TEST(test_a_retarget_that_would_overshoot_a_limit_is_refused);
     RUN_TEST(test_velocity_into_a_limit_is_braked_before_it);
     RUN_TEST(test_a_stop_without_limit_of_jerk_never_swings_back);
+    RUN_TEST(test_a_stop_that_is_taken_over_at_once_makes_no_step);
     RUN_TEST(test_a_move_back_inside_is_taken_while_braking_without_limit_of_jerk);
     RUN_TEST(test_an_axis_outside_its_limits_may_only_come_back);
     RUN_TEST(test_motion_in_a_disabled_direction_is_refused);
