@@ -13,7 +13,7 @@
 #include "nic/nic.h"
 #include "sim/bridge_app.h"
 
-enum { MOST_OTHERS = 4 };
+enum { MOST_OTHERS = 4, SDO_CYCLES = 5 };
 
 /** An axis that is not judged call by call, and moves to and fro. */
 typedef struct other {
@@ -38,6 +38,7 @@ static struct bench {
     int other_count;
     int64_t bus_disturbed_until;    /**< by what concerns all axes */
     int64_t gap_until;              /**< targets are missing */
+    long long sound[3][5];          /**< the last cycle without an error of this motor, by slave and channel */
 } bench;
 
 static void play_others(void);
@@ -73,11 +74,12 @@ static void cycle_end(void)
 enum { CYCLES = 20000, RUNS = 32, BRIDGE_RUNS = 24, BATCHES = 4 };
 
 /** NULL: not behind a bridge. */
-static cm1e_sim_bridge_axis_t *motor(void)
+static cm1e_sim_bridge_axis_t *motor_at(uint32_t position, unsigned channel)
 {
-    cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(cm1e_sim_segment_slave(bench.segment, bench.position));
-    return bridge ? &bridge->axes[bench.channel - 1] : NULL;
+    cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(cm1e_sim_segment_slave(bench.segment, position));
+    return bridge ? &bridge->axes[channel - 1] : NULL;
 }
+static cm1e_sim_bridge_axis_t *motor(void) { return motor_at(bench.position, bench.channel); }
 
 static cm1e_sim_probe_t probe(void)
 {
@@ -189,14 +191,19 @@ static void act_on_device(void)
 
 /* ---- what must hold ---------------------------------------------------------------------------------------------- */
 
-/** Those of the bridge's guide. An SDO that is on its way when the power goes or a motor fails cannot be held back; nor
- *  do targets come that were in lost frames, or in a pause. A motor that friction holds beside its target may creep the
- *  last counts just when hm is asked for: then the switch is asked for again. */
+/** Those of the bridge's guide. An SDO that is on its way when a motor fails cannot be held back; nor do targets come that
+ *  were in lost frames, or in a pause. A motor that friction holds beside its target may creep the last counts just when
+ *  hm is asked for: then the switch is asked for again. */
 static void judge_rules(const cm1e_sim_probe_t *shaft, const cm1e_axis_config_t *axis)
 {
+    const cm1e_sim_bridge_axis_t *m = motor_at(axis->address, axis->channel);
+    long long *sound = &bench.sound[axis->address][axis->channel];
+    if (!m || m->error == 0)
+        *sound = judged.number;
+    const bool just_failed = judged.number - *sound <= SDO_CYCLES;
     const bool gap = judged.number < bench.gap_until || judged.number < bench.bus_disturbed_until;
     const unsigned allowed = CM1E_SIM_OUTPUT_IN_VAIN | CM1E_SIM_MODE_IN_MOTION |
-                             (bench.faulty ? CM1E_SIM_MODE_IN_ERROR : 0u) | (gap ? CM1E_SIM_STEP_IN_CYCLE : 0u);
+                             (just_failed ? CM1E_SIM_MODE_IN_ERROR : 0u) | (gap ? CM1E_SIM_STEP_IN_CYCLE : 0u);
     MUST((shaft->broken_rules & ~allowed) == 0, "ID%u: rules of the bridge's guide are broken: 0x%03X", axis->channel,
          shaft->broken_rules);
     cm1e_sim_probe_reset_channel(bench.segment, axis->address, axis->channel);
