@@ -13,7 +13,7 @@
 #include "nic/nic.h"
 #include "sim/bridge_app.h"
 
-enum { MOST_OTHERS = 4, SDO_CYCLES = 5 };
+enum { MOST_OTHERS = 4, SDO_CYCLES = 5, SETTLING = 200 };
 
 /** An axis that is not judged call by call, and moves to and fro. */
 typedef struct other {
@@ -88,9 +88,12 @@ static cm1e_sim_probe_t probe(void)
     return now;
 }
 
+/** A motor that runs overshoots the target that stands still all at once, and takes its time to settle. */
 static void time_passes(int64_t time_ns)
 {
     cm1e_clock_t *clock = cm1e_bus_clock(bench.bus);
+    if (bench.disturbed_until < judged.number + SETTLING)
+        bench.disturbed_until = judged.number + SETTLING;
     bench.start_ns += time_ns;
     bench.gap_until = judged.number + 5;
     cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + time_ns);
@@ -213,7 +216,7 @@ static void judge_rules(const cm1e_sim_probe_t *shaft, const cm1e_axis_config_t 
 static void judge_motor(void)
 {
     const bool moved_by_us = set_point_is_ours() && cm1e_axis_powered(judged.axis) && bench.info.mode == CM1E_MODE_CSP;
-    const int64_t soon = judged.number + 200;
+    const int64_t soon = judged.number + SETTLING;
     const cm1e_sim_probe_t shaft = probe();
     judge_rules(&shaft, cm1e_axis_configuration(judged.axis));
     if (fabs(shaft.velocity_counts_per_s) > 1.3 * judged.axis->maximum.velocity * fabs(judged.axis->scale))

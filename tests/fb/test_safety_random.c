@@ -43,6 +43,7 @@ typedef struct player {
     cm1e_axis_state_t state;        /**< last seen */
     bool reset_asked;               /**< since the axis is in ErrorStop */
     bool edge;                      /**< of any block in this cycle */
+    bool waits_alone;               /**< a command does whose block has lost it by a new edge that was refused */
     int error_cycles, off_cycles, rest_cycles;
     unsigned enablings;
     double step_before, set_before;
@@ -88,20 +89,26 @@ static const change_t by_cycle[] = {
     {BIT(ERROR_STOP), BIT(DISABLED) | BIT(STANDSTILL)}, /* and then only after MC_Reset */
 };
 
+/* MC_MoveAbsolute waits behind a motion or a homing, and may begin when that ends, or is InVelocity. */
+static const change_t by_waiting[] = {{BIT(CONTINUOUS_MOTION) | BIT(HOMING), BIT(DISCRETE_MOTION)}};
+
+static bool waits(const player_t *p) { return p->before[BLOCK_ABSOLUTE].busy && !p->before[BLOCK_ABSOLUTE].active; }
+
 static void judge_change(uint32_t n, const change_t *changes, size_t count, const char *cause)
 {
     player_t *p = &players[n];
     const cm1e_axis_info_t info = bench_info(&bench, n);
     if (info.state == p->state)
         return;
-    bool legal = false;
+    bool legal = (waits(p) || p->waits_alone) && (by_waiting[0].from >> p->state & 1) &&
+                 (by_waiting[0].to >> info.state & 1);
     for (size_t i = 0; i < count; i++)
         legal = legal || ((changes[i].from >> p->state & 1) && (changes[i].to >> info.state & 1));
     MUST(&bench, legal, "axis %u: from %s to %s by %s", n, cm1e_axis_state_name(p->state),
          cm1e_axis_state_name(info.state), cause);
     MUST(&bench, p->state != CM1E_AXIS_ERROR_STOP || p->reset_asked, "axis %u: left ErrorStop without MC_Reset", n);
     p->state = info.state;
-    p->reset_asked = false;
+    p->reset_asked = p->waits_alone = false;
     p->error_cycles = 0;
 }
 #define JUDGE(n, changes, cause) judge_change(n, changes, sizeof changes / sizeof changes[0], cause)
@@ -127,6 +134,8 @@ static void judge_outputs(uint32_t n, block_t block, const outputs_t *now)
     MUST(&bench, edge || !now->busy || before->busy, "axis %u: %s: began without an edge", n, name);
     if (edge) {
         p->edge = true;
+        if (block != BLOCK_RESET)
+            p->waits_alone = now->error && (p->waits_alone || (block == BLOCK_ABSOLUTE && waits(p)));
         moves_total += now->busy;
     }
     p->before[block] = *now;

@@ -420,8 +420,8 @@ static double rounding_of(const cm1e_axis_t *axis, int depth)
  *  path of a group goes in u from the zero of the coordinates to its ends, which may be at 4e9 u. */
 static double largest_number(const cm1e_axis_t *axis)
 {
-    const cm1e_group_t *group = axis->group;
-    if (axis->activity == ACTIVITY_LED && group)
+    const cm1e_group_t *const group = axis->group;
+    if (group && !axis->active) /* led, maybe for this cycle alone */
         return fmax(fabs(group->path.end[axis->leader.index]), fabs(cm1e_axis_place(axis, false)));
     return fabs(cm1e_position_minus(axis->target, axis->set) / axis->scale);
 }

@@ -322,7 +322,8 @@ static void begin_group_story(const instance_t *fb, int n, const double *set, cm
     }
 }
 
-/** Done: those of its axes that stand and have no other names for their places since are where it was to end. */
+/** Done: those of its axes that stand and have no other names for their places since are where it was to end. One that
+ *  has failed since is braked where its motor is. */
 static void judge_group_arrival(int n)
 {
     const instance_t *fb = &instances[n];
@@ -334,7 +335,7 @@ static void judge_group_arrival(int n)
     for (int i = 0; i < CM1E_GROUP_AXES; i++) {
         const cm1e_axis_t *axis = cm1e_group_axis(g->group, (uint32_t)i + 1);
         if (!axis || g->story.origin[i] != origin_of(axis) || cm1e_axis_configuration(axis)->modulo_range > 0 ||
-            stories_touched[number_of(axis)])
+            stories_touched[number_of(axis)] || axis->state == CM1E_AXIS_ERROR_STOP)
             continue;
         const double scale = fabs(axis->scale), end = g->story.end[i];
         const double off = (cm1e_axis_units(axis, axis->set) - end) * scale;

@@ -38,7 +38,7 @@ static unsigned seen[CM1E_AXIS_STATE_COUNT];
 /** Of each axis. */
 static struct player {
     ranges_t ranges;
-    bool edge_in_cycle;             /**< who lost the axis by it may have been called before */
+    bool edge_in_cycle;             /**< who lost the axis by a call may have been called before */
     int at_rest, off_cycles, still_cycles;
     MC_CAM_ID cam;                  /**< the last one that was selected for it */
 } players[JUDGED_MOST];
@@ -322,6 +322,8 @@ static void play(int n)
     const cm1e_group_state_t group_state = group ? group->group->state : CM1E_GROUP_DISABLED;
     call(fb);
     judge_group_states(fb);
+    if (is(fb, "MC_SetOverride") && judged.axis->active != active) /* what waited at 0 is done at once by a new factor */
+        player.edge_in_cycle = true;
     if (edge_to_come && group) {
         tell(fb, &from);
         edges_total++;
