@@ -260,8 +260,7 @@ static cm1e_error_t begin_move(cm1e_axis_t *axis, move_t *move, const from_t *fr
     cm1e_error_t error = cm1e_axis_resolve(axis, from, move);
     if (error)
         return error;
-    move->exit_velocity = cm1e_axis_exit_velocity(axis, from, move);
-    error = cm1e_axis_plan(axis, from, move, &profile);
+    error = cm1e_axis_plan(axis, from, move, true, &profile);
     if (!error)
         cm1e_axis_take(axis, move, from, &profile, offset_s);
     return error;
@@ -296,12 +295,6 @@ bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offse
     return false;
 }
 
-static cm1e_error_t plan_again(cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
-{
-    move->exit_velocity = cm1e_axis_exit_velocity(axis, from, move);
-    return cm1e_axis_plan(axis, from, move, profile);
-}
-
 static void go_on_as(cm1e_axis_t *axis, const from_t *from, const move_t *move, const cm1e_profile_t *profile)
 {
     axis->move = *move;
@@ -314,7 +307,7 @@ cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *as)
     move_t move = *as;
     cm1e_profile_t profile;
     const from_t from = from_base(axis);
-    const cm1e_error_t error = plan_again(axis, &from, &move, &profile);
+    const cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, true, &profile);
     if (!error)
         go_on_as(axis, &from, &move, &profile);
     return error;
@@ -326,25 +319,32 @@ static bool can_replan(const cm1e_axis_t *axis)
            cm1e_axis_can_plan(axis->kind);
 }
 
-/* `careful`: not when it would then run over its target. */
+/* `careful`: not when it would then run over its target, or go back. */
 static cm1e_error_t replan(cm1e_axis_t *axis, bool careful, bool *done)
 {
     move_t move = axis->move;
     cm1e_profile_t profile;
     const from_t from = from_base(axis);
-    const cm1e_error_t error = plan_again(axis, &from, &move, &profile);
-    *done = !error && !(careful && !axis->paused && is_discrete_move(axis->kind) &&
-                        cm1e_axis_profile_passes(axis, &from, &move, &profile));
+    const cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, true, &profile);
+    *done = !error && !(careful && cm1e_axis_profile_strays(axis, &from, &move, &profile));
     if (*done)
         go_on_as(axis, &from, &move, &profile);
     return error;
 }
 
-/* A profile that is to pass its target with a velocity cannot always be slowed down any more: then it stays. */
+/* What runs does so itself: it began too late for anything else. */
+static bool runs_astray(const cm1e_axis_t *axis)
+{
+    const cm1e_motion_state_t *start = &axis->profile.segments[0].start;
+    const from_t from = {axis->base, start->velocity, start->acceleration, false};
+    return axis->profile.segment_count > 0 && cm1e_axis_profile_strays(axis, &from, &axis->move, &axis->profile);
+}
+
+/* One that keeps its target, or passes it with a velocity, cannot always be changed any more: then it stays. */
 cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis)
 {
     bool done;
-    return can_replan(axis) ? replan(axis, axis->move.exit_velocity != 0.0, &done) : CM1E_OK;
+    return can_replan(axis) ? replan(axis, !axis->paused && !runs_astray(axis), &done) : CM1E_OK;
 }
 
 bool cm1e_axis_replan_if(cm1e_axis_t *axis)

@@ -131,9 +131,8 @@ static cm1e_error_t plan_move(cm1e_axis_t *axis, const from_t *from, const cm1e_
 {
     *move = cm1e_axis_move_of(command);
     move->origin = move->kind == CM1E_COMMAND_MOVE_ADDITIVE ? commanded_position(axis) : from->position;
-    move->exit_velocity = is_endless(command->kind) ? cm1e_axis_exit_velocity(axis, from, move) : 0.0;
     const cm1e_error_t error = cm1e_axis_resolve(axis, from, move);
-    return error ? error : cm1e_axis_plan(axis, from, move, profile);
+    return error ? error : cm1e_axis_plan(axis, from, move, false, profile);
 }
 
 /* Whatever there is, it goes on from the present set-point. */

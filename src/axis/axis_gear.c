@@ -74,7 +74,7 @@ cm1e_error_t cm1e_axis_decouple(cm1e_axis_t *axis, const cm1e_axis_command_t *co
     cm1e_profile_t profile;
     if (!axis_follows(axis) || !axis->active || !leaves(command->kind, axis->kind))
         return CM1E_ERROR_AXIS_NOT_COUPLED;
-    const cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, &profile);
+    const cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, false, &profile);
     if (error)
         return error;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);

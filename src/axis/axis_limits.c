@@ -210,12 +210,12 @@ cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const from_t *from, co
 }
 
 cm1e_error_t cm1e_axis_limits_on_top(const cm1e_axis_t *axis, const superimposed_t *on_top,
-                                     cm1e_motion_limits_t *limits)
+                                     const override_t *override, cm1e_motion_limits_t *limits)
 {
     const from_t rest = {axis->set, 0.0, 0.0, false};
     const from_t from = {axis->set, on_top->now.velocity, on_top->now.acceleration, false};
     const cm1e_motion_limits_t *share = &on_top->share;
-    const cm1e_error_t error = cm1e_axis_limits_of(axis, &rest, &on_top->move, limits);
+    const cm1e_error_t error = cm1e_axis_limits_with(axis, &rest, &on_top->move, override, limits);
     limits->velocity = fmin(limits->velocity, share->velocity);
     limits->acceleration = fmin(limits->acceleration, share->acceleration);
     limits->deceleration = fmin(limits->deceleration, share->deceleration);

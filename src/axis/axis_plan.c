@@ -50,41 +50,59 @@ static cm1e_error_t resolve_none(const cm1e_axis_t *axis, const from_t *from, mo
 
 /* ---- profiles ---------------------------------------------------------------------------------------------------- */
 
-/* Whether it leaves the way between its start and a target `distance` away on the far side. */
-static bool passes(const cm1e_axis_t *axis, const cm1e_profile_t *profile, double distance)
+/* Whether it goes beyond a target on the way there. */
+static bool passes(const cm1e_axis_t *axis, const cm1e_profile_t *profile, double start, double target)
 {
     double lowest, highest;
     cm1e_profile_extent(profile, &lowest, &highest);
-    return distance > 0.0 ? highest > distance + axis->tolerance : lowest < distance - axis->tolerance;
+    return target > start ? highest > target + axis->tolerance : lowest < target - axis->tolerance;
+}
+
+/* Whether a motion that goes on in its direction turns round on the way to its end. What is left of an acceleration may
+ * need more jerk than there is now, to end before the axis stands. */
+static bool turns_back(const cm1e_axis_t *axis, double velocity, const cm1e_profile_t *profile)
+{
+    static const double rounding = 0.01; /* a way back within the tolerance would become a larger one when replanned */
+    return velocity != 0.0 && profile->end.velocity * velocity >= 0.0 &&
+           cm1e_profile_way_back(profile, velocity) > rounding * axis->tolerance;
+}
+
+bool cm1e_axis_strays(const cm1e_axis_t *axis, const cm1e_motion_state_t *start, const double *target,
+                      const cm1e_profile_t *profile)
+{
+    const double velocity = start->velocity != 0.0 ? start->velocity : start->acceleration;
+    if (target && passes(axis, profile, start->position, *target))
+        return true;
+    return (!target || velocity * (*target - start->position) > 0.0) && turns_back(axis, velocity, profile);
+}
+
+bool cm1e_axis_profile_strays(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
+                              const cm1e_profile_t *profile)
+{
+    const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
+    const cm1e_motion_state_t start = start_of(from);
+    const double target = cm1e_position_minus(move->target, from->position) / axis->scale;
+    if (is_continuous_move(kind) && !move->passing) /* its run-up may lead anywhere, unless the position lies ahead */
+        return from->velocity * target > 0.0 && cm1e_axis_strays(axis, &start, NULL, profile);
+    return cm1e_axis_strays(axis, &start, is_discrete_move(kind) && !move->paused ? &target : NULL, profile);
 }
 
 static bool slowed(const cm1e_axis_t *axis)
 {
-    return axis->override.acceleration < 1.0 || axis->override.jerk < 1.0;
+    return axis->override.velocity < 1.0 || axis->override.acceleration < 1.0 || axis->override.jerk < 1.0;
 }
 
-static cm1e_error_t to_target(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
-                              const override_t *override, double distance, cm1e_profile_t *profile)
-{
-    cm1e_motion_limits_t limits;
-    const cm1e_error_t error = cm1e_axis_limits_with(axis, from, move, override, &limits);
-    if (error)
-        return error;
-    const cm1e_motion_state_t start = start_of(from);
-    return cm1e_profile_to_state(profile, &start, distance, move->exit_velocity, &limits)
-               ? CM1E_ERROR_AXIS_POSITION_RANGE : CM1E_OK;
-}
-
-/* An override that takes away deceleration does so only as far as the target is not passed (3.18, note 9). */
 static cm1e_error_t plan_to_target(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
 {
     const double distance = cm1e_position_minus(move->target, from->position) / axis->scale;
-    cm1e_error_t error = to_target(axis, from, move, &axis->override, distance, profile);
-    if (!error && slowed(axis) && passes(axis, profile, distance)) {
-        const override_t full = {axis->override.velocity, 1.0, 1.0};
-        error = to_target(axis, from, move, &full, distance, profile);
-    }
-    return error ? error : cm1e_axis_limits_check(axis, from, profile);
+    cm1e_motion_limits_t limits;
+    const cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
+    if (error)
+        return error;
+    const cm1e_motion_state_t start = start_of(from);
+    if (cm1e_profile_to_state(profile, &start, distance, move->exit_velocity, &limits))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    return cm1e_axis_limits_check(axis, from, profile);
 }
 
 cm1e_error_t cm1e_axis_signed_velocity(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
@@ -245,20 +263,54 @@ static bool plan_pause(const cm1e_axis_t *axis, const from_t *from, move_t *move
     cm1e_profile_t stop;
     if (plan_stop(axis, from, move, &stop))
         return false;
-    if (has_target && passes(axis, &stop, distance) &&
+    if (has_target && passes(axis, &stop, 0.0, distance) &&
         (cm1e_axis_limits_with(axis, from, move, &no_override, &limits) ||
-         cm1e_axis_plan_stop(axis, from, &limits, &stop) || passes(axis, &stop, distance)))
+         cm1e_axis_plan_stop(axis, from, &limits, &stop) || passes(axis, &stop, 0.0, distance)))
         return false;
     *profile = stop;
     return true;
 }
 
-cm1e_error_t cm1e_axis_plan(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
+static cm1e_error_t plan_with_exit(const cm1e_axis_t *axis, const from_t *from, move_t *move, bool passing,
+                                   cm1e_profile_t *profile)
 {
-    const cm1e_error_t error = planners[move->kind].plan(axis, from, move, profile);
     const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
     const bool moves = is_discrete_move(kind) || (is_endless(kind) && !is_decoupling(kind));
+    move->passing = passing;
+    const cm1e_error_t error = planners[move->kind].plan(axis, from, move, profile);
     move->paused = !error && moves && axis->override.velocity == 0.0 && plan_pause(axis, from, move, profile);
+    return error;
+}
+
+static double exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t *move, bool before_others)
+{
+    const bool has_exit = before_others || is_endless((cm1e_command_kind_t)move->kind);
+    return has_exit ? cm1e_axis_exit_velocity(axis, from, move) : 0.0;
+}
+
+/* An override takes away acceleration and jerk only as far as the target is not passed by it (3.18, note 9), and the
+ * axis does not go back. One that enters a way faster than it can be slowed down there now leaves it no faster than it
+ * came: before the override changed, it was planned to go on like that. */
+cm1e_error_t cm1e_axis_plan(cm1e_axis_t *axis, const from_t *from, move_t *move, bool before_others,
+                            cm1e_profile_t *profile)
+{
+    const override_t factors = axis->override;
+    const bool passing = move->passing;
+    move->exit_velocity = exit_velocity(axis, from, move, before_others);
+    cm1e_error_t error = plan_with_exit(axis, from, move, passing, profile);
+    if (error || !slowed(axis) || !cm1e_axis_profile_strays(axis, from, move, profile))
+        return error;
+    axis->override = (override_t){factors.velocity, 1.0, 1.0};
+    move->exit_velocity = exit_velocity(axis, from, move, before_others);
+    error = plan_with_exit(axis, from, move, passing, profile);
+    if (!error && before_others && cm1e_axis_profile_strays(axis, from, move, profile)) {
+        axis->override = no_override;
+        const double most = fabs(from->velocity);
+        move->exit_velocity = fmax(-most, fmin(exit_velocity(axis, from, move, true), most));
+        axis->override = (override_t){factors.velocity, 1.0, 1.0};
+        error = plan_with_exit(axis, from, move, passing, profile);
+    }
+    axis->override = factors;
     return error;
 }
 
@@ -269,10 +321,4 @@ position_t cm1e_axis_profile_end(const cm1e_axis_t *axis, const from_t *from, co
     if (!move->paused && (is_discrete_move(kind) || (is_continuous_move(kind) && !move->passing)))
         return move->target;
     return cm1e_position_plus(from->position, profile->end.position * axis->scale);
-}
-
-bool cm1e_axis_profile_passes(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
-                              const cm1e_profile_t *profile)
-{
-    return passes(axis, profile, cm1e_position_minus(move->target, from->position) / axis->scale);
 }

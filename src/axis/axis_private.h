@@ -273,9 +273,9 @@ cm1e_error_t cm1e_axis_limits_with(const cm1e_axis_t *axis, const from_t *from, 
                                    const override_t *override, cm1e_motion_limits_t *limits);
 /** More jerk, where what is left of another motion's acceleration would else overshoot the maximum velocity. */
 void cm1e_axis_keep_below_maximum(const cm1e_axis_t *axis, const from_t *from, cm1e_motion_limits_t *limits);
-/** Those of a superimposed motion: what it asks for, cut to its share. */
+/** Those of a superimposed motion: what it asks for with these factors, cut to its share. */
 cm1e_error_t cm1e_axis_limits_on_top(const cm1e_axis_t *axis, const superimposed_t *on_top,
-                                     cm1e_motion_limits_t *limits);
+                                     const override_t *override, cm1e_motion_limits_t *limits);
 /** A target inside the software limits, or not farther outside than where the way there begins; with a superimposed
  *  motion on top where `from` has one. */
 bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, const from_t *from, position_t target);
@@ -379,13 +379,18 @@ cm1e_error_t cm1e_axis_resolve(const cm1e_axis_t *axis, const from_t *from, move
 /** u/s; MC_MoveVelocity: with its direction. */
 cm1e_error_t cm1e_axis_signed_velocity(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                                        double *velocity);
-/** The profile of a command whose target is resolved, relative to where it begins. Refuses what leaves the limits. */
-cm1e_error_t cm1e_axis_plan(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile);
+/** The profile of a command whose target is resolved, relative to where it begins. Refuses what leaves the limits.
+ *  `before_others`: those that wait come behind it, and its exit velocity is theirs to take over. */
+cm1e_error_t cm1e_axis_plan(cm1e_axis_t *axis, const from_t *from, move_t *move, bool before_others,
+                            cm1e_profile_t *profile);
 /** Where that profile ends: at the target, exactly, if the command has one. */
 position_t cm1e_axis_profile_end(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                                  const cm1e_profile_t *profile);
-/** Whether it goes beyond the target on the way. */
-bool cm1e_axis_profile_passes(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
+/** Whether a profile that begins there goes beyond its target (NULL: it has none), or back where its way lies ahead. */
+bool cm1e_axis_strays(const cm1e_axis_t *axis, const cm1e_motion_state_t *start, const double *target,
+                      const cm1e_profile_t *profile);
+/** The same of a command's. */
+bool cm1e_axis_profile_strays(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                               const cm1e_profile_t *profile);
 /** A stop; one that would run over a software limit brakes as an error does instead. */
 cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *limits,

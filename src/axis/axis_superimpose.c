@@ -19,19 +19,33 @@ static const double same_moment = 1e-6; /* cycles */
 
 /* ---- planning ---------------------------------------------------------------------------------------------------- */
 
-static bool plan(const cm1e_axis_t *axis, superimposed_t *on_top)
+static bool plan_with(const cm1e_axis_t *axis, const override_t *override, superimposed_t *on_top, bool *strays)
 {
     cm1e_motion_limits_t limits;
-    if (cm1e_axis_limits_on_top(axis, on_top, &limits))
+    if (cm1e_axis_limits_on_top(axis, on_top, override, &limits))
         return false;
+    const double target = on_top->move.position;
+    const bool stops = on_top->paused || on_top->move.kind == CM1E_COMMAND_HALT_SUPERIMPOSED;
+    if (stops ? cm1e_profile_to_velocity(&on_top->profile, &on_top->now, 0.0, &limits)
+              : cm1e_profile_to_position(&on_top->profile, &on_top->now, target, &limits))
+        return false;
+    const bool has_target = on_top->move.kind == CM1E_COMMAND_MOVE_SUPERIMPOSED;
+    *strays = cm1e_axis_strays(axis, &on_top->now, has_target ? &target : NULL, &on_top->profile);
+    return true;
+}
+
+/* An override takes away no more than cm1e_axis_plan() lets it. */
+static bool plan(const cm1e_axis_t *axis, superimposed_t *on_top)
+{
+    const override_t full = {axis->override.velocity, 1.0, 1.0};
+    bool strays;
     on_top->paused = axis->override.velocity == 0.0 && on_top->move.kind == CM1E_COMMAND_MOVE_SUPERIMPOSED;
     on_top->cycles = 0;
-    const bool stops = on_top->paused || on_top->move.kind == CM1E_COMMAND_HALT_SUPERIMPOSED;
-    const cm1e_error_t error =
-        stops ? cm1e_profile_to_velocity(&on_top->profile, &on_top->now, 0.0, &limits)
-              : cm1e_profile_to_position(&on_top->profile, &on_top->now, on_top->move.position, &limits);
+    if (!plan_with(axis, &axis->override, on_top, &strays) ||
+        (strays && !plan_with(axis, &full, on_top, &strays)))
+        return false;
     cm1e_profile_extent(&on_top->profile, &on_top->lowest, &on_top->highest);
-    return error == CM1E_OK;
+    return true;
 }
 
 /* u/s; the fastest that the base goes, or is commanded to go now or next. */

@@ -93,5 +93,8 @@ static inline cm1e_motion_state_t cm1e_profile_stretch_state(const cm1e_profile_
 void cm1e_profile_sample(const cm1e_profile_t *profile, double time_s, cm1e_motion_state_t *state);
 /** Lowest and highest position on the way (end included): for software limits. */
 void cm1e_profile_extent(const cm1e_profile_t *profile, double *lowest, double *highest);
+/** How far it goes against the direction of `sign`, all such stretches together: 0, but for rounding, where it never
+ *  turns that way. */
+double cm1e_profile_way_back(const cm1e_profile_t *profile, double sign);
 
 #endif

@@ -1,4 +1,5 @@
 #include <math.h>
+#include <stdbool.h>
 
 #include "motion/profile.h"
 
@@ -41,22 +42,47 @@ void cm1e_profile_sample(const cm1e_profile_t *profile, double time_s, cm1e_moti
     *state = cm1e_profile_stretch_state(&stretch, time_s);
 }
 
+enum { PLACES = 3 };
+
+/** Where a segment begins, and where it turns: besides its start it can do so where its velocity is zero,
+ *  v + a t + j t2 / 2 = 0. In their order; one that it does not have is the one before. */
+static void places(const cm1e_profile_t *profile, int index, double position[PLACES])
+{
+    const cm1e_profile_segment_t *segment = &profile->segments[index];
+    const cm1e_profile_stretch_t stretch = stretch_of(profile, index);
+    const double v = segment->start.velocity, a = segment->start.acceleration, j = segment->jerk;
+    const double root = sqrt(fmax(0, a * a - 2 * j * v)), sum = -(a + copysign(root, a));
+    const double one = 2 * v / sum, other = sum / j, times[PLACES] = {0, fmin(one, other), fmax(one, other)};
+    for (int i = 0; i < PLACES; i++) {
+        const bool inside = times[i] >= 0 && times[i] < stretch.until_s - stretch.from_s;
+        position[i] = inside || i == 0 ? cm1e_profile_stretch_state(&stretch, stretch.from_s + times[i]).position
+                                       : position[i - 1];
+    }
+}
+
 void cm1e_profile_extent(const cm1e_profile_t *profile, double *lowest, double *highest)
 {
     *lowest = *highest = profile->end.position;
     for (int i = 0; i < profile->segment_count; i++) {
-        const cm1e_profile_segment_t *segment = &profile->segments[i];
-        const cm1e_profile_stretch_t stretch = stretch_of(profile, i);
-        /* Besides its start, a segment can turn where its velocity is zero: v + a t + j t2 / 2 = 0. */
-        const double v = segment->start.velocity, a = segment->start.acceleration, j = segment->jerk;
-        const double root = sqrt(fmax(0, a * a - 2 * j * v)), sum = -(a + copysign(root, a));
-        const double times[] = {0, 2 * v / sum, sum / j};
-        for (int k = 0; k < 3; k++) {
-            if (!(times[k] >= 0 && times[k] < stretch.until_s - stretch.from_s))
-                continue;
-            const double position = cm1e_profile_stretch_state(&stretch, stretch.from_s + times[k]).position;
-            *lowest = fmin(*lowest, position);
-            *highest = fmax(*highest, position);
+        double position[PLACES];
+        places(profile, i, position);
+        for (int k = 0; k < PLACES; k++) {
+            *lowest = fmin(*lowest, position[k]);
+            *highest = fmax(*highest, position[k]);
         }
     }
+}
+
+double cm1e_profile_way_back(const cm1e_profile_t *profile, double sign)
+{
+    double back = 0, after = profile->end.position;
+    for (int i = profile->segment_count - 1; i >= 0; i--) {
+        double position[PLACES];
+        places(profile, i, position);
+        for (int k = PLACES - 1; k >= 0; k--) {
+            back += fmax(0, copysign(1, sign) * (position[k] - after));
+            after = position[k];
+        }
+    }
+    return back;
 }

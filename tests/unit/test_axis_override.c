@@ -169,6 +169,36 @@ static void test_less_deceleration_never_passes_the_target(void)
     }
 }
 
+/* Less jerk while the axis brakes: to end the braking takes longer than the axis has until it stands, which would lead
+ * it back for a long way, and, planned anew on that, beyond the target. */
+static void test_less_jerk_while_braking_leads_neither_back_nor_beyond(void)
+{
+    for (int change = 900; change < 1200; change += 3) {
+        fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        bench_create();
+        bench_enable();
+        watch_begin();
+        const cm1e_command_id_t id = bench_start_command(&(cm1e_axis_command_t){
+            .kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 10.0, .velocity = 12.0, .acceleration = 20.0,
+            .deceleration = 100.0, .jerk = 1200.0});
+        double before = 0.0;
+        for (int i = 0; i < 3000; i++) {
+            if (i == change)
+                override(0.25, 1.0, 0.1);
+            if (i == change + 30)
+                override(0.0, 1.0, 0.28);
+            if (i == 2000)
+                override(1.0, 1.0, 1.0);
+            watch_cycles(1);
+            WATCH(bench_info().set_position >= before - 1e-9, "back to %.9g", bench_info().set_position);
+            before = bench_info().set_position;
+        }
+        WATCH(watch.highest <= 10.0 + 1e-9, "changed at %d: %.9g", change, watch.highest);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
+        bench_end();
+    }
+}
+
 static void test_stop_is_not_slowed(void)
 {
     bench_move_velocity(10.0);
@@ -222,6 +252,7 @@ int main(void)
     RUN_TEST(test_commands_given_while_velocity_is_0_begin_when_it_is_not);
     RUN_TEST(test_factors_out_of_range_change_nothing);
     RUN_TEST(test_less_deceleration_never_passes_the_target);
+    RUN_TEST(test_less_jerk_while_braking_leads_neither_back_nor_beyond);
     RUN_TEST(test_stop_is_not_slowed);
     RUN_TEST(test_random_changes_over_random_chains);
     return UNITY_END();

@@ -117,6 +117,10 @@ static void test_target_just_passed_is_reached_by_way_of_the_stop(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 40, low);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 77.34375, high);
     TEST_ASSERT_TRUE(profile.duration_s < 0.25 + back.duration_s - 0.04);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 37.34375, cm1e_profile_way_back(&profile, 1));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 37.34375, cm1e_profile_way_back(&profile, -1));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, cm1e_profile_way_back(&back, 1));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 37.5, cm1e_profile_way_back(&back, -1));
 }
 
 static void test_stop_goes_its_shortest_way(void)
