@@ -18,7 +18,7 @@
 static const double default_window_counts = 10.0;
 /* A mapping without target position has a velocity in counts/ms before V1.3.3: the position loop of the axis (20/s)
  * rounds what corrects less than 25 counts to 0. */
-static const double coarse_window_counts = 50.0;
+static const double coarse_window_counts = 30.0;
 
 /* % of rated torque from which on a motor at rest pushes against something. */
 static const float pushing_torque = 80.0f;

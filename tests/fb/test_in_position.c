@@ -40,7 +40,7 @@ static void scan(void)
 static double window(void)
 {
     const bool coarse = config.axes[0].mapping == CM1E_MAPPING_CSV && strcmp(config.axes[0].firmware, "1.3.3") < 0;
-    return coarse ? 50.0 / 50000.0 : 10.0 / 50000.0;
+    return coarse ? 30.0 / 50000.0 : 10.0 / 50000.0;
 }
 
 /* Until the block is Done, with the motor where it was to go. */

@@ -107,7 +107,7 @@ static void test_the_default_window(void)
         fake_bus_init(&bus, CM1E_MAPPING_CSV, CM1E_PDO_ORDER_UG_4_4, old ? CM1E_FIRMWARE_1_2_0 : CM1E_FIRMWARE_1_3_5);
         bus.config.axes[0].counts_per_unit = 1000.0;
         bench_create();
-        TEST_ASSERT_EQUAL_DOUBLE(old ? 0.05 : 0.01, axis->in_position.window);
+        TEST_ASSERT_EQUAL_DOUBLE(old ? 0.03 : 0.01, axis->in_position.window);
     }
 }
 
