@@ -41,6 +41,7 @@ static cm1e_error_t run(const char *interface_name, cm1e_bus_t **bus, cm1e_diag_
     static cm1e_bus_config_t config;
     const cm1e_task_config_t task = {.name = "motion", .program = program};
     cm1e_bus_config_init(&config, interface_name, 1);
+    config.axes[0].in_position_done_waits = true; /* Done: the motor is there, and not only its set-point */
     cm1e_error_t error = cm1e_bus_open(bus, &config, why);
     if (error == CM1E_OK)
         error = cm1e_bus_start(*bus, why);

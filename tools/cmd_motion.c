@@ -19,12 +19,13 @@ typedef struct motion_options {
     common_options_t common;
     const char *axis_word, *csv_file, *svg_file;
     motion_kind_t kind;
-    double target, velocity, acceleration, deceleration, jerk, seconds, home_position;
+    double target, velocity, acceleration, deceleration, jerk, seconds, home_position, modulo_range;
     cm1e_homing_config_t homing; /**< NAN: not given */
     bool method_given, reset;
 } motion_options_t;
 
-typedef enum motion_step { STEP_POWER, STEP_RESET, STEP_RUN, STEP_HALT, STEP_POWER_OFF, STEP_END } motion_step_t;
+typedef enum motion_step { STEP_POWER, STEP_RESET, STEP_RUN, STEP_HALT, STEP_SETTLE, STEP_POWER_OFF, STEP_END
+} motion_step_t;
 
 /** The program: its blocks, its step, and what came out. */
 typedef struct motion_program {
@@ -38,6 +39,7 @@ typedef struct motion_program {
     MC_MoveRelative_t move_relative;
     MC_MoveVelocity_t move_velocity;
     MC_Halt_t halt;
+    MC_MoveRelative_t settle; /**< by 0, behind the halt, which is done with its set-point: done when the motor is */
     MC_Home_t home;
     cm1e_axis_info_t before, after;
     int64_t started_ns, ended_ns;
@@ -139,6 +141,7 @@ static void call_blocks(motion_program_t *p)
     MC_MoveRelative(&p->move_relative);
     MC_MoveVelocity(&p->move_velocity);
     MC_Halt(&p->halt);
+    MC_MoveRelative(&p->settle);
     MC_Home(&p->home);
 }
 
@@ -155,17 +158,20 @@ static void start_motion(motion_program_t *p)
 
 static void watch_motion(motion_program_t *p)
 {
-    const BOOL done = p->move_absolute.Done || p->move_relative.Done || p->home.Done || p->halt.Done;
+    const BOOL done = p->move_absolute.Done || p->move_relative.Done || p->home.Done || p->settle.Done;
     const BOOL failed = p->move_absolute.Error || p->move_relative.Error || p->move_velocity.Error || p->home.Error
-                        || p->halt.Error;
+                        || p->halt.Error || p->settle.Error;
     const WORD error_id = p->move_absolute.ErrorID | p->move_relative.ErrorID | p->move_velocity.ErrorID
-                          | p->home.ErrorID | p->halt.ErrorID;
+                          | p->home.ErrorID | p->halt.ErrorID | p->settle.ErrorID;
     if (done || failed)
         finish(p, done && !failed, failed, error_id);
     else if (p->options->kind == MOTION_SPEED && p->step == STEP_RUN
              && cm1e_scheduler_time_ns(p->scheduler) - p->started_ns > (int64_t)(p->options->seconds * 1e9)) {
         p->halt.Execute = TRUE;
         p->step = STEP_HALT;
+    } else if (p->step == STEP_HALT && p->halt.Done) {
+        p->settle.Execute = TRUE;
+        p->step = STEP_SETTLE;
     }
 }
 
@@ -199,6 +205,7 @@ static void program(void *context)
         break;
     case STEP_RUN:
     case STEP_HALT:
+    case STEP_SETTLE:
         watch_motion(p);
         break;
     case STEP_POWER_OFF:
@@ -218,6 +225,7 @@ static void prepare(motion_program_t *p, const motion_options_t *options)
     p->power = (MC_Power_t){.Axis = &p->axis, .EnablePositive = TRUE, .EnableNegative = TRUE};
     p->reset = (MC_Reset_t){.Axis = &p->axis};
     p->halt = (MC_Halt_t){.Axis = &p->axis, .Deceleration = options->deceleration, .Jerk = options->jerk};
+    p->settle = (MC_MoveRelative_t){.Axis = &p->axis, .Velocity = fabs(options->velocity)};
     p->home = (MC_Home_t){.Axis = &p->axis, .Position = options->home_position,
                           .Parameters = &options->homing};
     p->move_absolute = (MC_MoveAbsolute_t){
@@ -231,19 +239,45 @@ static void prepare(motion_program_t *p, const motion_options_t *options)
         .Acceleration = options->acceleration, .Deceleration = options->deceleration, .Jerk = options->jerk};
 }
 
+/* Where the motor was to go; where it just turned, its set-point. */
+static double target_of(const motion_program_t *p)
+{
+    switch (p->options->kind) {
+    case MOTION_TO: return p->options->target;
+    case MOTION_BY: return p->before.set_position + p->options->target;
+    case MOTION_HOME: return p->options->home_position;
+    default: return p->after.set_position;
+    }
+}
+
+/* How far beyond that it is; across the ends of a modulo axis the short way. NAN: it was not to go anywhere. */
+static double deviation_of(const motion_program_t *p)
+{
+    if (p->started_ns == 0 || (p->options->kind == MOTION_SPEED && !p->done))
+        return NAN;
+    const double deviation = p->after.actual_position - target_of(p), turn = p->options->modulo_range;
+    return turn > 0 ? remainder(deviation, turn) : deviation;
+}
+
+static json_t *report_as_json(const motion_program_t *p, const char *what, const char *text)
+{
+    const double deviation = deviation_of(p), seconds = (double)(p->ended_ns - p->started_ns) * 1e-9;
+    return json_pack("{s:s, s:s, s:b, s:f, s:f, s:o, s:f, s:s, s:s}", "axis", cm1e_axis_name(p->axis), "command", what,
+                     "done", p->done, "from", p->before.actual_position, "to", p->after.actual_position, "deviation",
+                     isnan(deviation) ? json_null() : json_real(deviation), "seconds", p->done ? seconds : 0.0, "error",
+                     p->failed ? cm1e_strerror(cm1e_error_from_id(p->error_id)) : "", "details", text);
+}
+
 static int report(const motion_program_t *p, const char *what)
 {
-    const double seconds = (double)(p->ended_ns - p->started_ns) * 1e-9;
     char text[CM1E_AXIS_ERROR_TEXT_BYTES] = "";
     cm1e_axis_error_text(p->axis, text, sizeof text);
     if (p->options->common.json)
-        print_json(json_pack("{s:s, s:s, s:b, s:f, s:f, s:f, s:s, s:s}", "axis", cm1e_axis_name(p->axis), "command",
-                             what, "done", p->done, "from", p->before.actual_position, "to", p->after.actual_position,
-                             "seconds", p->done ? seconds : 0.0, "error",
-                             p->failed ? cm1e_strerror(cm1e_error_from_id(p->error_id)) : "", "details", text));
+        print_json(report_as_json(p, what, text));
     else if (p->done)
-        printf("%s: %s done in %.3f s, from %.6g to %.6g\n", cm1e_axis_name(p->axis), what, seconds,
-               p->before.actual_position, p->after.actual_position);
+        printf("%s: %s done in %.3f s, from %.6g to %.6g, deviation %.2g\n", cm1e_axis_name(p->axis), what,
+               (double)(p->ended_ns - p->started_ns) * 1e-9, p->before.actual_position, p->after.actual_position,
+               deviation_of(p));
     if (p->failed)
         complain("%s: %s. %s%s", cm1e_axis_name(p->axis), cm1e_strerror(cm1e_error_from_id(p->error_id)), text,
                  p->before_power_failed ? " (--reset does that here.)" : "");
@@ -311,6 +345,8 @@ static int move_or_home(motion_options_t *options, const char *what)
         complete_homing(options, &config.axes[axis].homing);
     else if (options->velocity == 0)
         options->velocity = 1.0;
+    config.axes[axis].in_position_done_waits = config.axes[axis].type == CM1E_AXIS_MOTOR;
+    options->modulo_range = config.axes[axis].modulo_range;
     cm1e_diag_t diag = {0};
     cm1e_bus_t *bus = NULL;
     int status;
@@ -339,8 +375,9 @@ int command_move(int argc, char **argv)
         {0}};
     static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
     static const struct argp argp = {table, parse_move, "[AXIS]",
-                                     "Enables one axis (name or number, default 1), moves it, disables it. Without a "
-                                     "bus file the unit is the revolution.", children, NULL, NULL};
+                                     "Enables one axis (name or number, default 1), moves it, disables it. Done: the "
+                                     "motor is there (in_position of the bus file). Without a bus file the unit is the "
+                                     "revolution.", children, NULL, NULL};
     motion_options_t options = {0};
     if (argp_parse(&argp, argc, argv, 0, NULL, &options))
         return EXIT_WRONG_USE;

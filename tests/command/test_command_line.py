@@ -76,10 +76,45 @@ def check_good(folder):
     home = run("cm1e", "home", "-i", "sim", "--method", "-3", "--velocity", "5", "--acceleration", "90", "--position",
                "7.5", "--json")
     expect(home.returncode == 0 and abs(json.loads(home.stdout)["to"] - 7.5) < 0.01, "home", home)
+    check_in_position(folder)
     sii = os.path.join(folder, "cm1e.sii")
     generate = run("cm1e", "generate", "sii", "-o", sii)
     expect(generate.returncode == 0 and os.path.getsize(sii) == 2048, "generate sii", generate)
     check_files(folder)
+
+
+def check_in_position(folder):
+    """Done means that the motor is there; one that cannot get there is an error, in text, JSON and exit status."""
+    bus = os.path.join(folder, "in_position.yaml")
+    keys = {"host": "", "csv": "mapping: csv", "drive": "motion: drive", "turn": "unit: {modulo_range: 2}"}
+    for name, key in keys.items():
+        with open(bus, "w", encoding="utf-8") as file:
+            file.write(f"bus: {{virtual_time: true}}\naxes: [{{name: a, {key}}}]\n")
+        for words, target in ((["--by", "1"], 1), (["--by", "0.001"], 0.001), (["--to", "-1.5"], -1.5),
+                              (["--speed", "2", "--for", "0.1"], None)):
+            if (name, target) == ("turn", -1.5):
+                words, target = ["--to", "1.9"], 1.9
+            moved = run("cm1e", "move", "-i", "sim", "-b", bus, "--json", *words)
+            shown = json.loads(moved.stdout)
+            there = shown["done"] and abs(shown["deviation"]) <= 0.0002001
+            expect(moved.returncode == 0 and there, "in position", moved)
+            if target is not None:
+                expect(abs(shown["to"] - target - shown["deviation"]) < 1e-9, "its target", moved)
+        if name == "turn":
+            continue
+        stopped = run("cm1e", "move", "-i", "sim", "-b", bus, "--json", "--by", "5.4")
+        shown = json.loads(stopped.stdout)
+        expect(stopped.returncode == FAILED and not shown["done"] and shown["error"] and abs(shown["to"] - 5) < 0.01
+               and abs(shown["deviation"] + 0.4) < 0.01, "against a stop", stopped)
+    with open(bus, "w", encoding="utf-8") as file:
+        file.write("bus: {virtual_time: true}\naxes: [{name: a, in_position: {timeout_s: 0.4}}]\n")
+    stopped = run("cm1e", "move", "-i", "sim", "-b", bus, "--by", "5.4")
+    for words in ("did not get to its set-point in time", "stood at 5.4 u", "at 5 u", "0.4 u below", "mechanical stop"):
+        expect(stopped.returncode == FAILED and not stopped.stdout and words in stopped.stderr, words, stopped)
+    text = run("cm1e", "move", "-b", bus, "--by", "0.5")
+    expect("to 0.5, deviation 0\n" in text.stdout, "as text", text)
+    home = run("cm1e", "home", "-b", bus, "--method", "-3", "--position", "7.5", "--json")
+    expect(home.returncode == 0 and abs(json.loads(home.stdout)["deviation"]) <= 0.0002001, "home", home)
 
 
 def check_files(folder):
