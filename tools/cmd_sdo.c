@@ -103,8 +103,7 @@ static int64_t sign_extend(uint64_t value, unsigned bytes)
 static void print_value(const uint8_t *data, size_t size, int type, const cm1e_entry_t *entry, bool json)
 {
     char hex[3 * 64 + 4] = "", text[MAX_SDO_BYTES + 1];
-    snprintf(text, sizeof text, "%.*s", (int)size, (const char *)data);
-    cm1e_text_clean(text);
+    cm1e_text_of_device(text, sizeof text, data, size);
     for (size_t i = 0; i < size && i < 64; i++)
         snprintf(hex + strlen(hex), sizeof hex - strlen(hex), "%s%02X", i ? " " : "", data[i]);
     const bool is_text = type >= 0 && types[type].type == CM1E_TYPE_STRING;
@@ -166,8 +165,8 @@ static int fail_at(const cm1e_entry_t *entry, const cm1e_diag_t *diag)
 static int transfer(cm1e_bus_t *bus, const sdo_options_t *options, cm1e_diag_t *diag)
 {
     long long position;
-    uint16_t index;
-    uint8_t subindex;
+    uint16_t index = 0;
+    uint8_t subindex = 0;
     const bool list = options->word_count == 2;
     if (!parse_number(options->words[1], "the position", 1, CM1E_MAX_SLAVES, &position)
         || (!list && !parse_object(options->words[2], &index, &subindex)))
@@ -202,22 +201,25 @@ static int transfer(cm1e_bus_t *bus, const sdo_options_t *options, cm1e_diag_t *
     return error == CM1E_OK ? EXIT_OK : fail_at(entry, diag);
 }
 
-/** A negative value looks like an option: such a word goes to the end, behind a "--". */
+/** A negative value looks like an option: such a word goes to the end, behind a "--". Nothing looks so behind a "--" of
+ *  the user. */
 static int shelter_negative_value(int argc, char **argv, char **sheltered)
 {
     static char end_of_options[] = "--";
     int count = 0;
     char *value = NULL;
+    bool options_end = false;
     for (int i = 0; i < argc; i++) {
-        if (!value && i > 0 && argv[i][0] == '-' && argv[i][1] >= '0' && argv[i][1] <= '9')
+        options_end = options_end || (i > 0 && strcmp(argv[i], "--") == 0);
+        if (!value && !options_end && i > 0 && argv[i][0] == '-' && argv[i][1] >= '0' && argv[i][1] <= '9')
             value = argv[i];
         else
             sheltered[count++] = argv[i];
     }
-    if (value) {
+    if (value && !options_end)
         sheltered[count++] = end_of_options;
+    if (value)
         sheltered[count++] = value;
-    }
     sheltered[count] = NULL;
     return count;
 }

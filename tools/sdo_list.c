@@ -7,6 +7,7 @@
 #include "cm1e/sdo_info.h"
 #include "command.h"
 #include "core/bytes.h"
+#include "core/text.h"
 #include "description/description.h"
 #include "device/bridge.h"
 
@@ -64,7 +65,7 @@ static json_t *value_as_json(const char *type, const uint8_t *bytes, size_t size
         return json_integer((json_int_t)cm1e_bytes_unsigned(number));
     char text[VALUE_TEXT] = "";
     if (strncmp(type, "STRING", 6) == 0) {
-        snprintf(text, sizeof text, "%.*s", (int)size, (const char *)bytes);
+        cm1e_text_of_device(text, sizeof text, bytes, size);
         return text_as_json(text);
     }
     for (size_t i = 0; i < size && strlen(text) + 4 < sizeof text; i++)

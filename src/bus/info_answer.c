@@ -3,17 +3,10 @@
 #include <string.h>
 
 #include "core/bytes.h"
+#include "core/text.h"
 
 /* What stands before the name: of an object, of an entry. */
 enum { OBJECT_BYTES = 6, ENTRY_BYTES = 10 };
-
-static void take_name(char name[CM1E_INFO_NAME], const uint8_t *bytes, size_t size)
-{
-    size_t i = 0;
-    for (; i < size && i < CM1E_INFO_NAME - 1 && bytes[i]; i++)
-        name[i] = bytes[i] >= ' ' && bytes[i] <= '~' ? (char)bytes[i] : '?';
-    name[i] = '\0';
-}
 
 bool cm1e_info_take_list(uint16_t *indexes, size_t room, size_t *count, const uint8_t *answer, size_t size)
 {
@@ -35,7 +28,7 @@ bool cm1e_info_take_object(cm1e_object_info_t *info, const uint8_t *answer, size
         .highest_subindex = answer[4],
         .code = answer[5],
     };
-    take_name(info->name, answer + OBJECT_BYTES, size - OBJECT_BYTES);
+    cm1e_text_of_device(info->name, sizeof info->name, answer + OBJECT_BYTES, size - OBJECT_BYTES);
     return true;
 }
 
@@ -77,6 +70,6 @@ bool cm1e_info_take_entry(cm1e_entry_info_t *info, const uint8_t *answer, size_t
         return false;
     info->unit_given = unit.size > 0;
     info->unit = cm1e_get_u32(unit.bytes);
-    take_name(info->name, place, (size_t)(end - place));
+    cm1e_text_of_device(info->name, sizeof info->name, place, (size_t)(end - place));
     return true;
 }

@@ -90,9 +90,9 @@ static unsigned wait_for_all(cm1e_bus_t *bus, unsigned bits, int64_t time_ns)
     return 0;
 }
 
-/** All slaves, also those that the scan does not know, in one broadcast; waits until none is above `state`. A slave that
- *  shows an error may keep its state until the error is acknowledged. One with device emulation shows the acknowledge
- *  bit as an error, so it gets the request without it last. */
+/** All slaves, also those that the scan does not know, in one broadcast; waits until none is above `state`. A slave
+ *  that shows an error may keep its state until the error is acknowledged. One with device emulation shows the
+ *  acknowledge bit as an error, so it gets the request without it last. */
 static void all_down_to(cm1e_bus_t *bus, uint8_t state)
 {
     const unsigned above = AL_STATE_MASK & ~(2u * state - 1u);

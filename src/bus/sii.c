@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "core/text.h"
 #include "description/sii.h"
 
 /** An SII is at most 8 MiB by its size word, but no device known needs more than this; it bounds the time of a scan. */
@@ -82,16 +83,6 @@ static cm1e_sii_result_t fetch_categories(const source_t *source, size_t room, s
     return SII_DAMAGED;
 }
 
-/** For a terminal: a letter that is not ASCII is "?", however many bytes it has. */
-static void take_name(cm1e_sii_t *sii, const char *name)
-{
-    size_t length = 0;
-    for (; *name && length < CM1E_SII_NAME - 1; name++)
-        if ((*name & 0xC0) != 0x80)
-            sii->name[length++] = *name >= ' ' && *name <= '~' ? *name : '?';
-    sii->name[length] = '\0';
-}
-
 static void take_sync_managers(cm1e_sii_t *sii, const cm1e_description_t *device)
 {
     for (size_t i = 0; i < device->sync_managers.count && i < CM1E_SII_SYNC_MANAGERS; i++) {
@@ -124,7 +115,8 @@ cm1e_sii_result_t cm1e_sii_read_categories(cm1e_sii_t *sii, cm1e_sii_reader read
     result = describe(&file, image, size);
     if (result == SII_OK) {
         const cm1e_description_t *device = &file.devices.at[0];
-        take_name(sii, device->name[0] ? device->name : device->type);
+        const char *name = device->name[0] ? device->name : device->type;
+        cm1e_text_of_device(sii->name, sizeof sii->name, name, strlen(name));
         sii->complete_access = device->mailbox.complete_access;
         sii->no_lrw = device->no_lrw;
         take_sync_managers(sii, device);

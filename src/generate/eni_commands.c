@@ -100,8 +100,8 @@ static void request(maker_t *maker, uint32_t transitions, uint8_t code, uint8_t 
 }
 
 /* Waits for a state. Forward an error indication (bit 4) is no arrival; back it is all the same. A slave with device
- * emulation copies AL control to AL status, also the acknowledge bit, with which Init and Pre-Operational are requested.
- * It has no mailbox, which needs a processor, so a check of Pre-Operational can be strict where there is one. */
+ * emulation copies AL control to AL status, also the acknowledge bit, with which Init and Pre-Operational are
+ * requested. It has no mailbox, which needs a processor: where there is one, Pre-Operational is checked strictly. */
 static void await(maker_t *maker, uint32_t transitions, uint8_t code, uint8_t al, bool forward, int32_t timeout_ms,
                   const char *comment)
 {

@@ -469,6 +469,23 @@ static void test_an_entry_is_taken_apart_by_what_the_answer_says_it_holds(void)
     TEST_ASSERT_EQUAL_STRING("abc", info.name);
 }
 
+/* As the ESI of the device has them: UTF-8 as it is, ISO 8859-1 brought to it. */
+static void test_names_that_are_not_ascii_are_those_of_the_esi(void)
+{
+    static const char *const told[] = {"Gr\xC3\xB6\xC3\x9F" "e", "Gr\xF6\xDF" "e"};
+    for (size_t i = 0; i < 2; i++) {
+        uint8_t object[6 + 16] = {0x00, 0x10, 7, 0, 0, 7}, entry[10 + 16] = {0x00, 0x10, 0, 0, 7, 0, 32, 0};
+        cm1e_object_info_t info;
+        cm1e_entry_info_t entry_info;
+        memcpy(object + 6, told[i], strlen(told[i]));
+        memcpy(entry + 10, told[i], strlen(told[i]));
+        TEST_ASSERT_TRUE(cm1e_info_take_object(&info, object, 6 + strlen(told[i])));
+        TEST_ASSERT_EQUAL_STRING(told[0], info.name);
+        TEST_ASSERT_TRUE(cm1e_info_take_entry(&entry_info, entry, 10 + strlen(told[i])));
+        TEST_ASSERT_EQUAL_STRING(told[0], entry_info.name);
+    }
+}
+
 static void test_names_are_cut_and_printable(void)
 {
     uint8_t answer[6 + 200] = {0x00, 0x10, 7, 0, 0, 7};
@@ -512,6 +529,7 @@ int main(void)
     RUN_TEST(test_random_answers_end_in_bounded_time_within_the_room);
     RUN_TEST(test_an_entry_is_taken_apart_by_what_the_answer_says_it_holds);
     RUN_TEST(test_names_are_cut_and_printable);
+    RUN_TEST(test_names_that_are_not_ascii_are_those_of_the_esi);
     RUN_TEST(test_a_list_has_whole_indexes_and_fits);
     return UNITY_END();
 }
