@@ -1,7 +1,9 @@
 /** cm1e scan: what is on the network. */
 #include <stdio.h>
+#include <string.h>
 
 #include "command.h"
+#include "core/text.h"
 #include "device/bridge.h"
 
 static error_t parse(int key, char *arg, struct argp_state *state)
@@ -45,16 +47,32 @@ static json_t *slave_as_json(const cm1e_slave_info_t *slave)
                      slave->software_version);
 }
 
+/** The widest of the texts of a column, and what it has at least. */
+static int wider(int width, const char *text)
+{
+    const int wanted = (int)cm1e_text_width(text);
+    return wanted > width ? wanted : width;
+}
+
+/** printf() counts bytes; a letter may have several. */
+static int in_bytes(int width, const char *text) { return width + (int)(strlen(text) - cm1e_text_width(text)); }
+
 static void print_table(const cm1e_bus_t *bus)
 {
     char state[48];
-    printf("%3s  %-20s %-10s %-10s %-10s %6s %4s  %-18s %s\n", "pos", "name", "vendor", "product", "revision", "alias",
-           "ID", "state", "firmware");
+    int name_width = 20, state_width = 18;
     for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++) {
         const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, i);
-        printf("%3u  %-20s 0x%08X 0x%08X 0x%08X %6u %4u  %-18s %s\n", slave->position, slave->name, slave->vendor_id,
-               slave->product_code, slave->revision, slave->alias, slave->explicit_id,
-               al_state_name(slave->al_state, state, sizeof state),
+        name_width = wider(name_width, slave->name);
+        state_width = wider(state_width, al_state_name(slave->al_state, state, sizeof state));
+    }
+    printf("%3s  %-*s %-10s %-10s %-10s %6s %4s  %-*s %s\n", "pos", name_width, "name", "vendor", "product", "revision",
+           "alias", "ID", state_width, "state", "firmware");
+    for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++) {
+        const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, i);
+        printf("%3u  %-*s 0x%08X 0x%08X 0x%08X %6u %4u  %-*s %s\n", slave->position,
+               in_bytes(name_width, slave->name), slave->name, slave->vendor_id, slave->product_code, slave->revision,
+               slave->alias, slave->explicit_id, state_width, al_state_name(slave->al_state, state, sizeof state),
                slave->software_version[0] ? slave->software_version : "-");
         if (slave->is_bridge)
             printf("     bridge %s, motors %s, %s, %s, %s\n", model_name(slave), motor_name(slave->motors[0]),

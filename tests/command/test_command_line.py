@@ -66,6 +66,9 @@ def check_good(folder):
     expect(text.stdout == "CM1-E\n", "sdo read of a text", text)
     write = run("cm1e", "sdo", "-i", "sim", "write", "1", "0x607C", "-1200")
     expect(write.returncode == 0, "sdo write", write)
+    for words in (["--", "1", "0x6098", "-1"], ["1", "--", "0x6098", "-1"], ["1", "0x6098", "--", "-1"]):
+        write = run("cm1e", "sdo", "-i", "sim", "write", *words)
+        expect(write.returncode == 0, f"sdo write {words}", write)
     svg, csv, pcap = (os.path.join(folder, name) for name in ("trace.svg", "trace.csv", "frames.pcap"))
     move = run("cm1e", "move", "-i", "sim", "--json", "--by", "-0.25", "--svg", svg, "--csv", csv, "--pcap", pcap)
     expect(move.returncode == 0 and json.loads(move.stdout)["done"], "move", move)
@@ -385,6 +388,26 @@ def check_networks(folder):
     expect(plain.returncode == 0 and "<Pdo>5633</Pdo>" in plain.stdout, "ENI of a scan with a mapping", plain)
 
 
+def check_no_motor(folder):
+    """A network of a coupler alone: it is scanned and shown, and what is no motor is called so."""
+    bus = os.path.join(folder, "coupler.yaml")
+    with open(bus, "w", encoding="utf-8") as file:
+        file.write("bus: {sim_gaps: coupler}\naxes: [{type: virtual}]\n")
+    status = run("cm1e", "status", "-b", bus)
+    expect(status.returncode == 0 and status.stdout == "slave 1: Coupler, no motor, Pre-Operational\n", "no motor",
+           status)
+    status = run("cm1e", "status", "-b", bus, "--json")
+    expect(json.loads(status.stdout) == [{"position": 1, "name": "Coupler", "firmware": "", "is_motor": False,
+                                          "al_state": "Pre-Operational"}], "no motor", status)
+    with open(bus, "w", encoding="utf-8") as file:
+        file.write("bus: {sim_gaps: terminal}\naxes: [{position: 2}]\n")
+    status = run("cm1e", "status", "-b", bus)
+    expect(status.stdout.startswith("slave 1: Digital terminal 4+4, no motor, Pre-Operational\nslave 2: CM1-E, firmware"),
+           "a motor behind a terminal", status)
+    move = run("cm1e", "move", "-b", bus, "--by", "1", "--json")
+    expect(move.returncode == 0 and json.loads(move.stdout)["done"], "a motor behind device emulation", move)
+
+
 BRIDGED = """\
 bus:
   interface: sim
@@ -408,6 +431,9 @@ def check_bridge(folder):
     expect([motor["status_text"] for motor in motors] == ["in position"] * 2 + ["motor free"] * 2, "words", status)
     expect(all(motor["state"] == "Switch on disabled" and motor["mode_name"] == "csp" for motor in motors), "states",
            status)
+    table = run("cm1e", "scan", "-b", bus).stdout.splitlines()
+    starts = {line.find("0x") for line in table[1:] if line[:3].strip().isdigit()}
+    expect(starts == {table[0].find("vendor")}, f"columns of a scan with a long name: {table}", status)
     text = run("cm1e", "status", "-b", bus)
     expect("motor 3: CM2, axis \"lift\"" in text.stdout and "176800 bit/s, every 1 ms" in text.stdout, "status", text)
     k24 = run("cm1e", "sdo", "-b", bus, "read", "2", "0x70F6:4", "--json")
@@ -614,6 +640,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         check_good(folder)
         check_bridge(folder)
+        check_no_motor(folder)
         check_axes_without_a_motor(folder)
         check_examples(folder)
     check_wrong()
