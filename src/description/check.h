@@ -65,6 +65,7 @@
     X(TYPE_TWICE, "type-twice", true)                                                                               \
     X(TYPE_LOOP, "type-loop", true)                                                                                 \
     X(IDENTITY_OBJECT, "identity-object", true)                                                                     \
+    X(IDENTITY_REVISION, "identity-revision", false)                                                                \
     X(DEVICE_TWICE, "device-twice", true)                                                                           \
     X(DEVICE_TYPE, "device-type", true)                                                                             \
     X(SLOT_MODULE_MISSING, "slot-module-missing", true)                                                             \

@@ -15,20 +15,22 @@ static bool stated(const cm1e_check_t *check, uint16_t index, uint8_t subindex, 
 static void check_identity_object(const cm1e_check_t *check)
 {
     const cm1e_description_t *device = check->device;
+    /* Files that describe many revisions of a device often have one dictionary for all of them. */
     const struct {
         uint8_t subindex;
         const char *what;
         uint32_t value;
         bool given;
-    } parts[] = {{1, "vendor", device->vendor_id, device->vendor_id != 0},
-                 {2, "product code", device->product_code, device->product_given},
-                 {3, "revision", device->revision, device->revision_given}};
+        cm1e_rule_t rule;
+    } parts[] = {{1, "vendor", device->vendor_id, device->vendor_id != 0, CM1E_RULE_IDENTITY_OBJECT},
+                 {2, "product code", device->product_code, device->product_given, CM1E_RULE_IDENTITY_OBJECT},
+                 {3, "revision", device->revision, device->revision_given, CM1E_RULE_IDENTITY_REVISION}};
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
         uint32_t value;
         cm1e_place_t place;
         if (parts[i].given && stated(check, OBJECT_IDENTITY, parts[i].subindex, &value, &place) &&
             value != parts[i].value)
-            cm1e_check_add(check, CM1E_RULE_IDENTITY_OBJECT, place,
+            cm1e_check_add(check, parts[i].rule, place,
                            "0x1018:%02X gives the %s 0x%08X; the device is described with 0x%08X", parts[i].subindex,
                            parts[i].what, (unsigned)value, (unsigned)parts[i].value);
     }

@@ -174,13 +174,15 @@ static void check_available(const cm1e_check_t *check)
                        "there are %zu FMMUs; the controller has %d", device->fmmus.count, device->fmmus_available);
 }
 
+/* A file that states no FMMU leaves them to the master. */
 static void check_fmmu(const cm1e_check_t *check, cm1e_rule_t rule, cm1e_fmmu_use_t use, const char *what)
 {
     const cm1e_description_t *device = check->device;
     for (size_t i = 0; i < device->fmmus.count; i++)
         if (device->fmmus.at[i].use == use)
             return;
-    cm1e_check_add(check, rule, device->fmmus.count > 0 ? device->fmmus.at[0].place : device->place, "%s", what);
+    if (device->fmmus.count > 0)
+        cm1e_check_add(check, rule, device->fmmus.at[0].place, "%s", what);
 }
 
 static uint32_t bytes_of(const cm1e_check_t *check, cm1e_sync_manager_use_t use, const uint32_t *bytes)

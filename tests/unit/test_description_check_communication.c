@@ -343,6 +343,16 @@ static void test_fmmu_is_needed_for_what_is_used(void)
     cm1e_description_file_free(&file);
 }
 
+/* A file that states no FMMU says nothing of them. */
+static void test_fmmus_that_no_file_states_are_no_mistake(void)
+{
+    cm1e_description_file_t file = {0};
+    make_good(&file);
+    DEVICE(&file)->fmmus.count = 0;
+    assert_no_finding(&file);
+    cm1e_description_file_free(&file);
+}
+
 /* Digital inputs of a controller without processor: 0x1000 to 0x1003, a byte each, without buffers. */
 static void test_digital_inputs_have_no_buffers(void)
 {
@@ -399,6 +409,7 @@ int main(void)
     RUN_TEST(test_what_is_not_stated_is_no_mistake);
     RUN_TEST(test_limits_may_be_used_up);
     RUN_TEST(test_fmmu_is_needed_for_what_is_used);
+    RUN_TEST(test_fmmus_that_no_file_states_are_no_mistake);
     RUN_TEST(test_digital_inputs_have_no_buffers);
     RUN_TEST(test_order_is_of_devices_with_a_mailbox);
     return UNITY_END();

@@ -289,7 +289,7 @@ static const broken_t breaks[] = {
            "0x1018:01 gives the vendor 0x12345678; the device is described with 0x00004441"),
     BREAKS(IDENTITY_OBJECT, other_product,
            "0x1018:02 gives the product code 0x12345678; the device is described with 0x44412002"),
-    BREAKS(IDENTITY_OBJECT, other_revision,
+    BREAKS(IDENTITY_REVISION, other_revision,
            "0x1018:03 gives the revision 0x12345678; the device is described with 0x20020103"),
     BREAKS(DEVICE_TYPE, other_profile_information,
            "0x1000 is 0x00040192; profile 402 with the additional information 2 is 0x00020192"),

@@ -220,7 +220,7 @@ static const char *from_root(const char *text)
 }
 
 /* CM1E_TRIO_SAMPLE: the path of an EC_EXTEND that Trio wrote (docs/TRIO.md); it may not be in this repository. */
-static void test_a_file_of_trio_comes_back_to_the_letter(void)
+static void test_a_file_of_trio_comes_back_from_its_first_element_on(void)
 {
     const char *path = getenv("CM1E_TRIO_SAMPLE");
     FILE *sample = path ? fopen(path, "rb") : NULL;
@@ -248,6 +248,6 @@ int main(void)
     RUN_TEST(test_a_list_without_end_is_refused);
     RUN_TEST(test_truncated_files_are_refused);
     RUN_TEST(test_random_damage_does_no_harm);
-    RUN_TEST(test_a_file_of_trio_comes_back_to_the_letter);
+    RUN_TEST(test_a_file_of_trio_comes_back_from_its_first_element_on);
     return UNITY_END();
 }
