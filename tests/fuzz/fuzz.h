@@ -2,7 +2,7 @@
  * @file fuzz.h
  * What the fuzz targets share. A target is one file fuzz_<format>.c with fuzz_rewrite() and fuzz_seeds(); CMake finds
  * it (preset `fuzz`), scripts/fuzz runs all of them. An input that can be read goes through the checker and through
- * write, read, write: the second time must give the same bytes.
+ * write, read, write: the second time must give the same bytes. fuzz_frames.c has no format: it rewrites nothing.
  */
 #ifndef CM1E_TESTS_FUZZ_H
 #define CM1E_TESTS_FUZZ_H
