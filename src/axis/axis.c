@@ -194,10 +194,8 @@ void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info)
     const cm1e_drive_feedback_t *f = &axis->drive.feedback;
     *info = (cm1e_axis_info_t){
         .state = axis->state,
-        .set_position = cm1e_axis_units(axis, axis->set),
         .set_velocity = axis->set_velocity,
         .set_acceleration = axis->set_acceleration,
-        .actual_position = cm1e_axis_units(axis, axis_actual(axis)),
         .actual_velocity = (f->velocity - cm1e_axis_backlash_velocity(axis)) / axis->scale,
         .actual_torque = f->torque * (axis->scale < 0.0 ? -0.1 : 0.1),
         .position_lag = cm1e_position_minus(axis->set, axis_actual(axis)) / axis->scale,
@@ -217,4 +215,5 @@ void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info)
         .temperature = f->temperature,
         .dc_link_voltage = f->dc_link_decivolt * 0.1,
     };
+    cm1e_axis_shown(axis, &info->set_position, &info->actual_position);
 }

@@ -3,6 +3,7 @@
  * shift of the coordinates by MC_SetPosition and homing. A turn of a modulo axis is a fraction of counts, and turn k
  * begins at k times that fraction exactly, computed anew each time: nothing adds up, however long the axis turns.
  */
+#include <float.h>
 #include <math.h>
 
 #include "axis/axis_private.h"
@@ -11,6 +12,9 @@ __extension__ typedef __int128 wide_t;
 
 /* Positions that a drive of whole counts cannot tell apart are the same: nobody means a whole turn by that. */
 static const double same_counts = 0.5 + 1e-6;
+
+/* Of a fraction of a count, where it has gone through a few sums. */
+static const double rounding_counts = 1e-9;
 
 /* floor() without its call; of what fits. */
 static int64_t floor_of(double value)
@@ -53,7 +57,8 @@ static double turn_counts(const cm1e_axis_t *axis)
 /* n / d with n >= 0, as a double, without losing the fraction of a large quotient. */
 static double quotient(wide_t n, int64_t d) { return (double)(int64_t)(n / d) + (double)(int64_t)(n % d) / (double)d; }
 
-/* In which turn a position from the origin is, and how many counts from its beginning; 0 <= phase < a turn. */
+/* In which turn a position from the origin is, and how many counts from its beginning; 0 <= phase < a turn. The beginning
+ * of a turn that is no whole number of counts is rounded, perhaps to less: it belongs to its turn all the same. */
 static int64_t turn_of(const cm1e_axis_t *axis, position_t position, double *phase)
 {
     const int64_t numerator = axis->turn.numerator, denominator = axis->turn.denominator;
@@ -72,8 +77,9 @@ static int64_t turn_of(const cm1e_axis_t *axis, position_t position, double *pha
         turn--;
     }
     *phase = quotient(rest, denominator) + position.fraction;
-    if (*phase >= turn_counts(axis)) { /* by the fraction of a count */
-        *phase -= turn_counts(axis);
+    const double all = turn_counts(axis);
+    if (*phase >= all - rounding_counts - 4.0 * DBL_EPSILON * all) { /* by the fraction of a count */
+        *phase = fmax(*phase - all, 0.0);
         turn++;
     }
     return turn;
@@ -106,6 +112,26 @@ double cm1e_axis_units(const cm1e_axis_t *axis, position_t position)
         return units < axis->modulo_range ? units : 0.0; /* the last 1e-16 of a turn */
     }
     return cm1e_axis_line(axis, position);
+}
+
+/* Set and actual position at the same place may lie on both sides of the beginning of a turn, which a drive of whole
+ * counts cannot tell. Who reads a turn beside 0 would think of a turn of lag: the one before the beginning is at it. */
+void cm1e_axis_shown(const cm1e_axis_t *axis, double *set, double *actual)
+{
+    const position_t at = axis_actual(axis);
+    *set = cm1e_axis_units(axis, axis->set);
+    *actual = cm1e_axis_units(axis, at);
+    if (!(axis->modulo_range > 0.0))
+        return;
+    double phase;
+    const int64_t turn = turn_of(axis, from_origin(axis, at), &phase);
+    int64_t set_turn = turn_of(axis, from_origin(axis, axis->set), &phase);
+    if (turn_counts(axis) - phase < axis->tolerance * fabs(axis->scale)) {
+        *set = 0.0;
+        set_turn++;
+    }
+    if (set_turn != turn && fabs(cm1e_position_minus(axis->set, at)) <= same_counts)
+        *(set_turn < turn ? set : actual) = 0.0;
 }
 
 double cm1e_axis_line(const cm1e_axis_t *axis, position_t position)

@@ -213,7 +213,9 @@ void cm1e_axis_advance(cm1e_axis_t *axis);
 
 /* axis_position.c */
 double cm1e_axis_units(const cm1e_axis_t *axis, position_t position);
-/** The same without the turns of a modulo axis: what limits are compared with. */
+/** Set and actual position, as they are shown. */
+void cm1e_axis_shown(const cm1e_axis_t *axis, double *set, double *actual);
+/** Without the turns of a modulo axis: what limits are compared with. */
 double cm1e_axis_line(const cm1e_axis_t *axis, position_t position);
 /** The way back; FALSE: not finite, or farther away than the axis counts. */
 bool cm1e_axis_position_from_line(const cm1e_axis_t *axis, double line, position_t *position);

@@ -270,9 +270,86 @@ static void test_asked_to_turn_round_it_brakes_first(void)
     TEST_ASSERT_LESS_OR_EQUAL_INT64((int64_t)(2500000.0 * axis->cycle_s) + 1, worst_step);
 }
 
+/* ---- what is shown ----------------------------------------------------------------------------------------------- */
+
+/* Within the turn, also as a trace prints it, and beside each other where the motor is at the set-point. */
+static void expect_shown(void)
+{
+    const double range = axis->modulo_range, count = 1.0 / fabs(axis->scale);
+    const cm1e_axis_info_t info = bench_info();
+    const double shown[] = {info.set_position, info.actual_position};
+    for (int i = 0; i < 2; i++) {
+        char text[32];
+        snprintf(text, sizeof text, "%.9g", shown[i]);
+        TEST_ASSERT_TRUE(shown[i] >= 0.0 && shown[i] < range);
+        TEST_ASSERT_TRUE_MESSAGE(i == 1 || strtod(text, NULL) < range, text);
+    }
+    if (fabs(cm1e_position_minus(axis->set, axis_actual(axis))) <= 0.5)
+        TEST_ASSERT_DOUBLE_WITHIN(0.5 * count + 1e-9 * range, info.set_position, info.actual_position);
+}
+
+static void random_table(void)
+{
+    double counts;
+    do {
+        fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        cm1e_axis_config_t *config = &bus.config.axes[0];
+        config->gear_numerator = (uint32_t)draw(50) + 1;
+        config->gear_denominator = (uint32_t)draw(50) + 1;
+        config->units_per_revolution = draw(2) ? 360.0 : (double)(draw(9999) + 1) / 10.0;
+        config->modulo_range = config->units_per_revolution;
+        config->invert = draw(2);
+        counts = 50000.0 * config->gear_numerator / config->gear_denominator;
+    } while (counts < 10000.0 || counts > 500000.0);
+    bench_create();
+    bench_enable();
+}
+
+static void test_a_move_to_0_shows_0_on_the_set_and_on_the_actual_side(void)
+{
+    for (int n = 0; n < 150; n++) {
+        random_table();
+        for (int k = 0; k < 6; k++) {
+            const double range = axis->modulo_range, away = uniform(-0.3, 0.3) * range;
+            const double velocity = uniform(0.5, 1.0) * fmin(axis->maximum.velocity, 20.0 * range);
+            bench_wait(bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = away,
+                                                                  .velocity = velocity}), 20000);
+            const MC_DIRECTION direction = directions[draw(5)];
+            const cm1e_command_id_t id = bench_start_command(&(cm1e_axis_command_t){
+                .kind = CM1E_COMMAND_MOVE_ABSOLUTE, .velocity = velocity, .direction = direction});
+            while (bench_state_of(id) == CM1E_COMMAND_ACTIVE) {
+                bench_cycles(1);
+                expect_shown();
+            }
+            bench_cycles(2);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9 * range, 0.0, bench_info().set_position);
+            expect_shown();
+        }
+    }
+}
+
+/* At rest at any part of a count on both sides of the beginning of a turn. */
+static void test_set_and_actual_position_are_shown_on_the_same_side_of_a_turn(void)
+{
+    for (int n = 0; n < 100; n++) {
+        random_table();
+        for (int k = 0; k < 40; k++) {
+            const double near = (k % 4 == 0 ? uniform(-1e-9, 1e-9) : uniform(-2.0, 2.0)) / fabs(axis->scale);
+            const int turns = (int)draw(3);
+            const double to = near - cm1e_axis_line(axis, axis->set) + axis->modulo_range * turns;
+            bench_wait(bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = to,
+                                                                  .velocity = axis->maximum.velocity}), 20000);
+            bench_cycles(2);
+            expect_shown();
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_a_move_to_0_shows_0_on_the_set_and_on_the_actual_side);
+    RUN_TEST(test_set_and_actual_position_are_shown_on_the_same_side_of_a_turn);
     RUN_TEST(test_billion_turns_and_back_are_exact);
     RUN_TEST(test_turns_begin_at_their_multiple_of_a_fraction);
     RUN_TEST(test_random_turns_are_exact);
