@@ -11,6 +11,9 @@
 
 #include "axis/axis_coupling.h"
 
+/* What an exit velocity may differ by when it is asked again on the way. */
+static const double same_velocity = 1e-9;
+
 static bool is_homing(cm1e_command_kind_t kind)
 {
     return kind == CM1E_COMMAND_HOME || kind == CM1E_COMMAND_HOMING_STEP;
@@ -54,7 +57,7 @@ static bool shared(const cm1e_axis_t *axis) { return axis->superimposed.moving &
 static double nearer(const cm1e_axis_t *axis, const move_t *move, double distance)
 {
     const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
-    if (!axis->superimposed.id || (kind != CM1E_COMMAND_MOVE_ABSOLUTE && kind != CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE))
+    if (!axis->superimposed.id || !is_absolute_move(kind))
         return distance;
     const double left = distance > 0.0 ? distance - fmax(axis->superimposed.highest, 0.0)
                                        : distance - fmin(axis->superimposed.lowest, 0.0);
@@ -173,9 +176,7 @@ static cm1e_error_t check(const cm1e_axis_t *axis, move_t *move, const position_
         error = cm1e_axis_signed_velocity(axis, &from, move, &way);
     if (error || kind == CM1E_COMMAND_HALT)
         return error;
-    const bool from_known = end || kind == CM1E_COMMAND_MOVE_ABSOLUTE ||
-                            kind == CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE;
-    if (from_known && !cm1e_axis_limits_contain_target(axis, &from, move->target))
+    if ((end || is_absolute_move(kind)) && !cm1e_axis_limits_contain_target(axis, &from, move->target))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     const bool direction_known = end || kind == CM1E_COMMAND_MOVE_VELOCITY ||
                                  kind == CM1E_COMMAND_MOVE_RELATIVE || kind == CM1E_COMMAND_MOVE_ADDITIVE ||
@@ -351,4 +352,47 @@ bool cm1e_axis_replan_if(cm1e_axis_t *axis)
 {
     bool done = false;
     return can_replan(axis) && replan(axis, true, &done) == CM1E_OK && done;
+}
+
+/* ---- a shift of the coordinates ---------------------------------------------------------------------------------- */
+
+/* Those that wait behind a homing are meant in the coordinates that it makes. */
+static int before_homing(cm1e_axis_t *axis)
+{
+    int count = 0;
+    while (count < axis->waiting.count && !is_homing((cm1e_command_kind_t)waiting_move(axis, count)->kind))
+        count++;
+    return count;
+}
+
+bool cm1e_axis_waiting_hold(cm1e_axis_t *axis, double lower, double upper)
+{
+    const int count = before_homing(axis);
+    bool known = axis->active && (is_discrete_move(axis->kind) || is_continuous_move(axis->kind));
+    for (int i = 0; i < count; i++) {
+        const move_t *move = waiting_move(axis, i);
+        const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
+        const double target = cm1e_axis_line(axis, move->target);
+        known = is_absolute_move(kind) || (known && (is_discrete_move(kind) || is_continuous_move(kind)));
+        if (known && !(target <= upper + axis->tolerance && target >= lower - axis->tolerance))
+            return false;
+    }
+    return true;
+}
+
+bool cm1e_axis_shift_waiting(cm1e_axis_t *axis, double shift)
+{
+    const int count = before_homing(axis);
+    for (int i = 0; i < count; i++)
+        waiting_move(axis, i)->shift += shift;
+    if (count == 0 || !axis->software_limits || !can_replan(axis) || !is_discrete_move(axis->kind))
+        return true;
+    /* What begins behind the target has less room now. */
+    const from_t from = from_base(axis);
+    const double planned = axis->move.exit_velocity, now = cm1e_axis_exit_velocity(axis, &from, &axis->move);
+    if (fabs(now) >= fabs(planned) * (1.0 - same_velocity) || cm1e_axis_replan_if(axis))
+        return true;
+    for (int i = 0; i < count; i++)
+        waiting_move(axis, i)->shift -= shift;
+    return false;
 }

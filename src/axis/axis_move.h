@@ -36,6 +36,7 @@ typedef struct move {
     uint8_t kind, buffer_mode, direction; /**< cm1e_command_kind_t, MC_BUFFER_MODE, MC_DIRECTION */
     bool passing;           /**< MOVE_CONTINUOUS_*: only its end velocity is left to be reached, not its position */
     double position, velocity, end_velocity, acceleration, deceleration, jerk;
+    double shift;           /**< u; how far MC_SetPosition has moved the coordinates since the position was given */
     position_t origin;      /**< what a relative position counts from */
     position_t target;      /**< where it ends */
     double exit_velocity;   /**< u/s, signed: with which it passes its target, because another one goes on from there */
@@ -144,6 +145,11 @@ move_t *cm1e_axis_find_waiting(cm1e_axis_t *axis, cm1e_command_id_t id);
 cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move);
 /** A waiting command with this number, if there is one, gets these inputs. */
 cm1e_error_t cm1e_axis_update_waiting(cm1e_axis_t *axis, const move_t *move);
+/** MC_SetPosition: whether the targets of those that wait, as far as they are known, keep these software limits (u). */
+bool cm1e_axis_waiting_hold(cm1e_axis_t *axis, double lower, double upper);
+/** The coordinates have been shifted by so much: those that wait end where they were to. FALSE: their limits are such now
+ *  that the motion that runs would have to come slower to its end, and cannot. Nothing has changed then. */
+bool cm1e_axis_shift_waiting(cm1e_axis_t *axis, double shift);
 /** The velocity with which a move that begins there shall pass its target, for the sake of those that wait. */
 double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t *move);
 /** The first waiting command that can begin there does; those before it fail. FALSE: none could. */

@@ -23,11 +23,21 @@ static cm1e_error_t stopping_way(const cm1e_axis_t *axis, const from_t *from, co
     return error;
 }
 
+/* Where a position lies after a shift of the coordinates; MC_SetPosition itself takes no other than one in the range. */
+static double shifted(const cm1e_axis_t *axis, const move_t *move)
+{
+    const double range = axis->modulo_range, position = move->position + move->shift;
+    if (move->shift == 0.0 || !(range > 0.0))
+        return position;
+    const double turned = position - range * floor(position / range);
+    return turned >= 0.0 && turned < range ? turned : 0.0;
+}
+
 static cm1e_error_t resolve_absolute(const cm1e_axis_t *axis, const from_t *from, move_t *move)
 {
     double way = 0.0;
     const cm1e_error_t error = axis->modulo_range > 0.0 ? stopping_way(axis, from, move, &way) : CM1E_OK;
-    return error ? error : cm1e_axis_resolve_target(axis, move->position, (MC_DIRECTION)move->direction,
+    return error ? error : cm1e_axis_resolve_target(axis, shifted(axis, move), (MC_DIRECTION)move->direction,
                                                     from->position, from->velocity, way, &move->target);
 }
 

@@ -263,13 +263,20 @@ static cm1e_error_t set_position(cm1e_axis_t *axis, double position, bool relati
     const bool limited = axis->limit_negative_enabled || axis->limit_positive_enabled;
     if (limited && axis->activity == ACTIVITY_DRIVE)
         return CM1E_ERROR_AXIS_STATE; /* of the drive's way only the end is known */
+    const double shift = value - now;
     if (limited) {
-        const double shift = value - now, set = cm1e_axis_units(axis, axis->set) + shift;
-        if (!(set >= lower && set <= upper) || !cm1e_axis_limits_hold(axis, lower - shift, upper - shift))
+        const double set = cm1e_axis_units(axis, axis->set) + shift;
+        if (!(set >= lower && set <= upper) || !cm1e_axis_limits_hold(axis, lower - shift, upper - shift) ||
+            !cm1e_axis_waiting_hold(axis, lower - shift, upper - shift))
             return CM1E_ERROR_AXIS_POSITION_RANGE;
     }
+    const position_t origin = axis->origin;
+    const double origin_units = axis->origin_units;
     cm1e_axis_set_origin(axis, actual, value);
-    return CM1E_OK;
+    if (cm1e_axis_shift_waiting(axis, shift))
+        return CM1E_OK;
+    cm1e_axis_set_origin(axis, origin, origin_units); /* of a linear axis: no other has software limits */
+    return CM1E_ERROR_AXIS_POSITION_RANGE;
 }
 
 cm1e_error_t cm1e_axis_set_position(cm1e_axis_t *axis, double position, bool relative)

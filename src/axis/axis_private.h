@@ -342,6 +342,10 @@ static inline bool is_continuous_move(cm1e_command_kind_t kind)
 {
     return kind == CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE || kind == CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE;
 }
+static inline bool is_absolute_move(cm1e_command_kind_t kind)
+{
+    return kind == CM1E_COMMAND_MOVE_ABSOLUTE || kind == CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE;
+}
 static inline bool is_coupling(cm1e_command_kind_t kind)
 {
     return kind == CM1E_COMMAND_GEAR_IN || kind == CM1E_COMMAND_GEAR_IN_POS || kind == CM1E_COMMAND_CAM_IN ||

@@ -38,6 +38,7 @@ static move_t merged(const move_t *old, const move_t *inputs)
     move.buffer_mode = old->buffer_mode; /* it has been used */
     move.origin = old->origin;
     move.target = old->target;
+    move.shift = same_way(old, inputs) ? old->shift : 0.0;
     move.passing = old->passing && same_way(old, inputs);
     return move;
 }
