@@ -13,7 +13,7 @@
 #include "nic/nic.h"
 #include "sim/bridge_app.h"
 
-enum { MOST_OTHERS = 4, SDO_CYCLES = 5, SETTLING = 200 };
+enum { MOST_OTHERS = 4, SDO_CYCLES = 5, SETTLING = 200, STEP_AT_START = 100 /* counts, of the simulated bridge */ };
 
 /** An axis that is not judged call by call, and moves to and fro. */
 typedef struct other {
@@ -38,6 +38,7 @@ static struct bench {
     int other_count;
     int64_t bus_disturbed_until;    /**< by what concerns all axes */
     int64_t gap_until;              /**< targets are missing */
+    double speed[3][5];             /**< counts/s a cycle ago, by slave and channel */
     long long sound[3][5];          /**< the last cycle without an error of this motor, by slave and channel */
 } bench;
 
@@ -205,8 +206,14 @@ static void judge_rules(const cm1e_sim_probe_t *shaft, const cm1e_axis_config_t 
         *sound = judged.number;
     const bool just_failed = judged.number - *sound <= SDO_CYCLES;
     const bool gap = judged.number < bench.gap_until || judged.number < bench.bus_disturbed_until;
+    /* A motor that runs out while it is enabled is seen where it was two cycles ago. */
+    double *speed = &bench.speed[axis->address][axis->channel];
+    const double now = m ? fabs(m->mechanics.velocity) : 0, fastest = fmax(now, *speed);
+    const bool runs = fastest * 2e-9 * (double)judged.cycle_ns > STEP_AT_START;
+    *speed = now;
     const unsigned allowed = CM1E_SIM_OUTPUT_IN_VAIN | CM1E_SIM_MODE_IN_MOTION |
-                             (just_failed ? CM1E_SIM_MODE_IN_ERROR : 0u) | (gap ? CM1E_SIM_STEP_IN_CYCLE : 0u);
+                             (just_failed ? CM1E_SIM_MODE_IN_ERROR : 0u) |
+                             (runs ? CM1E_SIM_STEP_AT_START : 0u) | (gap ? CM1E_SIM_STEP_IN_CYCLE : 0u);
     MUST((shaft->broken_rules & ~allowed) == 0, "ID%u: rules of the bridge's guide are broken: 0x%03X", axis->channel,
          shaft->broken_rules);
     cm1e_sim_probe_reset_channel(bench.segment, axis->address, axis->channel);

@@ -372,7 +372,8 @@ static void watch_limits(void)
     const bool changed = axis->lower != watched.lower || axis->upper != watched.upper ||
                          cm1e_axis_units(axis, watched.set) != watched.units;
     /* Where the limits are is not known before a homing; what follows it begins wherever it was. */
-    const bool searches = axis->state == CM1E_AXIS_HOMING || (watched.searched && axis->state == CM1E_AXIS_STOPPING);
+    const bool stopped = (watched.searched || judged.searched) && axis->state == CM1E_AXIS_STOPPING;
+    const bool searches = axis->state == CM1E_AXIS_HOMING || stopped;
     const bool searched = searches || judged.searched; /* it may have failed in the cycle in which it began */
     watched.searched = searches;
     judged.searched = false;
