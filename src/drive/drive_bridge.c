@@ -4,6 +4,7 @@
 
 #include <stdlib.h>
 
+#include "device/bridge_status.h"
 #include "drive/drive_kind.h"
 #include "drive/drive_private.h"
 
@@ -14,6 +15,7 @@ static const int64_t rest_revolution_ns = 40000 * MS_IN_NS;
 enum { STATUS_TRIES = 3 };
 static const int64_t rest_ns = 20 * MS_IN_NS;
 static const int64_t status_timeout_ns = 300 * MS_IN_NS;
+static const int64_t status_holds_ns = 3 * MS_IN_NS;
 
 cm1e_bridge_motor_t cm1e_drive_bridge_motor(const cm1e_drive_t *drive)
 {
@@ -90,6 +92,37 @@ static bool is_of_motor(cm1e_error_t error)
     return error <= CM1E_ERROR_DRIVE_FAULT && error >= CM1E_ERROR_DRIVE_RESET_TIMEOUT;
 }
 
+static void read_status(cm1e_drive_t *drive)
+{
+    cm1e_drive_bridge_t *behind = drive->behind;
+    behind->status_sdo = (cm1e_sdo_t){
+        .position = drive->position, .index = OBJ_F530_SYSTEM_INFO,
+        .subindex = CM1E_BRIDGE_STATUS_SUBINDEX(drive->config->channel), .data = behind->status_data,
+        .size = sizeof behind->status_data, .timeout_ns = status_timeout_ns,
+    };
+    behind->status_reading = cm1e_sdo_submit(drive->bus, &behind->status_sdo) == CM1E_OK;
+}
+
+static void take_status(cm1e_drive_t *drive)
+{
+    cm1e_drive_bridge_t *behind = drive->behind;
+    const uint8_t status = behind->status_data[0]; /* UDINT, of which the guide uses eight bits */
+    behind->status_sound = !cm1e_bridge_status_is_error(cm1e_drive_bridge_motor(drive), status);
+    behind->status_until_ns = drive->now_ns + status_holds_ns;
+    if (drive->fault.error) {
+        drive->fault.motor_status = status;
+        drive->fault.motor_status_known = true;
+    }
+}
+
+bool cm1e_drive_bridge_sound(cm1e_drive_t *drive)
+{
+    cm1e_drive_bridge_t *behind = drive->behind;
+    const bool known = drive->now_ns < behind->status_until_ns;
+    behind->status_wanted = !known;
+    return known && behind->status_sound;
+}
+
 /* BR 6.1.3, note: the statusword shows that there is an error, F530 which. One question, asked again where the answer
  * fails; it is not worth more than that. */
 static void ask_status(cm1e_drive_t *drive)
@@ -101,24 +134,19 @@ static void ask_status(cm1e_drive_t *drive)
         if (state == CM1E_SDO_BUSY)
             return;
         behind->status_reading = false;
-        if (state == CM1E_SDO_DONE && behind->status_sdo.size > 0 && fault->error) {
-            fault->motor_status = behind->status_data[0]; /* UDINT, of which the guide uses eight bits */
-            fault->motor_status_known = true;
-        }
+        if (state == CM1E_SDO_DONE && behind->status_sdo.size > 0)
+            take_status(drive);
         return;
     }
     if (fault->error == CM1E_OK)
         behind->status_tries = 0;
     const bool missing = is_of_motor(fault->error) && !fault->motor_status_known;
-    if (missing && behind->status_tries < STATUS_TRIES && drive->feedback.online) {
-        behind->status_tries++;
-        behind->status_sdo = (cm1e_sdo_t){
-            .position = drive->position, .index = OBJ_F530_SYSTEM_INFO,
-            .subindex = CM1E_BRIDGE_STATUS_SUBINDEX(drive->config->channel), .data = behind->status_data,
-            .size = sizeof behind->status_data, .timeout_ns = status_timeout_ns,
-        };
-        behind->status_reading = cm1e_sdo_submit(drive->bus, &behind->status_sdo) == CM1E_OK;
-    }
+    const bool again = missing && behind->status_tries < STATUS_TRIES;
+    if (!(again || behind->status_wanted) || !drive->feedback.online)
+        return;
+    behind->status_tries += again;
+    behind->status_wanted = false;
+    read_status(drive);
 }
 
 void cm1e_drive_bridge_step(cm1e_drive_t *drive)

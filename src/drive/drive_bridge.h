@@ -30,6 +30,8 @@ typedef struct cm1e_drive_bridge {
     cm1e_sdo_t status_sdo;          /**< F530:5 ... 8 */
     uint8_t status_data[4], status_tries;
     bool status_reading;
+    bool status_wanted, status_sound; /**< by the answer, until ... */
+    int64_t status_until_ns;
     cm1e_drive_cmd_run_t cmd;
     cm1e_drive_digital_t digital;
     cm1e_drive_cml_t cml;           /**< strings are sent while CML is shown */

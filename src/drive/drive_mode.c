@@ -159,14 +159,19 @@ static void read_done(cm1e_drive_t *drive)
     drive->mode_retry_ns = drive->now_ns + (drive->mode_uncertain ? read_again_ns : 0);
 }
 
-static bool may_write(const cm1e_drive_t *drive)
+/* BR appendix 3: "Confirm No Error Occurs". In CMD the statusword does not tell (BR 7.1.3), so F530 is asked. */
+static bool is_sound(cm1e_drive_t *drive)
+{
+    return place(drive)->words->commands ? cm1e_drive_bridge_sound(drive) : !drive->feedback.fault;
+}
+
+static bool may_write(cm1e_drive_t *drive)
 {
     const int64_t now_ns = drive->now_ns;
     if (!leads(drive, place(drive), drive->wanted) || now_ns < drive->mode_from_ns ||
         now_ns < drive->mode_write_ns + interval_ns)
         return false;
-    return !drive->wanted->rest ||
-           (cm1e_drive_rests(drive) && drive->feedback.fresh && !drive->feedback.fault);
+    return !drive->wanted->rest || (cm1e_drive_rests(drive) && drive->feedback.fresh && is_sound(drive));
 }
 
 static bool expired(cm1e_drive_t *drive)

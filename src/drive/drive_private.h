@@ -51,6 +51,8 @@ cm1e_error_t cm1e_drive_init_bridge(cm1e_drive_t *drive, cm1e_diag_t *diag);
 void cm1e_drive_bridge_step(cm1e_drive_t *drive);
 /** It has stood for some time, as far as 0x6064 shows. */
 bool cm1e_drive_rests(const cm1e_drive_t *drive);
+/** F530 says that the motor has no error. Asks it, and is false until it has answered; an answer holds for some cycles. */
+bool cm1e_drive_bridge_sound(cm1e_drive_t *drive);
 
 /* drive_command.c */
 void cm1e_drive_cmd_step(cm1e_drive_t *drive);

@@ -226,6 +226,32 @@ static void test_an_error_of_the_motor_keeps_every_mode_but_cmd_shut(void)
     }
 }
 
+/* In CMD the statusword says nothing of it: F530 does. The error may come at any cycle of a switch. */
+static void test_an_error_of_the_motor_in_cmd_keeps_it_there(void)
+{
+    static const int ways[] = {CML, CPIO};
+    for (int to = 0; to < 2; to++)
+        for (int cycle = 0; cycle < 60; cycle++) {
+            bench_open(CM1E_DEVICE_EB12, (unsigned)(1 + cycle % 4));
+            go_to(CMD);
+            bus.sdo_count = 0;
+            drive.command.mode = (cm1e_mode_t)ways[to];
+            bench_cycles(cycle);
+            const bool written = writes_of_mode() > 0;
+            cm1e_sim_bridge_axis_error(fake_bridge_axis(), BRIDGE_STATUS_OVERLOAD);
+            fake_bridge_axis()->broken_rules = 0;
+            bench_cycles(2000);
+            if (cycle == 0)
+                TEST_ASSERT_EQUAL_UINT(0, writes_of_mode());
+            if (!written && writes_of_mode() == 0)
+                TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_MODE_TIMEOUT, drive.fault.error);
+            /* An answer holds for 3 ms, and a write takes its time: the error may come in between. */
+            if (writes_of_mode() > 0 && !written)
+                TEST_ASSERT_EQUAL_INT(CM1E_SIM_MODE_IN_ERROR, fake_bridge_axis()->broken_rules);
+            TEST_ASSERT_TRUE(cycle < 50 || written);
+        }
+}
+
 /* ---- not confirmed ---------------------------------------------------------------------------------------------- */
 
 static void test_a_switch_that_is_not_confirmed_is_a_fault_that_says_what_is_shown(void)
@@ -391,6 +417,7 @@ int main(void)
     RUN_TEST(test_a_motor_that_never_rests_ends_in_a_timeout_without_a_write);
     RUN_TEST(test_a_coarse_resolution_does_not_hide_that_the_motor_turns);
     RUN_TEST(test_an_error_of_the_motor_keeps_every_mode_but_cmd_shut);
+    RUN_TEST(test_an_error_of_the_motor_in_cmd_keeps_it_there);
     RUN_TEST(test_a_switch_that_is_not_confirmed_is_a_fault_that_says_what_is_shown);
     RUN_TEST(test_after_a_refused_switch_csp_works_on);
     RUN_TEST(test_a_switch_survives_broken_transfers_and_lost_frames);
