@@ -38,6 +38,7 @@ void cm1e_sim_bridge_search_begin(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axi
             CM1E_BRIDGE_ACCELERATION_UNIT * (double)*cm1e_sim_bridge_k(bridge, n, K_ACCELERATION) / axis->scale,
         .offset = offset_unit(bridge, axis) * (double)*cm1e_sim_bridge_k(bridge, n, K_OFFSET) / axis->scale,
     };
+    axis->servo.own_profile = true;
     look_at_sensor(axis);
     cm1e_sim_search_begin(&axis->search, methods[method - 1].by_sensor);
     cm1e_sim_bridge_axis_torque(axis, torque > 0 && torque <= 100 ? (double)torque : DEFAULT_TORQUE_PERCENT);

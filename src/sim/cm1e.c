@@ -21,6 +21,8 @@ enum { ERROR_OVERLOAD = 0x2310, ERROR_OVER_SPEED = 0x7310, ERROR_POSITION = 0x73
 #define LAG_LIMIT_COUNTS 50000.0  /* a revolution */
 #define LAG_TIME_S 0.005
 #define FOLLOWING_WINDOW_COUNTS 1000.0
+#define STANDSTILL_COUNTS_PER_S 100.0
+#define STANDSTILL_TIME_S 0.005
 #define OVERLOAD_LIMIT_S 0.5      /* i2t: 0.9 s at peak torque */
 
 /* ---- time ------------------------------------------------------------------------------------------------------- */
@@ -45,10 +47,14 @@ static void supervise(cm1e_sim_cm1e_t *drive, double step_s)
         cm1e_sim_fsa_error(drive, ERROR_OVERLOAD);
 }
 
-static void step(cm1e_sim_cm1e_t *drive, double step_s)
+bool cm1e_sim_stands(const cm1e_sim_cm1e_t *drive)
 {
-    if (drive->deadline_ns <= drive->now_ns)
-        cm1e_sim_fsa_deadline(drive);
+    const bool moved = drive->state == OPERATION_ENABLED && drive->servo.reference_velocity != 0;
+    return !moved && drive->still_s >= STANDSTILL_TIME_S;
+}
+
+static void move(cm1e_sim_cm1e_t *drive, double step_s)
+{
     if (drive->state != OPERATION_ENABLED) {
         if (!cm1e_mechanics_at_rest(&drive->mechanics))
             cm1e_mechanics_step(&drive->mechanics, 0, step_s);
@@ -57,6 +63,14 @@ static void step(cm1e_sim_cm1e_t *drive, double step_s)
     drive->generator->step(drive, step_s);
     cm1e_mechanics_step(&drive->mechanics, cm1e_servo_step(&drive->servo, &drive->mechanics, step_s), step_s);
     supervise(drive, step_s);
+}
+
+static void step(cm1e_sim_cm1e_t *drive, double step_s)
+{
+    if (drive->deadline_ns <= drive->now_ns)
+        cm1e_sim_fsa_deadline(drive);
+    move(drive, step_s);
+    drive->still_s = sum_while(fabs(drive->mechanics.velocity) < STANDSTILL_COUNTS_PER_S, drive->still_s, step_s);
 }
 
 static void advance(void *app, int64_t now_ns)

@@ -112,6 +112,8 @@ struct cm1e_sim_cm1e {
     double overload_gain;    /**< 1 / rated_torque^2 */
     double overload;         /**< i2t sum, s */
     double overspeed_s, lag_s;
+    double still_s;          /**< how long the shaft has been at a velocity of 0, within the window */
+    double reached_s;        /**< PV: ... at the target velocity */
     bool following;
     cm1e_sim_line_t line;       /**< CSP */
     double goal, goal_velocity; /**< PP: set-point; CSV, PV: velocity */
@@ -130,6 +132,8 @@ cm1e_sim_cm1e_t *cm1e_sim_cm1e_create_app(const cm1e_axis_config_t *config, cm1e
 void cm1e_sim_cm1e_power_on(void *app, int64_t now_ns);
 /** The CM1-E in a slave; NULL: it is something else. */
 cm1e_sim_cm1e_t *cm1e_sim_cm1e_of(cm1e_sim_slave_t *slave);
+/** "Velocity of axis is 0": for a while, so that a shaft that only turns round does not stand. */
+bool cm1e_sim_stands(const cm1e_sim_cm1e_t *drive);
 /** 0x6064's view of the shaft. */
 int64_t cm1e_sim_actual_counts(const cm1e_sim_cm1e_t *drive);
 

@@ -1,8 +1,4 @@
-#include <math.h>
-
 #include "sim/cm1e_app.h"
-
-#define STANDSTILL_WINDOW 100.0     /* counts/s */
 
 /* UG 6.2.4 */
 static const struct {
@@ -55,6 +51,7 @@ static void homing_step(cm1e_sim_cm1e_t *drive, double step_s)
     const cm1e_sim_searcher_t motor = searcher(drive);
     if (homing->halted || homing->abandoned) {
         cm1e_sim_search_stand(&homing->search, &motor, step_s);
+        cm1e_servo_rest(&drive->servo, &drive->mechanics);
         if (homing->abandoned && drive->servo.reference_velocity == 0)
             cm1e_sim_homing_abort(drive);
         return;
@@ -102,6 +99,7 @@ static void homing_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
 
 static void homing_enter(cm1e_sim_cm1e_t *drive)
 {
+    drive->servo.own_profile = true;
     drive->homing.search.acceleration = drive->objects.homing_acceleration;
     if (!cm1e_sim_homing_running(drive))
         drive->homing.halted = false;
@@ -114,7 +112,7 @@ static uint16_t homing_status_bits(const cm1e_sim_cm1e_t *drive)
     const cm1e_sim_search_phase_t phase = homing->search.phase;
     const bool running = cm1e_sim_homing_running(drive);
     const bool error = drive->state == FAULT || drive->state == FAULT_REACTION_ACTIVE;
-    const bool stands = fabs(drive->mechanics.velocity) < STANDSTILL_WINDOW;
+    const bool stands = cm1e_sim_stands(drive);
     const bool attained = phase == SEARCH_DONE || (phase >= SEARCH_APPROACH && !homing->halted);
     const bool reached = running ? homing->halted && stands : !error || stands;
     return (uint16_t)((error ? STATUSWORD_HOMING_ERROR : 0) | (attained ? STATUSWORD_HOMING_ATTAINED : 0) |

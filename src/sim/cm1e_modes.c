@@ -6,7 +6,7 @@
 #define FOLLOWING_WINDOW 5000.0     /* counts; PP, statusword bit 13 */
 #define POSITION_WINDOW 10.0        /* counts; target reached */
 #define VELOCITY_WINDOW 500.0       /* counts/s; target reached */
-#define STANDSTILL_WINDOW 100.0     /* counts/s; "velocity of axis is 0" */
+#define REACHED_TIME_S 0.005        /* so long within it */
 
 /* 0x607A on the scale of the mechanics. It has 32 bits and wraps: the nearest turn of the wheel is meant. */
 static double target_position(const cm1e_sim_cm1e_t *drive)
@@ -31,7 +31,6 @@ static double motor_limited(const cm1e_sim_cm1e_t *drive, double velocity)
 }
 
 static bool halt_bit(const cm1e_sim_cm1e_t *drive) { return (drive->objects.controlword & CONTROLWORD_HALT) != 0; }
-static bool stands(const cm1e_sim_cm1e_t *drive) { return fabs(drive->mechanics.velocity) < STANDSTILL_WINDOW; }
 
 /* ---- cyclic synchronous position -------------------------------------------------------------------------------- */
 
@@ -76,7 +75,11 @@ static void csv_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
     drive->goal_velocity = (double)drive->objects.target_velocity * cm1e_sim_velocity_unit(drive);
 }
 
-static void csv_enter(cm1e_sim_cm1e_t *drive) { csv_outputs(drive, 0); }
+static void csv_enter(cm1e_sim_cm1e_t *drive)
+{
+    drive->servo.own_profile = false;
+    csv_outputs(drive, 0);
+}
 
 static void csv_step(cm1e_sim_cm1e_t *drive, double step_s)
 {
@@ -95,7 +98,16 @@ static void pv_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
     drive->profile_deceleration = acceleration(drive, drive->objects.profile_deceleration);
 }
 
-static void pv_enter(cm1e_sim_cm1e_t *drive) { pv_outputs(drive, 0); }
+static void pv_enter(cm1e_sim_cm1e_t *drive)
+{
+    drive->servo.own_profile = true;
+    pv_outputs(drive, 0);
+}
+
+static bool at_velocity(const cm1e_sim_cm1e_t *drive, double wanted)
+{
+    return fabs(drive->mechanics.velocity - wanted) < VELOCITY_WINDOW;
+}
 
 /* "The deceleration value is only used when the target velocity is set to 0 or the halt bit is set" (UG 6.2.3). */
 static void pv_step(cm1e_sim_cm1e_t *drive, double step_s)
@@ -104,14 +116,16 @@ static void pv_step(cm1e_sim_cm1e_t *drive, double step_s)
     cm1e_sim_ramp(&drive->servo.reference_velocity, wanted,
                   wanted == 0 ? drive->profile_deceleration : drive->profile_acceleration, step_s);
     velocity_step(drive, step_s);
+    drive->reached_s = at_velocity(drive, wanted) ? drive->reached_s + step_s : 0;
+    cm1e_servo_rest(&drive->servo, &drive->mechanics);
 }
 
 static uint16_t pv_status_bits(const cm1e_sim_cm1e_t *drive)
 {
-    const double wanted = drive->state == OPERATION_ENABLED ? drive->goal_velocity : 0;
-    const bool reached = halt_bit(drive) ? stands(drive)
-                                         : fabs(drive->mechanics.velocity - wanted) < VELOCITY_WINDOW;
-    return (uint16_t)((reached ? STATUSWORD_TARGET_REACHED : 0) | (stands(drive) ? STATUSWORD_BIT12 : 0));
+    const double wanted = drive->state == OPERATION_ENABLED && !halt_bit(drive) ? drive->goal_velocity : 0;
+    const bool stands = cm1e_sim_stands(drive);
+    const bool reached = wanted == 0 ? stands : at_velocity(drive, wanted) && drive->reached_s >= REACHED_TIME_S;
+    return (uint16_t)((reached ? STATUSWORD_TARGET_REACHED : 0) | (stands ? STATUSWORD_BIT12 : 0));
 }
 
 /* ---- profile position ------------------------------------------------------------------------------------------- */
@@ -119,7 +133,8 @@ static uint16_t pv_status_bits(const cm1e_sim_cm1e_t *drive)
 /* No set-point yet: where it stands, or where it can stop, is the target. */
 static void pp_enter(cm1e_sim_cm1e_t *drive)
 {
-    const cm1e_servo_t *servo = &drive->servo;
+    cm1e_servo_t *servo = &drive->servo;
+    servo->own_profile = true;
     drive->profile_acceleration = acceleration(drive, drive->objects.profile_acceleration);
     drive->profile_velocity = fabs(servo->reference_velocity);
     drive->goal = servo->reference + servo->reference_velocity * fabs(servo->reference_velocity) /
@@ -155,8 +170,8 @@ static bool pp_target_reached(const cm1e_sim_cm1e_t *drive)
     if (drive->state != OPERATION_ENABLED)
         return false;
     if (halt_bit(drive))
-        return stands(drive) && drive->servo.reference_velocity == 0;
-    return drive->servo.reference == drive->goal &&
+        return cm1e_sim_stands(drive);
+    return drive->servo.reference == drive->goal && drive->servo.reference_velocity == 0 &&
            fabs(drive->goal - drive->mechanics.position) <= POSITION_WINDOW;
 }
 

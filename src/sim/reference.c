@@ -39,6 +39,7 @@ bool cm1e_sim_move_step(cm1e_servo_t *servo, double target, double velocity, dou
 void cm1e_sim_line_begin(cm1e_sim_line_t *line, cm1e_servo_t *servo, double goal)
 {
     *line = (cm1e_sim_line_t){.goal = goal};
+    servo->own_profile = false;
     servo->reference = goal;
     servo->reference_velocity = 0;
 }

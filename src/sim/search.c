@@ -8,6 +8,7 @@
 #define STALL_TIME_S 0.03           /* so long at the torque limit means a hard stop */
 #define IN_POSITION 0.3             /* counts */
 #define SETTLED_VELOCITY 20.0       /* counts/s */
+#define SETTLED_TIME_S 0.03         /* since the reference arrived: no master misses that a search was under way */
 #define SETTLE_TIME_S 0.5           /* a move ends after this, in position or not */
 
 typedef const cm1e_sim_searcher_t motor_t;
@@ -85,7 +86,7 @@ static bool move(cm1e_sim_search_t *search, motor_t *motor, double step_s)
     }
     search->stalled_s += step_s;
     const bool there = fabs(search->target - mechanics->position) < IN_POSITION &&
-                       fabs(mechanics->velocity) < SETTLED_VELOCITY;
+                       fabs(mechanics->velocity) < SETTLED_VELOCITY && search->stalled_s >= SETTLED_TIME_S;
     if (!there && search->stalled_s < SETTLE_TIME_S)
         return false;
     search->stalled_s = 0;

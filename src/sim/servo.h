@@ -13,7 +13,9 @@
 typedef struct cm1e_servo {
     double reference;          /**< counts, on the scale of the mechanics */
     double reference_velocity; /**< counts/s */
-    double feed_forward;       /**< counts/s, the smoothed reference velocity */
+    double feed_forward;       /**< counts/s, the velocity fed forward */
+    double last_velocity;      /**< reference_velocity of the last step */
+    bool own_profile;          /**< the reference is a profile of the drive's own, not the master's set-points */
     double torque_limit;       /**< Nm */
     double integral;           /**< Nm, holds the load at rest */
     double torque;             /**< Nm, of the last step */
@@ -27,6 +29,9 @@ typedef struct cm1e_servo {
 void cm1e_servo_init(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics);
 /** Starts to hold the present position with no torque. */
 void cm1e_servo_catch(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics);
+/** For a reference without a position to go to: where it has stopped and the shaft has come to rest, it stays, with the
+ *  torque that holds it, and nothing is left to correct. */
+void cm1e_servo_rest(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics);
 /** Torque for the next `step_s` seconds, at whose end the reference applies. */
 double cm1e_servo_step(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics, double step_s);
 

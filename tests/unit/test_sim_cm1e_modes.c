@@ -251,6 +251,104 @@ static void test_pv_ramps_with_acceleration_and_deceleration(void)
     bench_close(&b);
 }
 
+/* ---- coming to rest --------------------------------------------------------------------------------------------- */
+
+/* How often bits of the statusword change within a time, and how far the shaft moves after they were last set. Frames
+ * come with jitter, as on a wire. */
+typedef struct settling {
+    int changes_of_bit_10, changes_of_bit_12;
+    int32_t way_after_reached;
+} settling_t;
+
+static settling_t settle(bench_t *b, double seconds)
+{
+    settling_t s = {0};
+    int32_t reached_at = b->position;
+    for (int i = 0; i < seconds * 1000; i++) {
+        const uint16_t before = b->statusword;
+        b->cycle_ns = BENCH_MS + (i % 7 - 3) * 40000;
+        bench_cycle(b);
+        s.changes_of_bit_10 += ((b->statusword ^ before) & BIT10) != 0;
+        s.changes_of_bit_12 += ((b->statusword ^ before) & BIT12) != 0;
+        if ((b->statusword & BIT10) && !(before & BIT10)) {
+            reached_at = b->position;
+            s.way_after_reached = 0;
+        }
+        const int32_t way = b->position < reached_at ? reached_at - b->position : b->position - reached_at;
+        s.way_after_reached = (b->statusword & BIT10) && way > s.way_after_reached ? way : s.way_after_reached;
+    }
+    return s;
+}
+
+static const double frictions[] = {0, 0.001, 0.02}; /* Nm; 0: 0.005 */
+static const double loads[] = {0, 0.03, -0.03};
+static const int32_t accelerations[] = {100000, 1000000, 10000000};
+
+static void open_loaded(bench_t *b, int n, char *text, size_t size)
+{
+    cm1e_axis_config_t config = {.sim = {.no_stops = true, .friction = frictions[n / 4 % 3]}};
+    strcpy(config.motor, cm1e_device_motors[n % 4].name);
+    bench_open(b, &config, CM1E_PDO_ORDER_UG_4_4);
+    snprintf(text, size, "%s, friction %g Nm, load %g Nm, %d counts/s2", config.motor, frictions[n / 4 % 3],
+             loads[n / 12 % 3], accelerations[n / 36]);
+    bench_write(b, 0x6083, 0, accelerations[n / 36]);
+    bench_write(b, 0x6084, 0, accelerations[n / 36]);
+    bench_write(b, 0x60F6, 0x1B, 100);
+    bench_write(b, 0x609A, 0, accelerations[n / 36] < 5000000 ? accelerations[n / 36] : 5000000);
+}
+
+/* "Target reached", "speed is equal to 0" (UG 6.2.3) come once, and then the shaft stands: it does not hunt. */
+static void test_pv_comes_to_its_velocity_and_to_rest_once(void)
+{
+    for (int n = 0; n < 2 * 108; n++) {
+        bench_t b;
+        char text[96];
+        open_loaded(&b, n % 108, text, sizeof text);
+        bench_enable(&b, PV);
+        b.drive->mechanics.load_torque = loads[n % 108 / 12 % 3];
+        bench_run(&b, 1);
+        b.target_velocity = 200000;
+        settling_t s = settle(&b, 4);
+        TEST_ASSERT_EQUAL_HEX16_MESSAGE(BIT10, b.statusword & (BIT10 | BIT12), text);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(2, s.changes_of_bit_10, text);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(1, s.changes_of_bit_12, text);
+        if (n < 108)
+            b.target_velocity = 0;
+        else
+            b.controlword = 0x10F; /* halt */
+        s = settle(&b, 6);
+        TEST_ASSERT_EQUAL_HEX16_MESSAGE(BIT10 | BIT12, b.statusword & (BIT10 | BIT12), text);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(2, s.changes_of_bit_10, text);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(1, s.changes_of_bit_12, text);
+        TEST_ASSERT_LESS_OR_EQUAL_INT32_MESSAGE(1, s.way_after_reached, text);
+        bench_close(&b);
+    }
+}
+
+/* A search that is halted shows bit 10 once (UG 6.2.4). */
+static void test_a_halted_homing_comes_to_rest_once(void)
+{
+    for (int n = 0; n < 108; n++) {
+        bench_t b;
+        char text[96];
+        open_loaded(&b, n, text, sizeof text);
+        bench_write(&b, 0x6098, 0, -3);
+        bench_write(&b, 0x6099, 1, 40000);
+        bench_enable(&b, HM);
+        b.drive->mechanics.load_torque = loads[n / 12 % 3];
+        b.controlword = 0x1F;
+        bench_run(&b, 1);
+        TEST_ASSERT_EQUAL_HEX16_MESSAGE(0, b.statusword & (BIT10 | BIT12), text);
+        TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(400, 40000, speed(&b), text);
+        b.controlword = 0x11F;
+        const settling_t s = settle(&b, 4);
+        TEST_ASSERT_EQUAL_HEX16_MESSAGE(BIT10, b.statusword & (BIT10 | BIT12), text);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(1, s.changes_of_bit_10, text);
+        TEST_ASSERT_LESS_OR_EQUAL_INT32_MESSAGE(1, s.way_after_reached, text);
+        bench_close(&b);
+    }
+}
+
 /* ---- load ------------------------------------------------------------------------------------------------------- */
 
 static void test_torque_is_shown_in_per_mille_of_rated(void)
@@ -437,6 +535,8 @@ int main(void)
     RUN_TEST(test_csv_enabled_with_a_target_velocity_runs_at_once);
     RUN_TEST(test_over_speed_raises_7310_for_every_motor);
     RUN_TEST(test_pv_ramps_with_acceleration_and_deceleration);
+    RUN_TEST(test_pv_comes_to_its_velocity_and_to_rest_once);
+    RUN_TEST(test_a_halted_homing_comes_to_rest_once);
     RUN_TEST(test_torque_is_shown_in_per_mille_of_rated);
     RUN_TEST(test_overload_raises_2310_and_rated_load_does_not);
     RUN_TEST(test_pressing_against_a_stop_ends_in_a_fault);
