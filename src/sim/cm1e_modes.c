@@ -30,6 +30,12 @@ static double motor_limited(const cm1e_sim_cm1e_t *drive, double velocity)
     return fmax(fmin(velocity, most), -most);
 }
 
+/* 0x60FF, counts/s; its greatest values are the motor's peak speeds (UG 6.2.6, 6.3). */
+static double target_velocity(const cm1e_sim_cm1e_t *drive)
+{
+    return motor_limited(drive, (double)drive->objects.target_velocity * cm1e_sim_velocity_unit(drive));
+}
+
 static bool halt_bit(const cm1e_sim_cm1e_t *drive) { return (drive->objects.controlword & CONTROLWORD_HALT) != 0; }
 
 /* ---- cyclic synchronous position -------------------------------------------------------------------------------- */
@@ -72,7 +78,7 @@ static void velocity_step(cm1e_sim_cm1e_t *drive, double step_s)
 static void csv_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
 {
     (void)rising_bits;
-    drive->goal_velocity = (double)drive->objects.target_velocity * cm1e_sim_velocity_unit(drive);
+    drive->goal_velocity = target_velocity(drive);
 }
 
 static void csv_enter(cm1e_sim_cm1e_t *drive)
@@ -92,8 +98,7 @@ static void csv_step(cm1e_sim_cm1e_t *drive, double step_s)
 static void pv_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
 {
     (void)rising_bits;
-    drive->goal_velocity =
-        motor_limited(drive, (double)drive->objects.target_velocity * cm1e_sim_velocity_unit(drive));
+    drive->goal_velocity = target_velocity(drive);
     drive->profile_acceleration = acceleration(drive, drive->objects.profile_acceleration);
     drive->profile_deceleration = acceleration(drive, drive->objects.profile_deceleration);
 }

@@ -196,22 +196,49 @@ static void test_csv_enabled_with_a_target_velocity_runs_at_once(void)
     bench_close(&b);
 }
 
+static void open_motor(bench_t *b, int m)
+{
+    cm1e_axis_config_t config = {.sim.no_stops = true};
+    strcpy(config.motor, cm1e_device_motors[m].name);
+    bench_open(b, &config, CM1E_PDO_ORDER_UG_4_4);
+}
+
+/* The greatest values of 0x60FF are the motor's peak speeds (UG 6.2.6, 6.3): more is not run, and is no error. */
+static void test_velocities_above_the_peak_are_cut_to_it_in_csv_and_pv(void)
+{
+    static const int8_t modes[] = {CSV, PV};
+    for (int m = 0; m < 4; m++)
+        for (int i = 0; i < 2 * 4; i++) {
+            const double peak = cm1e_device_motors[m].max_velocity_counts_per_s, sign = i & 1 ? -1 : 1;
+            bench_t b;
+            open_motor(&b, m);
+            bench_write(&b, 0x6083, 0, 10000000);
+            bench_enable(&b, modes[i / 4]);
+            b.target_velocity = (int32_t)(sign * (i & 2 ? 5000000 : peak * 1.2));
+            bench_run(&b, 2);
+            TEST_ASSERT_EQUAL_HEX16(0, b.error_code);
+            TEST_ASSERT_EQUAL(OPERATION_ENABLED, bench_state(&b));
+            TEST_ASSERT_DOUBLE_WITHIN(2500, sign * peak, speed(&b));
+            TEST_ASSERT_TRUE(b.drive->mechanics.peak_velocity < 1.05 * peak);
+            bench_close(&b);
+        }
+}
+
 static void test_over_speed_raises_7310_for_every_motor(void)
 {
     for (int m = 0; m < 4; m++) {
-        cm1e_axis_config_t config = {.sim.no_stops = true};
-        strcpy(config.motor, cm1e_device_motors[m].name);
         bench_t b;
-        bench_open(&b, &config, CM1E_PDO_ORDER_UG_4_4);
+        open_motor(&b, m);
         bench_enable(&b, CSV);
         b.target_velocity = cm1e_device_motors[m].max_velocity_counts_per_s;
         bench_run(&b, 1);
         TEST_ASSERT_EQUAL_MESSAGE(OPERATION_ENABLED, bench_state(&b), "peak speed is allowed");
-        b.target_velocity = (int32_t)(1.2 * b.target_velocity);
-        bench_run(&b, 1);
+        b.drive->mechanics.load_torque = 5 * b.drive->motor->peak_torque_nm; /* something drives it faster */
+        bench_run(&b, 0.2);
+        b.drive->mechanics.load_torque = 0;
         TEST_ASSERT_EQUAL_HEX16(0x7310, b.error_code);
         TEST_ASSERT_EQUAL(FAULT, bench_state(&b));
-        bench_run(&b, 3);
+        bench_run(&b, 20);
         TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(0, speed(&b), "it runs out without torque");
         bench_close(&b);
     }
@@ -533,6 +560,7 @@ int main(void)
     RUN_TEST(test_shown_velocity_is_a_quarter_in_pp_below_1_3_0);
     RUN_TEST(test_csv_goes_to_its_target_at_once);
     RUN_TEST(test_csv_enabled_with_a_target_velocity_runs_at_once);
+    RUN_TEST(test_velocities_above_the_peak_are_cut_to_it_in_csv_and_pv);
     RUN_TEST(test_over_speed_raises_7310_for_every_motor);
     RUN_TEST(test_pv_ramps_with_acceleration_and_deceleration);
     RUN_TEST(test_pv_comes_to_its_velocity_and_to_rest_once);
