@@ -134,6 +134,25 @@ static bool boot(cm1e_sim_segment_t *segment, const sim_options_t *options)
     return good;
 }
 
+static cm1e_error_t serve(cm1e_sim_segment_t *segment, const char *interface_name, cm1e_diag_t *diag)
+{
+    static const cm1e_nic_console_t console = {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO};
+    cm1e_nic_server_t *server;
+    const cm1e_error_t error = cm1e_nic_server_open(&server, segment, interface_name, diag);
+    if (error)
+        return error;
+    const struct sigaction action = {.sa_handler = request_stop};
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    printf("%u simulated slave%s on %s; `help` lists what can be done to them\n",
+           cm1e_sim_segment_slave_count(segment), cm1e_sim_segment_slave_count(segment) == 1 ? "" : "s",
+           interface_name);
+    fflush(stdout);
+    cm1e_nic_server_run(server, &console, &stop_requested);
+    cm1e_nic_server_close(server);
+    return CM1E_OK;
+}
+
 int command_sim(int argc, char **argv)
 {
     static const struct argp_option table[] = {
@@ -167,15 +186,7 @@ int command_sim(int argc, char **argv)
         cm1e_sim_segment_destroy(segment);
         return EXIT_FAILED;
     }
-    const struct sigaction action = {.sa_handler = request_stop};
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    printf("%u simulated slave%s on %s; `help` lists what can be done to them\n",
-           cm1e_sim_segment_slave_count(segment), cm1e_sim_segment_slave_count(segment) == 1 ? "" : "s",
-           options.interface_name);
-    fflush(stdout);
-    const cm1e_error_t error = cm1e_nic_serve(segment, options.interface_name, STDIN_FILENO, STDOUT_FILENO,
-                                              &stop_requested, &diag);
+    const cm1e_error_t error = serve(segment, options.interface_name, &diag);
     cm1e_sim_segment_destroy(segment);
     return error == CM1E_OK ? EXIT_OK : fail(&diag);
 }

@@ -100,6 +100,31 @@ void frame_merge(uint8_t *a, const uint8_t *b, const uint8_t *sent, size_t lengt
     }
 }
 
+bool frame_is_counted(const uint8_t *frame, size_t length)
+{
+    datagram_t d = {.more = true};
+    size_t offset = FRAME_HEADER;
+    while (d.more && frame_datagram(frame, length, &offset, &d))
+        if (cm1e_get_u16(d.working_counter) != 0)
+            return true;
+    return false;
+}
+
+bool frame_has_circulated(const uint8_t *frame, size_t length)
+{
+    datagram_t d;
+    size_t offset = FRAME_HEADER;
+    return frame_datagram(frame, length, &offset, &d) && (cm1e_get_u16(d.header + 6) & DATAGRAM_CIRCULATED);
+}
+
+void frame_mark_circulated(uint8_t *frame, size_t length)
+{
+    datagram_t d = {.more = true};
+    size_t offset = FRAME_HEADER;
+    while (d.more && frame_datagram(frame, length, &offset, &d))
+        cm1e_put_u16(d.header + 6, cm1e_get_u16(d.header + 6) | DATAGRAM_CIRCULATED);
+}
+
 void frame_corrupt(uint8_t *frame, size_t length)
 {
     for (size_t i = FRAME_HEADER; i < FRAME_HEADER + DATAGRAM_HEADER && i < length; i++)

@@ -17,6 +17,7 @@ enum {
     DATAGRAM_OVERHEAD = 12,    /**< datagram header and working counter */
     FRAME_MINIMUM = FRAME_HEADER + DATAGRAM_OVERHEAD,
     DATAGRAM_LENGTH_MASK = 0x07FF,
+    DATAGRAM_CIRCULATED = 0x4000,
     DATAGRAM_MORE = 0x8000,
 };
 
@@ -50,6 +51,12 @@ bool frame_is_reply(const uint8_t *reply, size_t reply_length, const uint8_t *se
  *  has the bits that either half changed. Working counters are added. All have `length` bytes and passed
  *  frame_is_reply(). */
 void frame_merge(uint8_t *a, const uint8_t *b, const uint8_t *sent, size_t length);
+
+/** The working counter of any datagram is not 0. */
+bool frame_is_counted(const uint8_t *frame, size_t length);
+/** Its datagrams are marked as having circulated (ETG.1000.4 5.4.1.2). */
+bool frame_has_circulated(const uint8_t *frame, size_t length);
+void frame_mark_circulated(uint8_t *frame, size_t length);
 
 /** Damages a frame as the console asks for. There is no FCS here, which has damaged frames thrown away on a wire: so
  *  the damage is put where the receiver finds it, in the first datagram's header, and never makes believable data. */

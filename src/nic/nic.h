@@ -75,9 +75,26 @@ cm1e_error_t cm1e_nic_pcap(cm1e_nic_t *nic, const char *path, cm1e_diag_t *diag)
 
 /* ---- serving a segment on a network interface (`cm1e sim -i`) ---------------------------------------------------- */
 
-/** Answers frames on `interface_name` with `segment` until `*stop` is not 0; lines from `console_fd` (-1: none) go to
- *  the console, answers to `answer_fd`. */
-cm1e_error_t cm1e_nic_serve(cm1e_sim_segment_t *segment, const char *interface_name, int console_fd, int answer_fd,
-                            const volatile int *stop, cm1e_diag_t *diag);
+typedef struct cm1e_nic_server cm1e_nic_server_t;
+
+/** Where a server reads lines of the console, and writes answers and what happens unasked; -1: nowhere. */
+typedef struct cm1e_nic_console {
+    int lines, answers, notices;
+} cm1e_nic_console_t;
+
+/** Takes a network interface, on which frames are answered with `segment`. CM1E_ERROR_STATE: another server has it.
+ *  @rt init */
+cm1e_error_t cm1e_nic_server_open(cm1e_nic_server_t **server, cm1e_sim_segment_t *segment, const char *interface_name,
+                                  cm1e_diag_t *diag);
+/** Serves until `*stop` is not 0. An interface that goes down, or away, is said in a notice and waited for.
+ *
+ *  A frame that came from another simulated segment, where the two face each other, would go round for ever. Slave
+ *  controllers break that with the circulating bit, where a port has no link. Here a frame that slaves have processed
+ *  already (source address 0x02, ETG.1000.4) passes once: it leaves marked as circulated, and one that arrives so is
+ *  destroyed. Masters send neither mark. One whose own address has that bit is told apart by its working counters: they
+ *  are 0 in a new frame, and not in what a segment gave back. */
+void cm1e_nic_server_run(cm1e_nic_server_t *server, const cm1e_nic_console_t *console, const volatile int *stop);
+/** NULL-safe. */
+void cm1e_nic_server_close(cm1e_nic_server_t *server);
 
 #endif

@@ -3,6 +3,8 @@
 #include <limits.h>
 #include <poll.h>
 #include <sched.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -14,163 +16,34 @@
 #include "nic/frame_queue.h"
 #include "nic/nic.h"
 #include "nic/raw_socket.h"
+#include "nic/serve_lock.h"
 
 enum {
-    NS_PER_S = 1000000000, TICK_NS = 1000000, PRIORITY = 60, FRAMES_AT_ONCE = 64, LINE_LENGTH = 256,
+    NS_PER_S = 1000000000, PRIORITY = 60, FRAMES_AT_ONCE = 64, LINE_LENGTH = 256,
+    TICK_NS = 1000000,                  /* while a motor moves */
+    SLEEP_NS = 50000000,                /* while all is at rest: to look whether it is to stop, and to count time up */
+    RETRY_NS = 200000000,               /* to look for an interface that is away */
     ANSWER_LENGTH = 1 << 15,            /* the status of 128 slaves */
 };
+enum { SOURCE_MAC = 6, LOCALLY_ADMINISTERED = 0x02 };
 
-typedef struct server {
+struct cm1e_nic_server {
     cm1e_sim_segment_t *segment;
     cm1e_clock_t *clock;
-    int socket_fd, console_fd, answer_fd;
+    char interface_name[64];
+    int socket_fd, lock_fd;
+    cm1e_nic_console_t console;
+    int64_t advanced_ns;                /**< the segment's time */
+    int64_t retry_ns;                   /**< without a socket: when the interface is looked for again */
+    cm1e_error_t told;                  /**< why there is none, as last said */
+    bool circulation_told;
     frame_queue_t delayed;              /**< answers that the console delays */
     uint8_t frame[CM1E_FRAME_MAX];
     char line[LINE_LENGTH], answer[ANSWER_LENGTH];
     size_t line_length;
     bool line_too_long;
-} server_t;
-
-/* ---- console ----------------------------------------------------------------------------------------------------- */
-
-/** Writes the answer as far as the reader takes it: a reader that stopped reading, or left, must not stop the segment.
- *  A pipe that is ready takes PIPE_BUF bytes without blocking. */
-static void put_answer(server_t *server, const char *answer)
-{
-    const size_t length = strnlen(answer, ANSWER_LENGTH - 1);
-    memmove(server->answer, answer, length);
-    server->answer[length] = '\n';
-    for (size_t done = 0; done < length + 1;) {
-        struct pollfd out = {.fd = server->answer_fd, .events = POLLOUT};
-        if (server->answer_fd < 0 || poll(&out, 1, 0) != 1 || out.revents != POLLOUT)
-            return;
-        const size_t rest = length + 1 - done;
-        const ssize_t n = write(server->answer_fd, server->answer + done, rest < PIPE_BUF ? rest : PIPE_BUF);
-        if (n <= 0)
-            return;
-        done += (size_t)n;
-    }
-}
-
-static void run_line(server_t *server)
-{
-    server->line[server->line_length] = 0;
-    if (server->line_too_long)
-        put_answer(server, "error: the line is too long");
-    else if (server->line_length > 0) {
-        server->answer[0] = 0;
-        cm1e_sim_console(server->segment, server->line, server->answer, sizeof server->answer);
-        put_answer(server, server->answer);
-    }
-    server->line_length = 0;
-    server->line_too_long = false;
-}
-
-/** Reads what is there; false: end of the console. */
-static bool read_console(server_t *server)
-{
-    char bytes[LINE_LENGTH];
-    const ssize_t n = read(server->console_fd, bytes, sizeof bytes);
-    if (n < 0)
-        return errno == EAGAIN || errno == EINTR;
-    for (ssize_t i = 0; i < n; i++) {
-        if (bytes[i] == '\n')
-            run_line(server);
-        else if (bytes[i] == '\r' || bytes[i] == 0)
-            continue;
-        else if (server->line_length + 1 < sizeof server->line)
-            server->line[server->line_length++] = bytes[i];
-        else
-            server->line_too_long = true;
-    }
-    if (n == 0 && server->line_length > 0)
-        run_line(server);
-    return n > 0;
-}
-
-/* ---- frames ------------------------------------------------------------------------------------------------------ */
-
-static void reply(const server_t *server, const uint8_t *frame, size_t length)
-{
-    /* A full transmit queue loses the answer, as a wire would. */
-    const ssize_t sent = send(server->socket_fd, frame, length, MSG_DONTWAIT | MSG_NOSIGNAL);
-    (void)sent;
-}
-
-static void answer_frame(server_t *server, size_t length, int64_t now_ns)
-{
-    if (length < ETHERNET_HEADER)
-        return;
-    const int out = cm1e_sim_segment_process(server->segment, CM1E_SIM_PORT_PRIMARY, server->frame, length, now_ns);
-    if (out != CM1E_SIM_PORT_PRIMARY)
-        return;
-    int64_t delay_ns = 0;
-    queued_frame_t *place;
-    switch (cm1e_sim_segment_next_frame_fault(server->segment, &delay_ns)) {
-    case CM1E_FRAME_OK:
-        break;
-    case CM1E_FRAME_LOSE:
-        return;
-    case CM1E_FRAME_CORRUPT:
-        frame_corrupt(server->frame, length);
-        break;
-    case CM1E_FRAME_DELAY:
-        place = frame_queue_place(&server->delayed);
-        if (place) {
-            memcpy(place->bytes, server->frame, length);
-            place->length = length;
-            frame_queue_insert(&server->delayed, place, now_ns + delay_ns);
-        }
-        return;
-    }
-    reply(server, server->frame, length);
-}
-
-static void answer_frames(server_t *server)
-{
-    for (int i = 0; i < FRAMES_AT_ONCE; i++) {
-        const int n = raw_socket_receive(server->socket_fd, server->frame, sizeof server->frame);
-        if (n <= 0)
-            return;
-        answer_frame(server, (size_t)n, cm1e_clock_now(server->clock));
-    }
-}
-
-static void release_delayed(server_t *server, int64_t now_ns)
-{
-    for (queued_frame_t *f; (f = frame_queue_first(&server->delayed)) && f->ready_ns <= now_ns;) {
-        reply(server, f->bytes, f->length);
-        frame_queue_remove_first(&server->delayed);
-    }
-}
-
-static void run(server_t *server, const volatile int *stop)
-{
-    struct pollfd fds[2] = {{.fd = server->socket_fd, .events = POLLIN}, {.fd = server->console_fd, .events = POLLIN}};
-    int64_t tick_ns = cm1e_clock_now(server->clock);
-    while (!*stop) {
-        const queued_frame_t *next = frame_queue_first(&server->delayed);
-        const int64_t until = next && next->ready_ns < tick_ns ? next->ready_ns : tick_ns;
-        int64_t left_ns = until - cm1e_clock_now(server->clock);
-        if (left_ns < 0)
-            left_ns = 0;
-        const struct timespec left = {.tv_sec = left_ns / NS_PER_S, .tv_nsec = left_ns % NS_PER_S};
-        const int ready = ppoll(fds, 2, &left, NULL);
-        if (ready > 0 && fds[0].revents)
-            answer_frames(server);
-        const int64_t now_ns = cm1e_clock_now(server->clock);
-        release_delayed(server, now_ns);
-        if (now_ns >= tick_ns) {
-            cm1e_sim_segment_advance(server->segment, now_ns);
-            tick_ns = now_ns + TICK_NS;
-            /* An interface that is gone reports errors without end. */
-            if (ready > 0 && (fds[0].revents & (POLLERR | POLLHUP | POLLNVAL)) && !(fds[0].revents & POLLIN))
-                cm1e_clock_sleep_until(server->clock, tick_ns);
-        }
-        if (ready > 0 && fds[1].revents && !read_console(server))
-            fds[1].fd = -1;
-    }
-}
+};
+typedef cm1e_nic_server_t server_t;
 
 /* ---- low latency, where the system allows it --------------------------------------------------------------------- */
 
@@ -199,23 +72,253 @@ static void restore(const scheduling_t *before)
     sched_setscheduler(0, before->policy, &before->parameters);
 }
 
-cm1e_error_t cm1e_nic_serve(cm1e_sim_segment_t *segment, const char *interface_name, int console_fd, int answer_fd,
-                            const volatile int *stop, cm1e_diag_t *diag)
+/* ---- console ----------------------------------------------------------------------------------------------------- */
+
+/** Writes the answer as far as the reader takes it: a reader that stopped reading, or left, must not stop the segment.
+ *  A pipe that is ready takes PIPE_BUF bytes without blocking. */
+static void put_line(server_t *server, int fd, const char *text)
 {
-    server_t *server = calloc(1, sizeof *server);
-    if (!server)
-        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the simulated segment's server.");
-    server->segment = segment;
-    server->clock = cm1e_clock_monotonic();
-    server->console_fd = console_fd;
-    server->answer_fd = answer_fd;
-    const cm1e_error_t error = raw_socket_open(&server->socket_fd, interface_name, diag);
-    if (!error) {
-        const scheduling_t before = ask_for_realtime();
-        run(server, stop);
-        restore(&before);
-        close(server->socket_fd);
+    const size_t length = strnlen(text, ANSWER_LENGTH - 1);
+    memmove(server->answer, text, length);
+    server->answer[length] = '\n';
+    for (size_t done = 0; done < length + 1;) {
+        struct pollfd out = {.fd = fd, .events = POLLOUT};
+        if (fd < 0 || poll(&out, 1, 0) != 1 || out.revents != POLLOUT)
+            return;
+        const size_t rest = length + 1 - done;
+        const ssize_t n = write(fd, server->answer + done, rest < PIPE_BUF ? rest : PIPE_BUF);
+        if (n <= 0)
+            return;
+        done += (size_t)n;
     }
+}
+
+__attribute__((format(printf, 2, 3))) static void notice(server_t *server, const char *format, ...)
+{
+    char text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    put_line(server, server->console.notices, text);
+}
+
+static void run_line(server_t *server)
+{
+    server->line[server->line_length] = 0;
+    if (server->line_too_long)
+        put_line(server, server->console.answers, "error: the line is too long");
+    else if (server->line_length > 0) {
+        server->answer[0] = 0;
+        cm1e_sim_console(server->segment, server->line, server->answer, sizeof server->answer);
+        put_line(server, server->console.answers, server->answer);
+    }
+    server->line_length = 0;
+    server->line_too_long = false;
+}
+
+/** Reads what is there; false: end of the console. */
+static bool read_console(server_t *server)
+{
+    char bytes[LINE_LENGTH];
+    const ssize_t n = read(server->console.lines, bytes, sizeof bytes);
+    if (n < 0)
+        return errno == EAGAIN || errno == EINTR;
+    for (ssize_t i = 0; i < n; i++) {
+        if (bytes[i] == '\n')
+            run_line(server);
+        else if (bytes[i] == '\r' || bytes[i] == 0)
+            continue;
+        else if (server->line_length + 1 < sizeof server->line)
+            server->line[server->line_length++] = bytes[i];
+        else
+            server->line_too_long = true;
+    }
+    if (n == 0 && server->line_length > 0)
+        run_line(server);
+    return n > 0;
+}
+
+/* ---- frames ------------------------------------------------------------------------------------------------------ */
+
+static void reply(const server_t *server, const uint8_t *frame, size_t length)
+{
+    /* A full transmit queue loses the answer, as a wire would. */
+    const ssize_t sent = send(server->socket_fd, frame, length, MSG_DONTWAIT | MSG_NOSIGNAL);
+    (void)sent;
+}
+
+/* cm1e_nic_server_run() says why. */
+static bool goes_round(server_t *server, size_t length)
+{
+    if (!(server->frame[SOURCE_MAC] & LOCALLY_ADMINISTERED) || !frame_has_circulated(server->frame, length))
+        return false;
+    if (!server->circulation_told)
+        notice(server, "A frame came back to \"%s\" from another simulated segment and was destroyed: two segments "
+               "face each other. At the other end there has to be a master.", server->interface_name);
+    server->circulation_told = true;
+    return true;
+}
+
+static void answer_frame(server_t *server, size_t length, int64_t now_ns)
+{
+    if (length < ETHERNET_HEADER || goes_round(server, length))
+        return;
+    const bool again = server->frame[SOURCE_MAC] & LOCALLY_ADMINISTERED;
+    const bool counted = frame_is_counted(server->frame, length);
+    server->advanced_ns = now_ns;
+    const int out = cm1e_sim_segment_process(server->segment, CM1E_SIM_PORT_PRIMARY, server->frame, length, now_ns);
+    if (out != CM1E_SIM_PORT_PRIMARY)
+        return;
+    if (again && (counted || !frame_is_counted(server->frame, length)))
+        frame_mark_circulated(server->frame, length);
+    int64_t delay_ns = 0;
+    queued_frame_t *place;
+    switch (cm1e_sim_segment_next_frame_fault(server->segment, &delay_ns)) {
+    case CM1E_FRAME_OK:
+        break;
+    case CM1E_FRAME_LOSE:
+        return;
+    case CM1E_FRAME_CORRUPT:
+        frame_corrupt(server->frame, length);
+        break;
+    case CM1E_FRAME_DELAY:
+        place = frame_queue_place(&server->delayed);
+        if (place) {
+            memcpy(place->bytes, server->frame, length);
+            place->length = length;
+            frame_queue_insert(&server->delayed, place, now_ns + delay_ns);
+        }
+        return;
+    }
+    reply(server, server->frame, length);
+}
+
+/* FALSE: the socket is of no use any more. */
+static bool answer_frames(server_t *server)
+{
+    for (int i = 0; i < FRAMES_AT_ONCE; i++) {
+        const int n = raw_socket_receive(server->socket_fd, server->frame, sizeof server->frame);
+        if (n <= 0)
+            return n == 0;
+        answer_frame(server, (size_t)n, cm1e_clock_now(server->clock));
+    }
+    return true;
+}
+
+static void release_delayed(server_t *server, int64_t now_ns)
+{
+    for (queued_frame_t *f; (f = frame_queue_first(&server->delayed)) && f->ready_ns <= now_ns;) {
+        reply(server, f->bytes, f->length);
+        frame_queue_remove_first(&server->delayed);
+    }
+}
+
+/* ---- the interface ----------------------------------------------------------------------------------------------- */
+
+/* A socket is bound to the interface that was there. One that went down, or was made anew, needs another socket. */
+static void lose_interface(server_t *server)
+{
+    close(server->socket_fd);
+    server->socket_fd = -1;
+    server->retry_ns = 0;
+    server->told = CM1E_OK;
+}
+
+static void find_interface(server_t *server, int64_t now_ns)
+{
+    cm1e_diag_t why = {0};
+    if (server->socket_fd >= 0 || now_ns < server->retry_ns)
+        return;
+    const cm1e_error_t error = raw_socket_open(&server->socket_fd, server->interface_name, &why);
+    if (error && error != server->told)
+        notice(server, "%s The simulated segment waits for it.", why.text);
+    if (!error && server->told)
+        notice(server, "Network interface \"%s\" is there again.", server->interface_name);
+    server->told = error;
+    server->retry_ns = now_ns + RETRY_NS;
+}
+
+/* ---- time -------------------------------------------------------------------------------------------------------- */
+
+static int64_t earlier(int64_t a, int64_t b) { return a < b ? a : b; }
+
+/* Sleeps until something arrives, or as long as the segment can do without. */
+static int wait(server_t *server, struct pollfd fds[2])
+{
+    const queued_frame_t *delayed = frame_queue_first(&server->delayed);
+    const int64_t tick_ns = server->advanced_ns + TICK_NS, due_ns = cm1e_sim_segment_due(server->segment);
+    int64_t until_ns = earlier(due_ns > tick_ns ? due_ns : tick_ns, server->advanced_ns + SLEEP_NS);
+    if (delayed)
+        until_ns = earlier(until_ns, delayed->ready_ns);
+    int64_t left_ns = until_ns - cm1e_clock_now(server->clock);
+    if (left_ns < 0)
+        left_ns = 0;
+    const struct timespec left = {.tv_sec = left_ns / NS_PER_S, .tv_nsec = left_ns % NS_PER_S};
+    fds[0].fd = server->socket_fd;
+    return ppoll(fds, 2, &left, NULL);
+}
+
+static void tell_news(server_t *server)
+{
+    char text[400];
+    while (cm1e_sim_segment_news(server->segment, text, sizeof text))
+        notice(server, "%s", text);
+}
+
+void cm1e_nic_server_run(cm1e_nic_server_t *server, const cm1e_nic_console_t *console, const volatile int *stop)
+{
+    struct pollfd fds[2] = {{.events = POLLIN}, {.fd = console->lines, .events = POLLIN}};
+    const scheduling_t before = ask_for_realtime();
+    server->console = *console;
+    server->advanced_ns = cm1e_clock_now(server->clock);
+    while (!*stop) {
+        const int ready = wait(server, fds);
+        if (ready > 0 && fds[0].revents && !answer_frames(server))
+            lose_interface(server);
+        const int64_t now_ns = cm1e_clock_now(server->clock);
+        find_interface(server, now_ns);
+        release_delayed(server, now_ns);
+        const bool line = ready > 0 && fds[1].revents;
+        if (ready == 0 || line || now_ns >= server->advanced_ns + TICK_NS) {
+            cm1e_sim_segment_advance(server->segment, now_ns);
+            server->advanced_ns = now_ns;
+        }
+        if (line && !read_console(server))
+            fds[1].fd = -1;
+        tell_news(server);
+    }
+    restore(&before);
+}
+
+/* ---- life -------------------------------------------------------------------------------------------------------- */
+
+void cm1e_nic_server_close(cm1e_nic_server_t *server)
+{
+    if (server && server->socket_fd >= 0)
+        close(server->socket_fd);
+    if (server && server->lock_fd >= 0)
+        close(server->lock_fd);
     free(server);
+}
+
+cm1e_error_t cm1e_nic_server_open(cm1e_nic_server_t **server, cm1e_sim_segment_t *segment, const char *interface_name,
+                                  cm1e_diag_t *diag)
+{
+    cm1e_nic_server_t *made = calloc(1, sizeof *made);
+    *server = NULL;
+    if (!made)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the simulated segment's server.");
+    made->segment = segment;
+    made->clock = cm1e_clock_monotonic();
+    snprintf(made->interface_name, sizeof made->interface_name, "%s", interface_name);
+    made->lock_fd = -1;
+    cm1e_error_t error = raw_socket_open(&made->socket_fd, interface_name, diag);
+    if (!error)
+        error = serve_lock_take(&made->lock_fd, interface_name, diag);
+    if (error)
+        cm1e_nic_server_close(made);
+    else
+        *server = made;
     return error;
 }

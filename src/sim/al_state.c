@@ -235,5 +235,8 @@ void cm1e_sim_slave_fall_back(cm1e_sim_slave_t *slave, uint8_t al_state, uint16_
     }
     slave->al_error = true;
     slave->al_id = false;
+    slave->fell_back = true;
+    if (slave->segment_fell_back)
+        *slave->segment_fell_back = true;
     show(slave, al_status_code);
 }

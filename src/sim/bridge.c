@@ -12,8 +12,6 @@ enum {
     EXCHANGE_NS = 1000000,     /* of the serial lines (F511:3 ... F514:3) */
 };
 
-/* Bounds of a cycle (BR 7.4, F530:19 and 20). */
-enum { LATE_US = 1300, EARLY_US = 700 };
 /* 0x10F1:2 counts as ETG.1020 has it. It is 0 from the start: then so many cycles in a row, all too long or all too
  * short, are a wrong cycle time; a host that pauses now and then is let pass. */
 enum { SYNC_ERROR = 3, WRONG_CYCLES = 100 };
@@ -59,7 +57,22 @@ static void advance(void *app, int64_t now_ns)
     }
 }
 
+/* What it does by itself while no motor moves is counted up when somebody asks: serial lines, modes, CML. */
+static int64_t due(const void *app)
+{
+    const cm1e_sim_bridge_t *bridge = app;
+    bool rests = true;
+    for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
+        rests &= bridge->axes[i].motor_free && cm1e_mechanics_at_rest(&bridge->axes[i].mechanics);
+    return rests ? INT64_MAX : INT64_MIN;
+}
+
 /* ---- cycle time (BR 6.3: 1 ms) ---------------------------------------------------------------------------------- */
+
+int cm1e_sim_bridge_wrong_cycles(const cm1e_sim_bridge_t *bridge)
+{
+    return abs(bridge->wrong_cycles) >= WRONG_CYCLES ? abs(bridge->wrong_cycles) : 0;
+}
 
 static bool wrong_cycle_time(cm1e_sim_bridge_t *bridge, bool late, bool early)
 {
@@ -72,7 +85,7 @@ static bool wrong_cycle_time(cm1e_sim_bridge_t *bridge, bool late, bool early)
     cm1e_sim_cell_t limit;
     cm1e_sim_store_find(&bridge->store, OBJ_10F1_ERROR_SETTINGS, 2, &limit);
     return *limit.value != 0 ? bridge->sync_errors > *limit.value
-                             : bridge->wrong_cycles >= WRONG_CYCLES || bridge->wrong_cycles <= -WRONG_CYCLES;
+                             : cm1e_sim_bridge_wrong_cycles(bridge) != 0;
 }
 
 static void watch_cycle(cm1e_sim_bridge_t *bridge, int64_t now_ns)
@@ -83,7 +96,8 @@ static void watch_cycle(cm1e_sim_bridge_t *bridge, int64_t now_ns)
     if (first)
         return;
     const uint32_t us = interval_us < UINT32_MAX ? (uint32_t)interval_us : UINT32_MAX;
-    const bool late = us > LATE_US, early = us < EARLY_US;
+    const bool late = us > CM1E_SIM_BRIDGE_LATE_US, early = us < CM1E_SIM_BRIDGE_EARLY_US;
+    bridge->last_cycle_us = us;
     if (us > bridge->longest_us)
         bridge->longest_us = us;
     if (us < bridge->shortest_us || bridge->shortest_us == 0)
@@ -148,8 +162,9 @@ static void destroy(void *app)
 }
 
 const cm1e_sim_app_ops_t cm1e_sim_bridge_ops = {
-    .advance = advance, .state_change = state_change, .process_data_sizes = cm1e_sim_bridge_sizes, .outputs = outputs,
-    .inputs = cm1e_sim_bridge_inputs, .watchdog_expired = disable, .sdo_read = cm1e_sim_bridge_sdo_read,
+    .advance = advance, .due = due, .state_change = state_change, .process_data_sizes = cm1e_sim_bridge_sizes,
+    .outputs = outputs, .inputs = cm1e_sim_bridge_inputs, .watchdog_expired = disable,
+    .sdo_read = cm1e_sim_bridge_sdo_read,
     .sdo_write = cm1e_sim_bridge_sdo_write, .object = cm1e_sim_bridge_object, .entry = cm1e_sim_bridge_entry,
     .power_on = power_on, .destroy = destroy,
 };

@@ -121,6 +121,7 @@ struct cm1e_sim_bridge {
     int64_t last_outputs_ns; /**< 0: none since Operational */
     uint32_t longest_us, shortest_us, late_cycles, early_cycles; /**< F530:17 ... F530:20 */
     int wrong_cycles;        /**< in a row; < 0: too short */
+    uint32_t last_cycle_us;
     uint32_t sync_errors;    /**< counted against 0x10F1:2 */
 
     cm1e_sim_bridge_axis_t axes[CM1E_BRIDGE_AXES];
@@ -133,6 +134,11 @@ cm1e_sim_bridge_t *cm1e_sim_bridge_create_app(cm1e_device_model_t model,
                                               const cm1e_axis_config_t *const axes[CM1E_BRIDGE_AXES]);
 /** The bridge in a slave; NULL: it is something else. */
 cm1e_sim_bridge_t *cm1e_sim_bridge_of(cm1e_sim_slave_t *slave);
+
+/** Bounds of a cycle (BR 7.4, F530:19 and 20). */
+enum { CM1E_SIM_BRIDGE_LATE_US = 1300, CM1E_SIM_BRIDGE_EARLY_US = 700 };
+/** How many cycles in a row were all too long or all too short, where they are too many; else 0. */
+int cm1e_sim_bridge_wrong_cycles(const cm1e_sim_bridge_t *bridge);
 
 /* ---- bridge_dictionary.c ---------------------------------------------------------------------------------------- */
 bool cm1e_sim_bridge_dictionary_create(cm1e_sim_bridge_t *bridge);

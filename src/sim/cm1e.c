@@ -90,6 +90,13 @@ static void advance(void *app, int64_t now_ns)
     }
 }
 
+static int64_t due(const void *app)
+{
+    const cm1e_sim_cm1e_t *drive = app;
+    const bool rests = drive->state != OPERATION_ENABLED && cm1e_mechanics_at_rest(&drive->mechanics);
+    return rests ? drive->deadline_ns : INT64_MIN;
+}
+
 /* ---- EtherCAT --------------------------------------------------------------------------------------------------- */
 
 static uint16_t explicit_device_id(void *app)
@@ -142,10 +149,11 @@ static void destroy(void *app)
 }
 
 #define COMMON_OPS                                                                                                  \
-    .advance = advance, .state_change = state_change, .process_data_sizes = cm1e_sim_process_data_sizes,            \
-    .outputs = cm1e_sim_outputs, .inputs = cm1e_sim_inputs, .sdo_read = cm1e_sim_sdo_read,                          \
-    .sdo_write = cm1e_sim_sdo_write, .object = cm1e_sim_object, .entry = cm1e_sim_entry,                            \
-    .explicit_device_id = explicit_device_id, .power_on = cm1e_sim_cm1e_power_on, .destroy = destroy
+    .advance = advance, .due = due, .state_change = state_change,                                                   \
+    .process_data_sizes = cm1e_sim_process_data_sizes, .outputs = cm1e_sim_outputs, .inputs = cm1e_sim_inputs,      \
+    .sdo_read = cm1e_sim_sdo_read, .sdo_write = cm1e_sim_sdo_write, .object = cm1e_sim_object,                      \
+    .entry = cm1e_sim_entry, .explicit_device_id = explicit_device_id, .power_on = cm1e_sim_cm1e_power_on,          \
+    .destroy = destroy
 
 /* The watchdog came with V1.3.0 (UG 10.1): before it a drive goes on with the outputs that it had last. */
 static const cm1e_sim_app_ops_t ops_without_watchdog = {COMMON_OPS};

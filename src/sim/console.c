@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cm1e/bus.h"
+#include "core/bytes.h"
 #include "sim/bridge_app.h"
 #include "sim/cm1e_app.h"
 #include "sim/esc.h"
@@ -106,6 +108,26 @@ static const char *al_state_name(uint8_t state)
     }
 }
 
+/* The state, and why the slave is not where the master wants it. */
+static void say_al(call_t *call, cm1e_sim_slave_t *slave)
+{
+    say(call, "%s", al_state_name(cm1e_sim_slave_al_state(slave)));
+    if (!slave->al_error)
+        return;
+    const uint16_t code = cm1e_get_u16(slave->memory + ESC_AL_STATUS_CODE);
+    say(call, " + ERROR, AL status code 0x%04X, %s", code, cm1e_al_status_text(code));
+    const cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(slave);
+    if (!bridge || code != AL_CODE_SYNC_ERROR)
+        return;
+    if (cm1e_sim_bridge_wrong_cycles(bridge) == 0)
+        say(call, ": wrong cycles were counted beyond 0x10F1:02");
+    else
+        say(call, ": %d cycles in a row were %s than %d us", cm1e_sim_bridge_wrong_cycles(bridge),
+            bridge->wrong_cycles > 0 ? "longer" : "shorter", bridge->wrong_cycles > 0 ? CM1E_SIM_BRIDGE_LATE_US
+                                                                                      : CM1E_SIM_BRIDGE_EARLY_US);
+    say(call, ", the last one %u us. The cycle of a bridge is 1 ms (BR 6.3)", bridge->last_cycle_us);
+}
+
 static const char *mode_name(int32_t mode)
 {
     const cm1e_mode_row_t *row = cm1e_mode_find((int8_t)mode);
@@ -114,8 +136,8 @@ static const char *mode_name(int32_t mode)
 
 static void say_bridge(call_t *call, uint32_t position, const cm1e_sim_bridge_t *bridge)
 {
-    say(call, "%u: %s, %s", position, cm1e_bridge_name(bridge->model),
-        al_state_name(cm1e_sim_slave_al_state(bridge->slave)));
+    say(call, "%u: %s, ", position, cm1e_bridge_name(bridge->model));
+    say_al(call, bridge->slave);
     for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++) {
         const cm1e_sim_bridge_axis_t *axis = &bridge->axes[i];
         say(call, "; ID%u %s, mode %d, position %d, motor 0x%02X", i + 1, cm1e_fsa_name(axis->state), axis->mode,
@@ -135,12 +157,14 @@ static void say_status(call_t *call, uint32_t position)
         return;
     }
     if (!drive) {
-        say(call, "%u: not a CM1-E, %s", position, al_state_name(cm1e_sim_slave_al_state(slave)));
+        say(call, "%u: not a CM1-E, ", position);
+        say_al(call, slave);
         return;
     }
     cm1e_sim_refresh(drive);
-    say(call, "%u: %s V%s, %s, %s, %s, position %d, motor power %s, error 0x%04X", position, drive->motor->name,
-        drive->firmware->version, al_state_name(cm1e_sim_slave_al_state(slave)), cm1e_fsa_name(drive->state),
+    say(call, "%u: %s V%s, ", position, drive->motor->name, drive->firmware->version);
+    say_al(call, slave);
+    say(call, ", %s, %s, position %d, motor power %s, error 0x%04X", cm1e_fsa_name(drive->state),
         mode_name(drive->objects.mode_display), drive->objects.position, drive->motor_power ? "on" : "off",
         (unsigned)drive->objects.error_code);
 }
@@ -524,6 +548,17 @@ static cm1e_error_t run_line(call_t *call, const char *line)
         if (strcmp(call->words[0], commands[i].word) == 0)
             return run_command(call, &commands[i]);
     return REFUSE(call, "\"%s\" is not a command; help lists the commands", call->words[0]);
+}
+
+bool cm1e_sim_segment_news(cm1e_sim_segment_t *segment, char *text, size_t size)
+{
+    const uint32_t position = cm1e_sim_segment_fallen_back(segment);
+    if (position == 0)
+        return false;
+    call_t call = {.segment = segment, .answer = text, .size = size};
+    say(&call, "slave %u fell back to ", position);
+    say_al(&call, cm1e_sim_segment_slave(segment, position));
+    return true;
 }
 
 cm1e_error_t cm1e_sim_console(cm1e_sim_segment_t *segment, const char *line, char *answer, size_t size)

@@ -111,6 +111,18 @@ void cm1e_sim_esc_advance(cm1e_sim_slave_t *slave, int64_t now_ns)
         cm1e_sim_mailbox_due(slave);
 }
 
+int64_t cm1e_sim_esc_due(const cm1e_sim_slave_t *slave)
+{
+    if (!cm1e_sim_esc_present(slave))
+        return slave->absent_until_ns;
+    const int64_t times[] = {slave->sii_due_ns, slave->watchdog_due_ns, slave->al_due_ns, slave->mailbox_due_ns,
+                             slave->ops->due ? slave->ops->due(slave->app) : ESC_NEVER};
+    int64_t first = ESC_NEVER;
+    for (size_t i = 0; i < sizeof times / sizeof times[0]; i++)
+        first = times[i] < first ? times[i] : first;
+    return first;
+}
+
 bool cm1e_sim_esc_read(cm1e_sim_slave_t *slave, uint32_t address, uint8_t *data, size_t length)
 {
     const uint32_t end = address + (uint32_t)length;

@@ -87,6 +87,7 @@ struct cm1e_sim_slave {
     int64_t powered_on_ns;
     int64_t absent_until_ns; /**< off the bus until then; 0: present */
     bool *topology_changed;  /**< of the segment */
+    bool *segment_fell_back;
 
     /* the frame that passes */
     int64_t frame_ns;         /**< when its first bit arrived at this slave */
@@ -99,6 +100,7 @@ struct cm1e_sim_slave {
     uint8_t al_state;
     bool al_error, al_id;
     bool changing_state;       /**< the application is being asked */
+    bool fell_back;            /**< by itself, since somebody asked */
     uint16_t al_request;
     int64_t al_due_ns;         /**< when the request is decided */
 
@@ -120,6 +122,8 @@ struct cm1e_sim_slave {
 void cm1e_sim_esc_power_on(cm1e_sim_slave_t *slave, int64_t now_ns);
 /** Lets time pass: everything that is due happens, then the application moves on. */
 void cm1e_sim_esc_advance(cm1e_sim_slave_t *slave, int64_t now_ns);
+/** When it has to be advanced next, though nothing arrives; ESC_NEVER: not at all. */
+int64_t cm1e_sim_esc_due(const cm1e_sim_slave_t *slave);
 /** Reads or writes as a datagram does; true if at least one byte was accessed, which is what counts for the working
  *  counter. Bytes that cannot be read are left alone. */
 bool cm1e_sim_esc_read(cm1e_sim_slave_t *slave, uint32_t address, uint8_t *data, size_t length);

@@ -19,6 +19,7 @@ struct cm1e_sim_segment {
     bool *cuts;              /* [1] = before the first slave ... [count + 1] = behind the last */
     bool ring;
     bool topology_changed;
+    bool fell_back;          /* any slave, since somebody asked */
     int64_t now_ns;
     /* Where frames go, from the topology: slaves that a frame passes (first, count), and the port it comes out of. */
     struct route {
@@ -61,6 +62,7 @@ cm1e_error_t cm1e_sim_segment_add(cm1e_sim_segment_t *segment, cm1e_sim_slave_t 
     segment->slaves[segment->count] = slave;
     segment->count = count;
     slave->topology_changed = &segment->topology_changed;
+    slave->segment_fell_back = &segment->fell_back;
     segment->topology_changed = true;
     return CM1E_OK;
 }
@@ -81,6 +83,17 @@ uint32_t cm1e_sim_segment_slave_count(const cm1e_sim_segment_t *segment) { retur
 cm1e_sim_slave_t *cm1e_sim_segment_slave(cm1e_sim_segment_t *segment, uint32_t position)
 {
     return position >= 1 && position <= segment->count ? segment->slaves[position - 1] : NULL;
+}
+
+uint32_t cm1e_sim_segment_fallen_back(cm1e_sim_segment_t *segment)
+{
+    for (uint32_t i = 0; segment->fell_back && i < segment->count; i++)
+        if (segment->slaves[i]->fell_back) {
+            segment->slaves[i]->fell_back = false;
+            return i + 1;
+        }
+    segment->fell_back = false;
+    return 0;
 }
 
 void cm1e_sim_segment_close_ring(cm1e_sim_segment_t *segment)
@@ -185,6 +198,16 @@ void cm1e_sim_segment_advance(cm1e_sim_segment_t *segment, int64_t now_ns)
         cm1e_sim_esc_advance(segment->slaves[i], segment->now_ns);
     if (segment->topology_changed)
         update_topology(segment);
+}
+
+int64_t cm1e_sim_segment_due(const cm1e_sim_segment_t *segment)
+{
+    int64_t first = ESC_NEVER;
+    for (uint32_t i = 0; i < segment->count; i++) {
+        const int64_t due = cm1e_sim_esc_due(segment->slaves[i]);
+        first = due < first ? due : first;
+    }
+    return first;
 }
 
 /* ---- frames ---------------------------------------------------------------------------------------------------- */

@@ -47,6 +47,10 @@ int cm1e_sim_segment_process(cm1e_sim_segment_t *segment, int entry_port, uint8_
 /** Lets simulated time pass without a frame (watchdogs, mechanics). */
 void cm1e_sim_segment_advance(cm1e_sim_segment_t *segment, int64_t now_ns);
 
+/** When cm1e_sim_segment_advance() has to be called next, though no frame comes: INT64_MIN: a motor moves, INT64_MAX:
+ *  all is at rest. */
+int64_t cm1e_sim_segment_due(const cm1e_sim_segment_t *segment);
+
 /** The secondary network interface is connected behind the last slave. */
 void cm1e_sim_segment_close_ring(cm1e_sim_segment_t *segment);
 /** Cuts (or mends) the cable before slave `position` (1 = between master and first; count + 1 = the ring's last). */
@@ -64,6 +68,12 @@ void cm1e_sim_segment_set_frame_fault(cm1e_sim_segment_t *segment, cm1e_frame_fa
 /** One console line ("help" lists them): acts on the segment and writes an answer without trailing newline. Lines come
  *  from `cm1e sim`, tests and cm1e_bus_simulate(). Returns CM1E_OK, or an error whose reason is the answer. */
 cm1e_error_t cm1e_sim_console(cm1e_sim_segment_t *segment, const char *line, char *answer, size_t size);
+
+/** What happened unasked since it was asked last: a slave fell back to a lower state by itself, and why, without
+ *  trailing newline. false: nothing, `text` is not changed. */
+bool cm1e_sim_segment_news(cm1e_sim_segment_t *segment, char *text, size_t size);
+/** The place of a slave that fell back since it was asked last; 0: none. */
+uint32_t cm1e_sim_segment_fallen_back(cm1e_sim_segment_t *segment);
 
 /* ---- what tests measure behind a drive (NULL-safe; position 1 = first; no motor there: zeros) ------------------- */
 

@@ -5,7 +5,7 @@
 
 enum { EXPLICIT_ID_MAX = 254 };
 
-/* What stands at one place: a CM1-E, which is one axis, or a bridge with up to four. Empty: a device that is no motor. */
+/* What stands at one place: a CM1-E, which is one axis, or a bridge with up to four. Empty: no motor. */
 typedef struct place {
     const cm1e_axis_config_t *axis;                        /* the first of the list */
     const cm1e_axis_config_t *channels[CM1E_BRIDGE_AXES];  /* behind a bridge */

@@ -38,6 +38,9 @@ enum {
 typedef struct cm1e_sim_app_ops {
     /** Simulated time has reached now_ns; called at least before every frame. Integrates the mechanics. */
     void (*advance)(void *app, int64_t now_ns);
+    /** When it has to be advanced next, though nothing arrives: INT64_MIN: it moves, INT64_MAX: it rests, and any time
+     *  may pass in one step. NULL: never. */
+    int64_t (*due)(const void *app);
     /** A state change asked for and allowed by the controller; 0 to agree, or an AL status code. Also called with
      *  to = from's lower state when the controller falls back by itself. With device emulation (0x0141 bit 0) nobody
      *  is asked: it tells, and `to` is whatever the master wrote. */

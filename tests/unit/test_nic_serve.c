@@ -25,7 +25,12 @@ static ecx_portt port;
 static void *run_server(void *unused)
 {
     (void)unused;
-    served = cm1e_nic_serve(segment, "wire1", console_in[0], console_out[1], &stop, NULL);
+    const cm1e_nic_console_t console = {console_in[0], console_out[1], console_out[1]};
+    cm1e_nic_server_t *s;
+    served = cm1e_nic_server_open(&s, segment, "wire1", NULL);
+    if (!served)
+        cm1e_nic_server_run(s, &console, &stop);
+    cm1e_nic_server_close(s);
     return NULL;
 }
 
@@ -203,7 +208,9 @@ static void test_stop_ends_it_within_a_few_ticks(void)
 static void test_an_interface_that_is_missing_is_named(void)
 {
     cm1e_diag_t diag = {0};
-    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_NOT_FOUND, cm1e_nic_serve(segment, "eth77", -1, -1, &stop, &diag));
+    cm1e_nic_server_t *s;
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_NOT_FOUND, cm1e_nic_server_open(&s, segment, "eth77", &diag));
+    TEST_ASSERT_NULL(s);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "eth77"), diag.text);
 }
 

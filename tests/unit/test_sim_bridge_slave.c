@@ -113,6 +113,38 @@ static void test_another_cycle_time_than_1_ms_is_a_synchronisation_error(void)
     }
 }
 
+/* What the console says of it, asked (status) and unasked. */
+static void test_a_wrong_cycle_time_is_said_in_words(void)
+{
+    static const struct {
+        int64_t us;
+        const char *words;
+    } rows[] = {
+        {2000, "SAFEOP + ERROR, AL status code 0x001A, synchronization error: 100 cycles in a row were longer than "
+               "1300 us, the last one 2000 us. The cycle of a bridge is 1 ms (BR 6.3)"},
+        {500, "SAFEOP + ERROR, AL status code 0x001A, synchronization error: 100 cycles in a row were shorter than 700 "
+              "us, the last one 500 us. The cycle of a bridge is 1 ms (BR 6.3)"},
+    };
+    for (int i = 0; i < 2; i++) {
+        char news[400] = "none", again[400] = "none", status[1200];
+        tearDown();
+        setUp();
+        cm1e_sim_segment_t *segment = cm1e_sim_segment_create_empty();
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_sim_segment_add(segment, slave));
+        cycles_of(rows[i].us, 100);
+        TEST_ASSERT_FALSE(cm1e_sim_segment_news(segment, news, sizeof news));
+        cycles_of(rows[i].us, 1);
+        TEST_ASSERT_TRUE(cm1e_sim_segment_news(segment, news, sizeof news));
+        TEST_ASSERT_FALSE_MESSAGE(cm1e_sim_segment_news(segment, again, sizeof again), "told twice");
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_sim_console(segment, "status 1", status, sizeof status));
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(news, rows[i].words), news);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(news, "slave 1 fell back"), news);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(status, rows[i].words), status);
+        cm1e_sim_segment_destroy(segment);
+        slave = NULL;
+    }
+}
+
 static void test_a_host_that_is_late_and_then_early_is_let_pass(void)
 {
     for (int i = 0; i < 500; i++) {
@@ -148,6 +180,7 @@ int main(void)
     RUN_TEST(test_complete_access);
     RUN_TEST(test_cycles_are_measured);
     RUN_TEST(test_another_cycle_time_than_1_ms_is_a_synchronisation_error);
+    RUN_TEST(test_a_wrong_cycle_time_is_said_in_words);
     RUN_TEST(test_a_host_that_is_late_and_then_early_is_let_pass);
     RUN_TEST(test_a_stated_limit_of_synchronisation_errors);
     return UNITY_END();

@@ -14,6 +14,7 @@ import time
 
 SKIPPED = 77
 MASTER_INTERFACE, SLAVE_INTERFACE = "ecm0", "ecs0"
+NOTICES = "notices.txt"
 # Makes its namespace's home: no stray frames of the kernel's own on the wire, and it ends with the test, whose end closes
 # its standard input. /proc/sys/net shows the namespace of the process that opens it.
 HOLDER = "echo 1 >/proc/sys/net/ipv6/conf/default/disable_ipv6; echo made; exec cat"
@@ -83,12 +84,22 @@ def real_time(command, priority):
 
 
 class Segment:
-    """A running `cm1e sim`, the namespace of its master, and a folder for files."""
+    """A running `cm1e sim`, the namespaces of its master and its own, and a folder for files."""
 
-    def __init__(self, master, simulator, folder):
+    def __init__(self, master, slave, simulator, folder):
         self.master = master
+        self.slave = slave
         self.simulator = simulator
         self.folder = folder
+
+    def join(self):
+        """A new wire in place of one that was deleted."""
+        join(self.master, self.slave)
+
+    def notices(self):
+        """What `cm1e sim` has said unasked, and its errors."""
+        with open(os.path.join(self.folder, NOTICES), encoding="utf-8") as file:
+            return file.read()
 
     def bus_file(self, cycle_time_us=1000):
         """Writes the bus file of one axis X on the master's interface."""
@@ -111,6 +122,10 @@ class Segment:
         """Runs a program in the master's namespace; returns the finished process with its output."""
         return subprocess.run(self.command(command), capture_output=True, text=True, timeout=timeout)
 
+    def run_beside(self, command, timeout=20):
+        """Runs a program in the simulator's namespace."""
+        return subprocess.run(enter(self.slave, command), capture_output=True, text=True, timeout=timeout)
+
 
 @contextlib.contextmanager
 def segment(cm1e, *arguments):
@@ -126,12 +141,15 @@ def segment(cm1e, *arguments):
 
         master, slave = ends_with_us(make_namespace()), ends_with_us(make_namespace())
         join(master, slave)
+        folder = stack.enter_context(tempfile.TemporaryDirectory())
+        notices = stack.enter_context(open(os.path.join(folder, NOTICES), "w", encoding="utf-8"))
         simulator = ends_with_us(subprocess.Popen(
             enter(slave, real_time([cm1e, "sim", "-i", SLAVE_INTERFACE, *arguments], 60)),
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True))
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=notices, text=True))
+        running = Segment(master, slave, simulator, folder)
         greeting = simulator.stdout.readline()
-        check("simulated slave" in greeting, f"cm1e sim did not start: {greeting!r}")
-        yield Segment(master, simulator, stack.enter_context(tempfile.TemporaryDirectory()))
+        check("simulated slave" in greeting, f"cm1e sim did not start: {greeting!r} {running.notices()}")
+        yield running
         simulator.send_signal(signal.SIGINT)
         check(simulator.wait(10) == 0, f"cm1e sim ended with {simulator.returncode} on SIGINT")
 
