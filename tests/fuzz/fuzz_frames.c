@@ -3,8 +3,8 @@
  * out is never changed, so the simulated slaves stay honest. Time is virtual: a run repeats exactly. A run ends
  * defined, in bounded time, and on honest frames the same bus starts again.
  *
- * An input: which network, what is done on it, then one instruction after the other, each for one or more of the frames
- * that come back. Behind the last instruction frames pass as they are. */
+ * An input: which network, what is done on it, with how much room, then one instruction after the other, each for one
+ * or more of the frames that come back. Behind the last instruction frames pass as they are. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,10 +15,14 @@
 #include "cm1e/sdo_info.h"
 #include "cm1e/sii.h"
 #include "core/bytes.h"
+#include "device/place.h"
 #include "fuzz.h"
 #include "nic/nic.h"
 
-enum { CYCLES = 120, SETTLE_CYCLES = 20, SDO_ROOM = 40, LIST_ROOM = 64, SII_ROOM = 512, LONGEST_RUN_S = 900 };
+enum { CYCLES = 120, SETTLE_CYCLES = 20, LONGEST_RUN_S = 900 };
+/** Room for texts, for lists and for an SII, by two bits each of the input. */
+static const size_t text_rooms[] = {40, 3, 300, 1500}, list_rooms[] = {64, 2, 9, 300},
+                    sii_rooms[] = {2048, 512, 128, 4096};
 /** Places in a frame with one datagram or more (ETG.1000.4 section 5.3). */
 enum { FIRST_DATAGRAM = 16, DATAGRAM_HEADER = 10, DATAGRAM_LENGTH = 6, DATAGRAM_MORE = 0x8000 };
 
@@ -27,6 +31,7 @@ enum { DO_SDO = 1, DO_INFO = 2, DO_SII = 4, DO_AXIS = 8, DO_POWER_CYCLE = 16 };
 
 typedef enum instruction {
     PASS = 0, DROP, TWICE, LATE, CUT, GROW, COUNTER, HEADER, DATA, MAILBOX, STATUS, FILL, REPLACE, FOREIGN, SWAP_INDEX,
+    PASS_MAILBOX, /* lets answers of mailboxes pass */
     INSTRUCTIONS,
 } instruction_t;
 
@@ -44,6 +49,8 @@ typedef struct run {
     cm1e_axis_t *axes[CM1E_BRIDGE_AXES];
     cm1e_diag_t diag;
     uint8_t doing;
+    uint16_t position;       /**< of a slave with a mailbox */
+    size_t text_room, list_room, sii_room;
 } run_t;
 
 /* ---- instructions ----------------------------------------------------------------------------------------------- */
@@ -91,25 +98,38 @@ static void change_data(input_t *input, cm1e_tap_frame_t *frame, unsigned from)
         overwrite(input, frame->bytes, at + DATAGRAM_HEADER + from, at + DATAGRAM_HEADER + length, count);
 }
 
-/** A read of a mailbox, whose protocol begins behind its header; else the frame stays as it is. */
+/** In one or more places of an answer. */
 static void change_mailbox(input_t *input, cm1e_tap_frame_t *frame)
 {
-    const unsigned from = take(input, 1);
-    const size_t at = datagram(frame, 0);
-    if (at && frame->bytes[at] == 4 && cm1e_get_u16(frame->bytes + at + 4) >= 0x1000)
-        change_data(input, frame, from & 0x3F);
+    const size_t data = datagram(frame, 0) + DATAGRAM_HEADER;
+    const size_t length = cm1e_get_u16(frame->bytes + data - DATAGRAM_HEADER + DATAGRAM_LENGTH) & 0x7FFu;
+    for (unsigned places = 1 + take(input, 1) % 4; places > 0; places--) {
+        const unsigned from = take(input, 1) % 64, count = 1 + take(input, 1) % 32;
+        overwrite(input, frame->bytes, data + from, data + length, count);
+    }
 }
 
 /** AL status, or a sync manager's, by what the frame reads. */
 static void change_status(input_t *input, cm1e_tap_frame_t *frame)
 {
     const size_t at = datagram(frame, 0);
-    const unsigned offset = at ? cm1e_get_u16(frame->bytes + at + 4) : 0;
     const unsigned value = take(input, 2);
-    if (at && offset == 0x0130)
+    if (cm1e_get_u16(frame->bytes + at + 4) == 0x0130)
         cm1e_put_u16(frame->bytes + at + DATAGRAM_HEADER, (uint16_t)value);
-    else if (at && (offset == 0x0800 || offset == 0x0808))
+    else
         frame->bytes[at + DATAGRAM_HEADER + 5] = (uint8_t)value;
+}
+
+/** Some instructions wait for the frames that they are about; others pass. */
+static bool concerns(instruction_t instruction, const cm1e_tap_frame_t *frame)
+{
+    const size_t at = datagram(frame, 0);
+    const unsigned offset = at ? cm1e_get_u16(frame->bytes + at + 4) : 0;
+    if (instruction == MAILBOX || instruction == PASS_MAILBOX)
+        return at && frame->bytes[at] == 4 && offset >= 0x1000; /* FPRD */
+    if (instruction == STATUS)
+        return at && (offset == 0x0130 || offset == 0x0800 || offset == 0x0808);
+    return true;
 }
 
 static void change_counter(input_t *input, cm1e_tap_frame_t *frame)
@@ -190,6 +210,7 @@ static cm1e_tap_verdict_t execute(run_t *run, cm1e_tap_frame_t *frame)
         frame->bytes[FIRST_DATAGRAM + 1] = (uint8_t)take(input, 1) & 0x0F;
         break;
     case PASS:
+    case PASS_MAILBOX:
     case INSTRUCTIONS:
         break;
     }
@@ -219,8 +240,9 @@ static cm1e_tap_verdict_t on_frame(void *context, cm1e_tap_frame_t *frame)
         return CM1E_TAP_PASS;
     if (input->frames == 0)
         next_instruction(input);
-    else
-        input->at = input->operands ? input->operands : input->at;
+    if (!concerns(input->instruction, frame))
+        return CM1E_TAP_PASS;
+    input->at = input->operands ? input->operands : input->at;
     const cm1e_tap_verdict_t verdict = execute(run, frame);
     if (input->instruction != PASS || input->frames != ~0u)
         input->frames--;
@@ -252,21 +274,21 @@ static void *room_of(size_t bytes)
 
 static void read_and_write(run_t *run)
 {
-    static const struct {
+    const struct {
         uint16_t index;
         uint8_t subindex;
         size_t room;
-    } objects[] = {{0x1018, 1, 4}, {0x1008, 0, SDO_ROOM}, {0x1008, 0, 3}, {0x1C13, 0, 1}, {0x603F, 0, 2}};
+    } objects[] = {{0x1018, 1, 4}, {0x1008, 0, run->text_room}, {0x1C13, 0, 1}, {0x603F, 0, 2}};
     for (size_t i = 0; i < sizeof objects / sizeof objects[0]; i++) {
         uint8_t *data = room_of(objects[i].room);
         size_t size = objects[i].room;
         cm1e_error_t error =
-            cm1e_sdo_read(run->bus, 1, objects[i].index, objects[i].subindex, data, &size, &run->diag);
+            cm1e_sdo_read(run->bus, run->position, objects[i].index, objects[i].subindex, data, &size, &run->diag);
         if (error == CM1E_OK && size > objects[i].room)
             fuzz_fail("%zu bytes read into %zu", size, objects[i].room);
         check_result(run, error, "a read");
         if (objects[i].index == 0x1C13) {
-            error = cm1e_sdo_write(run->bus, 1, 0x6081, 0, data, 1, &run->diag);
+            error = cm1e_sdo_write(run->bus, run->position, 0x6081, 0, data, 1, &run->diag);
             check_result(run, error, "a write");
         }
         free(data);
@@ -275,26 +297,26 @@ static void read_and_write(run_t *run)
 
 static void read_dictionary(run_t *run)
 {
-    uint16_t *indexes = room_of(LIST_ROOM * sizeof *indexes);
-    size_t count = LIST_ROOM;
+    uint16_t *indexes = room_of(run->list_room * sizeof *indexes);
+    size_t count = run->list_room;
     cm1e_object_info_t object;
     cm1e_entry_info_t entry;
-    cm1e_error_t error = cm1e_sdo_info_list(run->bus, 1, CM1E_OBJECTS_RXPDO, indexes, &count, &run->diag);
+    cm1e_error_t error = cm1e_sdo_info_list(run->bus, run->position, CM1E_OBJECTS_RXPDO, indexes, &count, &run->diag);
     check_result(run, error, "a list of objects");
-    if (error == CM1E_OK && count > LIST_ROOM)
-        fuzz_fail("%zu objects in a list of %d", count, LIST_ROOM);
+    if (error == CM1E_OK && count > run->list_room)
+        fuzz_fail("%zu objects in a list of %zu", count, run->list_room);
     free(indexes);
-    error = cm1e_sdo_info_object(run->bus, 1, 0x1018, &object, &run->diag);
+    error = cm1e_sdo_info_object(run->bus, run->position, 0x1018, &object, &run->diag);
     check_result(run, error, "the description of an object");
-    error = cm1e_sdo_info_entry(run->bus, 1, 0x6040, 0, &entry, &run->diag);
+    error = cm1e_sdo_info_entry(run->bus, run->position, 0x6040, 0, &entry, &run->diag);
     check_result(run, error, "the description of an entry");
 }
 
 static void read_sii(run_t *run)
 {
-    uint8_t *image = room_of(SII_ROOM);
-    size_t size = SII_ROOM; /* too little for most: the size is what the slave says */
-    check_result(run, cm1e_sii_read_device(run->bus, 1, image, &size, &run->diag), "an SII");
+    uint8_t *image = room_of(run->sii_room);
+    size_t size = run->sii_room;
+    check_result(run, cm1e_sii_read_device(run->bus, run->position, image, &size, &run->diag), "an SII");
     free(image);
 }
 
@@ -343,22 +365,24 @@ static void one_cycle(run_t *run, int number)
 /** Cycles, with a transfer under way in them. */
 static void operate(run_t *run)
 {
-    uint8_t *data = room_of(SDO_ROOM);
-    cm1e_sdo_t sdo = {.position = 1, .index = 0x1008, .data = data, .size = SDO_ROOM, .timeout_ns = 20000000};
+    uint8_t *data = room_of(run->text_room);
+    cm1e_sdo_t sdo = {.position = run->position, .index = 0x1008, .data = data, .size = run->text_room,
+                      .timeout_ns = 20000000};
     bool submitted = cm1e_sdo_submit(run->bus, &sdo) == CM1E_OK;
-    char answer[256];
+    char line[64], answer[256];
+    snprintf(line, sizeof line, "power-cycle %u 10", run->position);
     for (int i = 0; i < CYCLES; i++) {
         one_cycle(run, i);
         if (submitted && cm1e_sdo_state(&sdo) != CM1E_SDO_BUSY) {
-            if (sdo.size > SDO_ROOM)
-                fuzz_fail("%zu bytes read into %d", sdo.size, SDO_ROOM);
-            sdo.size = SDO_ROOM;
+            if (sdo.size > run->text_room)
+                fuzz_fail("%zu bytes read into %zu", sdo.size, run->text_room);
+            sdo.size = run->text_room;
             submitted = cm1e_sdo_submit(run->bus, &sdo) == CM1E_OK;
         }
         if (i == CYCLES / 3 && run->doing & DO_POWER_CYCLE)
-            cm1e_bus_simulate(run->bus, "power-cycle 1 10", answer, sizeof answer);
+            cm1e_bus_simulate(run->bus, line, answer, sizeof answer);
         if (i == CYCLES / 2)
-            cm1e_bus_request_recovery(run->bus, 1);
+            cm1e_bus_request_recovery(run->bus, run->position);
     }
     cm1e_bus_stop(run->bus); /* ends every transfer */
     if (submitted && cm1e_sdo_state(&sdo) == CM1E_SDO_BUSY)
@@ -459,6 +483,11 @@ bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool 
     run->input = (input_t){.at = bytes, .end = bytes + size};
     describe_network(&run->config, take(&run->input, 1));
     run->doing = (uint8_t)take(&run->input, 1);
+    const unsigned rooms = take(&run->input, 1);
+    run->text_room = text_rooms[rooms % 4];
+    run->list_room = list_rooms[rooms / 4 % 4];
+    run->sii_room = sii_rooms[rooms / 16 % 4];
+    run->position = (uint16_t)cm1e_axis_address(&run->config, 0);
     if (cm1e_bus_open(&run->bus, &run->config, &run->diag) != CM1E_OK)
         fuzz_fail("no bus: %s", run->diag.text);
     cm1e_nic_set_tap(cm1e_bus_nic(run->bus), on_frame, run);
@@ -469,18 +498,33 @@ bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool 
     return false;
 }
 
+/** The answers to a read as a slave would give them that sends a text of 300 bytes in segments. */
+static void seed_segments(void)
+{
+    uint8_t script[] = {
+        0, DO_SDO, 2, PASS_MAILBOX, 1, /* firmware and identity */
+        MAILBOX, 0, 1, 0, 1, 122, 0, 8, 7, 0x41, 0x08, 0x10, 0, 44, 1, 0, 0, /* 112 of 300 bytes */
+        MAILBOX, 0, 1, 0, 1, 115, 0, 6, 2, 0, 0x30, 0x00,
+        MAILBOX, 0, 1, 0, 1, 79, 0, 6, 2, 0, 0x30, 0x11,
+    };
+    fuzz_seed("segments.bin", script, sizeof script);
+    script[sizeof script - 7] = 122; /* more than are left */
+    fuzz_seed("segments_too_long.bin", script, sizeof script);
+}
+
 /** Every network with everything done on it, and each instruction at some moments of a start. */
 void fuzz_seeds(void)
 {
     char name[32];
     for (unsigned kind = 0; kind < 8; kind++) {
-        const uint8_t whole[] = {(uint8_t)kind, DO_SDO | DO_INFO | DO_AXIS | (kind % 2 ? DO_SII : DO_POWER_CYCLE)};
+        const uint8_t whole[] = {(uint8_t)kind, DO_SDO | DO_INFO | DO_AXIS | (kind % 2 ? DO_SII : DO_POWER_CYCLE),
+                                 (uint8_t)(kind * 5)};
         snprintf(name, sizeof name, "network_%u.bin", kind);
         fuzz_seed(name, whole, sizeof whole);
     }
     for (unsigned instruction = DROP; instruction < INSTRUCTIONS; instruction++) {
         uint8_t script[200] = {(uint8_t)(instruction % 4), (uint8_t)(DO_AXIS | 1 << instruction % 3)};
-        size_t size = 2;
+        size_t size = 3;
         for (unsigned n = 0; n < 12; n++) {
             const uint8_t step[] = {PASS, (uint8_t)(n * 37), (uint8_t)instruction, (uint8_t)(n % 3), (uint8_t)(n * 29),
                                     (uint8_t)(n * 5), (uint8_t)n, 1, 2, 3};
@@ -490,4 +534,5 @@ void fuzz_seeds(void)
         snprintf(name, sizeof name, "instruction_%u.bin", instruction);
         fuzz_seed(name, script, size);
     }
+    seed_segments();
 }
