@@ -311,6 +311,8 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
             argp_error(state, "--seconds takes a number above 0, up to 86400; found \"%s\"", arg);
         break;
     case ARGP_KEY_END:
+        if (options->interface_name && !options->interface_name[0])
+            argp_error(state, "-i needs a name; it is empty");
         if (options->interface_name && strcmp(options->interface_name, "sim") != 0 && !options->bus_file)
             argp_error(state, "a network interface needs a bus file: -b FILE says which motors hang there");
         break;
@@ -396,10 +398,19 @@ static cm1e_error_t add_tasks(cm1e_diag_t *why)
     return error == CM1E_OK ? cm1e_scheduler_add_task(m.scheduler, &supervision, why) : error;
 }
 
+/* Before anything moves. */
+static cm1e_error_t check_files(const options_t *options, cm1e_diag_t *why)
+{
+    const cm1e_error_t error = options->csv_file ? cm1e_scheduler_check_path(options->csv_file, why) : CM1E_OK;
+    return error == CM1E_OK && options->svg_file ? cm1e_scheduler_check_path(options->svg_file, why) : error;
+}
+
 static cm1e_error_t start(const options_t *options, cm1e_diag_t *why)
 {
     static cm1e_bus_config_t config; /* large: not on the stack */
-    cm1e_error_t error = describe(&config, options, why);
+    cm1e_error_t error = check_files(options, why);
+    if (error == CM1E_OK)
+        error = describe(&config, options, why);
     if (error == CM1E_OK)
         error = cm1e_bus_open(&m.bus, &config, why);
     if (error == CM1E_OK)

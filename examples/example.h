@@ -31,7 +31,11 @@ static inline error_t example_option(int key, char *argument, struct argp_state 
 {
     example_t *e = state->input;
     switch (key) {
-    case 'i': e->interface_name = argument; return 0;
+    case 'i':
+        if (!argument[0])
+            argp_error(state, "-i needs a name; it is empty");
+        e->interface_name = argument;
+        return 0;
     case EXAMPLE_VIRTUAL_TIME: e->virtual_time = true; return 0;
     case EXAMPLE_CSV: e->csv_file = argument; return 0;
     case EXAMPLE_SVG: e->svg_file = argument; return 0;
@@ -67,7 +71,13 @@ static inline cm1e_error_t example_open(example_t *e, cm1e_bus_config_t *config,
     config->virtual_time = e->virtual_time;
     if (e->describe)
         e->describe(&config->axes[0]);
-    cm1e_error_t error = cm1e_bus_open(&e->bus, config, why);
+    cm1e_error_t error = CM1E_OK; /* files that cannot be written are told before anything moves */
+    if (e->csv_file)
+        error = cm1e_scheduler_check_path(e->csv_file, why);
+    if (error == CM1E_OK && e->svg_file)
+        error = cm1e_scheduler_check_path(e->svg_file, why);
+    if (error == CM1E_OK)
+        error = cm1e_bus_open(&e->bus, config, why);
     if (error == CM1E_OK)
         error = cm1e_bus_start(e->bus, why);
     if (error == CM1E_OK)

@@ -357,7 +357,5 @@ int command_cml(int argc, char **argv)
         cm1e_bus_close(session.bus);
         return fail(&diag);
     }
-    const int status = run_session(&session, &config, &diag);
-    cm1e_bus_close(session.bus);
-    return status;
+    return close_bus(session.bus, &options.common, run_session(&session, &config, &diag));
 }

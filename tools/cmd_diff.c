@@ -109,7 +109,7 @@ int command_diff(int argc, char **argv)
         status = run(bus, &options, &input, json);
     else
         fail(&diag);
-    cm1e_bus_close(bus);
+    status = close_bus(bus, &options.common, status);
     if (json && status != EXIT_WRONG_USE)
         print_json(json);
     else

@@ -346,7 +346,10 @@ static cm1e_error_t generate_network(cm1e_file_t *file, generate_options_t *opti
         error = cm1e_bus_scan(bus, diag);
     if (error == CM1E_OK)
         error = cm1e_generate_eni_of_bus(file, bus, options->devices[0].mapping, diag);
-    cm1e_bus_close(bus);
+    const cm1e_error_t closed = cm1e_bus_close(bus);
+    if (error == CM1E_OK && closed != CM1E_OK)
+        return cm1e_diag_set(diag, closed, 0, "not every frame could be written to the pcap file %s",
+                             options->common.pcap_file);
     return error;
 }
 

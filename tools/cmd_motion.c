@@ -11,6 +11,8 @@
 enum { KEY_TO = 0x300, KEY_BY, KEY_SPEED, KEY_FOR, KEY_JERK, KEY_METHOD, KEY_OFFSET, KEY_TORQUE, KEY_POSITION, KEY_CSV,
        KEY_SVG, KEY_RESET };
 
+enum { LONGEST_S = 1000000 };
+
 #define DETAILS_NS INT64_C(200000000)
 
 typedef enum motion_kind { MOTION_NONE = 0, MOTION_TO, MOTION_BY, MOTION_SPEED, MOTION_HOME } motion_kind_t;
@@ -19,9 +21,10 @@ typedef struct motion_options {
     common_options_t common;
     const char *axis_word, *csv_file, *svg_file;
     motion_kind_t kind;
-    double target, velocity, acceleration, deceleration, jerk, seconds, home_position, modulo_range;
+    double target, velocity, speed, acceleration, deceleration, jerk, seconds; /**< 0: not given */
+    double home_position, modulo_range;
     cm1e_homing_config_t homing; /**< NAN: not given */
-    bool method_given, reset;
+    bool velocity_given, method_given, reset;
 } motion_options_t;
 
 typedef enum motion_step { STEP_POWER, STEP_RESET, STEP_RUN, STEP_HALT, STEP_SETTLE, STEP_POWER_OFF, STEP_END
@@ -61,6 +64,50 @@ static error_t parse_real_option(char *arg, const char *what, double *value)
     return parse_real(arg, what, value) ? 0 : EINVAL;
 }
 
+/* In a block 0 is the default; who writes it here means something else. Which others are right, the axis says. */
+static error_t parse_other_than_0(char *arg, const char *what, double *value)
+{
+    if (!parse_real(arg, what, value))
+        return EINVAL;
+    if (*value != 0)
+        return 0;
+    complain("%s is %s; without the option it is the default", what, arg);
+    return EINVAL;
+}
+
+static error_t parse_seconds(char *arg, double *value)
+{
+    if (!parse_real(arg, "the time", value))
+        return EINVAL;
+    if (*value > 0 && *value <= LONGEST_S)
+        return 0;
+    complain("the time is %s s; above 0, up to %d is right", arg, LONGEST_S);
+    return EINVAL;
+}
+
+/* Whether the options of a move fit together. */
+static void check_move(const motion_options_t *options, struct argp_state *state)
+{
+    if (options->kind == MOTION_NONE)
+        argp_error(state, "say where to: --to POSITION, --by DISTANCE, or --speed VELOCITY --for SECONDS");
+    if (options->kind == MOTION_SPEED && options->seconds == 0)
+        argp_error(state, "--speed needs --for SECONDS, more than 0");
+    if (options->kind != MOTION_SPEED && options->seconds != 0)
+        argp_error(state, "--for is for --speed");
+    if (options->kind == MOTION_SPEED && options->velocity_given)
+        argp_error(state, "--speed is the velocity already: leave --velocity out");
+}
+
+/* Before anything moves. */
+static void check_files(const motion_options_t *options, struct argp_state *state)
+{
+    const bool no_csv_name = options->csv_file && !options->csv_file[0];
+    if (no_csv_name || (options->svg_file && !options->svg_file[0]))
+        argp_error(state, "%s needs the name of a file", no_csv_name ? "--csv" : "--svg");
+    if (options->csv_file && options->svg_file && strcmp(options->csv_file, options->svg_file) == 0)
+        argp_error(state, "--csv and --svg write the same file");
+}
+
 static error_t parse_axis(char *arg, struct argp_state *state, motion_options_t *options)
 {
     if (options->axis_word)
@@ -76,21 +123,24 @@ static error_t parse_move(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
     case KEY_TO: return set_kind(state, options, MOTION_TO, &options->target, arg, "the target position");
     case KEY_BY: return set_kind(state, options, MOTION_BY, &options->target, arg, "the distance");
-    case KEY_SPEED: return set_kind(state, options, MOTION_SPEED, &options->velocity, arg, "the speed");
-    case KEY_FOR: return parse_real_option(arg, "the time", &options->seconds);
-    case 'v': return parse_real_option(arg, "the velocity", &options->velocity);
-    case 'a': return parse_real_option(arg, "the acceleration", &options->acceleration);
-    case 'd': return parse_real_option(arg, "the deceleration", &options->deceleration);
-    case KEY_JERK: return parse_real_option(arg, "the jerk", &options->jerk);
+    case KEY_SPEED:
+        if (set_kind(state, options, MOTION_SPEED, &options->speed, arg, "the speed") != 0)
+            return EINVAL;
+        return parse_other_than_0(arg, "the speed", &options->speed);
+    case KEY_FOR: return parse_seconds(arg, &options->seconds);
+    case 'v':
+        options->velocity_given = true;
+        return parse_other_than_0(arg, "the velocity", &options->velocity);
+    case 'a': return parse_other_than_0(arg, "the acceleration", &options->acceleration);
+    case 'd': return parse_other_than_0(arg, "the deceleration", &options->deceleration);
+    case KEY_JERK: return parse_other_than_0(arg, "the jerk", &options->jerk);
     case KEY_RESET: options->reset = true; return 0;
     case KEY_CSV: options->csv_file = arg; return 0;
     case KEY_SVG: options->svg_file = arg; return 0;
     case ARGP_KEY_ARG: return parse_axis(arg, state, options);
     case ARGP_KEY_END:
-        if (options->kind == MOTION_NONE)
-            argp_error(state, "say where to: --to POSITION, --by DISTANCE, or --speed VELOCITY --for SECONDS");
-        if (options->kind == MOTION_SPEED && !(options->seconds > 0))
-            argp_error(state, "--speed needs --for SECONDS, more than 0");
+        check_move(options, state);
+        check_files(options, state);
         return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -108,16 +158,17 @@ static error_t parse_home(int key, char *arg, struct argp_state *state)
             return EINVAL;
         options->homing.method = (int8_t)method;
         return 0;
-    case 'v': return parse_real_option(arg, "the velocity", &options->homing.velocity);
-    case 'a': return parse_real_option(arg, "the acceleration", &options->homing.acceleration);
+    case 'v': return parse_other_than_0(arg, "the velocity", &options->homing.velocity);
+    case 'a': return parse_other_than_0(arg, "the acceleration", &options->homing.acceleration);
     case KEY_OFFSET: return parse_real_option(arg, "the offset", &options->homing.offset);
-    case KEY_TORQUE: return parse_real_option(arg, "the torque", &options->homing.torque);
-    case KEY_FOR: return parse_real_option(arg, "the time", &options->homing.timeout_s);
+    case KEY_TORQUE: return parse_other_than_0(arg, "the torque", &options->homing.torque);
+    case KEY_FOR: return parse_seconds(arg, &options->homing.timeout_s);
     case KEY_POSITION: return parse_real_option(arg, "the position", &options->home_position);
     case KEY_RESET: options->reset = true; return 0;
     case KEY_CSV: options->csv_file = arg; return 0;
     case KEY_SVG: options->svg_file = arg; return 0;
     case ARGP_KEY_ARG: return parse_axis(arg, state, options);
+    case ARGP_KEY_END: check_files(options, state); return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
 }
@@ -235,7 +286,7 @@ static void prepare(motion_program_t *p, const motion_options_t *options)
         .Axis = &p->axis, .Distance = options->target, .Velocity = options->velocity,
         .Acceleration = options->acceleration, .Deceleration = options->deceleration, .Jerk = options->jerk};
     p->move_velocity = (MC_MoveVelocity_t){
-        .Axis = &p->axis, .Velocity = options->velocity, .Direction = mcPositiveDirection,
+        .Axis = &p->axis, .Velocity = options->speed, .Direction = mcPositiveDirection,
         .Acceleration = options->acceleration, .Deceleration = options->deceleration, .Jerk = options->jerk};
 }
 
@@ -333,10 +384,29 @@ static void complete_homing(motion_options_t *options, const cm1e_homing_config_
     complete(&homing->timeout_s, rest->timeout_s);
 }
 
+/* A trace that cannot be written is told before anything moves. */
+static bool files_can_be_written(const motion_options_t *options)
+{
+    cm1e_diag_t diag = {0};
+    if ((!options->csv_file || cm1e_scheduler_check_path(options->csv_file, &diag) == CM1E_OK)
+        && (!options->svg_file || cm1e_scheduler_check_path(options->svg_file, &diag) == CM1E_OK))
+        return true;
+    fail(&diag);
+    return false;
+}
+
+static bool has_homing_method(const motion_options_t *options)
+{
+    if (options->kind != MOTION_HOME || options->homing.method != 0)
+        return true;
+    complain("say how to home: --method METHOD (-6 ... -1, behind a bridge 1 ... 4), or homing.method in the bus file");
+    return false;
+}
+
 static int move_or_home(motion_options_t *options, const char *what)
 {
     static cm1e_bus_config_t config;
-    if (!load_axes(&options->common, &config))
+    if (!files_can_be_written(options) || !load_axes(&options->common, &config))
         return EXIT_FAILED;
     const int axis = find_axis(&config, options->axis_word ? options->axis_word : "1");
     if (axis < 0)
@@ -345,6 +415,8 @@ static int move_or_home(motion_options_t *options, const char *what)
         complete_homing(options, &config.axes[axis].homing);
     else if (options->velocity == 0)
         options->velocity = 1.0;
+    if (!has_homing_method(options))
+        return EXIT_FAILED;
     config.axes[axis].in_position_done_waits = config.axes[axis].type == CM1E_AXIS_MOTOR;
     options->modulo_range = config.axes[axis].modulo_range;
     cm1e_diag_t diag = {0};
@@ -354,8 +426,7 @@ static int move_or_home(motion_options_t *options, const char *what)
         status = fail(&diag);
     else
         status = run(options, what, bus, axis, &diag);
-    cm1e_bus_close(bus);
-    return status;
+    return close_bus(bus, &options->common, status);
 }
 
 int command_move(int argc, char **argv)

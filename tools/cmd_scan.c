@@ -106,6 +106,5 @@ int command_scan(int argc, char **argv)
     }
     /* A bus file says what should be there: compare. */
     const bool as_expected = config.axis_count == 0 || cm1e_bus_identify(bus, &diag) == CM1E_OK;
-    cm1e_bus_close(bus);
-    return as_expected ? EXIT_OK : fail(&diag);
+    return close_bus(bus, &options, as_expected ? EXIT_OK : fail(&diag));
 }

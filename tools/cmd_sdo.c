@@ -254,7 +254,5 @@ int command_sdo(int argc, char **argv)
         cm1e_bus_close(bus);
         return fail(&diag);
     }
-    const int status = transfer(bus, &options, &diag);
-    cm1e_bus_close(bus);
-    return status;
+    return close_bus(bus, &options.common, transfer(bus, &options, &diag));
 }

@@ -211,8 +211,7 @@ static int run_on_bus(const sii_options_t *options)
         status = read_slave(bus, position, &image, &diag) ? decode(&image, options->common.json) : fail(&diag);
         free(image.bytes);
     }
-    cm1e_bus_close(bus);
-    return status;
+    return close_bus(bus, &options->common, status);
 }
 
 int command_sii(int argc, char **argv)

@@ -61,7 +61,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     sim_options_t *options = state->input;
     switch (key) {
-    case 'i': options->interface_name = arg; return 0;
+    case 'i':
+        if (!arg[0])
+            argp_error(state, "-i needs a name; it is empty");
+        options->interface_name = arg;
+        return 0;
     case 'o': options->order = arg; return 0;
     case KEY_SII:
         if (options->sii_count == CM1E_MAX_SLAVES)

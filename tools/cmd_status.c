@@ -30,7 +30,7 @@ static void print_drive(const cm1e_slave_info_t *slave, const drive_status_t *dr
     snprintf(firmware, sizeof firmware, "firmware %s", version);
     print_head(slave, firmware);
     for (int i = 0; i < DRIVE_READINGS; i++)
-        printf("  %-18s %s\n", drive_label(i), drive_text(drive, i, text, sizeof text));
+        printf("  %-18s %s\n", drive_label(drive, i), drive_text(drive, i, text, sizeof text));
 }
 
 /** Appends to `all`, or prints where that is NULL. FALSE: the statusword cannot be read. */
@@ -102,6 +102,5 @@ int command_status(int argc, char **argv)
     }
     if (all)
         print_json(all);
-    cm1e_bus_close(bus);
-    return readable ? EXIT_OK : fail(&diag);
+    return close_bus(bus, &options, readable ? EXIT_OK : fail(&diag));
 }

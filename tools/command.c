@@ -24,6 +24,8 @@ static const struct argp_option common_option_table[] = {
 static error_t parse_common(int key, char *arg, struct argp_state *state)
 {
     common_options_t *options = state->input;
+    if ((key == 'i' || key == 'b' || key == KEY_PCAP) && !arg[0])
+        argp_error(state, "%s needs a name; it is empty", key == 'i' ? "-i" : key == 'b' ? "-b" : "--pcap");
     switch (key) {
     case 'i': options->interface_name = arg; return 0;
     case 'b': options->bus_file = arg; return 0;
@@ -153,6 +155,14 @@ bool load_axes(const common_options_t *options, cm1e_bus_config_t *config)
     if (config->axis_count == 0)
         complain("there is no CM1-E on %s", config->interface_name);
     return config->axis_count > 0;
+}
+
+int close_bus(cm1e_bus_t *bus, const common_options_t *options, int status)
+{
+    if (cm1e_bus_close(bus) == CM1E_OK)
+        return status;
+    complain("not every frame could be written to the pcap file %s", options->pcap_file);
+    return status == EXIT_OK ? EXIT_FAILED : status;
 }
 
 int find_axis(const cm1e_bus_config_t *config, const char *word)

@@ -47,6 +47,9 @@ bool load_configuration(const common_options_t *options, cm1e_bus_config_t *conf
  *  bridge, it complains and writes a bus file to be completed. */
 bool load_axes(const common_options_t *options, cm1e_bus_config_t *config);
 
+/** Closes the bus; returns the exit status, EXIT_FAILED and a complaint where frames are missing in the pcap file. */
+int close_bus(cm1e_bus_t *bus, const common_options_t *options, int status);
+
 /** Finds an axis of the configuration by name or number (1 = first); -1 and a complaint: there is none. */
 int find_axis(const cm1e_bus_config_t *config, const char *word);
 

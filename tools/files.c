@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "command.h"
+#include "core/output.h"
 
 /* More than any of the readers takes, so that their own limit can be named. */
 enum { INPUT_LIMIT = 64 << 20, PIECE = 65536 };
@@ -67,40 +67,6 @@ static bool write_all(FILE *file, const void *bytes, size_t size)
     return fwrite(bytes, 1, size, file) == size && fflush(file) == 0;
 }
 
-/* A new file beside `path`, under a name that nobody has, with the rights that `path` has or would get. NULL: errno. */
-static FILE *create_beside(const char *path, const struct stat *present, char *temporary)
-{
-    sprintf(temporary, "%s.XXXXXX", path);
-    const int descriptor = mkstemp(temporary);
-    const mode_t mask = umask(0);
-    umask(mask);
-    FILE *file = descriptor >= 0 ? fdopen(descriptor, "wb") : NULL;
-    if (file && fchmod(descriptor, present ? present->st_mode & 07777 : 0666 & ~mask) == 0)
-        return file;
-    const int error = errno;
-    if (file)
-        fclose(file);
-    if (descriptor >= 0)
-        remove(temporary);
-    errno = error;
-    return NULL;
-}
-
-static bool write_and_rename(const char *path, const struct stat *present, const void *bytes, size_t size)
-{
-    char *temporary = malloc(strlen(path) + sizeof ".XXXXXX");
-    FILE *file = temporary ? create_beside(path, present, temporary) : NULL;
-    bool good = file && write_all(file, bytes, size);
-    good = file && fclose(file) == 0 && good && rename(temporary, path) == 0;
-    if (file && !good) {
-        const int error = errno;
-        remove(temporary);
-        errno = error;
-    }
-    free(temporary);
-    return good;
-}
-
 bool write_output(const char *path, const void *bytes, size_t size)
 {
     if (strcmp(path, "-") == 0) {
@@ -109,19 +75,14 @@ bool write_output(const char *path, const void *bytes, size_t size)
             complain("cannot write to standard output: %s", strerror(errno));
         return written;
     }
-    struct stat about;
-    const bool there = stat(path, &about) == 0;
-    bool good;
-    if (there && !S_ISREG(about.st_mode)) { /* a device, a pipe: nothing to rename */
-        FILE *file = fopen(path, "wb");
-        good = file && write_all(file, bytes, size);
-        good = file && fclose(file) == 0 && good;
-    } else {
-        char *linked = there ? realpath(path, NULL) : NULL; /* a link stays one */
-        good = write_and_rename(linked ? linked : path, there ? &about : NULL, bytes, size);
-        free(linked);
+    cm1e_diag_t diag = {0};
+    cm1e_output_t output;
+    cm1e_error_t error = cm1e_output_open(&output, path, &diag);
+    if (error == CM1E_OK) {
+        fwrite(bytes, 1, size, output.file); /* what does not arrive, the end tells */
+        error = cm1e_output_close(&output, &diag);
     }
-    if (!good)
-        complain("cannot write %s: %s", path, strerror(errno));
-    return good;
+    if (error != CM1E_OK)
+        fail(&diag);
+    return error == CM1E_OK;
 }

@@ -59,7 +59,18 @@ bool read_drive(cm1e_bus_t *bus, uint16_t position, drive_status_t *drive, cm1e_
 
 /* ---- in words --------------------------------------------------------------------------------------------------- */
 
-const char *drive_label(int i) { return readings[i].label; }
+/** 0x603F holds also what is no error: no mode selected, disabled by command ... (UG 7.3.1). */
+static bool is_error(const drive_status_t *drive)
+{
+    const cm1e_device_error_t *row = cm1e_device_error((uint16_t)drive->readings[ERROR_CODE].value);
+    return drive->readings[ERROR_CODE].valid && (!row || row->fault);
+}
+
+const char *drive_label(const drive_status_t *drive, int i)
+{
+    const bool is_note = i == ERROR_CODE && drive->readings[i].valid && !is_error(drive);
+    return is_note ? "note" : readings[i].label;
+}
 
 static const char *mode_name(const drive_status_t *drive)
 {
@@ -96,7 +107,7 @@ static int value_text(const drive_status_t *drive, int i, char *text, size_t siz
                         value & STATUSWORD_VOLTAGE_ENABLED ? "on" : "off");
     if (i == ERROR_CODE) {
         const cm1e_device_error_t *error = cm1e_device_error((uint16_t)value);
-        const char *cure = error && error->cure ? error->cure : "";
+        const char *cure = is_error(drive) && error && error->cure ? error->cure : "";
         return snprintf(text, size, "0x%04X %s%s%s", (unsigned)value & 0xFFFF, error_name(error), cure[0] ? ": " : "",
                         cure);
     }
@@ -123,14 +134,23 @@ const char *drive_text(const drive_status_t *drive, int i, char *text, size_t si
 
 /* ---- as JSON ---------------------------------------------------------------------------------------------------- */
 
+static json_t *reading_as_json(const reading_t *reading, bool is_whole)
+{
+    if (!reading->valid)
+        return json_null();
+    return is_whole ? json_integer((json_int_t)reading->value) : json_real(reading->value);
+}
+
 json_t *drive_status_as_json(const cm1e_slave_info_t *slave, const drive_status_t *drive)
 {
+    const char *code = error_name(cm1e_device_error((uint16_t)drive->readings[ERROR_CODE].value));
     const struct {
         int reading;
         const char *key, *word;
     } words[] = {
         {STATUSWORD, "state", state_name(drive)},
-        {ERROR_CODE, "error", error_name(cm1e_device_error((uint16_t)drive->readings[ERROR_CODE].value))},
+        {ERROR_CODE, "error", is_error(drive) ? code : ""},
+        {ERROR_CODE, "note", is_error(drive) ? "" : code},
         {MODE, "mode_name", mode_name(drive)},
     };
     json_t *object = json_pack("{s:i, s:s, s:s}", "position", slave->position, "name", slave->name, "firmware",
@@ -139,7 +159,6 @@ json_t *drive_status_as_json(const cm1e_slave_info_t *slave, const drive_status_
         json_object_set_new(object, words[i].key,
                             drive->readings[words[i].reading].valid ? json_string(words[i].word) : json_null());
     for (int i = 0; i < DRIVE_READINGS; i++)
-        json_object_set_new(object, readings[i].key,
-                            drive->readings[i].valid ? json_real(drive->readings[i].value) : json_null());
+        json_object_set_new(object, readings[i].key, reading_as_json(&drive->readings[i], readings[i].scale == 1));
     return object;
 }

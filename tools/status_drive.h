@@ -27,8 +27,8 @@ typedef struct drive_status {
 
 /** FALSE, with the reason in `diag`: the statusword cannot be read. */
 bool read_drive(cm1e_bus_t *bus, uint16_t position, drive_status_t *drive, cm1e_diag_t *diag);
-/** What the n-th reading is about. */
-const char *drive_label(int i);
+/** What the n-th reading is about; of 0x603F "error", or "note" where its code is no error. */
+const char *drive_label(const drive_status_t *drive, int i);
 /** Its value in words, or why it cannot be read; `text`. */
 const char *drive_text(const drive_status_t *drive, int i, char *text, size_t size);
 json_t *drive_status_as_json(const cm1e_slave_info_t *slave, const drive_status_t *drive);

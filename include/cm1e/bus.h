@@ -84,8 +84,9 @@ cm1e_error_t cm1e_bus_start(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Safe-Operational, then Init. The drives must be disabled before. Never fails: does what it still can. Refused in a
  *  task of a scheduler, as cm1e_bus_close(): the run ends in order, with an error. @rt init */
 void cm1e_bus_stop(cm1e_bus_t *bus);
-/** Stops if need be, closes the interface, frees. NULL is allowed. @rt init */
-void cm1e_bus_close(cm1e_bus_t *bus);
+/** Stops if need be, closes the interface, frees. NULL is allowed. CM1E_ERROR_IO: it is closed, but not every frame
+ *  arrived in the pcap file; CM1E_ERROR_STATE: refused in a task. @rt init */
+cm1e_error_t cm1e_bus_close(cm1e_bus_t *bus);
 
 /** Takes in the frame(s) sent in the last cycle. CM1E_OK: all inputs are fresh; CM1E_ERROR_BUS_LOST or
  *  CM1E_ERROR_BUS_WORKING_COUNTER: the inputs are the previous ones (those of the slaves that did not take part).

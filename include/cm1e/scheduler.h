@@ -98,8 +98,11 @@ void cm1e_scheduler_mark(cm1e_scheduler_t *scheduler, const char *text);
  *  neighbouring cycles. @rt any */
 void cm1e_scheduler_statistics(const cm1e_scheduler_t *scheduler, cm1e_scheduler_statistics_t *statistics);
 
-/** Writes the trace (time; per axis: state, set and actual position and velocity, torque) as CSV, to <path>.part, then
- *  renamed. After the run. CM1E_ERROR_STATE without a trace. @rt block */
+/** Whether cm1e_scheduler_write_csv() and its like can write `path`, before the run: CM1E_ERROR_IO and why not. Leaves
+ *  nothing behind. @rt block */
+cm1e_error_t cm1e_scheduler_check_path(const char *path, cm1e_diag_t *diag);
+/** Writes the trace (time; per axis: state, set and actual position and velocity, torque) as CSV, into a new
+ *  file beside `path` that is renamed when it is whole. After the run. CM1E_ERROR_STATE without a trace. @rt block */
 cm1e_error_t cm1e_scheduler_write_csv(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);
 /** Writes the trace as a plot that a person can read: panels per axis. As cm1e_scheduler_write_csv(). @rt block */
 cm1e_error_t cm1e_scheduler_write_svg(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);

@@ -77,18 +77,20 @@ void cm1e_bus_free_image(cm1e_bus_t *bus)
     bus->output_bytes = bus->input_bytes = 0;
 }
 
-void cm1e_bus_close(cm1e_bus_t *bus)
+cm1e_error_t cm1e_bus_close(cm1e_bus_t *bus)
 {
-    if (!bus || cm1e_in_task_note("cm1e_bus_close()"))
-        return;
+    if (!bus)
+        return CM1E_OK;
+    if (cm1e_in_task_note("cm1e_bus_close()"))
+        return CM1E_ERROR_STATE;
     cm1e_bus_stop(bus);
     cm1e_soem_destroy(bus->soem);
-    if (bus->nic)
-        cm1e_nic_close(bus->nic);
+    const cm1e_error_t error = cm1e_nic_close(bus->nic);
     cm1e_bus_free_image(bus);
     free(bus->slaves);
     free(bus);
     cm1e_clock_make_current(NULL); /* the clock of the nic is gone */
+    return error;
 }
 
 int64_t cm1e_bus_enter(cm1e_bus_t *bus)

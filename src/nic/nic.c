@@ -31,6 +31,8 @@ cm1e_error_t nic_open_backend(cm1e_nic_t **nic, const cm1e_nic_backend_t *backen
     }
     if (config->pcap_file[0])
         error = cm1e_nic_pcap(n, config->pcap_file, diag);
+    if (!error && n->pcap) /* its header: a full disk is told before anything moves */
+        error = pcap_check(n->pcap, config->pcap_file, diag);
     if (error) {
         cm1e_nic_close(n);
         return error;
@@ -49,16 +51,17 @@ cm1e_error_t cm1e_nic_open(cm1e_nic_t **nic, const cm1e_bus_config_t *config, cm
     return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "No way to open interface \"%s\".", name);
 }
 
-void cm1e_nic_close(cm1e_nic_t *nic)
+cm1e_error_t cm1e_nic_close(cm1e_nic_t *nic)
 {
     if (!nic)
-        return;
+        return CM1E_OK;
     nic->backend->close(nic);
-    pcap_close(nic->pcap);
+    const cm1e_error_t error = pcap_close(nic->pcap);
     /* The virtual clock dies with the nic: nobody may keep on using it. */
     if (cm1e_clock_current() == &nic->virtual_clock)
         cm1e_clock_make_current(NULL);
     free(nic);
+    return error;
 }
 
 cm1e_clock_t *cm1e_nic_clock(cm1e_nic_t *nic) { return nic->clock; }

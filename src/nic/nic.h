@@ -35,7 +35,7 @@ typedef struct cm1e_nic_backend {
 
 /** Opens config->interface_name (and second_interface). Nothing is sent. */
 cm1e_error_t cm1e_nic_open(cm1e_nic_t **nic, const cm1e_bus_config_t *config, cm1e_diag_t *diag);
-void cm1e_nic_close(cm1e_nic_t *nic);
+cm1e_error_t cm1e_nic_close(cm1e_nic_t *nic);
 /** The clock that runs on this nic: monotonic, or the segment's virtual one. */
 cm1e_clock_t *cm1e_nic_clock(cm1e_nic_t *nic);
 /** The simulated segment behind it; NULL on a network interface. */

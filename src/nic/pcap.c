@@ -32,6 +32,11 @@ static void put(pcap_file_t *pcap, const void *bytes, size_t size)
         pcap->failed = true;
 }
 
+static cm1e_error_t cannot_write(const char *path, cm1e_diag_t *diag)
+{
+    return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The pcap file %s cannot be written: %s.", path, strerror(errno));
+}
+
 cm1e_error_t pcap_open(pcap_file_t **pcap, const char *path, cm1e_diag_t *diag)
 {
     *pcap = NULL;
@@ -41,7 +46,7 @@ cm1e_error_t pcap_open(pcap_file_t **pcap, const char *path, cm1e_diag_t *diag)
     p->file = fopen(path, "wbe");
     if (!p->file) {
         free(p);
-        return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The pcap file %s cannot be written: %s.", path, strerror(errno));
+        return cannot_write(path, diag);
     }
     setvbuf(p->file, p->buffer, _IOFBF, sizeof p->buffer);
     const file_header_t header = {.magic = 0xA1B23C4D, .major = 2, .minor = 4, .snap_length = SNAP_LENGTH,
@@ -49,6 +54,11 @@ cm1e_error_t pcap_open(pcap_file_t **pcap, const char *path, cm1e_diag_t *diag)
     put(p, &header, sizeof header);
     *pcap = p;
     return CM1E_OK;
+}
+
+cm1e_error_t pcap_check(pcap_file_t *pcap, const char *path, cm1e_diag_t *diag)
+{
+    return fflush(pcap->file) == 0 ? CM1E_OK : cannot_write(path, diag);
 }
 
 void pcap_write(pcap_file_t *pcap, int64_t time_ns, const uint8_t *frame, size_t length)
@@ -60,10 +70,11 @@ void pcap_write(pcap_file_t *pcap, int64_t time_ns, const uint8_t *frame, size_t
     put(pcap, frame, length);
 }
 
-void pcap_close(pcap_file_t *pcap)
+cm1e_error_t pcap_close(pcap_file_t *pcap)
 {
     if (!pcap)
-        return;
-    fclose(pcap->file);
+        return CM1E_OK;
+    const bool whole = fclose(pcap->file) == 0 && !pcap->failed;
     free(pcap);
+    return whole ? CM1E_OK : CM1E_ERROR_IO;
 }

@@ -8,6 +8,7 @@
 #include "bus/bus_image.h"
 #include "cm1e/scan_time.h"
 #include "core/in_task.h"
+#include "core/output.h"
 #include "scheduler/realtime.h"
 #include "scheduler/signals.h"
 #include "scheduler/statistics.h"
@@ -240,6 +241,13 @@ void cm1e_scheduler_mark(cm1e_scheduler_t *scheduler, const char *text)
 void cm1e_scheduler_statistics(const cm1e_scheduler_t *scheduler, cm1e_scheduler_statistics_t *statistics)
 {
     statistics_read(&scheduler->statistics, statistics);
+}
+
+cm1e_error_t cm1e_scheduler_check_path(const char *path, cm1e_diag_t *diag)
+{
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_scheduler_check_path()", "", diag);
+    return cm1e_output_check(path, diag);
 }
 
 cm1e_error_t cm1e_scheduler_write_csv(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag)

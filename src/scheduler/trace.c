@@ -1,11 +1,10 @@
 #include "scheduler/trace.h"
 
-#include <errno.h>
 #include <locale.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
+
+#include "core/output.h"
 
 /* ---- recording ------------------------------------------------------------------------------------------------- */
 
@@ -125,19 +124,7 @@ void trace_print_csv(const trace_t *trace, FILE *file)
     }
 }
 
-static cm1e_error_t cannot_write(const char *path, cm1e_diag_t *diag)
-{
-    return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "%s cannot be written: %s.", path, strerror(errno));
-}
-
-/** A device or a pipe (/dev/stdout) is written to directly. */
-static bool is_special(const char *path)
-{
-    struct stat status;
-    return stat(path, &status) == 0 && !S_ISREG(status.st_mode);
-}
-
-static bool print_in_c_locale(const trace_t *trace, FILE *file, void (*print)(const trace_t *trace, FILE *file))
+static void print_in_c_locale(const trace_t *trace, FILE *file, void (*print)(const trace_t *trace, FILE *file))
 {
     const locale_t locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
     const locale_t before = locale ? uselocale(locale) : (locale_t)0;
@@ -146,27 +133,17 @@ static bool print_in_c_locale(const trace_t *trace, FILE *file, void (*print)(co
         uselocale(before);
         freelocale(locale);
     }
-    const bool written = fflush(file) == 0 && !ferror(file);
-    return fclose(file) == 0 && written;
 }
 
 cm1e_error_t trace_write_file(const trace_t *trace, const char *path, void (*print)(const trace_t *trace, FILE *file),
                               cm1e_diag_t *diag)
 {
-    char temporary[4096];
+    cm1e_output_t output;
     if (trace->capacity == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Nothing was recorded: the scheduler's trace_capacity is 0.");
-    const bool direct = path && is_special(path);
-    if (!path || snprintf(temporary, sizeof temporary, direct ? "%s" : "%s.part", path) >= (int)sizeof temporary)
-        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The name of the file is missing or too long.");
-    FILE *file = fopen(temporary, "w");
-    if (!file)
-        return cannot_write(temporary, diag);
-    const bool written = print_in_c_locale(trace, file, print);
-    if (written && (direct || rename(temporary, path) == 0))
-        return CM1E_OK;
-    const cm1e_error_t error = cannot_write(path, diag);
-    if (!direct)
-        unlink(temporary);
-    return error;
+    const cm1e_error_t error = cm1e_output_open(&output, path, diag);
+    if (error != CM1E_OK)
+        return error;
+    print_in_c_locale(trace, output.file, print);
+    return cm1e_output_close(&output, diag);
 }

@@ -261,25 +261,51 @@ static void test_numbers_have_a_point_in_every_locale(void)
     trace_free(&trace);
 }
 
+/* As a disk that fills in the middle. */
+static void print_half(const trace_t *trace, FILE *file)
+{
+    trace_print_csv(trace, file);
+    fflush(file);
+    close(fileno(file));
+    fputs("the rest", file);
+}
+
 static void test_old_file_stays_until_the_new_one_is_whole(void)
 {
     trace_t empty = make_trace(1, 1);
-    char part[sizeof csv_path + 8];
     size_t size;
     cm1e_diag_t diag = {0};
-    snprintf(part, sizeof part, "%s.part", csv_path);
     FILE *file = fopen(csv_path, "w");
     fputs("old", file);
     fclose(file);
-    TEST_ASSERT_EQUAL(0, mkdir(part, 0700)); /* the temporary name cannot be written */
-    TEST_ASSERT_EQUAL(CM1E_ERROR_IO, trace_write_file(&empty, csv_path, trace_print_csv, &diag));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_IO, trace_write_file(&empty, csv_path, print_half, &diag));
     TEST_ASSERT_NOT_NULL(strstr(diag.text, csv_path));
-    rmdir(part);
     char *text = read_file(csv_path, &size);
     TEST_ASSERT_EQUAL_STRING("old", text);
     free(text);
     TEST_ASSERT_EQUAL(CM1E_OK, trace_write_file(&empty, csv_path, trace_print_csv, &diag));
-    TEST_ASSERT_NOT_EQUAL(0, access(part, F_OK));
+    trace_free(&empty);
+}
+
+static void test_a_link_beside_the_file_is_not_followed(void)
+{
+    static const char victim[] = CM1E_TEST_OUTPUT "/victim";
+    trace_t empty = make_trace(1, 1);
+    char part[sizeof csv_path + 8];
+    size_t size;
+    FILE *file = fopen(victim, "w");
+    fputs("of somebody else", file);
+    fclose(file);
+    snprintf(part, sizeof part, "%s.part", csv_path);
+    unlink(part);
+    unlink(csv_path);
+    TEST_ASSERT_EQUAL(0, symlink(victim, part));
+    TEST_ASSERT_EQUAL(CM1E_OK, trace_write_file(&empty, csv_path, trace_print_csv, NULL));
+    char *text = read_file(victim, &size);
+    TEST_ASSERT_EQUAL_STRING("of somebody else", text);
+    free(text);
+    unlink(part);
+    unlink(victim);
     trace_free(&empty);
 }
 
@@ -316,6 +342,7 @@ int main(void)
     RUN_TEST(test_csv_has_a_row_a_sample_in_the_order_of_time_also_after_the_ring_went_round);
     RUN_TEST(test_numbers_have_a_point_in_every_locale);
     RUN_TEST(test_old_file_stays_until_the_new_one_is_whole);
+    RUN_TEST(test_a_link_beside_the_file_is_not_followed);
     RUN_TEST(test_paths_that_cannot_be_written_are_named);
     return UNITY_END();
 }

@@ -1,0 +1,160 @@
+#!/usr/bin/env python3
+"""What cannot be meant, and files that cannot be written, are refused in words before anything moves: numbers out of
+every bound, empty names, a homing without a method, traces and pcap files. The pcap file is the witness.
+
+test_refusals.py BIN-DIRECTORY SOURCE-DIRECTORY
+"""
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+
+BIN, SOURCE = sys.argv[1], sys.argv[2]
+FAILED, WRONG_USE = 1, 2
+PCAP_HEADER = 24
+faults = []
+
+
+def run(program, *words, **more):
+    return subprocess.run([os.path.join(BIN, program), *words], capture_output=True, text=True, timeout=60, **more)
+
+
+def expect(condition, what, result):
+    if not condition:
+        faults.append(f"{what}: exit status {result.returncode}\n{result.stdout}{result.stderr}")
+
+
+# Words after `cm1e`, and what the complaint must contain.
+MOVE = ["move", "-i", "sim"]
+HOME = ["home", "-i", "sim", "--method", "-1"]
+NUMBERS = [
+    (MOVE + ["--by", "1", "-v", "0"], "velocity"), (MOVE + ["--by", "1", "-a", "0"], "acceleration"),
+    (MOVE + ["--by", "1", "-d", "0"], "deceleration"), (MOVE + ["--by", "1", "--jerk", "-0.0"], "jerk"),
+    (MOVE + ["--by", "1", "-v", "1e-400"], "velocity"), (MOVE + ["--by", "nan"], "number"),
+    (MOVE + ["--to", "inf"], "number"), (MOVE + ["--to", "1e400"], "number"), (MOVE + ["--by", ""], "number"),
+    (MOVE + ["--speed", "0", "--for", "1"], "speed"), (MOVE + ["--speed", "1", "--for", "0"], "time"),
+    (MOVE + ["--speed", "1", "--for", "-1"], "time"), (MOVE + ["--speed", "1", "--for", "1e10"], "1000000"),
+    (MOVE + ["--speed", "1", "--for", "nan"], "time"), (MOVE + ["--by", "1", "--for", "5"], "--for"),
+    (MOVE + ["--speed", "1", "--for", "1", "-v", "2"], "--velocity"),
+    (HOME + ["-v", "0"], "velocity"), (HOME + ["-a", "0"], "acceleration"), (HOME + ["--torque", "0"], "torque"),
+    (HOME + ["--for", "0"], "time"), (HOME + ["--for", "-1"], "time"), (HOME + ["--for", "1e300"], "1000000"),
+    (HOME + ["--offset", "inf"], "offset"), (HOME + ["--position", "-inf"], "position"),
+    (["cml", "-i", "sim", "--timeout", "1e10", "?99.1"], "3600"),
+    (["sdo", "-i", "sim", "read", "-1", "0x1018:1"], "position"),
+    (["sdo", "-i", "sim", "read", "1", "0x1018:256"], "sub-index"),
+]
+NAMES = [
+    (["scan", "-i", ""], "-i"), (["status", "-i", ""], "-i"), (["move", "-i", "", "--by", "1"], "-i"),
+    (["sim", "-i", ""], "-i"), (["scan", "-b", ""], "-b"), (["scan", "-i", "sim", "--pcap", ""], "--pcap"),
+    (MOVE + ["--by", "1", "--csv", ""], "--csv"), (MOVE + ["--by", "1", "--svg", ""], "--svg"),
+    (MOVE + ["--by", "1", "--svg", "x", "--csv", "x"], "same file"),
+]
+
+
+def check_wrong_words(folder):
+    pcap = os.path.join(folder, "witness.pcap")
+    for words, told in NUMBERS + NAMES:
+        witnessed = words[0] in ("move", "home") and "" not in words
+        result = run("cm1e", *words, *(["--pcap", pcap] if witnessed else []))
+        expect(result.returncode == WRONG_USE and told in result.stderr, f"cm1e {words}: \"{told}\"", result)
+        expect(not os.path.exists(pcap), f"cm1e {words}: something was sent", result)
+    for words, told in ((["10_electronic_gear", "-i", ""], "-i"), (["03_plc_program", "-i", ""], "-i"),
+                        (["03_plc_program", "--seconds", "nan"], "seconds"),
+                        (["03_plc_program", "--seconds", "1e300"], "seconds"),
+                        (["03_plc_program", "--seconds", "-1"], "seconds")):
+        result = run(*words)
+        expect(result.returncode != 0 and told in result.stderr, f"{words}: \"{told}\"", result)
+
+
+def check_no_homing_method():
+    """Without a bus file there is none; what helps is the option."""
+    for words in (["-i", "sim"], ["-i", "sim", "--method", "0"]):
+        result = run("cm1e", "home", *words)
+        expect(result.returncode == FAILED and "--method" in result.stderr and "homing.method in the bus file" in
+               result.stderr, f"home {words}", result)
+
+
+def check_files_before_the_move(folder):
+    """A trace that cannot be written is told before anything moves; nothing is left beside one that can."""
+    pcap, inside, missing = (os.path.join(folder, name) for name in ("moved.pcap", "inside", "missing/trace"))
+    os.mkdir(inside)
+    for option in ("--csv", "--svg"):
+        for path in (missing, inside, "/proc/trace"):
+            for words in (MOVE + ["--by", "1"], HOME):
+                result = run("cm1e", *words, option, path, "--pcap", pcap)
+                expect(result.returncode == FAILED and path in result.stderr and "done" not in result.stdout,
+                       f"{words[0]} {option} {path}", result)
+                expect(not os.path.exists(pcap), f"{words[0]} {option} {path}: something was sent", result)
+            for program in ("02_move_one_axis", "03_plc_program", "10_electronic_gear"):
+                if program != "02_move_one_axis":
+                    result = run(program, option, path)
+                    expect(result.returncode != 0 and path in result.stderr and result.stdout == "",
+                           f"{program} {option} {path}", result)
+    failed = run("cm1e", *MOVE, "--by", "1", "--velocity", "1000", "--csv", os.path.join(inside, "trace.csv"))
+    expect(failed.returncode == FAILED and set(os.listdir(inside)) <= {"trace.csv"}, "files beside a trace", failed)
+    full = run("cm1e", *MOVE, "--by", "0.1", "--csv", "/dev/full")
+    expect(full.returncode == FAILED and "/dev/full" in full.stderr, "trace on a full disk", full)
+    link, victim = (os.path.join(inside, name) for name in ("trace.csv.part", "victim"))
+    with open(victim, "w", encoding="utf-8") as file:
+        file.write("of somebody else")
+    os.symlink(victim, link)
+    moved = run("cm1e", *MOVE, "--by", "0.1", "--csv", os.path.join(inside, "trace.csv"))
+    with open(victim, encoding="utf-8") as file:
+        expect(moved.returncode == 0 and file.read() == "of somebody else", "a link named FILE.part", moved)
+
+
+def limit_files(size):
+    """As a disk that is full after so many bytes; the signal that comes with it is ignored."""
+    def limit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    return limit
+
+
+def check_lost_frames(folder):
+    """A pcap file that does not hold every frame is no success, whichever command wrote it."""
+    pcap, image, bus = (os.path.join(folder, name) for name in ("lost.pcap", "lost.sii", "bridge.yaml"))
+    run("cm1e", "generate", "sii", "-o", image)
+    with open(bus, "w", encoding="utf-8") as file:
+        file.write("bus: {interface: sim}\naxes:\n  - {position: 1, channel: 1, motor: CM1, k37: 10}\n")
+    for words in (["scan", "-i", "sim"], ["status", "-i", "sim"], ["sdo", "-i", "sim", "read", "1", "0x1008"],
+                  ["cml", "-b", bus, "?99.1"], ["sii", "-i", "sim", "read", "1", "-"],
+                  ["diff", image, "-i", "sim", "--position", "1"], ["generate", "eni", "-i", "sim", "-o", "-"],
+                  MOVE + ["--by", "0.01"]):
+        full = run("cm1e", *words, "--pcap", "/dev/full")
+        expect(full.returncode != 0 and "pcap file /dev/full" in full.stderr, f"{words[0]} --pcap /dev/full", full)
+        late = subprocess.run([os.path.join(BIN, "cm1e"), *words, "--pcap", pcap], capture_output=True, timeout=60,
+                              preexec_fn=limit_files(PCAP_HEADER + 10))
+        told = subprocess.CompletedProcess(words, late.returncode, "", late.stderr.decode())
+        expect(told.returncode == FAILED and f"pcap file {pcap}" in told.stderr, f"{words[0]} on a disk that fills",
+               told)
+
+
+def check_healthy_status():
+    """0x4502 and 0xFF01 are states, not errors: no error line, and JSON has none."""
+    text = run("cm1e", "status", "-i", "sim")
+    expect(text.returncode == 0 and "  error" not in text.stdout, "status of a healthy motor", text)
+    told = run("cm1e", "status", "-i", "sim", "--json")
+    drive = json.loads(told.stdout)[0]
+    expect(drive["error"] == "" and drive["note"] and drive["error_code"] in (0x4502, 0xFF01), "status as JSON", told)
+    whole = ("statusword", "error_code", "mode", "position_counts", "temperature_celsius", "digital_inputs")
+    expect(all(isinstance(drive[key], int) for key in whole), "whole numbers as JSON", told)
+    expect(isinstance(drive["dc_link_volt"], float), "dc_link_volt as JSON", told)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        check_wrong_words(folder)
+        check_files_before_the_move(folder)
+        check_lost_frames(folder)
+    check_no_homing_method()
+    check_healthy_status()
+    print("\n".join(faults) or f"refused before anything moves: {len(NUMBERS)} numbers, {len(NAMES)} names, files")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
