@@ -15,7 +15,7 @@
 enum {
     COLUMNS_PER_ROW = 3,
     COLUMN_LEFT = 72, COLUMN_RIGHT = 18, PLOT_WIDTH = 400, ONLY_PLOT_WIDTH = 810, /* as wide as the head */
-    HEAD = 84, NAME = 24, MARK_ROW = 12, MARK_LETTER = 6, BAND = 12, PANEL_GAP = 16, TIME_AXIS = 44,
+    HEAD = 84, NAME = 24, MARK_ROW = 12, MARK_GAP = 3, ELLIPSIS = 15, BAND = 12, PANEL_GAP = 16, TIME_AXIS = 44,
     BYTES_FOR_CURVES = 380000, BYTES_PER_POINT = 13,
 };
 
@@ -52,12 +52,24 @@ static const struct {
     [CM1E_AXIS_STOPPING] = {"#ef8632", 6},          [CM1E_AXIS_ERROR_STOP] = {"#d5343b", 7},
 };
 
+/** Where the text of a mark stands, measured from the left edge of a panel. */
+typedef struct label {
+    double x;           /**< of the mark */
+    double from, to;    /**< of the text */
+    unsigned row;       /**< 0: the lowest */
+    size_t bytes;       /**< of the text that there is room for */
+    const char *text;
+} label_t;
+
 typedef struct plot {
     FILE *file;
     const trace_t *trace;
     double begin_s, end_s;
     uint32_t slices;
     double width; /**< of a panel */
+    label_t labels[TRACE_MARKS]; /**< of the marks in the time shown; the same above every axis */
+    uint32_t label_count;
+    unsigned label_rows;
 } plot_t;
 
 static double time_s(const plot_t *plot, uint32_t n) { return (double)trace_time_ns(plot->trace, n) * 1e-9; }
@@ -81,9 +93,9 @@ static double value_of(const plot_t *plot, uint32_t n, uint32_t axis, const curv
     return value;
 }
 
-static void print_escaped(FILE *file, const char *text)
+static void print_escaped(FILE *file, const char *text, size_t bytes)
 {
-    for (const char *c = text; *c; c++)
+    for (const char *c = text; c < text + bytes; c++)
         switch (*c) {
         case '&': fputs("&amp;", file); break;
         case '<': fputs("&lt;", file); break;
@@ -310,43 +322,103 @@ static void print_panel(const plot_t *plot, const box_t *box, uint32_t axis, uns
 
 static double column_width(const plot_t *plot) { return COLUMN_LEFT + plot->width + COLUMN_RIGHT; }
 
-static double marks_height(const trace_t *trace) { return trace->mark_count > 0 ? 2 * MARK_ROW + 2 : 0; }
+static double marks_height(const plot_t *plot) { return plot->label_rows > 0 ? plot->label_rows * MARK_ROW + 2 : 0; }
 
-static double column_height(const trace_t *trace)
+static double column_height(const plot_t *plot)
 {
-    double height = NAME + marks_height(trace) + BAND + TIME_AXIS + 20;
+    double height = NAME + marks_height(plot) + BAND + TIME_AXIS + 20;
     for (unsigned i = 0; i < PANELS; i++)
         height += PANEL_GAP + panels[i].height;
     return height;
 }
 
-/** Those of the time shown, from the rows of their texts above `band` down to `bottom`. A text that would run into the
- *  one before stands in the upper row. */
+/* ---- marks ------------------------------------------------------------------------------------------------------ */
+
+/** Rather too wide than too narrow, in the font of the class tick. A byte that goes on with a character has none. */
+static double letter_width(char c)
+{
+    if (((unsigned char)c & 0xC0) == 0x80)
+        return 0;
+    if (strchr("iljtfrI.,:;'|!()[] ", c))
+        return 4.8;
+    return strchr("mwMW@%&", c) || (unsigned char)c >= 0x80 ? 11 : 7.4;
+}
+
+/** How much of a text fits into `room`: its width, and in `bytes` its length. */
+static double fit(const char *text, double room, size_t *bytes)
+{
+    double width = 0, fits = 0;
+    *bytes = 0;
+    for (size_t i = 0; text[i] && width <= room; i++) {
+        width += letter_width(text[i]);
+        if (width <= room && ((unsigned char)text[i + 1] & 0xC0) != 0x80) { /* a character is whole */
+            *bytes = i + 1;
+            fits = width;
+        }
+    }
+    return fits;
+}
+
+static bool is_free(const plot_t *plot, const label_t *label)
+{
+    for (uint32_t n = 0; n < plot->label_count; n++) {
+        const label_t *other = &plot->labels[n];
+        if (other->row == label->row && label->from < other->to + MARK_GAP && other->from < label->to + MARK_GAP)
+            return false;
+    }
+    return true;
+}
+
+/** To the right of its mark where there is room up to the next column, else to the left; in the lowest free row. */
+static void place_label(plot_t *plot, const trace_mark_t *mark)
+{
+    label_t label = {.text = mark->text};
+    label.x = x_of(plot, &(box_t){.width = plot->width}, (double)mark->time_ns * 1e-9);
+    if (label.x < 0 || label.x > plot->width)
+        return;
+    const double right = plot->width + COLUMN_RIGHT - 2 * MARK_GAP - label.x, left = label.x - MARK_GAP;
+    double width = fit(mark->text, right > left ? right : left, &label.bytes);
+    if (mark->text[label.bytes])
+        width = ELLIPSIS + fit(mark->text, (right > left ? right : left) - ELLIPSIS, &label.bytes);
+    label.from = width <= right ? label.x + MARK_GAP : label.x - MARK_GAP - width;
+    label.to = label.from + width;
+    while (!is_free(plot, &label))
+        label.row++;
+    plot->labels[plot->label_count++] = label;
+    plot->label_rows = label.row >= plot->label_rows ? label.row + 1 : plot->label_rows;
+}
+
+static void place_labels(plot_t *plot)
+{
+    for (uint32_t n = 0; n < plot->trace->mark_count; n++)
+        place_label(plot, trace_mark_at(plot->trace, n));
+}
+
+/** From the rows of their texts above `band` down to `bottom`; the texts last, so that no line runs through one. */
 static void print_marks(const plot_t *plot, const box_t *band, double bottom)
 {
-    const trace_t *trace = plot->trace;
-    double row_end = band->x; /* of the texts in the lower row */
-    for (uint32_t n = 0; n < trace->mark_count; n++) {
-        const trace_mark_t *mark = trace_mark_at(trace, n);
-        const double x = x_of(plot, band, (double)mark->time_ns * 1e-9);
-        if (x < band->x || x > band->x + band->width)
-            continue;
-        const double y = x < row_end ? band->y - MARK_ROW - 4 : band->y - 4;
-        if (x >= row_end)
-            row_end = x + MARK_LETTER * (double)strlen(mark->text);
-        fprintf(plot->file, "<path class=\"mark\" d=\"M%.1f,%.1fv%.1f\"/>", x, y - 7, bottom - y + 7);
-        fprintf(plot->file, "<text class=\"tick\" x=\"%.1f\" y=\"%.0f\">", x + 3, y);
-        print_escaped(plot->file, mark->text);
-        fputs("</text>\n", plot->file);
+    for (uint32_t n = 0; n < plot->label_count; n++) {
+        const double top = band->y - 11 - plot->labels[n].row * MARK_ROW;
+        fprintf(plot->file, "<path class=\"mark\" d=\"M%.1f,%.1fv%.1f\"/>", band->x + plot->labels[n].x, top,
+                bottom - top);
+    }
+    for (uint32_t n = 0; n < plot->label_count; n++) {
+        const label_t *label = &plot->labels[n];
+        const bool to_the_left = label->from < label->x;
+        fprintf(plot->file, "<text class=\"tick note\"%s x=\"%.1f\" y=\"%.0f\">",
+                to_the_left ? " text-anchor=\"end\"" : "", band->x + (to_the_left ? label->to : label->from),
+                band->y - 4 - label->row * MARK_ROW);
+        print_escaped(plot->file, label->text, label->bytes);
+        fputs(label->text[label->bytes] ? "...</text>\n" : "</text>\n", plot->file);
     }
 }
 
 static void print_column(const plot_t *plot, double x, double y, uint32_t axis)
 {
-    box_t box = {x + COLUMN_LEFT, y + NAME + marks_height(plot->trace), plot->width, BAND};
-    const double bottom = y + column_height(plot->trace) - TIME_AXIS - 20;
+    box_t box = {x + COLUMN_LEFT, y + NAME + marks_height(plot), plot->width, BAND};
+    const double bottom = y + column_height(plot) - TIME_AXIS - 20;
     fprintf(plot->file, "<text class=\"name\" x=\"%.0f\" y=\"%.0f\">", box.x, y + 16);
-    print_escaped(plot->file, plot->trace->names[axis]);
+    print_escaped(plot->file, plot->trace->names[axis], strlen(plot->trace->names[axis]));
     fputs("</text>\n", plot->file);
     print_states(plot, &box, bottom, axis);
     print_marks(plot, &box, bottom);
@@ -366,6 +438,7 @@ static const char style[] =
     ".tick{font-size:10.5px;fill:#4a525c}.unit,.key{font-size:11.5px}\n"
     "path{fill:none;stroke-linejoin:round;stroke-linecap:round}\n"
     ".grid{stroke:#000;stroke-opacity:.09}.zero{stroke:#000;stroke-opacity:.35}\n"
+    ".note{paint-order:stroke;stroke:#fff;stroke-width:3px;stroke-linejoin:round}\n"
     ".frame{fill:none;stroke:#6b7480}\n"
     ".actual{stroke:#f08a24;stroke-width:3}.set{stroke:#12395f;stroke-width:1.3}\n"
     ".torque{stroke:#2b7a4b;stroke-width:1.1}.mark{stroke:#5b2a86;stroke-dasharray:4 3}\n"
@@ -407,7 +480,12 @@ void trace_print_svg(const trace_t *trace, FILE *file)
     const uint32_t columns = trace->axes < COLUMNS_PER_ROW ? (trace->axes ? trace->axes : 1) : COLUMNS_PER_ROW;
     const uint32_t rows = (trace->axes + COLUMNS_PER_ROW - 1) / COLUMNS_PER_ROW;
     plot_t plot = {.file = file, .trace = trace, .width = columns == 1 ? ONLY_PLOT_WIDTH : PLOT_WIDTH};
-    const double width = columns * column_width(&plot), height = HEAD + rows * column_height(trace);
+    if (trace->used > 0) {
+        plot.begin_s = time_s(&plot, 0);
+        plot.end_s = fmax(time_s(&plot, trace->used - 1), plot.begin_s + 1e-6);
+        place_labels(&plot);
+    }
+    const double width = columns * column_width(&plot), height = HEAD + rows * column_height(&plot);
     fprintf(file,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" viewBox=\"0 0 %.0f %.0f\">\n"
             "%s<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n", width, height, width, height, style);
@@ -416,11 +494,9 @@ void trace_print_svg(const trace_t *trace, FILE *file)
         return;
     }
     plot.slices = slices_for(trace->axes, (uint32_t)plot.width);
-    plot.begin_s = time_s(&plot, 0);
-    plot.end_s = fmax(time_s(&plot, trace->used - 1), plot.begin_s + 1e-6);
     print_head(&plot);
     for (uint32_t axis = 0; axis < trace->axes; axis++)
         print_column(&plot, (axis % COLUMNS_PER_ROW) * column_width(&plot),
-                     HEAD + (axis / COLUMNS_PER_ROW) * column_height(trace), axis);
+                     HEAD + (axis / COLUMNS_PER_ROW) * column_height(&plot), axis);
     fputs("</svg>\n", file);
 }

@@ -55,7 +55,7 @@ START_TEST(everything_is_read_from_a_motor)
         ck_assert(drive.readings[i].valid);
         ck_assert_ptr_null(strstr(said(i), "in the guide"));
     }
-    ck_assert_str_eq(drive_label(SUPPLY), "motor supply");
+    ck_assert_str_eq(drive_label(&drive, SUPPLY), "motor supply");
     ck_assert(strstr(said(SUPPLY), " V") && atof(said(SUPPLY)) > 20);
 }
 END_TEST

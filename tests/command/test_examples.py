@@ -26,6 +26,23 @@ def expect(condition, what):
         faults.append(what)
 
 
+def check_texts(program, svg):
+    """No text of a plot runs into another one, none is cut at the edge; 6 pixels a letter."""
+    picture = xml.etree.ElementTree.parse(svg).getroot()
+    placed = []
+    for element in picture.iter("{http://www.w3.org/2000/svg}text"):
+        if "tick" not in element.get("class"):
+            continue
+        x, y, width = float(element.get("x")), float(element.get("y")), 6 * len(element.text)
+        begin = x - width * {"end": 1, "middle": 0.5}.get(element.get("text-anchor"), 0)
+        expect(0 <= begin and begin + width <= float(picture.get("width")) and y > 8,
+               f"{program}: \"{element.text}\" is cut at the edge of the plot")
+        for other, other_y, other_begin, other_end in placed:
+            expect(abs(y - other_y) >= 9 or begin >= other_end or begin + width <= other_begin,
+                   f"{program}: \"{element.text}\" is printed over \"{other}\" in the plot")
+        placed.append((element.text, y, begin, begin + width))
+
+
 def run(program, stdin="", arguments=()):
     """What it printed, its trace as a list of dictionaries, and the words of its plot."""
     svg, table = (os.path.join(OUTPUT, f"{program}.{kind}") for kind in ("svg", "csv"))
@@ -36,6 +53,7 @@ def run(program, stdin="", arguments=()):
     with open(table, newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))[1:]
     trace = [{name: cell if name == "state" else float(cell) for name, cell in zip(COLUMNS, row)} for row in rows]
+    check_texts(program, svg)
     words = [element.text for element in xml.etree.ElementTree.parse(svg).iter("{http://www.w3.org/2000/svg}text")]
     return done.stdout, trace, words
 

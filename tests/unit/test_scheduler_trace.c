@@ -155,6 +155,40 @@ static void test_svg_shows_the_marks_of_its_time(void)
     trace_free(&trace);
 }
 
+/* A program that names every moment, the last ones at the end of the time: each text has a place of its own. */
+static void test_svg_marks_are_never_printed_over_each_other(void)
+{
+    static const char *const names[] = {"a", "a longer one", "x\xC3\xA4\xC3\xB6",
+                                        "a text that is longer than the whole plot is wide, and goes on and on and on "
+                                        "and on and on and on and on and on and on and on and on and on"};
+    static double placed[TRACE_MARKS][3]; /* y, from, to */
+    trace_t trace = make_trace(2, 100);
+    size_t size;
+    for (uint32_t n = 0; n < 100; n++)
+        add_sample(&trace, n, 1);
+    for (int64_t i = 0; i < TRACE_MARKS; i++)
+        trace_mark(&trace, names[i % 4], (i < 60 ? i * i / 40 : 99) * INT64_C(1000000));
+    char *svg = write_svg(&trace, &size);
+    check_well_formed(svg);
+    TEST_ASSERT_EQUAL(2 * TRACE_MARKS, count(svg, "class=\"tick note\""));
+    const char *at = svg;
+    for (int i = 0; i < TRACE_MARKS; i++) { /* those of the first column */
+        double x, y;
+        char anchor[40] = "", text[256] = "";
+        at = strstr(at, "class=\"tick note\"") + strlen("class=\"tick note\"");
+        TEST_ASSERT_TRUE(sscanf(at, " text-anchor=\"%39[a-z]\" x=\"%lf\" y=\"%lf\">%255[^<]", anchor, &x, &y, text) == 4
+                         || sscanf(at, " x=\"%lf\" y=\"%lf\">%255[^<]", &x, &y, text) == 3);
+        const double width = 5.5 * (double)(strlen(text) - (strstr(text, "\xC3") ? 2 : 0));
+        const double from = anchor[0] ? x - width : x, to = from + width;
+        TEST_ASSERT_TRUE_MESSAGE(from >= 72 && to <= 72 + 400 + 18, text);
+        for (int k = 0; k < i; k++)
+            TEST_ASSERT_TRUE_MESSAGE(fabs(placed[k][0] - y) >= 12 || from >= placed[k][2] || to <= placed[k][1], text);
+        memcpy(placed[i], (double[]){y, from, to}, sizeof placed[i]);
+    }
+    free(svg);
+    trace_free(&trace);
+}
+
 static void test_svg_survives_any_values(void)
 {
     static const double values[] = {0, -0.0, 1e-300, 1e300, -1e300, NAN, INFINITY, -INFINITY, 1e12, 1e-12, 123456.789};
@@ -336,6 +370,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_svg_of_few_and_many_axes_is_well_formed_and_below_half_a_megabyte);
     RUN_TEST(test_svg_shows_the_marks_of_its_time);
+    RUN_TEST(test_svg_marks_are_never_printed_over_each_other);
     RUN_TEST(test_svg_survives_any_values);
     RUN_TEST(test_svg_shows_a_state_of_one_sample_and_a_peak_of_one_sample);
     RUN_TEST(test_svg_of_an_empty_trace_says_so);
