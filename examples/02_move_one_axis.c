@@ -55,6 +55,14 @@ static cm1e_error_t run(const char *interface_name, cm1e_bus_t **bus, cm1e_diag_
     return error == CM1E_OK ? cm1e_scheduler_run(scheduler, 0, why) : error;
 }
 
+/* What went wrong, in sentences. */
+static void tell_error(void)
+{
+    char text[CM1E_AXIS_ERROR_TEXT_BYTES];
+    cm1e_axis_error_text(axis, text, sizeof text);
+    fprintf(stderr, "%s. %s\n", cm1e_strerror(cm1e_error_from_id(first_error())), text);
+}
+
 int main(int argc, char **argv)
 {
     cm1e_diag_t why = {0};
@@ -63,7 +71,7 @@ int main(int argc, char **argv)
     if (error != CM1E_OK)
         fprintf(stderr, "%s\n", why.text);
     else if (first_error() != 0)
-        fprintf(stderr, "%s\n", cm1e_strerror(cm1e_error_from_id(first_error())));
+        tell_error();
     const BOOL moved = back.Done && error == CM1E_OK;
     printf("%s\n", moved ? "moved there and back" : "not moved");
     cm1e_scheduler_destroy(scheduler);

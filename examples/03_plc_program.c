@@ -516,6 +516,8 @@ int main(int argc, char **argv)
     const cm1e_error_t error = run(&options, &why);
     if (error != CM1E_OK)
         fprintf(stderr, "%s\n", why.text);
+    else if (m.step != STEP_END)
+        fprintf(stderr, "Interrupted before its end.\n");
     cm1e_scheduler_destroy(m.scheduler);
     cm1e_bus_close(m.bus);
     return error == CM1E_OK && machine_did_well() ? EXIT_SUCCESS : EXIT_FAILURE;

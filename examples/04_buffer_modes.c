@@ -78,7 +78,7 @@ static void program(void *context)
     MC_Power(&power);
     if (mode == MODES) {
         if (!power.Status)
-            cm1e_scheduler_stop(example.scheduler);
+            example_finish(&example);
     } else if (power.Status && two_moves(&now)) {
         mode += way == BACK;
         way = way == THERE ? BACK : THERE;
@@ -86,7 +86,7 @@ static void program(void *context)
     const WORD error = power.Error ? power.ErrorID : first.Error ? first.ErrorID : second.Error ? second.ErrorID : 0;
     if (error != 0 && error_id == 0) {
         error_id = error;
-        cm1e_scheduler_stop(example.scheduler);
+        example_finish(&example);
     }
 }
 
@@ -105,7 +105,7 @@ int main(int argc, char **argv)
     cm1e_error_t error = example_open(&example, &config, &why);
     if (error == CM1E_OK)
         error = example_run(&example, program, &why);
-    if (error == CM1E_OK)
+    if (example_is_done(&example, error))
         print_report();
     if (error_id != 0)
         example_tell_error(&example, error_id);

@@ -61,7 +61,7 @@ static void program(void *context)
     MC_Power(&power);
     if (pass == PASSES) {
         if (!power.Status)
-            cm1e_scheduler_stop(example.scheduler);
+            example_finish(&example);
     } else if (power.Status && go()) {
         pass += way == BACK;
         way = way == THERE ? BACK : THERE;
@@ -72,7 +72,7 @@ static void program(void *context)
     const WORD error = power.Error ? power.ErrorID : move.Error ? move.ErrorID : probe.Error ? probe.ErrorID : 0;
     if (error != 0 && error_id == 0) {
         error_id = error;
-        cm1e_scheduler_stop(example.scheduler);
+        example_finish(&example);
     }
 }
 
@@ -106,7 +106,7 @@ int main(int argc, char **argv)
     cm1e_error_t error = example_open(&example, &config, &why);
     if (error == CM1E_OK)
         error = example_run(&example, program, &why);
-    if (error == CM1E_OK)
+    if (example_is_done(&example, error))
         print_report();
     if (error_id != 0)
         example_tell_error(&example, error_id);

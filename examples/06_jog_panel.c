@@ -121,7 +121,7 @@ static void program(void *context)
     MC_Jog(&jog);
     show();
     if (atomic_load(&quit) && !power.Status)
-        cm1e_scheduler_stop(example.scheduler);
+        example_finish(&example);
 }
 
 /* ---- the terminal ------------------------------------------------------------------------------------------------ */
@@ -254,5 +254,6 @@ int main(int argc, char **argv)
     if (error == CM1E_OK)
         error = scripted ? example_run(&example, program, &why) : run_with_terminal(&why);
     printf("the axis is at %.3f u\n", (double)atomic_load(&shown_position) / 1000);
+    example.finished = true; /* a panel has no end of its own: Ctrl-C and a closed terminal are as good as q */
     return example_end(&example, error, &why, true);
 }

@@ -63,7 +63,7 @@ static void program(void *context)
     MC_Power(&power);
     if (homing == RUNS) {
         if (!power.Status)
-            cm1e_scheduler_stop(example.scheduler);
+            example_finish(&example);
         return;
     }
     if (power.Status && call_steps()) {
@@ -79,7 +79,7 @@ static void program(void *context)
     for (size_t i = 0; i < sizeof errors / sizeof errors[0]; i++)
         if (errors[i] != 0 && error_id == 0) {
             error_id = errors[i];
-            cm1e_scheduler_stop(example.scheduler);
+            example_finish(&example);
         }
 }
 
@@ -97,7 +97,7 @@ int main(int argc, char **argv)
     cm1e_error_t error = example_open(&example, &config, &why);
     if (error == CM1E_OK)
         error = example_run(&example, program, &why);
-    if (error == CM1E_OK)
+    if (example_is_done(&example, error))
         print_report();
     if (error_id != 0)
         example_tell_error(&example, error_id);

@@ -148,7 +148,7 @@ static void go_on(void)
     if (!all(steps[step].done))
         return;
     if (step == STEP_OFF)
-        cm1e_scheduler_stop(example.scheduler);
+        example_finish(&example);
     else
         cm1e_scheduler_mark(example.scheduler, steps[++step].name);
 }
@@ -182,7 +182,7 @@ int main(int argc, char **argv)
         make_units();
         error = example_run(&example, program, &why);
     }
-    const bool well = error == CM1E_OK && error_id == 0 && answers[1][0];
+    const bool well = example_is_done(&example, error) && error_id == 0 && answers[1][0];
     if (well)
         print_report();
     if (error_id != 0)

@@ -116,7 +116,7 @@ static void go_on(void)
         if (!steps[step].done(&units[i]))
             return;
     if (step == STEP_OFF)
-        cm1e_scheduler_stop(example.scheduler);
+        example_finish(&example);
     else
         cm1e_scheduler_mark(example.scheduler, steps[++step].name);
 }
@@ -153,7 +153,7 @@ int main(int argc, char **argv)
             make_unit(&units[i], i);
         error = example_run(&example, program, &why);
     }
-    if (error == CM1E_OK && error_id == 0)
+    if (example_is_done(&example, error) && error_id == 0)
         print_report();
     if (error_id != 0)
         example_tell_error_of(wrong, error_id);

@@ -149,7 +149,7 @@ int main(int argc, char **argv)
     }
     if (error == CM1E_OK)
         error = example_run(&example, program, &why);
-    if (error == CM1E_OK && example.error_id == 0) {
+    if (example_is_done(&example, error)) {
         printf("degrees behind the shaft   in gear   after phasing   then within\n");
         for (int i = LEFT; i < AXES; i++)
             printf("%-24s %9.3f %15.3f %13.6f\n", names[i], before[i], after[i], worst[i]);

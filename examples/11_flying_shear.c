@@ -173,7 +173,7 @@ int main(int argc, char **argv)
         carriage = cm1e_scheduler_axis(example.scheduler, CARRIAGE);
         error = example_run(&example, program, &why);
     }
-    if (error == CM1E_OK && example.error_id == 0)
+    if (example_is_done(&example, error))
         print_report();
     return example_end(&example, error, &why, true);
 }

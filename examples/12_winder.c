@@ -141,7 +141,7 @@ int main(int argc, char **argv)
     }
     if (error == CM1E_OK)
         error = example_run(&example, program, &why);
-    if (error == CM1E_OK && example.error_id == 0)
+    if (example_is_done(&example, error))
         printf("%d layers: from %g mm to %g mm; the surface goes with the wire within %.1e of its speed\n", layers,
                core, diameter, worst);
     return example_end(&example, error, &why, true);

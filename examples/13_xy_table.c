@@ -24,7 +24,10 @@ typedef struct row {
 } row_t;
 
 static example_t example;
-static const char *file_name = "examples/outline.csv", *outline_file;
+#ifndef OUTLINE /* where CMake does not say it, the root of the repository is the current folder */
+#define OUTLINE "examples/outline.csv"
+#endif
+static const char *file_name = OUTLINE, *outline_file;
 static AXIS_REF_t axes[AXES];
 static AXES_GROUP_REF_t group;
 static MC_Power_t power[AXES];
@@ -257,7 +260,7 @@ int main(int argc, char **argv)
         error = example_run(&example, program, &why);
     if (error == CM1E_OK && outline_file)
         error = draw(&why);
-    if (error == CM1E_OK && example.error_id == 0)
+    if (example_is_done(&example, error))
         printf("%d rows of %s; between the first and the last one never slower than %.1f mm/s\n", rows_done, file_name,
                slowest);
     if (example.error_id != 0) {

@@ -23,6 +23,7 @@ typedef struct example {
     cm1e_bus_t *bus;
     cm1e_scheduler_t *scheduler;
     AXIS_REF_t axis;
+    bool finished;     /**< the program ended by itself, not by a signal */
     AXIS_REF_t wrong;  /**< the first axis of which a block had an error, and which one */
     WORD error_id;
 } example_t;
@@ -102,6 +103,13 @@ static inline cm1e_error_t example_run(example_t *e, cm1e_program_t program, cm1
     return error;
 }
 
+/** The program's own end of the run. */
+static inline void example_finish(example_t *e)
+{
+    e->finished = true;
+    cm1e_scheduler_stop(e->scheduler);
+}
+
 /** Looks at a block of an axis. TRUE: this or an earlier one has an error; the first one is told at the end. */
 static inline bool example_failed(example_t *e, AXIS_REF_t axis, BOOL error, WORD error_id)
 {
@@ -125,23 +133,31 @@ static inline void example_tell_error(const example_t *e, WORD error_id) { examp
 static inline int example_next_step(example_t *e, const char *const *marks, int step, int last)
 {
     if (step == last) {
-        cm1e_scheduler_stop(e->scheduler);
+        example_finish(e);
         return step;
     }
     cm1e_scheduler_mark(e->scheduler, marks[step + 1]);
     return step + 1;
 }
 
-/** What main() returns. */
+/** Whether a report of what was done makes sense. */
+static inline bool example_is_done(const example_t *e, cm1e_error_t error)
+{
+    return error == CM1E_OK && e->finished && e->error_id == 0;
+}
+
+/** What main() returns; a run that was interrupted is no success. */
 static inline int example_end(example_t *e, cm1e_error_t error, const cm1e_diag_t *why, bool well)
 {
     if (error != CM1E_OK)
         fprintf(stderr, "%s\n", why->text);
+    else if (!e->finished)
+        fprintf(stderr, "Interrupted before its end.\n");
     if (e->error_id != 0)
         example_tell_error_of(e->wrong, e->error_id);
     cm1e_scheduler_destroy(e->scheduler);
     cm1e_bus_close(e->bus);
-    return error == CM1E_OK && e->error_id == 0 && well ? EXIT_SUCCESS : EXIT_FAILURE;
+    return error == CM1E_OK && e->finished && e->error_id == 0 && well ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 #endif

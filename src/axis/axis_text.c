@@ -9,7 +9,7 @@ static void lag_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     snprintf(text, size,
              "Axis \"%s\": %s: %.6g u, allowed are %.6g u. The motor did not follow the set-point: look for a blocked "
-             "axis, reduce load, velocity or acceleration, or raise max_position_lag; then reset the axis with "
+             "axis, reduce load, velocity or acceleration, or raise limits.position_lag; then reset the axis with "
              "MC_Reset.",
              axis->config->name, cm1e_strerror(axis->error), axis->error_value, axis->error_bound);
 }

@@ -351,7 +351,42 @@ def distance(row, begin, end, x, y):
     return math.dist((x, y), (begin[0] + along * way[0], begin[1] + along * way[1]))
 
 
+def check_interrupted():
+    """Ctrl-C is no success, and is said."""
+    for words in (["02_move_one_axis"], ["03_plc_program"], *([name, "-i", "sim"] for name in (
+            "04_buffer_modes", "08_cool_muscle_bridge", "10_electronic_gear", "11_flying_shear", "12_winder",
+            "13_xy_table"))):
+        example = subprocess.Popen([os.path.join(BIN, words[0]), *words[1:]], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        time.sleep(1)
+        example.send_signal(signal.SIGINT)
+        printed, complaint = example.communicate(timeout=30)
+        told = "not moved" in printed if words[0][:2] == "02" else complaint == "Interrupted before its end.\n"
+        expect(example.returncode == 1 and told, f"{words[0]}: Ctrl-C: {example.returncode} {printed}{complaint}")
+
+
+def check_error_in_words():
+    """A motor that runs into a stop: what happened, and the key that is there for it."""
+    slaves = os.path.join(OUTPUT, "stop.yaml")
+    with open(slaves, "w", encoding="utf-8") as file:
+        file.write("axes: [{sim: {stop_positive_counts: 10000}}]\n")
+    done = subprocess.run([os.path.join(BIN, "02_move_one_axis"), f"sim:{slaves}"], capture_output=True, text=True,
+                          timeout=60)
+    expect(done.returncode == 1 and "did not follow" in done.stderr and "limits.position_lag" in done.stderr,
+           f"02_move_one_axis at a stop: {done.returncode} {done.stdout}{done.stderr}")
+
+
+def check_from_elsewhere():
+    """The XY table finds its outline in whatever folder it is started."""
+    done = subprocess.run([os.path.join(BIN, "13_xy_table"), "--virtual-time"], capture_output=True, text=True,
+                          timeout=60, cwd=OUTPUT)
+    expect(done.returncode == 0 and "8 rows of" in done.stdout, f"13_xy_table elsewhere: {done.stdout}{done.stderr}")
+
+
 def main():
+    check_interrupted()
+    check_error_in_words()
+    check_from_elsewhere()
     check_buffer_modes()
     check_cool_muscle_bridge()
     check_mixed_network()

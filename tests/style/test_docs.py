@@ -64,6 +64,46 @@ def check_errors():
         faults.append(f"docs/FUNCTION-BLOCKS.md:{told[error_id][0]}: there is no error with ErrorID {error_id}")
 
 
+# ---- keys of the bus file ------------------------------------------------------------------------------------------
+
+# Fields of the configuration that a text may name although they are no keys: it is about a configuration made by hand.
+FIELDS_IN_TEXTS = {"axis_count"}
+
+
+def keys_of_schema():
+    """Every key, and every way to one: "velocity", "limits", "limits.velocity"."""
+    text = read("src/busfile/schema.c")
+    tables = {name: re.findall(r'\w+\(\s*"(\w+)"(?:, (\w+_fields))?', body) for name, body in
+              re.findall(r"cyaml_schema_field_t (\w+)\[\] = \{(.*?)\n\};", text, re.DOTALL)}
+    keys = set()
+    for table in tables.values():
+        for key, group in table:
+            keys.add(key)
+            keys.update(f"{key}.{below}" for below, _ in tables.get(group, []))
+    return keys
+
+
+def check_keys_in_texts():
+    """No sentence of ours names a key that the bus file does not have."""
+    keys = keys_of_schema()
+    if not {"limits.position_lag", "homing.method", "interface"} <= keys:
+        faults.append("src/busfile/schema.c: its keys cannot be read")
+    fields = set(re.findall(r"^    [\w ]*?\b(\w*_\w*)(?:\[\w+\])?(?:, \w+)*;", read("include/cm1e/config.h"),
+                            re.MULTILINE))
+    fields -= FIELDS_IN_TEXTS | keys
+    for path in expand("src/*/*.c") + expand("fb/*.c") + expand("tools/*.c"):
+        text = re.sub(r"/\*.*?\*/", lambda comment: "\n" * comment.group().count("\n"), read(path), flags=re.DOTALL)
+        for number, line in enumerate(text.splitlines(), 1):
+            if line.startswith("#include"):
+                continue
+            for literal in re.findall(r'"((?:[^"\\]|\\.)*)"', line):
+                named = set(re.findall(r"(?<![\w.%/-])[a-z]\w*(?:\.[a-z]\w*)?(?![\w.(/-])", literal + " "))
+                groups = {key.partition(".")[0] for key in keys if "." in key}
+                for word in sorted(named):
+                    if word in fields or (word.partition(".")[0] in groups and "." in word and word not in keys):
+                        faults.append(f"{path}:{number}: \"{word}\" is no key of the bus file")
+
+
 # ---- rules of the cross-checker -------------------------------------------------------------------------------------
 
 def check_rules():
@@ -177,6 +217,7 @@ def main():
         + expand("fb/interface/*.md") + expand("examples/*.md")
     check_errors()
     check_rules()
+    check_keys_in_texts()
     check_proofs()
     check_rooms()
     for path in documents:
