@@ -24,7 +24,7 @@ static cm1e_error_t read(cm1e_fb_private_t *fb, cm1e_axis_t *axis, INT number, b
 {
     if (boolean && !cm1e_axis_parameter_is_bool(number))
         return CM1E_ERROR_AXIS_PARAMETER;
-    if (number >= CM1E_PARAMETER_VENDOR)
+    if (cm1e_axis_parameter_is_object(number))
         return read_object(fb, axis, number, shown);
     const cm1e_error_t error = cm1e_axis_read_parameter(axis, number, &shown->value);
     shown->valid = error == CM1E_OK;
@@ -59,7 +59,7 @@ static cm1e_error_t start(cm1e_fb_private_t *fb, cm1e_axis_t *axis, INT number, 
     fb->command = 0;
     if (boolean && !cm1e_axis_parameter_is_bool(number))
         return CM1E_ERROR_AXIS_PARAMETER;
-    if (number < CM1E_PARAMETER_VENDOR)
+    if (!cm1e_axis_parameter_is_object(number))
         return cm1e_axis_write_parameter(axis, number, value);
     return cm1e_axis_object_start(axis, number, true, value, &fb->command);
 }

@@ -121,7 +121,7 @@ void cm1e_axis_in_position_step(cm1e_axis_t *axis)
     if (!axis_settling(axis))
         return;
     p->torque = axis->drive.in_torque.bytes > 0 ? 0.1f * (float)abs(axis->drive.feedback.torque) : NAN;
-    if (axis->waiting.count > 0 || p->there)
+    if (axis->waiting.count > 0 || p->there || !p->done_waits)
         cm1e_axis_settled(axis);
     else if (passed(axis, p->arrived_ns, p->timeout_us))
         fail(axis);

@@ -12,7 +12,7 @@
 static const double farthest_limit_counts = 9e15;
 
 /* How a parameter is written. */
-typedef enum rule { READ_ONLY = 0, LIMIT, SWITCH, LAG, APPLICATION } rule_t;
+typedef enum rule { READ_ONLY = 0, LIMIT, SWITCH, LAG, APPLICATION, IN_POSITION } rule_t;
 
 typedef struct parameter {
     const char *name;
@@ -23,7 +23,9 @@ typedef struct parameter {
 } parameter_t;
 
 #define AT(member) offsetof(struct cm1e_axis, member)
-static const parameter_t parameters[CM1E_PARAMETER_END] = {
+enum { OURS = CM1E_PARAMETER_END, ROWS = OURS + CM1E_PARAMETER_IN_POSITION_END - CM1E_PARAMETER_IN_POSITION };
+#define OUR(number) [OURS + CM1E_PARAMETER_IN_POSITION##number - CM1E_PARAMETER_IN_POSITION]
+static const parameter_t parameters[ROWS] = {
     [CM1E_PARAMETER_COMMANDED_POSITION] = {"CommandedPosition", READ_ONLY, 0, 0, 0},
     [CM1E_PARAMETER_SW_LIMIT_POS] = {"SWLimitPos", LIMIT, AT(limit_positive), 0, 0},
     [CM1E_PARAMETER_SW_LIMIT_NEG] = {"SWLimitNeg", LIMIT, AT(limit_negative), 0, 0},
@@ -45,33 +47,57 @@ static const parameter_t parameters[CM1E_PARAMETER_END] = {
     [CM1E_PARAMETER_MAX_JERK_SYSTEM] = {"MaxJerkSystem", READ_ONLY, AT(system.jerk), 0, 0},
     [CM1E_PARAMETER_MAX_JERK_APPL] = {"MaxJerkAppl", APPLICATION, AT(maximum.jerk), AT(system.jerk),
                                       CM1E_LEAST_JERK_COUNTS},
+    OUR() = {"InPosition", READ_ONLY, 0, 0, 0},
+    OUR(_WINDOW) = {"InPositionWindow", LAG, AT(in_position.window), 0, 0},
+    OUR(_TIME) = {"InPositionTime", IN_POSITION, AT(in_position.time_us), 0, 0},
+    OUR(_TIMEOUT) = {"InPositionTimeout", IN_POSITION, AT(in_position.timeout_us), 0, 0},
+    OUR(_DONE_WAITS) = {"InPositionDoneWaits", SWITCH, AT(in_position.done_waits), 0, 0},
 };
 
-static bool known(int number) { return number > 0 && number < CM1E_PARAMETER_END; }
+/* NULL: the axis has none of this number. */
+static const parameter_t *row(int number)
+{
+    const bool ours = number >= CM1E_PARAMETER_IN_POSITION && number < CM1E_PARAMETER_IN_POSITION_END;
+    return ours ? &parameters[OURS + number - CM1E_PARAMETER_IN_POSITION]
+           : number > 0 && number < CM1E_PARAMETER_END ? &parameters[number] : NULL;
+}
 
-bool cm1e_axis_parameter_is_bool(int number) { return known(number) && parameters[number].rule == SWITCH; }
+bool cm1e_axis_parameter_is_bool(int number)
+{
+    return row(number) && (row(number)->rule == SWITCH || number == CM1E_PARAMETER_IN_POSITION);
+}
 
 static const void *at(const cm1e_axis_t *axis, size_t offset) { return (const char *)axis + offset; }
 static double double_at(const cm1e_axis_t *axis, size_t offset) { return *(const double *)at(axis, offset); }
 static bool bool_at(const cm1e_axis_t *axis, size_t offset) { return *(const bool *)at(axis, offset); }
+static double seconds_at(const cm1e_axis_t *axis, size_t us) { return *(const uint32_t *)at(axis, us) * 1e-6; }
+
+/* What the axis does not have as such. */
+static double value_of(const cm1e_axis_t *axis, int number)
+{
+    cm1e_axis_info_t info;
+    cm1e_axis_get(axis, &info);
+    switch (number) {
+    case CM1E_PARAMETER_IN_POSITION: return info.in_position ? 1.0 : 0.0;
+    case CM1E_PARAMETER_ACTUAL_VELOCITY: return info.actual_velocity;
+    default: return info.set_position;
+    }
+}
 
 cm1e_error_t cm1e_axis_read_parameter(const cm1e_axis_t *axis, int number, double *value)
 {
+    const parameter_t *parameter = row(number);
     *value = 0.0;
-    if (!known(number))
+    if (!parameter)
         return CM1E_ERROR_AXIS_PARAMETER;
-    const parameter_t *parameter = &parameters[number];
-    cm1e_axis_info_t info;
     if (number == CM1E_PARAMETER_ACTUAL_VELOCITY && !axis->drive.feedback.online)
         return CM1E_ERROR_AXIS_OFFLINE;
-    if (parameter->rule == SWITCH) {
+    if (parameter->rule == SWITCH)
         *value = bool_at(axis, parameter->value) ? 1.0 : 0.0;
-    } else if (parameter->value) {
-        *value = double_at(axis, parameter->value);
-    } else {
-        cm1e_axis_get(axis, &info);
-        *value = number == CM1E_PARAMETER_ACTUAL_VELOCITY ? info.actual_velocity : info.set_position;
-    }
+    else if (parameter->rule == IN_POSITION)
+        *value = seconds_at(axis, parameter->value);
+    else
+        *value = parameter->value ? double_at(axis, parameter->value) : value_of(axis, number);
     return CM1E_OK;
 }
 
@@ -114,6 +140,10 @@ static cm1e_error_t write_switch(cm1e_axis_t *axis, int number, double value)
         axis->lag_monitoring = on;
         return CM1E_OK;
     }
+    if (number == CM1E_PARAMETER_IN_POSITION_DONE_WAITS) {
+        axis->in_position.done_waits = on;
+        return CM1E_OK;
+    }
     const bool positive = number == CM1E_PARAMETER_ENABLE_LIMIT_POS;
     return change_limits(axis, axis->limit_positive, axis->limit_negative, positive ? on : axis->limit_positive_enabled,
                          positive ? axis->limit_negative_enabled : on);
@@ -129,11 +159,31 @@ static cm1e_error_t write_number(cm1e_axis_t *axis, const parameter_t *parameter
     return CM1E_OK;
 }
 
+/* s; the bounds of the bus file, and the timeout is longer than the time. */
+static void bounds_of_time(const cm1e_axis_t *axis, int number, double *least, double *largest)
+{
+    const in_position_t *p = &axis->in_position;
+    const bool time = number == CM1E_PARAMETER_IN_POSITION_TIME;
+    *least = time ? CM1E_LEAST_IN_POSITION_TIME_S : fmax(CM1E_LEAST_IN_POSITION_TIMEOUT_S, (p->time_us + 1) * 1e-6);
+    *largest = time ? fmin(CM1E_LARGEST_IN_POSITION_TIME_S, (p->timeout_us - 1) * 1e-6)
+                    : CM1E_LARGEST_IN_POSITION_TIMEOUT_S;
+}
+
+static cm1e_error_t write_time(cm1e_axis_t *axis, const parameter_t *parameter, int number, double value)
+{
+    double least, largest;
+    bounds_of_time(axis, number, &least, &largest);
+    if (!(value >= least && value <= largest))
+        return CM1E_ERROR_AXIS_PARAMETER_RANGE;
+    *(uint32_t *)((char *)axis + parameter->value) = (uint32_t)lround(value * 1e6);
+    return CM1E_OK;
+}
+
 static cm1e_error_t write(cm1e_axis_t *axis, int number, double value)
 {
-    if (!known(number))
+    const parameter_t *parameter = row(number);
+    if (!parameter)
         return CM1E_ERROR_AXIS_PARAMETER;
-    const parameter_t *parameter = &parameters[number];
     switch (parameter->rule) {
     case LIMIT: return write_limit(axis, number, value);
     case SWITCH: return write_switch(axis, number, value);
@@ -142,6 +192,7 @@ static cm1e_error_t write(cm1e_axis_t *axis, int number, double value)
     case APPLICATION:
         return write_number(axis, parameter, value, parameter->least_counts * axis->count,
                             double_at(axis, parameter->system));
+    case IN_POSITION: return write_time(axis, parameter, number, value);
     case READ_ONLY: break;
     }
     return CM1E_ERROR_AXIS_PARAMETER_READ_ONLY;
@@ -168,6 +219,7 @@ cm1e_error_t cm1e_axis_write_parameter(cm1e_axis_t *axis, int number, double val
 static void range_text(const cm1e_axis_t *axis, const parameter_t *parameter, char *text, size_t size)
 {
     const double scale = fabs(axis->scale), value = axis->not_set.value;
+    double least, largest;
     switch (parameter->rule) {
     case APPLICATION:
         snprintf(text, size, "%.6g was to be written; %.6g ... %.6g is right, which is %s.", value,
@@ -177,6 +229,10 @@ static void range_text(const cm1e_axis_t *axis, const parameter_t *parameter, ch
     case LAG:
         snprintf(text, size, "%.6g was to be written; %.6g ... %.6g u is right.", value, CM1E_LEAST_LAG_COUNTS / scale,
                  CM1E_LARGEST_LAG_COUNTS / scale);
+        break;
+    case IN_POSITION:
+        bounds_of_time(axis, axis->not_set.number, &least, &largest);
+        snprintf(text, size, "%.6g was to be written; %.6g ... %.6g s is right.", value, least, largest);
         break;
     case SWITCH:
         if (value != 0.0 && value != 1.0)
@@ -221,17 +277,17 @@ void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size)
                  cm1e_strerror(refused->error), cm1e_axis_signals_advice(axis, refused->error));
     } else if (refused->what == NOT_SET_CAM) {
         cm1e_axis_cam_table_text(axis, text, size);
-    } else if (refused->number >= CM1E_PARAMETER_VENDOR) {
+    } else if (cm1e_axis_parameter_is_object(refused->number)) {
         cm1e_axis_object_text(axis, text, size);
-    } else if (!known(refused->number)) {
+    } else if (!row(refused->number)) {
         snprintf(text, size, "Axis \"%s\": parameter %d: %s.", name, refused->number, cm1e_strerror(refused->error));
     } else if (refused->error == CM1E_ERROR_AXIS_PARAMETER_RANGE) {
         length = snprintf(text, size, "Axis \"%s\": parameter %d, %s: ", name, refused->number,
-                          parameters[refused->number].name);
+                          row(refused->number)->name);
         if (length > 0 && (size_t)length < size)
-            range_text(axis, &parameters[refused->number], text + length, size - (size_t)length);
+            range_text(axis, row(refused->number), text + length, size - (size_t)length);
     } else {
         snprintf(text, size, "Axis \"%s\": parameter %d, %s: %.6g was to be written: %s.", name, refused->number,
-                 parameters[refused->number].name, refused->value, cm1e_strerror(refused->error));
+                 row(refused->number)->name, refused->value, cm1e_strerror(refused->error));
     }
 }

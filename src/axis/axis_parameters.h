@@ -1,7 +1,8 @@
 /**
  * @file axis/axis_parameters.h
- * Parameters of an axis by number: those of PLCopen Part 1 v2.0, table 5, and from 1000 on objects of the drive over
- * SDO. In the cycle thread, between cm1e_axis_inputs() and cm1e_axis_outputs().
+ * Parameters of an axis by number: those of PLCopen Part 1 v2.0, table 5, and from 1000 on those of this library:
+ * objects of the drive over SDO, and what the axis has beside table 5. In the cycle thread, between cm1e_axis_inputs()
+ * and cm1e_axis_outputs().
  */
 #ifndef CM1E_AXIS_AXIS_PARAMETERS_H
 #define CM1E_AXIS_AXIS_PARAMETERS_H
@@ -28,13 +29,25 @@ enum {
     CM1E_PARAMETER_MAX_JERK_SYSTEM,
     CM1E_PARAMETER_MAX_JERK_APPL,
     CM1E_PARAMETER_END,
-    CM1E_PARAMETER_VENDOR = 1000, /**< from here on: objects of the drive */
+    CM1E_PARAMETER_VENDOR = 1000, /**< from here on: objects of the drive, but for ... */
+    CM1E_PARAMETER_IN_POSITION = 1800, /**< ... these of the axis itself (axis_in_position.c) */
+    CM1E_PARAMETER_IN_POSITION_WINDOW,
+    CM1E_PARAMETER_IN_POSITION_TIME,
+    CM1E_PARAMETER_IN_POSITION_TIMEOUT,
+    CM1E_PARAMETER_IN_POSITION_DONE_WAITS,
+    CM1E_PARAMETER_IN_POSITION_END,
 };
 
-/** 4, 5 and 6. @rt any */
+/** An object of the drive, read and written by transfers; else the axis has it. @rt any */
+static inline bool cm1e_axis_parameter_is_object(int number)
+{
+    return number >= CM1E_PARAMETER_VENDOR &&
+           !(number >= CM1E_PARAMETER_IN_POSITION && number < CM1E_PARAMETER_IN_POSITION_END);
+}
+/** 4, 5, 6, 1800 and 1804. @rt any */
 bool cm1e_axis_parameter_is_bool(int number);
-/** BOOL ones as 0 and 1. CM1E_ERROR_AXIS_PARAMETER: not of table 5; CM1E_ERROR_AXIS_OFFLINE: an actual value that is
- *  not known now. @rt cycle */
+/** BOOL ones as 0 and 1. CM1E_ERROR_AXIS_PARAMETER: the axis has none of this number;
+ *  CM1E_ERROR_AXIS_OFFLINE: an actual value that is not known now. @rt cycle */
 cm1e_error_t cm1e_axis_read_parameter(const cm1e_axis_t *axis, int number, double *value);
 /** In force for what is planned from now on; what runs goes on as it was planned. A software limit that the running
  *  motion would not keep is refused. Also CM1E_ERROR_AXIS_PARAMETER, _READ_ONLY, _RANGE; refused: nothing has changed.

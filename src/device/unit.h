@@ -32,6 +32,10 @@ typedef struct cm1e_fraction {
 /* Defaults of in_position: so long in the window, and an error after so long. */
 #define CM1E_IN_POSITION_TIME_S 0.02
 #define CM1E_IN_POSITION_TIMEOUT_S 2.0
+#define CM1E_LEAST_IN_POSITION_TIME_S 1e-3
+#define CM1E_LARGEST_IN_POSITION_TIME_S 10.0
+#define CM1E_LEAST_IN_POSITION_TIMEOUT_S 0.01
+#define CM1E_LARGEST_IN_POSITION_TIMEOUT_S 3600.0
 /** counts/s, of a virtual axis: at most a million counts a cycle, far from where 32 bits wrap around. */
 #define CM1E_VIRTUAL_MOST_VELOCITY_COUNTS 1e9
 

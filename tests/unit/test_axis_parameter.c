@@ -86,9 +86,55 @@ static void test_every_number_of_the_table_can_be_read_and_no_other(void)
     TEST_ASSERT_EQUAL_DOUBLE(1, parameter(6));
 }
 
+static void test_in_position_by_number(void)
+{
+    double value;
+    for (int number = 1790; number < 1810; number++) {
+        const bool there = number >= 1800 && number <= 1804;
+        TEST_ASSERT_EQUAL_INT(there ? CM1E_OK : CM1E_ERROR_AXIS_PARAMETER,
+                              cm1e_axis_read_parameter(axis, number, &value));
+        TEST_ASSERT_EQUAL_INT(number == 1800 || number == 1804, cm1e_axis_parameter_is_bool(number));
+        TEST_ASSERT_EQUAL_INT(!there, cm1e_axis_parameter_is_object(number));
+    }
+    TEST_ASSERT_EQUAL_DOUBLE(0, parameter(1800));
+    bench_enable();
+    bench_cycles(30);
+    TEST_ASSERT_EQUAL_DOUBLE(1, parameter(1800));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0002, parameter(1801));
+    TEST_ASSERT_EQUAL_DOUBLE(0.02, parameter(1802));
+    TEST_ASSERT_EQUAL_DOUBLE(2, parameter(1803));
+    TEST_ASSERT_EQUAL_DOUBLE(0, parameter(1804));
+    refused(1801, 1e-6, CM1E_ERROR_AXIS_PARAMETER_RANGE);
+    refused(1802, 2, CM1E_ERROR_AXIS_PARAMETER_RANGE); /* the timeout */
+    bench_told("0.001 ... 2 s is right");
+    refused(1802, NAN, CM1E_ERROR_AXIS_PARAMETER_RANGE);
+    refused(1803, 0.02, CM1E_ERROR_AXIS_PARAMETER_RANGE); /* the time */
+    refused(1803, 3601, CM1E_ERROR_AXIS_PARAMETER_RANGE);
+    bench_told("InPositionTimeout");
+    refused(1804, 0.5, CM1E_ERROR_AXIS_PARAMETER_RANGE);
+    set(1803, 3600);
+    set(1802, 10);
+    set(1802, 0.1);
+    set(1803, 0.5);
+    set(1801, 0.01);
+    set(1804, 1);
+    bus.blocked = true;
+    const cm1e_command_id_t id = bench_move_to(0.011, 5);
+    bench_cycles(300);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(id));
+    set(1801, 0.011);
+    bench_cycles(102);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
+    const cm1e_command_id_t next = bench_move_to(0.1, 5);
+    bench_cycles(300);
+    set(1804, 0); /* waits no longer */
+    bench_cycles(1);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(next));
+}
+
 static void test_what_only_can_be_read_is_not_written(void)
 {
-    static const int numbers[] = {1, 8, 10, 11, 12, 14, 16};
+    static const int numbers[] = {1, 8, 10, 11, 12, 14, 16, 1800};
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
         refused(numbers[i], 1, CM1E_ERROR_AXIS_PARAMETER_READ_ONLY);
 }
@@ -447,6 +493,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_every_number_of_the_table_can_be_read_and_no_other);
+    RUN_TEST(test_in_position_by_number);
     RUN_TEST(test_what_only_can_be_read_is_not_written);
     RUN_TEST(test_position_and_velocities_follow_the_axis);
     RUN_TEST(test_values_out_of_range_are_refused);
