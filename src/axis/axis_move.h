@@ -34,13 +34,13 @@ typedef struct command_record {
 typedef struct move {
     cm1e_command_id_t id;
     uint8_t kind, buffer_mode, direction; /**< cm1e_command_kind_t, MC_BUFFER_MODE, MC_DIRECTION */
-    bool passing;           /**< MOVE_CONTINUOUS_*: only its end velocity is left to be reached, not its position */
+    bool passing : 1;       /**< MOVE_CONTINUOUS_*: only its end velocity is left to be reached, not its position */
+    bool paused : 1;        /**< an override of velocity 0: it brakes to a standstill and waits */
     double position, velocity, end_velocity, acceleration, deceleration, jerk;
     double shift;           /**< u; how far MC_SetPosition has moved the coordinates since the position was given */
     position_t origin;      /**< what a relative position counts from */
     position_t target;      /**< where it ends */
     double exit_velocity;   /**< u/s, signed: with which it passes its target, because another one goes on from there */
-    bool paused;            /**< an override of velocity 0: it brakes to a standstill and waits */
 } move_t;
 
 /** Commands that wait behind the active one, in their order: a ring. */
