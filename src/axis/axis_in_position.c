@@ -113,7 +113,8 @@ void cm1e_axis_in_position_step(cm1e_axis_t *axis)
     in_position_t *p = &axis->in_position;
     if (!axis->drive.feedback.fresh)
         return;
-    const bool inside = fabs(deviation(axis)) <= p->window && cm1e_axis_backlash_at_rest(axis);
+    const double counts = cm1e_position_minus(axis_actual(axis), axis->set);
+    const bool inside = fabs(counts) <= fabs(p->window * axis->scale) && cm1e_axis_backlash_at_rest(axis);
     if (inside && !p->inside)
         p->inside_ns = axis->now_ns;
     p->inside = inside;
