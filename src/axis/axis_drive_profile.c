@@ -294,7 +294,7 @@ static void step_move(cm1e_axis_t *axis)
             cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->set),
                            f->velocity / axis->scale > 0.0 ? axis->upper : axis->lower);
     } else if (f->bit13) {
-        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, ((double)d->target - axis->raw) / axis->scale, axis->max_lag);
+        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, ((double)d->target - axis->raw) / axis->scale, 0.0);
     } else if (f->target_reached && there(axis)) {
         arrived(axis);
     }

@@ -5,8 +5,16 @@
 
 #include "axis/axis_coupling.h"
 
+/* Without a bound it is the drive that says so, in a motion of its own. */
 static void lag_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
+    if (axis->error_bound == 0.0) {
+        snprintf(text, size,
+                 "Axis \"%s\": the drive reports a following error, with the motor %.6g u away from its target. Look for "
+                 "a mechanical stop or a blocked axis, reduce load, velocity or acceleration; then reset the axis with "
+                 "MC_Reset.", axis->config->name, fabs(axis->error_value));
+        return;
+    }
     snprintf(text, size,
              "Axis \"%s\": %s: %.6g u, allowed are %.6g u. The motor did not follow the set-point: look for a blocked "
              "axis, reduce load, velocity or acceleration, or raise limits.position_lag; then reset the axis with "

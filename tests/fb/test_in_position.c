@@ -165,6 +165,26 @@ START_TEST(so_it_is_with_profiles_of_the_drive)
 }
 END_TEST
 
+/* There the drive is the first to see it, in its own motion; its text had a lag below "its limit". */
+START_TEST(a_stop_before_the_target_of_the_drive_is_told_by_the_drive)
+{
+    describe(_i ? "1.3.5" : "1.2.0", CM1E_MAPPING_PROFILE, CM1E_PDO_ORDER_UG_7_2, 1000000);
+    config.axes[0].motion = CM1E_MOTION_DRIVE;
+    begin();
+    absolute.Position = 5.4;
+    absolute.Execute = TRUE;
+    for (int n = 0; n < 20000 && !absolute.Error; n++) {
+        ck_assert(!absolute.Done);
+        scan();
+    }
+    ck_assert(absolute.Error);
+    ck_assert_int_eq(info().error, CM1E_ERROR_AXIS_LAG);
+    ck_assert_msg(strstr(text(), "the drive reports a following error") && strstr(text(), "mechanical stop") &&
+                  strstr(text(), "0.4 u away") && !strstr(text(), "allowed"), "%s", text());
+    close_segment();
+}
+END_TEST
+
 START_TEST(behind_a_bridge_too)
 {
     static const char *const motors[] = {"CM1", "CM2"};
@@ -196,6 +216,7 @@ int main(void)
     tcase_add_loop_test(cases, a_stop_before_the_target_is_an_error_in_words, 0, 2 * VARIANTS);
     tcase_add_test(cases, a_load_that_comes_meanwhile_is_an_error_too);
     tcase_add_loop_test(cases, so_it_is_with_profiles_of_the_drive, 0, 2);
+    tcase_add_loop_test(cases, a_stop_before_the_target_of_the_drive_is_told_by_the_drive, 0, 2);
     tcase_add_loop_test(cases, behind_a_bridge_too, 0, 6);
     suite_add_tcase(suite, cases);
     SRunner *runner = srunner_create(suite);
