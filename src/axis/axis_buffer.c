@@ -267,24 +267,27 @@ static cm1e_error_t begin_move(cm1e_axis_t *axis, move_t *move, const from_t *fr
     return error;
 }
 
-bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offset_s)
+bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *at, double offset_s)
 {
+    from_t from = *at;
     while (axis->waiting.count > 0) {
         const cm1e_command_kind_t kind = (cm1e_command_kind_t)waiting_move(axis, 0)->kind;
         if (axis->superimposed.id && (axis->superimposed.alone || is_homing(kind) || is_table(kind)))
             return false; /* nothing goes on top of these, or it has all the limits: they wait for its end */
-        if (is_coupling(kind) && cm1e_axis_coupling_awaits(axis, from, offset_s))
+        if (is_coupling(kind) && cm1e_axis_coupling_awaits(axis, &from, offset_s))
             return false;
+        if (cm1e_axis_can_plan(kind) && offset_s == 0.0)
+            cm1e_axis_superimposed_give_way(axis, &from);
         move_t move = take_first(axis);
         const state_rule_t *rule = cm1e_axis_state_rule(axis->state, (cm1e_command_kind_t)move.kind);
         cm1e_error_t error = rule->refusal;
         if (!error)
             error = move.kind == CM1E_COMMAND_HOME          ? cm1e_axis_begin_homing(axis, &move)
                     : move.kind == CM1E_COMMAND_HOMING_STEP ? cm1e_axis_begin_step(axis, &move)
-                    : is_table((cm1e_command_kind_t)move.kind) ? cm1e_axis_table_begin(axis, &move, from, offset_s)
+                    : is_table((cm1e_command_kind_t)move.kind) ? cm1e_axis_table_begin(axis, &move, &from, offset_s)
                     : is_coupling((cm1e_command_kind_t)move.kind)
-                        ? cm1e_axis_coupling_begin(axis, &move, from, offset_s)
-                                                               : begin_move(axis, &move, from, offset_s);
+                        ? cm1e_axis_coupling_begin(axis, &move, &from, offset_s)
+                                                               : begin_move(axis, &move, &from, offset_s);
         if (!error) {
             if (move.kind != CM1E_COMMAND_HOMING_STEP) /* MC_HomeDirect may be over already */
                 axis->state = rule->next;

@@ -169,6 +169,9 @@ cm1e_error_t cm1e_axis_superimpose_update(cm1e_axis_t *axis, const move_t *input
 void cm1e_axis_superimposed_step(cm1e_axis_t *axis, cm1e_motion_state_t *next);
 /** Instead of that: its part is what was `before`, without jerk, and it goes on from there. */
 void cm1e_axis_superimposed_hold(cm1e_axis_t *axis, const cm1e_motion_state_t *before);
+/** A command begins there (the present set-point), as the base. Where that is faster than what is left beside the
+ *  superimposed motion, that one stops being one, waits, and its part of the velocity is the base's. */
+void cm1e_axis_superimposed_give_way(cm1e_axis_t *axis, from_t *from);
 /** After the set-point: where it has come to its end, the base has all the limits again. */
 void cm1e_axis_superimposed_after(cm1e_axis_t *axis);
 /** What is superimposed becomes part of the one motion that is then planned from the set-point. */

@@ -6,7 +6,9 @@
  * of the axis's acceleration and jerk, and the base is planned anew with what is left; a base that needs no more than
  * that keeps its time (3.8). Both change over at the same jerk, so that the sum stays inside on the way there too. A
  * base that is about to arrive and needs its whole deceleration for that gets it: the superimposed motion then begins
- * when it can. On an axis in Standstill there is nothing to share with.
+ * when it can. A follower's velocity is its master's, which nobody shares: a command that takes over from it where it is
+ * faster than what the superimposed motion leaves gets all of the motion, and the superimposed one waits with what it has
+ * covered until there is room for it again. On an axis in Standstill there is nothing to share with.
  *
  * While it goes on, the base counts its positions without it. At its end the base, and where that goes, are moved by
  * what has been covered.
@@ -63,11 +65,10 @@ static double base_velocity(cm1e_axis_t *axis)
 }
 
 /* What the acceleration of the base still makes of its velocity while it ends, also beyond a turn. */
-static double base_peak(const cm1e_axis_t *axis)
+static double peak_of(const from_t *from, double jerk)
 {
-    const from_t from = from_base(axis);
-    const double a = from.acceleration, jerk = axis->maximum.jerk / 2.0;
-    return fmax(fabs(from.velocity), fabs(from.velocity + a * fabs(a) / (2.0 * jerk)));
+    const double a = from->acceleration;
+    return fmax(fabs(from->velocity), fabs(from->velocity + a * fabs(a) / (2.0 * jerk)));
 }
 
 static cm1e_motion_limits_t share_of(const cm1e_axis_t *axis, const cm1e_motion_limits_t *asked)
@@ -97,7 +98,9 @@ static bool base_gives_way(cm1e_axis_t *axis)
         return true;
     if (axis->active && needs_all_to_halt(axis))
         return false;
-    if (!axis->active || base_peak(axis) + axis->superimposed.share.velocity > axis->maximum.velocity)
+    const from_t from = from_base(axis);
+    const double peak = peak_of(&from, axis->maximum.jerk / 2.0);
+    if (!axis->active || peak + axis->superimposed.share.velocity > axis->maximum.velocity)
         return false;
     return axis->reached || cm1e_axis_replan_if(axis); /* a constant velocity stays, and InVelocity (3.10) */
 }
@@ -110,6 +113,18 @@ static bool begin(cm1e_axis_t *axis)
         return true;
     on_top->moving = false;
     return false;
+}
+
+void cm1e_axis_superimposed_give_way(cm1e_axis_t *axis, from_t *from)
+{
+    static const double rounding = 1.0 + 1e-9;
+    superimposed_t *on_top = &axis->superimposed;
+    const double peak = peak_of(from, axis->maximum.jerk - on_top->share.jerk);
+    if (!from->shared || peak + on_top->share.velocity <= axis->maximum.velocity * rounding)
+        return;
+    on_top->moving = false;
+    on_top->now.velocity = on_top->now.acceleration = 0.0;
+    *from = from_base(axis);
 }
 
 /* ---- its place in the base --------------------------------------------------------------------------------------- */
@@ -325,9 +340,8 @@ bool cm1e_axis_superimposed_goes(const cm1e_axis_t *axis, double sign)
 void cm1e_axis_superimposed_step(cm1e_axis_t *axis, cm1e_motion_state_t *next)
 {
     superimposed_t *on_top = &axis->superimposed;
-    if (!on_top->moving)
-        return;
-    cm1e_profile_sample(&on_top->profile, (double)++on_top->cycles * axis->cycle_s, &on_top->now);
+    if (on_top->moving)
+        cm1e_profile_sample(&on_top->profile, (double)++on_top->cycles * axis->cycle_s, &on_top->now);
     next->position += on_top->now.position;
     next->velocity += on_top->now.velocity;
     next->acceleration += on_top->now.acceleration;

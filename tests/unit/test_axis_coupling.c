@@ -374,6 +374,44 @@ static void test_a_superimposed_motion_on_a_follower(void)
     }
 }
 
+/* The superimposed motion has half of the slave's velocity for itself when the master gets faster than what is left. A
+ * command that waited takes over there: within the limits of the axis (the witness sees every set-point), and both end
+ * where they are to. */
+static void test_a_command_takes_over_from_a_follower_that_left_the_superimposed_motion_no_room(void)
+{
+    int waited = 0;
+    for (int when = 0; when < 400; when += 4) {
+        axes_describe(2);
+        for (int n = 0; n < 2; n++) {
+            axes_config(n)->max_velocity = 20.0;
+            axes_config(n)->max_acceleration = 100.0;
+            axes_config(n)->max_jerk = 2000.0;
+        }
+        axes_make();
+        axes_enable_all();
+        const cm1e_axis_coupling_t coupling = {.master = {by_ratio(0, 1, 1)}};
+        const cm1e_command_id_t gear = axes_command(1, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN,
+                                                                              .coupling = &coupling});
+        axes_wait_reached(1, gear, 1000);
+        const cm1e_command_id_t on_top = axes_command(1, &(cm1e_axis_command_t){
+            .kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = 2.0, .velocity = 10.0, .acceleration = 2.0});
+        axes_command(0, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 18.0,
+                                               .acceleration = 90.0, .jerk = 1500.0});
+        axes_cycles(when);
+        const bool too_fast = axes_info(1).set_velocity > 10.0 && axes_status(1, on_top).state == CM1E_COMMAND_ACTIVE;
+        const cm1e_command_id_t move = axes_command(1, &(cm1e_axis_command_t){
+            .kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 30.0, .velocity = 10.0, .buffer_mode = mcBuffered});
+        axes_cycles(1);
+        waited += too_fast && axes_status(1, on_top).state == CM1E_COMMAND_ACTIVE;
+        axes_cycles(6000);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, state_of(1, move));
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, state_of(1, on_top));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 32.0, set_of(1));
+        axes_end();
+    }
+    TEST_ASSERT_TRUE(waited > 20);
+}
+
 static void test_other_commands_take_over_from_a_follower(void)
 {
     static const cm1e_axis_command_t commands[] = {
@@ -493,6 +531,7 @@ int main(void)
     RUN_TEST(test_a_ratio_is_updated_without_a_step);
     RUN_TEST(test_override_does_not_act_on_a_follower);
     RUN_TEST(test_a_superimposed_motion_on_a_follower);
+    RUN_TEST(test_a_command_takes_over_from_a_follower_that_left_the_superimposed_motion_no_room);
     RUN_TEST(test_other_commands_take_over_from_a_follower);
     RUN_TEST(test_power_off_ends_it);
     RUN_TEST(test_after_a_pause_it_is_still_in_step);
