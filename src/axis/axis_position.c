@@ -114,14 +114,16 @@ double cm1e_axis_units(const cm1e_axis_t *axis, position_t position)
     return cm1e_axis_line(axis, position);
 }
 
-/* Set and actual position at the same place may lie on both sides of the beginning of a turn, which a drive of whole
- * counts cannot tell. Who reads a turn beside 0 would think of a turn of lag: the one before the beginning is at it. */
+/* Set and actual position of an axis at rest may lie on both sides of the beginning of a turn, which a drive of whole
+ * counts cannot tell. Who reads a turn beside 0 would think of a turn of lag: the one before the beginning is shown at
+ * it. */
 void cm1e_axis_shown(const cm1e_axis_t *axis, double *set, double *actual)
 {
     const position_t at = axis_actual(axis);
+    const bool rests = axis->set_velocity == 0.0 && axis->set_acceleration == 0.0;
     *set = cm1e_axis_units(axis, axis->set);
     *actual = cm1e_axis_units(axis, at);
-    if (!(axis->modulo_range > 0.0))
+    if (!(axis->modulo_range > 0.0) || !rests)
         return;
     double phase;
     const int64_t turn = turn_of(axis, from_origin(axis, at), &phase);
