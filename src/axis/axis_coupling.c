@@ -90,16 +90,37 @@ static from_t sum_of(const cm1e_axis_t *axis, const from_t *f)
 /* A ramp of ErrorStop has no limit of jerk, nor has who follows it. */
 static bool keeps_jerk(const coupling_t *c) { return !c->now->linear && !c->now->by_actual && !c->stopping; }
 
+typedef struct verdict {
+    guard_t guard;
+    bool smooth; /**< it keeps the limits between the set-points too */
+} verdict_t;
+
+static verdict_t judge_sum(const cm1e_axis_t *axis, const from_t *sum)
+{
+    const bool kept_jerk = keeps_jerk(axis->coupling);
+    const guard_t guard = cm1e_axis_guard(axis, sum, kept_jerk);
+    return (verdict_t){guard, !guard.limit && (!kept_jerk || cm1e_axis_guard_smooth(axis, sum))};
+}
+
 /* How the rest may go on in a cycle: by its plan; planned anew beside what F has come to need, first with all its jerk,
  * which may go against F's; and without any jerk. */
 typedef enum attempt { AS_PLANNED = 0, WITH_ALL_JERK, WITH_JERK_LEFT, WITHOUT_JERK, ATTEMPTS } attempt_t;
 
+/* The least jerk with which F can have come over this cycle. Its own may change in the middle of it. */
+static double jerk_of_f(const cm1e_axis_t *axis, const from_t *f)
+{
+    const coupling_t *c = axis->coupling;
+    const double t = axis->cycle_s, mean = (f->acceleration - c->f_acceleration) / t;
+    const double beside = (f->velocity - c->f_velocity - (f->acceleration + c->f_acceleration) * t / 2.0) / (t * t);
+    return 2.0 * fabs(beside) + sqrt(4.0 * beside * beside + mean * mean);
+}
+
 static void go_on(cm1e_axis_t *axis, const from_t *f, attempt_t attempt)
 {
     rest_t *rest = &axis->coupling->rest;
-    const double f_jerk = (f->acceleration - axis->coupling->f_acceleration) / axis->cycle_s, t = axis->cycle_s;
+    const double t = axis->cycle_s;
     if (attempt == WITH_ALL_JERK || attempt == WITH_JERK_LEFT) {
-        const cm1e_motion_limits_t limits = limits_beside(axis, f, f_jerk, attempt == WITH_ALL_JERK);
+        const cm1e_motion_limits_t limits = limits_beside(axis, f, jerk_of_f(axis, f), attempt == WITH_ALL_JERK);
         plan_rest(axis, &limits);
     }
     const double v = rest->now.velocity, a = rest->now.acceleration;
@@ -111,52 +132,64 @@ static void go_on(cm1e_axis_t *axis, const from_t *f, attempt_t attempt)
     }
 }
 
-/* Once F has come to need more of the limits than was left to it, the rest is planned anew in every cycle until it has
- * ended: it takes what there is. */
-static from_t with_rest(cm1e_axis_t *axis, const from_t *f, guard_t *guard)
+/* In a cycle that begins with `before`. */
+static from_t attempt_to(cm1e_axis_t *axis, const from_t *f, const rest_t *before, attempt_t attempt,
+                         verdict_t *verdict)
 {
     rest_t *rest = &axis->coupling->rest;
-    const cm1e_motion_state_t before = rest->now;
     const bool disturbed = f->acceleration != 0.0 || axis->coupling->f_acceleration != 0.0;
-    from_t sum = *f;
-    if (!rest->on) {
-        sum = sum_of(axis, f);
-        *guard = cm1e_axis_guard(axis, &sum, keeps_jerk(axis->coupling));
-        return sum;
-    }
-    for (int attempt = rest->held_back ? WITH_ALL_JERK : AS_PLANNED; attempt < ATTEMPTS; attempt++) {
-        rest->now = before;
-        rest->on = true;
-        rest->held_back = attempt == WITHOUT_JERK || (attempt > AS_PLANNED && disturbed);
-        go_on(axis, f, (attempt_t)attempt);
-        sum = sum_of(axis, f);
-        *guard = cm1e_axis_guard(axis, &sum, keeps_jerk(axis->coupling));
-        /* At a border that F leads over, the rest could hold the axis for ever. */
-        if (!guard->limit || guard->limit == GUARD_DIRECTION || guard->limit == GUARD_SOFTWARE_LIMIT)
-            break;
-    }
+    *rest = *before;
+    rest->held_back = attempt == WITHOUT_JERK || (attempt > AS_PLANNED && disturbed);
+    go_on(axis, f, attempt);
+    const from_t sum = sum_of(axis, f);
+    *verdict = judge_sum(axis, &sum);
     return sum;
 }
 
-/* What is superimposed gives way too, by a cycle without jerk. */
-static from_t with_superimposed(cm1e_axis_t *axis, const from_t *f, guard_t *guard)
+/* Once F has come to need more of the limits than was left to it, the rest is planned anew in every cycle until it has
+ * ended: it takes what there is. Where F leaves none that is smooth, what keeps the limits has to do. */
+static from_t with_rest(cm1e_axis_t *axis, const from_t *f, verdict_t *verdict)
 {
-    rest_t *rest = &axis->coupling->rest;
-    const bool rests = rest->on;
-    const cm1e_motion_state_t rest_before = rest->now, before = axis->superimposed.now;
+    const rest_t before = axis->coupling->rest;
+    from_t sum;
+    if (!before.on) {
+        sum = sum_of(axis, f);
+        *verdict = judge_sum(axis, &sum);
+        return sum;
+    }
+    const attempt_t first = before.held_back ? WITH_ALL_JERK : AS_PLANNED;
+    attempt_t kept = ATTEMPTS;
+    for (int attempt = first; attempt < ATTEMPTS; attempt++) {
+        sum = attempt_to(axis, f, &before, (attempt_t)attempt, verdict);
+        /* At a border that F leads over, the rest could hold the axis for ever. */
+        if (verdict->smooth || verdict->guard.limit == GUARD_DIRECTION ||
+            verdict->guard.limit == GUARD_SOFTWARE_LIMIT)
+            return sum;
+        if (!verdict->guard.limit && kept == ATTEMPTS)
+            kept = (attempt_t)attempt;
+    }
+    return kept == ATTEMPTS || kept == WITHOUT_JERK ? sum : attempt_to(axis, f, &before, kept, verdict);
+}
+
+/* What is superimposed gives way too, by a cycle without jerk. */
+static from_t with_superimposed(cm1e_axis_t *axis, const from_t *f, verdict_t *verdict)
+{
+    const rest_t rest_before = axis->coupling->rest;
+    const cm1e_motion_state_t before = axis->superimposed.now;
     cm1e_motion_state_t unused = {0};
     cm1e_axis_superimposed_step(axis, &unused);
-    const from_t sum = with_rest(axis, f, guard);
-    if (!guard->limit || !axis->superimposed.moving)
+    const from_t sum = with_rest(axis, f, verdict);
+    if (!verdict->guard.limit || !axis->superimposed.moving)
         return sum;
-    rest->on = rests;
-    rest->now = rest_before;
+    axis->coupling->rest = rest_before;
     cm1e_axis_superimposed_hold(axis, &before);
-    return with_rest(axis, f, guard);
+    return with_rest(axis, f, verdict);
 }
 
 static void emit(cm1e_axis_t *axis, const from_t *point)
 {
+    axis->coupling->set_before = axis->set;
+    axis->coupling->second_step = true;
     axis->set = point->position;
     axis->set_velocity = point->velocity;
     axis->set_acceleration = point->acceleration;
@@ -219,15 +252,15 @@ static void stand_with_masters(cm1e_axis_t *axis, const from_t *f)
 /* Seldom there is something beside F, or a set-point that has to be looked at twice. */
 CM1E_RARE static guard_t judge(cm1e_axis_t *axis, const from_t *f, from_t *next)
 {
-    guard_t guard;
+    verdict_t verdict;
     *next = *f;
     if (axis->superimposed.id)
-        *next = with_superimposed(axis, f, &guard);
+        *next = with_superimposed(axis, f, &verdict);
     else if (axis->coupling->rest.on)
-        *next = with_rest(axis, f, &guard);
+        *next = with_rest(axis, f, &verdict);
     else
-        guard = cm1e_axis_look_closely(axis, f, keeps_jerk(axis->coupling));
-    return guard;
+        return cm1e_axis_look_closely(axis, f, keeps_jerk(axis->coupling));
+    return verdict.guard;
 }
 
 bool cm1e_axis_coupled_step(cm1e_axis_t *axis)
@@ -248,6 +281,7 @@ bool cm1e_axis_coupled_step(cm1e_axis_t *axis)
             return stop_alone(axis, guard);
         next = &sum;
     }
+    c->f_velocity = f.velocity;
     c->f_acceleration = f.acceleration;
     emit(axis, next);
     if (axis_follows(axis))
@@ -291,6 +325,7 @@ static void begin_rest(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_
             c->now->anchor = cm1e_position_plus(c->now->anchor, counts);
         counts = 0.0;
     }
+    c->f_velocity = f.velocity;
     c->f_acceleration = f.acceleration;
     c->rest = (rest_t){.asked = *asked,
                        .now = {counts / axis->scale, from->velocity - f.velocity, from->acceleration - f.acceleration},
@@ -311,7 +346,7 @@ void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, c
     cm1e_axis_await_nothing(axis);
     cm1e_axis_list_links(follow);
     c->now = follow;
-    c->end_of_profile = c->stopping = c->due = false;
+    c->end_of_profile = c->stopping = c->due = c->second_step = false;
     begin_rest(axis, from, asked);
     axis->activity = ACTIVITY_COUPLED;
     cm1e_axis_guard_renew(axis);

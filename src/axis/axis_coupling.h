@@ -133,7 +133,9 @@ typedef struct coupling {
     cm1e_motion_state_t phase;     /**< u of the master: shift of links[0], as long as that one is followed ... */
     phasing_t phasing;             /**< ... and what changes it */
     observed_t own;
-    double f_acceleration;         /**< u/s2; of F, in the last cycle */
+    double f_velocity, f_acceleration; /**< u/s, u/s2; of F, in the last cycle */
+    position_t set_before;         /**< the set-point before the present one ... */
+    bool second_step;              /**< ... which is known: F has made that step too */
     bool due;                      /**< it is now that the awaited one takes F's place ... */
     cm1e_error_t due_error;        /**< ... or fails so */
     bool end_of_profile;           /**< CAM_IN: F came over it in this cycle */

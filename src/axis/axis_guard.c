@@ -90,6 +90,53 @@ CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *
     return guard;
 }
 
+/* By how much the velocity can change at most from acceleration a to b in t, without going above `most`. */
+static double largest_gain(double a, double b, double t, double jerk, double most)
+{
+    const double peak = (a + b + jerk * t) / 2.0;
+    if (peak <= most)
+        return (a + b) / 2.0 * t + (jerk * t - (b - a)) * (jerk * t + (b - a)) / (4.0 * jerk);
+    return most * t - ((most - a) * (most - a) + (most - b) * (most - b)) / (2.0 * jerk);
+}
+
+/* Where a jerk of at most 1 can lead in a time of 1, from nothing: the acceleration x and the velocity y leave a
+ * position between two limits, each reached with a jerk that changes its sign twice. */
+static double farthest(double x, double y)
+{
+    const double against = fmax((1.0 - x) / 2.0, slack), middle = (0.5 - y) / (2.0 * against);
+    return 1.0 / 6.0 - against * (middle * middle + against * against / 12.0);
+}
+
+/* The second difference of the set positions, by whether the axis becomes faster in it. */
+static bool kept_second(const cm1e_axis_t *axis, double step, double noise)
+{
+    const cm1e_motion_limits_t *most = limits_of(axis);
+    const coupling_t *c = axis->coupling;
+    const double before = cm1e_position_minus(axis->set, c->set_before) / axis->scale, t = axis->cycle_s;
+    const double bound = step * before <= 0.0 ? fmax(most->acceleration, most->deceleration)
+                         : fabs(step) > fabs(before) ? most->acceleration : most->deceleration;
+    return !c->second_step || fabs(step - before) <= bound * t * t * (1.0 + slack) + 2.0 * noise;
+}
+
+CM1E_RARE bool cm1e_axis_guard_smooth(const cm1e_axis_t *axis, const from_t *next)
+{
+    const cm1e_motion_limits_t *most = limits_of(axis);
+    const double t = axis->cycle_s, jerk = most->jerk, v0 = axis->set_velocity, a0 = axis->set_acceleration;
+    const double v = next->velocity, a = next->acceleration, either = fmax(most->acceleration, most->deceleration);
+    const double up = v0 < 0.0 && v < 0.0 ? most->deceleration : v0 > 0.0 && v > 0.0 ? most->acceleration : either;
+    const double down = v0 < 0.0 && v < 0.0 ? most->acceleration : v0 > 0.0 && v > 0.0 ? most->deceleration : either;
+    const double noise = slack * jerk * t * t + 1e-12 * fabs(v), gain = v - v0;
+    if (gain > largest_gain(a0, a, t, jerk, fmax(up, fmax(a0, a))) + noise ||
+        -gain > largest_gain(-a0, -a, t, jerk, fmax(down, fmax(-a0, -a))) + noise)
+        return false;
+    const double step = cm1e_position_minus(next->position, axis->set) / axis->scale;
+    const double x = (a - a0) / (jerk * t), y = (gain - a0 * t) / (jerk * t * t);
+    const double z = (step - t * (v0 + t * a0 / 2.0)) / (jerk * t * t * t);
+    const double step_noise = 1e-9 / fabs(axis->scale) + 1e-13 * fabs(step);
+    const double few = slack + step_noise / (jerk * t * t * t);
+    return z <= farthest(x, y) + few && -z <= farthest(-x, -y) + few && kept_second(axis, step, step_noise);
+}
+
 void cm1e_axis_guard_renew(cm1e_axis_t *axis)
 {
     const cm1e_motion_limits_t *most = limits_of(axis);

@@ -147,8 +147,8 @@ cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move);
 cm1e_error_t cm1e_axis_update_waiting(cm1e_axis_t *axis, const move_t *move);
 /** MC_SetPosition: whether the targets of those that wait, as far as they are known, keep these software limits (u). */
 bool cm1e_axis_waiting_hold(cm1e_axis_t *axis, double lower, double upper);
-/** The coordinates have been shifted by so much: those that wait end where they were to. FALSE: their limits are such now
- *  that the motion that runs would have to come slower to its end, and cannot. Nothing has changed then. */
+/** The coordinates have been shifted by so much: those that wait end where they were to. FALSE: their limits are such
+ *  now that the motion that runs would have to come slower to its end, and cannot. Nothing has changed then. */
 bool cm1e_axis_shift_waiting(cm1e_axis_t *axis, double shift);
 /** The velocity with which a move that begins there shall pass its target, for the sake of those that wait. */
 double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t *move);

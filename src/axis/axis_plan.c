@@ -23,7 +23,8 @@ static cm1e_error_t stopping_way(const cm1e_axis_t *axis, const from_t *from, co
     return error;
 }
 
-/* Where a position lies after a shift of the coordinates; MC_SetPosition itself takes no other than one in the range. */
+/* Where a position lies after a shift of the coordinates; MC_SetPosition itself takes no other than one in the range.
+ * */
 static double shifted(const cm1e_axis_t *axis, const move_t *move)
 {
     const double range = axis->modulo_range, position = move->position + move->shift;

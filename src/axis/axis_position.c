@@ -57,8 +57,9 @@ static double turn_counts(const cm1e_axis_t *axis)
 /* n / d with n >= 0, as a double, without losing the fraction of a large quotient. */
 static double quotient(wide_t n, int64_t d) { return (double)(int64_t)(n / d) + (double)(int64_t)(n % d) / (double)d; }
 
-/* In which turn a position from the origin is, and how many counts from its beginning; 0 <= phase < a turn. The beginning
- * of a turn that is no whole number of counts is rounded, perhaps to less: it belongs to its turn all the same. */
+/* In which turn a position from the origin is, and how many counts from its beginning; 0 <= phase < a turn. The
+ * beginning of a turn that is no whole number of counts is rounded, perhaps to less: it belongs to its turn all the
+ * same. */
 static int64_t turn_of(const cm1e_axis_t *axis, position_t position, double *phase)
 {
     const int64_t numerator = axis->turn.numerator, denominator = axis->turn.denominator;

@@ -457,6 +457,9 @@ static inline guard_t cm1e_axis_guard(const cm1e_axis_t *axis, const from_t *nex
     return cm1e_axis_well_within(axis, next, kept_jerk) ? (guard_t){.limit = GUARD_KEPT}
                                                         : cm1e_axis_look_closely(axis, next, kept_jerk);
 }
+/** Whether a motion that keeps acceleration and jerk at every moment of the cycle leads to the next set-point. Then the
+ *  differences of the set positions keep them too, whatever adds up in it. */
+bool cm1e_axis_guard_smooth(const cm1e_axis_t *axis, const from_t *next);
 /** When the axis begins to follow or to be led, and when its limits are written. */
 void cm1e_axis_guard_renew(cm1e_axis_t *axis);
 /** ErrorStop with CM1E_ERROR_AXIS_COUPLING_LIMIT, which tells what was asked for and allowed. */

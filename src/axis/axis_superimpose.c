@@ -6,9 +6,9 @@
  * of the axis's acceleration and jerk, and the base is planned anew with what is left; a base that needs no more than
  * that keeps its time (3.8). Both change over at the same jerk, so that the sum stays inside on the way there too. A
  * base that is about to arrive and needs its whole deceleration for that gets it: the superimposed motion then begins
- * when it can. A follower's velocity is its master's, which nobody shares: a command that takes over from it where it is
- * faster than what the superimposed motion leaves gets all of the motion, and the superimposed one waits with what it has
- * covered until there is room for it again. On an axis in Standstill there is nothing to share with.
+ * when it can. A follower's velocity is its master's, which nobody shares: a command that takes over from it where it
+ * is faster than what the superimposed motion leaves gets all of the motion, and the superimposed one waits with what
+ * it has covered until there is room for it again. On an axis in Standstill there is nothing to share with.
  *
  * While it goes on, the base counts its positions without it. At its end the base, and where that goes, are moved by
  * what has been covered.

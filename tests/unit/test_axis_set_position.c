@@ -1,6 +1,6 @@
 /*
- * MC_SetPosition while commands wait (3.17): the coordinates shift and nothing else. A command that was given before ends
- * at the place that its Position had then; a Position given later is meant in the new coordinates.
+ * MC_SetPosition while commands wait (3.17): the coordinates shift and nothing else. A command that was given before
+ * ends at the place that its Position had then; a Position given later is meant in the new coordinates.
  * CM1E_TEST_SEED=<n> repeats one run, CM1E_TEST_RUNS=<n> makes more of them.
  */
 #include "../support/axis_bench.h"
