@@ -89,6 +89,7 @@ static from_t sum_of(const cm1e_axis_t *axis, const from_t *f)
 
 /* A ramp of ErrorStop has no limit of jerk, nor has who follows it. */
 static bool keeps_jerk(const coupling_t *c) { return !c->now->linear && !c->now->by_actual && !c->stopping; }
+bool cm1e_axis_coupling_smooth(const cm1e_axis_t *axis) { return keeps_jerk(axis->coupling); }
 
 typedef struct verdict {
     guard_t guard;

@@ -175,6 +175,8 @@ cm1e_error_t cm1e_axis_coupling_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @
 void cm1e_axis_coupling_free(cm1e_axis_t *axis);                            /* @rt init */
 /** The set-point of the cycle. FALSE: it does not come from F any more, but from the axis's profile. */
 bool cm1e_axis_coupled_step(cm1e_axis_t *axis);
+/** The limit of jerk holds for it. */
+bool cm1e_axis_coupling_smooth(const cm1e_axis_t *axis);
 /** An empty place for an F that is being prepared. */
 follow_t *cm1e_axis_follow_spare(cm1e_axis_t *axis);
 /** F is this from now on; what the state `from` differs from it becomes the rest. The active command is the caller's to

@@ -74,8 +74,11 @@ static guard_t limit_ahead(const cm1e_axis_t *axis, double braking)
     const double t = axis->cycle_s, v = axis->set_velocity + axis->set_acceleration * t, most = axis->system.velocity;
     const double line = cm1e_axis_line(axis, axis->set) + (axis->set_velocity + v) / 2.0 * t;
     const double end = line + v * fabs(v) / (2.0 * braking) + v * t;
-    if (fabs(v) > most)
-        return (guard_t){.limit = GUARD_VELOCITY, .asked = fabs(v), .allowed = most};
+    /* In that cycle the acceleration may grow too; what it is then takes time to end. */
+    const double a = fabs(axis->set_acceleration) + axis->guarding.jerk, toward = axis->set_acceleration * v;
+    const double peak = fabs(v) + (cm1e_axis_coupling_smooth(axis) && toward > 0.0 ? a * a * axis->guarding.ease : 0.0);
+    if (peak > most)
+        return (guard_t){.limit = GUARD_VELOCITY, .asked = peak, .allowed = most};
     if (axis->software_limits && ((v > 0.0 && end > axis->upper) || (v < 0.0 && end < axis->lower)))
         return (guard_t){.limit = GUARD_SOFTWARE_LIMIT, .asked = line,
                          .allowed = v > 0.0 ? axis->upper : axis->lower};

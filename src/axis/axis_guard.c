@@ -69,8 +69,10 @@ CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *
     const double v = next->velocity, a = next->acceleration, line = cm1e_axis_line(axis, next->position);
     if (!isfinite(v) || !isfinite(a))
         return broken(GUARD_FINITE, 0.0, 0.0);
-    if (fabs(v) > most->velocity * (1.0 + slack))
-        return broken(GUARD_VELOCITY, fabs(v), most->velocity);
+    /* What goes on accelerating so close below the maximum velocity can no longer be kept below it. */
+    const double peak = fabs(v) + (kept_jerk && a * v > 0.0 ? a * a * axis->guarding.ease : 0.0);
+    if (peak > most->velocity * (1.0 + slack))
+        return broken(GUARD_VELOCITY, peak, most->velocity);
     if (fabs(v) > axis->tolerance && !cm1e_axis_direction_enabled(axis, v))
         return broken(GUARD_DIRECTION, v, 0.0);
     guard_t guard = guard_acceleration(axis, next);
@@ -147,6 +149,7 @@ void cm1e_axis_guard_renew(cm1e_axis_t *axis)
         .down = most->deceleration * t,
         .acceleration = either,
         .jerk = most->jerk * t,
+        .ease = axis_led(axis) ? 0.0 : 0.5 / most->jerk, /* the path of a group has been planned as a whole */
         .half_cycle = axis->scale * t / 2.0,
         .step = either * t * t / 4.0 * fabs(axis->scale) + slack_counts,
         .per_count = 1.0 / axis->scale,

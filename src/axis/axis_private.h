@@ -82,6 +82,7 @@ typedef struct guarding {
     double up, down;         /**< u/s in a cycle */
     double acceleration;     /**< u/s2 */
     double jerk;             /**< u/s2 in a cycle */
+    double ease;             /**< s3/u; by the square of an acceleration: what it adds to the velocity while it ends */
     double half_cycle, step; /**< counts in half a cycle at 1 u/s; counts beside the mean of both velocities */
     double per_count;        /**< u, signed */
 } guarding_t;
@@ -442,7 +443,8 @@ static inline bool cm1e_axis_well_within(const cm1e_axis_t *axis, const from_t *
     if (!(speed <= g->velocity && fabs(v - v0) <= (speed >= fabs(v0) ? g->up : g->down) &&
           fabs(a) <= g->acceleration && fabs(step) <= g->step && axis->enable_positive && axis->enable_negative))
         return false;
-    if (kept_jerk && !(fabs(a - axis->set_acceleration) <= g->jerk))
+    if (kept_jerk && !(fabs(a - axis->set_acceleration) <= g->jerk &&
+                       (a * v <= 0.0 || speed + a * a * g->ease <= g->velocity)))
         return false;
     if (!axis->software_limits)
         return true;

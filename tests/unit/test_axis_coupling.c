@@ -412,6 +412,36 @@ static void test_a_command_takes_over_from_a_follower_that_left_the_superimposed
     TEST_ASSERT_TRUE(waited > 20);
 }
 
+/* A master about to be too fast for its slave: a halt of the slave in the last cycles keeps velocity and jerk. */
+static void test_a_halt_just_before_the_maximum_velocity_keeps_the_jerk(void)
+{
+    int halted = 0, stopped = 0;
+    for (int when = 0; when < 300; when++) {
+        axes_describe(2);
+        for (int n = 0; n < 2; n++) {
+            axes_config(n)->max_velocity = n ? 8.0 : 20.0;
+            axes_config(n)->max_acceleration = 100.0;
+            axes_config(n)->max_jerk = 2000.0;
+        }
+        axes_make();
+        axes_enable_all();
+        const cm1e_command_id_t gear = axes_gear_in(1, 0, 1, 1);
+        axes_wait_reached(1, gear, 1000);
+        axes_move_velocity(0, 20.0);
+        axes_cycles(when);
+        if (axes_state(1) == CM1E_AXIS_SYNCHRONIZED_MOTION) {
+            halted++;
+            axes_command(1, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT});
+            axes_cycles(500);
+            axes_must_be(1, CM1E_AXIS_STANDSTILL);
+        } else {
+            stopped++;
+        }
+        axes_end();
+    }
+    TEST_ASSERT_TRUE(halted > 50 && stopped > 50);
+}
+
 static void test_other_commands_take_over_from_a_follower(void)
 {
     static const cm1e_axis_command_t commands[] = {
@@ -532,6 +562,7 @@ int main(void)
     RUN_TEST(test_override_does_not_act_on_a_follower);
     RUN_TEST(test_a_superimposed_motion_on_a_follower);
     RUN_TEST(test_a_command_takes_over_from_a_follower_that_left_the_superimposed_motion_no_room);
+    RUN_TEST(test_a_halt_just_before_the_maximum_velocity_keeps_the_jerk);
     RUN_TEST(test_other_commands_take_over_from_a_follower);
     RUN_TEST(test_power_off_ends_it);
     RUN_TEST(test_after_a_pause_it_is_still_in_step);
