@@ -138,6 +138,17 @@ static bool boot(cm1e_sim_segment_t *segment, const sim_options_t *options)
     return good;
 }
 
+static void end_by_signals(void)
+{
+    static const int ends[] = {SIGINT, SIGTERM, SIGQUIT, SIGPIPE};
+    const struct sigaction action = {.sa_handler = request_stop};
+    struct sigaction before;
+    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++)
+        sigaction(ends[i], &action, NULL);
+    if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) /* else: nohup */
+        sigaction(SIGHUP, &action, NULL);
+}
+
 static cm1e_error_t serve(cm1e_sim_segment_t *segment, const char *interface_name, cm1e_diag_t *diag)
 {
     static const cm1e_nic_console_t console = {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO};
@@ -145,9 +156,7 @@ static cm1e_error_t serve(cm1e_sim_segment_t *segment, const char *interface_nam
     const cm1e_error_t error = cm1e_nic_server_open(&server, segment, interface_name, diag);
     if (error)
         return error;
-    const struct sigaction action = {.sa_handler = request_stop};
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
+    end_by_signals();
     printf("%u simulated slave%s on %s; `help` lists what can be done to them\n",
            cm1e_sim_segment_slave_count(segment), cm1e_sim_segment_slave_count(segment) == 1 ? "" : "s",
            interface_name);
@@ -172,8 +181,8 @@ int command_sim(int argc, char **argv)
         {0}};
     static const struct argp argp = {
         table, parse, "[BUS-FILE]",
-        "Serves a simulated network until SIGINT or SIGTERM; without a bus file one CM1-E-17S30D, firmware 1.3.5, or "
-        "as many as there are SII images, or, with --bridge, none. "
+        "Serves a simulated network until Ctrl-C, or its terminal is closed; without a bus file one CM1-E-17S30D, "
+        "firmware 1.3.5, or as many as there are SII images, or, with --bridge, none. "
         "Lines on standard input act on it; `help` lists them.", NULL, NULL, NULL};
     sim_options_t options = {0};
     if (argp_parse(&argp, argc, argv, 0, NULL, &options))

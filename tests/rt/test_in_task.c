@@ -117,6 +117,12 @@ static cm1e_error_t call_svg(cm1e_bus_t *bus)
     return cm1e_scheduler_write_svg(machine.scheduler, CM1E_TEST_OUTPUT "/never.svg", &diag);
 }
 
+static cm1e_error_t call_check(cm1e_bus_t *bus)
+{
+    (void)bus;
+    return cm1e_scheduler_check_path(CM1E_TEST_OUTPUT "/never.svg", &diag);
+}
+
 static const struct {
     const char *name;
     cm1e_error_t (*call)(cm1e_bus_t *bus);
@@ -129,6 +135,7 @@ static const struct {
     {"cm1e_cml_exchange()", call_cml}, {"cm1e_cml_leave()", call_cml_leave}, {"cm1e_bus_config_load()", call_load},
     {"cm1e_scheduler_create()", call_create}, {"cm1e_scheduler_run()", call_run},
     {"cm1e_scheduler_write_csv()", call_csv}, {"cm1e_scheduler_write_svg()", call_svg},
+    {"cm1e_scheduler_check_path()", call_check},
 };
 enum { WAITING = sizeof waiting / sizeof waiting[0] };
 

@@ -26,7 +26,7 @@ static const struct {
     bool also_ignored; /* it is a stop even where the program ignored it before */
 } signals[] = {{SIGINT, true}, {SIGTERM, true}, {SIGHUP, false}, {SIGQUIT, false}, {SIGPIPE, false}, {SIGTSTP, false},
                {SIGXCPU, false}, {SIGXFSZ, false}};
-enum { SIGNALS = sizeof signals / sizeof signals[0] };
+enum { SIGNALS = sizeof signals / sizeof signals[0], ATTEMPTS = 10 };
 
 /* ---- an axis that turns ------------------------------------------------------------------------------------------ */
 
@@ -74,7 +74,6 @@ static void start(turning_t *t)
     const cm1e_scheduler_config_t settings = {.trace_capacity = 20000};
     const cm1e_task_config_t task = {.program = program, .context = t};
     cm1e_bus_config_init(&config, "sim", 1);
-    config.lost_cycles_limit = 10; /* a loaded machine pauses now and then */
     config.axes[0].max_deceleration = deceleration;
     config.axes[0].sim.no_stops = true;
     check_done(t, cm1e_bus_open(&t->bus, &config, &t->diag));
@@ -99,8 +98,9 @@ static void end(turning_t *t)
 
 /* ---- the ramp ---------------------------------------------------------------------------------------------------- */
 
-/** No step on the way is beyond the deceleration, and the motor is at rest when its torque goes. */
-static void check_ramp(const turning_t *t, int number)
+/** No step on the way is beyond the deceleration, and the motor is at rest when its torque goes. False: the machine
+ *  paused, after which a motion begins anew (docs/SAFETY.md), so nothing can be said of the ramp. */
+static bool check_ramp(const turning_t *t, int number)
 {
     char path[256], state[32];
     snprintf(path, sizeof path, "%s/signal_%d.csv", CM1E_TEST_OUTPUT, number);
@@ -108,20 +108,25 @@ static void check_ramp(const turning_t *t, int number)
     FILE *file = fopen(path, "r");
     ck_assert_ptr_nonnull(file);
     ck_assert_int_ge(fscanf(file, "%*[^\n]\n"), 0);
-    double time_s, set, actual, before = 0, steepest = 0, began_s = 0, ended_s = 0;
+    double time_s, set, actual, before = 0, before_s = 0, longest_s = 0, steepest = 0, began_s = 0, ended_s = 0;
     while (fscanf(file, "%lf,%31[^,],%*f,%*f,%lf,%lf,%*[^\n]\n", &time_s, state, &set, &actual) == 4) {
         ck_assert_str_ne(state, "ErrorStop");
         steepest = fmax(steepest, before - set);
+        longest_s = fmax(longest_s, time_s - before_s);
+        before_s = time_s;
         began_s = set > 0.999 * velocity ? time_s : began_s;
         ended_s = set > 0 ? time_s : ended_s;
         before = set;
     }
     fclose(file);
     ck_assert_msg(set == 0 && fabs(actual) < 0.01, "signal %d: the torque goes at %g u/s", number, actual);
+    if (longest_s > 2.5 * cycle_s)
+        return false;
     ck_assert_msg(steepest <= deceleration * cycle_s * (1 + 1e-9), "signal %d: braked with %g u/s2", number,
                   steepest / cycle_s);
     ck_assert_msg(ended_s - began_s > 0.9 * velocity / deceleration, "signal %d: at rest after %g s", number,
                   ended_s - began_s);
+    return true;
 }
 
 static void check_end(const turning_t *t)
@@ -133,10 +138,11 @@ static void check_end(const turning_t *t)
     ck_assert_int_eq(cm1e_bus_slave(t->bus, 1)->al_state, CM1E_AL_INIT);
 }
 
-START_TEST(test_every_signal_ramps_down_and_more_of_them_change_nothing)
+/** True: the ramp was judged. */
+static bool stop_by(int number)
 {
     static turning_t t;
-    const int number = signals[_i].number;
+    t = (turning_t){0};
     start(&t);
     kill(getpid(), number);
     for (int i = 0; i < 20; i++) { /* the same again, and all the others, while the ramp lasts */
@@ -145,8 +151,17 @@ START_TEST(test_every_signal_ramps_down_and_more_of_them_change_nothing)
     }
     pthread_join(t.thread, NULL);
     check_end(&t);
-    check_ramp(&t, number);
+    const bool judged = check_ramp(&t, number);
     end(&t);
+    return judged;
+}
+
+START_TEST(test_every_signal_ramps_down_and_more_of_them_change_nothing)
+{
+    for (int i = 0; i < ATTEMPTS; i++)
+        if (stop_by(signals[_i].number))
+            return;
+    ck_abort_msg("the machine paused in every one of %d ramps", ATTEMPTS);
 }
 END_TEST
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """A master that is told to end while its motor turns, in every way in which a terminal or a system tells it: the motor
-stands when the master has ended, also that of firmware 1.2.0 in CSV, which nothing else would stop.
+stands when the master has ended, also that of firmware 1.2.0 in CSV, which nothing else would stop. The simulator ends
+in order by the same signals.
 
 test_signals.py CM1E
 """
@@ -74,6 +75,10 @@ def main(cm1e):
             status, output, complaint, took = end_by(segment, cm1e, signal.SIGHUP, nohup=True)
             wire.check(status == 0 and "done" in output and took > 2, f"under nohup: {status} {output}{complaint}")
             print("SIGHUP under nohup: ignored, the move ends by itself")
+    for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGPIPE):
+        with wire.segment(cm1e) as segment: # its end judges the exit status
+            segment.simulator.send_signal(number)
+            time.sleep(0.1)
 
 
 if __name__ == "__main__":
