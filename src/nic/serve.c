@@ -274,7 +274,8 @@ void cm1e_nic_server_run(cm1e_nic_server_t *server, const cm1e_nic_console_t *co
     server->advanced_ns = cm1e_clock_now(server->clock);
     while (!*stop) {
         const int ready = wait(server, fds);
-        if (ready > 0 && fds[0].revents && !answer_frames(server))
+        /* A socket with nothing but an error would be reported without end. */
+        if (ready > 0 && fds[0].revents && (!answer_frames(server) || !(fds[0].revents & POLLIN)))
             lose_interface(server);
         const int64_t now_ns = cm1e_clock_now(server->clock);
         find_interface(server, now_ns);

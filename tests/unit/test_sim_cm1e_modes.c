@@ -376,6 +376,28 @@ static void test_a_halted_homing_comes_to_rest_once(void)
     }
 }
 
+/* What `cm1e sim` sleeps by. */
+static void test_a_motor_moves_until_it_rests_without_torque(void)
+{
+    bench_t b;
+    bench_open_endless(&b, "1.3.5");
+    bench_run(&b, 1);
+    TEST_ASSERT_EQUAL_INT64(INT64_MAX, b.ops->due(b.drive));
+    bench_enable(&b, CSV);
+    bench_run(&b, 1);
+    TEST_ASSERT_EQUAL_INT64_MESSAGE(INT64_MIN, b.ops->due(b.drive), "it is held by torque");
+    b.target_velocity = 200000;
+    bench_run(&b, 1);
+    b.ops->watchdog_expired(b.drive);
+    TEST_ASSERT_EQUAL_INT64_MESSAGE(INT64_MIN, b.ops->due(b.drive), "it runs out");
+    for (int i = 0; i < 10000 && b.drive->mechanics.velocity != 0; i++)
+        b.ops->advance(b.drive, b.now_ns += BENCH_MS);
+    TEST_ASSERT_EQUAL_INT64(INT64_MAX, b.ops->due(b.drive));
+    b.drive->mechanics.load_torque = 0.05;
+    TEST_ASSERT_EQUAL_INT64_MESSAGE(INT64_MIN, b.ops->due(b.drive), "a load turns it");
+    bench_close(&b);
+}
+
 /* ---- load ------------------------------------------------------------------------------------------------------- */
 
 static void test_torque_is_shown_in_per_mille_of_rated(void)
@@ -565,6 +587,7 @@ int main(void)
     RUN_TEST(test_pv_ramps_with_acceleration_and_deceleration);
     RUN_TEST(test_pv_comes_to_its_velocity_and_to_rest_once);
     RUN_TEST(test_a_halted_homing_comes_to_rest_once);
+    RUN_TEST(test_a_motor_moves_until_it_rests_without_torque);
     RUN_TEST(test_torque_is_shown_in_per_mille_of_rated);
     RUN_TEST(test_overload_raises_2310_and_rated_load_does_not);
     RUN_TEST(test_pressing_against_a_stop_ends_in_a_fault);

@@ -242,6 +242,35 @@ static void test_random_requests_never_leave_the_states(void)
     }
 }
 
+/* ---- when time has to pass though no frame comes ---------------------------------------------------------------- */
+
+static int64_t due(void) { return cm1e_sim_segment_due(b.segment); }
+
+static void test_a_segment_says_when_it_has_to_be_advanced_next(void)
+{
+    TEST_ASSERT_EQUAL_INT64(INT64_MAX, due());
+    configure_mailboxes(&b, 0);
+    write_u16(&b, 0, 0x0120, CM1E_AL_PRE_OP);
+    TEST_ASSERT_EQUAL_INT64(b.now_ns + 200000, due()); /* the request is decided */
+    bench_wait(&b, 200000);
+    TEST_ASSERT_EQUAL_INT64(INT64_MAX, due());
+    write_u16(&b, 0, 0x0502, 0x0100); /* an SII read */
+    TEST_ASSERT_EQUAL_INT64(b.now_ns + 150000, due());
+    bench_wait(&b, 150000);
+    configure_process_data(&b, 0);
+    TEST_ASSERT_EQUAL_HEX16(CM1E_AL_SAFE_OP, request_state(&b, 0, CM1E_AL_SAFE_OP));
+    TEST_ASSERT_EQUAL_HEX16(CM1E_AL_OP, request_state(&b, 0, CM1E_AL_OP));
+    const int64_t watchdog_ns = due();
+    TEST_ASSERT_TRUE(watchdog_ns > b.now_ns && watchdog_ns <= b.now_ns + 100000000);
+    bench_wait(&b, watchdog_ns - b.now_ns - 1);
+    TEST_ASSERT_EQUAL_UINT(0, b.apps[0]->watchdogs);
+    bench_wait(&b, 1);
+    TEST_ASSERT_EQUAL_UINT(1, b.apps[0]->watchdogs);
+    TEST_ASSERT_EQUAL_INT64(INT64_MAX, due());
+    cm1e_sim_slave_reset(cm1e_sim_segment_slave(b.segment, 1), b.now_ns + 5000000);
+    TEST_ASSERT_EQUAL_INT64(b.now_ns + 5000000, due()); /* it comes back */
+}
+
 /* ---- device emulation: a slave without a processor -------------------------------------------------------------- */
 
 enum { EMULATING = 1 }; /* behind the slave with a state machine */
@@ -334,6 +363,7 @@ int main(void)
     RUN_TEST(test_al_control_takes_one_or_two_bytes);
     RUN_TEST(test_leaving_pre_operational_empties_the_mailboxes);
     RUN_TEST(test_random_requests_never_leave_the_states);
+    RUN_TEST(test_a_segment_says_when_it_has_to_be_advanced_next);
     RUN_TEST(test_device_emulation_copies_al_control_to_al_status);
     RUN_TEST(test_device_emulation_shows_an_acknowledgement_as_an_error);
     RUN_TEST(test_device_emulation_has_outputs_in_operational_with_a_watchdog);
