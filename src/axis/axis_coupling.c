@@ -189,8 +189,6 @@ static from_t with_superimposed(cm1e_axis_t *axis, const from_t *f, verdict_t *v
 
 static void emit(cm1e_axis_t *axis, const from_t *point)
 {
-    axis->coupling->set_before = axis->set;
-    axis->coupling->second_step = true;
     axis->set = point->position;
     axis->set_velocity = point->velocity;
     axis->set_acceleration = point->acceleration;
@@ -347,7 +345,7 @@ void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, c
     cm1e_axis_await_nothing(axis);
     cm1e_axis_list_links(follow);
     c->now = follow;
-    c->end_of_profile = c->stopping = c->due = c->second_step = false;
+    c->end_of_profile = c->stopping = c->due = false;
     begin_rest(axis, from, asked);
     axis->activity = ACTIVITY_COUPLED;
     cm1e_axis_guard_renew(axis);

@@ -134,8 +134,6 @@ typedef struct coupling {
     phasing_t phasing;             /**< ... and what changes it */
     observed_t own;
     double f_velocity, f_acceleration; /**< u/s, u/s2; of F, in the last cycle */
-    position_t set_before;         /**< the set-point before the present one ... */
-    bool second_step;              /**< ... which is known: F has made that step too */
     bool due;                      /**< it is now that the awaited one takes F's place ... */
     cm1e_error_t due_error;        /**< ... or fails so */
     bool end_of_profile;           /**< CAM_IN: F came over it in this cycle */

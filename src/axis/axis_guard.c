@@ -109,15 +109,12 @@ static double farthest(double x, double y)
     return 1.0 / 6.0 - against * (middle * middle + against * against / 12.0);
 }
 
-/* The second difference of the set positions, by whether the axis becomes faster in it. */
-static bool kept_second(const cm1e_axis_t *axis, double step, double noise)
+/* What acceleration adds to the way in the cycle, counted from its first and from its last velocity: two of these are a
+ * second difference of the set positions. */
+static bool keeps_second_difference(double early, double late, double up, double down, double noise)
 {
-    const cm1e_motion_limits_t *most = limits_of(axis);
-    const coupling_t *c = axis->coupling;
-    const double before = cm1e_position_minus(axis->set, c->set_before) / axis->scale, t = axis->cycle_s;
-    const double bound = step * before <= 0.0 ? fmax(most->acceleration, most->deceleration)
-                         : fabs(step) > fabs(before) ? most->acceleration : most->deceleration;
-    return !c->second_step || fabs(step - before) <= bound * t * t * (1.0 + slack) + 2.0 * noise;
+    const double most = fmax(early, late), least = fmin(early, late);
+    return most <= up * (1.0 + slack) / 2.0 + noise && least >= -down * (1.0 + slack) / 2.0 - noise;
 }
 
 CM1E_RARE bool cm1e_axis_guard_smooth(const cm1e_axis_t *axis, const from_t *next)
@@ -136,7 +133,8 @@ CM1E_RARE bool cm1e_axis_guard_smooth(const cm1e_axis_t *axis, const from_t *nex
     const double z = (step - t * (v0 + t * a0 / 2.0)) / (jerk * t * t * t);
     const double step_noise = 1e-9 / fabs(axis->scale) + 1e-13 * fabs(step);
     const double few = slack + step_noise / (jerk * t * t * t);
-    return z <= farthest(x, y) + few && -z <= farthest(-x, -y) + few && kept_second(axis, step, step_noise);
+    return z <= farthest(x, y) + few && -z <= farthest(-x, -y) + few &&
+           keeps_second_difference((step - v0 * t) / (t * t), (v * t - step) / (t * t), up, down, step_noise / (t * t));
 }
 
 void cm1e_axis_guard_renew(cm1e_axis_t *axis)

@@ -1,7 +1,7 @@
 /*
  * MC_SetOverride at random moments with random factors, over single moves and chains that go one way. The page says
  * what holds: no change of a factor leads beyond a target, nor back. The set position of every cycle is judged.
- * CM1E_TEST_SEED=<n> repeats one run, CM1E_TEST_RUNS=<n> makes more of them.
+ * CM1E_TEST_SEED=<n> repeats one run, CM1E_TEST_SEEDS=<count> as many from there on.
  */
 #include "../support/axis_bench.h"
 #include "../support/axis_watch.h"
@@ -147,8 +147,7 @@ static void run_velocity(unsigned seed)
 
 static void run_all(void (*run)(unsigned seed))
 {
-    const char *more = getenv("CM1E_TEST_RUNS");
-    const int runs = more ? atoi(more) : seed_count(RUNS);
+    const int runs = seed_count(RUNS);
     changes = 0;
     for (int i = 0; i < runs; i++)
         run(seed_of(i));

@@ -1,7 +1,7 @@
 /*
  * MC_SetPosition while commands wait (3.17): the coordinates shift and nothing else. A command that was given before
  * ends at the place that its Position had then; a Position given later is meant in the new coordinates.
- * CM1E_TEST_SEED=<n> repeats one run, CM1E_TEST_RUNS=<n> makes more of them.
+ * CM1E_TEST_SEED=<n> repeats one run, CM1E_TEST_SEEDS=<count> as many from there on.
  */
 #include "../support/axis_bench.h"
 #include "../support/axis_watch.h"
@@ -86,8 +86,7 @@ static int32_t run(unsigned seed, bool shifted, int32_t *targets)
 static void test_shifts_move_nothing(void)
 {
     static int32_t plain[CYCLES], shifted[CYCLES];
-    const char *more = getenv("CM1E_TEST_RUNS");
-    const int runs = more ? atoi(more) : seed_count(RUNS);
+    const int runs = seed_count(RUNS);
     for (int i = 0; i < runs; i++) {
         const unsigned seed = seed_of(i);
         char text[96];
