@@ -259,12 +259,12 @@ static void witness_received(bench_t *bench, const cm1e_tap_frame_t *frame)
     }
 }
 
-/** Where the mode comes over SDO, the master learns late that the drive is back from homing; it holds meanwhile. */
-static bool at_shown_position(const bench_t *bench, const witness_t *w, bool enabling_before)
+/** Where the mode comes over SDO, the master learns late that the drive is back from homing; it keeps its target
+ *  meanwhile, whatever the motor does about it. */
+static bool at_shown_position(const bench_t *bench, const witness_t *w, bool enabling_before, int32_t target_before)
 {
-    const double off = (double)(int32_t)((uint32_t)w->target - (uint32_t)w->position);
-    return off == 0 || (bench->frames_late && w->target == w->position_before) ||
-           (w->in_mode < 0 && enabling_before && fabs(off) < 50);
+    return w->target == w->position || (bench->frames_late && w->target == w->position_before) ||
+           (w->in_mode < 0 && enabling_before && w->target == target_before);
 }
 
 /** Where a motor did not follow, braking or holding may begin anew where it is: such a target pulls at nothing. Nor
@@ -368,7 +368,7 @@ static void witness_sent_axis(bench_t *bench, uint32_t n, const uint8_t *data)
     if (w->mode_shown == CM1E_MODE_HM && enabling_before)
         return; /* takes no targets */
     if (!w->holding || !holding_before) { /* the drive may act on this frame, or acts on it as the first one */
-        MUST(bench, at_shown_position(bench, w, enabling_before),
+        MUST(bench, at_shown_position(bench, w, enabling_before, target_before),
              "axis %u: controlword 0x%04X, statusword 0x%04X, mode %d: target %d, but the drive is at %d", n,
              w->controlword, w->statusword, w->mode_shown, w->target, w->position);
         MUST(bench, w->velocity == 0, "axis %u: controlword 0x%04X, statusword 0x%04X: target velocity %.0f", n,
