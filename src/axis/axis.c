@@ -44,6 +44,7 @@ cm1e_error_t cm1e_axis_create(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t in
     axis->cycle_s = (double)(cycle_ns > 0 ? cycle_ns : MS_IN_NS) * 1e-9;
     cm1e_axis_guard_renew(axis);
     cm1e_axis_in_position_init(axis);
+    cm1e_axis_steps_init(axis);
     axis->drive.command.mode = axis->mode;
     axis->positive_before = true;
     axis->reset_state = CM1E_COMMAND_DONE;
@@ -76,15 +77,8 @@ static bool powered_state(cm1e_axis_state_t state)
     return state != CM1E_AXIS_DISABLED && state != CM1E_AXIS_ERROR_STOP;
 }
 
-/* Counts. More lag than the cycles without inputs explain: the drive did not hear the set-points of that time. */
-static bool was_deaf(const cm1e_axis_t *axis, double lag, double lag_before)
-{
-    const double few_counts = 50.0;
-    return lag > lag_before + 2.0 * fabs(axis->set_velocity * axis->scale) * axis->cycle_s +
-                     cm1e_axis_few(axis, few_counts);
-}
-
-/* A set-point that the motor has lost is a jump to come: braking begins anew where the motor is. */
+/* A set-point that the motor has lost is a jump to come: braking begins anew where the motor is. In CSV the motor goes
+ * on while nothing is heard: a ramp of ErrorStop then begins anew where it has come to. */
 static void watch_lag(cm1e_axis_t *axis)
 {
     const bool own = axis->activity == ACTIVITY_HOLD || set_points_move(axis);
@@ -93,10 +87,8 @@ static void watch_lag(cm1e_axis_t *axis)
     if (axis->blind)
         return;
     const double lag = own ? cm1e_position_minus(axis->set, axis_actual(axis)) : 0.0; /* counts */
-    const double lag_before = axis->lag_seen;
-    axis->lag_seen = fabs(lag);
-    const bool lost = axis->lag_seen > axis->max_lag * fabs(axis->scale);
-    if (axis->state == CM1E_AXIS_ERROR_STOP && blind_before && was_deaf(axis, axis->lag_seen, lag_before)) {
+    const bool lost = fabs(lag) > axis->max_lag * fabs(axis->scale);
+    if (axis->state == CM1E_AXIS_ERROR_STOP && blind_before && axis->mode == CM1E_MODE_CSV) {
         cm1e_axis_brake_from_actual(axis);
     } else if (lost && axis->state != CM1E_AXIS_ERROR_STOP) { /* in Disabled: the ramp before the torque goes */
         if (!axis->lag_monitoring)
@@ -106,6 +98,37 @@ static void watch_lag(cm1e_axis_t *axis)
     } else if (lost) {
         cm1e_axis_become_free(axis); /* a last ramp that the motor does not follow either */
     }
+}
+
+static uint16_t add_up(uint16_t to, int64_t more)
+{
+    return (uint16_t)(to + more < UINT16_MAX ? to + more : UINT16_MAX);
+}
+
+static void note_silence(cm1e_axis_t *axis, int64_t cycles)
+{
+    axis->silent = add_up(axis->silent, cycles);
+    axis->shaken = add_up(axis->shaken, cycles * CM1E_SHAKEN_BY_SILENCE);
+}
+
+/* While no answer comes it is not known which target the drive holds. */
+static void note_answer(cm1e_axis_t *axis, bool answered, bool lost)
+{
+    axis->silent_before = answered ? axis->silent : 0;
+    axis->frozen = !answered && !lost;
+    if (answered) {
+        axis->silent = 0;
+        axis->shaken -= axis->shaken > 0;
+    } else {
+        note_silence(axis, 1);
+    }
+}
+
+void cm1e_axis_hold_cycle(cm1e_axis_t *axis, int64_t missed)
+{
+    note_silence(axis, missed);
+    axis->frozen = true;
+    cm1e_drive_slew(&axis->drive);
 }
 
 static bool asks_for_torque(const cm1e_axis_t *axis) { return axis->power_enable && !axis->shutting_down; }
@@ -123,7 +146,8 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
 {
     cm1e_drive_t *drive = &axis->drive;
     axis->now_ns = now_ns;
-    axis->advanced = axis->resumed = false;
+    axis->advanced = axis->resumed = axis->began_anew = false;
+    note_answer(axis, received == CM1E_OK, health != CM1E_OK);
     cm1e_drive_read(drive, received == CM1E_OK, now_ns);
     if (drive->feedback.fresh)
         cm1e_axis_track(axis);
@@ -149,6 +173,8 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
         if (axis->error == drive->fault.error)
             axis->device_error = drive->fault.device_code; /* it may come a cycle later */
     }
+    if (health)
+        cm1e_axis_hold_unheard(axis);
     watch_lag(axis);
 }
 
@@ -161,6 +187,8 @@ static bool moves_on(const cm1e_axis_t *axis)
 void cm1e_axis_advance(cm1e_axis_t *axis)
 {
     axis->advanced = true;
+    if (axis->silent_before > 0)
+        cm1e_axis_after_silence(axis);
     if (axis_follows(axis) || axis->awaited)
         cm1e_axis_advance_masters(axis);
     if (axis->kept != 0 || axis->drive.command.digital_outputs != 0)
@@ -170,10 +198,11 @@ void cm1e_axis_advance(cm1e_axis_t *axis)
         cm1e_axis_cool_muscle_step(axis);
         cm1e_axis_power_step(axis);
     }
-    cm1e_axis_motion_step(axis);
-    if (axis->awaited)
+    if (!axis->frozen || !set_points_move(axis))
+        cm1e_axis_motion_step(axis);
+    if (axis->awaited && !axis->frozen)
         cm1e_axis_await_step(axis);
-    if (axis->backlash.gap > 0.0)
+    if (axis->backlash.gap > 0.0 && !axis->frozen)
         cm1e_axis_backlash_step(axis);
     if (axis->objects.head != axis->objects.next)
         cm1e_axis_objects_step(axis);

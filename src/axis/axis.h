@@ -154,6 +154,9 @@ void cm1e_axis_outputs(cm1e_axis_t *axis);
 /** Before cm1e_axis_outputs(): no frame was sent for so long beyond the cycle that the motor no longer moves as the
  *  set-point does. What moves begins anew from rest (CSP), or from where the motor has gone on to (CSV). @rt cycle */
 void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns);
+/** Before cm1e_axis_outputs(): for a few cycles no frame was sent. The target is repeated once more, until the next
+ *  answer shows whether the motor has slowed down meanwhile. @rt cycle */
+void cm1e_axis_hold_cycle(cm1e_axis_t *axis, int64_t missed);
 
 /** Starts a command or refuses it (then *id is 0 and nothing has changed). Kinds that the axis does not know how to
  *  do yet are CM1E_ERROR_UNSUPPORTED. @rt cycle */

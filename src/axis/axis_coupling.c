@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 static const double same_moment = 1e-6; /* cycles */
+static const double rounding_counts = 1e-3;
 
 cm1e_error_t cm1e_axis_coupling_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {
@@ -46,7 +47,11 @@ static cm1e_motion_limits_t limits_beside(const cm1e_axis_t *axis, const from_t 
     const double down = at_most(rest->asked.deceleration, most->deceleration, used);
     const double change = now * f->velocity < 0.0 ? fmin(up, down) : fabs(f->velocity) > fabs(now) ? up : down;
     const double jerk = full_jerk ? rest->asked.jerk : at_most(rest->asked.jerk, most->jerk, fabs(f_jerk));
-    return (cm1e_motion_limits_t){2.0 * (most->velocity + fabs(rest->now.velocity)), change, change, jerk};
+    /* A part of what F leaves: F may become faster, and the limit of jerk lets the rest give way slowly only. */
+    const double part = 0.1, taken = (1.0 - part) * most->velocity + part * fabs(f->velocity);
+    const double velocity = rest->to_place ? at_most(rest->asked.velocity, most->velocity, taken)
+                                          : 2.0 * (most->velocity + fabs(rest->now.velocity));
+    return (cm1e_motion_limits_t){velocity, change, change, jerk};
 }
 
 static void plan_rest(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits)
@@ -54,12 +59,18 @@ static void plan_rest(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits)
     coupling_t *c = axis->coupling;
     rest_t *rest = &c->rest;
     const cm1e_error_t error =
-        c->now->to_position ? cm1e_profile_to_position(&rest->profile, &rest->now, 0.0, limits)
-                            : cm1e_profile_to_velocity(&rest->profile, &rest->now, 0.0, limits);
+        rest->to_place ? cm1e_profile_to_position(&rest->profile, &rest->now, 0.0, limits)
+                       : cm1e_profile_to_velocity(&rest->profile, &rest->now, 0.0, limits);
     rest->cycles = 0;
     rest->on = error || rest->profile.duration_s > 0.0 || rest->now.position != 0.0;
     if (error) /* numbers that doubles cannot hold: it ends as it is, for the guard to judge */
         rest->profile = (cm1e_profile_t){.end = rest->now};
+}
+
+/* A gear that accelerates may need all of the axis's limits: lost distance is made up when it no longer does. */
+static bool goes_to_place(const coupling_t *c, bool steady)
+{
+    return c->now->to_position || (c->rest.made_up && steady);
 }
 
 static void next_of_rest(cm1e_axis_t *axis)
@@ -121,6 +132,7 @@ static void go_on(cm1e_axis_t *axis, const from_t *f, attempt_t attempt)
     rest_t *rest = &axis->coupling->rest;
     const double t = axis->cycle_s;
     if (attempt == WITH_ALL_JERK || attempt == WITH_JERK_LEFT) {
+        rest->to_place = goes_to_place(axis->coupling, f->acceleration == 0.0 && axis->coupling->f_acceleration == 0.0);
         const cm1e_motion_limits_t limits = limits_beside(axis, f, jerk_of_f(axis, f), attempt == WITH_ALL_JERK);
         plan_rest(axis, &limits);
     }
@@ -158,7 +170,10 @@ static from_t with_rest(cm1e_axis_t *axis, const from_t *f, verdict_t *verdict)
         *verdict = judge_sum(axis, &sum);
         return sum;
     }
-    const attempt_t first = before.held_back ? WITH_ALL_JERK : AS_PLANNED;
+    const coupling_t *c = axis->coupling;
+    const bool disturbed = f->acceleration != 0.0 || c->f_acceleration != 0.0;
+    const bool interrupted = disturbed && before.to_place && !c->now->to_position;
+    const attempt_t first = before.held_back || interrupted ? WITH_ALL_JERK : AS_PLANNED;
     attempt_t kept = ATTEMPTS;
     for (int attempt = first; attempt < ATTEMPTS; attempt++) {
         sum = attempt_to(axis, f, &before, (attempt_t)attempt, verdict);
@@ -204,18 +219,34 @@ static void end_rest(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
     const double left = c->rest.profile.end.position;
-    if (!c->now->to_position)
+    if (!c->rest.made_up)
         c->now->anchor = cm1e_position_plus(c->now->anchor, left * axis->scale);
     c->rest.on = false;
     c->rest.now = (cm1e_motion_state_t){0};
 }
 
-static void after_set_point(cm1e_axis_t *axis)
+/* The rest has come to its end. The distance that was lost meanwhile waits for F to be steady. */
+static void rest_ended(cm1e_axis_t *axis, const from_t *f)
+{
+    rest_t *rest = &axis->coupling->rest;
+    if (!rest->made_up || rest->to_place || fabs(rest->now.position * axis->scale) < rounding_counts) {
+        end_rest(axis);
+        return;
+    }
+    rest->held_back = false;
+    if (f->acceleration != 0.0)
+        return;
+    rest->to_place = true;
+    const cm1e_motion_limits_t limits = limits_beside(axis, f, 0.0, true);
+    plan_rest(axis, &limits);
+}
+
+static void after_set_point(cm1e_axis_t *axis, const from_t *f)
 {
     coupling_t *c = axis->coupling;
     rest_t *rest = &c->rest;
     if (rest->on && (double)rest->cycles * axis->cycle_s >= rest->profile.duration_s - same_moment * axis->cycle_s)
-        end_rest(axis);
+        rest_ended(axis, f);
     if (axis->superimposed.id)
         cm1e_axis_superimposed_after(axis);
     axis->reached = !rest->on && c->now->in_step;
@@ -284,7 +315,7 @@ bool cm1e_axis_coupled_step(cm1e_axis_t *axis)
     c->f_acceleration = f.acceleration;
     emit(axis, next);
     if (axis_follows(axis))
-        after_set_point(axis);
+        after_set_point(axis, &f);
     if (axis->config->coupling_stop == CM1E_COUPLING_STOP_KEEP_RATIO && axis_follows(axis)) {
         cm1e_axis_keep_ratio(axis);
         stand_with_masters(axis, &f);
@@ -312,25 +343,25 @@ static bool is_nothing(const cm1e_axis_t *axis, const cm1e_motion_state_t *rest)
 }
 
 /* Where lost distance is not made up, F begins where the axis is; a difference of rounding would add up. */
-static void begin_rest(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *asked)
+static void begin_rest(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *asked, bool made_up)
 {
-    static const double rounding_counts = 1e-3;
     coupling_t *c = axis->coupling;
     from_t f;
     c->now->kind->evaluate(axis, c->now, &f);
     double counts = cm1e_position_minus(from->position, f.position);
-    if (!c->now->to_position) {
+    if (!made_up) {
         if (fabs(counts) > rounding_counts)
             c->now->anchor = cm1e_position_plus(c->now->anchor, counts);
         counts = 0.0;
     }
     c->f_velocity = f.velocity;
     c->f_acceleration = f.acceleration;
-    c->rest = (rest_t){.asked = *asked,
+    c->rest = (rest_t){.asked = *asked, .made_up = made_up,
                        .now = {counts / axis->scale, from->velocity - f.velocity, from->acceleration - f.acceleration},
                        .held_back = f.acceleration != 0.0};
     if (is_nothing(axis, &c->rest.now))
         c->rest.now = (cm1e_motion_state_t){0};
+    c->rest.to_place = goes_to_place(c, f.acceleration == 0.0);
     const cm1e_motion_limits_t limits = limits_beside(axis, &f, 0.0, true);
     plan_rest(axis, &limits);
 }
@@ -346,7 +377,7 @@ void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, c
     cm1e_axis_list_links(follow);
     c->now = follow;
     c->end_of_profile = c->stopping = c->due = false;
-    begin_rest(axis, from, asked);
+    begin_rest(axis, from, asked, c->now->to_position);
     axis->activity = ACTIVITY_COUPLED;
     cm1e_axis_guard_renew(axis);
     axis->reached = axis->paused = axis->stands = axis->along_table = false;
@@ -364,7 +395,11 @@ void cm1e_axis_coupled_after_pause(cm1e_axis_t *axis)
         (void)stop_alone(axis, (guard_t){.limit = GUARD_KEPT});
         return;
     }
-    begin_rest(axis, &from, &asked);
+    /* A slave that was in step gets back into its place; on its way there, lost distance is not made up (4.5, note 1).
+     * A motor that went on by itself in CSV is not asked to come back. */
+    const bool was_in_step = !c->rest.on || c->rest.made_up, comes_back = axis->mode == CM1E_MODE_CSP ||
+                                                                          axis->silent_before > 0;
+    begin_rest(axis, &from, &asked, c->now->to_position || (was_in_step && comes_back));
     axis->reached = false;
 }
 

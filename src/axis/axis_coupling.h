@@ -79,6 +79,8 @@ typedef struct follow_kind {
 /** What is not in step yet, in the frame that moves with F; u. */
 typedef struct rest {
     bool on;
+    bool made_up;                  /**< its position is brought to 0 too: distance is made up ... */
+    bool to_place;                 /**< ... and the profile does so, while F's velocity is constant */
     bool held_back;                /**< F needs more of the limits than was thought when it was planned */
     cm1e_motion_limits_t asked;    /**< of the command */
     cm1e_profile_t profile;
@@ -154,8 +156,10 @@ typedef struct coupling {
 /* axis_master.c */
 /** Advances the masters of F, and of what waits to become it, where that has not been done in this cycle. */
 void cm1e_axis_advance_masters(cm1e_axis_t *axis);
-/** The same for a pause (axis_pause.c). */
+/** Lets them begin anew before their slave (axis_pause.c); 0: after silence. */
 void cm1e_axis_resume_masters(cm1e_axis_t *axis, int64_t pause_ns);
+/** After silence, those that follow it. */
+void cm1e_axis_resume_slaves(cm1e_axis_t *axis);
 /** Fills in a master of a `follow` that is not in force yet: origin and sight as of the slave's present set-point.
  *  CM1E_ERROR_AXIS_MASTER, _COUPLING_CYCLE, _MASTER_LOST, CM1E_ERROR_INVALID_ARGUMENT: nothing follows it. */
 cm1e_error_t cm1e_axis_link(cm1e_axis_t *slave, follow_t *follow, const cm1e_coupling_master_t *master);
@@ -182,7 +186,7 @@ follow_t *cm1e_axis_follow_spare(cm1e_axis_t *axis);
 void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked);
 /** What was superimposed for so long has become part of the way; u. */
 void cm1e_axis_coupling_shift(cm1e_axis_t *axis, double way);
-/** After a pause: the axis and its masters begin anew, each by itself from rest, or go on in CSV. */
+/** After a pause or silence: the axis begins anew, in the place that it had beside its masters. */
 void cm1e_axis_coupled_after_pause(cm1e_axis_t *axis);
 /** In a cycle in which F has begun: its set-point, without going on. */
 void cm1e_axis_coupled_begin(cm1e_axis_t *axis);

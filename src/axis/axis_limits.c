@@ -102,6 +102,16 @@ cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
     return CM1E_OK;
 }
 
+static int32_t whole_counts(double counts) { return (int32_t)fmin(ceil(counts), INT32_MAX); }
+
+void cm1e_axis_steps_init(cm1e_axis_t *axis)
+{
+    const double scale = fabs(axis->scale), acceleration = fmax(axis->system.acceleration, axis->system.deceleration);
+    cm1e_drive_command_t *command = &axis->drive.command;
+    command->position_step = whole_counts((axis->system.velocity * scale + axis->backlash.velocity) * axis->cycle_s);
+    command->velocity_step = whole_counts((acceleration * scale + axis->backlash.acceleration) * axis->cycle_s);
+}
+
 /* One dynamic value: 0 is the maximum; above it, cut or refused. */
 static bool choose(double asked, double maximum, bool stopping, double *value)
 {

@@ -21,17 +21,31 @@ void cm1e_axis_advance_masters(cm1e_axis_t *axis)
     advance_masters(axis->awaited);
 }
 
+static void resume(cm1e_axis_t *master, int64_t pause_ns)
+{
+    if (pause_ns > 0)
+        cm1e_axis_after_pause(master, pause_ns);
+    else
+        cm1e_axis_after_silence(master);
+}
+
 static void resume_masters(follow_t *follow, int64_t pause_ns)
 {
     for (int i = 0; follow && i < follow->count; i++)
         if (follow->links[i].master)
-            cm1e_axis_after_pause(follow->links[i].master, pause_ns);
+            resume(follow->links[i].master, pause_ns);
 }
 
 void cm1e_axis_resume_masters(cm1e_axis_t *axis, int64_t pause_ns)
 {
     resume_masters(axis->coupling->now, pause_ns);
     resume_masters(axis->awaited, pause_ns);
+}
+
+void cm1e_axis_resume_slaves(cm1e_axis_t *axis)
+{
+    for (link_t *link = axis->slaves; link; link = link->next)
+        cm1e_axis_after_silence(link->slave);
 }
 
 /* ---- who follows whom -------------------------------------------------------------------------------------------- */

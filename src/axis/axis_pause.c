@@ -1,10 +1,26 @@
 /*
- * A pause: frames were not lost but never sent, because the work of a cycle or a wake-up took whole cycles too long. In
- * CSP the motor stands at its last target by then, in CSV it has gone on with its last velocity. A profile that simply
- * went on would ask it for a step of velocity; so what moves begins anew from there: from rest, or from where the motor
- * must be by now. Stops and ramps of errors end where they stand.
+ * Cycles in which the motor did not take part, or perhaps did not.
+ *
+ * Silence: frames were sent and did not come back, or not with every slave's part. Nobody knows which of them the drive
+ * has heard, so the time of all set-points stands still, and the drive room repeats its last target (CSP). With the first
+ * answer the target that the drive holds is known again, and its actual velocity tells whether the motor has stood
+ * meanwhile: what moves goes on as it was, or begins anew from there with the velocity that is left. Bus-wide silence
+ * stops the time of all axes alike, so that followers stay in step and groups on their path.
+ *
+ * A pause: frames were never sent, because the work of a cycle or a wake-up took whole cycles too long. In CSP the motor
+ * stands at its last target by then, in CSV it has gone on with its last velocity. What moves begins anew from rest, or
+ * from where the motor must be by now. Stops and ramps of errors end where they stand.
  */
 #include "axis/axis_coupling.h"
+
+/* Cycles of silence, in a row or shortly one after the other, after which a motion made of several (a table over time, a
+ * superimposed motion, a group's path) goes on as it was: the motor has hardly slowed down. */
+enum { RIDDEN_OUT_CYCLES = 2 };
+/* Counts/s; resolution of the actual velocity of old firmware, and of one that is the difference of two positions. */
+static const double velocity_noise = 3000.0;
+/* Of the maximum velocity, for each cycle of silence: a motor that has slowed down meanwhile overshoots when it gets back
+ * to its speed. */
+static const double reserve = 0.05;
 
 static cm1e_error_t stop_anew(cm1e_axis_t *axis)
 {
@@ -57,22 +73,11 @@ static cm1e_error_t move_anew(cm1e_axis_t *axis)
     return axis->kind == CM1E_COMMAND_HOMING_STEP ? step_anew(axis) : cm1e_axis_replan_as(axis, &move);
 }
 
-void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
+/* Everything that moves begins at the present set-point with this velocity (u/s). */
+static void begin_anew(cm1e_axis_t *axis, double velocity)
 {
-    const bool goes_on = axis->mode == CM1E_MODE_CSV;
-    if (axis->resumed) /* a follower has asked for that */
-        return;
-    axis->resumed = true;
-    if (axis_follows(axis))
-        cm1e_axis_resume_masters(axis, pause_ns);
-    if (!goes_on)
-        axis->backlash.offset_velocity = 0.0;
-    if (!set_points_move(axis))
-        return;
-    if (goes_on)
-        axis->set = cm1e_position_plus(axis->set, axis->set_velocity * axis->scale * (double)pause_ns * 1e-9);
-    else
-        axis->set_velocity = 0.0;
+    axis->began_anew = true;
+    axis->set_velocity = velocity;
     axis->set_acceleration = 0.0;
     if (axis_led(axis)) {
         cm1e_axis_lead_after_pause(axis);
@@ -89,4 +94,76 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
     if (error)
         cm1e_axis_fail(axis, error, cm1e_axis_units(axis, axis->set),
                        axis->set_velocity > 0.0 ? axis->upper : axis->lower);
+}
+
+void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
+{
+    const bool goes_on = axis->mode == CM1E_MODE_CSV;
+    if (axis->resumed) /* a follower has asked for that */
+        return;
+    axis->resumed = true;
+    if (axis_follows(axis))
+        cm1e_axis_resume_masters(axis, pause_ns);
+    if (!goes_on)
+        axis->backlash.offset_velocity = 0.0;
+    if (!set_points_move(axis))
+        return;
+    if (goes_on)
+        axis->set = cm1e_position_plus(axis->set, axis->set_velocity * axis->scale * (double)pause_ns * 1e-9);
+    begin_anew(axis, goes_on ? axis->set_velocity : 0.0);
+}
+
+/* ---- silence ----------------------------------------------------------------------------------------------------- */
+
+/* u/s; what the motor still has of the set velocity. In CSV it has gone on by itself. */
+static double velocity_left(const cm1e_axis_t *axis)
+{
+    const double set = axis->set_velocity;
+    if (axis->mode == CM1E_MODE_CSV || cm1e_drive_is_virtual(&axis->drive))
+        return set;
+    const double motor = (axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis)) / axis->scale;
+    const double left = set > 0.0 ? fmax(0.0, fmin(motor, set)) : fmin(0.0, fmax(motor, set));
+    const double most = axis->system.velocity * fmax(0.0, 1.0 - reserve * (double)axis->silent_before);
+    const double change = fmax(axis->system.acceleration, axis->system.deceleration) * axis->cycle_s *
+                          (double)(axis->silent_before + 1);
+    const double kept = fabs(set - left) <= change + velocity_noise / fabs(axis->scale) ? set : left;
+    return fmax(-most, fmin(kept, most));
+}
+
+static bool master_began_anew(const cm1e_axis_t *axis)
+{
+    const follow_t *follow = axis->coupling->now;
+    for (int i = 0; i < follow->count; i++)
+        if (follow->links[i].master && follow->links[i].master->began_anew)
+            return true;
+    return false;
+}
+
+/* Made of several: begun anew, a part of it would be lost. */
+static bool is_composite(const cm1e_axis_t *axis)
+{
+    return axis_led(axis) || axis->superimposed.id || axis->along_table;
+}
+
+static void go_on_or_begin_anew(cm1e_axis_t *axis)
+{
+    const bool follows_on = axis_follows(axis) && (axis->coupling->now->by_actual || master_began_anew(axis));
+    if (is_composite(axis) && !follows_on && axis->shaken <= RIDDEN_OUT_CYCLES * CM1E_SHAKEN_BY_SILENCE)
+        return;
+    const double left = axis_led(axis) ? 0.0 : velocity_left(axis);
+    if (left != axis->set_velocity || follows_on)
+        begin_anew(axis, left);
+}
+
+/* Slaves after their masters, and before any of them advances: they have to see the same place. */
+void cm1e_axis_after_silence(cm1e_axis_t *axis)
+{
+    if (axis->resumed || axis->silent_before == 0)
+        return;
+    axis->resumed = true;
+    if (axis_follows(axis))
+        cm1e_axis_resume_masters(axis, 0);
+    if (set_points_move(axis))
+        go_on_or_begin_anew(axis);
+    cm1e_axis_resume_slaves(axis);
 }

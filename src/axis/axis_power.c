@@ -96,6 +96,21 @@ void cm1e_axis_brake_from_actual(cm1e_axis_t *axis)
     axis->brake_until_ns = axis->now_ns + brake_ns;
 }
 
+void cm1e_axis_hold_unheard(cm1e_axis_t *axis)
+{
+    if (axis->mode != CM1E_MODE_CSP || cm1e_drive_is_virtual(&axis->drive) || !set_points_move(axis))
+        return;
+    const double ramp_s = fabs(axis->set_velocity) / axis->emergency.deceleration;
+    axis->brake_until_ns = axis->now_ns + brake_ns + (int64_t)(ramp_s * 1e9);
+    if (axis_follows(axis)) {
+        cm1e_axis_phasing_forget(axis);
+        axis->coupling->stopping = false;
+    }
+    axis->target = axis->set;
+    axis->set_velocity = axis->set_acceleration = 0.0;
+    axis->activity = ACTIVITY_HOLD;
+}
+
 static void power_off(cm1e_axis_t *axis)
 {
     if (axis->state == CM1E_AXIS_DISABLED || axis->state == CM1E_AXIS_ERROR_STOP)

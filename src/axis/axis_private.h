@@ -87,6 +87,9 @@ typedef struct guarding {
     double per_count;        /**< u, signed */
 } guarding_t;
 
+/** A motor needs so many cycles to recover from one in which its target stood. */
+enum { CM1E_SHAKEN_BY_SILENCE = 8 };
+
 struct cm1e_axis {
     /* what every cycle of a motion looks at */
     cm1e_drive_t drive;
@@ -96,6 +99,9 @@ struct cm1e_axis {
     cm1e_command_kind_t kind;       /**< of the active one */
     cm1e_mode_t mode;               /**< of the set-points: CSP, or CSV where the mapping has no target position */
     uint16_t handle;
+    uint16_t shaken;                /**< by silence not long ago: CM1E_SHAKEN_BY_SILENCE for each cycle of it, one less
+                                         with each answer */
+    uint16_t silent, silent_before; /**< cycles in a row without an answer; those that the present one has ended */
     bool reached, positive_before;
     bool paused;                    /**< its end is not that of its command, which waits (MC_SetOverride) */
     bool stands;                    /**< the base has come to its end, only a superimposed motion goes on */
@@ -103,7 +109,8 @@ struct cm1e_axis {
     bool brakes_hard;               /**< the set-point is one of a ramp without limit of jerk */
     bool software_limits;           /**< one of them at least; those in force are ... */
     bool lag_monitoring;
-    bool blind;                     /**< they are not, and the set-point goes on */
+    bool blind;                     /**< the actual position was not fresh, and the set-point goes on */
+    bool frozen;                    /**< no answer to the last frame: set-points stay in this cycle (axis_pause.c) */
     bool power_enable, enable_positive, enable_negative;
     bool energized;                 /**< the axis has taken over the enabled drive */
     bool shutting_down;
@@ -111,7 +118,8 @@ struct cm1e_axis {
     bool stop_held;
     bool advanced;                  /**< its set-point is that of this cycle */
     bool observed;                  /**< somebody follows its actual value, or has; an encoder always is */
-    bool resumed;                   /**< a pause before this cycle has been dealt with */
+    bool resumed;                   /**< a pause or silence before this cycle has been dealt with ... */
+    bool began_anew;                /**< ... by another velocity than it had */
     struct follow *awaited;         /**< F of the first waiting command: it begins at a place of its master (StartSync),
                                          until when what runs goes on; NULL: none does */
     const void *power_owner;
@@ -130,7 +138,6 @@ struct cm1e_axis {
     double emergency_way;           /**< s2/u; times the square of a velocity: that it goes */
     guarding_t guarding;
     double max_lag;                 /**< u */
-    double lag_seen;                /**< counts; amount, when the inputs were fresh last */
     int64_t now_ns;
     int64_t actual_counts;          /**< the same without wrap-around */
     int32_t raw;                    /**< counts of the drive, last seen */
@@ -177,8 +184,8 @@ struct cm1e_axis {
     waiting_homing_t waiting_homing;
     waiting_step_t waiting_steps[STEPS_WAITING];
     tables_t *tables;               /**< NULL: none (cm1e_axis_config_t.table_profiles) */
-    cm1e_error_t refusal;           /**< why the last command was refused, for the text; CM1E_OK: it was not */
     cm1e_axis_command_t refused;    /**< what it asked for */
+    cm1e_error_t refusal;           /**< why the last command was refused, for the text; CM1E_OK: it was not */
     cm1e_command_id_t stop;         /**< whose MC_Stop holds the axis in Stopping */
 
     int64_t free_ns;                /**< since when no torque is asked for */
@@ -304,6 +311,9 @@ bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity);
 /** Whether the motion under way, and a stop from it, would keep these software limits (u). */
 bool cm1e_axis_limits_hold(const cm1e_axis_t *axis, double lower, double upper);
 
+/** What the drive may be given in a cycle: cm1e_drive_command_t. @rt init; after the limits */
+void cm1e_axis_steps_init(cm1e_axis_t *axis);
+
 /* axis_limits.c: when limits are written, and when positions get another meaning */
 void cm1e_axis_apply_limits(cm1e_axis_t *axis);
 
@@ -428,6 +438,9 @@ void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double 
 void cm1e_axis_fail_gently(cm1e_axis_t *axis, cm1e_error_t error, double deceleration);
 /** A ramp of ErrorStop begins anew, from the motor's own position and speed. */
 void cm1e_axis_brake_from_actual(cm1e_axis_t *axis);
+/** The bus is lost. In CSP the set-point stays where it is, under torque for as long as the ramp of an error would take:
+ *  a drive that still hears, and one that does not, both stop there. */
+void cm1e_axis_hold_unheard(cm1e_axis_t *axis);
 void cm1e_axis_power_step(cm1e_axis_t *axis);
 void cm1e_axis_enable_step(cm1e_axis_t *axis);
 void cm1e_axis_reset_step(cm1e_axis_t *axis); /* while a reset is under way */
@@ -467,6 +480,10 @@ void cm1e_axis_guard_renew(cm1e_axis_t *axis);
 /** ErrorStop with CM1E_ERROR_AXIS_COUPLING_LIMIT, which tells what was asked for and allowed. */
 void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t broken);
 void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size);
+
+/* axis_pause.c */
+/** Before the set-point of the first cycle in which a frame has come back again. */
+void cm1e_axis_after_silence(cm1e_axis_t *axis);
 
 /* axis_lead.c */
 static inline bool axis_led(const cm1e_axis_t *axis) { return axis->leader.next != NULL; }

@@ -8,6 +8,7 @@
 #include "device/place.h"
 #include "device/unit.h"
 
+static const int64_t longest_silence_ns = 50000000;
 
 __attribute__((format(printf, 3, 4)))
 static bool bus_wrong(const check_t *check, const char *key, const char *format, ...)
@@ -66,6 +67,11 @@ static bool check_cycle_time(const check_t *check)
     if (check->config->frame_timeout_ns < 0 || check->config->frame_timeout_ns > cycle)
         return bus_wrong(check, "frame_timeout_us", "is %g; expected at most the cycle time, %g",
                          (double)check->config->frame_timeout_ns / 1000, (double)cycle / 1000);
+    if (check->config->lost_cycles_limit * cycle > longest_silence_ns)
+        return bus_wrong(check, "lost_cycles_limit", "is %u; expected 1 ... %u with a cycle of %g us: a bus that is lost "
+                         "is to be noticed within %g ms, before the watchdog of a motor (100 ms) acts",
+                         check->config->lost_cycles_limit, (unsigned)(longest_silence_ns / cycle), (double)cycle / 1000,
+                         (double)longest_silence_ns * 1e-6);
     return true;
 }
 
@@ -84,8 +90,6 @@ static bool check_bus(const check_t *check)
     if (config->virtual_time && !is_simulated(config->interface_name))
         return bus_wrong(check, "virtual_time", "is on for the interface %s; expected it with interface sim only",
                          config->interface_name);
-    if (config->lost_cycles_limit > 1000)
-        return bus_wrong(check, "lost_cycles_limit", "is %u; expected 1 ... 1000", config->lost_cycles_limit);
     if (config->sim_pdo_order != CM1E_PDO_ORDER_UG_4_4 && config->sim_pdo_order != CM1E_PDO_ORDER_UG_7_2)
         return bus_wrong(check, "sim_pdo_order", "is %d; expected one of the enumeration", (int)config->sim_pdo_order);
     if ((unsigned)config->sim_gaps > CM1E_SIM_IO_COUPLER)

@@ -161,6 +161,7 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
         return;
     }
     drive->watch = cm1e_bus_slave_watch(drive->bus, drive->position);
+    drive->answered = bus_ok;
     cm1e_drive_mode_step(drive);
     f->fresh = bus_ok || drive->watch.fresh;
     if (f->fresh)
@@ -285,6 +286,43 @@ static int32_t safe_position(const cm1e_drive_t *drive)
     return drive->target_holds ? drive->target_position : drive->feedback.position;
 }
 
+static int32_t slewed(int32_t from, int32_t to, int32_t step)
+{
+    const int64_t way = (int64_t)to - from;
+    return step == 0 || llabs(way) <= step ? to : from + (way > 0 ? step : -step);
+}
+
+static int64_t way_between(int32_t from, int32_t to) { return (int32_t)((uint32_t)to - (uint32_t)from); }
+
+/* CSP. Without an answer to the last frame the drive may hold its target, or an earlier one. The last target is repeated
+ * then: the next frame that is heard carries the step of one cycle, however many were lost before it. Else the target is
+ * within a step of the last one, or of where the motor is. */
+static int32_t next_position(const cm1e_drive_t *drive)
+{
+    const int32_t wanted = drive->command.target_position, last = drive->target_position;
+    const int32_t step = drive->command.position_step;
+    if (drive->wanted->mode != CM1E_MODE_CSP)
+        return wanted;
+    if (!drive->answered)
+        return last;
+    if (drive->feedback.fresh && llabs(way_between(drive->feedback.position, wanted)) <= step)
+        return wanted;
+    return (int32_t)((uint32_t)last + (uint32_t)slewed(0, (int32_t)way_between(last, wanted), step));
+}
+
+/* CSV. Neither a position loop that has seen nothing for a while, nor the frames lost meanwhile, make a step of the
+ * velocity. */
+static int32_t next_velocity(cm1e_drive_t *drive)
+{
+    const int32_t wanted = drive->command.target_velocity;
+    if (drive->wanted->mode != CM1E_MODE_CSV)
+        return wanted;
+    drive->slewing |= !drive->answered;
+    const int32_t next = drive->slewing ? slewed(drive->target_velocity, wanted, drive->command.velocity_step) : wanted;
+    drive->slewing = !drive->answered || next != wanted;
+    return next;
+}
+
 void cm1e_drive_write(cm1e_drive_t *drive)
 {
     const cm1e_drive_command_t *command = &drive->command;
@@ -315,14 +353,14 @@ void cm1e_drive_write(cm1e_drive_t *drive)
         drive->set_point_bit = false;
         drive->set_point = drive->feedback.position;
     }
-    /* Targets that ran on while nothing arrived would make the drive jump when it hears again. */
     const bool follow = pass && !drive->fault.slave_deaf;
+    const bool held_before = drive->target_holds;
     drive->target_holds |= follow && drive->holds;
     int32_t position = safe_position(drive);
     if (follow && drive->holds && in_range(drive, command->target_position))
-        position = command->target_position;
+        position = held_before ? next_position(drive) : command->target_position;
     else if (follow && drive->holds)
         cm1e_drive_fail(drive, CM1E_ERROR_AXIS_POSITION_RANGE); /* the last target holds until the torque goes */
     const uint16_t word = controlword(drive, pass) | (drive->marked ? signals(drive) : 0);
-    cm1e_drive_encode(drive, word, position, follow ? command->target_velocity : 0);
+    cm1e_drive_encode(drive, word, position, follow ? next_velocity(drive) : 0);
 }

@@ -8,9 +8,14 @@
  * position and target velocity = 0; a fault reset is one short edge; nothing is re-enabled by itself after a fault.
  *
  * A latched fault takes the torque away until a reset succeeded, with one exception: after CM1E_ERROR_BUS_LOST and
- * CM1E_ERROR_BUS_WORKING_COUNTER the targets still pass while `enable` stays TRUE, so that the caller can ramp down a
- * drive that may still listen; when it is seen to take no part in the cycle, the last target holds. A reset that
- * succeeds while `enable` is TRUE enables again: who does not want that takes `enable` away first.
+ * CM1E_ERROR_BUS_WORKING_COUNTER the drive stays enabled while `enable` stays TRUE, so that the caller can stop a drive
+ * that may still listen. A reset that succeeds while `enable` is TRUE enables again: who does not want that takes
+ * `enable` away first.
+ *
+ * What the drive holds is known as long as every frame comes back with every slave's part in it. After a cycle without
+ * that, the drive may hold the target of any frame sent since then. A target position (CSP) is therefore repeated
+ * until a frame has come back: whichever frame is heard next, it carries at most the step that was planned for one cycle.
+ * A target velocity (CSV) may still be reduced.
  */
 #ifndef CM1E_DRIVE_DRIVE_H
 #define CM1E_DRIVE_DRIVE_H
@@ -32,6 +37,9 @@ typedef struct cm1e_drive_command {
                                          cm1e_bridge_mode_t */
     int32_t target_position;        /**< counts; CSP, PP. Used only while `enabled` is TRUE */
     int32_t target_velocity;        /**< counts/s; CSV, PV */
+    int32_t position_step;          /**< counts; CSP: the target moves by no more in a cycle. 0: no limit */
+    int32_t velocity_step;          /**< counts/s; CSV: after lost frames the target changes by no more in a cycle until
+                                         it is the commanded one again. 0: no limit */
     bool homing_start;              /**< HM: rising edge starts, FALSE ends (controlword bit 4) */
     bool halt;                      /**< PP, PV, HM: controlword bit 8; behind a bridge there is none */
     uint16_t digital_outputs;       /**< 0x60FE; behind a bridge by SDO, bit 0: output 1 */
@@ -100,6 +108,7 @@ typedef struct cm1e_drive {
     uint32_t profile_velocity, profile_acceleration; /**< what 0x6081 and 0x6083 carry where they are mapped */
     int64_t read_ns;
     int32_t target_position;        /**< last one written */
+    int32_t target_velocity;        /**< last one written, counts/s */
     int32_t position_least, position_most; /**< what may be a target */
     void (*step)(struct cm1e_drive *drive); /**< of the kind; NULL: nothing */
     int32_t set_point;              /**< PP: the target position that bit 4 announced */
@@ -114,6 +123,8 @@ typedef struct cm1e_drive {
     bool torque;                    /**< the last write asked for torque */
     bool was_enabled;               /**< Operation enabled was seen since torque is asked for */
     bool mode_confirmed;
+    bool answered;                  /**< the last frame came back, with every slave's part in it */
+    bool slewing;                   /**< CSV: the target velocity is not yet the commanded one after lost frames */
     bool set_point_bit;             /**< PP: controlword bit 4 */
     bool reset_before;
     uint8_t reset_phase, mode_phase;
@@ -155,6 +166,8 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns);
 void cm1e_drive_write(cm1e_drive_t *drive);
 /** Latches a fault that the caller saw (the bus is lost ...); an earlier one stays. @rt cycle */
 void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error);
+/** CSV: the target velocity gets back to the commanded one by command.velocity_step a cycle. @rt cycle */
+static inline void cm1e_drive_slew(cm1e_drive_t *drive) { drive->slewing = true; }
 /** TRUE while a commanded reset is under way. @rt cycle */
 bool cm1e_drive_resetting(const cm1e_drive_t *drive);
 /** The slave answers and is in Operational, as far as the supervision has seen. @rt cycle */

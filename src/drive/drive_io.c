@@ -230,4 +230,5 @@ void cm1e_drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t positi
     put_u32(out, drive->out_profile_velocity, drive->profile_velocity);
     put_u32(out, drive->out_profile_acceleration, drive->profile_acceleration);
     drive->target_position = position;
+    drive->target_velocity = velocity;
 }

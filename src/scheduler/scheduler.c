@@ -15,6 +15,7 @@
 #include "scheduler/tasks.h"
 #include "scheduler/trace.h"
 
+#define RIDDEN_OUT_CYCLES 2
 #define DEFAULT_STOP_TIMEOUT_NS INT64_C(10000000000)
 
 struct cm1e_scheduler {
@@ -57,19 +58,25 @@ static void shut_down_axes(cm1e_scheduler_t *s)
         s->shut_down &= cm1e_axis_shut_down(s->axes[i]);
 }
 
-/** So many lost frames would be an error. Less is ridden out: the motor hardly feels it. */
-static bool is_pause(const cm1e_scheduler_t *s, int64_t silence_ns)
+/** Cycles in which no frame was sent. */
+static int64_t missed_cycles(int64_t silence_ns, int64_t cycle_ns) { return (2 * silence_ns + cycle_ns) / (2 * cycle_ns); }
+
+/** After a few missed cycles the motor has hardly slowed down; after more it stands (CSP). */
+static void after_missed(cm1e_axis_t *axis, int64_t missed, int64_t silence_ns)
 {
-    const int64_t limit = cm1e_bus_configuration(s->bus)->lost_cycles_limit;
-    return 2 * silence_ns > (2 * limit + 1) * s->cycle_time_ns;
+    if (missed > RIDDEN_OUT_CYCLES)
+        cm1e_axis_after_pause(axis, silence_ns);
+    else
+        cm1e_axis_hold_cycle(axis, missed);
 }
 
 static void set_outputs(cm1e_scheduler_t *s)
 {
     const int64_t now_ns = cm1e_clock_now(s->clock), silence_ns = now_ns - s->sent_ns - s->cycle_time_ns;
+    const int64_t missed = missed_cycles(silence_ns, s->cycle_time_ns);
     s->sent_ns = now_ns;
-    for (uint32_t i = 0; i < s->axis_count && is_pause(s, silence_ns); i++)
-        cm1e_axis_after_pause(s->axes[i], silence_ns);
+    for (uint32_t i = 0; i < s->axis_count && missed > 0; i++)
+        after_missed(s->axes[i], missed, silence_ns);
     for (uint32_t i = 0; i < s->axis_count; i++)
         cm1e_axis_outputs(s->axes[i]);
 }

@@ -467,6 +467,22 @@ static double jerk_to_stay_below(const cm1e_motion_limits_t *most)
     MUST(condition, "%s, command kind %d: " format, cm1e_axis_state_name(judged.axis->state), (int)judged.axis->kind,  \
          __VA_ARGS__)
 
+/** While no answer comes the time of the set-points stands still; with the first one the motor goes on no faster than it
+ *  did. TRUE: nothing else is to be said of this cycle. */
+static inline bool watch_silence(void)
+{
+    const cm1e_axis_t *axis = judged.axis;
+    const double way = cm1e_position_minus(axis->set, watched.set) / axis->scale;
+    const double v = axis->set_velocity, gain = fmax(axis->system.acceleration, axis->system.deceleration) *
+                                                (double)judged.cycle_ns * 1e-9;
+    if (axis->frozen)
+        KEEPS(way == 0.0, "the set position moves by %.9g while no frame comes back", way);
+    else if (axis->began_anew)
+        KEEPS((v * watched.velocity >= 0.0 || fabs(v) <= gain) && fabs(v) <= fabs(watched.velocity) + gain,
+              "after silence %.9g u/s, before %.9g", v, watched.velocity);
+    return axis->frozen || axis->began_anew;
+}
+
 static inline void watch_set_point(void)
 {
     const cm1e_axis_t *axis = judged.axis;
@@ -482,7 +498,7 @@ static inline void watch_set_point(void)
                          watched.rough;
     const bool hard = is_hard || watched.hard;
     const double largest = fmax(most->acceleration, most->deceleration), slack = 1.0 + 1e-6;
-    if (ours && watched.ours && !hard && !watched.lost) {
+    if (ours && watched.ours && !hard && !watched.lost && !watch_silence()) {
         const double way = cm1e_position_minus(axis->set, watched.set) / axis->scale;
         const double jerk = fabs(a - watched.acceleration) / t, gain = fabs(v - watched.velocity);
         const double rounding = rounding_of(axis, JUDGED_MOST) + 4e-16 * fmax(far, watched.far);

@@ -48,6 +48,7 @@ typedef struct witness {
     int32_t target;
     double step;
     double velocity;                   /**< counts/s that 0x60FF asks for */
+    bool silent;                       /**< no answer since `step`: the drive may hold this target or an earlier one */
     double direction;                  /**< the last step that was one */
     bool turning;                      /**< it has changed not long ago */
     int eased_cycles;
@@ -68,6 +69,7 @@ struct bench {
     /** What happens to a process data frame; NULL: nothing. Called before the witness looks at what is sent. */
     cm1e_tap_verdict_t (*fault)(bench_t *bench, cm1e_tap_frame_t *frame);
     bool paused;                       /**< the frame that comes now is the first after a pause of the master */
+    bool answered;                     /**< the last frame came back in time, with every slave's part in it */
     bool frames_late;                  /**< frames are delayed: what the drive showed may be one frame older */
     void (*program)(bench_t *bench);
     void *context;
@@ -249,6 +251,7 @@ static void witness_received(bench_t *bench, const cm1e_tap_frame_t *frame)
         word_at(data, bench->image_bytes) != SLAVE_WORKING_COUNTER * bench->slaves ||
         memcmp(data, bench->last_outputs, (size_t)bench->output_bytes) != 0)
         return;
+    bench->answered = true;
     for (uint32_t n = 0; n < count; n++) {
         witness_t *w = &bench->witness[n];
         w->statusword = word_at(data, w->in_statusword);
@@ -273,11 +276,13 @@ static bool began_anew(const bench_t *bench, uint32_t n, const witness_t *w, dou
 {
     cm1e_axis_info_t info = {0};
     cm1e_axis_read(bench->axis[n], &info);
-    const int32_t off = (int32_t)((uint32_t)w->target - (uint32_t)w->position);
+    const double off = (double)(int32_t)((uint32_t)w->target - (uint32_t)w->position);
     const bool moving = info.state == CM1E_AXIS_DISCRETE_MOTION || info.state == CM1E_AXIS_CONTINUOUS_MOTION ||
                         info.state == CM1E_AXIS_SYNCHRONIZED_MOTION;
     const double shaft = fabs((double)(int32_t)((uint32_t)w->position - (uint32_t)w->position_before));
-    return !moving && (step == 0 || fabs((double)off) <= fmax(w->max_step, 3 * shaft) + 1.0);
+    if (!moving && step * (off - step) < 0 && fabs(off) <= fabs(off - step) && fabs(step) <= w->max_step + 1.0)
+        return true; /* on the way back there, no faster than the axis may go */
+    return !moving && (step == 0 || fabs(off) <= fmax(w->max_step, 3 * shaft) + 1.0);
 }
 
 /** Set-points may neither be faster nor change faster than the axis's limits say; a target is rounded to counts. */
@@ -302,6 +307,22 @@ static void judge_step(const bench_t *bench, uint32_t n, witness_t *w, double st
     MUST(bench, smooth, "axis %u: steps of %.0f, then %.0f counts; limits: %.1f more, %.1f less", n, w->step, step,
          w->max_gain, w->max_loss);
     w->step = step;
+}
+
+/** While nobody knows which target the drive holds, it stays. With the first answer the motor goes on no faster than it
+ *  did before, if it has not slowed down meanwhile. TRUE: that is all there is to say about this step. */
+static bool judge_silence(const bench_t *bench, uint32_t n, witness_t *w, double step)
+{
+    const bool was_silent = w->silent;
+    w->silent = !bench->answered;
+    if (w->silent) {
+        MUST(bench, step == 0, "axis %u: the target moves by %.0f counts while no frame comes back", n, step);
+        return true;
+    }
+    if (!was_silent || step * w->step < 0 || fabs(step) > fabs(w->step) + w->max_gain + 1.0)
+        return false;
+    w->step = step;
+    return true;
 }
 
 /** Without an error a motor is brought to rest first: nobody takes its torque away at speed, if it follows. */
@@ -347,8 +368,10 @@ static void witness_sent_axis(bench_t *bench, uint32_t n, const uint8_t *data)
     if (w->holding && (word_at(data, w->out_controlword) & 0x08) == 0)
         judge_end_of_torque(bench, n, w);
     const int32_t target_before = w->target;
-    if (bench->paused)
-        w->step = 0; /* the motor stands at that target */
+    if (bench->paused) { /* the motor stands at that target */
+        w->step = 0;
+        bench->answered = true;
+    }
     const bool enabling_before = w->enabling, holding_before = w->holding;
     w->controlword = word_at(data, w->out_controlword);
     w->enabling = (w->controlword & 0x08) != 0;
@@ -360,7 +383,7 @@ static void witness_sent_axis(bench_t *bench, uint32_t n, const uint8_t *data)
     const double most = w->max_step * 1e9 / (double)bench->config.cycle_time_ns;
     MUST(bench, fabs(w->velocity) <= most + w->velocity_unit, "axis %u: target velocity %.0f, limit %.0f", n,
          w->velocity, most);
-    if (!w->enabling)
+    if (!w->enabling || bench->config.axes[n].motion == CM1E_MOTION_DRIVE)
         return;
     if (!enabling_before)
         w->enablings++;
@@ -374,10 +397,12 @@ static void witness_sent_axis(bench_t *bench, uint32_t n, const uint8_t *data)
         MUST(bench, w->velocity == 0, "axis %u: controlword 0x%04X, statusword 0x%04X: target velocity %.0f", n,
              w->controlword, w->statusword, w->velocity);
         w->step = 0;
+        w->silent = false;
         return;
     }
-    if (w->out_position >= 0)
-        judge_step(bench, n, w, (double)(int32_t)((uint32_t)w->target - (uint32_t)target_before));
+    const double step = (double)(int32_t)((uint32_t)w->target - (uint32_t)target_before);
+    if (w->out_position >= 0 && !judge_silence(bench, n, w, step))
+        judge_step(bench, n, w, step);
 }
 
 static cm1e_tap_verdict_t bench_tap(void *context, cm1e_tap_frame_t *frame)
@@ -396,7 +421,7 @@ static cm1e_tap_verdict_t bench_tap(void *context, cm1e_tap_frame_t *frame)
     memcpy(bench->last_outputs, frame->bytes + LRW_DATA, (size_t)bench->output_bytes);
     for (uint32_t n = 0; n < bench->config.axis_count; n++)
         witness_sent_axis(bench, n, frame->bytes + LRW_DATA);
-    bench->paused = false;
+    bench->answered = bench->paused = false;
     return verdict;
 }
 
@@ -499,6 +524,18 @@ __attribute__((format(printf, 2, 3))) static inline void bench_console(bench_t *
     va_end(arguments);
     if (cm1e_bus_simulate(bench->bus, line, answer, sizeof answer) != CM1E_OK)
         bench_fail(bench, "console: %s: %s", line, answer);
+}
+
+enum { BENCH_RIDDEN_OUT = 2 }; /**< cycles without a frame, after which a motion goes on with what the motor has left */
+
+/** The master sends nothing for so many nanoseconds beyond its cycle: call it in the program of a cycle. */
+static inline void bench_miss(bench_t *bench, int64_t silence_ns)
+{
+    cm1e_clock_t *clock = cm1e_bus_clock(bench->bus);
+    cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + silence_ns);
+    const bool noticed = 2 * silence_ns >= bench->config.cycle_time_ns;
+    bench->paused = 2 * silence_ns >= (2 * BENCH_RIDDEN_OUT + 1) * bench->config.cycle_time_ns;
+    bench->answered = bench->answered && !noticed; /* the target stays until the next answer */
 }
 
 /** Runs until the program stops it. Then no drive is under torque, and every slave that can hear is in Init. */

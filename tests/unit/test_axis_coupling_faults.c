@@ -290,6 +290,8 @@ static void judge_ratio(void)
 {
     const cm1e_axis_t *master = axes_axis(MASTER), *slave = axes_axis(SLAVE);
     const bool follows = run.kind == A_GEAR && slave->activity == ACTIVITY_COUPLED;
+    if (slave->frozen) /* its target stays, whatever has become of its master */
+        return;
     if (follows && !run.known && axes_status(SLAVE, run.slave).reached) {
         run.known = true;
         run.master_at = master->set;

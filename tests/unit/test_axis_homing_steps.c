@@ -983,7 +983,7 @@ static void test_missing_inputs_widen_the_error_and_nothing_else(void)
         begin_at(-20000);
         step = (cm1e_homing_step_t){.mode = mcRisingEdge};
         const cm1e_command_id_t id = start(1.0, 0.0);
-        for (int i = 0; i < 5000 && bench_state_of(id) == CM1E_COMMAND_ACTIVE; i++) {
+        for (int i = 0; i < 15000 && bench_state_of(id) == CM1E_COMMAND_ACTIVE; i++) { /* time stands meanwhile */
             received = i % 3 < gap ? CM1E_ERROR_BUS_LOST : CM1E_OK;
             bench_cycles(1);
         }

@@ -222,16 +222,20 @@ static void test_a_fault_ends_it(void)
     TEST_ASSERT_EQUAL_UINT(1, lead.lost);
 }
 
-static void test_a_bus_that_fails_is_braked_by_the_axis_itself(void)
+static void test_a_bus_that_fails_holds_the_last_target(void)
 {
     led_in_motion();
+    const int32_t target = (int32_t)fake_output(&bus, OBJ_607A_TARGET_POSITION, 0);
     received = health = CM1E_ERROR_BUS_WORKING_COUNTER;
     bench_cycles(1);
     received = health = CM1E_OK;
     TEST_ASSERT_EQUAL_UINT(1, lead.lost);
+    TEST_ASSERT_EQUAL_INT32(target, bus.target_position);
+    bench_forget_steps();
     bench_cycles(300);
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
-    TEST_ASSERT_LESS_OR_EQUAL_INT64(7, worst_change);
+    TEST_ASSERT_EQUAL_INT64(0, worst_step);
+    TEST_ASSERT_EQUAL_INT32(target, bus.position);
 }
 
 static void test_lag_ends_it(void)
@@ -432,7 +436,7 @@ int main(void)
     RUN_TEST(test_stop_takes_the_axis_away_and_ramps_down);
     RUN_TEST(test_power_off_and_shut_down_ramp_down_before_the_torque_goes);
     RUN_TEST(test_a_fault_ends_it);
-    RUN_TEST(test_a_bus_that_fails_is_braked_by_the_axis_itself);
+    RUN_TEST(test_a_bus_that_fails_holds_the_last_target);
     RUN_TEST(test_lag_ends_it);
     RUN_TEST(test_a_leader_without_set_points_stops_the_axis);
     RUN_TEST(test_let_go_in_motion_it_ramps_down);

@@ -162,6 +162,7 @@ static void test_turning_for_ever_passes_the_range_of_the_device_many_times(void
     axis->profile_next_s += 86400.0 * 30;
     axis->set.counts += counts;
     axis->actual_counts += counts;
+    axis->drive.target_position = (int32_t)((uint32_t)axis->drive.target_position + (uint32_t)(uint64_t)counts);
     axis->raw = bus.position = (int32_t)((uint32_t)bus.position + (uint32_t)(uint64_t)counts);
     const cm1e_image_slot_t target = fake_find(&bus.rx, OBJ_607A_TARGET_POSITION);
     cm1e_put_u32(bus.outputs + target.offset, (uint32_t)(uint64_t)axis->set.counts);
@@ -604,37 +605,77 @@ static void test_lag_in_the_ramp_to_disabled_is_an_error_whenever_power_comes_ag
 
 /* ---- the bus goes ------------------------------------------------------------------------------------------------ */
 
-static void test_bus_trouble_while_moving_ramps_down_blindly_then_disables(void)
+/** In the cycle the axis is in ErrorStop, and a while later without torque; with the bus back nothing moves by itself. */
+static void lose_the_bus(cm1e_error_t error, bool back_early, cm1e_command_id_t id)
+{
+    received = error;
+    bench_cycles(2); /* two lost frames are nothing */
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_CONTINUOUS_MOTION, bench_info().state);
+    health = error;
+    bench_cycles(1);
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
+    TEST_ASSERT_EQUAL_INT(error, bench_info().error);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, bench_state_of(id));
+    bench_cycles(50);
+    TEST_ASSERT_EQUAL_INT(OPERATION_ENABLED, bus.state); /* for the motor to stop by its torque */
+    if (back_early)
+        health = received = CM1E_OK;
+    bench_cycles(300);
+    TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
+    health = received = CM1E_OK;
+    bench_cycles(100); /* nothing by itself */
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
+    TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
+    cm1e_axis_reset(axis);
+    bench_cycles(50);
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+}
+
+static void test_bus_trouble_while_moving_holds_the_target_then_disables(void)
 {
     static const cm1e_error_t errors[] = {CM1E_ERROR_BUS_LOST, CM1E_ERROR_BUS_WORKING_COUNTER};
     for (int e = 0; e < 2; e++)
-        for (int back = 0; back < 2; back++) { /* the bus comes back in the middle of the ramp */
+        for (int back = 0; back < 2; back++) {
             bench_start();
             bench_enable();
             const cm1e_command_id_t id = bench_move_velocity(10.0);
             bench_cycles(500);
-            received = errors[e];
-            bench_cycles(2); /* two lost frames are nothing */
-            TEST_ASSERT_EQUAL_INT(CM1E_AXIS_CONTINUOUS_MOTION, bench_info().state);
-            health = errors[e];
-            bench_cycles(1);
-            TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
-            TEST_ASSERT_EQUAL_INT(errors[e], bench_info().error);
-            TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ERROR, bench_state_of(id));
-            bench_cycles(50);
-            if (back)
-                health = received = CM1E_OK;
-            bench_cycles(300);
-            TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
-            TEST_ASSERT_LESS_OR_EQUAL_INT64(7, worst_change);
-            health = received = CM1E_OK;
-            bench_cycles(100); /* nothing by itself */
-            TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
-            TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
-            cm1e_axis_reset(axis);
-            bench_cycles(50);
-            TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+            const int32_t target = (int32_t)fake_output(&bus, OBJ_607A_TARGET_POSITION, 0);
+            bench_forget_steps();
+            lose_the_bus(errors[e], back, id);
+            TEST_ASSERT_EQUAL_INT64(0, worst_step);
+            TEST_ASSERT_EQUAL_INT32(target, bus.position);
         }
+}
+
+static double csv_shaft;
+static int32_t csv_worst_change, csv_velocity_before;
+
+/* The fake drive's shaft turns by the target velocity. */
+static void turn(cm1e_bus_t *motor)
+{
+    const int32_t change = motor->target_velocity_raw - csv_velocity_before;
+    csv_worst_change = change > csv_worst_change ? change : -change > csv_worst_change ? -change : csv_worst_change;
+    csv_velocity_before = motor->velocity_raw = motor->target_velocity_raw;
+    csv_shaft += motor->target_velocity_raw * 1e-3;
+    motor->position = (int32_t)lround(csv_shaft);
+}
+
+static void test_bus_trouble_while_moving_by_velocity_ramps_down_blindly(void)
+{
+    for (int back = 0; back < 2; back++) {
+        fake_bus_init(&bus, CM1E_MAPPING_CSV, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        bus.mode = bus.sdo_mode = CM1E_MODE_CSV;
+        bus.world = turn;
+        csv_shaft = csv_worst_change = csv_velocity_before = 0;
+        bench_create();
+        bench_enable();
+        const cm1e_command_id_t id = bench_move_velocity(10.0);
+        bench_cycles(500);
+        TEST_ASSERT_INT32_WITHIN(1000, 500000, bus.target_velocity_raw);
+        lose_the_bus(CM1E_ERROR_BUS_LOST, back, id);
+        TEST_ASSERT_LESS_OR_EQUAL_INT32(5200, csv_worst_change); /* 5,000,000 counts/s2, and the position loop */
+    }
 }
 
 static void test_bus_trouble_while_disabled_is_no_error_until_enable(void)
@@ -810,7 +851,8 @@ int main(void)
     RUN_TEST(test_a_direction_that_a_motion_does_not_need_may_be_disabled);
     RUN_TEST(test_a_motor_that_does_not_follow_ends_in_error_stop);
     RUN_TEST(test_lag_in_the_ramp_to_disabled_is_an_error_whenever_power_comes_again);
-    RUN_TEST(test_bus_trouble_while_moving_ramps_down_blindly_then_disables);
+    RUN_TEST(test_bus_trouble_while_moving_holds_the_target_then_disables);
+    RUN_TEST(test_bus_trouble_while_moving_by_velocity_ramps_down_blindly);
     RUN_TEST(test_bus_trouble_while_disabled_is_no_error_until_enable);
     RUN_TEST(test_a_slave_that_was_away_is_no_longer_homed);
     RUN_TEST(test_csv_mapping_moves_to_positions_with_a_loop_of_ours);

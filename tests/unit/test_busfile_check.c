@@ -127,8 +127,15 @@ static void test_enumerations_out_of_range_are_refused(void)
     config.axes[0].address_kind = (cm1e_address_kind_t)-1;
     expect_wrong("position");
     setUp();
-    config.lost_cycles_limit = 1001;
-    expect_wrong("lost_cycles_limit");
+    config.lost_cycles_limit = 51;
+    expect_wrong("expected 1 ... 50");
+    config.cycle_time_ns = 200000;
+    expect_good();
+    config.lost_cycles_limit = 251;
+    expect_wrong("expected 1 ... 250");
+    config.cycle_time_ns = 0;
+    config.lost_cycles_limit = 50;
+    expect_good();
 }
 
 static void test_addresses_are_in_range_and_single(void)

@@ -229,7 +229,7 @@ static void test_unset_fields_are_zero_after_an_earlier_load(void)
 
 static void test_values_at_the_bounds_are_accepted(void)
 {
-    load("bus: {cycle_time_us: 200, frame_timeout_us: 200, lost_cycles_limit: 1000}\n"
+    load("bus: {cycle_time_us: 200, frame_timeout_us: 200, lost_cycles_limit: 250}\n"
          "axes:\n"
          "- position: 128\n"
          "  name: 1234567890123456789012345678901\n" /* 31 bytes */

@@ -252,15 +252,16 @@ static void test_slave_lost_or_out_of_operational(void)
         }
 }
 
-static void test_bus_lost_lets_the_caller_ramp_then_disables(void)
+static void test_bus_lost_holds_the_target_under_torque_then_disables(void)
 {
     enable();
+    const int32_t held = (int32_t)fake_output(&bus, 0x607A, 0);
     bus_ok = false;
     cm1e_drive_fail(&drive, CM1E_ERROR_BUS_LOST);
     drive.command.target_position += 100;
     cycle();
     TEST_ASSERT_EQUAL_HEX16(0x000F, fake_output(&bus, 0x6040, 0));
-    TEST_ASSERT_EQUAL_INT32(drive.command.target_position, fake_output(&bus, 0x607A, 0));
+    TEST_ASSERT_EQUAL_INT32(held, fake_output(&bus, 0x607A, 0));
     drive.command.enable = false;
     cycle();
     TEST_ASSERT_EQUAL_HEX16(0x0006, fake_output(&bus, 0x6040, 0));
@@ -468,7 +469,7 @@ int main(void)
     RUN_TEST(test_mode_lost);
     RUN_TEST(test_mode_timeout_while_enabled_and_while_enabling);
     RUN_TEST(test_slave_lost_or_out_of_operational);
-    RUN_TEST(test_bus_lost_lets_the_caller_ramp_then_disables);
+    RUN_TEST(test_bus_lost_holds_the_target_under_torque_then_disables);
     RUN_TEST(test_reset_is_one_bounded_edge);
     RUN_TEST(test_reset_survives_a_lost_frame_at_every_cycle);
     RUN_TEST(test_reset_of_a_restarting_device_waits_for_it);

@@ -168,18 +168,30 @@ static void test_several_axes_fail_together(void)
     }
 }
 
-static void test_a_bus_that_is_lost_is_braked_by_every_axis(void)
+/* From a path of one direction all stop at one point of it, whether their drives have heard the last frames or not. */
+static void test_a_bus_that_is_lost_holds_every_axis_on_the_path(void)
 {
-    group_begin(3);
-    group_line(3.0, 1.0, 3.0, mcAborting);
-    axes_cycles(400);
-    axes_bench.received = axes_bench.health = CM1E_ERROR_BUS_WORKING_COUNTER;
-    axes_cycles(1);
-    axes_bench.received = axes_bench.health = CM1E_OK;
-    axes_cycles(500);
-    group_must_be(CM1E_GROUP_ERROR_STOP);
-    for (int n = 0; n < 3; n++)
-        axes_must_be(n, CM1E_AXIS_ERROR_STOP);
+    for (int cycle = 1; cycle < 900; cycle += 7) {
+        group_begin(3);
+        group_line(3.0, 1.0, 1.5, mcAborting);
+        axes_cycles(cycle);
+        double at[3];
+        for (int n = 0; n < 3; n++)
+            at[n] = axes_info(n).set_position;
+        axes_bench.received = CM1E_ERROR_BUS_LOST;
+        axes_cycles(2);
+        axes_bench.health = CM1E_ERROR_BUS_LOST;
+        axes_cycles(1);
+        for (int n = 0; n < 3; n++)
+            axes_must_be(n, CM1E_AXIS_ERROR_STOP);
+        axes_bench.received = axes_bench.health = CM1E_OK;
+        axes_cycles(500);
+        group_must_be(CM1E_GROUP_ERROR_STOP);
+        for (int n = 0; n < 3; n++) {
+            axes_must_be(n, CM1E_AXIS_ERROR_STOP);
+            TEST_ASSERT_DOUBLE_WITHIN(1.0 / 50000, at[n], axes_info(n).actual_position);
+        }
+    }
 }
 
 static void test_the_end_of_a_run_shuts_all_axes_down(void)
@@ -249,7 +261,7 @@ int main(void)
     RUN_TEST(test_a_fault_while_it_comes_to_rest);
     RUN_TEST(test_a_fault_over_a_corner);
     RUN_TEST(test_several_axes_fail_together);
-    RUN_TEST(test_a_bus_that_is_lost_is_braked_by_every_axis);
+    RUN_TEST(test_a_bus_that_is_lost_holds_every_axis_on_the_path);
     RUN_TEST(test_the_end_of_a_run_shuts_all_axes_down);
     RUN_TEST(test_an_axis_that_is_destroyed_on_the_way);
     RUN_TEST(test_a_limit_that_is_lowered_on_the_way_stops_it);
