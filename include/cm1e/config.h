@@ -174,8 +174,7 @@ typedef struct cm1e_bus_config {
     char second_interface[64];       /**< second network interface of a redundant ring; "": none */
     int64_t cycle_time_ns;           /**< 200,000, 250,000, 500,000 or 1,000,000; 0: 1,000,000 */
     int64_t frame_timeout_ns;        /**< wait for a lost frame in the cycle; 0: a quarter of the cycle time */
-    uint32_t lost_cycles_limit;      /**< cycles in a row without valid inputs before the axes are in ErrorStop, 50 ms at
-                                          most; 0: 3 */
+    uint32_t lost_cycles_limit;      /**< bad cycles in a row that put the axes in ErrorStop, at most 50 ms; 0: 3 */
     char pcap_file[256];             /**< every frame is written there, by the cycle too: for tests, not real time; "":
                                           none */
     bool virtual_time;               /**< simulated segment only: time passes only inside the cycle and in waits */

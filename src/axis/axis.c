@@ -94,7 +94,10 @@ static void watch_lag(cm1e_axis_t *axis)
         if (!axis->lag_monitoring)
             return;
         cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, lag / axis->scale, axis->max_lag);
-        cm1e_axis_brake_from_actual(axis);
+        if (!cm1e_drive_contradicts_itself(&axis->drive)) /* else it may have followed all the same: the ramp goes on */
+            cm1e_axis_brake_from_actual(axis);
+    } else if (lost && cm1e_drive_contradicts_itself(&axis->drive)) {
+        return;
     } else if (lost) {
         cm1e_axis_become_free(axis); /* a last ramp that the motor does not follow either */
     }

@@ -143,6 +143,7 @@ struct cm1e_axis {
     int32_t raw;                    /**< counts of the drive, last seen */
     cm1e_command_state_t reset_state;
     uint32_t probes_armed, probe_count;
+    cm1e_command_id_t last_id;      /**< of the last command that was taken */
     cm1e_command_id_t kept;         /**< a command that halts unless it is renewed; 0: none */
     backlash_t backlash;
     in_position_t in_position;
@@ -178,7 +179,6 @@ struct cm1e_axis {
     override_t override, override_refused; /**< the latter for the text; one that is good: none was */
 
     command_record_t records[COMMANDS_REMEMBERED];
-    cm1e_command_id_t last_id;
     move_t move;                    /**< the active one, unless it is a homing */
     buffer_t waiting;
     waiting_homing_t waiting_homing;

@@ -66,6 +66,7 @@ cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis
     drive->feedback.state = CM1E_FSA_UNKNOWN;
     drive->velocity_unit = 1;
     drive->velocity_believed = (int64_t)(2.0 * cm1e_unit_peak_velocity(drive->config));
+    drive->velocity_possible = (int64_t)(1.25 * cm1e_unit_peak_velocity(drive->config));
     drive->step = drive->kind->step;
     drive->position_least = INT32_MIN;
     drive->position_most = INT32_MAX;
@@ -148,6 +149,9 @@ static void latch_faults(cm1e_drive_t *drive)
         error = CM1E_ERROR_BUS_STATE;
     if (!error && drive->feedback.online)
         error = cause_in_inputs(drive);
+    if (!error && drive->torque && drive->positions_rejected > 0 &&
+        drive->positions_rejected >= cm1e_bus_configuration(drive->bus)->lost_cycles_limit)
+        error = CM1E_ERROR_DRIVE_POSITION;
     if (error)
         cm1e_drive_fail(drive, error);
 }
@@ -213,7 +217,8 @@ static bool wants_torque(const cm1e_drive_t *drive)
         return false;
     if (drive->fault.error)
         return drive_fault_allows_ramp(drive->fault.error) && drive->feedback.enabled;
-    if (!drive->torque && (drive->feedback.state == OPERATION_ENABLED || drive->now_ns < drive->torque_from_ns))
+    if (!drive->torque && (drive->feedback.state == OPERATION_ENABLED || drive->now_ns < drive->torque_from_ns ||
+                           drive->distrusted > 0))
         return false;
     /* Without fresh inputs the actual position is not known: no step towards torque then. */
     return drive->feedback.online || drive->was_enabled;

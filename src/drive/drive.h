@@ -50,7 +50,8 @@ typedef struct cm1e_drive_command {
 /** What the drive shows, fresh after cm1e_drive_read(). */
 typedef struct cm1e_drive_feedback {
     bool online;                    /**< the inputs of this cycle are valid, and the bus is well */
-    bool fresh;                     /**< the inputs are of this cycle, though something on the bus may be wrong */
+    bool fresh;                     /**< the inputs are of this cycle, though something on the bus may be wrong; and
+                                         the motor can have come to the position that they show */
     uint16_t statusword, error_code;
     cm1e_fsa_state_t state;
     int8_t mode;                    /**< 0x6061 */
@@ -105,6 +106,7 @@ typedef struct cm1e_drive {
     int32_t velocity_unit;          /**< counts/s per unit of 0x60FF and 0x606C */
     int32_t velocity_most;          /**< of 0x60FF, in that unit */
     int64_t velocity_believed;      /**< counts/s: the largest that is measured from positions */
+    int64_t velocity_possible;      /**< counts/s: no motor of this kind is faster */
     uint32_t profile_velocity, profile_acceleration; /**< what 0x6081 and 0x6083 carry where they are mapped */
     int64_t read_ns;
     int32_t target_position;        /**< last one written */
@@ -123,6 +125,9 @@ typedef struct cm1e_drive {
     bool torque;                    /**< the last write asked for torque */
     bool was_enabled;               /**< Operation enabled was seen since torque is asked for */
     bool mode_confirmed;
+    uint8_t positions_rejected;     /**< in a row: actual positions that the motor cannot have come to */
+    uint8_t contradictions;         /**< actual positions that did not go with the actual velocity, less the others */
+    uint8_t distrusted;             /**< good positions that are still to come before torque is asked for */
     bool answered;                  /**< the last frame came back, with every slave's part in it */
     bool slewing;                   /**< CSV: the target velocity is not yet the commanded one after lost frames */
     bool set_point_bit;             /**< PP: controlword bit 4 */
@@ -141,8 +146,8 @@ typedef struct cm1e_drive {
     int8_t mode_read;               /**< what 0x6061 said last, a switch under way or not */
     bool mode_known;                /**< 0x6061 was read since the device may have been switched off */
     bool mode_uncertain;            /**< 0x6060 was written, and 0x6061 has not shown it yet */
-    int64_t mode_from_ns;           /**< 0x6060 may be written from then on */
     bool abnormal;                  /**< behind a bridge: was in CMD or CPIO since power-on, as far as is known */
+    int64_t mode_from_ns;           /**< 0x6060 may be written from then on */
     int64_t blocked_ns;             /**< since when torque is asked for in a mode that has none */
     uint32_t axis;                  /**< index in the configuration */
     const cm1e_axis_config_t *config;
@@ -166,6 +171,9 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns);
 void cm1e_drive_write(cm1e_drive_t *drive);
 /** Latches a fault that the caller saw (the bus is lost ...); an earlier one stays. @rt cycle */
 void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error);
+/** For some cycles the actual position has moved by other than what the actual velocity says: one of them is not true.
+ *  @rt cycle */
+static inline bool cm1e_drive_contradicts_itself(const cm1e_drive_t *drive) { return drive->contradictions >= 3; }
 /** CSV: the target velocity gets back to the commanded one by command.velocity_step a cycle. @rt cycle */
 static inline void cm1e_drive_slew(cm1e_drive_t *drive) { drive->slewing = true; }
 /** TRUE while a commanded reset is under way. @rt cycle */

@@ -1,4 +1,6 @@
 /* The process data of one drive: where the objects lie, and their coding on the wire. */
+#include <stdlib.h>
+
 #include "core/bytes.h"
 #include "drive/drive_kind.h"
 #include "drive/drive_private.h"
@@ -185,6 +187,57 @@ static void take_statusword(cm1e_drive_t *drive, uint16_t statusword)
     f->bit13 = statusword & words->bit13;
 }
 
+/* How old a position is that a frame brings, beside the frame: the drive's own cycle, and a serial line to a motor behind a
+ * bridge. */
+static const int64_t position_age_ns = 2 * MS_IN_NS;
+/* Good positions in a row after one that was not, before torque. */
+enum { POSITIONS_TO_TRUST = 3 };
+
+/* Counts from somewhere else are no motion: a damaged position, or another origin. Only homing may set one under torque. */
+static bool can_be_there(const cm1e_drive_t *drive, int32_t position)
+{
+    if (!drive->seen || drive->now_ns <= drive->read_ns)
+        return true;
+    const int64_t way = (int32_t)((uint32_t)position - (uint32_t)drive->feedback.position);
+    const int64_t most = drive->velocity_possible * (drive->now_ns - drive->read_ns + position_age_ns) / 1000000000;
+    return llabs(way) <= most;
+}
+
+/* Position and velocity of a motor that really turns go together, but for a jitter of about half a cycle. */
+static bool contradicts(const cm1e_drive_t *drive, int32_t position)
+{
+    const int64_t elapsed_ns = drive->now_ns - drive->read_ns;
+    const int64_t way = (int32_t)((uint32_t)position - (uint32_t)drive->feedback.position);
+    const int64_t told = (int64_t)drive->feedback.velocity * elapsed_ns / 1000000000;
+    const int64_t tolerance = drive->velocity_possible * elapsed_ns / 1000000000 / 100;
+    return drive->seen && drive->in_velocity.bytes > 0 && llabs(way - told) > llabs(told) / 2 + tolerance;
+}
+
+/* FALSE: the position is not believed. It becomes neither a target, nor a lag, nor a captured position. */
+static bool take_position(cm1e_drive_t *drive, const uint8_t *in, int32_t position, int8_t mode)
+{
+    cm1e_drive_feedback_t *f = &drive->feedback;
+    const bool possible = can_be_there(drive, position);
+    const bool own_targets = mode == CM1E_MODE_CSP || mode == CM1E_MODE_CSV || mode == CM1E_MODE_PP ||
+                             mode == CM1E_MODE_PV;
+    if (!possible && drive->was_enabled && own_targets) {
+        drive->positions_rejected += drive->positions_rejected < UINT8_MAX;
+        f->fresh = false;
+        return false;
+    }
+    drive->positions_rejected = 0;
+    drive->distrusted = possible ? drive->distrusted - (drive->distrusted > 0) : POSITIONS_TO_TRUST;
+    f->velocity = velocity_of(drive, in, position, mode);
+    if (contradicts(drive, position))
+        drive->contradictions += drive->contradictions < UINT8_MAX;
+    else
+        drive->contradictions -= drive->contradictions > 0;
+    f->position = position;
+    drive->read_ns = drive->now_ns;
+    drive->seen = true;
+    return true;
+}
+
 void cm1e_drive_decode(cm1e_drive_t *drive)
 {
     const uint8_t *in = cm1e_bus_inputs(drive->bus);
@@ -196,15 +249,12 @@ void cm1e_drive_decode(cm1e_drive_t *drive)
         take_statusword(drive, statusword);
     }
     f->error_code = get_u16(in, drive->in_error);
-    const int32_t position = get_i32(in, drive->in_position);
-    f->velocity = velocity_of(drive, in, position, mode);
-    f->position = position;
+    if (!take_position(drive, in, get_i32(in, drive->in_position), mode))
+        return;
     f->torque = get_i16(in, drive->in_torque);
     f->digital_inputs = (uint16_t)get_signed(in, drive->in_digital);
     f->temperature = get_i16(in, drive->in_temperature);
     f->dc_link_decivolt = get_signed(in, drive->in_dc);
-    drive->read_ns = drive->now_ns;
-    drive->seen = true;
 }
 
 /* UG 6.3: a target above the motor's peak speed is cut; in counts/ms the bound is the whole number below. */

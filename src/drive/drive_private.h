@@ -16,7 +16,7 @@ enum { RESET_IDLE = 0, RESET_WAIT_ONLINE, RESET_EDGE, RESET_RELEASED };
 /** A cause after which a drive may still be under torque and listen, so that a ramp makes sense. */
 static inline bool drive_fault_allows_ramp(cm1e_error_t error)
 {
-    return error == CM1E_ERROR_BUS_LOST || error == CM1E_ERROR_BUS_WORKING_COUNTER;
+    return error == CM1E_ERROR_BUS_LOST || error == CM1E_ERROR_BUS_WORKING_COUNTER || error == CM1E_ERROR_DRIVE_POSITION;
 }
 
 /* drive.c */

@@ -316,7 +316,7 @@ static const variant_t variants[] = {
     {CM1E_MAPPING_DYNAMIC, "1.3.5", 0}, {CM1E_MAPPING_CSP, "1.3.0", 0}, {CM1E_MAPPING_DYNAMIC, "1.2.0", 0},
     {CM1E_MAPPING_CSP, "1.3.5", 1.5e-5},  {CM1E_MAPPING_CSV, "1.3.5", 0}, {CM1E_MAPPING_CSV, "1.2.0", 0},
 };
-enum { VARIANTS = sizeof variants / sizeof variants[0], STRIDE = 23, SAMPLED_STRIDE = 997 };
+enum { VARIANTS = sizeof variants / sizeof variants[0], STRIDE = 47, SAMPLED_STRIDE = 997 };
 
 /** The same motion without a fault shows what the servo does by itself. */
 static void run_undisturbed(const variant_t *variant)

@@ -42,6 +42,7 @@ struct cm1e_bus {
     cm1e_fsa_state_t state;
     bool power, frozen;          /**< frozen: it ignores the controlword and the mode */
     bool blocked;                /**< the shaft does not move */
+    bool turns;                  /**< it moved in the last cycle, by its target */
     bool fault_stays;            /**< a reset does not clear the fault */
     uint16_t error_code, controlword, digital_outputs, digital_inputs;
     int8_t mode, sdo_mode;
@@ -253,6 +254,11 @@ static inline void fake_bus_cycle(cm1e_bus_t *bus, int64_t cycle_ns)
             bus->torque_step = size;
         if (!bus->blocked)
             bus->position = bus->target_position;
+        const int64_t unit = cm1e_firmware_info(bus->firmware)->velocity_in_counts_per_ms ? 1000 : 1;
+        const int64_t moved = bus->blocked ? 0 : (int64_t)step * 1000000000 / cycle_ns / unit;
+        if (moved != 0 || bus->turns) /* at rest a test may say what it likes */
+            bus->velocity_raw = (int32_t)(moved > INT32_MAX ? INT32_MAX : moved < INT32_MIN ? INT32_MIN : moved);
+        bus->turns = moved != 0;
     }
     if (bus->mode == CM1E_MODE_HM && bus->homing)
         bus->homing(bus);

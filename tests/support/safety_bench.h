@@ -319,7 +319,8 @@ static bool judge_silence(const bench_t *bench, uint32_t n, witness_t *w, double
         MUST(bench, step == 0, "axis %u: the target moves by %.0f counts while no frame comes back", n, step);
         return true;
     }
-    if (!was_silent || step * w->step < 0 || fabs(step) > fabs(w->step) + w->max_gain + 1.0)
+    const bool turns = step * w->step < 0 && fabs(step) > w->max_gain + 1.0; /* from rest it may go either way */
+    if (!was_silent || turns || fabs(step) > fabs(w->step) + w->max_gain + 1.0)
         return false;
     w->step = step;
     return true;

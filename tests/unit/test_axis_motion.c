@@ -163,6 +163,7 @@ static void test_turning_for_ever_passes_the_range_of_the_device_many_times(void
     axis->set.counts += counts;
     axis->actual_counts += counts;
     axis->drive.target_position = (int32_t)((uint32_t)axis->drive.target_position + (uint32_t)(uint64_t)counts);
+    axis->drive.feedback.position = (int32_t)((uint32_t)axis->drive.feedback.position + (uint32_t)(uint64_t)counts);
     axis->raw = bus.position = (int32_t)((uint32_t)bus.position + (uint32_t)(uint64_t)counts);
     const cm1e_image_slot_t target = fake_find(&bus.rx, OBJ_607A_TARGET_POSITION);
     cm1e_put_u32(bus.outputs + target.offset, (uint32_t)(uint64_t)axis->set.counts);

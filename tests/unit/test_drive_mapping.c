@@ -260,14 +260,14 @@ static void test_mode_over_sdo_is_set_before_and_switched_in_the_cycle(void)
         TEST_ASSERT_EQUAL_INT8(CM1E_MODE_HM, bus.mode);
         TEST_ASSERT_EQUAL_HEX16(0x001F, fake_output(&bus, 0x6040, 0));
         drive.command.homing_start = false;
-        bus.position += 1000000; /* homing gave the position another value */
+        bus.position += 1000000; /* homing gave the position another value, and the caller follows it */
+        drive.command.target_position = bus.position;
         drive.command.mode = CM1E_MODE_CSP;
         bus.torque_step = 0;
         for (int i = 0; i < 500 && !(drive.feedback.enabled && drive.feedback.mode == CM1E_MODE_CSP); i++)
             cycle();
         TEST_ASSERT_TRUE(drive.feedback.enabled);
         TEST_ASSERT_EQUAL_INT64(0, bus.torque_step);
-        drive.command.target_position = bus.position;
         TEST_ASSERT_EQUAL_INT(CM1E_OK, drive.fault.error);
     }
 }

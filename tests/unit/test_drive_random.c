@@ -87,7 +87,8 @@ static void check(bool enabled_before)
     if (!drive.command.enable)
         TEST_ASSERT_FALSE(torque);
     const bool rampable = drive.fault.error == CM1E_ERROR_BUS_LOST ||
-                          drive.fault.error == CM1E_ERROR_BUS_WORKING_COUNTER;
+                          drive.fault.error == CM1E_ERROR_BUS_WORKING_COUNTER ||
+                          drive.fault.error == CM1E_ERROR_DRIVE_POSITION;
     if (drive.fault.error && !rampable)
         TEST_ASSERT_FALSE(torque);
     if (torque && f->state != OPERATION_ENABLED) { /* on the way: actual position, no velocity, the right mode shown */

@@ -1,0 +1,150 @@
+/**
+ * Actual positions that are not true, while the axis moves or stands under torque: far away for some frames, a sign
+ * turned round, counted from somewhere else, frozen. The motor itself is well all the time. It must not be moved by what
+ * is told of it: the shaft never gets faster than the axis may be, never goes back, and what cannot be is called by its
+ * name.
+ */
+#include "safety_bench.h"
+
+typedef enum lie { A_JUMP = 0, A_FAR_JUMP, TURNED_SIGN, A_SMALL_JUMP, FROZEN, LIES } lie_t;
+static const char *const lie_names[LIES] = {"1,000,000 counts off", "100,000,000 counts off", "sign turned round",
+                                            "3,000 counts off", "frozen"};
+static const int lengths[] = {1, 2, 3, 4, 20, 400};
+enum { LENGTHS = sizeof lengths / sizeof lengths[0], ENABLED = 260, LAST_PHASE = 520, LOST_LIMIT = 3, AFTER = 900 };
+static const double unit = 50000, speed_u = 10, way_u = 4;
+static const double SERVO_OVERSHOOT = 0.03; /* of the speed, at the end of a ramp without limit of jerk */
+
+static bench_t bench;
+static lie_t lie;
+static int length, begin, end_at;
+static int32_t frozen_at;
+static MC_Power_t power;
+static MC_MoveAbsolute_t move;
+static double fastest, farthest, lowest_after, held_at;
+
+static bool lying(void) { return bench.cycle >= begin && bench.cycle < begin + length; }
+
+static void put_long(uint8_t *data, int place, int32_t value)
+{
+    for (int i = 0; i < 4; i++)
+        data[place + i] = (uint8_t)((uint32_t)value >> (8 * i));
+}
+
+/** The witness believes what the master believes: it is shown the truth, the master gets the lie behind it. */
+static cm1e_tap_verdict_t tell(void *context, cm1e_tap_frame_t *frame)
+{
+    const cm1e_tap_verdict_t verdict = bench_tap(context, frame);
+    if (!is_process_data(&bench, frame) || frame->direction != CM1E_TAP_RECEIVED || verdict != CM1E_TAP_PASS)
+        return verdict;
+    uint8_t *data = frame->bytes + LRW_DATA;
+    const int place = bench.witness[0].in_position;
+    const int32_t truth = long_at(data, place);
+    frozen_at = lying() ? frozen_at : truth;
+    const int32_t told[LIES] = {truth + 1000000, truth + 100000000, -truth, truth + 3000, frozen_at};
+    if (lying())
+        put_long(data, place, told[lie]);
+    return verdict;
+}
+
+static void watch(void)
+{
+    const cm1e_sim_probe_t probe = bench_probe(&bench, 0);
+    fastest = fmax(fastest, fabs(probe.velocity_counts_per_s));
+    farthest = fmax(farthest, probe.position_counts);
+    if (bench.cycle == begin)
+        lowest_after = held_at = probe.position_counts;
+    lowest_after = fmin(lowest_after, probe.position_counts);
+}
+
+static void judge(void)
+{
+    const cm1e_axis_info_t info = bench_info(&bench, 0);
+    const cm1e_sim_probe_t probe = bench_probe(&bench, 0);
+    char text[CM1E_AXIS_ERROR_TEXT_BYTES];
+    cm1e_axis_error_text(bench.axis[0], text, sizeof text);
+    MUST(&bench, fastest <= speed_u * unit * (1 + SERVO_OVERSHOOT), "the shaft turns at %.0f counts/s, %.0f allowed",
+         fastest, speed_u * unit * (1 + SERVO_OVERSHOOT));
+    MUST(&bench, lowest_after >= held_at - 50, "the shaft goes back by %.0f counts", held_at - lowest_after);
+    MUST(&bench, farthest <= way_u * unit + 1500, "the shaft comes to %.0f, %.0f commanded", farthest, way_u * unit);
+    if (info.state != CM1E_AXIS_ERROR_STOP) {
+        MUST(&bench, fabs(probe.position_counts - way_u * unit) < 75, "ends at %.0f", probe.position_counts);
+        return;
+    }
+    const bool impossible = lie <= A_FAR_JUMP;
+    MUST(&bench, !probe.torque_on, "torque in ErrorStop");
+    MUST(&bench, length >= LOST_LIMIT, "an error after %d frames: %s", length, text);
+    MUST(&bench, !impossible || strstr(text, "cannot have come to"), "\"%s\"", text);
+}
+
+static void program(bench_t *b)
+{
+    MC_Power(&power);
+    move.Execute = b->cycle >= ENABLED;
+    MC_MoveAbsolute(&move);
+    watch();
+    if (b->cycle != end_at)
+        return;
+    judge();
+    cm1e_scheduler_stop(b->scheduler);
+}
+
+static void run(cm1e_mapping_t mapping, const char *firmware)
+{
+    cm1e_diag_t diag = {0};
+    memset(&bench, 0, sizeof bench);
+    bench_describe(&bench, 1);
+    cm1e_axis_config_t *axis = &bench.config.axes[0];
+    axis->mapping = mapping;
+    axis->counts_per_unit = unit;
+    axis->homing = (cm1e_homing_config_t){0};
+    axis->max_velocity = speed_u;
+    axis->max_acceleration = axis->max_deceleration = 100;
+    axis->max_jerk = 4000;
+    axis->sim.no_stops = true;
+    snprintf(axis->firmware, sizeof axis->firmware, "%s", firmware);
+    snprintf(bench.scene, sizeof bench.scene, "mapping %d, firmware %s, %s for %d frames from %d", (int)mapping, firmware,
+             lie_names[lie], length, begin - ENABLED);
+    power = (MC_Power_t){.Axis = &bench.axis[0], .Enable = TRUE, .EnablePositive = TRUE, .EnableNegative = TRUE};
+    move = (MC_MoveAbsolute_t){.Axis = &bench.axis[0], .Position = way_u, .Velocity = speed_u};
+    fastest = farthest = 0;
+    end_at = begin + length + AFTER;
+    bench.program = program;
+    bench_open(&bench);
+    cm1e_nic_set_tap(cm1e_bus_nic(bench.bus), tell, &bench);
+    bench_start(&bench);
+    const cm1e_error_t error = bench_run(&bench, &diag);
+    MUST(&bench, error == CM1E_OK, "%s", diag.text);
+    bench_close(&bench);
+}
+
+START_TEST(test_no_motor_is_moved_by_what_is_told_of_it)
+{
+    static const struct {
+        cm1e_mapping_t mapping;
+        const char *firmware;
+    } variants[] = {{CM1E_MAPPING_DYNAMIC, "1.3.5"}, {CM1E_MAPPING_DYNAMIC, "1.2.0"}, {CM1E_MAPPING_CSP, "1.3.0"}};
+    int moment = 0;
+    const int stride = sweep_stride(23, 151);
+    lie = (lie_t)_i;
+    for (int v = 0; v < 3; v++)
+        for (int l = 0; l < LENGTHS; l++, moment++)
+            for (begin = ENABLED - 60 + moment * 7 % stride; begin < ENABLED + LAST_PHASE; begin += stride) {
+                length = lengths[l];
+                run(variants[v].mapping, variants[v].firmware);
+            }
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("actual positions that are not true");
+    TCase *cases = tcase_create("lies");
+    tcase_set_timeout(cases, 250);
+    tcase_add_loop_test(cases, test_no_motor_is_moved_by_what_is_told_of_it, 0, LIES);
+    suite_add_tcase(suite, cases);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_ENV);
+    const int count = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return count ? EXIT_FAILURE : EXIT_SUCCESS;
+}
