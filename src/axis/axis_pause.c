@@ -77,6 +77,7 @@ static cm1e_error_t move_anew(cm1e_axis_t *axis)
 static void begin_anew(cm1e_axis_t *axis, double velocity)
 {
     axis->began_anew = true;
+    cm1e_axis_keep_torque(axis, axis->set_velocity - velocity);
     axis->set_velocity = velocity;
     axis->set_acceleration = 0.0;
     if (axis_led(axis)) {

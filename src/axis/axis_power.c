@@ -96,12 +96,17 @@ void cm1e_axis_brake_from_actual(cm1e_axis_t *axis)
     axis->brake_until_ns = axis->now_ns + brake_ns;
 }
 
+void cm1e_axis_keep_torque(cm1e_axis_t *axis, double velocity)
+{
+    const double ramp_s = fabs(velocity) / axis->emergency.deceleration;
+    axis->brake_until_ns = axis->now_ns + brake_ns + (int64_t)(ramp_s * 1e9);
+}
+
 void cm1e_axis_hold_unheard(cm1e_axis_t *axis)
 {
     if (axis->mode != CM1E_MODE_CSP || cm1e_drive_is_virtual(&axis->drive) || !set_points_move(axis))
         return;
-    const double ramp_s = fabs(axis->set_velocity) / axis->emergency.deceleration;
-    axis->brake_until_ns = axis->now_ns + brake_ns + (int64_t)(ramp_s * 1e9);
+    cm1e_axis_keep_torque(axis, axis->set_velocity);
     if (axis_follows(axis)) {
         cm1e_axis_phasing_forget(axis);
         axis->coupling->stopping = false;

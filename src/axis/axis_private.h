@@ -438,6 +438,8 @@ void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double 
 void cm1e_axis_fail_gently(cm1e_axis_t *axis, cm1e_error_t error, double deceleration);
 /** A ramp of ErrorStop begins anew, from the motor's own position and speed. */
 void cm1e_axis_brake_from_actual(cm1e_axis_t *axis);
+/** The set velocity falls by `velocity` (u/s) at once: the torque stays until the motor has had time to follow. */
+void cm1e_axis_keep_torque(cm1e_axis_t *axis, double velocity);
 /** The bus is lost. In CSP the set-point stays where it is, under torque for as long as the ramp of an error would take:
  *  a drive that still hears, and one that does not, both stop there. */
 void cm1e_axis_hold_unheard(cm1e_axis_t *axis);

@@ -58,8 +58,8 @@ static void shut_down_axes(cm1e_scheduler_t *s)
         s->shut_down &= cm1e_axis_shut_down(s->axes[i]);
 }
 
-/** Cycles in which no frame was sent. */
-static int64_t missed_cycles(int64_t silence_ns, int64_t cycle_ns) { return (2 * silence_ns + cycle_ns) / (2 * cycle_ns); }
+/** Number of the cycle to whose time a moment belongs. */
+static int64_t cycle_of(const cm1e_scheduler_t *s, int64_t time_ns) { return (time_ns - s->start_ns) / s->cycle_time_ns; }
 
 /** After a few missed cycles the motor has hardly slowed down; after more it stands (CSP). */
 static void after_missed(cm1e_axis_t *axis, int64_t missed, int64_t silence_ns)
@@ -73,7 +73,7 @@ static void after_missed(cm1e_axis_t *axis, int64_t missed, int64_t silence_ns)
 static void set_outputs(cm1e_scheduler_t *s)
 {
     const int64_t now_ns = cm1e_clock_now(s->clock), silence_ns = now_ns - s->sent_ns - s->cycle_time_ns;
-    const int64_t missed = missed_cycles(silence_ns, s->cycle_time_ns);
+    const int64_t missed = cycle_of(s, now_ns) - cycle_of(s, s->sent_ns) - 1; /* in which no frame was sent */
     s->sent_ns = now_ns;
     for (uint32_t i = 0; i < s->axis_count && missed > 0; i++)
         after_missed(s->axes[i], missed, silence_ns);

@@ -530,9 +530,8 @@ START_TEST(test_status_of_a_slave)
              motion[mcSetValue].Accelerating, axes_info(0).set_acceleration);
     }
     MUST(accelerated && follower.now.reached, "it never accelerated, or is not in gear");
-    for (int source = 0; source < 3; source++) /* the measured velocity of this drive is 0 */
-        MUST(motion[source].ConstantVelocity && motion[source].DirectionPositive == (source != mcActualValue),
-             "source %d", source);
+    for (int source = 0; source < 3; source++)
+        MUST(motion[source].ConstantVelocity && motion[source].DirectionPositive, "source %d", source);
 }
 END_TEST
 

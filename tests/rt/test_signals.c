@@ -120,7 +120,7 @@ static bool check_ramp(const turning_t *t, int number)
     }
     fclose(file);
     ck_assert_msg(set == 0 && fabs(actual) < 0.01, "signal %d: the torque goes at %g u/s", number, actual);
-    if (longest_s > 2.5 * cycle_s)
+    if (longest_s > 1.5 * cycle_s)
         return false;
     ck_assert_msg(steepest <= deceleration * cycle_s * (1 + 1e-9), "signal %d: braked with %g u/s2", number,
                   steepest / cycle_s);

@@ -534,8 +534,9 @@ static inline void bench_miss(bench_t *bench, int64_t silence_ns)
 {
     cm1e_clock_t *clock = cm1e_bus_clock(bench->bus);
     cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + silence_ns);
-    const bool noticed = 2 * silence_ns >= bench->config.cycle_time_ns;
-    bench->paused = 2 * silence_ns >= (2 * BENCH_RIDDEN_OUT + 1) * bench->config.cycle_time_ns;
+    const int64_t missed = silence_ns / bench->config.cycle_time_ns;
+    const bool noticed = missed > 0;
+    bench->paused = missed > BENCH_RIDDEN_OUT;
     bench->answered = bench->answered && !noticed; /* the target stays until the next answer */
 }
 
