@@ -50,6 +50,7 @@ typedef struct cm1e_slave_info {
 /** Counters of the cycle; they only grow. */
 typedef struct cm1e_bus_counters {
     uint64_t cycles, lost_frames, working_counter_errors, late_frames, mailbox_retries;
+    uint64_t unsent_frames; /**< the network interface did not take them: it is down, or its queue is full */
 } cm1e_bus_counters_t;
 
 /** Opens the interface (network interface or simulated segment); sends nothing yet. `config` is copied.

@@ -73,6 +73,8 @@ void cm1e_soem_send_process_data(cm1e_soem_t *soem);
 int cm1e_soem_receive_process_data(cm1e_soem_t *soem, int64_t timeout_ns);
 /** Frames that came back when nobody waited for them any more; only grows. */
 uint64_t cm1e_soem_late_frames(const cm1e_soem_t *soem);
+/** Frames that the network interface did not take; only grows. */
+uint64_t cm1e_soem_unsent_frames(const cm1e_soem_t *soem);
 
 /** Sends a datagram in a frame of its own. */
 void cm1e_soem_post(cm1e_soem_t *soem, cm1e_datagram_t *datagram, int64_t now_ns);

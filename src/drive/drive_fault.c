@@ -124,6 +124,10 @@ void cm1e_drive_fault_text(const cm1e_drive_t *drive, char *text, size_t size)
     else if (fault->al_state)
         say(&w, " EtherCAT state %u, AL status code 0x%04X: %s.", fault->al_state & 0x0Fu, fault->al_status_code,
             cm1e_al_status_text(fault->al_status_code));
+    const uint64_t unsent = fault->error == CM1E_ERROR_BUS_LOST ? cm1e_bus_counters(drive->bus)->unsent_frames : 0;
+    if (unsent > 0)
+        say(&w, " The network interface did not take %llu frames since the start: it is down, or too slow.",
+            (unsigned long long)unsent);
     if (fault->motor_status_known)
         say_status(&w, drive);
     say_words(&w, drive);

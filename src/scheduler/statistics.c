@@ -34,6 +34,7 @@ void statistics_note_bus(statistics_t *statistics, const cm1e_bus_counters_t *co
     WRITE(statistics->lost_frames, counters->lost_frames);
     WRITE(statistics->working_counter_errors, counters->working_counter_errors);
     WRITE(statistics->late_frames, counters->late_frames);
+    WRITE(statistics->unsent_frames, counters->unsent_frames);
     WRITE(statistics->mailbox_retries, counters->mailbox_retries);
 }
 
@@ -67,6 +68,7 @@ void statistics_read(const statistics_t *statistics, cm1e_scheduler_statistics_t
         .lost_frames = READ(statistics->lost_frames),
         .working_counter_errors = READ(statistics->working_counter_errors),
         .late_frames = READ(statistics->late_frames),
+        .unsent_frames = READ(statistics->unsent_frames),
         .mailbox_retries = READ(statistics->mailbox_retries),
     };
     if (atomic_load_explicit(&statistics->ready, memory_order_acquire)) {

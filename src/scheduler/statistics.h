@@ -19,7 +19,7 @@ typedef struct distribution {
 typedef struct statistics {
     distribution_t cycle_time, wake_up_latency, execution_time;
     _Atomic uint64_t cycles, overruns;
-    _Atomic uint64_t bus_cycles, lost_frames, working_counter_errors, late_frames, mailbox_retries;
+    _Atomic uint64_t bus_cycles, lost_frames, working_counter_errors, late_frames, mailbox_retries, unsent_frames;
     char advice[sizeof((cm1e_scheduler_statistics_t *)0)->advice]; /**< written once, before `ready` */
     _Atomic bool realtime, ready;
 } statistics_t;

@@ -36,6 +36,7 @@ struct cm1e_bus {
     struct cm1e_bus *others[FAKE_SLAVES - 1]; /**< slaves 2 ... behind this one, whose image has a part for each */
     cm1e_slave_watch_t watch;
     cm1e_slave_info_t info;
+    cm1e_bus_counters_t counters;
     unsigned recoveries;
 
     /* the device */
@@ -289,6 +290,7 @@ static inline void fake_bus_fault(cm1e_bus_t *bus, uint16_t code)
 uint8_t *cm1e_bus_outputs(cm1e_bus_t *bus) { return bus->outputs; }
 const uint8_t *cm1e_bus_inputs(const cm1e_bus_t *bus) { return bus->inputs; }
 const cm1e_bus_config_t *cm1e_bus_configuration(const cm1e_bus_t *bus) { return &bus->config; }
+const cm1e_bus_counters_t *cm1e_bus_counters(const cm1e_bus_t *bus) { return &bus->counters; }
 const cm1e_slave_info_t *cm1e_bus_slave(const cm1e_bus_t *bus, uint32_t position)
 {
     return &fake_slave(bus, position)->info;

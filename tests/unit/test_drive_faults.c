@@ -270,6 +270,8 @@ static void test_bus_lost_holds_the_target_under_torque_then_disables(void)
     cycles(20);
     assert_no_torque_commanded();
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_BUS_LOST, drive.fault.error);
+    bus.counters.unsent_frames = 7;
+    assert_text_has("did not take 7 frames");
     bus.watch.al_state = CM1E_AL_SAFE_OP; /* what the supervision finds out later is kept beside it */
     bus.watch.al_status_code = 0x001B;
     cycle();
