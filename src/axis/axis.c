@@ -172,7 +172,10 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
     else if (powered_state(axis->state) && !drive_moves(axis) && !drive->feedback.enabled)
         cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_ENABLE_LOST); /* an earlier and better reason stays */
     if (drive->fault.error) {
-        cm1e_axis_fail(axis, drive->fault.error, 0.0, 0.0);
+        if (health && axis_led(axis))
+            cm1e_axis_lead_fail(axis, drive->fault.error);
+        else
+            cm1e_axis_fail(axis, drive->fault.error, 0.0, 0.0);
         if (axis->error == drive->fault.error)
             axis->device_error = drive->fault.device_code; /* it may come a cycle later */
     }

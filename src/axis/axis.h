@@ -225,6 +225,9 @@ typedef struct cm1e_axis_leader {
     /** The motor has come to rest at its last set-point, because no frame was sent for a while:
      *  cm1e_axis_after_pause(), before the next set-point is asked for. The next ones begin there, from rest. */
     void (*paused)(void *context, uint32_t index);
+    /** s; how long the slowest of all that are led together needs to brake: the ramp that they have in common when the
+     *  bus is lost. NULL: each has its own. */
+    double (*stop_time)(void *context);
     void *context;
     uint32_t index;                 /**< of the axis, as the leader counts */
 } cm1e_axis_leader_t;

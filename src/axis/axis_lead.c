@@ -100,6 +100,12 @@ void cm1e_axis_lead_after_pause(cm1e_axis_t *axis)
         cm1e_axis_guard_fail(axis, (guard_t){.limit = GUARD_PAUSE, .asked = axis->set_velocity});
 }
 
+void cm1e_axis_lead_fail(cm1e_axis_t *axis, cm1e_error_t error)
+{
+    const double time_s = axis->leader.stop_time ? axis->leader.stop_time(axis->leader.context) : 0.0;
+    cm1e_axis_fail_gently(axis, error, time_s > 0.0 ? fabs(axis->set_velocity) / time_s : INFINITY);
+}
+
 void cm1e_axis_bounds(const cm1e_axis_t *axis, cm1e_motion_limits_t *limits, double *lower, double *upper)
 {
     *limits = axis->maximum;

@@ -494,6 +494,8 @@ void cm1e_axis_lead_end(cm1e_axis_t *axis, cm1e_error_t error);
 /** The set-point of the cycle; FALSE: the leader has none that the axis may follow, and a ramp has begun. */
 bool cm1e_axis_lead_step(cm1e_axis_t *axis);
 void cm1e_axis_lead_after_pause(cm1e_axis_t *axis);
+/** ErrorStop by a lost bus: in CSV all that are led together brake in the same time, which keeps them on a line. */
+void cm1e_axis_lead_fail(cm1e_axis_t *axis, cm1e_error_t error);
 
 /* axis_in_position.c */
 void cm1e_axis_in_position_init(cm1e_axis_t *axis); /* @rt init; after limits and mode */

@@ -87,6 +87,22 @@ static void paused(void *context, uint32_t index)
     group->paused |= bit;
 }
 
+static double stop_time(void *context)
+{
+    const cm1e_group_t *group = context;
+    double longest_s = 0.0;
+    for (int i = 0; i < group->axes; i++) {
+        const cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
+        cm1e_motion_limits_t limits;
+        double lowest, highest;
+        if (!axis)
+            continue;
+        cm1e_axis_bounds(axis, &limits, &lowest, &highest);
+        longest_s = fmax(longest_s, fabs(group->sample.velocity[i]) / limits.deceleration);
+    }
+    return longest_s;
+}
+
 /* ---- to take the axes, and to let them go ------------------------------------------------------------------------ */
 
 void cm1e_group_let_go(cm1e_group_t *group)
@@ -133,7 +149,8 @@ cm1e_error_t cm1e_group_lead(cm1e_group_t *group, bool some)
     group->ending = group->halting = false;
     for (int i = 0; i < group->axes; i++) {
         cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
-        const cm1e_axis_leader_t leader = {.next = next, .lost = lost, .paused = paused, .context = group,
+        const cm1e_axis_leader_t leader = {.next = next, .lost = lost, .paused = paused,
+                                           .stop_time = stop_time, .context = group,
                                            .index = (uint32_t)i};
         if (axis && cm1e_axis_lead(axis, &leader) == CM1E_OK) {
             group->led |= 1u << i;

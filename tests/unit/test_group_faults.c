@@ -194,6 +194,63 @@ static void test_a_bus_that_is_lost_holds_every_axis_on_the_path(void)
     }
 }
 
+static double shaft[3];
+
+/* The fake drives' shafts turn by their target velocities. */
+static void turn(cm1e_bus_t *motor)
+{
+    double *at = &shaft[motor == axes_motor(0) ? 0 : motor == axes_motor(1) ? 1 : 2];
+    *at += motor->target_velocity_raw * 1e-3;
+    motor->velocity_raw = motor->target_velocity_raw;
+    motor->position = (int32_t)lround(*at);
+}
+
+static void begin_by_velocity(void)
+{
+    group_end();
+    axes_describe(3);
+    for (int n = 0; n < 3; n++) {
+        axes_config(n)->mapping = CM1E_MAPPING_CSV;
+        cm1e_device_pdo(&axes_motor(n)->rx, CM1E_MAPPING_CSV, false, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        cm1e_device_pdo(&axes_motor(n)->tx, CM1E_MAPPING_CSV, true, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        axes_motor(n)->mode = axes_motor(n)->sdo_mode = CM1E_MODE_CSV;
+        axes_motor(n)->world = turn;
+        shaft[n] = axes_motor(n)->position;
+    }
+    axes_config(1)->max_deceleration = 60; /* it needs the longest */
+    axes_make();
+    axes_enable_all();
+    group_form();
+    AXES_MUST(cm1e_group_enable(group) == CM1E_OK, "%s", group_text());
+}
+
+/* In CSV the axes go on: all with one ramp, in step along the line. */
+static void test_a_bus_that_is_lost_brakes_the_axes_in_step_in_csv(void)
+{
+    begin_by_velocity();
+    group_line(3.0, 2.0, 3.0, mcAborting);
+    axes_cycles(500);
+    double at[3], before[3];
+    for (int n = 0; n < 3; n++) {
+        at[n] = axes_axis(n)->set_velocity;
+        before[n] = cm1e_axis_line(axes_axis(n), axes_axis(n)->set);
+    }
+    TEST_ASSERT_TRUE(fabs(at[0]) > 0.5 && fabs(at[1]) > 0.3);
+    axes_bench.received = CM1E_ERROR_BUS_LOST;
+    axes_bench.health = CM1E_ERROR_BUS_LOST;
+    for (int i = 0; i < 200; i++) {
+        axes_cycles(1);
+        for (int n = 1; n < 3; n++) {
+            const double way = cm1e_axis_line(axes_axis(n), axes_axis(n)->set) - before[n];
+            const double first = cm1e_axis_line(axes_axis(0), axes_axis(0)->set) - before[0];
+            if (axes_axis(0)->activity == ACTIVITY_PROFILE && axes_axis(n)->activity == ACTIVITY_PROFILE)
+                TEST_ASSERT_DOUBLE_WITHIN(2.0 / 50000, first * at[n] / at[0], way);
+        }
+    }
+    for (int n = 0; n < 3; n++)
+        axes_must_be(n, CM1E_AXIS_ERROR_STOP);
+}
+
 static void test_the_end_of_a_run_shuts_all_axes_down(void)
 {
     group_begin(3);
@@ -262,6 +319,7 @@ int main(void)
     RUN_TEST(test_a_fault_over_a_corner);
     RUN_TEST(test_several_axes_fail_together);
     RUN_TEST(test_a_bus_that_is_lost_holds_every_axis_on_the_path);
+    RUN_TEST(test_a_bus_that_is_lost_brakes_the_axes_in_step_in_csv);
     RUN_TEST(test_the_end_of_a_run_shuts_all_axes_down);
     RUN_TEST(test_an_axis_that_is_destroyed_on_the_way);
     RUN_TEST(test_a_limit_that_is_lowered_on_the_way_stops_it);
