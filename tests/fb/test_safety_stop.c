@@ -385,9 +385,10 @@ START_TEST(test_master_dies_at_every_cycle_and_the_next_one_starts)
         run_until_death();
         cm1e_bus_t *const dead = bench.bus;
         judge_death(strcmp(variant->firmware, "1.2.0") != 0);
-        cm1e_scheduler_destroy(bench.scheduler);
+        cm1e_scheduler_t *const dead_scheduler = bench.scheduler;
         start_next_master();
-        cm1e_bus_close(dead); /* and with it the segment */
+        cm1e_bus_close(dead); /* and with it the segment, and the transfers that lie in the axes */
+        cm1e_scheduler_destroy(dead_scheduler);
     }
 }
 END_TEST
