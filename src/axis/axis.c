@@ -77,6 +77,13 @@ static bool powered_state(cm1e_axis_state_t state)
     return state != CM1E_AXIS_DISABLED && state != CM1E_AXIS_ERROR_STOP;
 }
 
+/* Counts. More lag than a motor has that followed the ramp while nothing was heard of it. */
+static bool was_deaf(const cm1e_axis_t *axis, double lag)
+{
+    const double few_counts = 50.0;
+    return fabs(lag) > 2.0 * fabs(axis->set_velocity * axis->scale) * axis->cycle_s + cm1e_axis_few(axis, few_counts);
+}
+
 /* A set-point that the motor has lost is a jump to come: braking begins anew where the motor is. In CSV the motor goes
  * on while nothing is heard: a ramp of ErrorStop then begins anew where it has come to. */
 static void watch_lag(cm1e_axis_t *axis)
@@ -88,7 +95,7 @@ static void watch_lag(cm1e_axis_t *axis)
         return;
     const double lag = own ? cm1e_position_minus(axis->set, axis_actual(axis)) : 0.0; /* counts */
     const bool lost = fabs(lag) > axis->max_lag * fabs(axis->scale);
-    if (axis->state == CM1E_AXIS_ERROR_STOP && blind_before && axis->mode == CM1E_MODE_CSV) {
+    if (axis->state == CM1E_AXIS_ERROR_STOP && blind_before && axis->mode == CM1E_MODE_CSV && was_deaf(axis, lag)) {
         cm1e_axis_brake_from_actual(axis);
     } else if (lost && axis->state != CM1E_AXIS_ERROR_STOP) { /* in Disabled: the ramp before the torque goes */
         if (!axis->lag_monitoring)
@@ -118,7 +125,9 @@ static void note_silence(cm1e_axis_t *axis, int64_t cycles)
 static void note_answer(cm1e_axis_t *axis, bool answered, bool lost)
 {
     axis->silent_before = answered ? axis->silent : 0;
-    axis->frozen = !answered && !lost;
+    /* A velocity may be reduced all the same: a ramp of ErrorStop goes on. */
+    const bool brakes_on = axis->mode == CM1E_MODE_CSV && axis->state == CM1E_AXIS_ERROR_STOP;
+    axis->frozen = !answered && !lost && !brakes_on;
     if (answered) {
         axis->silent = 0;
         axis->shaken -= axis->shaken > 0;

@@ -120,6 +120,8 @@ struct cm1e_axis {
     bool observed;                  /**< somebody follows its actual value, or has; an encoder always is */
     bool resumed;                   /**< a pause or silence before this cycle has been dealt with ... */
     bool began_anew;                /**< ... by another velocity than it had */
+    bool reset_sent;
+    cm1e_error_t reset_error;
     struct follow *awaited;         /**< F of the first waiting command: it begins at a place of its master (StartSync),
                                          until when what runs goes on; NULL: none does */
     const void *power_owner;
@@ -190,9 +192,6 @@ struct cm1e_axis {
 
     int64_t free_ns;                /**< since when no torque is asked for */
     int64_t brake_until_ns;         /**< so long at least the torque stays to brake */
-
-    cm1e_error_t reset_error;
-    bool reset_sent;
 
     driving_t driving;
     not_set_t not_set;

@@ -363,7 +363,7 @@ void cm1e_drive_write(cm1e_drive_t *drive)
     drive->target_holds |= follow && drive->holds;
     int32_t position = safe_position(drive);
     if (follow && drive->holds && in_range(drive, command->target_position))
-        position = held_before ? next_position(drive) : command->target_position;
+        position = held_before || !drive->answered ? next_position(drive) : command->target_position;
     else if (follow && drive->holds)
         cm1e_drive_fail(drive, CM1E_ERROR_AXIS_POSITION_RANGE); /* the last target holds until the torque goes */
     const uint16_t word = controlword(drive, pass) | (drive->marked ? signals(drive) : 0);

@@ -196,6 +196,9 @@ static void test_lost_frames_while_enabled_keep_the_targets(void)
     TEST_ASSERT_TRUE(drive.feedback.enabled);
     TEST_ASSERT_FALSE(drive.feedback.online);
     TEST_ASSERT_EQUAL_HEX16(0x000F, fake_output(&bus, 0x6040, 0));
+    TEST_ASSERT_EQUAL_INT32(500, fake_output(&bus, 0x607A, 0)); /* nobody knows which target the drive has */
+    cm1e_drive_read(&drive, true, bus.clock.virtual_now_ns + 2 * cycle_ns);
+    cm1e_drive_write(&drive);
     TEST_ASSERT_EQUAL_INT32(520, fake_output(&bus, 0x607A, 0));
 }
 
