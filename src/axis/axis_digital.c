@@ -1,9 +1,9 @@
 /* Digital inputs and the output of the motor, the switches among them, and what goes off when it is not renewed. */
 #include <math.h>
-#include <string.h>
 
 #include "axis/axis_private.h"
 #include "axis/axis_signals.h"
+#include "config/interface.h"
 
 int64_t cm1e_axis_time(const cm1e_axis_t *axis) { return axis->now_ns; }
 
@@ -231,7 +231,7 @@ cm1e_axis_condition_t cm1e_axis_condition(const cm1e_axis_t *axis)
     /* Behind a bridge bit 7 never warns (BR 6.1.3), but is an input in CPIO; and this is where CML leaves it. */
     const bool bridged = cm1e_drive_bridged(&axis->drive), rests = bridged && f->state == SWITCH_ON_DISABLED;
     return (cm1e_axis_condition_t){
-        .simulation = name[0] == '\0' || strcmp(name, "sim") == 0 || strncmp(name, "sim:", 4) == 0,
+        .simulation = cm1e_interface_is_simulated(name),
         .communication = f->online,
         .ready_for_power_on = axis->state == CM1E_AXIS_DISABLED && f->online && f->voltage && !f->fault &&
                               (f->state == READY_TO_SWITCH_ON || f->state == SWITCHED_ON || rests),

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "bus/bus_internal.h"
+#include "config/interface.h"
 #include "core/in_task.h"
 #include "device/place.h"
 
@@ -12,7 +13,7 @@ static void copy_config(cm1e_bus_config_t *to, const cm1e_bus_config_t *from)
 {
     *to = *from;
     if (!to->interface_name[0])
-        strcpy(to->interface_name, "sim");
+        strcpy(to->interface_name, CM1E_SIM_INTERFACE);
     if (to->cycle_time_ns == 0)
         to->cycle_time_ns = DEFAULT_CYCLE_NS;
     if (to->frame_timeout_ns == 0)

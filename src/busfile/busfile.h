@@ -14,26 +14,19 @@
 #include <stdint.h>
 #include <yaml.h>
 
-#include "cm1e/config.h"
-
-/** What is wrong, and where: by line and column where they are known, else by the path of a key. */
-typedef struct cm1e_busfile_problem {
-    size_t line, column; /**< 1 ...; line 0: not known */
-    char path[96];       /**< "axes[0].limits.velocity"; "": the file as a whole */
-    char text[400];
-} cm1e_busfile_problem_t;
+#include "config/problem.h"
 
 /* ---- document.c: bytes and nodes --------------------------------------------------------------------------------- */
 
 enum { CM1E_BUSFILE_MAX_SIZE = 1 << 20 };
 
 /** Reads a whole file into memory that the caller frees. */
-cm1e_error_t cm1e_busfile_read(const char *path, uint8_t **bytes, size_t *size, cm1e_busfile_problem_t *problem);
+cm1e_error_t cm1e_busfile_read(const char *path, uint8_t **bytes, size_t *size, cm1e_config_problem_t *problem);
 /** The one document in `bytes`; the caller deletes it on success. */
 cm1e_error_t cm1e_busfile_parse(const uint8_t *bytes, size_t size, yaml_document_t *document,
-                                cm1e_busfile_problem_t *problem);
+                                cm1e_config_problem_t *problem);
 /** Line and column of the node at problem->path, or of the deepest node on the way there that exists. */
-void cm1e_busfile_locate(yaml_document_t *document, cm1e_busfile_problem_t *problem);
+void cm1e_busfile_locate(yaml_document_t *document, cm1e_config_problem_t *problem);
 
 /* ---- schema.c, compare.c: keys and types ------------------------------------------------------------------------- */
 
@@ -56,8 +49,6 @@ typedef struct cm1e_busfile {
     cm1e_busfile_axis_t axes[CM1E_MAX_AXES];
 } cm1e_busfile_t;
 
-enum { CM1E_LEAST_CAM_POINTS = 2, CM1E_MOST_CAM_POINTS = 4096 };
-
 extern const cyaml_schema_value_t cm1e_busfile_schema;
 
 /** Range of a whole number by its key. */
@@ -70,11 +61,6 @@ extern const cm1e_busfile_integer_range_t cm1e_busfile_integer_ranges[];
 extern const char *const cm1e_busfile_zero_allowed[];
 
 /** Compares every node of the document with the schema. Numbers are read in the thread's locale: it must be "C". */
-bool cm1e_busfile_compare(yaml_document_t *document, cm1e_busfile_problem_t *problem);
-
-/* ---- check.c: ranges and contradictions -------------------------------------------------------------------------- */
-
-/** TRUE: nothing wrong. On FALSE the problem has a path, no line. */
-bool cm1e_busfile_check(const cm1e_bus_config_t *config, cm1e_busfile_problem_t *problem);
+bool cm1e_busfile_compare(yaml_document_t *document, cm1e_config_problem_t *problem);
 
 #endif

@@ -9,7 +9,7 @@
 
 typedef struct compare {
     yaml_document_t *document;
-    cm1e_busfile_problem_t *problem;
+    cm1e_config_problem_t *problem;
 } compare_t;
 
 __attribute__((format(printf, 3, 4)))
@@ -263,7 +263,7 @@ static bool compare_value(const compare_t *compare, const yaml_node_t *node, con
     }
 }
 
-bool cm1e_busfile_compare(yaml_document_t *document, cm1e_busfile_problem_t *problem)
+bool cm1e_busfile_compare(yaml_document_t *document, cm1e_config_problem_t *problem)
 {
     const compare_t compare = {.document = document, .problem = problem};
     return compare_value(&compare, yaml_document_get_root_node(document), &cm1e_busfile_schema, "the file");

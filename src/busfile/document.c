@@ -10,7 +10,7 @@
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
 
-static cm1e_error_t os_error(cm1e_busfile_problem_t *problem, int number)
+static cm1e_error_t os_error(cm1e_config_problem_t *problem, int number)
 {
     snprintf(problem->text, sizeof problem->text, "cannot be read: %s", strerror(number));
     return number == ENOENT || number == ENOTDIR ? CM1E_ERROR_NOT_FOUND
@@ -18,7 +18,7 @@ static cm1e_error_t os_error(cm1e_busfile_problem_t *problem, int number)
                                                  : CM1E_ERROR_IO;
 }
 
-static cm1e_error_t read_all(int file, uint8_t *bytes, size_t *size, cm1e_busfile_problem_t *problem)
+static cm1e_error_t read_all(int file, uint8_t *bytes, size_t *size, cm1e_config_problem_t *problem)
 {
     *size = 0;
     while (*size <= CM1E_BUSFILE_MAX_SIZE) {
@@ -35,7 +35,7 @@ static cm1e_error_t read_all(int file, uint8_t *bytes, size_t *size, cm1e_busfil
     return CM1E_ERROR_CONFIG;
 }
 
-cm1e_error_t cm1e_busfile_read(const char *path, uint8_t **bytes, size_t *size, cm1e_busfile_problem_t *problem)
+cm1e_error_t cm1e_busfile_read(const char *path, uint8_t **bytes, size_t *size, cm1e_config_problem_t *problem)
 {
     /* Without O_NONBLOCK, opening a FIFO nobody writes to would wait for ever. */
     const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
@@ -67,14 +67,14 @@ cm1e_error_t cm1e_busfile_read(const char *path, uint8_t **bytes, size_t *size, 
 
 enum { MAX_DEPTH = 8 }; /* the schema needs 4 */
 
-static void set_place(cm1e_busfile_problem_t *problem, yaml_mark_t mark)
+static void set_place(cm1e_config_problem_t *problem, yaml_mark_t mark)
 {
     problem->line = mark.line + 1;
     problem->column = mark.column + 1;
 }
 
 /* libyaml tells only the offset of a byte that is no text. */
-static void set_place_of_offset(cm1e_busfile_problem_t *problem, const uint8_t *bytes, size_t offset)
+static void set_place_of_offset(cm1e_config_problem_t *problem, const uint8_t *bytes, size_t offset)
 {
     problem->line = problem->column = 1;
     for (size_t i = 0; i < offset; i++) {
@@ -87,7 +87,7 @@ static void set_place_of_offset(cm1e_busfile_problem_t *problem, const uint8_t *
 }
 
 static cm1e_error_t parser_error(const yaml_parser_t *parser, const uint8_t *bytes, size_t size,
-                                 cm1e_busfile_problem_t *problem)
+                                 cm1e_config_problem_t *problem)
 {
     if (parser->error == YAML_MEMORY_ERROR) {
         snprintf(problem->text, sizeof problem->text, "out of memory");
@@ -151,7 +151,7 @@ static const char *scan_event(scan_t *scan, const yaml_event_t *event)
 }
 
 /* One pass over the events, which costs no memory, before anything is built from them. */
-static cm1e_error_t scan_events(const uint8_t *bytes, size_t size, cm1e_busfile_problem_t *problem)
+static cm1e_error_t scan_events(const uint8_t *bytes, size_t size, cm1e_config_problem_t *problem)
 {
     yaml_parser_t parser;
     if (!yaml_parser_initialize(&parser)) {
@@ -186,7 +186,7 @@ static cm1e_error_t scan_events(const uint8_t *bytes, size_t size, cm1e_busfile_
 }
 
 cm1e_error_t cm1e_busfile_parse(const uint8_t *bytes, size_t size, yaml_document_t *document,
-                                cm1e_busfile_problem_t *problem)
+                                cm1e_config_problem_t *problem)
 {
     const cm1e_error_t error = scan_events(bytes, size, problem);
     if (error)
@@ -226,7 +226,7 @@ static yaml_node_t *find_item(yaml_document_t *document, const yaml_node_t *node
     return yaml_document_get_node(document, node->data.sequence.items.start[number]);
 }
 
-void cm1e_busfile_locate(yaml_document_t *document, cm1e_busfile_problem_t *problem)
+void cm1e_busfile_locate(yaml_document_t *document, cm1e_config_problem_t *problem)
 {
     yaml_node_t *node = yaml_document_get_root_node(document);
     const char *path = problem->path;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "busfile/busfile.h"
+#include "config/interface.h"
 #include "core/in_task.h"
 #include "device/place.h"
 
@@ -14,7 +15,7 @@
 static void take_log_line(cyaml_log_t level, void *context, const char *format, va_list args)
 {
     (void)level;
-    cm1e_busfile_problem_t *problem = context;
+    cm1e_config_problem_t *problem = context;
     char line[sizeof problem->text];
     vsnprintf(line, sizeof line, format, args);
     line[strcspn(line, "\n")] = '\0';
@@ -25,7 +26,7 @@ static void take_log_line(cyaml_log_t level, void *context, const char *format, 
         sscanf(place, "(line: %zu, column: %zu)", &problem->line, &problem->column);
 }
 
-static void set_up_libcyaml(cyaml_config_t *settings, cm1e_busfile_problem_t *problem)
+static void set_up_libcyaml(cyaml_config_t *settings, cm1e_config_problem_t *problem)
 {
     *settings = (cyaml_config_t){
         .log_fn = take_log_line,
@@ -39,7 +40,7 @@ static void set_up_libcyaml(cyaml_config_t *settings, cm1e_busfile_problem_t *pr
 /* ---- conversion -------------------------------------------------------------------------------------------------- */
 
 static bool convert_address(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *from, uint32_t index,
-                            cm1e_busfile_problem_t *problem)
+                            cm1e_config_problem_t *problem)
 {
     if ((from->position != 0) + (from->alias != 0) + (from->explicit_id != 0) > 1) {
         snprintf(problem->path, sizeof problem->path, "axes[%u].%s", index,
@@ -67,7 +68,7 @@ static void convert_software_limits(cm1e_axis_config_t *axis, const cm1e_busfile
 }
 
 static bool convert_axis(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *from, uint32_t index,
-                         cm1e_busfile_problem_t *problem)
+                         cm1e_config_problem_t *problem)
 {
     *axis = from->axis;
     if (axis->name[0] == '\0')
@@ -81,11 +82,11 @@ static bool convert_axis(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *fr
     return convert_address(axis, from, index, problem);
 }
 
-static bool convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from, cm1e_busfile_problem_t *problem)
+static bool convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from, cm1e_config_problem_t *problem)
 {
     *config = from->config;
     if (config->interface_name[0] == '\0')
-        snprintf(config->interface_name, sizeof config->interface_name, "sim");
+        snprintf(config->interface_name, sizeof config->interface_name, CM1E_SIM_INTERFACE);
     config->cycle_time_ns = (int64_t)from->cycle_time_us * 1000;
     config->frame_timeout_ns = (int64_t)from->frame_timeout_us * 1000;
     config->axis_count = from->axis_count;
@@ -100,7 +101,7 @@ static bool convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from, cm1e_
 /* ---- loading ----------------------------------------------------------------------------------------------------- */
 
 static cm1e_error_t fill(cm1e_bus_config_t *config, const uint8_t *bytes, size_t size,
-                         cm1e_busfile_problem_t *problem)
+                         cm1e_config_problem_t *problem)
 {
     cyaml_config_t settings;
     set_up_libcyaml(&settings, problem);
@@ -112,13 +113,13 @@ static cm1e_error_t fill(cm1e_bus_config_t *config, const uint8_t *bytes, size_t
             snprintf(problem->text, sizeof problem->text, "%s", cyaml_strerror(load_error));
         return load_error == CYAML_ERR_OOM ? CM1E_ERROR_NO_MEMORY : CM1E_ERROR_CONFIG;
     }
-    const bool good = convert(config, file, problem) && cm1e_busfile_check(config, problem);
+    const bool good = convert(config, file, problem) && cm1e_config_find_problem(config, problem);
     cyaml_free(&settings, &cm1e_busfile_schema, file, 0);
     return good ? CM1E_OK : CM1E_ERROR_CONFIG;
 }
 
 static cm1e_error_t load_bytes(cm1e_bus_config_t *config, const uint8_t *bytes, size_t size,
-                               cm1e_busfile_problem_t *problem)
+                               cm1e_config_problem_t *problem)
 {
     yaml_document_t document;
     cm1e_error_t error = cm1e_busfile_parse(bytes, size, &document, problem);
@@ -133,7 +134,7 @@ static cm1e_error_t load_bytes(cm1e_bus_config_t *config, const uint8_t *bytes, 
 
 /* strtod(), here and in libcyaml, takes the decimal point of the thread's locale: under a German one 4.5 would be 4. */
 static cm1e_error_t load_in_c_locale(cm1e_bus_config_t *config, const uint8_t *bytes, size_t size,
-                                     cm1e_busfile_problem_t *problem)
+                                     cm1e_config_problem_t *problem)
 {
     const locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     if (c_locale == (locale_t)0) {
@@ -149,7 +150,7 @@ static cm1e_error_t load_in_c_locale(cm1e_bus_config_t *config, const uint8_t *b
 
 /* "path:line:column: text"; of a long path the end, which tells more. */
 static cm1e_error_t report(cm1e_diag_t *diag, cm1e_error_t error, const char *path,
-                           const cm1e_busfile_problem_t *problem)
+                           const cm1e_config_problem_t *problem)
 {
     enum { SHOWN = 160 };
     const size_t length = strlen(path);
@@ -167,7 +168,7 @@ cm1e_error_t cm1e_bus_config_load(cm1e_bus_config_t *config, const char *path, c
         return cm1e_in_task_refuse("cm1e_bus_config_load()", "", diag);
     if (!config || !path)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "no configuration or no path given");
-    cm1e_busfile_problem_t problem = {0};
+    cm1e_config_problem_t problem = {0};
     uint8_t *bytes = NULL;
     size_t size = 0;
     cm1e_error_t error = cm1e_busfile_read(path, &bytes, &size, &problem);

@@ -199,7 +199,7 @@ const cm1e_busfile_integer_range_t cm1e_busfile_integer_ranges[] = {
     {"k37", 0, 99},
     {"method", -6, 4},       /* UG 6.2.4, BR 6.4.1 */
     {"gear_numerator", 1, 1000000}, {"gear_denominator", 1, 1000000},
-    {"cam_points", CM1E_LEAST_CAM_POINTS, CM1E_MOST_CAM_POINTS},
+    {"cam_points", CM1E_CAM_POINTS_MINIMUM, CM1E_CAM_POINTS_MAXIMUM},
     {"limit_positive", 1, 4}, {"limit_negative", 1, 4}, {"home", 1, 4},
     {NULL, INT32_MIN, INT32_MAX},
 };

@@ -3,7 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "busfile/check.h"
+#include "config/ranges.h"
+#include "config/interface.h"
 #include "device/bridge.h"
 #include "device/place.h"
 #include "device/unit.h"
@@ -22,7 +23,7 @@ static bool bus_wrong(const check_t *check, const char *key, const char *format,
     return false;
 }
 
-bool cm1e_busfile_axis_wrong(const check_t *check, const char *key, const char *format, ...)
+bool cm1e_config_axis_wrong(const check_t *check, const char *key, const char *format, ...)
 {
     snprintf(check->problem->path, sizeof check->problem->path, "axes[%u].%s", check->index, key);
     int length = snprintf(check->problem->text, sizeof check->problem->text, "axis %s: %s ", check->name, key);
@@ -48,11 +49,6 @@ static bool is_text(const char *text, size_t size)
 #define NO_TEXT "is no text that ends within %zu bytes and holds no control characters"
 
 /* ---- the bus ----------------------------------------------------------------------------------------------------- */
-
-static bool is_simulated(const char *interface_name)
-{
-    return interface_name[0] == '\0' || strcmp(interface_name, "sim") == 0 || strncmp(interface_name, "sim:", 4) == 0;
-}
 
 static bool check_cycle_time(const check_t *check)
 {
@@ -87,7 +83,7 @@ static bool check_bus(const check_t *check)
     if (config->second_interface[0] && strcmp(config->second_interface, config->interface_name) == 0)
         return bus_wrong(check, "second_interface", "is %s like the first; expected the other end of the ring",
                          config->second_interface);
-    if (config->virtual_time && !is_simulated(config->interface_name))
+    if (config->virtual_time && !cm1e_interface_is_simulated(config->interface_name))
         return bus_wrong(check, "virtual_time", "is on for the interface %s; expected it with interface sim only",
                          config->interface_name);
     if (config->sim_pdo_order != CM1E_PDO_ORDER_UG_4_4 && config->sim_pdo_order != CM1E_PDO_ORDER_UG_7_2)
@@ -596,7 +592,7 @@ static bool check_channel(const check_t *check)
 static bool check_device(const check_t *check)
 {
     if (!cm1e_axis_has_motor(check->axis))
-        return cm1e_busfile_check_without_motor(check);
+        return cm1e_config_check_without_motor(check);
     return check_channel(check) && check_address(check) && check_motor(check) && check_bridge(check) &&
            check_firmware(check);
 }
@@ -604,9 +600,9 @@ static bool check_device(const check_t *check)
 static bool check_coupling(const check_t *check)
 {
     const unsigned points = check->axis->cam_points;
-    if (points != 0 && (points < CM1E_LEAST_CAM_POINTS || points > CM1E_MOST_CAM_POINTS))
-        return axis_wrong(check, "cam_points", "is %u; expected %d ... %d", points, CM1E_LEAST_CAM_POINTS,
-                          CM1E_MOST_CAM_POINTS);
+    if (points != 0 && (points < CM1E_CAM_POINTS_MINIMUM || points > CM1E_CAM_POINTS_MAXIMUM))
+        return axis_wrong(check, "cam_points", "is %u; expected %d ... %d", points, CM1E_CAM_POINTS_MINIMUM,
+                          CM1E_CAM_POINTS_MAXIMUM);
     return (unsigned)check->axis->coupling_stop <= CM1E_COUPLING_STOP_KEEP_RATIO ||
            axis_wrong(check, "coupling_stop", "is %d; expected one of the enumeration",
                       (int)check->axis->coupling_stop);
@@ -627,7 +623,7 @@ static bool check_axis(check_t *check)
            check_in_position(check) && check_sim(check);
 }
 
-bool cm1e_busfile_check(const cm1e_bus_config_t *config, cm1e_busfile_problem_t *problem)
+bool cm1e_config_find_problem(const cm1e_bus_config_t *config, cm1e_config_problem_t *problem)
 {
     check_t check = {.config = config, .problem = problem};
     if (config->axis_count > CM1E_MAX_AXES) {

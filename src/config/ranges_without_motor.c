@@ -1,5 +1,5 @@
 /* What an axis without a motor has to leave out of its entry. */
-#include "busfile/check.h"
+#include "config/ranges.h"
 
 static bool any_input(const cm1e_input_config_t *inputs)
 {
@@ -21,7 +21,7 @@ static bool any_sim(const cm1e_sim_axis_config_t *sim)
 }
 
 /* What means nothing without a motor; of an encoder also what is said of motions. */
-bool cm1e_busfile_check_without_motor(const check_t *check)
+bool cm1e_config_check_without_motor(const check_t *check)
 {
     const cm1e_axis_config_t *axis = check->axis;
     const bool encoder = axis->type == CM1E_AXIS_ENCODER, by_position = axis->address_kind == CM1E_ADDRESS_POSITION;
