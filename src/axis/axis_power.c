@@ -169,11 +169,13 @@ bool cm1e_axis_powered(const cm1e_axis_t *axis)
     return axis->energized && axis->drive.feedback.state == OPERATION_ENABLED;
 }
 
-/* The enabled drive is taken over (note 5); the set-point begins where the motor is in this very cycle. */
+/* The enabled drive is taken over (note 5); the set-point begins where the motor is in this very cycle. It does so too
+ * where power came back within the ramp of a step that pushed: the set-point has ended where the motor cannot go. */
 static void take_over(cm1e_axis_t *axis)
 {
-    if (axis->activity == ACTIVITY_FREE)
+    if (axis->activity == ACTIVITY_FREE || axis->stepping.pushing)
         cm1e_axis_set_to_actual(axis);
+    axis->stepping.pushing = false;
     axis->activity = ACTIVITY_HOLD;
     axis->energized = true;
     cm1e_axis_apply_limits(axis); /* without torque it may have been turned over the end of the drive's counts */

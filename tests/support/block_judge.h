@@ -347,6 +347,7 @@ static struct watched_axis {
     bool resting;
     cm1e_motion_limits_t maximum, most; /**< of the axis; largest since it was at rest */
     bool lost;                 /**< the motor did not follow it */
+    bool disabled;
     double units;              /**< u; what its position was called */
     double far;                /**< u; largest_number() */
     double lower, upper;       /**< u; software limits */
@@ -438,7 +439,8 @@ static inline void pause_of_master(int64_t pause_ns)
 
 /** No limit of the axis is exceeded, nothing jumps: position, velocity and acceleration of two cycles fit together. A
  *  ramp of ErrorStop has no limit of jerk, and may begin anew where the motor is; nor has a stop that would else run
- *  over a software limit. A set-point that the motor has lost may be found again where the motor is. */
+ *  over a software limit. A set-point that the motor has lost may be found again where the motor is; so may that of an axis
+ *  that is enabled again before its torque was gone. */
 /** Parameters may be changed under way: what was planned before keeps to what they were. */
 static const cm1e_motion_limits_t *limits_in_force(void)
 {
@@ -498,7 +500,9 @@ static inline void watch_set_point(void)
                          watched.rough;
     const bool hard = is_hard || watched.hard;
     const double largest = fmax(most->acceleration, most->deceleration), slack = 1.0 + 1e-6;
-    if (ours && watched.ours && !hard && !watched.lost && !watch_silence()) {
+    const bool taken_over = watched.disabled && axis->state == CM1E_AXIS_STANDSTILL && v == 0.0 && a == 0.0 &&
+                            cm1e_position_minus(axis->set, axis_actual(axis)) == 0.0;
+    if (ours && watched.ours && !hard && !watched.lost && !taken_over && !watch_silence()) {
         const double way = cm1e_position_minus(axis->set, watched.set) / axis->scale;
         const double jerk = fabs(a - watched.acceleration) / t, gain = fabs(v - watched.velocity);
         const double rounding = rounding_of(axis, JUDGED_MOST) + 4e-16 * fmax(far, watched.far);
@@ -517,6 +521,7 @@ static inline void watch_set_point(void)
     watched.hard = is_hard;
     watched.moving += ours && v != 0.0;
     watched.ours = ours;
+    watched.disabled = axis->state == CM1E_AXIS_DISABLED;
     watched.set = axis->set;
     watched.far = far;
     watched.units = cm1e_axis_units(axis, axis->set);

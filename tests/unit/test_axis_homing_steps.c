@@ -877,6 +877,35 @@ static void test_mc_stop_at_every_cycle(void)
     TEST_ASSERT_TRUE(bench_info().homed); /* the sequence itself was right */
 }
 
+/* Power that comes back within the ramp, before the torque was gone: the motor is relieved with it, and a later MC_Stop
+ * has nothing to take back. */
+static void test_power_back_within_the_ramp_relieves_the_motor(void)
+{
+    for (int gap = 1; gap <= 40; gap++) {
+        limits_there = false;
+        step = block(1, 60.0);
+        step.detection_ns = 5000 * MS_IN_NS;
+        begin_at(59000);
+        start(0.2, 0.0);
+        for (int i = 0; i < 2000 && bus.torque < 300; i++)
+            bench_cycles(1);
+        TEST_ASSERT_GREATER_OR_EQUAL_INT(300, bus.torque);
+        bench_power(false);
+        bench_cycles(gap);
+        bench_power(true);
+        bench_cycles(50); /* of the ramp, and of a drive that is being disabled meanwhile */
+        TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+        expect_standing();
+        const int32_t target = bus.target_position;
+        cm1e_axis_hold_stop(axis, bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_STOP}), false);
+        bench_cycles(200);
+        TEST_ASSERT_EQUAL_INT32(target, bus.target_position);
+        TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+        bench_end();
+        configure(false);
+    }
+}
+
 /* What a stop had to relieve is forgotten without torque: a later MC_Stop is one as any other. */
 static void test_power_off_while_a_stop_relieves_leaves_nothing_behind(void)
 {
@@ -1027,6 +1056,7 @@ int main(void)
     RUN_TEST(test_homing_takes_no_move_between_its_steps);
     RUN_TEST(test_software_limits_hold_for_the_last_move_only);
     RUN_TEST(test_mc_stop_at_every_cycle);
+    RUN_TEST(test_power_back_within_the_ramp_relieves_the_motor);
     RUN_TEST(test_power_off_while_a_stop_relieves_leaves_nothing_behind);
     RUN_TEST(test_power_off_at_every_cycle);
     RUN_TEST(test_direction_disabled_at_every_cycle);
