@@ -57,6 +57,9 @@ static double turn_counts(const cm1e_axis_t *axis)
 /* n / d with n >= 0, as a double, without losing the fraction of a large quotient. */
 static double quotient(wide_t n, int64_t d) { return (double)(int64_t)(n / d) + (double)(int64_t)(n % d) / (double)d; }
 
+/* What the arithmetic of a turn of so many counts rounds. */
+static double turn_rounding(double turn) { return rounding_counts + 4.0 * DBL_EPSILON * turn; }
+
 /* In which turn a position from the origin is, and how many counts from its beginning; 0 <= phase < a turn. The
  * beginning of a turn that is no whole number of counts is rounded, perhaps to less: it belongs to its turn all the
  * same. */
@@ -79,7 +82,7 @@ static int64_t turn_of(const cm1e_axis_t *axis, position_t position, double *pha
     }
     *phase = quotient(rest, denominator) + position.fraction;
     const double all = turn_counts(axis);
-    if (*phase >= all - rounding_counts - 4.0 * DBL_EPSILON * all) { /* by the fraction of a count */
+    if (*phase >= all - turn_rounding(all)) { /* by the fraction of a count */
         *phase = fmax(*phase - all, 0.0);
         turn++;
     }
@@ -172,13 +175,13 @@ static double repetitions(double way, double turn, double stop, bool positive)
     return positive ? ceil((stop - same_counts - way) / turn) : floor((stop + same_counts - way) / turn);
 }
 
-/* Both ways equal: positive. None at all: as the axis moves. */
+/* Both ways equal, but for the rounding of their numbers: positive. None at all: as the axis moves. */
 static bool shortest_is_positive(double way, double turn, double velocity)
 {
     way -= turn * round(way / turn);
     if (fabs(way) <= same_counts)
         return velocity >= 0.0;
-    return way > 0.0 || way <= -turn / 2.0;
+    return way > 0.0 || way <= -turn / 2.0 + turn_rounding(turn);
 }
 
 cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, MC_DIRECTION direction,

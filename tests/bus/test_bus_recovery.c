@@ -67,6 +67,44 @@ START_TEST(power_cycled_slave_comes_back)
 }
 END_TEST
 
+/** Questions for the AL status of a slave that come back unanswered: bit n of `pattern` is the n-th of them. */
+typedef struct questions {
+    uint16_t station;
+    unsigned pattern, asked;
+} questions_t;
+
+static cm1e_tap_verdict_t leave_unanswered(void *context, cm1e_tap_frame_t *frame)
+{
+    enum { FPRD = 4, HEADER = 26, AL_STATUS = 0x0130 };
+    questions_t *questions = context;
+    if (frame->direction != CM1E_TAP_RECEIVED || frame->length <= HEADER || frame->bytes[16] != FPRD ||
+        cm1e_get_u16(frame->bytes + 18) != questions->station || cm1e_get_u16(frame->bytes + 20) != AL_STATUS)
+        return CM1E_TAP_PASS;
+    if (questions->pattern >> questions->asked++ & 1)
+        cm1e_frame_change_working_counter(frame->bytes, frame->length, 0, -1);
+    return CM1E_TAP_PASS;
+}
+
+/** docs/SAFETY.md: a slave is called lost after 3 unanswered questions in a row, neither sooner nor later. */
+START_TEST(three_unanswered_questions_in_a_row_make_a_slave_lost)
+{
+    sim_config(3);
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, 10);
+    questions_t questions = {.station = 0x1002, .pattern = 1 | 3 << 2 | 7 << 5};
+    const unsigned lost_after = 8;
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), leave_unanswered, &questions);
+    while (questions.asked < lost_after) {
+        cycle(bus);
+        ck_assert_int_eq(cm1e_bus_slave_watch(bus, 2).lost, questions.asked == lost_after);
+    }
+    while (questions.asked == lost_after)
+        cycle(bus);
+    ck_assert(!cm1e_bus_slave_watch(bus, 2).lost); /* the next answer says that it is there */
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 START_TEST(without_request_nothing_is_recovered)
 {
     sim_config(2);
@@ -352,6 +390,7 @@ int main(void)
     Suite *suite = suite_create("bus_recovery");
     TCase *tests = tcase_create("recovery");
     tcase_add_loop_test(tests, power_cycled_slave_comes_back, 1, 4);
+    tcase_add_test(tests, three_unanswered_questions_in_a_row_make_a_slave_lost);
     tcase_add_test(tests, without_request_nothing_is_recovered);
     tcase_add_test(tests, unplugged_slaves_trip_their_watchdog_and_come_back_with_the_cable);
     tcase_add_loop_test(tests, recovery_survives_lost_frames, 3, 13);

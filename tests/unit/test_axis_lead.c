@@ -335,6 +335,27 @@ static void test_what_it_cannot_follow_is_not_given_to_the_motor(void)
     }
 }
 
+/* With velocity and acceleration kept, a cycle can move the axis by a quarter of acceleration * time squared more or less
+ * than its velocity says: 0.25 * 100 u/s2 * 1 ms2. */
+static void test_a_step_is_within_what_the_acceleration_can_do_in_a_cycle(void)
+{
+    static const struct {
+        double beside;
+        bool kept;
+    } cases[] = {{24e-6, true}, {-24e-6, true}, {26e-6, false}, {-26e-6, false}, {90e-6, false}, {-90e-6, false}};
+    for (size_t n = 0; n < sizeof cases / sizeof cases[0]; n++) {
+        bench_start();
+        led_in_motion();
+        TEST_ASSERT_EQUAL_DOUBLE(100.0, axis->system.acceleration);
+        TEST_ASSERT_EQUAL_DOUBLE(100.0, axis->system.deceleration);
+        lead.position += cases[n].beside;
+        bench_cycles(1);
+        TEST_ASSERT_EQUAL_INT(cases[n].kept ? CM1E_AXIS_SYNCHRONIZED_MOTION : CM1E_AXIS_ERROR_STOP, bench_info().state);
+        if (!cases[n].kept)
+            bench_told("in a cycle whose velocity is good for 0.002 u");
+    }
+}
+
 static void test_standing_in_a_disabled_direction_is_no_error(void)
 {
     bench_enable();
@@ -441,6 +462,7 @@ int main(void)
     RUN_TEST(test_a_leader_without_set_points_stops_the_axis);
     RUN_TEST(test_let_go_in_motion_it_ramps_down);
     RUN_TEST(test_what_it_cannot_follow_is_not_given_to_the_motor);
+    RUN_TEST(test_a_step_is_within_what_the_acceleration_can_do_in_a_cycle);
     RUN_TEST(test_standing_in_a_disabled_direction_is_no_error);
     RUN_TEST(test_after_a_pause_the_leader_begins_anew_from_rest);
     RUN_TEST(test_a_leader_that_goes_on_after_a_pause_as_if_nothing_was_is_not_followed);

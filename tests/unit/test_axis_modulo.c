@@ -180,6 +180,28 @@ static void test_target_is_the_first_repetition_beyond_the_stop(void)
     }
 }
 
+/* Half a turn away, however the numbers of counts and degrees round. */
+static void test_half_a_turn_away_the_shortest_way_is_positive(void)
+{
+    static const uint32_t gears[][2] = {{1, 1}, {3, 1}, {7, 3}, {1, 7}};
+    for (size_t n = 0; n < 2 * sizeof gears / sizeof gears[0]; n++) {
+        fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        cm1e_axis_config_t *config = &bus.config.axes[0];
+        config->gear_numerator = gears[n / 2][0];
+        config->gear_denominator = gears[n / 2][1];
+        config->units_per_revolution = config->modulo_range = 360;
+        config->invert = n % 2;
+        bench_create();
+        for (int from = 0; from < 360; from++) {
+            position_t at, target;
+            TEST_ASSERT_TRUE(cm1e_axis_position_from_units(axis, from, &at));
+            TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_resolve_target(axis, (from + 180) % 360, mcShortestWay, at, 0.0,
+                                                                    0.0, &target));
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, 180.0, cm1e_position_minus(target, at) / axis->scale);
+        }
+    }
+}
+
 static void test_positions_outside_a_turn_and_wrong_directions_are_refused(void)
 {
     static const double wrong[] = {360.0, 360.0001, -1e-12, -1.0, 720.0, NAN, INFINITY, -INFINITY, 1e300};
@@ -354,6 +376,7 @@ int main(void)
     RUN_TEST(test_turns_begin_at_their_multiple_of_a_fraction);
     RUN_TEST(test_random_turns_are_exact);
     RUN_TEST(test_target_is_the_first_repetition_beyond_the_stop);
+    RUN_TEST(test_half_a_turn_away_the_shortest_way_is_positive);
     RUN_TEST(test_positions_outside_a_turn_and_wrong_directions_are_refused);
     RUN_TEST(test_every_direction_takes_its_way);
     RUN_TEST(test_insufficient_braking_distance_goes_on_to_the_next_repetition);

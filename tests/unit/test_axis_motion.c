@@ -579,6 +579,32 @@ static void test_a_motor_that_does_not_follow_ends_in_error_stop(void)
     TEST_ASSERT_NOT_EQUAL_INT(OPERATION_ENABLED, bus.state);
 }
 
+/** Milliseconds for which the torque stays from now on. */
+static int torque_left(void)
+{
+    int cycles = 0;
+    while (bus.state == OPERATION_ENABLED && cycles < 1000) {
+        bench_cycles(1);
+        cycles++;
+    }
+    return cycles;
+}
+
+/** The axis brakes from where the motor is. A motor that stands there has no ramp, and what its feedback shows is old:
+ *  it keeps the torque for 20 ms all the same. */
+static void test_a_motor_that_does_not_follow_has_20_ms_to_brake(void)
+{
+    bench_enable();
+    bench_move_velocity(10.0);
+    bench_cycles(400);
+    bus.blocked = true;
+    while (bench_info().state != CM1E_AXIS_ERROR_STOP)
+        bench_cycles(1);
+    const int torque_ms = torque_left();
+    TEST_ASSERT_GREATER_OR_EQUAL_INT(20, torque_ms);
+    TEST_ASSERT_LESS_OR_EQUAL_INT(23, torque_ms); /* the word to the drive and its answer */
+}
+
 /** MC_Power.Enable FALSE, a motor that does not follow the ramp, and TRUE again in any cycle: the lag is told. */
 static void test_lag_in_the_ramp_to_disabled_is_an_error_whenever_power_comes_again(void)
 {
@@ -647,6 +673,24 @@ static void test_bus_trouble_while_moving_holds_the_target_then_disables(void)
             TEST_ASSERT_EQUAL_INT64(0, worst_step);
             TEST_ASSERT_EQUAL_INT32(target, bus.position);
         }
+}
+
+/** docs/SAFETY.md: torque off after speed / deceleration + 20 ms. */
+static void test_a_lost_bus_leaves_the_torque_for_the_ramp_and_20_ms(void)
+{
+    static const double speeds[] = {0.1, 1.0, 10.0};
+    for (size_t n = 0; n < sizeof speeds / sizeof speeds[0]; n++) {
+        bench_start();
+        bench_enable();
+        bench_move_velocity(speeds[n]);
+        bench_cycles(500);
+        received = health = CM1E_ERROR_BUS_LOST;
+        bench_cycles(1);
+        TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
+        const int bound_ms = (int)(speeds[n] / axis->emergency.deceleration * 1e3) + 20, torque_ms = torque_left();
+        TEST_ASSERT_GREATER_OR_EQUAL_INT(bound_ms, torque_ms);
+        TEST_ASSERT_LESS_OR_EQUAL_INT(bound_ms + 3, torque_ms);
+    }
 }
 
 static double csv_shaft;
@@ -851,7 +895,9 @@ int main(void)
     RUN_TEST(test_a_reversal_into_a_direction_disabled_meanwhile_is_stopped);
     RUN_TEST(test_a_direction_that_a_motion_does_not_need_may_be_disabled);
     RUN_TEST(test_a_motor_that_does_not_follow_ends_in_error_stop);
+    RUN_TEST(test_a_motor_that_does_not_follow_has_20_ms_to_brake);
     RUN_TEST(test_lag_in_the_ramp_to_disabled_is_an_error_whenever_power_comes_again);
+    RUN_TEST(test_a_lost_bus_leaves_the_torque_for_the_ramp_and_20_ms);
     RUN_TEST(test_bus_trouble_while_moving_holds_the_target_then_disables);
     RUN_TEST(test_bus_trouble_while_moving_by_velocity_ramps_down_blindly);
     RUN_TEST(test_bus_trouble_while_disabled_is_no_error_until_enable);
