@@ -68,6 +68,10 @@ set(CM1E_SOEM_DIR ${soem_dir})
 
 add_library(soem_headers INTERFACE)
 target_compile_definitions(soem_headers INTERFACE EC_VER2)
+# SOEM's external symbols get our prefix by macros, the way BoringSSL and LibreSSL rename theirs: a program may link a
+# SOEM of its own beside this one. (objcopy on finished archives would need the same list and breaks -flto.)
+target_compile_options(soem_headers INTERFACE
+  $<BUILD_INTERFACE:-include$<SEMICOLON>${PROJECT_SOURCE_DIR}/src/nic/port/soem_names.h>)
 target_include_directories(soem_headers SYSTEM INTERFACE
   $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src/nic/port>
   $<BUILD_INTERFACE:${soem_dir}/soem>

@@ -8,9 +8,9 @@ static void poll(CM_SendCML_t *fb, const cm1e_axis_t *axis)
 {
     const cm1e_axis_cml_t sent = cm1e_axis_cml_state(axis, fb->Private.command);
     if (sent.state == CM1E_COMMAND_UNKNOWN)
-        fb_fail(&fb->Private, CM1E_ERROR_CANCELLED);
+        cm1e_fb_fail(&fb->Private, CM1E_ERROR_CANCELLED);
     else
-        fb_polled(&fb->Private, sent.state, sent.error);
+        cm1e_fb_polled(&fb->Private, sent.state, sent.error);
 }
 
 static void show_answer(CM_SendCML_t *fb, const cm1e_axis_t *axis)
@@ -29,21 +29,21 @@ void CM_SendCML(CM_SendCML_t *fb)
 {
     cm1e_axis_t *axis = NULL;
     uint32_t ticket = 0;
-    switch (fb_execute(&fb->Private, fb->Axis, fb->Execute, &axis)) {
+    switch (cm1e_fb_execute(&fb->Private, fb->Axis, fb->Execute, &axis)) {
     case FB_STEP_START:
-        fb_started(&fb->Private, cm1e_axis_cml_send(axis, fb->Command, sizeof fb->Command, fb->Timeout,
-                                                    fb->AllowMotion != FALSE, &ticket));
+        cm1e_fb_started(&fb->Private, cm1e_axis_cml_send(axis, fb->Command, sizeof fb->Command, fb->Timeout,
+                                                         fb->AllowMotion != FALSE, &ticket));
         fb->Private.command = ticket;
         break;
     case FB_STEP_POLL: poll(fb, axis); break;
     case FB_STEP_NONE: break;
     }
-    const fb_outputs_t out = fb_outputs(&fb->Private);
+    const fb_outputs_t out = cm1e_fb_outputs(&fb->Private);
     fb->Done = out.done;
     fb->Busy = out.busy;
     fb->Error = out.error;
     fb->ErrorID = out.error_id;
-    axis = out.done || out.error ? fb_axis(&fb->Private) : NULL;
+    axis = out.done || out.error ? cm1e_fb_axis(&fb->Private) : NULL;
     if (axis) {
         show_answer(fb, axis);
     } else {

@@ -20,18 +20,18 @@ static void poll(CM_SetMode_t *fb, const cm1e_axis_t *axis)
 {
     cm1e_error_t error;
     const cm1e_command_state_t state = cm1e_axis_set_mode_state(axis, fb->Private.command, &error);
-    fb_polled_or_cancelled(&fb->Private, state, error);
+    cm1e_fb_polled_or_cancelled(&fb->Private, state, error);
 }
 
 void CM_SetMode(CM_SetMode_t *fb)
 {
     cm1e_axis_t *axis = NULL;
-    switch (fb_execute(&fb->Private, fb->Axis, fb->Execute, &axis)) {
-    case FB_STEP_START: fb_started(&fb->Private, start(fb, axis)); break;
+    switch (cm1e_fb_execute(&fb->Private, fb->Axis, fb->Execute, &axis)) {
+    case FB_STEP_START: cm1e_fb_started(&fb->Private, start(fb, axis)); break;
     case FB_STEP_POLL: poll(fb, axis); break;
     case FB_STEP_NONE: break;
     }
-    const fb_outputs_t out = fb_outputs(&fb->Private);
+    const fb_outputs_t out = cm1e_fb_outputs(&fb->Private);
     fb->Done = out.done;
     fb->Busy = out.busy;
     fb->Error = out.error;

@@ -11,11 +11,11 @@
 /** NULL names no axis, which the axis refuses as any other master that is none. */
 static inline AXIS_REF_t fb_master(const AXIS_REF_t *master) { return master ? *master : (AXIS_REF_t){.Handle = 0}; }
 
-/** fb_motion() for a command that has a coupling. */
-fb_outputs_t fb_couple(cm1e_coupling_private_t *fb, const AXIS_REF_t *slave, BOOL execute, BOOL continuous_update,
-                       const cm1e_axis_command_t *command);
+/** cm1e_fb_motion() for a command that has a coupling. */
+fb_outputs_t cm1e_fb_couple(cm1e_coupling_private_t *fb, const AXIS_REF_t *slave, BOOL execute, BOOL continuous_update,
+                            const cm1e_axis_command_t *command);
 /** A whole block that ends the following: a command without CommandAborted. */
-fb_outputs_t fb_decouple(cm1e_fb_private_t *fb, const AXIS_REF_t *slave, BOOL execute, cm1e_command_kind_t kind);
+fb_outputs_t cm1e_fb_decouple(cm1e_fb_private_t *fb, const AXIS_REF_t *slave, BOOL execute, cm1e_command_kind_t kind);
 
 /** fb_stands() for a block that follows: what may have changed nevertheless is in `status`. `second`: NULL but for
  *  MC_CombineAxes. */

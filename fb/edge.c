@@ -14,9 +14,9 @@ static void *axis_of_handle(UINT handle)
 
 static const fb_object_t an_axis = {.find = axis_of_handle, .none = CM1E_ERROR_FB_AXIS_REF};
 
-cm1e_axis_t *fb_axis(const cm1e_fb_private_t *fb) { return axis_of_handle(fb->axis_handle); }
+cm1e_axis_t *cm1e_fb_axis(const cm1e_fb_private_t *fb) { return axis_of_handle(fb->axis_handle); }
 
-void fb_fail(cm1e_fb_private_t *fb, cm1e_error_t error) { set_state(fb, FB_ERROR, error); }
+void cm1e_fb_fail(cm1e_fb_private_t *fb, cm1e_error_t error) { set_state(fb, FB_ERROR, error); }
 
 /** TRUE once per rising edge of Execute or Enable. */
 static bool rising_edge(cm1e_fb_private_t *fb, BOOL trigger)
@@ -31,7 +31,7 @@ static void *latch(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *h
     fb->axis_handle = handle ? *handle : 0;
     void *object = kind->find(fb->axis_handle);
     if (!object)
-        fb_fail(fb, kind->none);
+        cm1e_fb_fail(fb, kind->none);
     return object;
 }
 
@@ -39,18 +39,19 @@ static void *latch(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *h
 static void *check(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle)
 {
     if (!handle || *handle != fb->axis_handle) {
-        fb_fail(fb, CM1E_ERROR_FB_AXIS_CHANGED);
+        cm1e_fb_fail(fb, CM1E_ERROR_FB_AXIS_CHANGED);
         return NULL;
     }
     void *object = kind->find(fb->axis_handle);
     if (!object)
-        fb_fail(fb, kind->none);
+        cm1e_fb_fail(fb, kind->none);
     return object;
 }
 
 /* ---- Execute --------------------------------------------------------------------------------------------------- */
 
-fb_step_t fb_execute_on(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle, BOOL execute, void **object)
+fb_step_t cm1e_fb_execute_on(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle, BOOL execute,
+                             void **object)
 {
     const bool edge = rising_edge(fb, execute);
     if (fb->state == FB_BUSY) {
@@ -69,21 +70,21 @@ fb_step_t fb_execute_on(cm1e_fb_private_t *fb, const fb_object_t *kind, const UI
     return FB_STEP_NONE;
 }
 
-fb_step_t fb_execute(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, cm1e_axis_t **axis)
+fb_step_t cm1e_fb_execute(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, cm1e_axis_t **axis)
 {
     void *object = NULL;
-    const fb_step_t step = fb_execute_on(fb, &an_axis, reference ? &reference->Handle : NULL, execute, &object);
+    const fb_step_t step = cm1e_fb_execute_on(fb, &an_axis, reference ? &reference->Handle : NULL, execute, &object);
     *axis = object;
     return step;
 }
 
-void fb_started(cm1e_fb_private_t *fb, cm1e_error_t error)
+void cm1e_fb_started(cm1e_fb_private_t *fb, cm1e_error_t error)
 {
     fb->active = error == CM1E_OK;
     set_state(fb, error == CM1E_OK ? FB_BUSY : FB_ERROR, error);
 }
 
-void fb_polled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error)
+void cm1e_fb_polled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error)
 {
     fb->active = state == CM1E_COMMAND_ACTIVE;
     switch (state) {
@@ -97,15 +98,15 @@ void fb_polled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t e
     }
 }
 
-void fb_polled_or_cancelled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error)
+void cm1e_fb_polled_or_cancelled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error)
 {
     if (state == CM1E_COMMAND_ABORTED || state == CM1E_COMMAND_UNKNOWN)
-        fb_polled(fb, CM1E_COMMAND_ERROR, CM1E_ERROR_CANCELLED);
+        cm1e_fb_polled(fb, CM1E_COMMAND_ERROR, CM1E_ERROR_CANCELLED);
     else
-        fb_polled(fb, state, error);
+        cm1e_fb_polled(fb, state, error);
 }
 
-fb_outputs_t fb_outputs(const cm1e_fb_private_t *fb)
+fb_outputs_t cm1e_fb_outputs(const cm1e_fb_private_t *fb)
 {
     return (fb_outputs_t){
         .done = fb->state == FB_DONE,
@@ -124,38 +125,38 @@ static bool update(cm1e_fb_private_t *fb, cm1e_axis_t *axis, BOOL continuous_upd
     fb->continuous_update = fb->continuous_update && continuous_update;
     const cm1e_error_t error = fb->continuous_update ? cm1e_axis_update(axis, fb->command, command) : CM1E_OK;
     if (error)
-        fb_fail(fb, error);
+        cm1e_fb_fail(fb, error);
     return error == CM1E_OK;
 }
 
-fb_outputs_t fb_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, BOOL continuous_update,
-                       const cm1e_axis_command_t *command)
+fb_outputs_t cm1e_fb_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, BOOL continuous_update,
+                            const cm1e_axis_command_t *command)
 {
-    return fb_motion_unless(CM1E_OK, fb, reference, execute, continuous_update, command);
+    return cm1e_fb_motion_unless(CM1E_OK, fb, reference, execute, continuous_update, command);
 }
 
-fb_outputs_t fb_motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute,
-                              BOOL continuous_update, const cm1e_axis_command_t *command)
+fb_outputs_t cm1e_fb_motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, const AXIS_REF_t *reference,
+                                   BOOL execute, BOOL continuous_update, const cm1e_axis_command_t *command)
 {
     cm1e_command_status_t status = {.state = CM1E_COMMAND_UNKNOWN};
     cm1e_axis_t *axis = NULL;
-    switch (fb_execute(fb, reference, execute, &axis)) {
+    switch (cm1e_fb_execute(fb, reference, execute, &axis)) {
     case FB_STEP_START:
         fb->command = 0;
         fb->continuous_update = continuous_update ? TRUE : FALSE;
-        fb_started(fb, refusal ? refusal : cm1e_axis_start(axis, command, &fb->command));
+        cm1e_fb_started(fb, refusal ? refusal : cm1e_axis_start(axis, command, &fb->command));
         status = cm1e_axis_command_status(axis, fb->command);
         fb->active = status.state == CM1E_COMMAND_ACTIVE;
         break;
     case FB_STEP_POLL:
         if (update(fb, axis, continuous_update, command)) {
             status = cm1e_axis_command_status(axis, fb->command);
-            fb_polled(fb, status.state, status.error);
+            cm1e_fb_polled(fb, status.state, status.error);
         }
         break;
     case FB_STEP_NONE: break;
     }
-    fb_outputs_t out = fb_outputs(fb);
+    fb_outputs_t out = cm1e_fb_outputs(fb);
     out.reached = out.active && status.reached;
     out.synchronizing = out.active && status.synchronizing;
     out.ends = status.ends;
@@ -163,17 +164,18 @@ fb_outputs_t fb_motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, const
     return out;
 }
 
-fb_outputs_t fb_table_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, BOOL continuous_update,
-                             cm1e_command_kind_t kind, MC_BUFFER_MODE buffer_mode, const cm1e_axis_table_t *table)
+fb_outputs_t cm1e_fb_table_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute,
+                                  BOOL continuous_update, cm1e_command_kind_t kind, MC_BUFFER_MODE buffer_mode,
+                                  const cm1e_axis_table_t *table)
 {
     const cm1e_axis_command_t command = {.kind = kind, .buffer_mode = buffer_mode, .table = table};
     const cm1e_error_t refusal = continuous_update ? CM1E_ERROR_UNSUPPORTED : CM1E_OK;
-    return fb_motion_unless(refusal, fb, reference, execute, FALSE, &command);
+    return cm1e_fb_motion_unless(refusal, fb, reference, execute, FALSE, &command);
 }
 
 /* ---- Enable ---------------------------------------------------------------------------------------------------- */
 
-void *fb_enable_on(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle, BOOL enable)
+void *cm1e_fb_enable_on(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle, BOOL enable)
 {
     if (rising_edge(fb, enable)) {
         set_state(fb, FB_BUSY, CM1E_OK);
@@ -184,20 +186,20 @@ void *fb_enable_on(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *h
     return fb->state == FB_BUSY ? check(fb, kind, handle) : NULL;
 }
 
-const cm1e_axis_t *fb_enable(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable)
+const cm1e_axis_t *cm1e_fb_enable(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable)
 {
-    return fb_enable_on(fb, &an_axis, reference ? &reference->Handle : NULL, enable);
+    return cm1e_fb_enable_on(fb, &an_axis, reference ? &reference->Handle : NULL, enable);
 }
 
-BOOL fb_read(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, cm1e_axis_info_t *info)
+BOOL cm1e_fb_read(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, cm1e_axis_info_t *info)
 {
-    const cm1e_axis_t *axis = fb_enable(fb, reference, enable);
+    const cm1e_axis_t *axis = cm1e_fb_enable(fb, reference, enable);
     if (axis)
         cm1e_axis_get(axis, info);
     return axis != NULL;
 }
 
-fb_reading_t fb_reading(const cm1e_fb_private_t *fb, const void *axis, cm1e_error_t passing)
+fb_reading_t cm1e_fb_reading(const cm1e_fb_private_t *fb, const void *axis, cm1e_error_t passing)
 {
     const bool passes = axis && passing;
     return (fb_reading_t){

@@ -1,9 +1,9 @@
 /**
  * @file edge.h
- * The edge logic of all blocks, once (PLCopen Part 1 v2.0, 2.4.1). A block of the Execute type asks fb_execute() what
- * to do in this call, does it, reports the result and copies fb_outputs(); blocks of the Enable type do the same with
- * fb_enable(). The axis is latched at the rising edge: giving a busy block another axis is an error of the block and
- * leaves both axes alone. All @rt cycle.
+ * The edge logic of all blocks, once (PLCopen Part 1 v2.0, 2.4.1). A block of the Execute type asks cm1e_fb_execute()
+ * what to do in this call, does it, reports the result and copies cm1e_fb_outputs(). Blocks of the Enable type do the
+ * same with cm1e_fb_enable(). The axis is latched at the rising edge: giving a busy block another axis is an error of
+ * the block and leaves both axes alone. All @rt cycle.
  */
 #ifndef CM1E_FB_EDGE_H
 #define CM1E_FB_EDGE_H
@@ -17,11 +17,11 @@ typedef enum fb_state { FB_IDLE = 0, FB_BUSY, FB_DONE, FB_ABORTED, FB_ERROR } fb
 /** What a block of the Execute type has to do in this call. */
 typedef enum fb_step {
     FB_STEP_NONE = 0,
-    FB_STEP_START, /**< a rising edge: start, then fb_started() */
-    FB_STEP_POLL,  /**< busy: ask, then fb_polled() */
+    FB_STEP_START, /**< a rising edge: start, then cm1e_fb_started() */
+    FB_STEP_POLL,  /**< busy: ask, then cm1e_fb_polled() */
 } fb_step_t;
 
-typedef struct fb_outputs {
+typedef struct cm1e_fb_outputs {
     BOOL done, busy, active, aborted, error;
     WORD error_id;
     BOOL reached;  /**< InVelocity and its like (2.4.1): TRUE at times while Busy and Active */
@@ -37,30 +37,31 @@ typedef struct fb_object {
 } fb_object_t;
 
 /** `handle` NULL: none was given. `*object` is valid unless the step is FB_STEP_NONE. */
-fb_step_t fb_execute_on(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle, BOOL execute,
-                        void **object);
+fb_step_t cm1e_fb_execute_on(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle, BOOL execute,
+                             void **object);
 /** `*axis` is valid unless the step is FB_STEP_NONE. */
-fb_step_t fb_execute(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, cm1e_axis_t **axis);
+fb_step_t cm1e_fb_execute(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, cm1e_axis_t **axis);
 /** Result of the start. */
-void fb_started(cm1e_fb_private_t *fb, cm1e_error_t error);
+void cm1e_fb_started(cm1e_fb_private_t *fb, cm1e_error_t error);
 /** What became of it so far. */
-void fb_polled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error);
+void cm1e_fb_polled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error);
 /** The same for a block without CommandAborted: what another one has taken the place of is CM1E_ERROR_CANCELLED. */
-void fb_polled_or_cancelled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error);
-fb_outputs_t fb_outputs(const cm1e_fb_private_t *fb);
+void cm1e_fb_polled_or_cancelled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error);
+fb_outputs_t cm1e_fb_outputs(const cm1e_fb_private_t *fb);
 
 /** A whole block of the Execute type that is one motion command: starts it at the edge, hands on new inputs while
  *  ContinuousUpdate says so (2.4.6: TRUE at the edge and ever since), and shows what has become of it. A refused update
  *  is an error of the block; the motion goes on without it by the last good inputs. */
-fb_outputs_t fb_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, BOOL continuous_update,
-                       const cm1e_axis_command_t *command);
+fb_outputs_t cm1e_fb_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, BOOL continuous_update,
+                            const cm1e_axis_command_t *command);
 /** The same for a block that has a reason of its own not to start: `refusal` is an error at the edge. */
-fb_outputs_t fb_motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute,
-                              BOOL continuous_update, const cm1e_axis_command_t *command);
+fb_outputs_t cm1e_fb_motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, const AXIS_REF_t *reference,
+                                   BOOL execute, BOOL continuous_update, const cm1e_axis_command_t *command);
 /** The same for a motion along a table, which is locked to time: nothing could be changed on the way, so TRUE for
  *  ContinuousUpdate is refused. */
-fb_outputs_t fb_table_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, BOOL continuous_update,
-                             cm1e_command_kind_t kind, MC_BUFFER_MODE buffer_mode, const cm1e_axis_table_t *table);
+fb_outputs_t cm1e_fb_table_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute,
+                                  BOOL continuous_update, cm1e_command_kind_t kind, MC_BUFFER_MODE buffer_mode,
+                                  const cm1e_axis_table_t *table);
 /** TRUE: no edge, the same axis, no inputs to hand on, and its command was the active one. */
 static inline bool fb_same(const cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute)
 {
@@ -87,25 +88,25 @@ static inline bool fb_stands(const cm1e_fb_private_t *fb, const AXIS_REF_t *refe
 #define FB_SHOW_ACTIVE(fb, out) (FB_SHOW(fb, out), (fb)->Active = (out).active)
 
 /** The axis that the block works on, latched at its last rising edge; NULL: none. */
-cm1e_axis_t *fb_axis(const cm1e_fb_private_t *fb);
+cm1e_axis_t *cm1e_fb_axis(const cm1e_fb_private_t *fb);
 /** An error of the block itself, shown until Execute or Enable falls. */
-void fb_fail(cm1e_fb_private_t *fb, cm1e_error_t error);
+void cm1e_fb_fail(cm1e_fb_private_t *fb, cm1e_error_t error);
 
 /** The Enable type: what is to be read, or NULL when disabled or in error. */
-void *fb_enable_on(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle, BOOL enable);
+void *cm1e_fb_enable_on(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle, BOOL enable);
 /** The same for an axis: the axis to be read, or NULL when disabled or in error (2.2.3: such an error needs a new
  *  edge). */
-const cm1e_axis_t *fb_enable(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable);
+const cm1e_axis_t *cm1e_fb_enable(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable);
 /** The same for blocks that read: TRUE and a copy of the axis's data when it can be read. */
-BOOL fb_read(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, cm1e_axis_info_t *info);
+BOOL cm1e_fb_read(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, cm1e_axis_info_t *info);
 
 /** What a block that reads shows: a `passing` error keeps Busy TRUE, Valid comes back by itself (2.2.3, figure 5). */
-typedef struct fb_reading {
+typedef struct cm1e_fb_reading {
     BOOL valid, busy, error;
     WORD error_id;
 } fb_reading_t;
-/** `axis`: what fb_enable() gave. */
-fb_reading_t fb_reading(const cm1e_fb_private_t *fb, const void *axis, cm1e_error_t passing);
+/** `axis`: what cm1e_fb_enable() gave. */
+fb_reading_t cm1e_fb_reading(const cm1e_fb_private_t *fb, const void *axis, cm1e_error_t passing);
 
 /** Nothing is queued in this version (2.4.2 for blocks that move nothing). */
 static inline cm1e_error_t fb_refuse_execution_mode(MC_EXECUTION_MODE mode)

@@ -8,49 +8,49 @@ static void *group_of_handle(UINT handle)
 
 static const fb_object_t a_group = {.find = group_of_handle, .none = CM1E_ERROR_GROUP_REF};
 
-cm1e_group_t *fb_group(const cm1e_fb_private_t *fb) { return group_of_handle(fb->axis_handle); }
+cm1e_group_t *cm1e_fb_group(const cm1e_fb_private_t *fb) { return group_of_handle(fb->axis_handle); }
 
-fb_step_t fb_group_execute(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute,
-                           cm1e_group_t **group)
+fb_step_t cm1e_fb_group_execute(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute,
+                                cm1e_group_t **group)
 {
     void *object = NULL;
-    const fb_step_t step = fb_execute_on(fb, &a_group, reference ? &reference->Handle : NULL, execute, &object);
+    const fb_step_t step = cm1e_fb_execute_on(fb, &a_group, reference ? &reference->Handle : NULL, execute, &object);
     *group = object;
     return step;
 }
 
-fb_outputs_t fb_group_act(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute,
-                          cm1e_error_t (*act)(cm1e_group_t *group))
+fb_outputs_t cm1e_fb_group_act(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute,
+                               cm1e_error_t (*act)(cm1e_group_t *group))
 {
     cm1e_group_t *group = NULL;
-    if (fb_group_execute(fb, reference, execute, &group) == FB_STEP_START) {
+    if (cm1e_fb_group_execute(fb, reference, execute, &group) == FB_STEP_START) {
         const cm1e_error_t error = act(group);
-        fb_polled(fb, error ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE, error);
+        cm1e_fb_polled(fb, error ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE, error);
     }
-    return fb_outputs(fb);
+    return cm1e_fb_outputs(fb);
 }
 
-fb_outputs_t fb_group_motion(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute,
-                             const cm1e_group_command_t *command)
+fb_outputs_t cm1e_fb_group_motion(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute,
+                                  const cm1e_group_command_t *command)
 {
     cm1e_command_status_t status;
     cm1e_group_t *group = NULL;
-    switch (fb_group_execute(fb, reference, execute, &group)) {
+    switch (cm1e_fb_group_execute(fb, reference, execute, &group)) {
     case FB_STEP_START:
         fb->command = 0;
-        fb_started(fb, cm1e_group_start(group, command, &fb->command));
+        cm1e_fb_started(fb, cm1e_group_start(group, command, &fb->command));
         fb->active = cm1e_group_command_status(group, fb->command).state == CM1E_COMMAND_ACTIVE;
         break;
     case FB_STEP_POLL:
         status = cm1e_group_command_status(group, fb->command);
-        fb_polled(fb, status.state, status.error);
+        cm1e_fb_polled(fb, status.state, status.error);
         break;
     case FB_STEP_NONE: break;
     }
-    return fb_outputs(fb);
+    return cm1e_fb_outputs(fb);
 }
 
-cm1e_group_t *fb_group_enable(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL enable)
+cm1e_group_t *cm1e_fb_group_enable(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL enable)
 {
-    return fb_enable_on(fb, &a_group, reference ? &reference->Handle : NULL, enable);
+    return cm1e_fb_enable_on(fb, &a_group, reference ? &reference->Handle : NULL, enable);
 }

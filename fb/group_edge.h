@@ -12,18 +12,18 @@
 #include "group/group.h"
 
 /** `*group` is valid unless the step is FB_STEP_NONE. */
-fb_step_t fb_group_execute(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute,
-                           cm1e_group_t **group);
+fb_step_t cm1e_fb_group_execute(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute,
+                                cm1e_group_t **group);
 /** The group that the block works on, latched at its last rising edge; NULL: none. */
-cm1e_group_t *fb_group(const cm1e_fb_private_t *fb);
+cm1e_group_t *cm1e_fb_group(const cm1e_fb_private_t *fb);
 /** A whole block that does something to a group at once, when its edge comes: Done or Error in the same call. */
-fb_outputs_t fb_group_act(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute,
-                          cm1e_error_t (*act)(cm1e_group_t *group));
+fb_outputs_t cm1e_fb_group_act(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute,
+                               cm1e_error_t (*act)(cm1e_group_t *group));
 /** A whole block that is one command. */
-fb_outputs_t fb_group_motion(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute,
-                             const cm1e_group_command_t *command);
+fb_outputs_t cm1e_fb_group_motion(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute,
+                                  const cm1e_group_command_t *command);
 /** The Enable type: the group to be read, or NULL when disabled or in error. */
-cm1e_group_t *fb_group_enable(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL enable);
+cm1e_group_t *cm1e_fb_group_enable(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL enable);
 
 /** TRUE: nothing has happened to the block, and its outputs stand as they are. */
 static inline bool fb_group_stands(const cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute)

@@ -10,12 +10,12 @@ static cm1e_error_t abort_trigger(const MC_AbortTrigger_t *fb, cm1e_axis_t *axis
 void MC_AbortTrigger(MC_AbortTrigger_t *fb)
 {
     cm1e_axis_t *axis = NULL;
-    switch (fb_execute(&fb->Private, fb->Axis, fb->Execute, &axis)) {
-    case FB_STEP_START: fb_started(&fb->Private, abort_trigger(fb, axis)); break;
-    case FB_STEP_POLL: fb_polled(&fb->Private, CM1E_COMMAND_DONE, CM1E_OK); break;
+    switch (cm1e_fb_execute(&fb->Private, fb->Axis, fb->Execute, &axis)) {
+    case FB_STEP_START: cm1e_fb_started(&fb->Private, abort_trigger(fb, axis)); break;
+    case FB_STEP_POLL: cm1e_fb_polled(&fb->Private, CM1E_COMMAND_DONE, CM1E_OK); break;
     case FB_STEP_NONE: break;
     }
-    const fb_outputs_t out = fb_outputs(&fb->Private);
+    const fb_outputs_t out = cm1e_fb_outputs(&fb->Private);
     fb->Done = out.done;
     fb->Busy = out.busy;
     fb->Error = out.error;

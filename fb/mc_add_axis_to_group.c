@@ -3,11 +3,11 @@
 void MC_AddAxisToGroup(MC_AddAxisToGroup_t *fb)
 {
     cm1e_group_t *group = NULL;
-    if (fb_group_execute(&fb->Private, fb->AxesGroup, fb->Execute, &group) == FB_STEP_START) {
+    if (cm1e_fb_group_execute(&fb->Private, fb->AxesGroup, fb->Execute, &group) == FB_STEP_START) {
         const AXIS_REF_t none = {0};
         const cm1e_error_t error = cm1e_group_add(group, fb->Axis ? *fb->Axis : none, fb->IdentInGroup);
-        fb_polled(&fb->Private, error ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE, error);
+        cm1e_fb_polled(&fb->Private, error ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE, error);
     }
-    const fb_outputs_t out = fb_outputs(&fb->Private);
+    const fb_outputs_t out = cm1e_fb_outputs(&fb->Private);
     FB_SHOW_DONE(fb, out);
 }

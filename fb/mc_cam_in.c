@@ -31,7 +31,7 @@ void MC_CamIn(MC_CamIn_t *fb)
         .buffer_mode = fb->BufferMode,
         .coupling = &coupling,
     };
-    const fb_outputs_t out = fb_couple(&fb->Private, fb->Slave, fb->Execute, fb->ContinuousUpdate, &command);
+    const fb_outputs_t out = cm1e_fb_couple(&fb->Private, fb->Slave, fb->Execute, fb->ContinuousUpdate, &command);
     fb->InSync = out.reached;
     show_ends(fb, out.ends);
     FB_SHOW_ACTIVE(fb, out);

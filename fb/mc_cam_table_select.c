@@ -15,14 +15,14 @@ static cm1e_error_t take(MC_CamTableSelect_t *fb, cm1e_axis_t *slave)
 void MC_CamTableSelect(MC_CamTableSelect_t *fb)
 {
     cm1e_axis_t *slave = NULL;
-    switch (fb_execute(&fb->Private, fb->Slave, fb->Execute, &slave)) {
-    case FB_STEP_START: fb_started(&fb->Private, take(fb, slave)); break;
+    switch (cm1e_fb_execute(&fb->Private, fb->Slave, fb->Execute, &slave)) {
+    case FB_STEP_START: cm1e_fb_started(&fb->Private, take(fb, slave)); break;
     case FB_STEP_POLL: /* done at the edge */
-        fb_polled(&fb->Private, CM1E_COMMAND_DONE, CM1E_OK);
+        cm1e_fb_polled(&fb->Private, CM1E_COMMAND_DONE, CM1E_OK);
         break;
     case FB_STEP_NONE: break;
     }
-    const fb_outputs_t out = fb_outputs(&fb->Private);
+    const fb_outputs_t out = cm1e_fb_outputs(&fb->Private);
     fb->Done = out.done;
     fb->Busy = out.busy;
     fb->Error = out.error;

@@ -29,7 +29,7 @@ void MC_CombineAxes(MC_CombineAxes_t *fb)
         .buffer_mode = fb->BufferMode,
         .coupling = &coupling,
     };
-    const fb_outputs_t out = fb_couple(&fb->Private, fb->Slave, fb->Execute, fb->ContinuousUpdate, &command);
+    const fb_outputs_t out = cm1e_fb_couple(&fb->Private, fb->Slave, fb->Execute, fb->ContinuousUpdate, &command);
     fb->InSync = out.reached;
     FB_SHOW_ACTIVE(fb, out);
 }

@@ -275,14 +275,14 @@ static cm1e_error_t operate(MC_DigitalCamSwitch_t *fb, const cm1e_axis_t *axis, 
 void MC_DigitalCamSwitch(MC_DigitalCamSwitch_t *fb)
 {
     cm1e_cam_private_t *p = &fb->Private;
-    const cm1e_axis_t *axis = fb_enable(&p->common, fb->Axis, fb->Enable);
+    const cm1e_axis_t *axis = cm1e_fb_enable(&p->common, fb->Axis, fb->Enable);
     const TIME called = p->called;
     cm1e_error_t error = CM1E_OK;
     if (axis) {
         p->called = cm1e_axis_time(axis);
         error = operate(fb, axis, called);
     }
-    const fb_reading_t out = fb_reading(&p->common, axis, error);
+    const fb_reading_t out = cm1e_fb_reading(&p->common, axis, error);
     if (!out.valid && (p->running || p->output || error)) {
         outputs_off(fb);
         forget(p);

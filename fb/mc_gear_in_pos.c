@@ -23,7 +23,7 @@ void MC_GearInPos(MC_GearInPos_t *fb)
         .buffer_mode = fb->BufferMode,
         .coupling = &coupling,
     };
-    const fb_outputs_t out = fb_couple(&fb->Private, fb->Slave, fb->Execute, FALSE, &command);
+    const fb_outputs_t out = cm1e_fb_couple(&fb->Private, fb->Slave, fb->Execute, FALSE, &command);
     fb->StartSync = out.synchronizing;
     fb->InSync = out.reached;
     FB_SHOW_ACTIVE(fb, out);

@@ -2,7 +2,7 @@
 
 void MC_GearOut(MC_GearOut_t *fb)
 {
-    const fb_outputs_t out = fb_decouple(&fb->Private, fb->Slave, fb->Execute, CM1E_COMMAND_GEAR_OUT);
+    const fb_outputs_t out = cm1e_fb_decouple(&fb->Private, fb->Slave, fb->Execute, CM1E_COMMAND_GEAR_OUT);
     fb->Done = out.done;
     fb->Busy = out.busy;
     fb->Error = out.error;

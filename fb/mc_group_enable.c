@@ -2,6 +2,6 @@
 
 void MC_GroupEnable(MC_GroupEnable_t *fb)
 {
-    const fb_outputs_t out = fb_group_act(&fb->Private, fb->AxesGroup, fb->Execute, cm1e_group_enable);
+    const fb_outputs_t out = cm1e_fb_group_act(&fb->Private, fb->AxesGroup, fb->Execute, cm1e_group_enable);
     FB_SHOW_DONE(fb, out);
 }

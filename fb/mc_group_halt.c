@@ -10,6 +10,6 @@ void MC_GroupHalt(MC_GroupHalt_t *fb)
         .jerk = fb->Jerk,
         .buffer_mode = fb->BufferMode,
     };
-    const fb_outputs_t out = fb_group_motion(&fb->Private, fb->AxesGroup, fb->Execute, &command);
+    const fb_outputs_t out = cm1e_fb_group_motion(&fb->Private, fb->AxesGroup, fb->Execute, &command);
     FB_SHOW_GROUP_MOTION(fb, out);
 }

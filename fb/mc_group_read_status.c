@@ -2,11 +2,11 @@
 
 void MC_GroupReadStatus(MC_GroupReadStatus_t *fb)
 {
-    cm1e_group_t *group = fb_group_enable(&fb->Private, fb->AxesGroup, fb->Enable);
+    cm1e_group_t *group = cm1e_fb_group_enable(&fb->Private, fb->AxesGroup, fb->Enable);
     cm1e_group_info_t info = {.state = CM1E_GROUP_STATE_COUNT};
     if (group)
         cm1e_group_get(group, &info);
-    const fb_reading_t out = fb_reading(&fb->Private, group, CM1E_OK);
+    const fb_reading_t out = cm1e_fb_reading(&fb->Private, group, CM1E_OK);
     FB_SHOW_READING(fb, out);
     fb->GroupMoving = info.state == CM1E_GROUP_MOVING;
     fb->GroupHoming = FALSE;

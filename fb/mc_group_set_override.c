@@ -10,8 +10,8 @@ static cm1e_error_t set_factors(cm1e_group_t *group, const MC_GroupSetOverride_t
 
 void MC_GroupSetOverride(MC_GroupSetOverride_t *fb)
 {
-    cm1e_group_t *group = fb_group_enable(&fb->Private, fb->AxesGroup, fb->Enable);
-    const fb_reading_t out = fb_reading(&fb->Private, group, group ? set_factors(group, fb) : CM1E_OK);
+    cm1e_group_t *group = cm1e_fb_group_enable(&fb->Private, fb->AxesGroup, fb->Enable);
+    const fb_reading_t out = cm1e_fb_reading(&fb->Private, group, group ? set_factors(group, fb) : CM1E_OK);
     fb->Enabled = out.valid;
     fb->Busy = out.busy;
     fb->Error = out.error;

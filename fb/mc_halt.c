@@ -10,7 +10,7 @@ void MC_Halt(MC_Halt_t *fb)
         .jerk = fb->Jerk,
         .buffer_mode = fb->BufferMode,
     };
-    const fb_outputs_t out = fb_motion(&fb->Private, fb->Axis, fb->Execute, FALSE, &command);
+    const fb_outputs_t out = cm1e_fb_motion(&fb->Private, fb->Axis, fb->Execute, FALSE, &command);
     fb->Done = out.done;
     FB_SHOW_ACTIVE(fb, out);
 }

@@ -7,7 +7,7 @@ void MC_HaltSuperimposed(MC_HaltSuperimposed_t *fb)
         .deceleration = fb->Deceleration,
         .jerk = fb->Jerk,
     };
-    const fb_outputs_t out = fb_motion(&fb->Private, fb->Axis, fb->Execute, FALSE, &command);
+    const fb_outputs_t out = cm1e_fb_motion(&fb->Private, fb->Axis, fb->Execute, FALSE, &command);
     fb->Done = out.done;
     FB_SHOW_ACTIVE(fb, out);
 }

@@ -10,7 +10,7 @@ void MC_Home(MC_Home_t *fb)
         .buffer_mode = fb->BufferMode,
         .homing = fb->Parameters,
     };
-    const fb_outputs_t out = fb_motion(&fb->Private, fb->Axis, fb->Execute, FALSE, &command);
+    const fb_outputs_t out = cm1e_fb_motion(&fb->Private, fb->Axis, fb->Execute, FALSE, &command);
     fb->Done = out.done;
     FB_SHOW_ACTIVE(fb, out);
 }

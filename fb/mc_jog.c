@@ -103,7 +103,7 @@ static void stop(MC_Jog_t *fb, cm1e_axis_t *axis)
     fb->Private.stopping = TRUE;
     const cm1e_error_t error = cm1e_axis_start(axis, &halt, &fb->Private.common.command);
     if (error)
-        fb_fail(&fb->Private.common, error);
+        cm1e_fb_fail(&fb->Private.common, error);
 }
 
 static void poll(MC_Jog_t *fb, cm1e_axis_t *axis)
@@ -118,7 +118,7 @@ static void poll(MC_Jog_t *fb, cm1e_axis_t *axis)
     if (status.state == CM1E_COMMAND_ACTIVE && !p->stopping && (both || released))
         stop(fb, axis);
     else
-        fb_polled(&p->common, status.state, status.error);
+        cm1e_fb_polled(&p->common, status.state, status.error);
 }
 
 static void keep(MC_Jog_t *fb, cm1e_axis_t *axis, TIME called)
@@ -147,19 +147,19 @@ void MC_Jog(MC_Jog_t *fb)
     const BOOL pressed = fb->JogForward || fb->JogBackwards;
     const TIME called = p->called;
     cm1e_axis_t *axis = NULL;
-    p->common.trigger_before = pressed && !begins(fb); /* the edge, as fb_execute() sees it */
+    p->common.trigger_before = pressed && !begins(fb); /* the edge, as cm1e_fb_execute() sees it */
     if (!pressed)
         p->forward_before = p->backwards_before = FALSE;
-    const fb_step_t todo = fb_execute(&p->common, fb->Axis, pressed, &axis);
+    const fb_step_t todo = cm1e_fb_execute(&p->common, fb->Axis, pressed, &axis);
     if (todo != FB_STEP_NONE)
         p->called = cm1e_axis_time(axis);
     if (todo == FB_STEP_START)
-        fb_started(&p->common, start(fb, axis));
+        cm1e_fb_started(&p->common, start(fb, axis));
     else if (todo == FB_STEP_POLL)
         poll(fb, axis);
     if (todo != FB_STEP_NONE)
         keep(fb, axis, called);
-    const fb_outputs_t out = fb_outputs(&p->common);
+    const fb_outputs_t out = cm1e_fb_outputs(&p->common);
     fb->Done = out.done;
     fb->Busy = out.busy;
     fb->Active = out.busy && cm1e_axis_command_status(axis, p->common.command).state == CM1E_COMMAND_ACTIVE;

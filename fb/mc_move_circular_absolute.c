@@ -12,6 +12,6 @@ void MC_MoveCircularAbsolute(MC_MoveCircularAbsolute_t *fb)
     };
     memcpy(command.position, fb->EndPoint, sizeof command.position);
     memcpy(command.auxiliary, fb->AuxPoint, sizeof command.auxiliary);
-    const fb_outputs_t out = fb_group_motion(&fb->Private, fb->AxesGroup, fb->Execute, &command);
+    const fb_outputs_t out = cm1e_fb_group_motion(&fb->Private, fb->AxesGroup, fb->Execute, &command);
     FB_SHOW_GROUP_MOTION(fb, out);
 }

@@ -10,7 +10,7 @@ void MC_MoveContinuousRelative(MC_MoveContinuousRelative_t *fb)
         FB_DYNAMICS(fb),
         .buffer_mode = fb->BufferMode,
     };
-    const fb_outputs_t out = fb_motion(&fb->Private, fb->Axis, fb->Execute, fb->ContinuousUpdate, &command);
+    const fb_outputs_t out = cm1e_fb_motion(&fb->Private, fb->Axis, fb->Execute, fb->ContinuousUpdate, &command);
     fb->InEndVelocity = out.reached;
     FB_SHOW_ACTIVE(fb, out);
 }

@@ -6,6 +6,6 @@ void MC_MoveLinearRelative(MC_MoveLinearRelative_t *fb)
         return;
     cm1e_group_command_t command = {.kind = CM1E_GROUP_LINEAR_RELATIVE, FB_GROUP_INPUTS(fb)};
     memcpy(command.position, fb->Distance, sizeof command.position);
-    const fb_outputs_t out = fb_group_motion(&fb->Private, fb->AxesGroup, fb->Execute, &command);
+    const fb_outputs_t out = cm1e_fb_group_motion(&fb->Private, fb->AxesGroup, fb->Execute, &command);
     FB_SHOW_GROUP_MOTION(fb, out);
 }

@@ -11,7 +11,7 @@ void MC_MoveRelative(MC_MoveRelative_t *fb)
         FB_DYNAMICS(fb),
         .buffer_mode = fb->BufferMode,
     };
-    const fb_outputs_t out = fb_motion(&fb->Private, fb->Axis, fb->Execute, fb->ContinuousUpdate, &command);
+    const fb_outputs_t out = cm1e_fb_motion(&fb->Private, fb->Axis, fb->Execute, fb->ContinuousUpdate, &command);
     fb->Done = out.done;
     FB_SHOW_ACTIVE(fb, out);
 }

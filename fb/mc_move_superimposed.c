@@ -9,7 +9,7 @@ void MC_MoveSuperimposed(MC_MoveSuperimposed_t *fb)
         FB_DYNAMICS(fb),
     };
     const BOOL busy_before = fb->Busy;
-    const fb_outputs_t out = fb_motion(&fb->Private, fb->Axis, fb->Execute, fb->ContinuousUpdate, &command);
+    const fb_outputs_t out = cm1e_fb_motion(&fb->Private, fb->Axis, fb->Execute, fb->ContinuousUpdate, &command);
     if (busy_before || out.busy) /* what was covered at its end stays to be read */
         fb->CoveredDistance = out.covered;
     fb->Done = out.done;

@@ -12,7 +12,7 @@ void MC_PhasingAbsolute(MC_PhasingAbsolute_t *fb)
         .coupling = &coupling,
     };
     const BOOL busy_before = fb->Busy;
-    const fb_outputs_t out = fb_couple(&fb->Private, fb->Slave, fb->Execute, FALSE, &command);
+    const fb_outputs_t out = cm1e_fb_couple(&fb->Private, fb->Slave, fb->Execute, FALSE, &command);
     if (busy_before || out.busy) /* what it was at its end stays to be read */
         fb->AbsolutePhaseShift = out.covered;
     fb->Done = out.done;

@@ -17,8 +17,8 @@ void MC_PositionProfile(MC_PositionProfile_t *fb)
         .scale = fb->PositionScale,
         .offset = fb->Offset,
     };
-    const fb_outputs_t out = fb_table_motion(&fb->Private, fb->Axis, fb->Execute, fb->ContinuousUpdate,
-                                             CM1E_COMMAND_POSITION_PROFILE, fb->BufferMode, &table);
+    const fb_outputs_t out = cm1e_fb_table_motion(&fb->Private, fb->Axis, fb->Execute, fb->ContinuousUpdate,
+                                                  CM1E_COMMAND_POSITION_PROFILE, fb->BufferMode, &table);
     fb->Done = out.done;
     FB_SHOW_ACTIVE(fb, out);
 }

@@ -17,10 +17,10 @@ static void take(cm1e_fb_private_t *fb, const AXIS_REF_t *reference)
 {
     release(fb);
     fb->axis_handle = reference ? reference->Handle : 0;
-    if (fb_axis(fb))
+    if (cm1e_fb_axis(fb))
         fb->state = FB_BUSY;
     else
-        fb_fail(fb, CM1E_ERROR_FB_AXIS_REF);
+        cm1e_fb_fail(fb, CM1E_ERROR_FB_AXIS_REF);
 }
 
 /** The stage cannot come on: the axis says why. Goes away by itself after MC_Reset (2.2.3, figure 5). */
@@ -38,7 +38,7 @@ static cm1e_error_t follow_inputs(MC_Power_t *fb, cm1e_axis_t *axis)
     if (error == CM1E_ERROR_FB_SECOND_POWER) {
         release(&fb->Private);
         if (fb->Enable)
-            fb_fail(&fb->Private, error);
+            cm1e_fb_fail(&fb->Private, error);
         return CM1E_OK;
     }
     fb->Status = cm1e_axis_powered(axis);
@@ -63,13 +63,13 @@ CM1E_RARE static void work(MC_Power_t *fb)
         take(private, fb->Axis);
     private->trigger_before = fb->Enable ? TRUE : FALSE;
     fb->Status = FALSE;
-    cm1e_axis_t *axis = fb_axis(private);
+    cm1e_axis_t *axis = cm1e_fb_axis(private);
     if (axis)
         passing = follow_inputs(fb, axis);
     if (!fb->Enable && !fb->Status)
         release(private);
     else if (private->state == FB_BUSY && (!fb->Axis || fb->Axis->Handle != private->axis_handle))
-        fb_fail(private, axis ? CM1E_ERROR_FB_AXIS_CHANGED : CM1E_ERROR_FB_AXIS_REF);
+        cm1e_fb_fail(private, axis ? CM1E_ERROR_FB_AXIS_CHANGED : CM1E_ERROR_FB_AXIS_REF);
     const bool failed = private->state == FB_ERROR;
     fb->Error = fb->Enable && (failed || passing);
     fb->Valid = fb->Enable && !fb->Error;

@@ -3,8 +3,8 @@
 void MC_ReadActualPosition(MC_ReadActualPosition_t *fb)
 {
     cm1e_axis_info_t info = {0};
-    const BOOL read = fb_read(&fb->Private, fb->Axis, fb->Enable, &info);
-    const fb_outputs_t out = fb_outputs(&fb->Private);
+    const BOOL read = cm1e_fb_read(&fb->Private, fb->Axis, fb->Enable, &info);
+    const fb_outputs_t out = cm1e_fb_outputs(&fb->Private);
     /* 2.2.3: off the bus is an error that goes away by itself, so Busy stays TRUE and Valid returns. */
     const bool offline = read && !info.online;
     fb->Valid = read && info.online;

@@ -5,10 +5,10 @@ void MC_ReadActualTorque(MC_ReadActualTorque_t *fb)
 {
     double torque = 0.0;
     cm1e_error_t error = CM1E_OK;
-    const cm1e_axis_t *axis = fb_enable(&fb->Private, fb->Axis, fb->Enable);
+    const cm1e_axis_t *axis = cm1e_fb_enable(&fb->Private, fb->Axis, fb->Enable);
     if (axis)
         error = cm1e_axis_read_torque(axis, &torque);
-    const fb_reading_t out = fb_reading(&fb->Private, axis, error);
+    const fb_reading_t out = cm1e_fb_reading(&fb->Private, axis, error);
     fb->Valid = out.valid;
     fb->Busy = out.busy;
     fb->Error = out.error;

@@ -6,13 +6,13 @@ void MC_ReadAxisInfo(MC_ReadAxisInfo_t *fb)
 {
     cm1e_axis_info_t info = {0};
     cm1e_axis_condition_t condition = {0};
-    const cm1e_axis_t *axis = fb_enable(&fb->Private, fb->Axis, fb->Enable);
+    const cm1e_axis_t *axis = cm1e_fb_enable(&fb->Private, fb->Axis, fb->Enable);
     if (axis) {
-        cm1e_axis_want_switches(fb_axis(&fb->Private));
+        cm1e_axis_want_switches(cm1e_fb_axis(&fb->Private));
         cm1e_axis_get(axis, &info);
         condition = cm1e_axis_condition(axis);
     }
-    const fb_reading_t out = fb_reading(&fb->Private, axis, CM1E_OK);
+    const fb_reading_t out = cm1e_fb_reading(&fb->Private, axis, CM1E_OK);
     fb->Valid = out.valid;
     fb->Busy = out.busy;
     fb->Error = out.error;

@@ -50,7 +50,7 @@ void MC_ReadMotionState(MC_ReadMotionState_t *fb)
 {
     cm1e_axis_info_t info = {0};
     cm1e_motion_private_t *p = &fb->Private;
-    const cm1e_axis_t *axis = fb_enable(&p->common, fb->Axis, fb->Enable);
+    const cm1e_axis_t *axis = cm1e_fb_enable(&p->common, fb->Axis, fb->Enable);
     cm1e_error_t error = CM1E_OK;
     show(fb, 0.0, false, false);
     fb->ConstantVelocity = FALSE;
@@ -61,7 +61,7 @@ void MC_ReadMotionState(MC_ReadMotionState_t *fb)
         else if (fb->Source == mcActualValue && !info.online)
             error = CM1E_ERROR_AXIS_OFFLINE;
     }
-    const fb_reading_t out = fb_reading(&p->common, axis, error);
+    const fb_reading_t out = cm1e_fb_reading(&p->common, axis, error);
     if (out.valid && fb->Source == mcActualValue)
         show_actual(fb, axis, &info, !p->measuring);
     else if (out.valid)

@@ -4,18 +4,18 @@ static void poll_reset(cm1e_fb_private_t *fb, const cm1e_axis_t *axis)
 {
     cm1e_error_t error = CM1E_OK;
     const cm1e_command_state_t state = cm1e_axis_reset_state(axis, &error);
-    fb_polled_or_cancelled(fb, state, error);
+    cm1e_fb_polled_or_cancelled(fb, state, error);
 }
 
 void MC_Reset(MC_Reset_t *fb)
 {
     cm1e_axis_t *axis = NULL;
-    switch (fb_execute(&fb->Private, fb->Axis, fb->Execute, &axis)) {
-    case FB_STEP_START: fb_started(&fb->Private, cm1e_axis_reset(axis)); break;
+    switch (cm1e_fb_execute(&fb->Private, fb->Axis, fb->Execute, &axis)) {
+    case FB_STEP_START: cm1e_fb_started(&fb->Private, cm1e_axis_reset(axis)); break;
     case FB_STEP_POLL: poll_reset(&fb->Private, axis); break;
     case FB_STEP_NONE: break;
     }
-    const fb_outputs_t out = fb_outputs(&fb->Private);
+    const fb_outputs_t out = cm1e_fb_outputs(&fb->Private);
     fb->Done = out.done;
     fb->Busy = out.busy;
     fb->Error = out.error;

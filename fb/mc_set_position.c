@@ -4,17 +4,17 @@ void MC_SetPosition(MC_SetPosition_t *fb)
 {
     cm1e_axis_t *axis = NULL;
     cm1e_error_t error;
-    switch (fb_execute(&fb->Private, fb->Axis, fb->Execute, &axis)) {
+    switch (cm1e_fb_execute(&fb->Private, fb->Axis, fb->Execute, &axis)) {
     case FB_STEP_START:
         error = fb_refuse_execution_mode(fb->ExecutionMode);
-        fb_started(&fb->Private, error ? error : cm1e_axis_set_position(axis, fb->Position, fb->Relative));
+        cm1e_fb_started(&fb->Private, error ? error : cm1e_axis_set_position(axis, fb->Position, fb->Relative));
         break;
     case FB_STEP_POLL: /* done at the edge */
-        fb_polled(&fb->Private, CM1E_COMMAND_DONE, CM1E_OK);
+        cm1e_fb_polled(&fb->Private, CM1E_COMMAND_DONE, CM1E_OK);
         break;
     case FB_STEP_NONE: break;
     }
-    const fb_outputs_t out = fb_outputs(&fb->Private);
+    const fb_outputs_t out = cm1e_fb_outputs(&fb->Private);
     fb->Done = out.done;
     fb->Busy = out.busy;
     fb->Error = out.error;

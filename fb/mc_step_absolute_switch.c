@@ -27,8 +27,8 @@ void MC_StepAbsoluteSwitch(MC_StepAbsoluteSwitch_t *fb)
         .buffer_mode = fb->BufferMode,
         .step = &step,
     };
-    const fb_outputs_t out = fb_motion_unless(signal_of_another_axis(fb), &fb->Private, fb->Axis, fb->Execute, FALSE,
-                                              &command);
+    const fb_outputs_t out = cm1e_fb_motion_unless(signal_of_another_axis(fb), &fb->Private, fb->Axis, fb->Execute,
+                                                   FALSE, &command);
     fb->Done = out.done;
     FB_SHOW_ACTIVE(fb, out);
 }

@@ -20,7 +20,7 @@ void MC_StepBlock(MC_StepBlock_t *fb)
         .buffer_mode = fb->BufferMode,
         .step = &step,
     };
-    const fb_outputs_t out = fb_motion(&fb->Private, fb->Axis, fb->Execute, FALSE, &command);
+    const fb_outputs_t out = cm1e_fb_motion(&fb->Private, fb->Axis, fb->Execute, FALSE, &command);
     fb->Done = out.done;
     FB_SHOW_ACTIVE(fb, out);
 }

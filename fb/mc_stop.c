@@ -3,7 +3,7 @@
 /** The axis stays Stopping while Execute is TRUE, also when the block itself is in error (its Axis was changed). */
 static bool hold_axis(cm1e_fb_private_t *fb)
 {
-    cm1e_axis_t *axis = fb->command ? fb_axis(fb) : NULL;
+    cm1e_axis_t *axis = fb->command ? cm1e_fb_axis(fb) : NULL;
     if (!axis)
         return false;
     cm1e_axis_info_t info;
@@ -19,7 +19,7 @@ void MC_Stop(MC_Stop_t *fb)
         .deceleration = fb->Deceleration,
         .jerk = fb->Jerk,
     };
-    const fb_outputs_t out = fb_motion(&fb->Private, fb->Axis, fb->Execute, FALSE, &command);
+    const fb_outputs_t out = cm1e_fb_motion(&fb->Private, fb->Axis, fb->Execute, FALSE, &command);
     const bool held = hold_axis(&fb->Private);
     fb->Done = out.done;
     FB_SHOW(fb, out);

@@ -13,7 +13,7 @@ static cm1e_error_t arm(MC_TouchProbe_t *fb, cm1e_axis_t *axis)
 static void poll(MC_TouchProbe_t *fb, const cm1e_axis_t *axis)
 {
     const cm1e_probe_status_t status = cm1e_axis_probe_status(axis, fb->Private.command);
-    fb_polled(&fb->Private, status.state, status.error); /* UNKNOWN, taken over by another block, shows as aborted */
+    cm1e_fb_polled(&fb->Private, status.state, status.error); /* UNKNOWN, taken over by another, shows as aborted */
     if (status.state == CM1E_COMMAND_DONE) {
         fb->RecordedPosition = status.position;
         fb->Uncertainty = status.uncertainty;
@@ -25,12 +25,12 @@ static void poll(MC_TouchProbe_t *fb, const cm1e_axis_t *axis)
 void MC_TouchProbe(MC_TouchProbe_t *fb)
 {
     cm1e_axis_t *axis = NULL;
-    switch (fb_execute(&fb->Private, fb->Axis, fb->Execute, &axis)) {
-    case FB_STEP_START: fb_started(&fb->Private, arm(fb, axis)); break;
+    switch (cm1e_fb_execute(&fb->Private, fb->Axis, fb->Execute, &axis)) {
+    case FB_STEP_START: cm1e_fb_started(&fb->Private, arm(fb, axis)); break;
     case FB_STEP_POLL: poll(fb, axis); break;
     case FB_STEP_NONE: break;
     }
-    const fb_outputs_t out = fb_outputs(&fb->Private);
+    const fb_outputs_t out = cm1e_fb_outputs(&fb->Private);
     fb->Done = out.done;
     fb->Busy = out.busy;
     fb->CommandAborted = out.aborted;

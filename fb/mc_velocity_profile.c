@@ -15,8 +15,8 @@ void MC_VelocityProfile(MC_VelocityProfile_t *fb)
         .scale = fb->VelocityScale,
         .offset = fb->Offset,
     };
-    const fb_outputs_t out = fb_table_motion(&fb->Private, fb->Axis, fb->Execute, fb->ContinuousUpdate,
-                                             CM1E_COMMAND_VELOCITY_PROFILE, fb->BufferMode, &table);
+    const fb_outputs_t out = cm1e_fb_table_motion(&fb->Private, fb->Axis, fb->Execute, fb->ContinuousUpdate,
+                                                  CM1E_COMMAND_VELOCITY_PROFILE, fb->BufferMode, &table);
     fb->ProfileCompleted = out.reached;
     FB_SHOW_ACTIVE(fb, out);
 }

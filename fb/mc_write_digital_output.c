@@ -16,19 +16,19 @@ static void poll(MC_WriteDigitalOutput_t *fb, cm1e_axis_t *axis)
 {
     cm1e_error_t error;
     const cm1e_command_state_t state = cm1e_axis_output_state(axis, number_of(fb), &error);
-    fb_polled(&fb->Private, state, error);
+    cm1e_fb_polled(&fb->Private, state, error);
 }
 
 /** Done in the call after the edge: the value has left with the cycle of the edge. Behind a bridge an SDO brings it. */
 void MC_WriteDigitalOutput(MC_WriteDigitalOutput_t *fb)
 {
     cm1e_axis_t *axis = NULL;
-    switch (fb_execute(&fb->Private, fb->Output ? &fb->Output->Axis : NULL, fb->Execute, &axis)) {
-    case FB_STEP_START: fb_started(&fb->Private, write_output(fb, axis)); break;
+    switch (cm1e_fb_execute(&fb->Private, fb->Output ? &fb->Output->Axis : NULL, fb->Execute, &axis)) {
+    case FB_STEP_START: cm1e_fb_started(&fb->Private, write_output(fb, axis)); break;
     case FB_STEP_POLL: poll(fb, axis); break;
     case FB_STEP_NONE: break;
     }
-    const fb_outputs_t out = fb_outputs(&fb->Private);
+    const fb_outputs_t out = cm1e_fb_outputs(&fb->Private);
     fb->Done = out.done;
     fb->Busy = out.busy;
     fb->Error = out.error;

@@ -31,11 +31,11 @@ static cm1e_error_t read(cm1e_fb_private_t *fb, cm1e_axis_t *axis, INT number, b
     return error;
 }
 
-void fb_read_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, INT number, bool boolean,
-                       fb_parameter_t *shown)
+void cm1e_fb_read_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, INT number, bool boolean,
+                            fb_parameter_t *shown)
 {
     const bool edge = enable && !fb->trigger_before;
-    const bool readable = fb_enable(fb, reference, enable) != NULL;
+    const bool readable = cm1e_fb_enable(fb, reference, enable) != NULL;
     /* A wrong number or a refusal of the drive goes away by itself or with another number: Busy stays (2.2.3). */
     cm1e_error_t error = CM1E_OK;
     if (edge || !readable) {
@@ -43,8 +43,8 @@ void fb_read_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL 
         shown->valid = FALSE;
     }
     if (readable)
-        error = read(fb, fb_axis(fb), number, boolean, shown);
-    const fb_outputs_t out = fb_outputs(fb);
+        error = read(fb, cm1e_fb_axis(fb), number, boolean, shown);
+    const fb_outputs_t out = cm1e_fb_outputs(fb);
     shown->busy = out.busy;
     shown->error = out.error || error;
     shown->error_id = error ? cm1e_error_id(error) : out.error_id;
@@ -71,27 +71,27 @@ static void poll_object(cm1e_fb_private_t *fb, const cm1e_axis_t *axis)
     cm1e_error_t error;
     const cm1e_command_state_t state = cm1e_axis_object_state(axis, fb->command, &written, &error);
     if (state == CM1E_COMMAND_UNKNOWN)
-        fb_polled(fb, CM1E_COMMAND_ERROR, CM1E_ERROR_CANCELLED);
+        cm1e_fb_polled(fb, CM1E_COMMAND_ERROR, CM1E_ERROR_CANCELLED);
     else
-        fb_polled(fb, state, error);
+        cm1e_fb_polled(fb, state, error);
 }
 
-fb_outputs_t fb_write_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, INT number,
-                                bool boolean, LREAL value, MC_EXECUTION_MODE mode)
+fb_outputs_t cm1e_fb_write_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, INT number,
+                                     bool boolean, LREAL value, MC_EXECUTION_MODE mode)
 {
     cm1e_axis_t *axis = NULL;
     const cm1e_error_t error = fb_refuse_execution_mode(mode);
-    switch (fb_execute(fb, reference, execute, &axis)) {
+    switch (cm1e_fb_execute(fb, reference, execute, &axis)) {
     case FB_STEP_START:
-        fb_started(fb, error ? error : start(fb, axis, number, boolean, value));
+        cm1e_fb_started(fb, error ? error : start(fb, axis, number, boolean, value));
         break;
     case FB_STEP_POLL:
         if (fb->command == 0) /* of the axis: done at the edge, shown a call later, as by all blocks */
-            fb_polled(fb, CM1E_COMMAND_DONE, CM1E_OK);
+            cm1e_fb_polled(fb, CM1E_COMMAND_DONE, CM1E_OK);
         else
             poll_object(fb, axis);
         break;
     case FB_STEP_NONE: break;
     }
-    return fb_outputs(fb);
+    return cm1e_fb_outputs(fb);
 }

@@ -16,11 +16,11 @@ typedef struct fb_parameter {
     LREAL value;
 } fb_parameter_t;
 
-void fb_read_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, INT number, bool boolean,
-                       fb_parameter_t *shown);
+void cm1e_fb_read_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, INT number, bool boolean,
+                            fb_parameter_t *shown);
 
 /** `boolean`: the block is for parameters of type BOOL alone. */
-fb_outputs_t fb_write_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, INT number,
-                                bool boolean, LREAL value, MC_EXECUTION_MODE mode);
+fb_outputs_t cm1e_fb_write_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, INT number,
+                                     bool boolean, LREAL value, MC_EXECUTION_MODE mode);
 
 #endif

@@ -42,7 +42,7 @@ static cm1e_error_t raw_open(cm1e_nic_t *nic, const cm1e_bus_config_t *config, c
                              "Both interfaces of the ring are \"%s\": a ring needs two network interfaces.", names[0]);
     }
     for (int i = 0; i < nic->ports; i++) {
-        const cm1e_error_t error = raw_socket_open(&raw->sockets[i].fd, names[i], diag);
+        const cm1e_error_t error = cm1e_raw_socket_open(&raw->sockets[i].fd, names[i], diag);
         if (error) {
             raw_close(nic);
             return error;
@@ -63,7 +63,7 @@ static size_t look(cm1e_nic_t *nic, int *port, uint8_t *frame)
 {
     const raw_t *raw = nic->state;
     for (int i = 0; i < nic->ports; i++) {
-        const int n = raw_socket_receive(raw->sockets[i].fd, frame, CM1E_FRAME_MAX);
+        const int n = cm1e_raw_socket_receive(raw->sockets[i].fd, frame, CM1E_FRAME_MAX);
         if (n > 0) {
             *port = i;
             return (size_t)n;
@@ -90,4 +90,4 @@ static size_t raw_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t de
     }
 }
 
-const cm1e_nic_backend_t backend_raw = {"raw", raw_matches, raw_open, raw_send, raw_receive, raw_close};
+const cm1e_nic_backend_t cm1e_backend_raw = {"raw", raw_matches, raw_open, raw_send, raw_receive, raw_close};

@@ -85,11 +85,11 @@ static int64_t arrival(cm1e_nic_t *nic, int port, size_t length, int64_t now_ns)
 static bool sim_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t length)
 {
     sim_t *sim = nic->state;
-    queued_frame_t *place = frame_queue_place(&sim->in_flight);
+    queued_frame_t *place = cm1e_frame_queue_place(&sim->in_flight);
     if (!place) {
         /* Nobody takes the answers: the oldest makes room, as the newest tells most. */
-        frame_queue_remove_first(&sim->in_flight);
-        place = frame_queue_place(&sim->in_flight);
+        cm1e_frame_queue_remove_first(&sim->in_flight);
+        place = cm1e_frame_queue_place(&sim->in_flight);
     }
     memcpy(place->bytes, frame, length);
     place->length = length;
@@ -104,13 +104,13 @@ static bool sim_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t len
     case CM1E_FRAME_LOSE:
         return true;
     case CM1E_FRAME_CORRUPT:
-        frame_corrupt(place->bytes, length);
+        cm1e_frame_corrupt(place->bytes, length);
         break;
     case CM1E_FRAME_DELAY:
         break;
     }
     place->port = out;
-    frame_queue_insert(&sim->in_flight, place, arrival(nic, port, length, now_ns) + (delay_ns > 0 ? delay_ns : 0));
+    cm1e_frame_queue_insert(&sim->in_flight, place, arrival(nic, port, length, now_ns) + (delay_ns > 0 ? delay_ns : 0));
     return true;
 }
 
@@ -136,8 +136,8 @@ static size_t sim_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t de
     const size_t length = first->length;
     *port = first->port;
     memcpy(frame, first->bytes, length);
-    frame_queue_remove_first(&sim->in_flight);
+    cm1e_frame_queue_remove_first(&sim->in_flight);
     return length;
 }
 
-const cm1e_nic_backend_t backend_sim = {"sim", sim_matches, sim_open, sim_send, sim_receive, sim_close};
+const cm1e_nic_backend_t cm1e_backend_sim = {"sim", sim_matches, sim_open, sim_send, sim_receive, sim_close};

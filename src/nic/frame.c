@@ -17,7 +17,7 @@ static const uint8_t command_order[] = {
     [14] = FRAME_IN_ORDER,    /* FRMW: the addressed slave reads, the ones behind it write that */
 };
 
-bool frame_datagram(const uint8_t *frame, size_t length, size_t *offset, datagram_t *datagram)
+bool cm1e_frame_datagram(const uint8_t *frame, size_t length, size_t *offset, datagram_t *datagram)
 {
     if (length < DATAGRAM_OVERHEAD || *offset > length - DATAGRAM_OVERHEAD)
         return false;
@@ -35,12 +35,12 @@ bool frame_datagram(const uint8_t *frame, size_t length, size_t *offset, datagra
     return true;
 }
 
-frame_order_t frame_order(const uint8_t *frame, size_t length)
+frame_order_t cm1e_frame_order(const uint8_t *frame, size_t length)
 {
     frame_order_t order = FRAME_ANY_ORDER;
     datagram_t d = {.more = true};
     size_t offset = FRAME_HEADER;
-    while (d.more && frame_datagram(frame, length, &offset, &d)) {
+    while (d.more && cm1e_frame_datagram(frame, length, &offset, &d)) {
         const uint8_t command = d.header[0];
         if (command < sizeof command_order && command_order[command] > order)
             order = command_order[command];
@@ -48,7 +48,8 @@ frame_order_t frame_order(const uint8_t *frame, size_t length)
     return order;
 }
 
-bool frame_is_reply(const uint8_t *reply, size_t reply_length, const uint8_t *sent, size_t sent_length, uint8_t index)
+bool cm1e_frame_is_reply(const uint8_t *reply, size_t reply_length, const uint8_t *sent, size_t sent_length,
+                         uint8_t index)
 {
     if (sent_length < FRAME_MINIMUM || reply_length < sent_length)
         return false;
@@ -65,7 +66,7 @@ bool frame_is_reply(const uint8_t *reply, size_t reply_length, const uint8_t *se
     size_t offset = FRAME_HEADER;
     while (d.more) {
         const uint8_t *r = reply + offset;
-        if (!frame_datagram(sent, sent_length, &offset, &d))
+        if (!cm1e_frame_datagram(sent, sent_length, &offset, &d))
             return false;
         if (r[0] != d.header[0] || (d.header != sent + FRAME_HEADER && r[1] != d.header[1]) ||
             ((cm1e_get_u16(r + 6) ^ cm1e_get_u16(d.header + 6)) & (DATAGRAM_MORE | DATAGRAM_LENGTH_MASK)) != 0)
@@ -88,11 +89,11 @@ static void merge_bits(uint8_t *a, const uint8_t *b, const uint8_t *sent, size_t
         *a = (uint8_t)(*sent ^ ((*a ^ *sent) | (*b ^ *sent)));
 }
 
-void frame_merge(uint8_t *a, const uint8_t *b, const uint8_t *sent, size_t length)
+void cm1e_frame_merge(uint8_t *a, const uint8_t *b, const uint8_t *sent, size_t length)
 {
     datagram_t d = {.more = true};
     size_t offset = FRAME_HEADER - ETHERNET_HEADER;
-    while (d.more && frame_datagram(a, length, &offset, &d)) {
+    while (d.more && cm1e_frame_datagram(a, length, &offset, &d)) {
         const size_t at = (size_t)(d.header - a), data = at + DATAGRAM_HEADER, counter = data + d.data_length;
         merge_bits(a + data, b + data, sent + data, d.data_length);
         cm1e_put_u16(a + counter, (uint16_t)(cm1e_get_u16(a + counter) + cm1e_get_u16(b + counter)));
@@ -100,32 +101,32 @@ void frame_merge(uint8_t *a, const uint8_t *b, const uint8_t *sent, size_t lengt
     }
 }
 
-bool frame_is_counted(const uint8_t *frame, size_t length)
+bool cm1e_frame_is_counted(const uint8_t *frame, size_t length)
 {
     datagram_t d = {.more = true};
     size_t offset = FRAME_HEADER;
-    while (d.more && frame_datagram(frame, length, &offset, &d))
+    while (d.more && cm1e_frame_datagram(frame, length, &offset, &d))
         if (cm1e_get_u16(d.working_counter) != 0)
             return true;
     return false;
 }
 
-bool frame_has_circulated(const uint8_t *frame, size_t length)
+bool cm1e_frame_has_circulated(const uint8_t *frame, size_t length)
 {
     datagram_t d;
     size_t offset = FRAME_HEADER;
-    return frame_datagram(frame, length, &offset, &d) && (cm1e_get_u16(d.header + 6) & DATAGRAM_CIRCULATED);
+    return cm1e_frame_datagram(frame, length, &offset, &d) && (cm1e_get_u16(d.header + 6) & DATAGRAM_CIRCULATED);
 }
 
-void frame_mark_circulated(uint8_t *frame, size_t length)
+void cm1e_frame_mark_circulated(uint8_t *frame, size_t length)
 {
     datagram_t d = {.more = true};
     size_t offset = FRAME_HEADER;
-    while (d.more && frame_datagram(frame, length, &offset, &d))
+    while (d.more && cm1e_frame_datagram(frame, length, &offset, &d))
         cm1e_put_u16(d.header + 6, cm1e_get_u16(d.header + 6) | DATAGRAM_CIRCULATED);
 }
 
-void frame_corrupt(uint8_t *frame, size_t length)
+void cm1e_frame_corrupt(uint8_t *frame, size_t length)
 {
     for (size_t i = FRAME_HEADER; i < FRAME_HEADER + DATAGRAM_HEADER && i < length; i++)
         frame[i] = (uint8_t)~frame[i];
@@ -137,7 +138,7 @@ bool cm1e_frame_change_working_counter(uint8_t *frame, size_t length, unsigned n
         return false;
     datagram_t d = {.more = true};
     size_t offset = FRAME_HEADER;
-    for (unsigned i = 0; d.more && frame_datagram(frame, length, &offset, &d); i++) {
+    for (unsigned i = 0; d.more && cm1e_frame_datagram(frame, length, &offset, &d); i++) {
         if (i == n) {
             cm1e_put_u16(d.working_counter, (uint16_t)(cm1e_get_u16(d.working_counter) + delta));
             return true;

@@ -2,14 +2,14 @@
 
 #include <string.h>
 
-queued_frame_t *frame_queue_place(frame_queue_t *queue)
+queued_frame_t *cm1e_frame_queue_place(frame_queue_t *queue)
 {
     if (queue->count >= FRAME_QUEUE_PLACES)
         return NULL;
     return &queue->places[__builtin_ctzll(~queue->used)];
 }
 
-void frame_queue_insert(frame_queue_t *queue, queued_frame_t *place, int64_t ready_ns)
+void cm1e_frame_queue_insert(frame_queue_t *queue, queued_frame_t *place, int64_t ready_ns)
 {
     const unsigned n = (unsigned)(place - queue->places);
     unsigned at = queue->count;
@@ -22,7 +22,7 @@ void frame_queue_insert(frame_queue_t *queue, queued_frame_t *place, int64_t rea
     place->ready_ns = ready_ns;
 }
 
-void frame_queue_remove_first(frame_queue_t *queue)
+void cm1e_frame_queue_remove_first(frame_queue_t *queue)
 {
     if (queue->count == 0)
         return;

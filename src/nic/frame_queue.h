@@ -30,15 +30,15 @@ typedef struct frame_queue {
     queued_frame_t places[FRAME_QUEUE_PLACES];
 } frame_queue_t;
 
-/** A free place to be filled in (bytes, length, port) and then handed to frame_queue_insert(); NULL: full. */
-queued_frame_t *frame_queue_place(frame_queue_t *queue);
-/** Puts a place in order. `place` must come from frame_queue_place(); one that is not inserted stays free. */
-void frame_queue_insert(frame_queue_t *queue, queued_frame_t *place, int64_t ready_ns);
-/** The earliest frame; NULL: none. It stays in place until frame_queue_remove_first(). */
+/** A free place to be filled in (bytes, length, port) and then handed to cm1e_frame_queue_insert(); NULL: full. */
+queued_frame_t *cm1e_frame_queue_place(frame_queue_t *queue);
+/** Puts a place in order. `place` must come from cm1e_frame_queue_place(); one that is not inserted stays free. */
+void cm1e_frame_queue_insert(frame_queue_t *queue, queued_frame_t *place, int64_t ready_ns);
+/** The earliest frame; NULL: none. It stays in place until cm1e_frame_queue_remove_first(). */
 static inline queued_frame_t *frame_queue_first(frame_queue_t *queue)
 {
     return queue->count > 0 ? &queue->places[queue->order[0]] : NULL;
 }
-void frame_queue_remove_first(frame_queue_t *queue);
+void cm1e_frame_queue_remove_first(frame_queue_t *queue);
 
 #endif

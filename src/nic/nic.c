@@ -6,15 +6,15 @@
 #include "nic/nic_private.h"
 
 /** The first that matches the interface name wins; the raw socket takes every name. */
-static const cm1e_nic_backend_t *const backends[] = {&backend_sim, &backend_raw};
+static const cm1e_nic_backend_t *const backends[] = {&cm1e_backend_sim, &cm1e_backend_raw};
 
 static const char *first_interface(const cm1e_bus_config_t *config)
 {
     return config->interface_name[0] ? config->interface_name : "sim";
 }
 
-cm1e_error_t nic_open_backend(cm1e_nic_t **nic, const cm1e_nic_backend_t *backend, const cm1e_bus_config_t *config,
-                              cm1e_diag_t *diag)
+cm1e_error_t cm1e_nic_open_backend(cm1e_nic_t **nic, const cm1e_nic_backend_t *backend, const cm1e_bus_config_t *config,
+                                   cm1e_diag_t *diag)
 {
     *nic = NULL;
     cm1e_nic_t *n = calloc(1, sizeof *n);
@@ -32,7 +32,7 @@ cm1e_error_t nic_open_backend(cm1e_nic_t **nic, const cm1e_nic_backend_t *backen
     if (config->pcap_file[0])
         error = cm1e_nic_pcap(n, config->pcap_file, diag);
     if (!error && n->pcap) /* its header: a full disk is told before anything moves */
-        error = pcap_check(n->pcap, config->pcap_file, diag);
+        error = cm1e_pcap_check(n->pcap, config->pcap_file, diag);
     if (error) {
         cm1e_nic_close(n);
         return error;
@@ -46,7 +46,7 @@ cm1e_error_t cm1e_nic_open(cm1e_nic_t **nic, const cm1e_bus_config_t *config, cm
     const char *name = first_interface(config);
     for (size_t i = 0; i < sizeof backends / sizeof backends[0]; i++)
         if (backends[i]->matches(name))
-            return nic_open_backend(nic, backends[i], config, diag);
+            return cm1e_nic_open_backend(nic, backends[i], config, diag);
     *nic = NULL;
     return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "No way to open interface \"%s\".", name);
 }
@@ -56,7 +56,7 @@ cm1e_error_t cm1e_nic_close(cm1e_nic_t *nic)
     if (!nic)
         return CM1E_OK;
     nic->backend->close(nic);
-    const cm1e_error_t error = pcap_close(nic->pcap);
+    const cm1e_error_t error = cm1e_pcap_close(nic->pcap);
     /* The virtual clock dies with the nic: nobody may keep on using it. */
     if (cm1e_clock_current() == &nic->virtual_clock)
         cm1e_clock_make_current(NULL);

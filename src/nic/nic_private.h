@@ -26,15 +26,15 @@ struct cm1e_nic {
     uint8_t scratch[CM1E_FRAME_MAX]; /**< a frame to send while the tap has it */
 };
 
-extern const cm1e_nic_backend_t backend_sim, backend_raw;
+extern const cm1e_nic_backend_t cm1e_backend_sim, cm1e_backend_raw;
 
 /** cm1e_nic_open() with a given backend (tests bring their own). */
-cm1e_error_t nic_open_backend(cm1e_nic_t **nic, const cm1e_nic_backend_t *backend, const cm1e_bus_config_t *config,
-                              cm1e_diag_t *diag);
+cm1e_error_t cm1e_nic_open_backend(cm1e_nic_t **nic, const cm1e_nic_backend_t *backend, const cm1e_bus_config_t *config,
+                                   cm1e_diag_t *diag);
 
 /** The way of every frame: backend, tap, pcap. As in cm1e_nic_backend_t. @rt cycle */
-bool nic_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t length);
-size_t nic_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t deadline_ns);
+bool cm1e_nic_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t length);
+size_t cm1e_nic_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t deadline_ns);
 
 /** A deadline that has passed on every clock: only what is here already. */
 #define NIC_NOW INT64_MIN

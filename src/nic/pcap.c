@@ -37,7 +37,7 @@ static cm1e_error_t cannot_write(const char *path, cm1e_diag_t *diag)
     return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "The pcap file %s cannot be written: %s.", path, strerror(errno));
 }
 
-cm1e_error_t pcap_open(pcap_file_t **pcap, const char *path, cm1e_diag_t *diag)
+cm1e_error_t cm1e_pcap_open(pcap_file_t **pcap, const char *path, cm1e_diag_t *diag)
 {
     *pcap = NULL;
     pcap_file_t *p = calloc(1, sizeof *p);
@@ -56,12 +56,12 @@ cm1e_error_t pcap_open(pcap_file_t **pcap, const char *path, cm1e_diag_t *diag)
     return CM1E_OK;
 }
 
-cm1e_error_t pcap_check(pcap_file_t *pcap, const char *path, cm1e_diag_t *diag)
+cm1e_error_t cm1e_pcap_check(pcap_file_t *pcap, const char *path, cm1e_diag_t *diag)
 {
     return fflush(pcap->file) == 0 ? CM1E_OK : cannot_write(path, diag);
 }
 
-void pcap_write(pcap_file_t *pcap, int64_t time_ns, const uint8_t *frame, size_t length)
+void cm1e_pcap_write(pcap_file_t *pcap, int64_t time_ns, const uint8_t *frame, size_t length)
 {
     const record_header_t header = {.seconds = (uint32_t)(time_ns / NS_PER_S),
                                     .nanoseconds = (uint32_t)(time_ns % NS_PER_S),
@@ -70,7 +70,7 @@ void pcap_write(pcap_file_t *pcap, int64_t time_ns, const uint8_t *frame, size_t
     put(pcap, frame, length);
 }
 
-cm1e_error_t pcap_close(pcap_file_t *pcap)
+cm1e_error_t cm1e_pcap_close(pcap_file_t *pcap)
 {
     if (!pcap)
         return CM1E_OK;

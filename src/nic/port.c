@@ -128,14 +128,14 @@ void ecx_setbufstat(ecx_portt *port, uint8 idx, int bufstat)
     if (idx >= EC_MAXBUF || bufstat < EC_BUF_EMPTY || bufstat > EC_BUF_COMPLETE)
         return;
     if (port->redundant)
-        ring_give_up(port, idx);
+        cm1e_ring_give_up(port, idx);
     port->slots[idx].state = (uint8_t)bufstat;
     port->slots[idx].answers = 0;
 }
 
 /* ---- sending ----------------------------------------------------------------------------------------------------- */
 
-void port_stamp(ecx_portt *port, uint8_t *frame, uint8 idx, int source, uint32_t transmission)
+void cm1e_port_stamp(ecx_portt *port, uint8_t *frame, uint8 idx, int source, uint32_t transmission)
 {
     const uint16 route = source ? secMAC[1] : priMAC[1];
     frame[MAC_ROUTE] = (uint8_t)(route >> 8);
@@ -145,9 +145,9 @@ void port_stamp(ecx_portt *port, uint8_t *frame, uint8 idx, int source, uint32_t
     port->slots[idx].transmission = transmission;
 }
 
-bool port_send(ecx_portt *port, int interface, const uint8_t *frame, int length)
+bool cm1e_port_send(ecx_portt *port, int interface, const uint8_t *frame, int length)
 {
-    const bool sent = nic_send(port->nic, interface, frame, (size_t)length);
+    const bool sent = cm1e_nic_send(port->nic, interface, frame, (size_t)length);
     if (sent)
         port->counters.sent++;
     else
@@ -164,14 +164,14 @@ static bool can_send(const ecx_portt *port, uint8 idx)
 static void send_companion(ecx_portt *port, uint8 idx, uint32_t transmission)
 {
     cm1e_port_slot_t *slot = &port->slots[idx];
-    slot->companion = (uint8_t)ring_companion(port, idx);
+    slot->companion = (uint8_t)cm1e_ring_companion(port, idx);
     if (slot->companion == RING_COPY) {
-        port_stamp(port, port->txbuf[idx], idx, 1, transmission);
-        port_send(port, 1, port->txbuf[idx], port->txbuflength[idx]);
+        cm1e_port_stamp(port, port->txbuf[idx], idx, 1, transmission);
+        cm1e_port_send(port, 1, port->txbuf[idx], port->txbuflength[idx]);
     } else if (slot->companion == RING_DUMMY) {
         port->txbuf2[FRAME_HEADER + 1] = idx;
-        port_stamp(port, port->txbuf2, idx, 1, transmission);
-        port_send(port, 1, port->txbuf2, port->txbuflength2);
+        cm1e_port_stamp(port, port->txbuf2, idx, 1, transmission);
+        cm1e_port_send(port, 1, port->txbuf2, port->txbuflength2);
     }
 }
 
@@ -182,15 +182,15 @@ static int send_frame(ecx_portt *port, uint8 idx, bool again)
         return -1;
     cm1e_port_slot_t *slot = &port->slots[idx];
     if (port->redundant) {
-        ring_give_up(port, idx);
+        cm1e_ring_give_up(port, idx);
         again = false;
     }
     if (!again) {
         slot->answers = 0;
-        port_stamp(port, port->txbuf[idx], idx, 0, ++port->transmissions);
+        cm1e_port_stamp(port, port->txbuf[idx], idx, 0, ++port->transmissions);
     }
     slot->state = EC_BUF_TX;
-    const bool sent = port_send(port, 0, port->txbuf[idx], port->txbuflength[idx]);
+    const bool sent = cm1e_port_send(port, 0, port->txbuf[idx], port->txbuflength[idx]);
     if (port->redundant) {
         slot->sent_ns = cm1e_clock_now(port->nic->clock);
         send_companion(port, idx, port->transmissions);
@@ -209,9 +209,9 @@ int ecx_outframe(ecx_portt *port, uint8 idx, int stacknumber)
     slot->answers = 0;
     slot->companion = interface ? RING_COPY : RING_NOTHING;
     slot->sent_ns = cm1e_clock_now(port->nic->clock);
-    port_stamp(port, port->txbuf[idx], idx, interface, ++port->transmissions);
+    cm1e_port_stamp(port, port->txbuf[idx], idx, interface, ++port->transmissions);
     slot->state = EC_BUF_TX;
-    return port_send(port, interface, port->txbuf[idx], port->txbuflength[idx]) ? port->txbuflength[idx] : -1;
+    return cm1e_port_send(port, interface, port->txbuf[idx], port->txbuflength[idx]) ? port->txbuflength[idx] : -1;
 }
 
 /* ---- receiving --------------------------------------------------------------------------------------------------- */
@@ -254,7 +254,7 @@ static void store(ecx_portt *port, uint8 idx, int arrival, int source, const uin
     else if (bit == RING_SECOND_HALF && slot->companion != RING_DUMMY)
         memcpy(port->redport->rxbuf[idx], frame + ETHERNET_HEADER, body);
     else if (bit == RING_SECOND_HALF)
-        ring_dummy_answered(port, frame[port->txbuflength2 - 2] | frame[port->txbuflength2 - 1] << 8);
+        cm1e_ring_dummy_answered(port, frame[port->txbuflength2 - 2] | frame[port->txbuflength2 - 1] << 8);
     slot->answers |= bit;
     if (!port->redundant)
         slot->state = EC_BUF_RCVD;
@@ -279,32 +279,32 @@ static void accept_frame(ecx_portt *port, int arrival, const uint8_t *frame, siz
     if (slot->state != EC_BUF_TX || slot->stamp[source] != stamp) {
         not_awaited(port, slot, source, stamp);
         if (port->redundant)
-            ring_observe(port, transmission, arrival, source);
+            cm1e_ring_observe(port, transmission, arrival, source);
         return;
     }
     const bool dummy = source == 1 && slot->companion == RING_DUMMY;
     const uint8_t *sent = dummy ? port->txbuf2 : port->txbuf[idx];
     const int sent_length = dummy ? port->txbuflength2 : port->txbuflength[idx];
-    if (!frame_is_reply(frame, length, sent, (size_t)sent_length, idx)) {
+    if (!cm1e_frame_is_reply(frame, length, sent, (size_t)sent_length, idx)) {
         port->counters.malformed++;
         return;
     }
     store(port, idx, arrival, source, frame);
     if (port->redundant)
-        ring_observe(port, transmission, arrival, source);
+        cm1e_ring_observe(port, transmission, arrival, source);
 }
 
-bool port_take_in(ecx_portt *port, int64_t deadline_ns)
+bool cm1e_port_take_in(ecx_portt *port, int64_t deadline_ns)
 {
     int arrival = 0;
-    const size_t length = nic_receive(port->nic, &arrival, port->scratch, deadline_ns);
+    const size_t length = cm1e_nic_receive(port->nic, &arrival, port->scratch, deadline_ns);
     if (length == 0)
         return false;
     accept_frame(port, arrival, port->scratch, length);
     return true;
 }
 
-int port_complete(ecx_portt *port, uint8 idx)
+int cm1e_port_complete(ecx_portt *port, uint8 idx)
 {
     port->slots[idx].state = EC_BUF_COMPLETE;
     const uint8_t *counter = port->rxbuf[idx] + port->txbuflength[idx] - ETHERNET_HEADER - 2;
@@ -316,14 +316,14 @@ static int wait_until(ecx_portt *port, uint8 idx, int64_t deadline_ns)
     if (!port->nic || idx >= EC_MAXBUF)
         return EC_NOFRAME;
     if (port->redundant)
-        return ring_wait(port, idx, deadline_ns);
+        return cm1e_ring_wait(port, idx, deadline_ns);
     for (int frames = 0; port->slots[idx].state != EC_BUF_RCVD; frames++) {
         if (frames >= PORT_FRAME_BUDGET && cm1e_clock_now(port->nic->clock) >= deadline_ns)
             return EC_NOFRAME;
-        if (!port_take_in(port, deadline_ns))
+        if (!cm1e_port_take_in(port, deadline_ns))
             return EC_NOFRAME;
     }
-    return port_complete(port, idx);
+    return cm1e_port_complete(port, idx);
 }
 
 static int64_t deadline_after(const ecx_portt *port, int timeout_us)

@@ -14,12 +14,12 @@
 enum { PORT_FRAME_BUDGET = 64 };
 
 /** Takes in the next frame until the deadline, whosever it is; false: none came. */
-bool port_take_in(ecx_portt *port, int64_t deadline_ns);
+bool cm1e_port_take_in(ecx_portt *port, int64_t deadline_ns);
 /** Marks an Ethernet frame as sent by interface 0 (PRI) or 1 (SEC), with the stamp of its transmission. */
-void port_stamp(ecx_portt *port, uint8_t *frame, uint8 idx, int source, uint32_t transmission);
+void cm1e_port_stamp(ecx_portt *port, uint8_t *frame, uint8 idx, int source, uint32_t transmission);
 /** Sends on an interface and counts. */
-bool port_send(ecx_portt *port, int interface, const uint8_t *frame, int length);
+bool cm1e_port_send(ecx_portt *port, int interface, const uint8_t *frame, int length);
 /** The answer in rxbuf[idx] goes to the caller: its working counter. */
-int port_complete(ecx_portt *port, uint8 idx);
+int cm1e_port_complete(ecx_portt *port, uint8 idx);
 
 #endif

@@ -73,7 +73,7 @@ static cm1e_error_t no_socket(int why, cm1e_diag_t *diag)
 static void tune(int fd, int interface_index)
 {
     const int on = 1, size = RECEIVE_BUFFER;
-    /* What we send must not come back as received. Older kernels mark it, see raw_socket_receive(). */
+    /* What we send must not come back as received. Older kernels mark it, see cm1e_raw_socket_receive(). */
     setsockopt(fd, SOL_PACKET, PACKET_IGNORE_OUTGOING, &on, sizeof on);
     if (setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) < 0)
         setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, sizeof size);
@@ -105,7 +105,7 @@ static cm1e_error_t set_up(int fd, const char *name, unsigned index, cm1e_diag_t
     return CM1E_OK;
 }
 
-cm1e_error_t raw_socket_open(int *fd, const char *interface_name, cm1e_diag_t *diag)
+cm1e_error_t cm1e_raw_socket_open(int *fd, const char *interface_name, cm1e_diag_t *diag)
 {
     *fd = -1;
     /* The name first: it needs no privilege to say that it is wrong. */
@@ -122,13 +122,13 @@ cm1e_error_t raw_socket_open(int *fd, const char *interface_name, cm1e_diag_t *d
         return error;
     }
     uint8_t stale[64];
-    for (int i = 0; i < DRAIN_LIMIT && raw_socket_receive(s, stale, sizeof stale) != 0; i++)
+    for (int i = 0; i < DRAIN_LIMIT && cm1e_raw_socket_receive(s, stale, sizeof stale) != 0; i++)
         ;
     *fd = s;
     return CM1E_OK;
 }
 
-int raw_socket_receive(int fd, uint8_t *frame, size_t room)
+int cm1e_raw_socket_receive(int fd, uint8_t *frame, size_t room)
 {
     struct sockaddr_ll from = {0};
     for (int i = 0; i < DRAIN_LIMIT; i++) {

@@ -62,7 +62,7 @@ static void learn_miss(ecx_portt *port, uint32_t transmission, unsigned halves)
     learn(port, halves == RING_FIRST_HALF ? RING_FIRST_ONLY : RING_SECOND_ONLY, transmission);
 }
 
-void ring_observe(ecx_portt *port, uint32_t transmission, int arrival, int source)
+void cm1e_ring_observe(ecx_portt *port, uint32_t transmission, int arrival, int source)
 {
     /* Frames that were sent before the ring changed may be read after it. */
     if ((int32_t)(transmission - port->ring.learned_from) < 0)
@@ -73,16 +73,16 @@ void ring_observe(ecx_portt *port, uint32_t transmission, int arrival, int sourc
         learn(port, RING_CUT, transmission);
 }
 
-void ring_dummy_answered(ecx_portt *port, int slaves) { port->ring.slaves_behind = slaves; }
+void cm1e_ring_dummy_answered(ecx_portt *port, int slaves) { port->ring.slaves_behind = slaves; }
 
-void ring_give_up(ecx_portt *port, uint8 idx)
+void cm1e_ring_give_up(ecx_portt *port, uint8 idx)
 {
     const cm1e_port_slot_t *slot = &port->slots[idx];
     if (slot->state == EC_BUF_TX && !(slot->answers & (RING_WHOLE | RING_THROUGH)))
         learn_miss(port, slot->transmission, slot->answers & RING_HALVES);
 }
 
-ring_companion_t ring_companion(const ecx_portt *port, uint8 idx)
+ring_companion_t cm1e_ring_companion(const ecx_portt *port, uint8 idx)
 {
     static const uint8_t orders_for_copy[] = {
         [RING_CUT] = 1 << FRAME_ANY_ORDER,
@@ -90,7 +90,7 @@ ring_companion_t ring_companion(const ecx_portt *port, uint8 idx)
     };
     if (port->ring.state != RING_CUT && port->ring.state != RING_SECOND_ONLY)
         return RING_DUMMY;
-    const frame_order_t order = frame_order(port->txbuf[idx], (size_t)port->txbuflength[idx]);
+    const frame_order_t order = cm1e_frame_order(port->txbuf[idx], (size_t)port->txbuflength[idx]);
     return orders_for_copy[port->ring.state] & 1 << order ? RING_COPY : RING_DUMMY;
 }
 
@@ -108,7 +108,7 @@ static int slaves_in_first_half(const ecx_portt *port, uint8 idx)
  *  reach slaves that are not meant, and an ordered one slaves too early. So all slaves must be known to be in reach. */
 static bool all_in_reach(const ecx_portt *port, uint8 idx, action_t action)
 {
-    const frame_order_t order = frame_order(port->txbuf[idx], (size_t)port->txbuflength[idx]);
+    const frame_order_t order = cm1e_frame_order(port->txbuf[idx], (size_t)port->txbuflength[idx]);
     if (order == FRAME_ANY_ORDER || (order == FRAME_IN_ORDER && action == SEND_ON))
         return true;
     if (!(port->slots[idx].answers & RING_SECOND_HALF))
@@ -135,7 +135,7 @@ static action_t decide(const ecx_portt *port, uint8 idx, bool ended)
     if (action == SEND_ON && !all_in_reach(port, idx, action))
         action = ended || halves == RING_HALVES ? TAKE_FIRST : WAIT;
     /* Both halves processed it although only the second one was thought alive. */
-    if (action == MERGE && frame_order(port->txbuf[idx], (size_t)port->txbuflength[idx]) != FRAME_ANY_ORDER)
+    if (action == MERGE && cm1e_frame_order(port->txbuf[idx], (size_t)port->txbuflength[idx]) != FRAME_ANY_ORDER)
         action = TAKE_SECOND;
     return action;
 }
@@ -150,8 +150,8 @@ static void send_second(ecx_portt *port, uint8 idx, action_t action)
         memcpy(port->scratch + ETHERNET_HEADER, port->rxbuf[idx], length - ETHERNET_HEADER);
     slot->companion = action == SEND_ON ? RING_SENT_ON : RING_COPY;
     slot->answers &= (uint8_t)~(RING_SECOND_HALF | RING_THROUGH);
-    port_stamp(port, port->scratch, idx, 1, ++port->transmissions);
-    port_send(port, 1, port->scratch, (int)length);
+    cm1e_port_stamp(port, port->scratch, idx, 1, ++port->transmissions);
+    cm1e_port_send(port, 1, port->scratch, (int)length);
     slot->sent_ns = cm1e_clock_now(port->nic->clock);
     port->counters.resent++;
 }
@@ -162,9 +162,9 @@ static int take(ecx_portt *port, uint8 idx, action_t action, bool complete)
     if (action == TAKE_SECOND)
         memcpy(port->rxbuf[idx], port->redport->rxbuf[idx], body);
     else if (action == MERGE)
-        frame_merge(port->rxbuf[idx], port->redport->rxbuf[idx], port->txbuf[idx] + ETHERNET_HEADER, body);
+        cm1e_frame_merge(port->rxbuf[idx], port->redport->rxbuf[idx], port->txbuf[idx] + ETHERNET_HEADER, body);
     const bool whole = (port->slots[idx].answers & RING_WHOLE) != 0;
-    const int wkc = port_complete(port, idx);
+    const int wkc = cm1e_port_complete(port, idx);
     if (complete && port->txbuf[idx][FRAME_HEADER] == COMMAND_BRD && (whole || wkc > port->ring.slaves))
         port->ring.slaves = wkc;
     return wkc;
@@ -187,7 +187,7 @@ static int64_t half_deadline(const ecx_portt *port, uint8 idx, int64_t deadline_
     return middle_ns < half_ns ? middle_ns : half_ns;
 }
 
-int ring_wait(ecx_portt *port, uint8 idx, int64_t deadline_ns)
+int cm1e_ring_wait(ecx_portt *port, uint8 idx, int64_t deadline_ns)
 {
     cm1e_port_slot_t *slot = &port->slots[idx];
     bool ended = false; /* the other half will not come any more */
@@ -208,7 +208,7 @@ int ring_wait(ecx_portt *port, uint8 idx, int64_t deadline_ns)
             half_ns = INT64_MAX;
         else if (half_ns == INT64_MAX)
             half_ns = half_deadline(port, idx, deadline_ns);
-        if (port_take_in(port, half_ns < deadline_ns ? half_ns : deadline_ns)) {
+        if (cm1e_port_take_in(port, half_ns < deadline_ns ? half_ns : deadline_ns)) {
             if (++frames >= PORT_FRAME_BUDGET && cm1e_clock_now(port->nic->clock) >= deadline_ns)
                 return EC_NOFRAME;
             continue;

@@ -37,7 +37,7 @@ enum { RING_HALF_WAIT_NS = 500000 };
 typedef enum ring_state { RING_INTACT = 0, RING_CUT, RING_FIRST_ONLY, RING_SECOND_ONLY } ring_state_t;
 
 /** What left on the second interface last. */
-typedef enum ring_companion {
+typedef enum cm1e_ring_companion {
     RING_NOTHING = 0,
     RING_DUMMY,
     RING_COPY,
@@ -55,14 +55,14 @@ enum {
 };
 
 /** What to send on the second interface beside the frame in txbuf[idx]. */
-ring_companion_t ring_companion(const ecx_portt *port, uint8 idx);
+ring_companion_t cm1e_ring_companion(const ecx_portt *port, uint8 idx);
 /** A frame of ours, sent as number `transmission`, came back; also one that nobody waits for. */
-void ring_observe(ecx_portt *port, uint32_t transmission, int arrival, int source);
+void cm1e_ring_observe(ecx_portt *port, uint32_t transmission, int arrival, int source);
 /** The dummy of the second interface was answered by so many slaves. */
-void ring_dummy_answered(ecx_portt *port, int slaves);
+void cm1e_ring_dummy_answered(ecx_portt *port, int slaves);
 /** The owner of a frame gives up waiting or sends anew: what the half that did come back says about the ring. */
-void ring_give_up(ecx_portt *port, uint8 idx);
+void cm1e_ring_give_up(ecx_portt *port, uint8 idx);
 /** As ecx_waitinframe() with a deadline; NIC_NOW: only what is here. */
-int ring_wait(ecx_portt *port, uint8 idx, int64_t deadline_ns);
+int cm1e_ring_wait(ecx_portt *port, uint8 idx, int64_t deadline_ns);
 
 #endif

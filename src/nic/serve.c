@@ -151,7 +151,7 @@ static void reply(const server_t *server, const uint8_t *frame, size_t length)
 /* cm1e_nic_server_run() says why. */
 static bool goes_round(server_t *server, size_t length)
 {
-    if (!(server->frame[SOURCE_MAC] & LOCALLY_ADMINISTERED) || !frame_has_circulated(server->frame, length))
+    if (!(server->frame[SOURCE_MAC] & LOCALLY_ADMINISTERED) || !cm1e_frame_has_circulated(server->frame, length))
         return false;
     if (!server->circulation_told)
         notice(server, "A frame came back to \"%s\" from another simulated segment and was destroyed: two segments "
@@ -165,13 +165,13 @@ static void answer_frame(server_t *server, size_t length, int64_t now_ns)
     if (length < ETHERNET_HEADER || goes_round(server, length))
         return;
     const bool again = server->frame[SOURCE_MAC] & LOCALLY_ADMINISTERED;
-    const bool counted = frame_is_counted(server->frame, length);
+    const bool counted = cm1e_frame_is_counted(server->frame, length);
     server->advanced_ns = now_ns;
     const int out = cm1e_sim_segment_process(server->segment, CM1E_SIM_PORT_PRIMARY, server->frame, length, now_ns);
     if (out != CM1E_SIM_PORT_PRIMARY)
         return;
-    if (again && (counted || !frame_is_counted(server->frame, length)))
-        frame_mark_circulated(server->frame, length);
+    if (again && (counted || !cm1e_frame_is_counted(server->frame, length)))
+        cm1e_frame_mark_circulated(server->frame, length);
     int64_t delay_ns = 0;
     queued_frame_t *place;
     switch (cm1e_sim_segment_next_frame_fault(server->segment, &delay_ns)) {
@@ -180,14 +180,14 @@ static void answer_frame(server_t *server, size_t length, int64_t now_ns)
     case CM1E_FRAME_LOSE:
         return;
     case CM1E_FRAME_CORRUPT:
-        frame_corrupt(server->frame, length);
+        cm1e_frame_corrupt(server->frame, length);
         break;
     case CM1E_FRAME_DELAY:
-        place = frame_queue_place(&server->delayed);
+        place = cm1e_frame_queue_place(&server->delayed);
         if (place) {
             memcpy(place->bytes, server->frame, length);
             place->length = length;
-            frame_queue_insert(&server->delayed, place, now_ns + delay_ns);
+            cm1e_frame_queue_insert(&server->delayed, place, now_ns + delay_ns);
         }
         return;
     }
@@ -198,7 +198,7 @@ static void answer_frame(server_t *server, size_t length, int64_t now_ns)
 static bool answer_frames(server_t *server)
 {
     for (int i = 0; i < FRAMES_AT_ONCE; i++) {
-        const int n = raw_socket_receive(server->socket_fd, server->frame, sizeof server->frame);
+        const int n = cm1e_raw_socket_receive(server->socket_fd, server->frame, sizeof server->frame);
         if (n <= 0)
             return n == 0;
         answer_frame(server, (size_t)n, cm1e_clock_now(server->clock));
@@ -210,7 +210,7 @@ static void release_delayed(server_t *server, int64_t now_ns)
 {
     for (queued_frame_t *f; (f = frame_queue_first(&server->delayed)) && f->ready_ns <= now_ns;) {
         reply(server, f->bytes, f->length);
-        frame_queue_remove_first(&server->delayed);
+        cm1e_frame_queue_remove_first(&server->delayed);
     }
 }
 
@@ -230,7 +230,7 @@ static void find_interface(server_t *server, int64_t now_ns)
     cm1e_diag_t why = {0};
     if (server->socket_fd >= 0 || now_ns < server->retry_ns)
         return;
-    const cm1e_error_t error = raw_socket_open(&server->socket_fd, server->interface_name, &why);
+    const cm1e_error_t error = cm1e_raw_socket_open(&server->socket_fd, server->interface_name, &why);
     if (error && error != server->told)
         notice(server, "%s The simulated segment waits for it.", why.text);
     if (!error && server->told)
@@ -314,9 +314,9 @@ cm1e_error_t cm1e_nic_server_open(cm1e_nic_server_t **server, cm1e_sim_segment_t
     made->clock = cm1e_clock_monotonic();
     snprintf(made->interface_name, sizeof made->interface_name, "%s", interface_name);
     made->lock_fd = -1;
-    cm1e_error_t error = raw_socket_open(&made->socket_fd, interface_name, diag);
+    cm1e_error_t error = cm1e_raw_socket_open(&made->socket_fd, interface_name, diag);
     if (!error)
-        error = serve_lock_take(&made->lock_fd, interface_name, diag);
+        error = cm1e_serve_lock_take(&made->lock_fd, interface_name, diag);
     if (error)
         cm1e_nic_server_close(made);
     else

@@ -46,7 +46,7 @@ static cm1e_error_t taken(const char *name, int owner, cm1e_diag_t *diag)
                          "the other one, or choose another interface.", name, who);
 }
 
-cm1e_error_t serve_lock_take(int *lock, const char *interface_name, cm1e_diag_t *diag)
+cm1e_error_t cm1e_serve_lock_take(int *lock, const char *interface_name, cm1e_diag_t *diag)
 {
     struct sockaddr_un address;
     const socklen_t length = address_of(&address, interface_name);

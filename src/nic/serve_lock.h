@@ -8,6 +8,6 @@
 #include "cm1e/error.h"
 
 /** CM1E_ERROR_STATE: somebody has it. The lock ends with the process, or with close(*lock). */
-cm1e_error_t serve_lock_take(int *lock, const char *interface_name, cm1e_diag_t *diag);
+cm1e_error_t cm1e_serve_lock_take(int *lock, const char *interface_name, cm1e_diag_t *diag);
 
 #endif

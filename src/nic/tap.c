@@ -14,21 +14,21 @@ void cm1e_nic_set_tap(cm1e_nic_t *nic, cm1e_tap_fn tap, void *context)
 
 cm1e_error_t cm1e_nic_pcap(cm1e_nic_t *nic, const char *path, cm1e_diag_t *diag)
 {
-    pcap_close(nic->pcap);
+    cm1e_pcap_close(nic->pcap);
     nic->pcap = NULL;
-    return pcap_open(&nic->pcap, path, diag);
+    return cm1e_pcap_open(&nic->pcap, path, diag);
 }
 
 static bool hold(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t length, int64_t at_ns, bool tapped)
 {
-    queued_frame_t *place = frame_queue_place(&nic->held);
+    queued_frame_t *place = cm1e_frame_queue_place(&nic->held);
     if (!place || length > sizeof place->bytes)
         return false;
     memcpy(place->bytes, frame, length);
     place->length = length;
     place->port = port;
     place->tapped = tapped;
-    frame_queue_insert(&nic->held, place, at_ns);
+    cm1e_frame_queue_insert(&nic->held, place, at_ns);
     return true;
 }
 
@@ -50,7 +50,7 @@ static bool pass_tap(cm1e_nic_t *nic, cm1e_tap_frame_t *t)
     return t->length > 0 && t->copies > 0;
 }
 
-bool nic_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t length)
+bool cm1e_nic_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t length)
 {
     if (length == 0 || length > CM1E_FRAME_MAX || port >= nic->ports)
         return false;
@@ -64,7 +64,7 @@ bool nic_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t length)
     bool sent = false;
     for (unsigned i = 0; i < t.copies; i++) {
         if (nic->pcap)
-            pcap_write(nic->pcap, t.time_ns, t.bytes, t.length);
+            cm1e_pcap_write(nic->pcap, t.time_ns, t.bytes, t.length);
         sent = nic->backend->send(nic, port, t.bytes, t.length);
     }
     return sent;
@@ -82,7 +82,7 @@ static size_t take(cm1e_nic_t *nic, int port, uint8_t *frame, size_t length)
     return later ? 0 : t.length;
 }
 
-size_t nic_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t deadline_ns)
+size_t cm1e_nic_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t deadline_ns)
 {
     if (!nic->tap && !nic->pcap && nic->held.count == 0)
         return nic->backend->receive(nic, port, frame, deadline_ns);
@@ -96,7 +96,7 @@ size_t nic_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t deadline_
             *port = held->port;
             tapped = held->tapped;
             memcpy(frame, held->bytes, length);
-            frame_queue_remove_first(&nic->held);
+            cm1e_frame_queue_remove_first(&nic->held);
         } else {
             const int64_t until = held && held->ready_ns < deadline_ns ? held->ready_ns : deadline_ns;
             length = nic->backend->receive(nic, port, frame, until);
@@ -110,7 +110,7 @@ size_t nic_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t deadline_
             length = take(nic, *port, frame, length);
         if (length > 0) {
             if (nic->pcap)
-                pcap_write(nic->pcap, cm1e_clock_now(nic->clock), frame, length);
+                cm1e_pcap_write(nic->pcap, cm1e_clock_now(nic->clock), frame, length);
             return length;
         }
     }

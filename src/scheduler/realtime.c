@@ -88,7 +88,7 @@ static void advise(char *advice, size_t size, bool fifo, bool locked, int priori
              fifo ? "" : "SCHED_FIFO", fifo || locked ? "" : " and ", locked ? "" : "locked memory", path, priority);
 }
 
-bool realtime_begin(realtime_t *realtime, const cm1e_scheduler_config_t *config, char *advice, size_t size)
+bool cm1e_realtime_begin(realtime_t *realtime, const cm1e_scheduler_config_t *config, char *advice, size_t size)
 {
     *realtime = (realtime_t){.timer_slack_ns = (int)prctl(PR_GET_TIMERSLACK)};
     advice[0] = '\0';
@@ -108,7 +108,7 @@ bool realtime_begin(realtime_t *realtime, const cm1e_scheduler_config_t *config,
     return bound && fifo && locked;
 }
 
-void realtime_end(const realtime_t *realtime)
+void cm1e_realtime_end(const realtime_t *realtime)
 {
     if (realtime->fifo)
         pthread_setschedparam(pthread_self(), realtime->policy, &realtime->parameters);

@@ -24,8 +24,8 @@ typedef struct realtime {
 } realtime_t;
 
 /** For the calling thread. TRUE: real time is in force; else `advice` says what is missing, "" if nothing was asked. */
-bool realtime_begin(realtime_t *realtime, const cm1e_scheduler_config_t *config, char *advice, size_t size);
+bool cm1e_realtime_begin(realtime_t *realtime, const cm1e_scheduler_config_t *config, char *advice, size_t size);
 /** The thread is again as it was. Locked memory stays locked. */
-void realtime_end(const realtime_t *realtime);
+void cm1e_realtime_end(const realtime_t *realtime);
 
 #endif

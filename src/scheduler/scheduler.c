@@ -85,7 +85,7 @@ static void set_outputs(cm1e_scheduler_t *s)
 static void run_tasks(cm1e_scheduler_t *s)
 {
     cm1e_in_task_begin();
-    tasks_run(&s->tasks, s->number);
+    cm1e_tasks_run(&s->tasks, s->number);
     cm1e_in_task_end();
     const char *function = cm1e_in_task_noted();
     if (!function)
@@ -115,8 +115,8 @@ static void wait_for_start(cm1e_scheduler_t *s)
     const int64_t now_ns = cm1e_clock_now(s->clock);
     const int64_t missed = (now_ns - planned_ns(s, s->number)) / s->cycle_time_ns;
     if (s->statistics.cycles > 0)
-        distribution_add(&s->statistics.cycle_time, now_ns - s->begin_ns);
-    distribution_add(&s->statistics.wake_up_latency, now_ns - planned_ns(s, s->number));
+        cm1e_distribution_add(&s->statistics.cycle_time, now_ns - s->begin_ns);
+    cm1e_distribution_add(&s->statistics.wake_up_latency, now_ns - planned_ns(s, s->number));
     s->begin_ns = now_ns;
     if (missed > 0) {
         s->number += missed;
@@ -128,8 +128,8 @@ static void wait_for_start(cm1e_scheduler_t *s)
 static void end_cycle(cm1e_scheduler_t *s)
 {
     const int64_t end_ns = cm1e_clock_now(s->clock);
-    distribution_add(&s->statistics.execution_time, end_ns - s->begin_ns);
-    statistics_note_bus(&s->statistics, cm1e_bus_counters(s->bus));
+    cm1e_distribution_add(&s->statistics.execution_time, end_ns - s->begin_ns);
+    cm1e_statistics_note_bus(&s->statistics, cm1e_bus_counters(s->bus));
     atomic_fetch_add_explicit(&s->statistics.cycles, 1, memory_order_relaxed);
     s->number++;
     if (end_ns <= planned_ns(s, s->number))
@@ -142,7 +142,7 @@ static void cycle(cm1e_scheduler_t *s)
 {
     wait_for_start(s);
     scan(s);
-    trace_record(&s->trace, s->axes, cm1e_scheduler_time_ns(s));
+    cm1e_trace_record(&s->trace, s->axes, cm1e_scheduler_time_ns(s));
     end_cycle(s);
 }
 
@@ -172,8 +172,8 @@ static cm1e_error_t take_real_time(cm1e_scheduler_t *s, realtime_t *realtime, cm
 {
     char advice[sizeof s->statistics.advice] = "";
     const bool is_virtual = s->clock != cm1e_clock_monotonic();
-    const bool in_force = !is_virtual && realtime_begin(realtime, &s->config, advice, sizeof advice);
-    statistics_publish_realtime(&s->statistics, in_force, advice);
+    const bool in_force = !is_virtual && cm1e_realtime_begin(realtime, &s->config, advice, sizeof advice);
+    cm1e_statistics_publish_realtime(&s->statistics, in_force, advice);
     if (s->config.realtime_required && advice[0])
         return cm1e_diag_set(diag, CM1E_ERROR_PERMISSION, 0, "%s", advice);
     return CM1E_OK;
@@ -190,7 +190,7 @@ static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *d
         error = shut_down(s, diag);
     }
     cm1e_bus_stop(s->bus);
-    realtime_end(&realtime);
+    cm1e_realtime_end(&realtime);
     return error;
 }
 
@@ -232,7 +232,7 @@ void cm1e_scheduler_stop(cm1e_scheduler_t *scheduler)
     atomic_store_explicit(&scheduler->stop, true, memory_order_relaxed);
 }
 
-void cm1e_scheduler_stop_on_signals(cm1e_scheduler_t *scheduler) { signals_attach(scheduler); }
+void cm1e_scheduler_stop_on_signals(cm1e_scheduler_t *scheduler) { cm1e_signals_attach(scheduler); }
 
 int64_t cm1e_scheduler_time_ns(const cm1e_scheduler_t *scheduler)
 {
@@ -242,12 +242,12 @@ int64_t cm1e_scheduler_time_ns(const cm1e_scheduler_t *scheduler)
 void cm1e_scheduler_mark(cm1e_scheduler_t *scheduler, const char *text)
 {
     if (text)
-        trace_mark(&scheduler->trace, text, cm1e_scheduler_time_ns(scheduler));
+        cm1e_trace_mark(&scheduler->trace, text, cm1e_scheduler_time_ns(scheduler));
 }
 
 void cm1e_scheduler_statistics(const cm1e_scheduler_t *scheduler, cm1e_scheduler_statistics_t *statistics)
 {
-    statistics_read(&scheduler->statistics, statistics);
+    cm1e_statistics_read(&scheduler->statistics, statistics);
 }
 
 cm1e_error_t cm1e_scheduler_check_path(const char *path, cm1e_diag_t *diag)
@@ -261,14 +261,14 @@ cm1e_error_t cm1e_scheduler_write_csv(const cm1e_scheduler_t *scheduler, const c
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_scheduler_write_csv()", "", diag);
-    return trace_write_file(&scheduler->trace, path, trace_print_csv, diag);
+    return cm1e_trace_write_file(&scheduler->trace, path, cm1e_trace_print_csv, diag);
 }
 
 cm1e_error_t cm1e_scheduler_write_svg(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_scheduler_write_svg()", "", diag);
-    return trace_write_file(&scheduler->trace, path, trace_print_svg, diag);
+    return cm1e_trace_write_file(&scheduler->trace, path, cm1e_trace_print_svg, diag);
 }
 
 /* ---- before and after ------------------------------------------------------------------------------------------ */
@@ -323,7 +323,8 @@ cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus
     if (error == CM1E_OK)
         error = make_axes(s, diag);
     if (error == CM1E_OK)
-        error = trace_init(&s->trace, s->axes, s->axis_count, s->config.trace_capacity, s->config.trace_every, diag);
+        error = cm1e_trace_init(&s->trace, s->axes, s->axis_count, s->config.trace_capacity, s->config.trace_every,
+                                diag);
     if (error != CM1E_OK) {
         cm1e_scheduler_destroy(s);
         return error;
@@ -336,8 +337,8 @@ void cm1e_scheduler_destroy(cm1e_scheduler_t *scheduler)
 {
     if (!scheduler || cm1e_in_task_note("cm1e_scheduler_destroy()"))
         return;
-    signals_detach(scheduler);
-    trace_free(&scheduler->trace);
+    cm1e_signals_detach(scheduler);
+    cm1e_trace_free(&scheduler->trace);
     for (uint32_t i = 0; i < scheduler->axis_count; i++)
         cm1e_axis_destroy(scheduler->axes[i]);
     free(scheduler);
@@ -347,7 +348,7 @@ cm1e_error_t cm1e_scheduler_add_task(cm1e_scheduler_t *scheduler, const cm1e_tas
 {
     if (scheduler->run)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Tasks are added before the scheduler runs.");
-    return tasks_add(&scheduler->tasks, task, scheduler->cycle_time_ns, diag);
+    return cm1e_tasks_add(&scheduler->tasks, task, scheduler->cycle_time_ns, diag);
 }
 
 AXIS_REF_t cm1e_scheduler_axis(const cm1e_scheduler_t *scheduler, uint32_t index)

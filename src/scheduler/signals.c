@@ -34,7 +34,7 @@ static void on_signal(int number)
         cm1e_scheduler_stop(scheduler);
 }
 
-void signals_attach(cm1e_scheduler_t *scheduler)
+void cm1e_signals_attach(cm1e_scheduler_t *scheduler)
 {
     struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
     if (atomic_exchange(&attached, scheduler) != NULL)
@@ -48,7 +48,7 @@ void signals_attach(cm1e_scheduler_t *scheduler)
     }
 }
 
-void signals_detach(const cm1e_scheduler_t *scheduler)
+void cm1e_signals_detach(const cm1e_scheduler_t *scheduler)
 {
     if (atomic_load(&attached) != scheduler)
         return;

@@ -8,8 +8,8 @@
 #include "cm1e/scheduler.h"
 
 /** Replaces a scheduler attached before. */
-void signals_attach(cm1e_scheduler_t *scheduler);
+void cm1e_signals_attach(cm1e_scheduler_t *scheduler);
 /** The signals do again what they did before, if it is this scheduler that they stop. */
-void signals_detach(const cm1e_scheduler_t *scheduler);
+void cm1e_signals_detach(const cm1e_scheduler_t *scheduler);
 
 #endif

@@ -15,7 +15,7 @@ static unsigned bucket_of(int64_t time_ns)
     return bucket;
 }
 
-void distribution_add(distribution_t *distribution, int64_t time_ns)
+void cm1e_distribution_add(distribution_t *distribution, int64_t time_ns)
 {
     const uint64_t count = READ(distribution->count);
     _Atomic uint64_t *bucket = &distribution->histogram[bucket_of(time_ns)];
@@ -28,7 +28,7 @@ void distribution_add(distribution_t *distribution, int64_t time_ns)
     WRITE(distribution->count, count + 1);
 }
 
-void statistics_note_bus(statistics_t *statistics, const cm1e_bus_counters_t *counters)
+void cm1e_statistics_note_bus(statistics_t *statistics, const cm1e_bus_counters_t *counters)
 {
     WRITE(statistics->bus_cycles, counters->cycles);
     WRITE(statistics->lost_frames, counters->lost_frames);
@@ -38,7 +38,7 @@ void statistics_note_bus(statistics_t *statistics, const cm1e_bus_counters_t *co
     WRITE(statistics->mailbox_retries, counters->mailbox_retries);
 }
 
-void statistics_publish_realtime(statistics_t *statistics, bool realtime, const char *advice)
+void cm1e_statistics_publish_realtime(statistics_t *statistics, bool realtime, const char *advice)
 {
     snprintf(statistics->advice, sizeof statistics->advice, "%s", advice);
     WRITE(statistics->realtime, realtime);
@@ -55,7 +55,7 @@ static void read_distribution(const distribution_t *distribution, cm1e_distribut
         copy->histogram[i] = READ(distribution->histogram[i]);
 }
 
-void statistics_read(const statistics_t *statistics, cm1e_scheduler_statistics_t *copy)
+void cm1e_statistics_read(const statistics_t *statistics, cm1e_scheduler_statistics_t *copy)
 {
     *copy = (cm1e_scheduler_statistics_t){0};
     read_distribution(&statistics->cycle_time, &copy->cycle_time);

@@ -25,12 +25,12 @@ typedef struct statistics {
 } statistics_t;
 
 /** @rt cycle */
-void distribution_add(distribution_t *distribution, int64_t time_ns);
+void cm1e_distribution_add(distribution_t *distribution, int64_t time_ns);
 /** @rt cycle */
-void statistics_note_bus(statistics_t *statistics, const cm1e_bus_counters_t *counters);
+void cm1e_statistics_note_bus(statistics_t *statistics, const cm1e_bus_counters_t *counters);
 /** What real-time privileges came to; once, before the first cycle. */
-void statistics_publish_realtime(statistics_t *statistics, bool realtime, const char *advice);
+void cm1e_statistics_publish_realtime(statistics_t *statistics, bool realtime, const char *advice);
 /** @rt any */
-void statistics_read(const statistics_t *statistics, cm1e_scheduler_statistics_t *copy);
+void cm1e_statistics_read(const statistics_t *statistics, cm1e_scheduler_statistics_t *copy);
 
 #endif

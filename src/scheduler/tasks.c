@@ -17,7 +17,8 @@ static cm1e_error_t check(const task_list_t *list, const cm1e_task_config_t *con
     return CM1E_OK;
 }
 
-cm1e_error_t tasks_add(task_list_t *list, const cm1e_task_config_t *config, int64_t cycle_time_ns, cm1e_diag_t *diag)
+cm1e_error_t cm1e_tasks_add(task_list_t *list, const cm1e_task_config_t *config, int64_t cycle_time_ns,
+                            cm1e_diag_t *diag)
 {
     task_t task = {.program = config->program, .context = config->context, .priority = config->priority};
     if (config->name && config->name[0])
@@ -36,7 +37,7 @@ cm1e_error_t tasks_add(task_list_t *list, const cm1e_task_config_t *config, int6
 }
 
 /** A task whose cycle was skipped runs in the next one, once, and keeps its phase. */
-void tasks_run(task_list_t *list, int64_t number)
+void cm1e_tasks_run(task_list_t *list, int64_t number)
 {
     for (uint32_t i = 0; i < list->count; i++) {
         task_t *task = &list->tasks[i];

@@ -23,8 +23,9 @@ typedef struct task_list {
 } task_list_t;
 
 /** @rt init */
-cm1e_error_t tasks_add(task_list_t *list, const cm1e_task_config_t *config, int64_t cycle_time_ns, cm1e_diag_t *diag);
+cm1e_error_t cm1e_tasks_add(task_list_t *list, const cm1e_task_config_t *config, int64_t cycle_time_ns,
+                            cm1e_diag_t *diag);
 /** Calls what is due in cycle `number` (0 = first; numbers grow, some may be missing). @rt cycle */
-void tasks_run(task_list_t *list, int64_t number);
+void cm1e_tasks_run(task_list_t *list, int64_t number);
 
 #endif

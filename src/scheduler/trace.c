@@ -8,8 +8,8 @@
 
 /* ---- recording ------------------------------------------------------------------------------------------------- */
 
-cm1e_error_t trace_init(trace_t *trace, cm1e_axis_t *const axes[], uint32_t count, uint32_t capacity, uint32_t every,
-                        cm1e_diag_t *diag)
+cm1e_error_t cm1e_trace_init(trace_t *trace, cm1e_axis_t *const axes[], uint32_t count, uint32_t capacity,
+                             uint32_t every, cm1e_diag_t *diag)
 {
     *trace = (trace_t){.axes = count, .every = every ? every : 1};
     if (capacity == 0)
@@ -18,7 +18,7 @@ cm1e_error_t trace_init(trace_t *trace, cm1e_axis_t *const axes[], uint32_t coun
     trace->times_ns = calloc(capacity, sizeof *trace->times_ns);
     trace->samples = calloc(capacity, ((size_t)count + 1) * sizeof *trace->samples);
     if (!trace->names || !trace->times_ns || !trace->samples) {
-        trace_free(trace);
+        cm1e_trace_free(trace);
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for a trace of %u cycles of %u axes.", capacity,
                              count);
     }
@@ -28,7 +28,7 @@ cm1e_error_t trace_init(trace_t *trace, cm1e_axis_t *const axes[], uint32_t coun
     return CM1E_OK;
 }
 
-void trace_free(trace_t *trace)
+void cm1e_trace_free(trace_t *trace)
 {
     free(trace->names);
     free(trace->times_ns);
@@ -36,7 +36,7 @@ void trace_free(trace_t *trace)
     *trace = (trace_t){0};
 }
 
-void trace_record(trace_t *trace, cm1e_axis_t *const axes[], int64_t time_ns)
+void cm1e_trace_record(trace_t *trace, cm1e_axis_t *const axes[], int64_t time_ns)
 {
     if (trace->capacity == 0 || trace->until_next-- > 0)
         return;
@@ -61,7 +61,7 @@ void trace_record(trace_t *trace, cm1e_axis_t *const axes[], int64_t time_ns)
     }
 }
 
-void trace_mark(trace_t *trace, const char *text, int64_t time_ns)
+void cm1e_trace_mark(trace_t *trace, const char *text, int64_t time_ns)
 {
     const uint32_t place = (trace->first_mark + trace->mark_count) % TRACE_MARKS;
     if (trace->mark_count < TRACE_MARKS)
@@ -78,14 +78,14 @@ static uint32_t place_of(const trace_t *trace, uint32_t n)
     return (uint32_t)(((uint64_t)trace->first + n) % trace->capacity);
 }
 
-int64_t trace_time_ns(const trace_t *trace, uint32_t n) { return trace->times_ns[place_of(trace, n)]; }
+int64_t cm1e_trace_time_ns(const trace_t *trace, uint32_t n) { return trace->times_ns[place_of(trace, n)]; }
 
-const trace_sample_t *trace_sample(const trace_t *trace, uint32_t n, uint32_t axis)
+const trace_sample_t *cm1e_trace_sample(const trace_t *trace, uint32_t n, uint32_t axis)
 {
     return &trace->samples[(size_t)place_of(trace, n) * trace->axes + axis];
 }
 
-const trace_mark_t *trace_mark_at(const trace_t *trace, uint32_t n)
+const trace_mark_t *cm1e_trace_mark_at(const trace_t *trace, uint32_t n)
 {
     return &trace->marks[(trace->first_mark + n) % TRACE_MARKS];
 }
@@ -104,7 +104,7 @@ static void print_quoted(FILE *file, const char *name, const char *what)
     fprintf(file, " %s\"", what);
 }
 
-void trace_print_csv(const trace_t *trace, FILE *file)
+void cm1e_trace_print_csv(const trace_t *trace, FILE *file)
 {
     static const char *const columns[] = {"state", "set position [u]", "actual position [u]", "set velocity [u/s]",
                                           "actual velocity [u/s]", "torque [%]"};
@@ -114,9 +114,9 @@ void trace_print_csv(const trace_t *trace, FILE *file)
             print_quoted(file, trace->names[axis], columns[i]);
     fputc('\n', file);
     for (uint32_t n = 0; n < trace->used; n++) {
-        fprintf(file, "%.6f", (double)trace_time_ns(trace, n) * 1e-9);
+        fprintf(file, "%.6f", (double)cm1e_trace_time_ns(trace, n) * 1e-9);
         for (uint32_t axis = 0; axis < trace->axes; axis++) {
-            const trace_sample_t *s = trace_sample(trace, n, axis);
+            const trace_sample_t *s = cm1e_trace_sample(trace, n, axis);
             fprintf(file, ",%s,%.9g,%.9g,%.9g,%.9g,%.4g", cm1e_axis_state_name(s->state), s->set_position,
                     s->actual_position, s->set_velocity, s->actual_velocity, s->torque);
         }
@@ -135,8 +135,8 @@ static void print_in_c_locale(const trace_t *trace, FILE *file, void (*print)(co
     }
 }
 
-cm1e_error_t trace_write_file(const trace_t *trace, const char *path, void (*print)(const trace_t *trace, FILE *file),
-                              cm1e_diag_t *diag)
+cm1e_error_t cm1e_trace_write_file(const trace_t *trace, const char *path,
+                                   void (*print)(const trace_t *trace, FILE *file), cm1e_diag_t *diag)
 {
     cm1e_output_t output;
     if (trace->capacity == 0)

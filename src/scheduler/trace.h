@@ -10,13 +10,13 @@
 #include "axis/axis.h"
 #include "cm1e/scheduler.h"
 
-typedef struct trace_sample {
+typedef struct cm1e_trace_sample {
     double set_position, actual_position, set_velocity, actual_velocity, torque;
     cm1e_axis_state_t state;
 } trace_sample_t;
 
 /** A moment that the program gave a name. */
-typedef struct trace_mark {
+typedef struct cm1e_trace_mark {
     int64_t time_ns;
     const char *text;
 } trace_mark_t;
@@ -35,26 +35,26 @@ typedef struct trace {
 } trace_t;
 
 /** `capacity` 0: a trace that records nothing. @rt init */
-cm1e_error_t trace_init(trace_t *trace, cm1e_axis_t *const axes[], uint32_t count, uint32_t capacity, uint32_t every,
-                        cm1e_diag_t *diag);
-void trace_free(trace_t *trace);
+cm1e_error_t cm1e_trace_init(trace_t *trace, cm1e_axis_t *const axes[], uint32_t count, uint32_t capacity,
+                             uint32_t every, cm1e_diag_t *diag);
+void cm1e_trace_free(trace_t *trace);
 /** @rt cycle */
-void trace_record(trace_t *trace, cm1e_axis_t *const axes[], int64_t time_ns);
+void cm1e_trace_record(trace_t *trace, cm1e_axis_t *const axes[], int64_t time_ns);
 
 /** Keeps the last TRACE_MARKS marks; `text` must outlive the trace. @rt cycle */
-void trace_mark(trace_t *trace, const char *text, int64_t time_ns);
+void cm1e_trace_mark(trace_t *trace, const char *text, int64_t time_ns);
 
 /** Sample n, 0 = oldest. */
-int64_t trace_time_ns(const trace_t *trace, uint32_t n);
-const trace_sample_t *trace_sample(const trace_t *trace, uint32_t n, uint32_t axis);
+int64_t cm1e_trace_time_ns(const trace_t *trace, uint32_t n);
+const trace_sample_t *cm1e_trace_sample(const trace_t *trace, uint32_t n, uint32_t axis);
 /** Mark n, 0 = oldest. */
-const trace_mark_t *trace_mark_at(const trace_t *trace, uint32_t n);
+const trace_mark_t *cm1e_trace_mark_at(const trace_t *trace, uint32_t n);
 
 /** Writers of a file's content. */
-void trace_print_csv(const trace_t *trace, FILE *file);
-void trace_print_svg(const trace_t *trace, FILE *file);
+void cm1e_trace_print_csv(const trace_t *trace, FILE *file);
+void cm1e_trace_print_svg(const trace_t *trace, FILE *file);
 /** Writes under a temporary name and renames, so that nobody ever sees half a file; in the "C" locale. @rt block */
-cm1e_error_t trace_write_file(const trace_t *trace, const char *path, void (*print)(const trace_t *trace, FILE *file),
-                              cm1e_diag_t *diag);
+cm1e_error_t cm1e_trace_write_file(const trace_t *trace, const char *path,
+                                   void (*print)(const trace_t *trace, FILE *file), cm1e_diag_t *diag);
 
 #endif

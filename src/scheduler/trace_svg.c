@@ -72,7 +72,7 @@ typedef struct plot {
     unsigned label_rows;
 } plot_t;
 
-static double time_s(const plot_t *plot, uint32_t n) { return (double)trace_time_ns(plot->trace, n) * 1e-9; }
+static double time_s(const plot_t *plot, uint32_t n) { return (double)cm1e_trace_time_ns(plot->trace, n) * 1e-9; }
 
 static uint32_t slice_of(const plot_t *plot, uint32_t n)
 {
@@ -89,7 +89,7 @@ static double x_of(const plot_t *plot, const box_t *box, double seconds)
 static double value_of(const plot_t *plot, uint32_t n, uint32_t axis, const curve_t *curve)
 {
     double value;
-    memcpy(&value, (const char *)trace_sample(plot->trace, n, axis) + curve->offset, sizeof value);
+    memcpy(&value, (const char *)cm1e_trace_sample(plot->trace, n, axis) + curve->offset, sizeof value);
     return value;
 }
 
@@ -232,9 +232,9 @@ static void print_curve(const plot_t *plot, const box_t *box, const scale_t *sca
 static cm1e_axis_state_t state_of_slice(const plot_t *plot, uint32_t axis, uint32_t *n)
 {
     const uint32_t slice = slice_of(plot, *n);
-    cm1e_axis_state_t state = trace_sample(plot->trace, *n, axis)->state;
+    cm1e_axis_state_t state = cm1e_trace_sample(plot->trace, *n, axis)->state;
     for (; *n < plot->trace->used && slice_of(plot, *n) == slice; ++*n) {
-        const cm1e_axis_state_t other = trace_sample(plot->trace, *n, axis)->state;
+        const cm1e_axis_state_t other = cm1e_trace_sample(plot->trace, *n, axis)->state;
         if (states[other].rank > states[state].rank)
             state = other;
     }
@@ -391,7 +391,7 @@ static void place_label(plot_t *plot, const trace_mark_t *mark)
 static void place_labels(plot_t *plot)
 {
     for (uint32_t n = 0; n < plot->trace->mark_count; n++)
-        place_label(plot, trace_mark_at(plot->trace, n));
+        place_label(plot, cm1e_trace_mark_at(plot->trace, n));
 }
 
 /** From the rows of their texts above `band` down to `bottom`; the texts last, so that no line runs through one. */
@@ -475,7 +475,7 @@ static uint32_t slices_for(uint32_t axes, uint32_t pixels)
     return affordable > pixels ? pixels : affordable < 20 ? 20 : affordable;
 }
 
-void trace_print_svg(const trace_t *trace, FILE *file)
+void cm1e_trace_print_svg(const trace_t *trace, FILE *file)
 {
     const uint32_t columns = trace->axes < COLUMNS_PER_ROW ? (trace->axes ? trace->axes : 1) : COLUMNS_PER_ROW;
     const uint32_t rows = (trace->axes + COLUMNS_PER_ROW - 1) / COLUMNS_PER_ROW;

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Installs the library into a fresh prefix, takes the C program out of README.md, builds it as a stranger's project with
-find_package(cm1e), and runs it on the simulated segment.
+find_package(cm1e), and runs it on the simulated segment. Beside it, programs that define names which the library's
+sources might use (own_names.c), or that link libpcap before and after the library (with_libpcap.c).
 
 test_install.py BUILD-DIRECTORY SOURCE-DIRECTORY
 """
@@ -38,7 +39,8 @@ def main(build, source):
         run("cmake", "-G", "Ninja", "-S", os.path.join(source, "tests/install"), "-B", project,
             f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCM1E_PROGRAM={program}", "-DCMAKE_C_FLAGS=-Wall -Wextra -Werror")
         run("cmake", "--build", project)
-        print(run(os.path.join(project, "consumer")), end="")
+        for name in ("consumer", "own_names", "before_libpcap", "after_libpcap"):
+            print(run(os.path.join(project, name), cwd=project), end="")
 
 
 if __name__ == "__main__":

@@ -162,7 +162,7 @@ static bool wire_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t le
     if (wire.refuse)
         return false;
     wire.sent[port]++;
-    queued_frame_t *f = frame_queue_place(&wire.queue);
+    queued_frame_t *f = cm1e_frame_queue_place(&wire.queue);
     if (!f)
         return true;
     memcpy(f->bytes, frame, length);
@@ -171,7 +171,7 @@ static bool wire_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t le
     f->port = wire_path(port, f->bytes, length, &passed);
     if (f->port < 0 || wire.mute)
         return true;
-    frame_queue_insert(&wire.queue, f, cm1e_clock_now(nic->clock) + WIRE_BASE_NS + passed * WIRE_SLAVE_NS);
+    cm1e_frame_queue_insert(&wire.queue, f, cm1e_clock_now(nic->clock) + WIRE_BASE_NS + passed * WIRE_SLAVE_NS);
     return true;
 }
 
@@ -187,7 +187,7 @@ static size_t wire_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t d
     const size_t length = f->length;
     *port = f->port;
     memcpy(frame, f->bytes, length);
-    frame_queue_remove_first(&wire.queue);
+    cm1e_frame_queue_remove_first(&wire.queue);
     return length;
 }
 
@@ -207,7 +207,7 @@ static cm1e_nic_t *wire_start(bool ring)
     }
     strcpy(config.second_interface, ring ? "second" : "");
     cm1e_nic_t *nic = NULL;
-    nic_open_backend(&nic, &wire_backend, &config, NULL);
+    cm1e_nic_open_backend(&nic, &wire_backend, &config, NULL);
     return nic;
 }
 

@@ -59,7 +59,7 @@ static void *run_echo(void *unused)
     (void)unused;
     uint8_t frame[CM1E_FRAME_MAX];
     while (!atomic_load(&echo.stop)) {
-        const int n = raw_socket_receive(echo.fd, frame, sizeof frame);
+        const int n = cm1e_raw_socket_receive(echo.fd, frame, sizeof frame);
         if (n <= 0) {
             usleep(20);
             continue;
@@ -77,7 +77,7 @@ static void *run_echo(void *unused)
 
 static void start_echo(bool mute)
 {
-    TEST_ASSERT_EQUAL_INT(CM1E_OK, raw_socket_open(&echo.fd, "wire1", &diag));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_raw_socket_open(&echo.fd, "wire1", &diag));
     atomic_store(&echo.stop, false);
     atomic_store(&echo.mute, mute);
     atomic_store(&echo.frames, 0);
@@ -118,12 +118,12 @@ static void test_our_own_frames_are_not_received(void)
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_nic_open(&nic, &config, &diag));
     uint8_t frame[CM1E_FRAME_MAX] = {255, 255, 255, 255, 255, 255, 1, 1, 1, 1, 1, 1, 0x88, 0xA4};
     for (int i = 0; i < 10; i++)
-        TEST_ASSERT_TRUE(nic_send(nic, 0, frame, 60));
+        TEST_ASSERT_TRUE(cm1e_nic_send(nic, 0, frame, 60));
     int port;
-    TEST_ASSERT_EQUAL_UINT(0, nic_receive(nic, &port, frame, now() + 5000000));
+    TEST_ASSERT_EQUAL_UINT(0, cm1e_nic_receive(nic, &port, frame, now() + 5000000));
     TEST_ASSERT_NULL(cm1e_nic_segment(nic));
     TEST_ASSERT_EQUAL_PTR(cm1e_clock_monotonic(), cm1e_nic_clock(nic));
-    TEST_ASSERT_FALSE(nic_send(nic, 1, frame, 60)); /* there is no second port */
+    TEST_ASSERT_FALSE(cm1e_nic_send(nic, 1, frame, 60)); /* there is no second port */
     cm1e_nic_close(nic);
 }
 
@@ -131,18 +131,18 @@ static void test_frames_from_before_the_opening_are_not_received(void)
 {
     need_wire();
     int fd;
-    TEST_ASSERT_EQUAL_INT(CM1E_OK, raw_socket_open(&fd, "wire1", &diag));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_raw_socket_open(&fd, "wire1", &diag));
     uint8_t frame[60] = {255, 255, 255, 255, 255, 255, 1, 1, 1, 1, 1, 1, 0x88, 0xA4};
     for (int i = 0; i < 50; i++)
         send(fd, frame, sizeof frame, 0);
     cm1e_nic_t *nic = NULL;
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_nic_open(&nic, &config, &diag));
     int port;
-    TEST_ASSERT_EQUAL_UINT(0, nic_receive(nic, &port, frame, now() + 2000000));
+    TEST_ASSERT_EQUAL_UINT(0, cm1e_nic_receive(nic, &port, frame, now() + 2000000));
     /* Other protocols are none of ours either. */
     frame[13] = 0xA5;
     send(fd, frame, sizeof frame, 0);
-    TEST_ASSERT_EQUAL_UINT(0, nic_receive(nic, &port, frame, now() + 2000000));
+    TEST_ASSERT_EQUAL_UINT(0, cm1e_nic_receive(nic, &port, frame, now() + 2000000));
     close(fd);
     cm1e_nic_close(nic);
 }
@@ -157,7 +157,7 @@ static int64_t usual_overshoot(cm1e_nic_t *nic, int64_t wait_ns)
     int port;
     for (int i = 0; i < WAITS; i++) {
         const int64_t deadline = now() + wait_ns;
-        TEST_ASSERT_EQUAL_UINT(0, nic_receive(nic, &port, frame, deadline));
+        TEST_ASSERT_EQUAL_UINT(0, cm1e_nic_receive(nic, &port, frame, deadline));
         int64_t late = now() - deadline;
         TEST_ASSERT_GREATER_OR_EQUAL_INT64(0, late);
         int at = i;
@@ -182,7 +182,7 @@ static void test_waits_end_at_the_deadline_and_use_no_cpu(void)
     const int64_t before = cpu_ns();
     uint8_t frame[CM1E_FRAME_MAX];
     int port;
-    nic_receive(nic, &port, frame, now() + 200000000);
+    cm1e_nic_receive(nic, &port, frame, now() + 200000000);
     TEST_ASSERT_LESS_THAN_INT64(50000000, cpu_ns() - before);
     cm1e_nic_close(nic);
 }
@@ -217,16 +217,16 @@ static void test_an_interface_that_goes_away_is_no_busy_loop(void)
     uint8_t frame[CM1E_FRAME_MAX] = {255, 255, 255, 255, 255, 255, 1, 1, 1, 1, 1, 1, 0x88, 0xA4};
     int port;
     TEST_ASSERT_EQUAL_INT(0, system("ip link set gone0 down"));
-    TEST_ASSERT_FALSE(nic_send(nic, 0, frame, 60));
+    TEST_ASSERT_FALSE(cm1e_nic_send(nic, 0, frame, 60));
     for (int gone = 0; gone < 2; gone++) {
         const int64_t cpu = cpu_ns(), deadline = now() + 100000000;
-        TEST_ASSERT_EQUAL_UINT(0, nic_receive(nic, &port, frame, deadline));
+        TEST_ASSERT_EQUAL_UINT(0, cm1e_nic_receive(nic, &port, frame, deadline));
         TEST_ASSERT_GREATER_OR_EQUAL_INT64(deadline, now());
         TEST_ASSERT_LESS_THAN_INT64(30000000, cpu_ns() - cpu);
         if (!gone)
             TEST_ASSERT_EQUAL_INT(0, system("ip link del gone0"));
     }
-    TEST_ASSERT_FALSE(nic_send(nic, 0, frame, 60));
+    TEST_ASSERT_FALSE(cm1e_nic_send(nic, 0, frame, 60));
     cm1e_nic_close(nic);
 }
 

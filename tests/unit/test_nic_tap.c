@@ -242,14 +242,14 @@ static void test_the_frame_queue_sorts_by_time_and_keeps_the_order_of_equals(voi
     unsigned number = 0, inside = 0;
     for (int i = 0; i < 100000; i++) {
         if (rand() % 2 && inside < FRAME_QUEUE_PLACES) {
-            queued_frame_t *f = frame_queue_place(&queue);
+            queued_frame_t *f = cm1e_frame_queue_place(&queue);
             TEST_ASSERT_NOT_NULL(f);
             f->length = ++number;
-            frame_queue_insert(&queue, f, rand() % 8);
+            cm1e_frame_queue_insert(&queue, f, rand() % 8);
             inside++;
         } else if (inside > 0) {
             const queued_frame_t first = *frame_queue_first(&queue);
-            frame_queue_remove_first(&queue);
+            cm1e_frame_queue_remove_first(&queue);
             inside--;
             const queued_frame_t *next = frame_queue_first(&queue);
             TEST_ASSERT_EQUAL(inside > 0, next != NULL);
@@ -260,8 +260,8 @@ static void test_the_frame_queue_sorts_by_time_and_keeps_the_order_of_equals(voi
         TEST_ASSERT_EQUAL_UINT(inside, queue.count);
     }
     while (inside++ < FRAME_QUEUE_PLACES)
-        frame_queue_insert(&queue, frame_queue_place(&queue), 0);
-    TEST_ASSERT_NULL(frame_queue_place(&queue));
+        cm1e_frame_queue_insert(&queue, cm1e_frame_queue_place(&queue), 0);
+    TEST_ASSERT_NULL(cm1e_frame_queue_place(&queue));
 }
 
 /* ---- pcap -------------------------------------------------------------------------------------------------------- */

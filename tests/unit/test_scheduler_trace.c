@@ -26,7 +26,7 @@ static trace_t make_trace(uint32_t axes, uint32_t capacity)
     return trace;
 }
 
-/** Samples that move, n = 0, 1, 2 ...; into the ring as trace_record() does. */
+/** Samples that move, n = 0, 1, 2 ...; into the ring as cm1e_trace_record() does. */
 static void add_sample(trace_t *trace, uint32_t n, double scale)
 {
     const uint32_t place = (trace->first + trace->used) % trace->capacity;
@@ -66,7 +66,7 @@ static const char svg_path[] = CM1E_TEST_OUTPUT "/trace-unit.svg", csv_path[] = 
 static char *write_svg(const trace_t *trace, size_t *size)
 {
     cm1e_diag_t diag = {0};
-    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, trace_write_file(trace, svg_path, trace_print_svg, &diag), diag.text);
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_trace_write_file(trace, svg_path, cm1e_trace_print_svg, &diag), diag.text);
     return read_file(svg_path, size);
 }
 
@@ -126,7 +126,7 @@ static void test_svg_of_few_and_many_axes_is_well_formed_and_below_half_a_megaby
         TEST_ASSERT_EQUAL(cases[i].axes, count(svg, ">torque [% of rated]<"));
         TEST_ASSERT_EQUAL(2 * cases[i].axes + 1, count(svg, "class=\"set\" d=\"M"));
         free(svg);
-        trace_free(&trace);
+        cm1e_trace_free(&trace);
     }
 }
 
@@ -137,10 +137,10 @@ static void test_svg_shows_the_marks_of_its_time(void)
     size_t size;
     for (uint32_t n = 0; n < 300; n++) /* 200 ms ... 299 ms are kept */
         add_sample(&trace, n, 1);
-    trace_mark(&trace, "too old", 199 * INT64_C(1000000));
+    cm1e_trace_mark(&trace, "too old", 199 * INT64_C(1000000));
     for (int i = 0; i < 3; i++)
-        trace_mark(&trace, names[i], (200 + 49 * i) * INT64_C(1000000));
-    trace_mark(&trace, "too new", 300 * INT64_C(1000000));
+        cm1e_trace_mark(&trace, names[i], (200 + 49 * i) * INT64_C(1000000));
+    cm1e_trace_mark(&trace, "too new", 300 * INT64_C(1000000));
     char *svg = write_svg(&trace, &size);
     check_well_formed(svg);
     TEST_ASSERT_EQUAL(2 * 3, count(svg, "class=\"mark\""));
@@ -148,11 +148,11 @@ static void test_svg_shows_the_marks_of_its_time(void)
     TEST_ASSERT_EQUAL(0, count(svg, ">too "));
     free(svg);
     for (int i = 0; i < TRACE_MARKS; i++) /* the ring goes round */
-        trace_mark(&trace, i == 0 ? "oldest" : "later", 250 * INT64_C(1000000));
+        cm1e_trace_mark(&trace, i == 0 ? "oldest" : "later", 250 * INT64_C(1000000));
     TEST_ASSERT_EQUAL(TRACE_MARKS, trace.mark_count);
-    TEST_ASSERT_EQUAL_STRING("oldest", trace_mark_at(&trace, 0)->text);
-    TEST_ASSERT_EQUAL_STRING("later", trace_mark_at(&trace, TRACE_MARKS - 1)->text);
-    trace_free(&trace);
+    TEST_ASSERT_EQUAL_STRING("oldest", cm1e_trace_mark_at(&trace, 0)->text);
+    TEST_ASSERT_EQUAL_STRING("later", cm1e_trace_mark_at(&trace, TRACE_MARKS - 1)->text);
+    cm1e_trace_free(&trace);
 }
 
 /* A program that names every moment, the last ones at the end of the time: each text has a place of its own. */
@@ -167,7 +167,7 @@ static void test_svg_marks_are_never_printed_over_each_other(void)
     for (uint32_t n = 0; n < 100; n++)
         add_sample(&trace, n, 1);
     for (int64_t i = 0; i < TRACE_MARKS; i++)
-        trace_mark(&trace, names[i % 4], (i < 60 ? i * i / 40 : 99) * INT64_C(1000000));
+        cm1e_trace_mark(&trace, names[i % 4], (i < 60 ? i * i / 40 : 99) * INT64_C(1000000));
     char *svg = write_svg(&trace, &size);
     check_well_formed(svg);
     TEST_ASSERT_EQUAL(2 * TRACE_MARKS, count(svg, "class=\"tick note\""));
@@ -186,7 +186,7 @@ static void test_svg_marks_are_never_printed_over_each_other(void)
         memcpy(placed[i], (double[]){y, from, to}, sizeof placed[i]);
     }
     free(svg);
-    trace_free(&trace);
+    cm1e_trace_free(&trace);
 }
 
 static void test_svg_survives_any_values(void)
@@ -205,7 +205,7 @@ static void test_svg_survives_any_values(void)
         TEST_ASSERT_LESS_THAN(100000, size);
         check_well_formed(svg);
         free(svg);
-        trace_free(&trace);
+        cm1e_trace_free(&trace);
     }
 }
 
@@ -235,7 +235,7 @@ static void test_svg_shows_a_state_of_one_sample_and_a_peak_of_one_sample(void)
     }
     TEST_ASSERT_TRUE(bottom - top > 80); /* of a panel 110 high */
     free(svg);
-    trace_free(&trace);
+    cm1e_trace_free(&trace);
 }
 
 static void test_svg_of_an_empty_trace_says_so(void)
@@ -246,7 +246,7 @@ static void test_svg_of_an_empty_trace_says_so(void)
     check_well_formed(svg);
     TEST_ASSERT_NOT_NULL(strstr(svg, "The trace is empty."));
     free(svg);
-    trace_free(&empty);
+    cm1e_trace_free(&empty);
 }
 
 /* ---- CSV ------------------------------------------------------------------------------------------------------- */
@@ -258,7 +258,7 @@ static void test_csv_has_a_row_a_sample_in_the_order_of_time_also_after_the_ring
     cm1e_diag_t diag = {0};
     for (uint32_t n = 0; n < 250; n++)
         add_sample(&trace, n, 5);
-    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, trace_write_file(&trace, csv_path, trace_print_csv, &diag), diag.text);
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_trace_write_file(&trace, csv_path, cm1e_trace_print_csv, &diag), diag.text);
     char *csv = read_file(csv_path, &size);
     TEST_ASSERT_EQUAL(101, count(csv, "\n"));
     TEST_ASSERT_NOT_NULL(strstr(csv, "\"gripper set position [u]\""));
@@ -273,7 +273,7 @@ static void test_csv_has_a_row_a_sample_in_the_order_of_time_also_after_the_ring
         line++;
     }
     free(csv);
-    trace_free(&trace);
+    cm1e_trace_free(&trace);
 }
 
 /* ---- files ----------------------------------------------------------------------------------------------------- */
@@ -286,19 +286,19 @@ static void test_numbers_have_a_point_in_every_locale(void)
     size_t size;
     for (uint32_t n = 0; n < 10; n++)
         add_sample(&trace, n, 0.123);
-    TEST_ASSERT_EQUAL(CM1E_OK, trace_write_file(&trace, csv_path, trace_print_csv, NULL));
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_trace_write_file(&trace, csv_path, cm1e_trace_print_csv, NULL));
     TEST_ASSERT_EQUAL_STRING("de_DE.UTF-8", setlocale(LC_NUMERIC, NULL));
     setlocale(LC_NUMERIC, "C");
     char *csv = read_file(csv_path, &size);
     TEST_ASSERT_NOT_NULL(strstr(csv, "\n0.001000,"));
     free(csv);
-    trace_free(&trace);
+    cm1e_trace_free(&trace);
 }
 
 /* As a disk that fills in the middle. */
 static void print_half(const trace_t *trace, FILE *file)
 {
-    trace_print_csv(trace, file);
+    cm1e_trace_print_csv(trace, file);
     fflush(file);
     close(fileno(file));
     fputs("the rest", file);
@@ -312,13 +312,13 @@ static void test_old_file_stays_until_the_new_one_is_whole(void)
     FILE *file = fopen(csv_path, "w");
     fputs("old", file);
     fclose(file);
-    TEST_ASSERT_EQUAL(CM1E_ERROR_IO, trace_write_file(&empty, csv_path, print_half, &diag));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_IO, cm1e_trace_write_file(&empty, csv_path, print_half, &diag));
     TEST_ASSERT_NOT_NULL(strstr(diag.text, csv_path));
     char *text = read_file(csv_path, &size);
     TEST_ASSERT_EQUAL_STRING("old", text);
     free(text);
-    TEST_ASSERT_EQUAL(CM1E_OK, trace_write_file(&empty, csv_path, trace_print_csv, &diag));
-    trace_free(&empty);
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_trace_write_file(&empty, csv_path, cm1e_trace_print_csv, &diag));
+    cm1e_trace_free(&empty);
 }
 
 static void test_a_link_beside_the_file_is_not_followed(void)
@@ -334,13 +334,13 @@ static void test_a_link_beside_the_file_is_not_followed(void)
     unlink(part);
     unlink(csv_path);
     TEST_ASSERT_EQUAL(0, symlink(victim, part));
-    TEST_ASSERT_EQUAL(CM1E_OK, trace_write_file(&empty, csv_path, trace_print_csv, NULL));
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_trace_write_file(&empty, csv_path, cm1e_trace_print_csv, NULL));
     char *text = read_file(victim, &size);
     TEST_ASSERT_EQUAL_STRING("of somebody else", text);
     free(text);
     unlink(part);
     unlink(victim);
-    trace_free(&empty);
+    cm1e_trace_free(&empty);
 }
 
 static void test_paths_that_cannot_be_written_are_named(void)
@@ -350,18 +350,19 @@ static void test_paths_that_cannot_be_written_are_named(void)
     cm1e_diag_t diag = {0};
     memset(long_path, 'a', sizeof long_path);
     long_path[sizeof long_path - 1] = '\0';
-    TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, trace_write_file(&empty, NULL, trace_print_csv, &diag));
-    TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, trace_write_file(&empty, long_path, trace_print_csv, &diag));
-    TEST_ASSERT_EQUAL(CM1E_ERROR_IO, trace_write_file(&empty, "/nowhere/at/all.csv", trace_print_csv, &diag));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT, cm1e_trace_write_file(&empty, NULL, cm1e_trace_print_csv, &diag));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_INVALID_ARGUMENT,
+                      cm1e_trace_write_file(&empty, long_path, cm1e_trace_print_csv, &diag));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_IO, cm1e_trace_write_file(&empty, "/nowhere/at/all.csv", cm1e_trace_print_csv, &diag));
     TEST_ASSERT_NOT_NULL(strstr(diag.text, "/nowhere/at/all.csv"));
-    TEST_ASSERT_EQUAL(CM1E_OK, trace_write_file(&empty, "/dev/null", trace_print_csv, &diag));
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_trace_write_file(&empty, "/dev/null", cm1e_trace_print_csv, &diag));
     struct stat status;
     TEST_ASSERT_EQUAL(0, stat("/dev/null", &status));
     TEST_ASSERT_TRUE(S_ISCHR(status.st_mode)); /* a device is written to, not replaced */
-    TEST_ASSERT_EQUAL(CM1E_ERROR_IO, trace_write_file(&empty, "/dev/full", trace_print_svg, &diag));
-    trace_free(&empty);
-    const trace_t none = {.axes = 3}; /* as trace_init() leaves it for capacity 0 */
-    TEST_ASSERT_EQUAL(CM1E_ERROR_STATE, trace_write_file(&none, csv_path, trace_print_csv, &diag));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_IO, cm1e_trace_write_file(&empty, "/dev/full", cm1e_trace_print_svg, &diag));
+    cm1e_trace_free(&empty);
+    const trace_t none = {.axes = 3}; /* as cm1e_trace_init() leaves it for capacity 0 */
+    TEST_ASSERT_EQUAL(CM1E_ERROR_STATE, cm1e_trace_write_file(&none, csv_path, cm1e_trace_print_csv, &diag));
     TEST_ASSERT_NOT_NULL(strstr(diag.text, "trace_capacity"));
 }
 
