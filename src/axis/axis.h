@@ -151,6 +151,10 @@ cm1e_axis_t *cm1e_axis_from_reference(const AXIS_REF_t *reference);
 void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t health, int64_t now_ns);
 /** Next set-point, state diagram, drive outputs. @rt cycle */
 void cm1e_axis_outputs(cm1e_axis_t *axis);
+/** Cycles without an answer, or in which no frame was sent, in a row or shortly one after the other, after which the
+ *  motor has hardly slowed down: a motion made of several (a table over time, a superimposed motion, a group's path)
+ *  goes on as it was. */
+enum { CM1E_AXIS_RIDDEN_OUT_CYCLES = 2 };
 /** Before cm1e_axis_outputs(): no frame was sent for so long beyond the cycle that the motor no longer moves as the
  *  set-point does. What moves begins anew from rest (CSP), or from where the motor has gone on to (CSV). @rt cycle */
 void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns);

@@ -13,9 +13,6 @@
  */
 #include "axis/axis_coupling.h"
 
-/* Cycles of silence, in a row or shortly one after the other, after which a motion made of several (a table over time, a
- * superimposed motion, a group's path) goes on as it was: the motor has hardly slowed down. */
-enum { RIDDEN_OUT_CYCLES = 2 };
 /* Counts/s; resolution of the actual velocity of old firmware, and of one that is the difference of two positions. */
 static const double velocity_noise = 3000.0;
 /* Of the maximum velocity, for each cycle of silence: a motor that has slowed down meanwhile overshoots when it gets back
@@ -149,7 +146,7 @@ static bool is_composite(const cm1e_axis_t *axis)
 static void go_on_or_begin_anew(cm1e_axis_t *axis)
 {
     const bool follows_on = axis_follows(axis) && (axis->coupling->now->by_actual || master_began_anew(axis));
-    if (is_composite(axis) && !follows_on && axis->shaken <= RIDDEN_OUT_CYCLES * CM1E_SHAKEN_BY_SILENCE)
+    if (is_composite(axis) && !follows_on && axis->shaken <= CM1E_AXIS_RIDDEN_OUT_CYCLES * CM1E_SHAKEN_BY_SILENCE)
         return;
     const double left = axis_led(axis) ? 0.0 : velocity_left(axis);
     if (left != axis->set_velocity || follows_on)

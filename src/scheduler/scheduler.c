@@ -15,7 +15,6 @@
 #include "scheduler/tasks.h"
 #include "scheduler/trace.h"
 
-#define RIDDEN_OUT_CYCLES 2
 #define DEFAULT_STOP_TIMEOUT_NS INT64_C(10000000000)
 
 struct cm1e_scheduler {
@@ -64,7 +63,7 @@ static int64_t cycle_of(const cm1e_scheduler_t *s, int64_t time_ns) { return (ti
 /** After a few missed cycles the motor has hardly slowed down; after more it stands (CSP). */
 static void after_missed(cm1e_axis_t *axis, int64_t missed, int64_t silence_ns)
 {
-    if (missed > RIDDEN_OUT_CYCLES)
+    if (missed > CM1E_AXIS_RIDDEN_OUT_CYCLES)
         cm1e_axis_after_pause(axis, silence_ns);
     else
         cm1e_axis_hold_cycle(axis, missed);

@@ -4,7 +4,7 @@
  * The motor may stop hard, run out, or be stopped by its watchdog; it never gets faster than it was, never jumps when
  * the frames come back, and nothing moves any more after ErrorStop is over.
  */
-#include "safety_bench.h"
+#include "safety_run.h"
 
 typedef enum break_kind { BREAK_THERE = 0, BREAK_BACK, BREAK_BOTH_WAYS, BREAK_COUNTER, BREAK_FIRST, BREAK_SECOND,
                           BREAKS } break_kind_t;
@@ -106,16 +106,11 @@ static void judge_at_the_end(bench_t *b)
 
 static void run(uint32_t axes, cm1e_mapping_t mapping, const char *firmware, break_kind_t which, int cycles)
 {
-    cm1e_diag_t diag = {0};
-    memset(&bench, 0, sizeof bench);
-    bench_describe(&bench, axes);
+    bench_free_axes(&bench, axes, mapping, firmware);
     kind = which;
     break_cycles = cycles;
     for (uint32_t n = 0; n < axes; n++) {
-        bench.config.axes[n].mapping = mapping;
-        bench.config.axes[n].sim.no_stops = true;
         snprintf(bench.config.axes[n].name, sizeof bench.config.axes[n].name, "axle%u", n);
-        snprintf(bench.config.axes[n].firmware, sizeof bench.config.axes[n].firmware, "%s", firmware);
         power[n] = (MC_Power_t){.Axis = &bench.axis[n], .EnablePositive = TRUE, .EnableNegative = TRUE};
         move[n] = (MC_MoveVelocity_t){.Axis = &bench.axis[n], .Velocity = n == 1 ? -speed_u : speed_u};
         speed_at_break[n] = fastest[n] = 0;
@@ -124,11 +119,7 @@ static void run(uint32_t axes, cm1e_mapping_t mapping, const char *firmware, bre
     bench.fault = lose;
     snprintf(bench.scene, sizeof bench.scene, "mapping %d, firmware %s, %s for %d cycles", (int)mapping, firmware,
              break_names[kind], cycles);
-    bench_open(&bench);
-    bench_start(&bench);
-    const cm1e_error_t error = bench_run(&bench, &diag);
-    MUST(&bench, error == CM1E_OK, "%s", diag.text);
-    bench_close(&bench);
+    bench_play(&bench);
 }
 
 START_TEST(test_bus_away_for_a_while_makes_nothing_jump)
@@ -178,10 +169,8 @@ START_TEST(test_blocked_motor_does_not_jump_when_it_is_freed)
 {
     static const cm1e_mapping_t mappings[] = {CM1E_MAPPING_DYNAMIC, CM1E_MAPPING_CSP, CM1E_MAPPING_CSV};
     for (freed_after = 1; freed_after < FREED_LATEST; freed_after += 1 + freed_after / 8 * slowness()) {
-        cm1e_diag_t diag = {0};
-        memset(&bench, 0, sizeof bench);
-        bench_describe(&bench, 1);
-        bench.config.axes[0].mapping = mappings[_i];
+        bench_free_axes(&bench, 1, mappings[_i], "1.3.5");
+        bench.config.axes[0].sim.no_stops = false;
         bench.config.axes[0].max_position_lag = 10;
         bench.config.axes[0].max_deceleration = 1000;
         bench.config.axes[0].sim.stop_positive = 20000;
@@ -191,26 +180,14 @@ START_TEST(test_blocked_motor_does_not_jump_when_it_is_freed)
         bench.program = blocked_program;
         snprintf(bench.scene, sizeof bench.scene, "mapping %d, freed %d cycles after the error", (int)mappings[_i],
                  freed_after);
-        bench_open(&bench);
-        bench_start(&bench);
-        const cm1e_error_t error = bench_run(&bench, &diag);
-        MUST(&bench, error == CM1E_OK, "%s", diag.text);
-        bench_close(&bench);
+        bench_play(&bench);
     }
 }
 END_TEST
 
 int main(void)
 {
-    Suite *suite = suite_create("a bus that is away for a while");
-    TCase *cases = tcase_create("blind");
-    tcase_set_timeout(cases, 250);
-    tcase_add_loop_test(cases, test_bus_away_for_a_while_makes_nothing_jump, 0, 5 * BREAKS);
-    tcase_add_loop_test(cases, test_blocked_motor_does_not_jump_when_it_is_freed, 0, 3);
-    suite_add_tcase(suite, cases);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int count = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return count ? EXIT_FAILURE : EXIT_SUCCESS;
+    return bench_main("a bus that is away for a while", 250,
+                      (bench_test_t[]){{test_bus_away_for_a_while_makes_nothing_jump, 5 * BREAKS},
+                                       {test_blocked_motor_does_not_jump_when_it_is_freed, 3}, {0}});
 }

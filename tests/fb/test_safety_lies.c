@@ -4,7 +4,7 @@
  * is told of it: the shaft never gets faster than the axis may be, never goes back, and what cannot be is called by its
  * name.
  */
-#include "safety_bench.h"
+#include "safety_run.h"
 
 typedef enum lie { A_JUMP = 0, A_FAR_JUMP, TURNED_SIGN, A_SMALL_JUMP, FROZEN, LIES } lie_t;
 static const char *const lie_names[LIES] = {"1,000,000 counts off", "100,000,000 counts off", "sign turned round",
@@ -30,20 +30,14 @@ static void put_long(uint8_t *data, int place, int32_t value)
         data[place + i] = (uint8_t)((uint32_t)value >> (8 * i));
 }
 
-/** The witness believes what the master believes: it is shown the truth, the master gets the lie behind it. */
-static cm1e_tap_verdict_t tell(void *context, cm1e_tap_frame_t *frame)
+static void tell(bench_t *b, uint8_t *data)
 {
-    const cm1e_tap_verdict_t verdict = bench_tap(context, frame);
-    if (!is_process_data(&bench, frame) || frame->direction != CM1E_TAP_RECEIVED || verdict != CM1E_TAP_PASS)
-        return verdict;
-    uint8_t *data = frame->bytes + LRW_DATA;
-    const int place = bench.witness[0].in_position;
+    const int place = b->witness[0].in_position;
     const int32_t truth = long_at(data, place);
     frozen_at = lying() ? frozen_at : truth;
     const int32_t told[LIES] = {truth + 1000000, truth + 100000000, -truth, truth + 3000, frozen_at};
     if (lying())
         put_long(data, place, told[lie]);
-    return verdict;
 }
 
 static void watch(void)
@@ -90,18 +84,8 @@ static void program(bench_t *b)
 
 static void run(cm1e_mapping_t mapping, const char *firmware)
 {
-    cm1e_diag_t diag = {0};
-    memset(&bench, 0, sizeof bench);
-    bench_describe(&bench, 1);
-    cm1e_axis_config_t *axis = &bench.config.axes[0];
-    axis->mapping = mapping;
-    axis->counts_per_unit = unit;
-    axis->homing = (cm1e_homing_config_t){0};
-    axis->max_velocity = speed_u;
-    axis->max_acceleration = axis->max_deceleration = 100;
-    axis->max_jerk = 4000;
-    axis->sim.no_stops = true;
-    snprintf(axis->firmware, sizeof axis->firmware, "%s", firmware);
+    bench_free_axes(&bench, 1, mapping, firmware);
+    bench_limit_axes(&bench, unit, speed_u, 100, 4000);
     snprintf(bench.scene, sizeof bench.scene, "mapping %d, firmware %s, %s for %d frames from %d", (int)mapping, firmware,
              lie_names[lie], length, begin - ENABLED);
     power = (MC_Power_t){.Axis = &bench.axis[0], .Enable = TRUE, .EnablePositive = TRUE, .EnableNegative = TRUE};
@@ -109,12 +93,8 @@ static void run(cm1e_mapping_t mapping, const char *firmware)
     fastest = farthest = 0;
     end_at = begin + length + AFTER;
     bench.program = program;
-    bench_open(&bench);
-    cm1e_nic_set_tap(cm1e_bus_nic(bench.bus), tell, &bench);
-    bench_start(&bench);
-    const cm1e_error_t error = bench_run(&bench, &diag);
-    MUST(&bench, error == CM1E_OK, "%s", diag.text);
-    bench_close(&bench);
+    bench.lie = tell;
+    bench_play(&bench);
 }
 
 START_TEST(test_no_motor_is_moved_by_what_is_told_of_it)
@@ -137,14 +117,6 @@ END_TEST
 
 int main(void)
 {
-    Suite *suite = suite_create("actual positions that are not true");
-    TCase *cases = tcase_create("lies");
-    tcase_set_timeout(cases, 250);
-    tcase_add_loop_test(cases, test_no_motor_is_moved_by_what_is_told_of_it, 0, LIES);
-    suite_add_tcase(suite, cases);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int count = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return count ? EXIT_FAILURE : EXIT_SUCCESS;
+    return bench_main("actual positions that are not true", 250,
+                      (bench_test_t[]){{test_no_motor_is_moved_by_what_is_told_of_it, LIES}, {0}});
 }

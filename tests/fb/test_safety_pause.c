@@ -4,7 +4,7 @@
  * to end, a stop that was under way ends there, and nothing is an error. In CSV, where the motor goes on alone, its
  * velocity does not jump.
  */
-#include "safety_bench.h"
+#include "safety_run.h"
 
 enum { WATCHDOG_MS = 95 };
 static const double speed_u = 300, way_u = 60;
@@ -57,13 +57,12 @@ static void judge_end(void)
     MUST(&bench, fastest < 1.05 * speed_u * 1000, "%.0f counts/s", fastest);
     if (motion == MOTION_ABSOLUTE)
         MUST(&bench, fabs(info.set_position - way_u) < 1e-6, "ends at %g", info.set_position);
-    if (bench.config.axes[0].mapping == CM1E_MAPPING_CSV && pause_ms > BENCH_RIDDEN_OUT)
+    if (bench.config.axes[0].mapping == CM1E_MAPPING_CSV && pause_ms > CM1E_AXIS_RIDDEN_OUT_CYCLES)
         MUST(&bench, hardest < 12000, "the velocity jumps by %.0f counts/s", hardest);
 }
 
 static void run(void)
 {
-    cm1e_diag_t diag = {0};
     snprintf(bench.scene, sizeof bench.scene, "motion %d, mapping %d, %d ms in cycle %d", motion,
              bench.config.axes[0].mapping, pause_ms, pause_at);
     speed_before = fastest = hardest = 0;
@@ -71,11 +70,7 @@ static void run(void)
     absolute = (MC_MoveAbsolute_t){.Axis = &bench.axis[0], .Position = way_u, .Velocity = speed_u};
     velocity = (MC_MoveVelocity_t){.Axis = &bench.axis[0], .Velocity = speed_u};
     stop = (MC_Stop_t){.Axis = &bench.axis[0]};
-    bench_open(&bench);
-    bench_start(&bench);
-    const cm1e_error_t error = bench_run(&bench, &diag);
-    MUST(&bench, error == CM1E_OK, "%s", diag.text);
-    bench_close(&bench);
+    bench_play(&bench);
 }
 
 static void program_then_judge(bench_t *b)
@@ -92,11 +87,8 @@ START_TEST(test_pause_at_every_phase_of_a_motion_makes_no_step)
     for (int mapping = CM1E_MAPPING_DYNAMIC; mapping <= CM1E_MAPPING_CSV; mapping += CM1E_MAPPING_CSV)
         for (size_t p = 0; p < sizeof pauses / sizeof pauses[0]; p++)
             for (pause_at = 20; pause_at < 420; pause_at += 13 * slowness()) {
-                memset(&bench, 0, sizeof bench);
-                bench_describe(&bench, 1);
-                bench.config.axes[0].mapping = (cm1e_mapping_t)mapping;
+                bench_free_axes(&bench, 1, (cm1e_mapping_t)mapping, "1.3.5");
                 bench.config.axes[0].max_jerk = 50000;
-                bench.config.axes[0].sim.no_stops = true;
                 bench.program = program_then_judge;
                 pause_ms = pauses[p];
                 end_at = 1400;
@@ -107,14 +99,6 @@ END_TEST
 
 int main(void)
 {
-    Suite *suite = suite_create("a master that pauses");
-    TCase *cases = tcase_create("pause");
-    tcase_set_timeout(cases, 120);
-    tcase_add_loop_test(cases, test_pause_at_every_phase_of_a_motion_makes_no_step, 0, MOTIONS);
-    suite_add_tcase(suite, cases);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int count = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return count ? EXIT_FAILURE : EXIT_SUCCESS;
+    return bench_main("a master that pauses", 120,
+                      (bench_test_t[]){{test_pause_at_every_phase_of_a_motion_makes_no_step, MOTIONS}, {0}});
 }

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "axis/axis.h"
 #include "bus/bus_image.h"
 #include "chance.h"
 #include "cm1e/plcopen.h"
@@ -68,6 +69,9 @@ struct bench {
     uint8_t last_outputs[256];
     /** What happens to a process data frame; NULL: nothing. Called before the witness looks at what is sent. */
     cm1e_tap_verdict_t (*fault)(bench_t *bench, cm1e_tap_frame_t *frame);
+    /** What the master is told in place of what the witness has seen; NULL: the truth. */
+    void (*lie)(bench_t *bench, uint8_t *data);
+    void (*started)(bench_t *bench);   /**< before the first cycle; NULL: nothing */
     bool paused;                       /**< the frame that comes now is the first after a pause of the master */
     bool answered;                     /**< the last frame came back in time, with every slave's part in it */
     bool frames_late;                  /**< frames are delayed: what the drive showed may be one frame older */
@@ -415,6 +419,8 @@ static cm1e_tap_verdict_t bench_tap(void *context, cm1e_tap_frame_t *frame)
     if (frame->direction == CM1E_TAP_RECEIVED) {
         if (verdict == CM1E_TAP_PASS && is_process_data(bench, frame))
             witness_received(bench, frame);
+        if (verdict == CM1E_TAP_PASS && bench->lie)
+            bench->lie(bench, frame->bytes + LRW_DATA);
         return verdict;
     }
     bench->process_frames++;
@@ -527,8 +533,6 @@ __attribute__((format(printf, 2, 3))) static inline void bench_console(bench_t *
         bench_fail(bench, "console: %s: %s", line, answer);
 }
 
-enum { BENCH_RIDDEN_OUT = 2 }; /**< cycles without a frame, after which a motion goes on with what the motor has left */
-
 /** The master sends nothing for so many nanoseconds beyond its cycle: call it in the program of a cycle. */
 static inline void bench_miss(bench_t *bench, int64_t silence_ns)
 {
@@ -536,7 +540,7 @@ static inline void bench_miss(bench_t *bench, int64_t silence_ns)
     cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + silence_ns);
     const int64_t missed = silence_ns / bench->config.cycle_time_ns;
     const bool noticed = missed > 0;
-    bench->paused = missed > BENCH_RIDDEN_OUT;
+    bench->paused = missed > CM1E_AXIS_RIDDEN_OUT_CYCLES;
     bench->answered = bench->answered && !noticed; /* the target stays until the next answer */
 }
 

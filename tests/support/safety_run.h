@@ -1,0 +1,72 @@
+/**
+ * @file safety_run.h
+ * A run of safety_bench.h from its first frame to its last, and the main() of a program of such runs. Include it in
+ * place of safety_bench.h.
+ */
+#ifndef CM1E_TESTS_SAFETY_RUN_H
+#define CM1E_TESTS_SAFETY_RUN_H
+
+#include "effort.h"
+#include "safety_bench.h"
+
+/** Axes without end stops that nobody homes, with this mapping and firmware. */
+static inline void bench_free_axes(bench_t *bench, uint32_t axes, cm1e_mapping_t mapping, const char *firmware)
+{
+    memset(bench, 0, sizeof *bench);
+    bench_describe(bench, axes);
+    for (uint32_t n = 0; n < axes; n++) {
+        cm1e_axis_config_t *axis = &bench->config.axes[n];
+        axis->mapping = mapping;
+        axis->homing = (cm1e_homing_config_t){0};
+        axis->sim.no_stops = true;
+        snprintf(axis->firmware, sizeof axis->firmware, "%s", firmware);
+    }
+}
+
+/** The limits of every axis; units of `counts`. */
+static inline void bench_limit_axes(bench_t *bench, double counts, double velocity, double acceleration, double jerk)
+{
+    for (uint32_t n = 0; n < bench->config.axis_count; n++) {
+        cm1e_axis_config_t *axis = &bench->config.axes[n];
+        axis->counts_per_unit = counts;
+        axis->max_velocity = velocity;
+        axis->max_acceleration = axis->max_deceleration = acceleration;
+        axis->max_jerk = jerk;
+    }
+}
+
+/** From start-up until the program ends it. */
+static inline void bench_play(bench_t *bench)
+{
+    cm1e_diag_t diag = {0};
+    bench_open(bench);
+    bench_start(bench);
+    if (bench->started)
+        bench->started(bench);
+    const cm1e_error_t error = bench_run(bench, &diag);
+    MUST(bench, error == CM1E_OK, "%s", diag.text);
+    bench_close(bench);
+}
+
+typedef struct bench_test {
+    const TTest *test;
+    int count; /**< `_i` is 0 ... count - 1 */
+} bench_test_t;
+
+/** The tests, up to one without a name, each within so many seconds; with a stride that is stated, as long as they take. */
+static inline int bench_main(const char *about, double limit_s, const bench_test_t *tests)
+{
+    Suite *suite = suite_create(about);
+    TCase *cases = tcase_create(about);
+    tcase_set_timeout(cases, stated_stride() > 0 ? 0 : limit_s);
+    for (; tests->test; tests++)
+        tcase_add_loop_test(cases, tests->test, 0, tests->count);
+    suite_add_tcase(suite, cases);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_ENV);
+    const int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
+
+#endif
