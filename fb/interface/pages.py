@@ -55,7 +55,7 @@ def type_link(name):
 
 
 def meaning(variable, block, tables):
-    """What is said of this block goes before what is said of all."""
+    """The text of this block takes precedence over the text for all blocks."""
     is_enabled = any(other.name == "Enable" for other in block.variables)
     common = is_enabled and tables.meanings.get(f"{variable.name} (Enable)") or tables.meanings.get(variable.name, "")
     if variable.text and variable.text[0] != "(":
@@ -112,7 +112,7 @@ def states_text(block, tables):
     if not cells:
         return ""
     if set(cells) == {"-"}:
-        return "## In which state\n\nIn every state; it never changes it.\n\n"
+        return "## In which state\n\nThe block may be called in every state, and never changes the state.\n\n"
     if len(set(cells)) == 1 and cells[0] in tables.errors:
         error = ": ".join(error_id(cells[0], tables))
         return "## In which state\n\n" + wrap(f"Refused in every state: {error}.") + "\n\n"
@@ -120,7 +120,7 @@ def states_text(block, tables):
     for state, cell in zip(STATES, cells):
         told = ": ".join(error_id(cell, tables)) if cell in tables.errors else state_cell(cell, tables)
         rows += f"| {state} | {told} |\n"
-    return ("## In which state\n\n| state of the axis | it is then in, or the refusal, which changes nothing |\n"
+    return ("## In which state\n\n| state of the axis | new state, or the ErrorID of the refusal, which changes nothing |\n"
             f"|---|---|\n{rows}\n")
 
 
@@ -152,11 +152,11 @@ def page(block, file, tables, notes, has_diagram):
     diagram = f"## Timing\n\n![timing of {name}]({name}.svg)\n\n" if has_diagram else ""
     defaults = ""
     if any(variable.default for variable in block.variables):
-        defaults = (f"A zeroed struct has 0 where a default is given below; `{name.upper()}_DEFAULTS` in its "
-                    "initialiser gives them.\n\n")
+        defaults = (f"A zeroed struct has 0 in place of the defaults below; `{name.upper()}_DEFAULTS` in its "
+                    "initialiser sets them.\n\n")
     return (f"# {name}\n\n" + wrap(f"{block.doc} ({clause_text(block)})") + "\n\n"
             + f"`#include <cm1e/{include}>`, `{name}_t`, `{name}(&fb)`.\n"
-            + "What holds for all blocks: [the function blocks](../FUNCTION-BLOCKS.md).\n\n"
+            + "Rules of all blocks: [the function blocks](../FUNCTION-BLOCKS.md).\n\n"
             + f"```iecst\n{st_text(block)}\n```\n\n{defaults}{variables_text(block, tables)}"
             + states_text(block, tables) + errors_text(block, tables) + notes_text(block, notes)
             + diagram).rstrip() + "\n"
@@ -164,11 +164,10 @@ def page(block, file, tables, notes, has_diagram):
 
 def index(files, tables):
     text = "# The blocks\n\n"
-    text += wrap("One page a block: what it is for, its declaration, inputs and outputs with units, the states in "
-                 "which it may be called, its errors, a timing diagram that a real run on the simulated motor has "
-                 "drawn. What holds for all of them is in [the function blocks](../FUNCTION-BLOCKS.md), their types "
-                 "are in [the types](TYPES.md). The pages are generated from `fb/interface/`, the diagrams by "
-                 "`tests/traces/`.") + "\n\n"
+    text += wrap("Each block has a page: its purpose, its declaration, its inputs and outputs with units, the states in "
+                 "which it may be called, its errors, and a timing diagram of a run on the simulated motor. "
+                 "[The function blocks](../FUNCTION-BLOCKS.md) has the rules of all blocks, [the types](TYPES.md) "
+                 "their types. The pages are generated from `fb/interface/`, the diagrams by `tests/traces/`.") + "\n\n"
     for file in files:
         if not file.blocks():
             continue
@@ -177,8 +176,8 @@ def index(files, tables):
             text += f"| [{block.name}]({block.name}.md) | {first_sentence(block.doc)} |\n"
         text += "\n"
     text += "## Which command in which state\n\n"
-    text += wrap("An entry is the state that follows, or the ErrorID of the refusal, which changes nothing. The blocks "
-                 "that are not here may be called in every state and never change it.") + "\n\n"
+    text += wrap("A cell has the new state, or the ErrorID of the refusal, which changes nothing. Blocks that are not in "
+                 "this table may be called in every state and never change it.") + "\n\n"
     text += "| block | " + " | ".join(STATES) + " |\n|" + "---|" * (len(STATES) + 1) + "\n"
     by_class = {}
     for block in (block for file in files for block in file.blocks()):
@@ -196,7 +195,7 @@ def type_text(declaration):
         rows = "".join(f"| {item.default} | `{item.name}` | {item.text} |\n" for item in declaration.variables)
         return f"{doc}\n\n| number | name | |\n|---|---|---|\n{rows}"
     if declaration.kind == "alias":
-        return f"{doc}\n\nThe same as {type_link(declaration.base)}.\n"
+        return f"{doc}\n\nThis type is another name of {type_link(declaration.base)}.\n"
     rows = ""
     for item in declaration.variables:
         unit = ", ".join(part for part in (item.unit, item.range) if part)

@@ -37,7 +37,7 @@ class Tables:
         self.groups = {}
         for group, error, when in rows(classes, "Errors"):
             self.groups.setdefault(group, []).append((error, when))
-        self.meanings = dict(rows(classes, "Inputs and outputs of one meaning everywhere"))
+        self.meanings = dict(rows(classes, "Inputs and outputs with the same meaning in all blocks"))
         for where, name in [(f"state class {name}", cell) for name, cells in self.states.items() for cell in cells
                             if cell != "-" and cell not in STATES] + \
                            [(f"group {group}", error) for group, list_ in self.groups.items() for error, _ in list_]:
