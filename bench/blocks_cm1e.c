@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "assembly/assembly.h"
 #include "axis/axis_private.h"
 #include "cm1e/plcopen.h"
 

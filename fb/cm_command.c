@@ -1,4 +1,4 @@
-#include "axis/axis_cool_muscle.h"
+#include "bridge/cool_muscle.h"
 #include "edge.h"
 
 static const cm1e_drive_cmd_t commands[] = {

@@ -1,6 +1,6 @@
 #include <string.h>
 
-#include "axis/axis_cool_muscle.h"
+#include "bridge/cool_muscle.h"
 #include "edge.h"
 
 /** The block has no CommandAborted: a string that nobody knows of any more is an error. */

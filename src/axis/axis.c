@@ -8,7 +8,7 @@
 #include "axis/axis_coupling.h"
 #include "axis/axis_handle.h"
 
-cm1e_error_t cm1e_axis_create(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t index, cm1e_diag_t *diag)
+cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t index, cm1e_diag_t *diag)
 {
     *result = NULL;
     cm1e_axis_t *axis = calloc(1, sizeof *axis);
@@ -26,8 +26,6 @@ cm1e_error_t cm1e_axis_create(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t in
     if (!error)
         error = cm1e_axis_coupling_init(axis, diag);
     axis->mode = !error && !cm1e_drive_supports(&axis->drive, CM1E_MODE_CSP) ? CM1E_MODE_CSV : CM1E_MODE_CSP;
-    if (!error)
-        error = cm1e_axis_cool_muscle_init(axis, diag);
     if (!error && !cm1e_axis_handle_take(axis, &axis->handle))
         error = cm1e_diag_set(diag, CM1E_ERROR_FULL, 0, "There are already %d axes in this process.",
                               CM1E_AXIS_HANDLES);
@@ -35,7 +33,6 @@ cm1e_error_t cm1e_axis_create(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t in
         cm1e_drive_free(&axis->drive);
         free(axis->tables);
         free(axis->cams);
-        free(axis->muscle);
         cm1e_axis_coupling_free(axis);
         free(axis);
         return error;
@@ -61,7 +58,8 @@ void cm1e_axis_destroy(cm1e_axis_t *axis)
     cm1e_drive_free(&axis->drive);
     free(axis->tables);
     free(axis->cams);
-    free(axis->muscle);
+    if (axis->motor_hooks)
+        axis->motor_hooks->free(axis);
     cm1e_axis_coupling_free(axis);
     free(axis);
 }
@@ -210,7 +208,8 @@ void cm1e_axis_advance(cm1e_axis_t *axis)
         cm1e_axis_signals_step(axis);
     const bool undisturbed = moves_on(axis);
     if (!undisturbed) {
-        cm1e_axis_cool_muscle_step(axis);
+        if (axis->motor_hooks)
+            axis->motor_hooks->step(axis);
         cm1e_axis_power_step(axis);
     }
     if (!axis->frozen || !set_points_move(axis))

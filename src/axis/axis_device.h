@@ -1,13 +1,12 @@
 /**
  * @file axis_device.h
- * What an axis has of its motor beside motion: touch probes, digital signals, objects, and what is behind a bridge.
+ * What an axis has of its motor beside motion: touch probes, digital signals, objects.
  */
 #ifndef CM1E_AXIS_AXIS_DEVICE_H
 #define CM1E_AXIS_AXIS_DEVICE_H
 
 #include "axis/axis.h"
 #include "axis/axis_place.h"
-#include "cm1e/cml.h"
 
 enum { PROBES = 2 * 6 }; /* every input, both edges */
 
@@ -48,29 +47,6 @@ typedef struct objects {
     cm1e_sdo_t sdo;
 } objects_t;
 
-/** Something that a block asked for and polls. */
-typedef struct asked {
-    uint32_t ticket;            /**< of the last one; 0: none yet */
-    cm1e_command_state_t state;
-    cm1e_error_t error;
-} asked_t;
-
-/** What a motor behind a bridge does beside motion (axis_cool_muscle.c). */
-typedef struct cool_muscle {
-    int8_t mode, next;          /**< commanded while the axis is Disabled, and what is to be so as soon as it can */
-    bool insist;
-    bool moved;                 /**< since CML was entered, a string was taken that may have moved the motor */
-    bool must_free;             /**< it is to lose its torque before anything else */
-    bool failed;                /**< ErrorStop, as of the last cycle */
-    bool away;                  /**< the slave was, and its mode is not known since */
-    uint32_t freeing;           /**< ticket of the string that does that; 0: none is under way */
-    uint32_t last;              /**< ticket of the last string that a block sent; its end is not told yet; 0: it is */
-    int64_t release_ns;         /**< shut down is waited for since then; 0: it is not */
-    asked_t switching, command;
-    const char *why;            /**< of the last refusal, for the text: a sentence; NULL: none */
-    char text[CM1E_CML_BYTES + 1]; /**< ... and the string */
-} cool_muscle_t;
-
 /* axis_probe.c */
 void cm1e_axis_probe_step(cm1e_axis_t *axis); /* with fresh inputs, while probes are armed */
 
@@ -90,18 +66,5 @@ int cm1e_axis_number_of_object(uint16_t index, uint8_t subindex);
 void cm1e_axis_object_text(const cm1e_axis_t *axis, char *text, size_t size);
 /** While one waits or is under way. */
 void cm1e_axis_objects_step(cm1e_axis_t *axis);
-
-/* axis_cool_muscle.c; they do nothing where the motor is a CM1-E */
-cm1e_error_t cm1e_axis_cool_muscle_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init; after its mode is set */
-/** Between the programs and what is done about power. */
-void cm1e_axis_cool_muscle_step(cm1e_axis_t *axis);
-/** CM1E_OK, or why MC_Power cannot enable the motor, however long it waits. */
-cm1e_error_t cm1e_axis_cool_muscle_refuses_power(cm1e_axis_t *axis);
-/** CM1E_OK, or why MC_Home cannot be. */
-cm1e_error_t cm1e_axis_cool_muscle_refuses_homing(cm1e_axis_t *axis);
-/** At the end of a run: nothing of CML or CMD moves the motor any more; never later than 2 s after the first call. */
-bool cm1e_axis_cool_muscle_released(cm1e_axis_t *axis);
-/** What was refused or has failed; FALSE: this error is not one of those. */
-bool cm1e_axis_cool_muscle_text(const cm1e_axis_t *axis, cm1e_error_t error, char *text, size_t size);
 
 #endif

@@ -216,7 +216,7 @@ cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t
         return CM1E_ERROR_AXIS_VIRTUAL;
     if (!cm1e_axis_position_from_units(axis, command->position, &position))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    if (cm1e_axis_cool_muscle_refuses_homing(axis))
+    if (axis->motor_hooks && axis->motor_hooks->refuses_homing(axis))
         return CM1E_ERROR_CM_MODE;
     if (!(axis->enable_positive && axis->enable_negative))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED; /* every method moves both ways */

@@ -37,18 +37,18 @@ typedef struct homing {
     int32_t k45;           /**< of a CM2: its second digit says what the offset counts in; < 0: not read */
     uint8_t next;          /**< parameter to write next */
     uint8_t place;         /**< of the step in the order of its kind */
+    uint8_t bits_before;   /**< statusword bits 13, 12, 10 before the start */
+    uint8_t wrong;         /**< for the text: the last parameter that was out of its range, and its value */
     bool submitted;
     bool away;             /**< the axis's own mode is left */
     bool unstoppable;      /**< for the text: it did not stop in time */
-    cm1e_sdo_t sdo;
     uint8_t data[4];
+    int32_t quiet_position;
+    cm1e_error_t refused;  /**< why the last homing could not start, for the text; with the numbers in `sdo` */
+    cm1e_sdo_t sdo;
     int64_t timeout_ns, deadline_ns, step_ns; /**< step_ns: when the step began */
     int64_t quiet_ns;      /**< since when the motor stands */
     int64_t told_ns;       /**< since when the bits say "interrupted" */
-    int32_t quiet_position;
-    uint8_t bits_before;   /**< statusword bits 13, 12, 10 before the start */
-    cm1e_error_t refused;  /**< why the last homing could not start, for the text; with the numbers in `sdo` */
-    uint8_t wrong;         /**< for the text: the last parameter that was out of its range, and its value */
     double wrong_value;
 } homing_t;
 

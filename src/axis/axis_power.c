@@ -18,7 +18,7 @@ static const int64_t brake_ns = 20 * MS_IN_NS;
 bool cm1e_axis_wants_enable(const cm1e_axis_t *axis)
 {
     return axis->power_enable && !axis->shutting_down && axis->state != CM1E_AXIS_ERROR_STOP &&
-           cm1e_axis_cool_muscle_at_home(axis);
+           (!axis->motor_hooks || axis->motor_hooks->is_home(axis));
 }
 
 void cm1e_axis_become_free(cm1e_axis_t *axis)
@@ -153,7 +153,7 @@ cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, 
         cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
         cm1e_axis_home_abort(axis, HOME_GOAL_HOLD); /* every method moves both ways */
     }
-    return enable ? cm1e_axis_cool_muscle_refuses_power(axis) : CM1E_OK;
+    return enable && axis->motor_hooks ? axis->motor_hooks->refuses_power(axis) : CM1E_OK;
 }
 
 bool cm1e_axis_power_stands(AXIS_REF_t reference, const void *owner, bool enable_positive, bool enable_negative)
@@ -253,7 +253,8 @@ bool cm1e_axis_shut_down(cm1e_axis_t *axis)
 {
     axis->shutting_down = true;
     power_off(axis);
-    if (axis->activity != ACTIVITY_FREE || axis->drive.torque || !cm1e_axis_cool_muscle_released(axis))
+    if (axis->activity != ACTIVITY_FREE || axis->drive.torque ||
+        (axis->motor_hooks && !axis->motor_hooks->released(axis)))
         return false;
     cm1e_axis_outputs_off(axis); /* not before: a brake on it must not fall on a moving load */
     const bool gone = axis->now_ns - axis->free_ns >= gone_after_ns;

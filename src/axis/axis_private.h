@@ -7,6 +7,7 @@
 #define CM1E_AXIS_AXIS_PRIVATE_H
 
 #include "axis/axis_device.h"
+#include "axis/axis_hooks.h"
 #include "axis/axis_homing.h"
 #include "axis/axis_move.h"
 #include "device/unit.h"
@@ -205,7 +206,8 @@ struct cm1e_axis {
     double kept_deceleration, kept_jerk; /**< of that halt */
 
     stepping_t stepping;
-    cool_muscle_t *muscle;          /**< NULL: the motor is a CM1-E */
+    const motor_hooks_t *motor_hooks; /**< NULL: the motor is a CM1-E, or there is none */
+    struct cool_muscle *muscle;     /**< theirs */
     struct coupling *coupling;      /**< what it follows */
     struct link *slaves;            /**< who follows it */
     struct cams *cams;              /**< that it may follow (axis_cam.h) */
@@ -424,12 +426,6 @@ bool cm1e_axis_wants_enable(const cm1e_axis_t *axis);
 static inline bool axis_acts(const cm1e_axis_t *axis)
 {
     return axis->drive.feedback.enabled && axis->drive.feedback.mode == (int8_t)axis->mode;
-}
-/** The motor is in the axis's own mode, or on its way there: it may be enabled. */
-static inline bool cm1e_axis_cool_muscle_at_home(const cm1e_axis_t *axis)
-{
-    const cool_muscle_t *muscle = axis->muscle;
-    return !muscle || (muscle->mode == (int8_t)axis->mode && muscle->next == (int8_t)axis->mode);
 }
 void cm1e_axis_become_free(cm1e_axis_t *axis);
 void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound);

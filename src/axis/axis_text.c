@@ -269,7 +269,7 @@ static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
             refusal_texts[i].text(axis, text, size);
             return;
         }
-    if (cm1e_axis_cool_muscle_text(axis, axis->refusal, text, size) ||
+    if ((axis->motor_hooks && axis->motor_hooks->text(axis, axis->refusal, text, size)) ||
         cm1e_axis_coupling_text(axis, axis->refusal, true, text, size))
         return;
     if (axis->refusal == CM1E_ERROR_UNSUPPORTED && drive_profiles(axis)) {

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "assembly/assembly.h"
 #include "axis/axis.h"
 #include "bus/bus_image.h"
 #include "cm1e/scan_time.h"

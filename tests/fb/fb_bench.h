@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "axes_described.h"
+#include "assembly/assembly.h"
 #include "axis/axis.h"
 #include "bus/bus_image.h"
 

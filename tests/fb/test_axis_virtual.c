@@ -1,6 +1,6 @@
 /* Axes without a motor beside one with a motor, on the simulated segment with SOEM: a virtual one goes through the
  * state diagram as any axis does and is where its set-point is, an encoder shows what the program writes. */
-#include "axis/axis_cool_muscle.h"
+#include "bridge/cool_muscle.h"
 #include "axis/axis_parameters.h"
 #include "axis/axis_signals.h"
 #include "axis_segment.h"

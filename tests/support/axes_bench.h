@@ -21,6 +21,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "assembly/assembly.h"
 #include "axis/axis.h"
 #include "axis/axis_private.h"
 #include "fake_bus.h"

@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "assembly/assembly.h"
 #include "axis/axis.h"
 #include "axis/axis_private.h"
 #include "unity.h"

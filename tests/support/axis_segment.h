@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "assembly/assembly.h"
 #include "axis/axis.h"
 #include "bus/bus_image.h"
 #include "nic/nic.h"

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "assembly/assembly.h"
 #include "axis/axis.h"
 #include "axis/axis_coupling.h"
 #include "block_table.h"

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "assembly/assembly.h"
 #include "axes_described.h"
 #include "bus/bus_image.h"
 #include "cm1e/scan_time.h"

@@ -1,15 +1,18 @@
 /**
- * @file axis_cool_muscle.h
+ * @file bridge/cool_muscle.h
  * What a motor behind a bridge does beside motion, for its blocks: strings in CML, modes of operation, commands of CMD.
  * All of it while the axis is Disabled and asks for no torque. Who asked polls by ticket, so a block may vanish at any
  * time. All @rt cycle; CM1E_ERROR_CM_NO_BRIDGE: the motor is a CM1-E.
  */
-#ifndef CM1E_AXIS_AXIS_COOL_MUSCLE_H
-#define CM1E_AXIS_AXIS_COOL_MUSCLE_H
+#ifndef CM1E_BRIDGE_COOL_MUSCLE_H
+#define CM1E_BRIDGE_COOL_MUSCLE_H
 
 #include "axis/axis.h"
 #include "device/bridge.h"
 #include "drive/drive_command.h"
+
+/** Adds to the axis what a motor behind a bridge does; nothing where there is no bridge. @rt init */
+cm1e_error_t cm1e_cool_muscle_add(cm1e_axis_t *axis, cm1e_diag_t *diag);
 
 /** How it went with a string. */
 typedef struct cm1e_axis_cml {

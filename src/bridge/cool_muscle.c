@@ -6,15 +6,40 @@
  * A string or a command may move the motor, without a set-point of ours. So it is freed when that is left behind, when
  * the axis fails, when the slave was away, and at the end of the run. And its counts may mean another place afterwards.
  */
-#include "axis/axis_cool_muscle.h"
+#include "bridge/cool_muscle.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "axis/axis_private.h"
+#include "cm1e/cml.h"
 #include "device/cml.h"
 #include "drive/drive_bridge.h"
+
+/* Something that a block asked for and polls. */
+typedef struct asked {
+    uint32_t ticket;            /* of the last one; 0: none yet */
+    cm1e_command_state_t state;
+    cm1e_error_t error;
+} asked_t;
+
+/* What a motor behind a bridge does beside motion. */
+struct cool_muscle {
+    int8_t mode, next;          /* commanded while the axis is Disabled, and what is to be so as soon as it can */
+    bool insist;
+    bool moved;                 /* since CML was entered, a string was taken that may have moved the motor */
+    bool must_free;             /* it is to lose its torque before anything else */
+    bool failed;                /* ErrorStop, as of the last cycle */
+    bool away;                  /* the slave was, and its mode is not known since */
+    uint32_t freeing;           /* ticket of the string that does that; 0: none is under way */
+    uint32_t last;              /* ticket of the last string that a block sent; its end is not told yet; 0: it is */
+    int64_t release_ns;         /* shut down is waited for since then; 0: it is not */
+    asked_t switching, command;
+    const char *why;            /* of the last refusal, for the text: a sentence; NULL: none */
+    char text[CM1E_CML_BYTES + 1]; /* ... and the string */
+};
+typedef struct cool_muscle cool_muscle_t;
 
 enum { K37 = 37 };
 static const int64_t release_ns = 2000 * MS_IN_NS;
@@ -32,17 +57,6 @@ static const char keeps_k37[] = "writes K37: counts would mean another way under
 static cm1e_drive_cml_t *cml_of(const cm1e_axis_t *axis)
 {
     return axis->drive.behind ? &axis->drive.behind->cml : NULL;
-}
-
-cm1e_error_t cm1e_axis_cool_muscle_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
-{
-    if (!axis->drive.behind)
-        return CM1E_OK;
-    axis->muscle = calloc(1, sizeof *axis->muscle);
-    if (!axis->muscle)
-        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for axis \"%s\".", axis->config->name);
-    axis->muscle->mode = axis->muscle->next = (int8_t)axis->mode;
-    return CM1E_OK;
 }
 
 /* ---- what may be asked for --------------------------------------------------------------------------------------- */
@@ -331,18 +345,23 @@ static void follow_string(cm1e_axis_t *axis)
         end_strings(axis, CM1E_ERROR_CANCELLED);
 }
 
+/* The motor is in the axis's own mode, or on its way there: it may be enabled. */
+static bool is_home(const cm1e_axis_t *axis)
+{
+    const cool_muscle_t *muscle = axis->muscle;
+    return muscle->mode == (int8_t)axis->mode && muscle->next == (int8_t)axis->mode;
+}
+
 static bool leads_home(const cm1e_axis_t *axis)
 {
     return cm1e_drive_mode_check(&axis->drive, axis->mode, axis->muscle->insist, NULL) == CM1E_OK;
 }
 
-void cm1e_axis_cool_muscle_step(cm1e_axis_t *axis)
+static void step(cm1e_axis_t *axis)
 {
     cool_muscle_t *muscle = axis->muscle;
     const int8_t cml = CM1E_BRIDGE_MODE_CML;
     const bool failed = axis->state == CM1E_AXIS_ERROR_STOP;
-    if (!axis->muscle)
-        return;
     follow_command(axis);
     follow_string(axis);
     follow_return(axis);
@@ -366,9 +385,9 @@ void cm1e_axis_cool_muscle_step(cm1e_axis_t *axis)
     }
 }
 
-cm1e_error_t cm1e_axis_cool_muscle_refuses_power(cm1e_axis_t *axis)
+static cm1e_error_t refuses_power(cm1e_axis_t *axis)
 {
-    if (axis->state != CM1E_AXIS_DISABLED || cm1e_axis_cool_muscle_at_home(axis) || axis->muscle->away)
+    if (axis->state != CM1E_AXIS_DISABLED || is_home(axis) || axis->muscle->away)
         return CM1E_OK;
     const int8_t next = axis->muscle->next;
     if (next == CM1E_BRIDGE_MODE_CMD || (next == CM1E_BRIDGE_MODE_CML && !leads_home(axis)))
@@ -376,19 +395,17 @@ cm1e_error_t cm1e_axis_cool_muscle_refuses_power(cm1e_axis_t *axis)
     return CM1E_OK;
 }
 
-cm1e_error_t cm1e_axis_cool_muscle_refuses_homing(cm1e_axis_t *axis)
+static cm1e_error_t refuses_homing(cm1e_axis_t *axis)
 {
-    if (!axis->muscle || (int8_t)axis->mode != CM1E_BRIDGE_MODE_CPIO)
+    if ((int8_t)axis->mode != CM1E_BRIDGE_MODE_CPIO)
         return CM1E_OK;
     axis->muscle->why = not_in_cpio;
     return CM1E_ERROR_CM_MODE;
 }
 
-bool cm1e_axis_cool_muscle_released(cm1e_axis_t *axis)
+static bool released(cm1e_axis_t *axis)
 {
     cool_muscle_t *muscle = axis->muscle;
-    if (!axis->muscle)
-        return true;
     if (muscle->release_ns == 0)
         muscle->release_ns = axis->now_ns;
     const bool commands = cm1e_drive_cmd_release(&axis->drive);
@@ -399,11 +416,9 @@ bool cm1e_axis_cool_muscle_released(cm1e_axis_t *axis)
 
 /* ---- words ------------------------------------------------------------------------------------------------------- */
 
-bool cm1e_axis_cool_muscle_text(const cm1e_axis_t *axis, cm1e_error_t error, char *text, size_t size)
+static bool text_of(const cm1e_axis_t *axis, cm1e_error_t error, char *text, size_t size)
 {
     const cool_muscle_t *muscle = axis->muscle;
-    if (!muscle)
-        return false;
     const char *const name = axis->config->name, *const why = muscle->why ? muscle->why : "";
     const char *const mode = cm1e_drive_mode_name(&axis->drive, axis->drive.feedback.mode);
     switch (error) {
@@ -437,4 +452,22 @@ bool cm1e_axis_cool_muscle_text(const cm1e_axis_t *axis, cm1e_error_t error, cha
         return true;
     default: return false;
     }
+}
+
+/* ---- at the axis ------------------------------------------------------------------------------------------------- */
+
+static void forget(cm1e_axis_t *axis) { free(axis->muscle); }
+
+static const motor_hooks_t hooks = {forget, step, is_home, refuses_power, refuses_homing, released, text_of};
+
+cm1e_error_t cm1e_cool_muscle_add(cm1e_axis_t *axis, cm1e_diag_t *diag)
+{
+    if (!axis->drive.behind)
+        return CM1E_OK;
+    axis->muscle = calloc(1, sizeof *axis->muscle);
+    if (!axis->muscle)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for axis \"%s\".", axis->config->name);
+    axis->muscle->mode = axis->muscle->next = (int8_t)axis->mode;
+    axis->motor_hooks = &hooks;
+    return CM1E_OK;
 }

@@ -1,0 +1,17 @@
+/* An axis is put together here: no room below knows all that an axis can do. */
+#include "assembly/assembly.h"
+
+#include "bridge/cool_muscle.h"
+
+cm1e_error_t cm1e_axis_create(cm1e_axis_t **axis, cm1e_bus_t *bus, uint32_t index, cm1e_diag_t *diag)
+{
+    static cm1e_error_t (*const additions[])(cm1e_axis_t *axis, cm1e_diag_t *diag) = {cm1e_cool_muscle_add};
+    cm1e_error_t error = cm1e_axis_make(axis, bus, index, diag);
+    for (size_t i = 0; i < sizeof additions / sizeof additions[0] && !error; i++)
+        error = additions[i](*axis, diag);
+    if (error) {
+        cm1e_axis_destroy(*axis);
+        *axis = NULL;
+    }
+    return error;
+}
