@@ -163,8 +163,8 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns);
  *  answer shows whether the motor has slowed down meanwhile. @rt cycle */
 void cm1e_axis_hold_cycle(cm1e_axis_t *axis, int64_t missed);
 
-/** Starts a command or refuses it (then *id is 0 and nothing has changed). Kinds that the axis does not know how to
- *  do yet are CM1E_ERROR_UNSUPPORTED. @rt cycle */
+/** Starts a command or refuses it (then *id is 0 and nothing has changed). CM1E_ERROR_UNSUPPORTED: not by the profiles
+ *  of a drive (`motion: drive`). @rt cycle */
 cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
 /** MC_CamTableSelect (4.2): copies a cam into the memory of its slave, where the last CM1E_AXIS_CAMS stay for
  *  CAM_IN; one that is followed, or that a waiting command names, is not overwritten: CM1E_ERROR_FULL.

@@ -14,11 +14,6 @@
 /* What an exit velocity may differ by when it is asked again on the way. */
 static const double same_velocity = 1e-9;
 
-static bool is_homing(cm1e_command_kind_t kind)
-{
-    return kind == CM1E_COMMAND_HOME || kind == CM1E_COMMAND_HOMING_STEP;
-}
-
 move_t *cm1e_axis_find_waiting(cm1e_axis_t *axis, cm1e_command_id_t id)
 {
     for (int i = 0; i < axis->waiting.count; i++)
@@ -56,8 +51,7 @@ static bool shared(const cm1e_axis_t *axis) { return axis->superimposed.moving &
 /* A superimposed motion that ends before such a command begins will have moved it nearer. */
 static double nearer(const cm1e_axis_t *axis, const move_t *move, double distance)
 {
-    const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
-    if (!axis->superimposed.id || !is_absolute_move(kind))
+    if (!axis->superimposed.id || kind_row(move->kind)->target != TARGET_ABSOLUTE)
         return distance;
     const double left = distance > 0.0 ? distance - fmax(axis->superimposed.highest, 0.0)
                                        : distance - fmin(axis->superimposed.lowest, 0.0);
@@ -69,7 +63,7 @@ static bool make_leg(cm1e_axis_t *axis, move_t *move, position_t *end, double si
 {
     const from_t from = {*end, sign * DBL_MIN, 0.0, shared(axis)}; /* only the direction is known yet */
     move->origin = *end;
-    if (move->buffer_mode <= mcBuffered || !cm1e_axis_can_plan((cm1e_command_kind_t)move->kind) ||
+    if (move->buffer_mode <= mcBuffered || !is_planned(move->kind) ||
         cm1e_axis_limits_of(axis, &from, move, &leg->limits) || cm1e_axis_resolve(axis, &from, move))
         return false;
     leg->mode = (MC_BUFFER_MODE)move->buffer_mode;
@@ -83,7 +77,7 @@ static bool make_leg(cm1e_axis_t *axis, move_t *move, position_t *end, double si
         leg->open = true;
         leg->distance = sign;
         leg->limits.velocity = 0.0;
-    } else if (is_continuous_move((cm1e_command_kind_t)move->kind)) {
+    } else if (kind_row(move->kind)->plan == PLAN_THROUGH_TARGET) {
         const double exit_velocity = cm1e_axis_exit_velocity(axis, &from, move);
         leg->exit_velocity = fmax(0.0, leg->distance > 0.0 ? exit_velocity : -exit_velocity);
     }
@@ -126,10 +120,10 @@ static double look_ahead(leg_t *legs, int count, double velocity, bool as_if_to_
 double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t *move)
 {
     const double factor = axis->override.velocity > 0.0 ? axis->override.velocity : 1.0;
-    if (is_continuous_move((cm1e_command_kind_t)move->kind))
+    if (kind_row(move->kind)->plan == PLAN_THROUGH_TARGET)
         return factor * move->end_velocity;
     cm1e_motion_limits_t limits;
-    if (axis->waiting.count == 0 || !is_discrete_move((cm1e_command_kind_t)move->kind) ||
+    if (axis->waiting.count == 0 || kind_row(move->kind)->plan != PLAN_TO_TARGET ||
         cm1e_axis_limits_of(axis, from, move, &limits))
         return 0.0;
     leg_t legs[CM1E_AXIS_BUFFER_DEPTH];
@@ -139,7 +133,7 @@ double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move
     int count = 0;
     while (count < axis->waiting.count && make_leg(axis, waiting_move(axis, count), &end, sign, &legs[count])) {
         sign = copysign(1.0, legs[count].distance);
-        if (legs[count].open || is_endless((cm1e_command_kind_t)waiting_move(axis, count)->kind)) {
+        if (legs[count].open || kind_row(waiting_move(axis, count)->kind)->is_endless) {
             count++;
             break;
         }
@@ -163,51 +157,51 @@ double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move
 static cm1e_error_t check(const cm1e_axis_t *axis, move_t *move, const position_t *end)
 {
     const from_t from = {end ? *end : axis->set, 0.0, 0.0, shared(axis)};
-    const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
+    const command_kind_t *kind = kind_row(move->kind);
     cm1e_motion_limits_t limits;
-    if (is_homing(kind) || is_table(kind) || is_coupling(kind))
+    if (!is_planned(move->kind))
         return CM1E_OK;
     cm1e_error_t error = cm1e_axis_limits_of(axis, &from, move, &limits);
     move->origin = from.position;
     if (!error)
         error = cm1e_axis_resolve(axis, &from, move);
     double way = cm1e_position_minus(move->target, from.position) / axis->scale;
-    if (!error && kind == CM1E_COMMAND_MOVE_VELOCITY)
+    if (!error && kind->plan == PLAN_VELOCITY)
         error = cm1e_axis_signed_velocity(axis, &from, move, &way);
-    if (error || kind == CM1E_COMMAND_HALT)
+    if (error || kind->plan == PLAN_STOP)
         return error;
-    if ((end || is_absolute_move(kind)) && !cm1e_axis_limits_contain_target(axis, &from, move->target))
+    if ((end || kind->target == TARGET_ABSOLUTE) && !cm1e_axis_limits_contain_target(axis, &from, move->target))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    const bool direction_known = end || kind == CM1E_COMMAND_MOVE_VELOCITY ||
-                                 kind == CM1E_COMMAND_MOVE_RELATIVE || kind == CM1E_COMMAND_MOVE_ADDITIVE ||
-                                 kind == CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE;
+    const bool direction_known = end || kind->plan == PLAN_VELOCITY || kind->target == TARGET_RELATIVE;
     if (direction_known && !cm1e_axis_direction_enabled(axis, way))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
     return CM1E_OK;
 }
 
 /* The command that is before the waiting one of that index. */
-static const move_t *before(cm1e_axis_t *axis, int index, cm1e_command_kind_t *kind)
+static const move_t *before(cm1e_axis_t *axis, int index, const command_kind_t **kind)
 {
     const move_t *move = index > 0 ? waiting_move(axis, index - 1) : &axis->move;
-    *kind = index > 0 ? (cm1e_command_kind_t)move->kind : axis->kind; /* a homing that is active has no move */
+    *kind = kind_row(index > 0 ? move->kind : axis->kind); /* a homing that is active has no move */
     return move;
 }
 
 static cm1e_error_t check_behind(cm1e_axis_t *axis, int index, move_t *move)
 {
-    cm1e_command_kind_t kind;
+    const command_kind_t *kind;
     const move_t *first = before(axis, index, &kind);
-    if (is_homing((cm1e_command_kind_t)move->kind) && (is_endless(kind) || is_coupling(kind)))
+    if (is_homing(move->kind) && (kind->is_endless || kind->plan == PLAN_COUPLING))
         return CM1E_ERROR_AXIS_STATE; /* homing begins at rest */
-    return check(axis, move, is_discrete_move(kind) || is_continuous_move(kind) ? &first->target : NULL);
+    return check(axis, move, kind->target != TARGET_NONE ? &first->target : NULL);
 }
 
 /* What goes on when it has reached what it was to reach, and then lets the next command take its place. */
 static bool hands_over(const cm1e_axis_t *axis)
 {
     const follow_t *follow = axis->coupling->now;
-    return is_coupling(axis->kind) ? !follow->waits_for_end || follow->cam.left != 0.0 : is_endless(axis->kind);
+    if (kind_row(axis->kind)->plan == PLAN_COUPLING)
+        return !follow->waits_for_end || follow->cam.left != 0.0;
+    return kind_row(axis->kind)->is_endless;
 }
 
 cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move)
@@ -222,7 +216,7 @@ cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move)
     if (axis->reached && hands_over(axis)) { /* the signal that it waits for is there already (table 4) */
         const from_t from = from_base(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
-    } else if (is_discrete_move(axis->kind)) {
+    } else if (kind_row(axis->kind)->plan == PLAN_TO_TARGET) {
         (void)cm1e_axis_replan(axis);
     }
     return CM1E_OK;
@@ -238,7 +232,7 @@ cm1e_error_t cm1e_axis_update_waiting(cm1e_axis_t *axis, const move_t *move)
         if (error)
             return error;
         *waiting_move(axis, i) = checked;
-        if (is_discrete_move(axis->kind))
+        if (kind_row(axis->kind)->plan == PLAN_TO_TARGET)
             (void)cm1e_axis_replan(axis);
     }
     return CM1E_OK;
@@ -254,7 +248,7 @@ static move_t take_first(cm1e_axis_t *axis)
     return move;
 }
 
-static cm1e_error_t begin_move(cm1e_axis_t *axis, move_t *move, const from_t *from, double offset_s)
+cm1e_error_t cm1e_axis_begin_move(cm1e_axis_t *axis, move_t *move, const from_t *from, double offset_s)
 {
     cm1e_profile_t profile;
     move->origin = from->position;
@@ -271,25 +265,21 @@ bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *at, double offset_
 {
     from_t from = *at;
     while (axis->waiting.count > 0) {
-        const cm1e_command_kind_t kind = (cm1e_command_kind_t)waiting_move(axis, 0)->kind;
-        if (axis->superimposed.id && (axis->superimposed.alone || is_homing(kind) || is_table(kind)))
+        const command_kind_t *kind = kind_row(waiting_move(axis, 0)->kind);
+        const command_method_t *method = &cm1e_axis_methods[kind->plan];
+        if (axis->superimposed.id && (axis->superimposed.alone || !kind->carries_superimposed))
             return false; /* nothing goes on top of these, or it has all the limits: they wait for its end */
-        if (is_coupling(kind) && cm1e_axis_coupling_awaits(axis, &from, offset_s))
+        if (method->awaits && method->awaits(axis, &from, offset_s))
             return false;
-        if (cm1e_axis_can_plan(kind) && offset_s == 0.0)
+        if (is_planned(waiting_move(axis, 0)->kind) && offset_s == 0.0)
             cm1e_axis_superimposed_give_way(axis, &from);
         move_t move = take_first(axis);
         const state_rule_t *rule = cm1e_axis_state_rule(axis->state, (cm1e_command_kind_t)move.kind);
         cm1e_error_t error = rule->refusal;
         if (!error)
-            error = move.kind == CM1E_COMMAND_HOME          ? cm1e_axis_begin_homing(axis, &move)
-                    : move.kind == CM1E_COMMAND_HOMING_STEP ? cm1e_axis_begin_step(axis, &move)
-                    : is_table((cm1e_command_kind_t)move.kind) ? cm1e_axis_table_begin(axis, &move, &from, offset_s)
-                    : is_coupling((cm1e_command_kind_t)move.kind)
-                        ? cm1e_axis_coupling_begin(axis, &move, &from, offset_s)
-                                                               : begin_move(axis, &move, &from, offset_s);
+            error = method->begin(axis, &move, &from, offset_s);
         if (!error) {
-            if (move.kind != CM1E_COMMAND_HOMING_STEP) /* MC_HomeDirect may be over already */
+            if (kind->plan != PLAN_HOMING_STEP) /* MC_HomeDirect may be over already */
                 axis->state = rule->next;
             return true;
         }
@@ -320,7 +310,7 @@ cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *as)
 static bool can_replan(const cm1e_axis_t *axis)
 {
     return axis->active && axis->activity == ACTIVITY_PROFILE && axis->kind != CM1E_COMMAND_STOP &&
-           cm1e_axis_can_plan(axis->kind);
+           is_planned(axis->kind);
 }
 
 /* `careful`: not when it would then run over its target, or go back. */
@@ -363,7 +353,7 @@ bool cm1e_axis_replan_if(cm1e_axis_t *axis)
 static int before_homing(cm1e_axis_t *axis)
 {
     int count = 0;
-    while (count < axis->waiting.count && !is_homing((cm1e_command_kind_t)waiting_move(axis, count)->kind))
+    while (count < axis->waiting.count && !is_homing(waiting_move(axis, count)->kind))
         count++;
     return count;
 }
@@ -371,12 +361,12 @@ static int before_homing(cm1e_axis_t *axis)
 bool cm1e_axis_waiting_hold(cm1e_axis_t *axis, double lower, double upper)
 {
     const int count = before_homing(axis);
-    bool known = axis->active && (is_discrete_move(axis->kind) || is_continuous_move(axis->kind));
+    bool known = axis->active && kind_row(axis->kind)->target != TARGET_NONE;
     for (int i = 0; i < count; i++) {
         const move_t *move = waiting_move(axis, i);
-        const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
+        const command_target_t has = kind_row(move->kind)->target;
         const double target = cm1e_axis_line(axis, move->target);
-        known = is_absolute_move(kind) || (known && (is_discrete_move(kind) || is_continuous_move(kind)));
+        known = has == TARGET_ABSOLUTE || (known && has == TARGET_RELATIVE);
         if (known && !(target <= upper + axis->tolerance && target >= lower - axis->tolerance))
             return false;
     }
@@ -388,7 +378,7 @@ bool cm1e_axis_shift_waiting(cm1e_axis_t *axis, double shift)
     const int count = before_homing(axis);
     for (int i = 0; i < count; i++)
         waiting_move(axis, i)->shift += shift;
-    if (count == 0 || !axis->software_limits || !can_replan(axis) || !is_discrete_move(axis->kind))
+    if (count == 0 || !axis->software_limits || !can_replan(axis) || kind_row(axis->kind)->plan != PLAN_TO_TARGET)
         return true;
     /* What begins behind the target has less room now. */
     const from_t from = from_base(axis);

@@ -115,7 +115,8 @@ static position_t commanded_position(const cm1e_axis_t *axis)
 {
     if (axis->activity != ACTIVITY_PROFILE || axis->state != CM1E_AXIS_DISCRETE_MOTION)
         return axis->set;
-    const position_t base = axis->active && is_discrete_move(axis->kind) ? axis->move.target : axis->target;
+    const position_t base = axis->active && kind_row(axis->kind)->plan == PLAN_TO_TARGET ? axis->move.target
+                                                                                            : axis->target;
     const double on_top = axis->superimposed.id ? axis->superimposed.profile.end.position : 0.0;
     return cm1e_position_plus(base, on_top * axis->scale);
 }
@@ -136,7 +137,7 @@ static cm1e_error_t plan_move(cm1e_axis_t *axis, const from_t *from, const cm1e_
 }
 
 /* Whatever there is, it goes on from the present set-point. */
-static cm1e_error_t start_move(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+static cm1e_error_t start_profile(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     from_t from = from_set(axis);
     move_t move;
@@ -173,7 +174,7 @@ static cm1e_error_t stop_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *co
     return CM1E_OK;
 }
 
-static cm1e_error_t start_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+cm1e_error_t cm1e_axis_start_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     const cm1e_error_t error = cm1e_axis_home_prepare(axis, command);
     if (error)
@@ -186,7 +187,7 @@ static cm1e_error_t start_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *c
 }
 
 /* Part 5: from Standstill, or after another step in Homing; the drive's own homing is no such step. */
-static cm1e_error_t start_step(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+cm1e_error_t cm1e_axis_start_step(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     const move_t move = cm1e_axis_move_of(command);
     stepping_t next;
@@ -209,7 +210,7 @@ static cm1e_error_t start_drive(cm1e_axis_t *axis, const cm1e_axis_command_t *co
 {
     const from_t from = from_set(axis);
     move_t move = cm1e_axis_move_of(command);
-    const bool stopping = command->kind == CM1E_COMMAND_HALT || command->kind == CM1E_COMMAND_STOP;
+    const bool stopping = kind_row(command->kind)->is_stop;
     cm1e_motion_limits_t unused;
     driving_t driving;
     if (axis->activity == ACTIVITY_DRIVE && !stopping)
@@ -235,14 +236,23 @@ static cm1e_error_t start_drive(cm1e_axis_t *axis, const cm1e_axis_command_t *co
 /* A stop at standstill needs no drive. */
 static bool by_drive(const cm1e_axis_t *axis, cm1e_command_kind_t kind)
 {
-    const bool stopping = kind == CM1E_COMMAND_HALT || kind == CM1E_COMMAND_STOP;
-    return axis->activity == ACTIVITY_DRIVE || (drive_profiles(axis) && axis->activity == ACTIVITY_HOLD && !stopping);
+    return axis->activity == ACTIVITY_DRIVE ||
+           (drive_profiles(axis) && axis->activity == ACTIVITY_HOLD && !kind_row(kind)->is_stop);
+}
+
+cm1e_error_t cm1e_axis_start_move(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+{
+    if (by_drive(axis, command->kind))
+        return start_drive(axis, command, id);
+    return axis->activity == ACTIVITY_HOMING ? stop_homing(axis, command, id) : start_profile(axis, command, id);
 }
 
 /* ---- buffered ---------------------------------------------------------------------------------------------------- */
 
-cm1e_error_t cm1e_axis_begin_homing(cm1e_axis_t *axis, const move_t *move)
+cm1e_error_t cm1e_axis_begin_homing(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s)
 {
+    (void)from; /* it begins at rest */
+    (void)late_s;
     const waiting_homing_t *waiting = &axis->waiting_homing;
     const cm1e_axis_command_t command = {
         .kind = (cm1e_command_kind_t)move->kind,
@@ -283,8 +293,10 @@ static waiting_step_t *step_of(cm1e_axis_t *axis, cm1e_command_id_t id)
     return NULL;
 }
 
-cm1e_error_t cm1e_axis_begin_step(cm1e_axis_t *axis, const move_t *move)
+cm1e_error_t cm1e_axis_begin_step(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s)
 {
+    (void)from; /* from the present set-point */
+    (void)late_s;
     stepping_t next;
     cm1e_profile_t profile;
     const waiting_step_t *waiting = step_of(axis, move->id);
@@ -306,7 +318,7 @@ static waiting_step_t *free_step(cm1e_axis_t *axis)
     return NULL;
 }
 
-static cm1e_error_t buffer_step(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+cm1e_error_t cm1e_axis_buffer_step(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     move_t move = cm1e_axis_move_of(command);
     waiting_step_t *place = free_step(axis);
@@ -318,46 +330,46 @@ static cm1e_error_t buffer_step(cm1e_axis_t *axis, const cm1e_axis_command_t *co
     return error;
 }
 
-static cm1e_error_t buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+cm1e_error_t cm1e_axis_buffer_move(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
-    if (command->kind == CM1E_COMMAND_HOMING_STEP)
-        return buffer_step(axis, command, id);
-    if (is_table(command->kind))
-        return cm1e_axis_table_buffer(axis, command, id);
-    if (is_coupling(command->kind))
-        return cm1e_axis_coupling_buffer(axis, command, id);
     move_t move = cm1e_axis_move_of(command);
-    cm1e_error_t error = command->kind == CM1E_COMMAND_HOME ? keep_homing(axis, command) : CM1E_OK;
-    if (!error)
-        error = cm1e_axis_buffer(axis, &move);
+    const cm1e_error_t error = cm1e_axis_buffer(axis, &move);
     if (!error)
         *id = move.id;
     return error;
 }
 
+cm1e_error_t cm1e_axis_buffer_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+{
+    const cm1e_error_t error = keep_homing(axis, command);
+    return error ? error : cm1e_axis_buffer_move(axis, command, id);
+}
+
+/* ---- taking in --------------------------------------------------------------------------------------------------- */
+
 /* Whether there is something to wait for; then the state is of no matter in which the command would begin now. */
 static bool has_to_wait(const cm1e_axis_t *axis, const cm1e_axis_command_t *command)
 {
-    return command->buffer_mode != mcAborting && command->kind != CM1E_COMMAND_STOP &&
-           !is_decoupling(command->kind) && (axis->active || axis->awaited) && axis->state != CM1E_AXIS_STOPPING;
+    return command->buffer_mode != mcAborting && kind_row(command->kind)->has_buffer_mode &&
+           !is_beside(command->kind) && (axis->active || axis->awaited) && axis->state != CM1E_AXIS_STOPPING;
 }
 
-/* With nothing to wait for. */
-static cm1e_error_t start_now(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+/* What can be said without a look at the numbers. */
+static cm1e_error_t check(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_error_t state_refusal,
+                          bool waits)
 {
-    if (command->kind == CM1E_COMMAND_HOME)
-        return start_homing(axis, command, id);
-    if (command->kind == CM1E_COMMAND_HOMING_STEP)
-        return start_step(axis, command, id);
-    if (is_table(command->kind))
-        return cm1e_axis_table_start(axis, command, id);
-    if (is_coupling(command->kind))
-        return cm1e_axis_couple(axis, command, id);
-    if (is_decoupling(command->kind))
-        return cm1e_axis_decouple(axis, command, id);
-    if (by_drive(axis, command->kind))
-        return start_drive(axis, command, id);
-    return axis->activity == ACTIVITY_HOMING ? stop_homing(axis, command, id) : start_move(axis, command, id);
+    const command_kind_t *kind = kind_row(command->kind);
+    if (axis_led(axis) && command->kind != CM1E_COMMAND_STOP)
+        return CM1E_ERROR_AXIS_IN_GROUP;
+    if (drive_profiles(axis) && !kind->drive_can)
+        return CM1E_ERROR_UNSUPPORTED;
+    if (state_refusal && !waits)
+        return state_refusal;
+    if (axis->state == CM1E_AXIS_STOPPING && axis->stop_held)
+        return CM1E_ERROR_AXIS_STOPPING;
+    if (kind->has_buffer_mode && (unsigned)command->buffer_mode > mcBlendingHigh)
+        return CM1E_ERROR_AXIS_BUFFER_MODE;
+    return waits && drive_profiles(axis) ? CM1E_ERROR_AXIS_BUFFER_MODE : CM1E_OK;
 }
 
 static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
@@ -365,33 +377,16 @@ static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command,
     *id = 0;
     if ((unsigned)command->kind >= CM1E_COMMAND_KIND_COUNT)
         return CM1E_ERROR_INVALID_ARGUMENT;
-    if (axis_led(axis) && command->kind != CM1E_COMMAND_STOP)
-        return CM1E_ERROR_AXIS_IN_GROUP;
-    const bool on_top = command->kind == CM1E_COMMAND_MOVE_SUPERIMPOSED ||
-                        command->kind == CM1E_COMMAND_HALT_SUPERIMPOSED;
-    if (drive_profiles(axis) && !cm1e_axis_drive_takes(command->kind))
-        return CM1E_ERROR_UNSUPPORTED;
-    const bool beside = on_top || is_phasing(command->kind); /* never the active command */
-    const bool waits = !beside && has_to_wait(axis, command);
+    const command_method_t *method = &cm1e_axis_methods[kind_row(command->kind)->plan];
     const state_rule_t *rule = cm1e_axis_state_rule(axis->state, command->kind);
-    if (rule->refusal && !waits)
-        return rule->refusal;
-    if (axis->state == CM1E_AXIS_STOPPING && axis->stop_held)
-        return CM1E_ERROR_AXIS_STOPPING;
-    if (command->kind != CM1E_COMMAND_HOME && command->kind != CM1E_COMMAND_HOMING_STEP && !beside &&
-        !is_table(command->kind) && !cm1e_axis_can_plan(command->kind) && !cm1e_axis_can_couple(command->kind))
-        return CM1E_ERROR_UNSUPPORTED;
-    if (command->kind != CM1E_COMMAND_STOP && !on_top && !is_decoupling(command->kind) &&
-        (unsigned)command->buffer_mode > mcBlendingHigh)
-        return CM1E_ERROR_AXIS_BUFFER_MODE;
-    if (waits && drive_profiles(axis))
-        return CM1E_ERROR_AXIS_BUFFER_MODE;
+    const bool waits = has_to_wait(axis, command);
+    cm1e_error_t error = check(axis, command, rule->refusal, waits);
+    if (error)
+        return error;
     if (waits)
-        return buffer(axis, command, id);
-    const cm1e_error_t error = on_top ? cm1e_axis_superimpose(axis, command, id)
-                               : is_phasing(command->kind) ? cm1e_axis_phasing(axis, command, id)
-                                                           : start_now(axis, command, id);
-    const bool later = is_coupling(command->kind) && cm1e_axis_find_waiting(axis, *id); /* 4.7, note 1 */
+        return method->buffer(axis, command, id);
+    error = method->start(axis, command, id);
+    const bool later = cm1e_axis_find_waiting(axis, *id) != NULL; /* for its master: 4.7, note 1 */
     if (!error && !later && command->kind != CM1E_COMMAND_HOMING_STEP) /* MC_HomeDirect may be over already */
         axis->state = rule->next;
     return error;
@@ -411,7 +406,8 @@ cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *comma
     if (axis->not_set.what == NOT_FINISHED) /* one that is taken now may end at once, and be told */
         axis->not_set.error = CM1E_OK;
     cm1e_axis_remember_refusal(axis, command, start(axis, command, id));
-    if (axis->refusal && is_table(command->kind))
+    if (axis->refusal && (unsigned)command->kind < CM1E_COMMAND_KIND_COUNT &&
+        kind_row(command->kind)->plan == PLAN_TABLE)
         cm1e_axis_table_needs(axis, command, &axis->refused);
     return axis->refusal;
 }

@@ -11,8 +11,6 @@ static prepare_t *const preparers[CM1E_COMMAND_KIND_COUNT] = {
     [CM1E_COMMAND_COMBINE_AXES] = cm1e_axis_gear_prepare,
 };
 
-bool cm1e_axis_can_couple(cm1e_command_kind_t kind) { return preparers[kind] != NULL; }
-
 /* Some numbers are too small to compute with, whatever the masters do when it begins. */
 static cm1e_error_t check_size(const cm1e_axis_t *axis, const cm1e_motion_limits_t *asked)
 {
@@ -212,7 +210,7 @@ static cm1e_error_t begin_awaited(cm1e_axis_t *axis, const move_t *move, const c
 }
 
 /* It follows from the present set-point on. */
-cm1e_error_t cm1e_axis_coupling_begin(cm1e_axis_t *axis, const move_t *move, const from_t *from, double late_s)
+cm1e_error_t cm1e_axis_coupling_begin(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s)
 {
     const waiting_coupling_t *waiting = waiting_of(axis, move->id);
     const from_t here = at_present(axis, from, late_s);

@@ -195,15 +195,13 @@ void cm1e_axis_coupled_begin(cm1e_axis_t *axis);
 cm1e_error_t cm1e_axis_couple(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
 cm1e_error_t cm1e_axis_coupling_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
 /** A waiting one begins; `from` is where the command before it ended, `late_s` before the present set-point. */
-cm1e_error_t cm1e_axis_coupling_begin(cm1e_axis_t *axis, const move_t *move, const from_t *from, double late_s);
+cm1e_error_t cm1e_axis_coupling_begin(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s);
 /** Whether the first waiting command, a coupling that could begin there, waits for its master. */
 bool cm1e_axis_coupling_awaits(cm1e_axis_t *axis, const from_t *from, double late_s);
 /** Nothing is awaited any more. */
 void cm1e_axis_await_nothing(cm1e_axis_t *axis);
 /** ContinuousUpdate. */
 cm1e_error_t cm1e_axis_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command);
-/** Kinds of commands that the axis knows how to follow by. */
-bool cm1e_axis_can_couple(cm1e_command_kind_t kind);
 
 /* axis_observe.c */
 /** In every cycle in which somebody may follow its actual value: with the inputs. */

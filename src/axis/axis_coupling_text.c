@@ -31,11 +31,11 @@ static void not_coupled_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const cm1e_command_kind_t kind = axis->refused.kind;
     snprintf(text, size, "Axis \"%s\", %s: %s was asked for, which is for an axis that follows a master by %s; this "
-             "one follows %s.", axis->config->name, cm1e_axis_state_name(axis->state), cm1e_axis_kind_name(kind),
+             "one follows %s.", axis->config->name, cm1e_axis_state_name(axis->state), kind_row(kind)->name,
              kind == CM1E_COMMAND_CAM_OUT    ? "MC_CamIn"
              : kind == CM1E_COMMAND_GEAR_OUT ? "MC_GearIn, MC_GearInPos or MC_CombineAxes"
                                              : "MC_GearIn, MC_GearInPos, MC_CamIn or MC_CombineAxes",
-             axis_follows(axis) && axis->active ? cm1e_axis_kind_name(axis->kind) : "none");
+             axis_follows(axis) && axis->active ? kind_row(axis->kind)->name : "none");
 }
 
 static void ratio_text(const cm1e_axis_t *axis, char *text, size_t size)
@@ -62,7 +62,7 @@ static bool mode_text(const cm1e_axis_t *axis, char *text, size_t size)
     const char *mode = kind < CM1E_COMMAND_KIND_COUNT ? modes[kind] : NULL;
     if (mode)
         snprintf(text, size, "Axis \"%s\": %s was asked for in a mode that there is not. MasterValueSource is "
-                 "mcSetValue or mcActualValue%s.", axis->config->name, cm1e_axis_kind_name(axis->refused.kind), mode);
+                 "mcSetValue or mcActualValue%s.", axis->config->name, kind_row(axis->refused.kind)->name, mode);
     return mode != NULL;
 }
 

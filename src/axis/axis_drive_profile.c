@@ -43,12 +43,6 @@ static bool parameter(const cm1e_axis_t *axis, uint16_t index, double counts, ui
     return true;
 }
 
-bool cm1e_axis_drive_takes(cm1e_command_kind_t kind)
-{
-    return is_discrete_move(kind) || kind == CM1E_COMMAND_MOVE_VELOCITY || kind == CM1E_COMMAND_HALT ||
-           kind == CM1E_COMMAND_STOP || kind == CM1E_COMMAND_HOME || kind == CM1E_COMMAND_HOMING_STEP;
-}
-
 /* In the drive's 32 bits, without its wrap: it takes targets as absolute and would turn the other way round. */
 static cm1e_error_t aim_position(const cm1e_axis_t *axis, const move_t *move, driving_t *d)
 {

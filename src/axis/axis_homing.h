@@ -134,7 +134,6 @@ void cm1e_axis_step_cycle(cm1e_axis_t *axis);
 bool cm1e_axis_step_profile_ended(cm1e_axis_t *axis);
 
 /* axis_drive_profile.c */
-bool cm1e_axis_drive_takes(cm1e_command_kind_t kind);
 /** Checks a command that begins at standstill; nothing has changed then. */
 cm1e_error_t cm1e_axis_drive_prepare(cm1e_axis_t *axis, const from_t *from, move_t *move, driving_t *d);
 void cm1e_axis_drive_begin(cm1e_axis_t *axis, const driving_t *d);

@@ -62,7 +62,8 @@ static bool passed(const cm1e_axis_t *axis, int64_t since_ns, uint32_t time_us)
 
 static bool ends_at_position(cm1e_command_kind_t kind)
 {
-    return is_discrete_move(kind) || kind == CM1E_COMMAND_HOME;
+    const command_plan_t plan = kind_row(kind)->plan;
+    return plan == PLAN_TO_TARGET || plan == PLAN_HOMING;
 }
 
 bool cm1e_axis_settle(cm1e_axis_t *axis)

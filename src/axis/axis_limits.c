@@ -151,32 +151,23 @@ void cm1e_axis_keep_below_maximum(const cm1e_axis_t *axis, const from_t *from, c
 static cm1e_error_t asked_limits(const cm1e_axis_t *axis, const move_t *move, cm1e_motion_limits_t *limits)
 {
     const cm1e_motion_limits_t *most = &axis->maximum;
-    const bool stopping = move->kind == CM1E_COMMAND_HALT || move->kind == CM1E_COMMAND_STOP ||
-                          move->kind == CM1E_COMMAND_HALT_SUPERIMPOSED;
+    const command_kind_t *kind = kind_row(move->kind);
+    const bool stopping = kind->is_stop;
     const double acceleration = stopping ? 0.0 : move->acceleration;
     if (!choose(acceleration, most->acceleration, stopping, &limits->acceleration) ||
         !choose(move->deceleration, most->deceleration, stopping, &limits->deceleration) ||
         !choose(move->jerk, most->jerk, stopping, &limits->jerk))
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
     limits->velocity = most->velocity;
-    const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
-    if (stopping || is_decoupling(kind) || (is_coupling(kind) && kind != CM1E_COMMAND_GEAR_IN_POS))
+    if (!kind->has_velocity)
         return CM1E_OK;
     /* The sign of a velocity is a direction, and only MC_MoveVelocity's has one (3.10). */
-    const double speed = move->kind == CM1E_COMMAND_MOVE_VELOCITY ? fabs(move->velocity) : move->velocity;
+    const double speed = kind->plan == PLAN_VELOCITY ? fabs(move->velocity) : move->velocity;
     const double largest = most->velocity * (1.0 + relative_tolerance);
     if (!(speed > 0.0) || !(speed <= largest) || !(fabs(move->end_velocity) <= largest))
         return CM1E_ERROR_AXIS_VELOCITY_RANGE;
     limits->velocity = fmin(speed, most->velocity);
     return CM1E_OK;
-}
-
-/* Where MC_SetOverride does not act: MC_Stop is a matter of safety, a homing has its own measures, and a slave's
- * velocity is its master's (3.18). */
-static bool has_override(cm1e_command_kind_t kind)
-{
-    return kind != CM1E_COMMAND_STOP && kind != CM1E_COMMAND_HOMING_STEP && kind != CM1E_COMMAND_HOME &&
-           !is_coupling(kind) && !is_decoupling(kind);
 }
 
 /* What a superimposed motion leaves: the sums stay within the maxima, in whatever direction each of them goes. An
@@ -197,7 +188,7 @@ cm1e_error_t cm1e_axis_limits_with(const cm1e_axis_t *axis, const from_t *from, 
                                    const override_t *override, cm1e_motion_limits_t *limits)
 {
     const cm1e_error_t error = asked_limits(axis, move, limits);
-    if (!error && has_override((cm1e_command_kind_t)move->kind)) {
+    if (!error && kind_row(move->kind)->has_override) {
         limits->velocity *= override->velocity > 0.0 ? override->velocity : 1.0; /* 0: it waits, see axis_override.c */
         limits->acceleration *= override->acceleration;
         limits->deceleration *= override->acceleration;

@@ -156,7 +156,7 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
     const bool goes_on = end.velocity != 0.0;
     if (cm1e_axis_step_profile_ended(axis))
         return axis->activity == ACTIVITY_PROFILE;
-    if (axis->active && is_endless(axis->kind)) {
+    if (axis->active && kind_row(axis->kind)->is_endless) {
         /* What begins where nothing can stop any more would go beyond the limit. */
         if (may_go_on(axis, axis->profile.end) && cm1e_axis_begin_waiting(axis, &end, late_s))
             return axis->activity == ACTIVITY_PROFILE; /* not what follows a master */

@@ -105,6 +105,23 @@ typedef struct superimposed {
     move_t move;
 } superimposed_t;
 
+/** What is done with a command, by how it is planned (command_plan_t). A NULL is never called. */
+typedef struct command_method {
+    /** Begins at once, or refuses: then nothing has changed. */
+    cm1e_error_t (*start)(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+    /** Waits behind others from now on; the same of a refusal. */
+    cm1e_error_t (*buffer)(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+    /** The first of those that wait goes on waiting although its turn has come. NULL: it does not. */
+    bool (*awaits)(cm1e_axis_t *axis, const from_t *from, double late_s);
+    /** One that waited begins where the command before it ended, `late_s` before the present set-point. */
+    cm1e_error_t (*begin)(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s);
+    /** ContinuousUpdate. NULL: it has no inputs to change. */
+    cm1e_error_t (*update)(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command);
+} command_method_t;
+
+/* axis_method.c */
+extern const command_method_t cm1e_axis_methods[];
+
 /* axis_motion.c */
 /** A profile takes over that began at `from`, `offset_s` before the present set-point. */
 void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile, position_t target,
@@ -135,8 +152,14 @@ cm1e_command_id_t cm1e_axis_next_id(cm1e_axis_t *axis);
 /** A command that has been planned becomes the active one; the one before, if any, is aborted. */
 void cm1e_axis_take(cm1e_axis_t *axis, const move_t *move, const from_t *from, const cm1e_profile_t *profile,
                     double offset_s);
-cm1e_error_t cm1e_axis_begin_homing(cm1e_axis_t *axis, const move_t *move);
-cm1e_error_t cm1e_axis_begin_step(cm1e_axis_t *axis, const move_t *move);
+cm1e_error_t cm1e_axis_start_move(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+cm1e_error_t cm1e_axis_start_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+cm1e_error_t cm1e_axis_start_step(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+cm1e_error_t cm1e_axis_buffer_move(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+cm1e_error_t cm1e_axis_buffer_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+cm1e_error_t cm1e_axis_buffer_step(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
+cm1e_error_t cm1e_axis_begin_homing(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s);
+cm1e_error_t cm1e_axis_begin_step(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s);
 
 /* axis_buffer.c */
 /** The waiting command of that number; NULL: none. */
@@ -152,6 +175,7 @@ bool cm1e_axis_waiting_hold(cm1e_axis_t *axis, double lower, double upper);
 bool cm1e_axis_shift_waiting(cm1e_axis_t *axis, double shift);
 /** The velocity with which a move that begins there shall pass its target, for the sake of those that wait. */
 double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t *move);
+cm1e_error_t cm1e_axis_begin_move(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s);
 /** The first waiting command that can begin there does; those before it fail. FALSE: none could. */
 bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offset_s);
 /** Something that the active command's profile depends on has changed: it is planned anew from the present set-point.
@@ -164,7 +188,7 @@ cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *move);
 
 /* axis_superimpose.c */
 cm1e_error_t cm1e_axis_superimpose(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
-cm1e_error_t cm1e_axis_superimpose_update(cm1e_axis_t *axis, const move_t *inputs);
+cm1e_error_t cm1e_axis_superimpose_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command);
 /** Adds its part to the base's of this cycle. */
 void cm1e_axis_superimposed_step(cm1e_axis_t *axis, cm1e_motion_state_t *next);
 /** Instead of that: its part is what was `before`, without jerk, and it goes on from there. */
@@ -183,12 +207,13 @@ bool cm1e_axis_superimposed_goes(const cm1e_axis_t *axis, double sign);
 /* axis_update.c */
 bool cm1e_axis_same_inputs(const move_t *a, const move_t *b);
 move_t cm1e_axis_move_of(const cm1e_axis_command_t *command);
+cm1e_error_t cm1e_axis_update_move(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command);
 
 /* axis_table.c */
 cm1e_error_t cm1e_axis_table_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */
 cm1e_error_t cm1e_axis_table_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
 cm1e_error_t cm1e_axis_table_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
-cm1e_error_t cm1e_axis_table_begin(cm1e_axis_t *axis, const move_t *move, const from_t *from, double offset_s);
+cm1e_error_t cm1e_axis_table_begin(cm1e_axis_t *axis, move_t *move, const from_t *from, double offset_s);
 /** What a table that was refused would have needed, for the text. */
 void cm1e_axis_table_needs(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_axis_command_t *needs);
 /** Whether the running one still goes in that direction after `from_s`. */

@@ -62,7 +62,7 @@ static cm1e_error_t end_table(cm1e_axis_t *axis)
 
 static cm1e_error_t move_anew(cm1e_axis_t *axis)
 {
-    if (axis->active && is_table(axis->kind))
+    if (axis->active && kind_row(axis->kind)->plan == PLAN_TABLE)
         return end_table(axis);
     if (!axis->active || axis->kind == CM1E_COMMAND_STOP)
         return stop_anew(axis);

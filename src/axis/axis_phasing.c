@@ -263,7 +263,7 @@ double cm1e_axis_phasing_covered(const cm1e_axis_t *axis, cm1e_command_id_t id)
 bool cm1e_axis_phasing_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const cm1e_axis_command_t *refused = &axis->refused;
-    if (!is_phasing(refused->kind) || !axis_follows(axis))
+    if (kind_row(refused->kind)->plan != PLAN_PHASING || !axis_follows(axis))
         return false;
     const link_t *link = &axis->coupling->now->links[0];
     const cm1e_motion_limits_t most = most_of(axis);

@@ -90,12 +90,12 @@ bool cm1e_axis_strays(const cm1e_axis_t *axis, const cm1e_motion_state_t *start,
 bool cm1e_axis_profile_strays(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                               const cm1e_profile_t *profile)
 {
-    const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
+    const command_plan_t plan = kind_row(move->kind)->plan;
     const cm1e_motion_state_t start = start_of(from);
     const double target = cm1e_position_minus(move->target, from->position) / axis->scale;
-    if (is_continuous_move(kind) && !move->passing) /* its run-up may lead anywhere, unless the position lies ahead */
+    if (plan == PLAN_THROUGH_TARGET && !move->passing) /* its run-up may lead anywhere, unless the position is ahead */
         return from->velocity * target > 0.0 && cm1e_axis_strays(axis, &start, NULL, profile);
-    return cm1e_axis_strays(axis, &start, is_discrete_move(kind) && !move->paused ? &target : NULL, profile);
+    return cm1e_axis_strays(axis, &start, plan == PLAN_TO_TARGET && !move->paused ? &target : NULL, profile);
 }
 
 static bool slowed(const cm1e_axis_t *axis)
@@ -169,7 +169,8 @@ static cm1e_error_t plan_velocity(const cm1e_axis_t *axis, const from_t *from, m
 /* 3.11: through the position with the end velocity, if need be from behind it. Where the way there is only too short to
  * get to that velocity, the axis passes the position as it can and gets there later: nobody wants it to back up first
  * when the position lies ahead. */
-static cm1e_error_t plan_continuous(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
+static cm1e_error_t plan_through_target(const cm1e_axis_t *axis, const from_t *from, move_t *move,
+                                        cm1e_profile_t *profile)
 {
     cm1e_motion_limits_t limits;
     const cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
@@ -239,36 +240,33 @@ static cm1e_error_t plan_kept(const cm1e_axis_t *axis, const from_t *from, move_
 
 /* ---- by kind ----------------------------------------------------------------------------------------------------- */
 
-typedef struct planner {
-    cm1e_error_t (*resolve)(const cm1e_axis_t *axis, const from_t *from, move_t *move);
-    cm1e_error_t (*plan)(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile);
-} planner_t;
+typedef cm1e_error_t resolve_t(const cm1e_axis_t *axis, const from_t *from, move_t *move);
+typedef cm1e_error_t plan_t(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile);
 
-static const planner_t planners[CM1E_COMMAND_KIND_COUNT] = {
-    [CM1E_COMMAND_MOVE_ABSOLUTE] = {resolve_absolute, plan_to_target},
-    [CM1E_COMMAND_MOVE_RELATIVE] = {resolve_relative, plan_to_target},
-    [CM1E_COMMAND_MOVE_ADDITIVE] = {resolve_relative, plan_to_target},
-    [CM1E_COMMAND_MOVE_VELOCITY] = {resolve_none, plan_velocity},
-    [CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE] = {resolve_absolute, plan_continuous},
-    [CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE] = {resolve_relative, plan_continuous},
-    [CM1E_COMMAND_HALT] = {resolve_none, plan_stop},
-    [CM1E_COMMAND_STOP] = {resolve_none, plan_stop},
-    [CM1E_COMMAND_GEAR_OUT] = {resolve_none, plan_kept},
-    [CM1E_COMMAND_CAM_OUT] = {resolve_none, plan_kept},
+static resolve_t *const resolvers[] = {
+    [TARGET_NONE] = resolve_none,
+    [TARGET_ABSOLUTE] = resolve_absolute,
+    [TARGET_RELATIVE] = resolve_relative,
 };
 
-bool cm1e_axis_can_plan(cm1e_command_kind_t kind) { return planners[kind].plan != NULL; }
+static plan_t *const planners[] = {
+    [PLAN_TO_TARGET] = plan_to_target,
+    [PLAN_THROUGH_TARGET] = plan_through_target,
+    [PLAN_VELOCITY] = plan_velocity,
+    [PLAN_STOP] = plan_stop,
+    [PLAN_KEEP_VELOCITY] = plan_kept,
+};
 
 cm1e_error_t cm1e_axis_resolve(const cm1e_axis_t *axis, const from_t *from, move_t *move)
 {
-    return planners[move->kind].resolve(axis, from, move);
+    return resolvers[kind_row(move->kind)->target](axis, from, move);
 }
 
 /* An override of velocity 0: down to a standstill, and there it waits. Where a position is to be passed with a velocity
  * and it is too late to stop before, it is passed, and the next command waits. */
 static bool plan_pause(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
 {
-    const bool has_target = is_discrete_move((cm1e_command_kind_t)move->kind);
+    const bool has_target = kind_row(move->kind)->plan == PLAN_TO_TARGET;
     const double distance = cm1e_position_minus(move->target, from->position) / axis->scale;
     cm1e_motion_limits_t limits;
     cm1e_profile_t stop;
@@ -285,17 +283,17 @@ static bool plan_pause(const cm1e_axis_t *axis, const from_t *from, move_t *move
 static cm1e_error_t plan_with_exit(const cm1e_axis_t *axis, const from_t *from, move_t *move, bool passing,
                                    cm1e_profile_t *profile)
 {
-    const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
-    const bool moves = is_discrete_move(kind) || (is_endless(kind) && !is_decoupling(kind));
+    const command_plan_t plan = kind_row(move->kind)->plan;
+    const bool moves = plan != PLAN_STOP && plan != PLAN_KEEP_VELOCITY;
     move->passing = passing;
-    const cm1e_error_t error = planners[move->kind].plan(axis, from, move, profile);
+    const cm1e_error_t error = planners[plan](axis, from, move, profile);
     move->paused = !error && moves && axis->override.velocity == 0.0 && plan_pause(axis, from, move, profile);
     return error;
 }
 
 static double exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t *move, bool before_others)
 {
-    const bool has_exit = before_others || is_endless((cm1e_command_kind_t)move->kind);
+    const bool has_exit = before_others || kind_row(move->kind)->is_endless;
     return has_exit ? cm1e_axis_exit_velocity(axis, from, move) : 0.0;
 }
 
@@ -328,8 +326,8 @@ cm1e_error_t cm1e_axis_plan(cm1e_axis_t *axis, const from_t *from, move_t *move,
 position_t cm1e_axis_profile_end(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                                  const cm1e_profile_t *profile)
 {
-    const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
-    if (!move->paused && (is_discrete_move(kind) || (is_continuous_move(kind) && !move->passing)))
+    const command_plan_t plan = kind_row(move->kind)->plan;
+    if (!move->paused && (plan == PLAN_TO_TARGET || (plan == PLAN_THROUGH_TARGET && !move->passing)))
         return move->target;
     return cm1e_position_plus(from->position, profile->end.position * axis->scale);
 }

@@ -9,6 +9,7 @@
 #include "axis/axis_device.h"
 #include "axis/axis_hooks.h"
 #include "axis/axis_homing.h"
+#include "axis/axis_kind.h"
 #include "axis/axis_move.h"
 #include "device/unit.h"
 
@@ -323,7 +324,6 @@ void cm1e_axis_apply_limits(cm1e_axis_t *axis);
 void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what);
 void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size); /* axis_text.c */
-const char *cm1e_axis_kind_name(cm1e_command_kind_t kind);                            /* axis_text.c */
 
 /* axis_state.c */
 typedef struct state_rule {
@@ -350,48 +350,8 @@ static inline from_t from_base(const cm1e_axis_t *axis)
                     axis->brakes_hard ? 0.0 : axis->set_acceleration - on_top->acceleration,
                     axis->superimposed.moving && !axis->superimposed.alone};
 }
-static inline bool is_continuous_move(cm1e_command_kind_t kind)
-{
-    return kind == CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE || kind == CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE;
-}
-static inline bool is_absolute_move(cm1e_command_kind_t kind)
-{
-    return kind == CM1E_COMMAND_MOVE_ABSOLUTE || kind == CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE;
-}
-static inline bool is_coupling(cm1e_command_kind_t kind)
-{
-    return kind == CM1E_COMMAND_GEAR_IN || kind == CM1E_COMMAND_GEAR_IN_POS || kind == CM1E_COMMAND_CAM_IN ||
-           kind == CM1E_COMMAND_COMBINE_AXES;
-}
-/** As an active command: the velocity that is kept, as `end_velocity`. */
-static inline bool is_decoupling(cm1e_command_kind_t kind)
-{
-    return kind == CM1E_COMMAND_GEAR_OUT || kind == CM1E_COMMAND_CAM_OUT;
-}
-static inline bool is_phasing(cm1e_command_kind_t kind)
-{
-    return kind == CM1E_COMMAND_PHASING_ABSOLUTE || kind == CM1E_COMMAND_PHASING_RELATIVE;
-}
 /** F of a coupling is what moves the axis. */
 static inline bool axis_follows(const cm1e_axis_t *axis) { return axis->activity == ACTIVITY_COUPLED; }
-/** Goes on when it has reached what it was to reach. */
-static inline bool is_endless(cm1e_command_kind_t kind)
-{
-    return is_continuous_move(kind) || kind == CM1E_COMMAND_MOVE_VELOCITY ||
-           kind == CM1E_COMMAND_VELOCITY_PROFILE || kind == CM1E_COMMAND_ACCELERATION_PROFILE || is_decoupling(kind);
-}
-static inline bool is_table(cm1e_command_kind_t kind)
-{
-    return kind == CM1E_COMMAND_POSITION_PROFILE || kind == CM1E_COMMAND_VELOCITY_PROFILE ||
-           kind == CM1E_COMMAND_ACCELERATION_PROFILE;
-}
-/** The other moves to a position. */
-static inline bool is_discrete_move(cm1e_command_kind_t kind)
-{
-    return kind == CM1E_COMMAND_MOVE_ABSOLUTE || kind == CM1E_COMMAND_MOVE_RELATIVE ||
-           kind == CM1E_COMMAND_MOVE_ADDITIVE;
-}
-bool cm1e_axis_can_plan(cm1e_command_kind_t kind);
 /** Fills `target` and `origin` of a command that begins there. */
 cm1e_error_t cm1e_axis_resolve(const cm1e_axis_t *axis, const from_t *from, move_t *move);
 /** u/s; MC_MoveVelocity: with its direction. */

@@ -190,10 +190,11 @@ static bool inside(cm1e_axis_t *axis, double distance)
 {
     const position_t base = from_base(axis).position;
     const bool rests = axis->stands || axis->activity == ACTIVITY_HOLD;
+    const command_kind_t *kind = kind_row(axis->kind);
     position_t ends[CM1E_AXIS_BUFFER_DEPTH + 2] = {base, rests ? base : axis->target};
-    int count = axis->active && (is_endless(axis->kind) || is_coupling(axis->kind)) ? 1 : 2;
+    int count = axis->active && (kind->is_endless || kind->plan == PLAN_COUPLING) ? 1 : 2;
     for (int i = 0; i < axis->waiting.count; i++)
-        if (is_discrete_move((cm1e_command_kind_t)waiting_move(axis, i)->kind))
+        if (kind_row(waiting_move(axis, i)->kind)->plan == PLAN_TO_TARGET)
             ends[count++] = waiting_move(axis, i)->target;
     for (int i = 0; i < count; i++) {
         const from_t from = {ends[i], 0.0, 0.0, false};
@@ -207,7 +208,7 @@ static cm1e_error_t check(cm1e_axis_t *axis, const move_t *move, bool alone, cm1
 {
     static const override_t none = {1.0, 1.0, 1.0};
     const from_t rest = {axis->set, 0.0, 0.0, false};
-    const cm1e_error_t error = axis->active && is_table(axis->kind)
+    const cm1e_error_t error = axis->active && !kind_row(axis->kind)->carries_superimposed
                                    ? CM1E_ERROR_AXIS_STATE /* its times and limits are its own */
                                    : cm1e_axis_limits_with(axis, &rest, move, &none, limits);
     const double counts = move->position * axis->scale;
@@ -302,19 +303,24 @@ cm1e_error_t cm1e_axis_superimpose(cm1e_axis_t *axis, const cm1e_axis_command_t 
 }
 
 /* New inputs act within the share that it began with. */
-cm1e_error_t cm1e_axis_superimpose_update(cm1e_axis_t *axis, const move_t *inputs)
+cm1e_error_t cm1e_axis_superimpose_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
 {
     superimposed_t *on_top = &axis->superimposed;
-    if (inputs->kind != on_top->move.kind)
+    const move_t inputs = cm1e_axis_move_of(command);
+    if (command->kind == CM1E_COMMAND_HALT_SUPERIMPOSED)
         return CM1E_ERROR_INVALID_ARGUMENT;
-    if (cm1e_axis_same_inputs(&on_top->move, inputs))
+    if (id != on_top->id)
+        return CM1E_OK; /* it has ended */
+    if (inputs.kind != on_top->move.kind)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    if (cm1e_axis_same_inputs(&on_top->move, &inputs))
         return CM1E_OK;
     cm1e_motion_limits_t limits;
-    const cm1e_error_t error = check(axis, inputs, true, &limits);
+    const cm1e_error_t error = check(axis, &inputs, true, &limits);
     if (error)
         return error;
     superimposed_t next = *on_top;
-    next.move = *inputs;
+    next.move = inputs;
     if (!plan(axis, &next))
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
     *on_top = next;

@@ -192,7 +192,7 @@ cm1e_error_t cm1e_axis_table_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t
     return error;
 }
 
-cm1e_error_t cm1e_axis_table_begin(cm1e_axis_t *axis, const move_t *move, const from_t *from, double offset_s)
+cm1e_error_t cm1e_axis_table_begin(cm1e_axis_t *axis, move_t *move, const from_t *from, double offset_s)
 {
     cm1e_table_profile_t table;
     cm1e_table_extremes_t needed;

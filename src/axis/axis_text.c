@@ -90,34 +90,6 @@ static void refused_homing_text(const cm1e_axis_t *axis, char *text, size_t size
                  axis->config->name, sdo->index, sdo->subindex, cm1e_strerror(axis->home.refused));
 }
 
-static const char *const kind_names[CM1E_COMMAND_KIND_COUNT] = {
-    [CM1E_COMMAND_MOVE_ABSOLUTE] = "MC_MoveAbsolute",
-    [CM1E_COMMAND_MOVE_RELATIVE] = "MC_MoveRelative",
-    [CM1E_COMMAND_MOVE_ADDITIVE] = "MC_MoveAdditive",
-    [CM1E_COMMAND_MOVE_VELOCITY] = "MC_MoveVelocity",
-    [CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE] = "MC_MoveContinuousAbsolute",
-    [CM1E_COMMAND_MOVE_CONTINUOUS_RELATIVE] = "MC_MoveContinuousRelative",
-    [CM1E_COMMAND_POSITION_PROFILE] = "MC_PositionProfile",
-    [CM1E_COMMAND_VELOCITY_PROFILE] = "MC_VelocityProfile",
-    [CM1E_COMMAND_ACCELERATION_PROFILE] = "MC_AccelerationProfile",
-    [CM1E_COMMAND_HALT] = "MC_Halt",
-    [CM1E_COMMAND_STOP] = "MC_Stop",
-    [CM1E_COMMAND_HOME] = "MC_Home",
-    [CM1E_COMMAND_HOMING_STEP] = "a step of a homing",
-    [CM1E_COMMAND_MOVE_SUPERIMPOSED] = "MC_MoveSuperimposed",
-    [CM1E_COMMAND_HALT_SUPERIMPOSED] = "MC_HaltSuperimposed",
-    [CM1E_COMMAND_GEAR_IN] = "MC_GearIn",
-    [CM1E_COMMAND_GEAR_IN_POS] = "MC_GearInPos",
-    [CM1E_COMMAND_CAM_IN] = "MC_CamIn",
-    [CM1E_COMMAND_COMBINE_AXES] = "MC_CombineAxes",
-    [CM1E_COMMAND_GEAR_OUT] = "MC_GearOut",
-    [CM1E_COMMAND_CAM_OUT] = "MC_CamOut",
-    [CM1E_COMMAND_PHASING_ABSOLUTE] = "MC_PhasingAbsolute",
-    [CM1E_COMMAND_PHASING_RELATIVE] = "MC_PhasingRelative",
-};
-
-const char *cm1e_axis_kind_name(cm1e_command_kind_t kind) { return kind_names[kind]; }
-
 void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const not_set_t *ended = &axis->not_set;
@@ -127,7 +99,7 @@ void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t siz
         cm1e_axis_way_text(axis, text, size);
     else
         snprintf(text, size, "Axis \"%s\": %s, running or waiting, was ended: %s.", axis->config->name,
-                 kind_names[ended->number], cm1e_strerror(ended->error));
+                 kind_row((unsigned)ended->number)->name, cm1e_strerror(ended->error));
     if (ended->error == CM1E_ERROR_AXIS_POSITION_RANGE)
         add_counts_limit(axis, text, size);
 }
@@ -189,7 +161,7 @@ static void refused_small_text(const cm1e_axis_t *axis, char *text, size_t size)
 static void refused_on_top_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const from_t base = from_base(axis);
-    const bool goes = axis->activity == ACTIVITY_PROFILE && !axis->stands && axis->active && !is_endless(axis->kind);
+    const bool goes = axis->activity == ACTIVITY_PROFILE && !axis->stands && axis->active && !kind_row(axis->kind)->is_endless;
     snprintf(text, size,
              "Axis \"%s\": a distance of %.6g on top of a motion that is at %.6g and ends at %.6g%s would leave the "
              "software limits %.6g ... %.6g u.",
@@ -260,7 +232,7 @@ static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
                             axis->refusal == CM1E_ERROR_AXIS_POSITION_RANGE;
     if (by_numbers && cm1e_axis_phasing_text(axis, text, size))
         return;
-    if (by_numbers && !is_table(axis->refused.kind) && too_small(axis, &axis->refused)) {
+    if (by_numbers && kind_row(axis->refused.kind)->plan != PLAN_TABLE && too_small(axis, &axis->refused)) {
         refused_small_text(axis, text, size);
         return;
     }

@@ -12,7 +12,7 @@ move_t cm1e_axis_move_of(const cm1e_axis_command_t *command)
         .direction = (unsigned)command->direction <= UINT8_MAX ? (uint8_t)command->direction : UINT8_MAX,
         .position = command->position,
         .velocity = command->velocity,
-        .end_velocity = is_continuous_move(command->kind) ? command->end_velocity : 0.0,
+        .end_velocity = kind_row(command->kind)->plan == PLAN_THROUGH_TARGET ? command->end_velocity : 0.0,
         .acceleration = command->acceleration,
         .deceleration = command->deceleration,
         .jerk = command->jerk,
@@ -64,17 +64,9 @@ static cm1e_error_t update_active(cm1e_axis_t *axis, const move_t *inputs)
     return cm1e_axis_replan_as(axis, &move);
 }
 
-static cm1e_error_t update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
+cm1e_error_t cm1e_axis_update_move(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
 {
-    const bool on_top = command->kind == CM1E_COMMAND_MOVE_SUPERIMPOSED;
-    if (id != 0 && is_coupling(command->kind))
-        return cm1e_axis_coupling_update(axis, id, command);
-    if (id == 0 || (unsigned)command->kind >= CM1E_COMMAND_KIND_COUNT ||
-        (!on_top && !cm1e_axis_can_plan(command->kind)))
-        return CM1E_ERROR_INVALID_ARGUMENT;
     const move_t inputs = cm1e_axis_move_of(command);
-    if (on_top)
-        return id == axis->superimposed.id ? cm1e_axis_superimpose_update(axis, &inputs) : CM1E_OK;
     if (id == axis->active)
         return update_active(axis, &inputs);
     const move_t *waiting = cm1e_axis_find_waiting(axis, id);
@@ -85,6 +77,14 @@ static cm1e_error_t update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_a
         return cm1e_axis_update_waiting(axis, &move);
     }
     return CM1E_OK; /* nothing new, or it has ended */
+}
+
+static cm1e_error_t update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
+{
+    if (id == 0 || (unsigned)command->kind >= CM1E_COMMAND_KIND_COUNT)
+        return CM1E_ERROR_INVALID_ARGUMENT;
+    const command_method_t *method = &cm1e_axis_methods[kind_row(command->kind)->plan];
+    return method->update ? method->update(axis, id, command) : CM1E_ERROR_INVALID_ARGUMENT;
 }
 
 cm1e_error_t cm1e_axis_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)

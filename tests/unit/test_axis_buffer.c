@@ -34,7 +34,7 @@ static const cm1e_command_kind_t kinds[] = {
 };
 enum { KINDS = sizeof kinds / sizeof kinds[0] };
 
-static bool endless(cm1e_command_kind_t kind) { return is_endless(kind); }
+static bool endless(cm1e_command_kind_t kind) { return kind_row(kind)->is_endless; }
 
 /* One pair: until the second has ended, or reached what it can reach. */
 static void run_pair(cm1e_command_kind_t first_kind, cm1e_command_kind_t second_kind, MC_BUFFER_MODE mode, int wait)

@@ -106,7 +106,7 @@ static const char *const expected[CM1E_AXIS_STATE_COUNT] = {
 /* None of them aborts what runs; GEAR_IN_POS not before its master comes (4.7, note 1). */
 static bool on_top(cm1e_command_kind_t kind)
 {
-    return kind == CM1E_COMMAND_MOVE_SUPERIMPOSED || kind == CM1E_COMMAND_HALT_SUPERIMPOSED || is_phasing(kind) ||
+    return kind == CM1E_COMMAND_MOVE_SUPERIMPOSED || kind == CM1E_COMMAND_HALT_SUPERIMPOSED || kind_row(kind)->plan == PLAN_PHASING ||
            kind == CM1E_COMMAND_GEAR_IN_POS;
 }
 
