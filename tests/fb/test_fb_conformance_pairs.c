@@ -164,7 +164,7 @@ static void pair(const char *a, const char *b, int mode, int phase)
 
 START_TEST(test_every_pair_in_every_buffer_mode)
 {
-    const int stride = sweep_stride(1, PHASES); /* with sanitizers each pair in each mode, in one phase of the first */
+    const int stride = sweep_stride(1, PHASES); /* a sample: each pair in each mode, in one phase of the first */
     for (int a = 0; a < MOVERS; a++)
         for (int mode = mcAborting; mode <= mcBlendingHigh; mode++)
             for (int phase = (a + _i + mode) % stride; phase < PHASES; phase += stride)

@@ -276,7 +276,7 @@ END_TEST
 
 START_TEST(test_every_move_behind_every_other_in_every_mode)
 {
-    const int stride = sweep_stride(1, 5); /* with sanitizers each of them at one moment */
+    const int stride = sweep_stride(1, 5); /* a sample: each of them at one moment */
     for (int first = 0; first < MOVES; first++)
         for (int second = 0; second < MOVES; second++)
             for (int mode = mcAborting; mode <= mcBlendingHigh; mode++)

@@ -1,9 +1,10 @@
 /**
  * @file effort.h
- * How much of a long test runs: all of it in a plain build, a sample of it where sanitizers make it many times slower.
- * What a sample leaves out is repetition (further seeds, the moments between two moments), never a check; a plain build
- * judges all of it. CM1E_TEST_EFFORT=full in the environment runs all of it with sanitizers too. Where the whole is too
- * long for every day, a plain build runs a sample as well: CM1E_TEST_STRIDE=1 in the environment runs all moments.
+ * How much of a long test runs. CM1E_TEST_EFFORT=full in the environment, which `scripts/test --all` sets: all of it.
+ * Else every fourth run of a sweep, a quarter of the seeds: what a person waits for every day. With sanitizers, many
+ * times slower, a twelfth. What a sample leaves out is repetition (further seeds, the moments between two moments), never
+ * a check; only what all seeds together must have reached is judged where all of them run. CM1E_TEST_STRIDE=1 in the
+ * environment runs every moment of a sweep, also of one that is a sample with full effort.
  */
 #ifndef CM1E_TESTS_EFFORT_H
 #define CM1E_TESTS_EFFORT_H
@@ -12,14 +13,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/** One of how many runs is made: 1 is all of them. */
+enum { EFFORT_FULL = 1, EFFORT_EVERYDAY = 4, EFFORT_SANITIZED = 12 };
+
+/** One of how many runs is made. */
 static inline int slowness(void)
 {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     const char *effort = getenv("CM1E_TEST_EFFORT");
-    return effort && strcmp(effort, "full") == 0 ? 1 : 12;
+    if (effort && strcmp(effort, "full") == 0)
+        return EFFORT_FULL;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    return EFFORT_SANITIZED;
 #else
-    return 1;
+    return EFFORT_EVERYDAY;
 #endif
 }
 
@@ -30,10 +35,13 @@ static inline int stated_stride(void)
     return stride ? atoi(stride) : 0;
 }
 
-/** What a sweep that goes on by `full` in a plain build goes on by here. */
+/** What a sweep goes on by here that goes on by `full` with full effort, and by at most `sampled`. */
 static inline int sweep_stride(int full, int sampled)
 {
-    return stated_stride() > 0 ? stated_stride() : slowness() > 1 ? sampled : full;
+    const int stride = full * slowness();
+    if (stated_stride() > 0)
+        return stated_stride();
+    return slowness() == EFFORT_SANITIZED || stride > sampled ? sampled : stride;
 }
 
 /** Where the sweep number `number` of several over the same moments begins, so that they meet different ones. */

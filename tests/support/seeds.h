@@ -21,7 +21,7 @@ static inline int seeds_of(int all)
     return count ? atoi(count) : getenv("CM1E_TEST_SEED") ? 1 : all;
 }
 
-/** The same for a long test: with sanitizers a sample of its own seeds. */
+/** The same for a long test: of its own seeds as many as the effort allows (effort.h). */
 static inline int seed_count(int count)
 {
     const int some = count / slowness();

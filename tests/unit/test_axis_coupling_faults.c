@@ -7,7 +7,7 @@
  * Whatever fails and when: no set-point steps (the witness of axes_bench.h), each axis ends where its rule says, at
  * rest unless it was not concerned, with its command ended and its text said; and nothing moves after.
  *
- * With sanitizers a sample of the cycles is run (effort.h).
+ * Of the cycles a sample is run unless all are asked for (effort.h).
  */
 #include "unity.h"
 
