@@ -274,13 +274,11 @@ bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *at, double offset_
         if (is_planned(waiting_move(axis, 0)->kind) && offset_s == 0.0)
             cm1e_axis_superimposed_give_way(axis, &from);
         move_t move = take_first(axis);
-        const state_rule_t *rule = cm1e_axis_state_rule(axis->state, (cm1e_command_kind_t)move.kind);
-        cm1e_error_t error = rule->refusal;
+        cm1e_error_t error = cm1e_axis_state_refusal(axis->state, kind->trigger);
         if (!error)
             error = method->begin(axis, &move, &from, offset_s);
         if (!error) {
-            if (kind->plan != PLAN_HOMING_STEP) /* MC_HomeDirect may be over already */
-                axis->state = rule->next;
+            cm1e_axis_taken(axis, kind);
             return true;
         }
         cm1e_axis_record(axis, move.id, CM1E_COMMAND_ERROR, error);

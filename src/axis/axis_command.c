@@ -355,10 +355,10 @@ static bool has_to_wait(const cm1e_axis_t *axis, const cm1e_axis_command_t *comm
 }
 
 /* What can be said without a look at the numbers. */
-static cm1e_error_t check(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_error_t state_refusal,
-                          bool waits)
+static cm1e_error_t check(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, bool waits)
 {
     const command_kind_t *kind = kind_row(command->kind);
+    const cm1e_error_t state_refusal = cm1e_axis_state_refusal(axis->state, kind->trigger);
     if (axis_led(axis) && command->kind != CM1E_COMMAND_STOP)
         return CM1E_ERROR_AXIS_IN_GROUP;
     if (drive_profiles(axis) && !kind->drive_can)
@@ -372,23 +372,29 @@ static cm1e_error_t check(const cm1e_axis_t *axis, const cm1e_axis_command_t *co
     return waits && drive_profiles(axis) ? CM1E_ERROR_AXIS_BUFFER_MODE : CM1E_OK;
 }
 
+void cm1e_axis_taken(cm1e_axis_t *axis, const command_kind_t *kind)
+{
+    if (kind->plan != PLAN_HOMING_STEP) /* it has gone there itself: MC_HomeDirect may be over already */
+        cm1e_axis_go(axis, kind->trigger);
+}
+
 static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     *id = 0;
     if ((unsigned)command->kind >= CM1E_COMMAND_KIND_COUNT)
         return CM1E_ERROR_INVALID_ARGUMENT;
-    const command_method_t *method = &cm1e_axis_methods[kind_row(command->kind)->plan];
-    const state_rule_t *rule = cm1e_axis_state_rule(axis->state, command->kind);
+    const command_kind_t *kind = kind_row(command->kind);
+    const command_method_t *method = &cm1e_axis_methods[kind->plan];
     const bool waits = has_to_wait(axis, command);
-    cm1e_error_t error = check(axis, command, rule->refusal, waits);
+    cm1e_error_t error = check(axis, command, waits);
     if (error)
         return error;
     if (waits)
         return method->buffer(axis, command, id);
     error = method->start(axis, command, id);
     const bool later = cm1e_axis_find_waiting(axis, *id) != NULL; /* for its master: 4.7, note 1 */
-    if (!error && !later && command->kind != CM1E_COMMAND_HOMING_STEP) /* MC_HomeDirect may be over already */
-        axis->state = rule->next;
+    if (!error && !later)
+        cm1e_axis_taken(axis, kind);
     return error;
 }
 

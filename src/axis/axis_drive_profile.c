@@ -125,8 +125,7 @@ static void leave(cm1e_axis_t *axis)
         return;
     if (axis->active)
         cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK); /* of the move, or of what ended it */
-    if (axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION)
-        axis->state = CM1E_AXIS_STANDSTILL;
+    cm1e_axis_go(axis, ON_AT_REST);
 }
 
 /* To the axis's own mode, which takes the target that it finds: so that is the set-point, a cycle before. */
@@ -370,7 +369,7 @@ void cm1e_axis_drive_direction_disabled(cm1e_axis_t *axis, double sign)
     if (!going || !axis->active)
         return;
     cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
-    axis->state = CM1E_AXIS_DISCRETE_MOTION;
+    cm1e_axis_go(axis, ON_BROKEN_OFF);
     cm1e_axis_drive_abort(axis, HOME_GOAL_HOLD);
 }
 

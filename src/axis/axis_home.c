@@ -297,8 +297,7 @@ static void leave(cm1e_axis_t *axis)
         return;
     if (axis->active)
         cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK); /* of MC_Home, or of the MC_Stop that ended it */
-    if (axis->state == CM1E_AXIS_HOMING)
-        axis->state = CM1E_AXIS_STANDSTILL;
+    cm1e_axis_go(axis, ON_DONE);
 }
 
 /* Nothing has moved: no reason for ErrorStop. */

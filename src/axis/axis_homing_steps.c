@@ -349,7 +349,7 @@ void cm1e_axis_step_begin(cm1e_axis_t *axis, const stepping_t *next, const cm1e_
 {
     axis->stepping = *next;
     axis->stepping.pushing = true;
-    axis->state = CM1E_AXIS_HOMING;
+    cm1e_axis_go(axis, ON_HOMING_STEP);
     if (searches(next->step.kind))
         axis->homed = false;
     run(axis, profile);
@@ -573,7 +573,7 @@ static void complete(cm1e_axis_t *axis)
     }
     if (last) {
         axis->homed = s->referenced;
-        axis->state = CM1E_AXIS_STANDSTILL;
+        cm1e_axis_go(axis, ON_DONE);
     }
     cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
 }

@@ -83,8 +83,7 @@ void cm1e_axis_settled(cm1e_axis_t *axis)
     if (!axis_settling(axis))
         return;
     cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
-    if (axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_HOMING)
-        axis->state = CM1E_AXIS_STANDSTILL;
+    cm1e_axis_go(axis, ON_DONE);
 }
 
 /* What the text tells is as it is now: without torque the motor will be elsewhere. */

@@ -6,22 +6,7 @@
 #ifndef CM1E_AXIS_AXIS_KIND_H
 #define CM1E_AXIS_AXIS_KIND_H
 
-#include "axis/axis.h"
-
-/** Commands that the state diagram does not tell apart (axis_state.c). */
-typedef enum state_trigger {
-    ON_DISCRETE = 0,
-    ON_CONTINUOUS,
-    ON_STOP,
-    ON_HOME,
-    ON_HOMING_STEP,
-    ON_SUPERIMPOSE,
-    ON_HALT_SUPERIMPOSED,
-    ON_COUPLE,
-    ON_DECOUPLE,
-    ON_SHIFT_PHASE,
-    STATE_TRIGGER_COUNT,
-} state_trigger_t;
+#include "axis/axis_state.h"
 
 /** How a command becomes a motion. axis_method.c has a row for each. */
 typedef enum command_plan {

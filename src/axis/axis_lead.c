@@ -16,7 +16,7 @@ cm1e_error_t cm1e_axis_lead(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader)
     axis->leader = *leader;
     axis->activity = ACTIVITY_LED;
     cm1e_axis_guard_renew(axis);
-    axis->state = CM1E_AXIS_SYNCHRONIZED_MOTION;
+    cm1e_axis_go(axis, ON_LED);
     return CM1E_OK;
 }
 
@@ -36,9 +36,9 @@ void cm1e_axis_release(cm1e_axis_t *axis)
     axis->leader = (cm1e_axis_leader_t){0};
     if (at_rest(axis)) {
         axis->activity = ACTIVITY_HOLD;
-        axis->state = CM1E_AXIS_STANDSTILL;
+        cm1e_axis_go(axis, ON_LET_GO);
     } else {
-        axis->state = CM1E_AXIS_DISCRETE_MOTION;
+        cm1e_axis_go(axis, ON_BROKEN_OFF);
         cm1e_axis_ramp_down(axis, &axis->maximum);
     }
 }

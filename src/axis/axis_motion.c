@@ -110,22 +110,26 @@ void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign)
         return;
     const from_t from = from_set(axis);
     cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, error);
-    axis->state = CM1E_AXIS_DISCRETE_MOTION;
+    cm1e_axis_go(axis, ON_BROKEN_OFF);
     if (!cm1e_axis_begin_waiting(axis, &from, 0.0)) /* 2.2.2, case 2 */
         cm1e_axis_ramp_down(axis, &axis->maximum);
 }
 
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
 
-void cm1e_axis_stand(cm1e_axis_t *axis)
+static void hold_target(cm1e_axis_t *axis)
 {
     axis->set = axis->target;
     axis->set_velocity = 0.0;
     axis->set_acceleration = 0.0;
     axis->activity = ACTIVITY_HOLD;
     axis->stands = false;
-    if (axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION)
-        axis->state = CM1E_AXIS_STANDSTILL;
+}
+
+void cm1e_axis_stand(cm1e_axis_t *axis)
+{
+    hold_target(axis);
+    cm1e_axis_go(axis, ON_AT_REST);
 }
 
 static void brake_after(cm1e_axis_t *axis, const from_t *end, double late_s)
@@ -165,8 +169,7 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
         return true;
     }
     if (axis->active && !goes_on && cm1e_axis_settle(axis)) {
-        cm1e_axis_stand(axis);
-        axis->state = CM1E_AXIS_DISCRETE_MOTION;
+        hold_target(axis); /* in its state of the diagram */
         return false;
     }
     if (axis->active)
@@ -341,7 +344,7 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
     /* Note 6: MC_Stop done and its Execute FALSE. */
     if (axis->state == CM1E_AXIS_STOPPING && axis->activity == ACTIVITY_HOLD && !axis->stop_held &&
         !axis->stepping.after_stop)
-        axis->state = CM1E_AXIS_STANDSTILL;
+        cm1e_axis_go(axis, ON_STOP_RELEASED);
     if (axis->activity == ACTIVITY_HOLD && !axis->active && axis->waiting.count > 0) { /* behind a homing */
         const from_t from = from_set(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);

@@ -5,7 +5,7 @@
 #ifndef CM1E_AXIS_AXIS_MOVE_H
 #define CM1E_AXIS_AXIS_MOVE_H
 
-#include "axis/axis.h"
+#include "axis/axis_kind.h"
 #include "axis/axis_place.h"
 #include "motion/profile.h"
 #include "motion/table_profile.h"
@@ -152,6 +152,8 @@ cm1e_command_id_t cm1e_axis_next_id(cm1e_axis_t *axis);
 /** A command that has been planned becomes the active one; the one before, if any, is aborted. */
 void cm1e_axis_take(cm1e_axis_t *axis, const move_t *move, const from_t *from, const cm1e_profile_t *profile,
                     double offset_s);
+/** A command has begun: the state diagram follows it. */
+void cm1e_axis_taken(cm1e_axis_t *axis, const command_kind_t *kind);
 cm1e_error_t cm1e_axis_start_move(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
 cm1e_error_t cm1e_axis_start_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
 cm1e_error_t cm1e_axis_start_step(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);

@@ -14,7 +14,7 @@ static void resume_failed(cm1e_axis_t *axis, cm1e_error_t error)
 {
     const from_t from = from_base(axis);
     cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, error);
-    axis->state = CM1E_AXIS_DISCRETE_MOTION;
+    cm1e_axis_go(axis, ON_BROKEN_OFF);
     if (!cm1e_axis_begin_waiting(axis, &from, 0.0))
         cm1e_axis_ramp_down(axis, &axis->maximum);
 }

@@ -54,7 +54,7 @@ static cm1e_error_t end_table(cm1e_axis_t *axis)
 {
     const from_t from = from_set(axis);
     cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_TABLE_LATE);
-    axis->state = CM1E_AXIS_DISCRETE_MOTION;
+    cm1e_axis_go(axis, ON_BROKEN_OFF);
     if (!cm1e_axis_begin_waiting(axis, &from, 0.0))
         cm1e_axis_ramp_down(axis, &axis->maximum);
     return CM1E_OK;

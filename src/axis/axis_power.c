@@ -63,7 +63,7 @@ static void fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bou
     axis->device_error = axis->drive.fault.device_code;
     axis->error_value = value;
     axis->error_bound = bound;
-    axis->state = CM1E_AXIS_ERROR_STOP;
+    cm1e_axis_go(axis, ON_ERROR);
     if (!followed || !axis->coupling->stopping)
         wind_down(axis, ramp);
     if (followed)
@@ -121,7 +121,7 @@ static void power_off(cm1e_axis_t *axis)
     if (axis->state == CM1E_AXIS_DISABLED || axis->state == CM1E_AXIS_ERROR_STOP)
         return;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    axis->state = CM1E_AXIS_DISABLED;
+    cm1e_axis_go(axis, ON_POWER_OFF);
     wind_down(axis, &axis->maximum);
 }
 
@@ -179,7 +179,7 @@ static void take_over(cm1e_axis_t *axis)
     axis->activity = ACTIVITY_HOLD;
     axis->energized = true;
     cm1e_axis_apply_limits(axis); /* without torque it may have been turned over the end of the drive's counts */
-    axis->state = CM1E_AXIS_STANDSTILL;
+    cm1e_axis_go(axis, ON_POWER_ON);
 }
 
 void cm1e_axis_power_step(cm1e_axis_t *axis)
@@ -233,7 +233,7 @@ static void reset_finished(cm1e_axis_t *axis)
     axis->error = error;
     axis->device_error = axis->drive.fault.device_code;
     if (!error)
-        axis->state = CM1E_AXIS_DISABLED;
+        cm1e_axis_go(axis, ON_RESET);
 }
 
 /* After the ramp of ErrorStop has ended: the drive's reset, which also brings back a slave that was away. */

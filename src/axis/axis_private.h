@@ -325,13 +325,6 @@ void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what);
 void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size); /* axis_text.c */
 
-/* axis_state.c */
-typedef struct state_rule {
-    cm1e_error_t refusal; /**< CM1E_OK: accepted */
-    cm1e_axis_state_t next;
-} state_rule_t;
-const state_rule_t *cm1e_axis_state_rule(cm1e_axis_state_t state, cm1e_command_kind_t kind);
-
 /* axis_plan.c */
 /** The set-point, all that moves taken together. What takes over from a ramp without limit of jerk ends its acceleration
  *  with the step that the ramp would have ended with: a limited jerk would carry the axis through standstill and back. */

@@ -1,111 +1,58 @@
-/* The state diagram of PLCopen Part 1 v2.0, figure 2, as far as commands move it: state x command. The transitions by
- * MC_Power, MC_Reset and axis errors are in axis_power.c, those at the end of a command in axis_motion.c. */
+/*
+ * The state diagram of PLCopen Part 1 v2.0, figure 2. A cell is the state that the trigger leads to, or the error by
+ * which a command is refused there, or STAYS.
+ *
+ * Homing has no arrow to a motion, so only MC_Stop and the next step of a homing in steps (Part 5) are taken there.
+ * Stopping takes another MC_Stop only when no MC_Stop holds it any more (axis_command.c): the same block may so be
+ * triggered again while the axis still brakes. A superimposed motion changes no state but Standstill (3.8). What leaves
+ * a master, or shifts against it, needs one (4.4, 4.6, 4.8). ErrorStop always ends without torque, so MC_Reset leads to
+ * Disabled (note 3), and from there on to Standstill where MC_Power.Enable is TRUE: that is note 4.
+ */
+#include "axis/axis_state.h"
+
 #include "axis/axis_private.h"
 
-#define REFUSED(why) {.refusal = CM1E_ERROR_AXIS_##why}
-#define TO(state) {.refusal = CM1E_OK, .next = CM1E_AXIS_##state}
+enum {
+    DISABLED = CM1E_AXIS_DISABLED,
+    STANDSTILL = CM1E_AXIS_STANDSTILL,
+    HOMING = CM1E_AXIS_HOMING,
+    DISCRETE = CM1E_AXIS_DISCRETE_MOTION,
+    CONTINUOUS = CM1E_AXIS_CONTINUOUS_MOTION,
+    SYNCHRON = CM1E_AXIS_SYNCHRONIZED_MOTION,
+    STOPPING = CM1E_AXIS_STOPPING,
+    ERRORSTOP = CM1E_AXIS_ERROR_STOP,
+    STAYS = CM1E_AXIS_STATE_COUNT,
+    /* refused */
+    NO_POWER = CM1E_ERROR_AXIS_NOT_POWERED,
+    HOMES = CM1E_ERROR_AXIS_HOMING,
+    MOVES = CM1E_ERROR_AXIS_STATE,
+    NO_MASTER = CM1E_ERROR_AXIS_NOT_COUPLED,
+    STOPS = CM1E_ERROR_AXIS_STOPPING,
+    ERROR = CM1E_ERROR_AXIS_ERROR_STOP,
+};
 
-/* Homing has no arrow to a motion, so only MC_Stop and the next step of a homing in steps (Part 5) are taken there.
- * Stopping takes another MC_Stop only when no MC_Stop holds it any more (axis_command.c): the same block may so be
- * triggered again while the axis still brakes. A superimposed motion changes no state but Standstill (3.8).
- * What leaves a master, or shifts against it, needs one (4.4, 4.6, 4.8). */
-static const state_rule_t rules[CM1E_AXIS_STATE_COUNT][STATE_TRIGGER_COUNT] = {
-    [CM1E_AXIS_DISABLED] = {
-        [ON_DISCRETE] = REFUSED(NOT_POWERED),
-        [ON_CONTINUOUS] = REFUSED(NOT_POWERED),
-        [ON_STOP] = REFUSED(NOT_POWERED),
-        [ON_HOME] = REFUSED(NOT_POWERED),
-        [ON_HOMING_STEP] = REFUSED(NOT_POWERED),
-        [ON_SUPERIMPOSE] = REFUSED(NOT_POWERED),
-        [ON_HALT_SUPERIMPOSED] = REFUSED(NOT_POWERED),
-        [ON_COUPLE] = REFUSED(NOT_POWERED),
-        [ON_DECOUPLE] = REFUSED(NOT_POWERED),
-        [ON_SHIFT_PHASE] = REFUSED(NOT_POWERED),
-    },
-    [CM1E_AXIS_STANDSTILL] = {
-        [ON_DISCRETE] = TO(DISCRETE_MOTION),
-        [ON_CONTINUOUS] = TO(CONTINUOUS_MOTION),
-        [ON_STOP] = TO(STOPPING),
-        [ON_HOME] = TO(HOMING),
-        [ON_HOMING_STEP] = TO(HOMING),
-        [ON_SUPERIMPOSE] = TO(DISCRETE_MOTION),
-        [ON_HALT_SUPERIMPOSED] = TO(STANDSTILL),
-        [ON_COUPLE] = TO(SYNCHRONIZED_MOTION),
-        [ON_DECOUPLE] = REFUSED(NOT_COUPLED),
-        [ON_SHIFT_PHASE] = REFUSED(NOT_COUPLED),
-    },
-    [CM1E_AXIS_HOMING] = {
-        [ON_DISCRETE] = REFUSED(HOMING),
-        [ON_CONTINUOUS] = REFUSED(HOMING),
-        [ON_STOP] = TO(STOPPING),
-        [ON_HOME] = REFUSED(HOMING),
-        [ON_HOMING_STEP] = TO(HOMING),
-        [ON_SUPERIMPOSE] = REFUSED(HOMING),
-        [ON_HALT_SUPERIMPOSED] = REFUSED(HOMING),
-        [ON_COUPLE] = REFUSED(HOMING),
-        [ON_DECOUPLE] = REFUSED(HOMING),
-        [ON_SHIFT_PHASE] = REFUSED(HOMING),
-    },
-    [CM1E_AXIS_DISCRETE_MOTION] = {
-        [ON_DISCRETE] = TO(DISCRETE_MOTION),
-        [ON_CONTINUOUS] = TO(CONTINUOUS_MOTION),
-        [ON_STOP] = TO(STOPPING),
-        [ON_HOME] = REFUSED(STATE),
-        [ON_HOMING_STEP] = REFUSED(STATE),
-        [ON_SUPERIMPOSE] = TO(DISCRETE_MOTION),
-        [ON_HALT_SUPERIMPOSED] = TO(DISCRETE_MOTION),
-        [ON_COUPLE] = TO(SYNCHRONIZED_MOTION),
-        [ON_DECOUPLE] = REFUSED(NOT_COUPLED),
-        [ON_SHIFT_PHASE] = REFUSED(NOT_COUPLED),
-    },
-    [CM1E_AXIS_CONTINUOUS_MOTION] = {
-        [ON_DISCRETE] = TO(DISCRETE_MOTION),
-        [ON_CONTINUOUS] = TO(CONTINUOUS_MOTION),
-        [ON_STOP] = TO(STOPPING),
-        [ON_HOME] = REFUSED(STATE),
-        [ON_HOMING_STEP] = REFUSED(STATE),
-        [ON_SUPERIMPOSE] = TO(CONTINUOUS_MOTION),
-        [ON_HALT_SUPERIMPOSED] = TO(CONTINUOUS_MOTION),
-        [ON_COUPLE] = TO(SYNCHRONIZED_MOTION),
-        [ON_DECOUPLE] = REFUSED(NOT_COUPLED),
-        [ON_SHIFT_PHASE] = REFUSED(NOT_COUPLED),
-    },
-    [CM1E_AXIS_SYNCHRONIZED_MOTION] = {
-        [ON_DISCRETE] = TO(DISCRETE_MOTION),
-        [ON_CONTINUOUS] = TO(CONTINUOUS_MOTION),
-        [ON_STOP] = TO(STOPPING),
-        [ON_HOME] = REFUSED(STATE),
-        [ON_HOMING_STEP] = REFUSED(STATE),
-        [ON_SUPERIMPOSE] = TO(SYNCHRONIZED_MOTION),
-        [ON_HALT_SUPERIMPOSED] = TO(SYNCHRONIZED_MOTION),
-        [ON_COUPLE] = TO(SYNCHRONIZED_MOTION),
-        [ON_DECOUPLE] = TO(CONTINUOUS_MOTION),
-        [ON_SHIFT_PHASE] = TO(SYNCHRONIZED_MOTION),
-    },
-    [CM1E_AXIS_STOPPING] = {
-        [ON_DISCRETE] = REFUSED(STOPPING),
-        [ON_CONTINUOUS] = REFUSED(STOPPING),
-        [ON_STOP] = TO(STOPPING),
-        [ON_HOME] = REFUSED(STOPPING),
-        [ON_HOMING_STEP] = REFUSED(STOPPING),
-        [ON_SUPERIMPOSE] = REFUSED(STOPPING),
-        [ON_HALT_SUPERIMPOSED] = REFUSED(STOPPING),
-        [ON_COUPLE] = REFUSED(STOPPING),
-        [ON_DECOUPLE] = REFUSED(STOPPING),
-        [ON_SHIFT_PHASE] = REFUSED(STOPPING),
-    },
-    [CM1E_AXIS_ERROR_STOP] = {
-        [ON_DISCRETE] = REFUSED(ERROR_STOP),
-        [ON_CONTINUOUS] = REFUSED(ERROR_STOP),
-        [ON_STOP] = REFUSED(ERROR_STOP),
-        [ON_HOME] = REFUSED(ERROR_STOP),
-        [ON_HOMING_STEP] = REFUSED(ERROR_STOP),
-        [ON_SUPERIMPOSE] = REFUSED(ERROR_STOP),
-        [ON_HALT_SUPERIMPOSED] = REFUSED(ERROR_STOP),
-        [ON_COUPLE] = REFUSED(ERROR_STOP),
-        [ON_DECOUPLE] = REFUSED(ERROR_STOP),
-        [ON_SHIFT_PHASE] = REFUSED(ERROR_STOP),
-    },
+static const int16_t diagram[STATE_TRIGGER_COUNT][CM1E_AXIS_STATE_COUNT] = {
+    /* in                   Disabled  Standstill  Homing      Discrete    Continuous  Synchronized Stopping ErrorStop */
+    [ON_DISCRETE]          = {NO_POWER, DISCRETE,   HOMES,      DISCRETE,   DISCRETE,   DISCRETE,   STOPS,      ERROR},
+    [ON_CONTINUOUS]        = {NO_POWER, CONTINUOUS, HOMES,      CONTINUOUS, CONTINUOUS, CONTINUOUS, STOPS,      ERROR},
+    [ON_COUPLE]            = {NO_POWER, SYNCHRON,   HOMES,      SYNCHRON,   SYNCHRON,   SYNCHRON,   STOPS,      ERROR},
+    [ON_DECOUPLE]          = {NO_POWER, NO_MASTER,  HOMES,      NO_MASTER,  NO_MASTER,  CONTINUOUS, STOPS,      ERROR},
+    [ON_SHIFT_PHASE]       = {NO_POWER, NO_MASTER,  HOMES,      NO_MASTER,  NO_MASTER,  STAYS,      STOPS,      ERROR},
+    [ON_SUPERIMPOSE]       = {NO_POWER, DISCRETE,   HOMES,      STAYS,      STAYS,      STAYS,      STOPS,      ERROR},
+    [ON_HALT_SUPERIMPOSED] = {NO_POWER, STAYS,      HOMES,      STAYS,      STAYS,      STAYS,      STOPS,      ERROR},
+    [ON_HOME]              = {NO_POWER, HOMING,     HOMES,      MOVES,      MOVES,      MOVES,      STOPS,      ERROR},
+    [ON_HOMING_STEP]       = {NO_POWER, HOMING,     STAYS,      MOVES,      MOVES,      MOVES,      STOPS,      ERROR},
+    [ON_STOP]              = {NO_POWER, STOPPING,   STOPPING,   STOPPING,   STOPPING,   STOPPING,   STAYS,      ERROR},
+    [ON_AT_REST]           = {STAYS,    STAYS,      STAYS,      STANDSTILL, STANDSTILL, STAYS,      STAYS,      STAYS},
+    [ON_DONE]              = {STAYS,    STAYS,      STANDSTILL, STANDSTILL, STAYS,      STAYS,      STAYS,      STAYS},
+    [ON_BROKEN_OFF]        = {STAYS,    STAYS,      STAYS,      STAYS,      DISCRETE,   DISCRETE,   STAYS,      STAYS},
+    [ON_STOP_RELEASED]     = {STAYS,    STAYS,      STAYS,      STAYS,      STAYS,      STAYS,      STANDSTILL, STAYS},
+    [ON_LED]               = {STAYS,    SYNCHRON,   STAYS,      STAYS,      STAYS,      STAYS,      STAYS,      STAYS},
+    [ON_LET_GO]            = {STAYS,    STAYS,      STAYS,      STAYS,      STAYS,      STANDSTILL, STAYS,      STAYS},
+    [ON_POWER_ON]          = {STANDSTILL, STAYS,    STAYS,      STAYS,      STAYS,      STAYS,      STAYS,      STAYS},
+    [ON_POWER_OFF]         = {STAYS,    DISABLED,   DISABLED,   DISABLED,   DISABLED,   DISABLED,   DISABLED,   STAYS},
+    [ON_ERROR]             = {ERRORSTOP, ERRORSTOP, ERRORSTOP,  ERRORSTOP,  ERRORSTOP,  ERRORSTOP,  ERRORSTOP,  STAYS},
+    [ON_RESET]             = {STAYS,    STAYS,      STAYS,      STAYS,      STAYS,      STAYS,      STAYS,   DISABLED},
 };
 
 static const char *const names[CM1E_AXIS_STATE_COUNT] = {
@@ -119,9 +66,21 @@ static const char *const names[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_ERROR_STOP] = "ErrorStop",
 };
 
-const state_rule_t *cm1e_axis_state_rule(cm1e_axis_state_t state, cm1e_command_kind_t kind)
+cm1e_error_t cm1e_axis_state_refusal(cm1e_axis_state_t state, state_trigger_t trigger)
 {
-    return &rules[state][kind_row(kind)->trigger];
+    const int cell = diagram[trigger][state];
+    return cell < 0 ? (cm1e_error_t)cell : CM1E_OK;
+}
+
+cm1e_axis_state_t cm1e_axis_state_after(cm1e_axis_state_t state, state_trigger_t trigger)
+{
+    const int cell = diagram[trigger][state];
+    return cell < 0 || cell == STAYS ? state : (cm1e_axis_state_t)cell;
+}
+
+void cm1e_axis_go(cm1e_axis_t *axis, state_trigger_t trigger)
+{
+    axis->state = cm1e_axis_state_after(axis->state, trigger);
 }
 
 const char *cm1e_axis_state_name(cm1e_axis_state_t state)

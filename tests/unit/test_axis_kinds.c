@@ -15,7 +15,7 @@ static void test_every_kind_has_a_row(void)
         snprintf(where, sizeof where, "command %u", kind);
         TEST_ASSERT_NOT_NULL_MESSAGE(row->name, where);
         TEST_ASSERT_TRUE_MESSAGE(row->plan > PLAN_NONE && row->plan < PLAN_COUNT, where);
-        TEST_ASSERT_TRUE_MESSAGE(row->trigger < STATE_TRIGGER_COUNT, where);
+        TEST_ASSERT_TRUE_MESSAGE(row->trigger < COMMAND_TRIGGERS, where);
         for (unsigned other = 0; other < kind; other++)
             TEST_ASSERT_NOT_EQUAL_INT_MESSAGE(0, strcmp(row->name, kind_row(other)->name), row->name);
     }

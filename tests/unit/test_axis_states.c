@@ -1,4 +1,6 @@
 /* The state diagram of PLCopen Part 1 v2.0, 2.1: every state x command, and the transitions of power, error, reset. */
+#include <string.h>
+
 #include "../support/axis_bench.h"
 
 /* It stands under torque, and nobody asks it anything: for what follows it. */
@@ -103,6 +105,32 @@ static const char *const expected[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_ERROR_STOP] = "eeeeeeeeeeeeeeeeeeeeeee",
 };
 
+/* The diagram by its triggers, by hand from figure 2 and its notes: D: Disabled, T: Standstill, the others as above; a
+ * point: it stays as it is. In the order of the states: Disabled, Standstill, Homing, Discrete, Continuous, Synchronized,
+ * Stopping, ErrorStop. */
+static const char *const arrows[STATE_TRIGGER_COUNT] = {
+    [ON_DISCRETE] = "pMhMMMse",
+    [ON_CONTINUOUS] = "pVhVVVse",
+    [ON_COUPLE] = "pFhFFFse",
+    [ON_DECOUPLE] = "pchccVse",
+    [ON_SHIFT_PHASE] = "pchcc.se",
+    [ON_SUPERIMPOSE] = "pMh...se",
+    [ON_HALT_SUPERIMPOSED] = "p.h...se",
+    [ON_HOME] = "pHhxxxse",
+    [ON_HOMING_STEP] = "pH.xxxse",
+    [ON_STOP] = "pSSSSS.e",
+    [ON_AT_REST] = "...TT...", /* what is led by others, stops or has failed ends in another way */
+    [ON_DONE] = "..TT....",
+    [ON_BROKEN_OFF] = "....MM..",
+    [ON_STOP_RELEASED] = "......T.", /* note 6 */
+    [ON_LED] = ".F......",
+    [ON_LET_GO] = ".....T..",
+    [ON_POWER_ON] = "T.......",  /* note 5 */
+    [ON_POWER_OFF] = ".DDDDDD.", /* note 2 */
+    [ON_ERROR] = "EEEEEEE.",     /* note 1 */
+    [ON_RESET] = ".......D",     /* note 3 */
+};
+
 /* None of them aborts what runs; GEAR_IN_POS not before its master comes (4.7, note 1). */
 static bool on_top(cm1e_command_kind_t kind)
 {
@@ -118,6 +146,10 @@ static cm1e_axis_state_t accepted_state(char code, cm1e_axis_state_t state)
     case 'F': return CM1E_AXIS_SYNCHRONIZED_MOTION;
     case 'S': return CM1E_AXIS_STOPPING;
     case 'H': return CM1E_AXIS_HOMING;
+    case 'D': return CM1E_AXIS_DISABLED;
+    case 'T': return CM1E_AXIS_STANDSTILL;
+    case 'E': return CM1E_AXIS_ERROR_STOP;
+    case '.':
     case 'K': return state;
     default: return CM1E_AXIS_STATE_COUNT;
     }
@@ -132,6 +164,29 @@ static cm1e_error_t refusal(char code)
     case 's': return CM1E_ERROR_AXIS_STOPPING;
     case 'c': return CM1E_ERROR_AXIS_NOT_COUPLED;
     default: return CM1E_ERROR_AXIS_ERROR_STOP;
+    }
+}
+
+static void test_every_trigger_in_every_state(void)
+{
+    for (int trigger = 0; trigger < STATE_TRIGGER_COUNT; trigger++) {
+        TEST_ASSERT_NOT_NULL(arrows[trigger]);
+        TEST_ASSERT_EQUAL_size_t(CM1E_AXIS_STATE_COUNT, strlen(arrows[trigger]));
+        for (int i = 0; i < CM1E_AXIS_STATE_COUNT; i++) {
+            const cm1e_axis_state_t state = (cm1e_axis_state_t)i;
+            const char code = arrows[trigger][i];
+            const cm1e_axis_state_t goal = accepted_state(code, state);
+            const bool taken = goal != CM1E_AXIS_STATE_COUNT;
+            char where[64];
+            snprintf(where, sizeof where, "%s, trigger %d", cm1e_axis_state_name(state), trigger);
+            TEST_ASSERT_EQUAL_INT_MESSAGE(taken ? CM1E_OK : refusal(code),
+                                          cm1e_axis_state_refusal(state, (state_trigger_t)trigger), where);
+            axis->state = state;
+            cm1e_axis_go(axis, (state_trigger_t)trigger);
+            TEST_ASSERT_EQUAL_STRING_MESSAGE(cm1e_axis_state_name(taken ? goal : state),
+                                             cm1e_axis_state_name(axis->state), where);
+            TEST_ASSERT_TRUE_MESSAGE(taken || trigger < COMMAND_TRIGGERS, where);
+        }
     }
 }
 
@@ -534,6 +589,7 @@ static void test_an_axis_is_small(void) { TEST_ASSERT_LESS_THAN_size_t(5300, siz
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_every_trigger_in_every_state);
     RUN_TEST(test_every_command_in_every_state);
     RUN_TEST(test_a_buffer_mode_that_is_none_is_refused);
     RUN_TEST(test_power_off_in_every_state);

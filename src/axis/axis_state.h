@@ -1,0 +1,48 @@
+/**
+ * @file axis_state.h
+ * The state diagram of PLCopen Part 1 v2.0, figure 2, as a table: trigger x state. Only cm1e_axis_go() assigns the
+ * state of an axis.
+ */
+#ifndef CM1E_AXIS_AXIS_STATE_H
+#define CM1E_AXIS_AXIS_STATE_H
+
+#include "axis/axis.h"
+
+/** What moves an axis in the diagram. */
+typedef enum state_trigger {
+    /* commands; those that the diagram does not tell apart have one trigger (axis_kind.c) */
+    ON_DISCRETE = 0,
+    ON_CONTINUOUS,
+    ON_COUPLE,
+    ON_DECOUPLE,
+    ON_SHIFT_PHASE,
+    ON_SUPERIMPOSE,
+    ON_HALT_SUPERIMPOSED,
+    ON_HOME,
+    ON_HOMING_STEP,
+    ON_STOP,
+    COMMAND_TRIGGERS,
+    /* the ends of commands */
+    ON_AT_REST = COMMAND_TRIGGERS, /**< the motion of a command has come to rest */
+    ON_DONE,                       /**< a homing is over; a command that waited for its motor is Done */
+    ON_BROKEN_OFF,                 /**< a motion ends before its end: it is braked */
+    ON_STOP_RELEASED,              /**< MC_Stop is done, and its Execute FALSE (note 6) */
+    /* groups */
+    ON_LED,                        /**< somebody above gives the set-points from now on ... */
+    ON_LET_GO,                     /**< ... and no longer; the axis is at rest */
+    /* power, errors, reset */
+    ON_POWER_ON,                   /**< MC_Power.Enable, and the drive is enabled (note 5) */
+    ON_POWER_OFF,                  /**< MC_Power.Enable FALSE (note 2) */
+    ON_ERROR,                      /**< note 1 */
+    ON_RESET,                      /**< MC_Reset has been done (note 3) */
+    STATE_TRIGGER_COUNT,
+} state_trigger_t;
+
+/** Why a command is refused in this state; CM1E_OK: it is taken. */
+cm1e_error_t cm1e_axis_state_refusal(cm1e_axis_state_t state, state_trigger_t trigger);
+/** The state that the trigger leads to: the same one where the diagram has no arrow, or the command is refused. */
+cm1e_axis_state_t cm1e_axis_state_after(cm1e_axis_state_t state, state_trigger_t trigger);
+/** Goes there. */
+void cm1e_axis_go(cm1e_axis_t *axis, state_trigger_t trigger);
+
+#endif
