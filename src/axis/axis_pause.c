@@ -149,7 +149,7 @@ static void go_on_or_begin_anew(cm1e_axis_t *axis)
     if (is_composite(axis) && !follows_on && axis->shaken <= CM1E_AXIS_RIDDEN_OUT_CYCLES * CM1E_SHAKEN_BY_SILENCE)
         return;
     const double left = axis_led(axis) ? 0.0 : velocity_left(axis);
-    if (left != axis->set_velocity || follows_on)
+    if (left != axis->set_velocity || follows_on || axis_led(axis)) /* the path stands for an axis at rest too */
         begin_anew(axis, left);
 }
 

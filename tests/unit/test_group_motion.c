@@ -451,6 +451,29 @@ static void test_after_a_pause_it_goes_on_along_the_path_from_rest(void)
     }
 }
 
+/* After silence the path begins anew for all its axes in the same cycle, also where one that stands goes first. */
+static void test_after_silence_the_path_begins_anew_at_once_for_all(void)
+{
+    static const int orders[][2] = {{0, 1}, {1, 0}};
+    for (size_t i = 0; i < sizeof orders / sizeof orders[0]; i++)
+        for (int silence = 3; silence <= 8; silence++) {
+            group_end();
+            group_begin(2);
+            memcpy(axes_bench.order, orders[i], sizeof orders[i]);
+            const cm1e_command_id_t id = group_line(2.0, 0.0, 2.0, mcAborting);
+            axes_cycles(700);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.0, axes_axis(0)->set_velocity);
+            axes_bench.received = CM1E_ERROR_BUS_LOST;
+            axes_cycles(silence);
+            const double stood = group_at(0);
+            axes_bench.received = CM1E_OK;
+            axes_cycles(1);
+            TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.0, axes_axis(0)->set_velocity);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-5, stood, group_at(0));
+            group_done(id);
+        }
+}
+
 /* The order in which the scheduler lets the axes go is of no matter. */
 static void test_in_every_order_of_the_axes(void)
 {
@@ -555,6 +578,7 @@ int main(void)
     RUN_TEST(test_override);
     RUN_TEST(test_what_it_shows);
     RUN_TEST(test_after_a_pause_it_goes_on_along_the_path_from_rest);
+    RUN_TEST(test_after_silence_the_path_begins_anew_at_once_for_all);
     RUN_TEST(test_in_every_order_of_the_axes);
     RUN_TEST(test_random_paths_keep_every_limit);
     return UNITY_END();
