@@ -33,9 +33,9 @@ int command_check(int argc, char **argv)
 {
     static const struct argp_option table[] = {{"json", 'j', NULL, 0, "Write JSON", 0}, {0}};
     static const struct argp argp = {table, parse, "FILE",
-                                     "Checks an ESI, EC_EXTEND, SII or ENI file, whoever wrote it, for what a schema "
-                                     "does not see (docs/CHECK-RULES.md). Exit status 0: nothing to say, or warnings "
-                                     "only; 1: errors, or the file cannot be read.", NULL, NULL, NULL};
+                                     "Checks an ESI, EC_EXTEND, SII or ENI file from any source for errors that a "
+                                     "schema does not find (docs/CHECK-RULES.md). Exit status 0: no finding, or "
+                                     "warnings only; 1: errors, or the file cannot be read.", NULL, NULL, NULL};
     check_options_t options = {0};
     if (argp_parse(&argp, argc, argv, 0, NULL, &options))
         return EXIT_WRONG_USE;

@@ -56,7 +56,7 @@ static error_t parse_timeout(char *arg, struct argp_state *state, double *value)
     if (!parse_real(arg, "the timeout", value))
         return EINVAL;
     if (!(*value > 0.0 && *value <= 3600.0))
-        argp_error(state, "the timeout is %s s; above 0, up to 3600 is right", arg);
+        argp_error(state, "the timeout is %s s; expected above 0, up to 3600", arg);
     return 0;
 }
 
@@ -78,7 +78,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case ARGP_KEY_END:
         if (options->axis_word && (options->slave || options->channel))
-            argp_error(state, "--axis says slave and connector already");
+            argp_error(state, "--axis already selects slave and connector");
         return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -93,7 +93,7 @@ static bool choose_axis(session_t *session, const cm1e_bus_config_t *config, cm1
         return false;
     session->channel = config->axes[axis].channel;
     if (session->channel == 0) {
-        complain("axis \"%s\" is a CM1-E, which has no CML; it is for motors behind a bridge",
+        complain("axis \"%s\" is a CM1-E, which has no CML; only motors behind a bridge have it",
                  session->options->axis_word);
         return false;
     }
@@ -118,8 +118,8 @@ static bool choose_slave(session_t *session)
             session->slave = (uint16_t)position;
     if (bridges == 1)
         return true;
-    complain(bridges ? "there are %u bridges: say which with --slave, or --axis" : "there is no EtherCAT Cool MUSCLE "
-             "Bridge: CML is for motors behind one", bridges);
+    complain(bridges ? "there are %u bridges: choose one with --slave or --axis" : "there is no EtherCAT Cool MUSCLE "
+             "Bridge; only motors behind one have CML", bridges);
     return false;
 }
 
@@ -209,8 +209,8 @@ static int send_string(session_t *session, const char *text, json_t *results)
     cm1e_diag_t diag = {0};
     const unsigned channel = session->channel ? session->channel : named_channel(text);
     if (channel == 0) {
-        complain("to which motor is \"%s\"? No connector is read from it: name it in the string (\"?99.1\"), or by "
-                 "--channel or --axis", show(text, shown));
+        complain("the string \"%s\" names no connector: name it in the string (\"?99.1\"), or with --channel "
+                 "or --axis", show(text, shown));
         return EXIT_WRONG_USE;
     }
     exchange = (cm1e_cml_exchange_t){
@@ -228,7 +228,7 @@ static int send_string(session_t *session, const char *text, json_t *results)
     else
         print_text(session, &exchange, &diag);
     if (error == CM1E_ERROR_CML_MOTION && !session->options->common.json)
-        complain("%s With --allow-motion it is sent.", diag.text);
+        complain("%s Use --allow-motion to send it.", diag.text);
     else if (error)
         fail(&diag);
     return error ? EXIT_FAILED : EXIT_OK;
@@ -252,7 +252,7 @@ static int send_arguments(session_t *session)
 static int refuse_binary(const char *line)
 {
     char shown[CM1E_CML_BYTES + 1];
-    complain("the line that begins with \"%s\" has a byte 0 in it, which no string in CML has: nothing was sent",
+    complain("the line that begins with \"%s\" contains a byte 0, which is not allowed in CML: nothing was sent",
              show(line, shown));
     return EXIT_WRONG_USE;
 }
@@ -328,21 +328,21 @@ int command_cml(int argc, char **argv)
 {
     static const struct argp_option table[] = {
         {"axis", 'a', "AXIS", 0, "The motor, by the name or number of its axis in the bus file", 0},
-        {"slave", KEY_SLAVE, "POSITION", 0, "... or by the position of its bridge; default: the only one", 0},
-        {"channel", KEY_CHANNEL, "ID", 0, "... and its connector, 1 ... 4; default: the one that the string names", 0},
-        {"timeout", KEY_TIMEOUT, "SECONDS", 0, "For an answer; default: 1, of an origin search 70", 0},
-        {"allow-motion", KEY_ALLOW, NULL, 0, "Send also what may move the motor or change its power", 0},
-        {"stay", KEY_STAY, NULL, 0, "Leave the motor in CML mode, and with its torque", 0},
+        {"slave", KEY_SLAVE, "POSITION", 0, "The bridge of the motor, by position; default: the only bridge", 0},
+        {"channel", KEY_CHANNEL, "ID", 0, "The connector of the motor, 1 ... 4; default: the one that the "
+                                          "string names", 0},
+        {"timeout", KEY_TIMEOUT, "SECONDS", 0, "Time for an answer; default 1, for an origin search 70", 0},
+        {"allow-motion", KEY_ALLOW, NULL, 0, "Also send strings that may move the motor or change its power", 0},
+        {"stay", KEY_STAY, NULL, 0, "Leave the motor in CML mode, with its torque", 0},
         {0}};
     static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
     static const struct argp argp = {
         table, parse, "[STRING...]",
         "Sends strings in CML, the language of the Cool Muscle motors, to a motor behind an EtherCAT Cool MUSCLE "
-        "Bridge, and shows its answers, e.g. `cm1e cml -i eth1 \"?99.1\"`; without strings, the lines of standard "
-        "input.\v"
-        "Queries (?90.1, ?96.1, ?99.1, K37.1), parameters (K53.1=100, which the motor keeps without power) and outputs "
-        "(O2.1, F2.1) are sent as they are. Everything else may move the motor: it needs --allow-motion, and at the "
-        "end the motor is freed. No other master may run the bridge meanwhile.",
+        "Bridge, and shows its answers, for example `cm1e cml -i eth1 \"?99.1\"`. Without strings it sends the lines "
+        "of standard input.\vQueries (?90.1, ?96.1, ?99.1, K37.1), parameters (K53.1=100; the motor keeps them when "
+        "its power is off) and outputs (O2.1, F2.1) are sent unchanged. All other strings may move the motor: they "
+        "need --allow-motion, and at the end the motor is freed. No other master may use the bridge meanwhile.",
         children, NULL, NULL};
     cml_options_t options = {0};
     if (argp_parse(&argp, argc, argv, 0, NULL, &options) != 0)

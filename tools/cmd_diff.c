@@ -80,14 +80,15 @@ static int run(cm1e_bus_t *bus, const diff_options_t *options, const input_t *in
     }
     if (compared > 0)
         return status;
-    complain("%s describes none of the slaves of the network: %s", options->file, diag.text);
+    complain("%s does not describe any slave of the network: %s", options->file, diag.text);
     return EXIT_WRONG_USE;
 }
 
 int command_diff(int argc, char **argv)
 {
     static const struct argp_option table[] = {
-        {"position", 'p', "POSITION", 0, "One slave; default: every one that the file describes", 0}, {0}};
+        {"position", 'p', "POSITION", 0, "Compare only this slave; default: every slave that the file "
+                                         "describes", 0}, {0}};
     static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
     static const struct argp argp = {
         table, parse, "FILE",

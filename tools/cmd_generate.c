@@ -124,7 +124,7 @@ static bool parse_config_data(const char *path, generate_options_t *options)
     } else if (is_image) {
         complain("%s: the checksum of words 0 to 6 is wrong; read the image from the device again", path);
     } else {
-        complain("%s is no image of an SII, as `cm1e sii read` writes it from a real device", path);
+        complain("%s is not an SII image, which `cm1e sii read` makes from a real device", path);
     }
     free(input.bytes);
     return whole;
@@ -209,11 +209,12 @@ static void check_restricted(const generate_options_t *options, struct argp_stat
         if (!(options->given & 1u << i))
             continue;
         if (!(restricted[i].mask & 1u << options->what.format))
-            argp_error(state, "%s is for %s alone", restricted[i].name, restricted[i].formats);
+            argp_error(state, "%s is only for %s", restricted[i].name, restricted[i].formats);
         if (options->from && !restricted[i].beside_from)
-            argp_error(state, "%s: --from takes everything from the file", restricted[i].name);
+            argp_error(state, "%s cannot be used with --from, which takes everything from "
+                              "the file", restricted[i].name);
         if (!options->from && restricted[i].beside_from)
-            argp_error(state, "%s is for --from alone: it says which device of that file", restricted[i].name);
+            argp_error(state, "%s is only for --from: it selects a device of that file", restricted[i].name);
     }
 }
 
@@ -227,8 +228,8 @@ static void check_config_data(const generate_options_t *options, struct argp_sta
         const uint32_t product = is_motor ? CM1E_PRODUCT_CODE : device->product_code;
         if (options->config_of[i].path &&
             (options->config_of[i].vendor_id != vendor || options->config_of[i].product_code != product))
-            argp_error(state, "%s is of a device of vendor 0x%08X, product 0x%08X; the file is to describe vendor "
-                       "0x%08X, product 0x%08X, whose configuration words are others", options->config_of[i].path,
+            argp_error(state, "%s is an image of vendor 0x%08X, product 0x%08X; the file describes vendor 0x%08X, "
+                       "product 0x%08X, which has other configuration words", options->config_of[i].path,
                        (unsigned)options->config_of[i].vendor_id, (unsigned)options->config_of[i].product_code,
                        (unsigned)vendor, (unsigned)product);
     }
@@ -238,22 +239,23 @@ static void check_words(const generate_options_t *options, struct argp_state *st
 {
     const cm1e_file_format_t format = options->what.format;
     if (format == CM1E_FILE_UNKNOWN)
-        argp_error(state, "which format? There are: esi, ec-extend, sii, eni");
+        argp_error(state, "the format is missing: esi, ec-extend, sii or eni");
     if (!options->file || !options->file[0])
-        argp_error(state, "where to? -o FILE, or -o - for standard output");
+        argp_error(state, "the output is missing: -o FILE, or -o - for standard output");
     if (options->program && strcmp(options->program, options->file) == 0)
-        argp_error(state, "-o and --program are the same file, \"%s\": each needs one of its own", options->file);
+        argp_error(state, "-o and --program name the same file, \"%s\": each needs its own", options->file);
     if (options->from && (options->what.devices || options->common.interface_name || options->common.bus_file))
-        argp_error(state, "--from takes everything from the file: no device and no network beside it");
+        argp_error(state, "--from takes everything from the file: leave out the options of devices and of the network");
     check_restricted(options, state);
     check_config_data(options, state);
     const bool network = options->common.interface_name || options->common.bus_file;
     if (format == CM1E_FILE_ENI && !network && !options->from)
-        argp_error(state, "an ENI describes a network: -b BUS-FILE for a configured one, -i INTERFACE to scan one");
+        argp_error(state, "an ENI describes a network: give -b BUS-FILE for a configured one, or -i INTERFACE to scan "
+                          "one");
     if (format != CM1E_FILE_ENI && network)
         argp_error(state, "only an ENI describes a network; leave out -i and -b");
     if (format == CM1E_FILE_ENI && options->mapping_given && !options->common.interface_name)
-        argp_error(state, "the mapping of a configured axis stands in its bus file");
+        argp_error(state, "the bus file states the mapping of a configured axis: leave out --mapping");
     for (size_t i = 0; format == CM1E_FILE_ENI && options->what.devices && i < options->what.device_count; i++)
         if (options->devices[i].model == CM1E_DEVICE_CM1E || options->common.interface_name)
             argp_error(state, "the devices of an ENI come from the network; with a bus file alone, --device eb01 "
@@ -291,24 +293,24 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 }
 
 static const struct argp_option table[] = {
-    {"output", 'o', "FILE", 0, "Where to write; - is standard output", 1},
+    {"output", 'o', "FILE", 0, "Output file; - is standard output", 1},
     {"from", KEY_FROM, "FILE", 0,
-     "Write what FILE holds instead: the same format anew, or ESI and SII out of each other", 1},
-    {"number", KEY_NUMBER, "N", 0, "Which device of the file of --from an SII is for; 1 = first", 1},
+     "Convert FILE: to its own format, or from ESI to SII and back", 1},
+    {"number", KEY_NUMBER, "N", 0, "With --from: the device of the ESI for which the SII is written; 1 = first", 1},
     {"layout", KEY_LAYOUT, "LAYOUT", 0, "ESI: flat (default) or mdp", 2},
     {"program", KEY_PROGRAM, "FILE", 0, "ec-extend: also write a TrioBASIC start program", 2},
     {"dc-mode", KEY_DC_MODE, "NUMBER", 0, "ec-extend: Dc/Mode; default 0x0300", 2},
     {"mailbox-rate", KEY_MAILBOX_RATE, "NUMBER", 0, "ec-extend: MbxRate; default 100", 2},
     {"device", KEY_DEVICE, "DEVICE", 0,
-     "cm1-e (default), eb01, eb02, eb12; again for a further device in one file. The options below are for the device "
-     "before them", 3},
+     "cm1-e (default), eb01, eb02, eb12; repeat it for a further device in one file. The options below belong to the "
+     "device before them", 3},
     {"firmware", KEY_FIRMWARE, "VERSION", 0, "1.2.0 ... 1.3.5 (default)", 3},
     {"mapping", KEY_MAPPING, "MAPPING", 0, "dynamic (default), csp, csv or profile: the PDOs that the file chooses", 3},
     {"pdo-order", KEY_ORDER, "ORDER", 0, "ug-4.4 (default) or ug-7.2", 3},
     {"vendor", KEY_VENDOR, "NUMBER", 0,
-     "Bridge: vendor ID, needed, for an ENI of a bus file too; its guide does not state it", 3},
-    {"product", KEY_PRODUCT, "NUMBER", 0, "Bridge: product code, needed", 3},
-    {"revision", KEY_REVISION, "NUMBER", 0, "Bridge: revision, needed", 3},
+     "Bridge: vendor ID, mandatory, for an ENI of a bus file too; the guide does not state it", 3},
+    {"product", KEY_PRODUCT, "NUMBER", 0, "Bridge: product code, mandatory", 3},
+    {"revision", KEY_REVISION, "NUMBER", 0, "Bridge: revision, mandatory", 3},
     {"axes", KEY_AXES, "N", 0, "Bridge: 1 ... 4 (default)", 3},
     {"serial", KEY_SERIAL, "NUMBER", 0, "SII: serial number", 3},
     {"alias", KEY_ALIAS, "NUMBER", 0, "SII: configured station alias", 3},
@@ -382,7 +384,7 @@ int command_generate(int argc, char **argv)
     static const struct argp_child children[] = {{&common_argp, 0, NULL, 4}, {0}};
     static const struct argp argp = {
         table, parse, "esi|ec-extend|sii|eni",
-        "Writes a file for other masters: ESI for TwinCAT and its like, EC_EXTEND.txt for Trio controllers, an SII "
+        "Writes a file for other masters: ESI for TwinCAT and others, EC_EXTEND.txt for Trio controllers, an SII "
         "image, or an ENI of a network (-b BUS-FILE for a configured one, -i INTERFACE to scan one).", children, NULL,
         NULL};
     static generate_options_t options;

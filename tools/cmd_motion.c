@@ -71,7 +71,7 @@ static error_t parse_other_than_0(char *arg, const char *what, double *value)
         return EINVAL;
     if (*value != 0)
         return 0;
-    complain("%s is %s; without the option it is the default", what, arg);
+    complain("%s is %s; leave the option out for the default", what, arg);
     return EINVAL;
 }
 
@@ -81,7 +81,7 @@ static error_t parse_seconds(char *arg, double *value)
         return EINVAL;
     if (*value > 0 && *value <= LONGEST_S)
         return 0;
-    complain("the time is %s s; above 0, up to %d is right", arg, LONGEST_S);
+    complain("the time is %s s; expected above 0, up to %d", arg, LONGEST_S);
     return EINVAL;
 }
 
@@ -89,13 +89,13 @@ static error_t parse_seconds(char *arg, double *value)
 static void check_move(const motion_options_t *options, struct argp_state *state)
 {
     if (options->kind == MOTION_NONE)
-        argp_error(state, "say where to: --to POSITION, --by DISTANCE, or --speed VELOCITY --for SECONDS");
+        argp_error(state, "the motion is missing: --to POSITION, --by DISTANCE, or --speed VELOCITY --for SECONDS");
     if (options->kind == MOTION_SPEED && options->seconds == 0)
-        argp_error(state, "--speed needs --for SECONDS, more than 0");
+        argp_error(state, "--speed needs --for SECONDS, above 0");
     if (options->kind != MOTION_SPEED && options->seconds != 0)
-        argp_error(state, "--for is for --speed");
+        argp_error(state, "--for is only for --speed");
     if (options->kind == MOTION_SPEED && options->velocity_given)
-        argp_error(state, "--speed is the velocity already: leave --velocity out");
+        argp_error(state, "--speed already states the velocity: leave --velocity out");
 }
 
 /* Before anything moves. */
@@ -399,7 +399,8 @@ static bool has_homing_method(const motion_options_t *options)
 {
     if (options->kind != MOTION_HOME || options->homing.method != 0)
         return true;
-    complain("say how to home: --method METHOD (-6 ... -1, behind a bridge 1 ... 4), or homing.method in the bus file");
+    complain("the homing method is missing: --method METHOD (-6 ... -1, behind a bridge 1 ... 4), or homing.method in "
+             "the bus file");
     return false;
 }
 
@@ -434,8 +435,8 @@ int command_move(int argc, char **argv)
     static const struct argp_option table[] = {
         {"to", KEY_TO, "POSITION", 0, "Absolute target, in units of the axis", 0},
         {"by", KEY_BY, "DISTANCE", 0, "Relative distance", 0},
-        {"speed", KEY_SPEED, "VELOCITY", 0, "Turn at this velocity, then halt", 0},
-        {"for", KEY_FOR, "SECONDS", 0, "How long, with --speed", 0},
+        {"speed", KEY_SPEED, "VELOCITY", 0, "Move at this velocity, then halt", 0},
+        {"for", KEY_FOR, "SECONDS", 0, "Duration of --speed", 0},
         {"velocity", 'v', "VELOCITY", 0, "Units/s; default 1", 0},
         {"acceleration", 'a', "ACCELERATION", 0, "Units/s2; default: the axis's maximum", 0},
         {"deceleration", 'd', "DECELERATION", 0, "Units/s2; default: the axis's maximum", 0},
@@ -446,9 +447,9 @@ int command_move(int argc, char **argv)
         {0}};
     static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
     static const struct argp argp = {table, parse_move, "[AXIS]",
-                                     "Enables one axis (name or number, default 1), moves it, disables it. Done: the "
-                                     "motor is there (in_position of the bus file). Without a bus file the unit is the "
-                                     "revolution.", children, NULL, NULL};
+                                     "Enables one axis (name or number, default 1), moves it, disables it. The command "
+                                     "is done when the motor is in position (in_position of the bus file). Without a "
+                                     "bus file the unit is one revolution.", children, NULL, NULL};
     motion_options_t options = {0};
     if (argp_parse(&argp, argc, argv, 0, NULL, &options))
         return EXIT_WRONG_USE;
@@ -465,16 +466,17 @@ int command_home(int argc, char **argv)
         {"acceleration", 'a', "ACCELERATION", 0, "Units/s2", 0},
         {"offset", KEY_OFFSET, "OFFSET", 0, "Units from the reference to the home position", 0},
         {"torque", KEY_TORQUE, "PERCENT", 0, "10 ... 100 % of rated torque", 0},
-        {"position", KEY_POSITION, "POSITION", 0, "What the home position is called; default 0", 0},
-        {"for", KEY_FOR, "SECONDS", 0, "Longest time; default 60", 0},
+        {"position", KEY_POSITION, "POSITION", 0, "Position of the axis at the home position; default 0", 0},
+        {"for", KEY_FOR, "SECONDS", 0, "Maximum time; default 60", 0},
         {"reset", KEY_RESET, NULL, 0, "Reset an error of the drive first", 0},
         {"csv", KEY_CSV, "FILE", 0, "Write a trace", 0},
         {"svg", KEY_SVG, "FILE", 0, "Write a plot", 0},
         {0}};
     static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
     static const struct argp argp = {table, parse_home, "[AXIS]",
-                                     "Enables one axis (name or number, default 1), homes it, disables it. What is not "
-                                     "given is the bus file's homing; with --method it is the motor's default.",
+                                     "Enables one axis (name or number, default 1), homes it, disables it. Values that "
+                                     "are not given are those of the bus file; with --method they are the defaults of "
+                                     "the motor.",
                                      children, NULL, NULL};
     motion_options_t options = {.kind = MOTION_HOME,
                                 .homing = {.offset = NAN, .velocity = NAN, .acceleration = NAN, .torque = NAN,

@@ -158,7 +158,7 @@ static int fail_at(const cm1e_entry_t *entry, const cm1e_diag_t *diag)
     if (mark[0])
         complain("0x%04X:%02X \"%s\" is marked \"%s\" in the guide: %s", entry->index, entry->subindex, entry->name,
                  mark, entry->availability == CM1E_NO_PARAMETER ? "the motor has no such parameter"
-                                                                 : "it is listed, and there is no access to it");
+                                                                 : "the object exists, but cannot be accessed");
     return status;
 }
 
@@ -191,7 +191,7 @@ static int transfer(cm1e_bus_t *bus, const sdo_options_t *options, cm1e_diag_t *
         return EXIT_OK;
     }
     if (type < 0) {
-        complain("the type of 0x%04X:%u is unknown here: state it with --type", index, subindex);
+        complain("the type of 0x%04X:%u is unknown: state it with --type", index, subindex);
         return EXIT_WRONG_USE;
     }
     size = encode_value(options->words[3], type, data);
@@ -228,13 +228,13 @@ int command_sdo(int argc, char **argv)
 {
     static const struct argp_option table[] = {
         {"type", KEY_TYPE, "TYPE", 0, "SINT INT DINT USINT UINT UDINT STRING; default: as the device tables say", 0},
-        {"values", KEY_VALUES, NULL, 0, "list: what the objects hold now, too", 0},
+        {"values", KEY_VALUES, NULL, 0, "list: also show the present values of the objects", 0},
         {0}};
     static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
     static const struct argp argp = {
         table, parse, "read POSITION INDEX[:SUB]\nwrite POSITION INDEX[:SUB] VALUE\nlist POSITION",
-        "Reads or writes an object, e.g. `cm1e sdo read -i eth1 1 0x1018:2`; or lists the dictionary that the slave "
-        "tells of itself: type, bits, access (p: in Pre-Operational alone), whether it can be mapped, name.",
+        "Reads or writes an object, for example `cm1e sdo read -i eth1 1 0x1018:2`, or lists the dictionary of the "
+        "slave: type, bits, access (p: in Pre-Operational only), whether the object can be mapped, name.",
         children, NULL, NULL};
     sdo_options_t options = {0};
     char *words[MAX_WORDS + 2];

@@ -46,7 +46,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         if (!is_verb(options, "read", 3) && !is_verb(options, "write", 3) && !is_verb(options, "decode", 2))
             argp_error(state, "expected: read POSITION FILE, write POSITION FILE, or decode FILE|POSITION");
         if (is_verb(options, "write", 3) && !options->backup)
-            argp_error(state, "writing needs a backup of what is in the slave now: --backup FILE");
+            argp_error(state, "writing needs a backup of the present contents of the slave: --backup FILE");
         return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -148,8 +148,8 @@ static int write_with_backup(cm1e_bus_t *bus, const sii_options_t *options, uint
     if (options->common.json)
         print_json(json_pack("{s:b, s:o}", "written", true, "backup", text_as_json(options->backup)));
     else
-        printf("The SII of slave %u is written and reads back as it should; what it was before is in %s.\n"
-               "Switch the slave off and on: it takes over its SII then.\n", position, options->backup);
+        printf("The SII of slave %u is written, and reading it back gave the same data; the earlier contents are in "
+               "%s.\nSwitch the slave off and on: it then uses the new SII.\n", position, options->backup);
     return EXIT_OK;
 }
 
@@ -217,21 +217,21 @@ static int run_on_bus(const sii_options_t *options)
 int command_sii(int argc, char **argv)
 {
     static const struct argp_option table[] = {
-        {"backup", KEY_BACKUP, "FILE", 0, "write: where to put what is in the slave now; must not exist", 0},
-        {"force-checksum", KEY_FORCE_CHECKSUM, NULL, 0, "write: an image whose checksum is wrong", 0},
+        {"backup", KEY_BACKUP, "FILE", 0, "write: file for the present contents of the slave; it must not exist", 0},
+        {"force-checksum", KEY_FORCE_CHECKSUM, NULL, 0, "write: allow an image whose checksum is wrong", 0},
         {"force-identity", KEY_FORCE_IDENTITY, NULL, 0,
-         "write: into a slave that is not a CM1-E, or not the image's product", 0},
+         "write: allow a slave that is not a CM1-E, or not the product of the image", 0},
         {"force-configuration", KEY_FORCE_CONFIGURATION, NULL, 0,
-         "write: words 0-6 unlike the slave's own; a wrong one can make it unreachable", 0},
+         "write: allow words 0-6 that differ from the slave's; a wrong word can make the slave unreachable", 0},
         {"own-alias-and-serial", KEY_OWN, NULL, 0,
-         "write: alias and serial number of the image too; by default those of the slave stay", 0},
+         "write: also write alias and serial number of the image; by default those of the slave stay", 0},
         {0}};
     static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
     static const struct argp argp = {
         table, parse, "read POSITION FILE\nwrite POSITION FILE --backup FILE\ndecode FILE|POSITION",
-        "Reads, writes or shows the SII, the EEPROM that says who a slave is. Writing changes only the words that "
-        "differ, reads everything back, and names the word where it had to stop; `cm1e sii write` of the backup is "
-        "the way back.",
+        "Reads, writes or shows the SII, the EEPROM with the identity of a slave. Writing changes only the words that "
+        "differ, reads all data back, and names the word at which it stopped. To undo it, write the backup with `cm1e "
+        "sii write`.",
         children, NULL, NULL};
     sii_options_t options = {0};
     argp_parse(&argp, argc, argv, 0, NULL, &options);
@@ -244,7 +244,7 @@ int command_sii(int argc, char **argv)
     if (cm1e_file_recognise(image.bytes, image.size) == CM1E_FILE_SII)
         status = decode(&image, options.common.json);
     else
-        complain("%s is no image of an SII", options.words[1]);
+        complain("%s is not an SII image", options.words[1]);
     free(image.bytes);
     return status;
 }

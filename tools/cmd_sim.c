@@ -81,7 +81,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case ARGP_KEY_END:
         if (!options->interface_name)
-            argp_error(state, "say which network interface: -i INTERFACE");
+            argp_error(state, "the network interface is missing: -i INTERFACE");
         return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -157,7 +157,7 @@ static cm1e_error_t serve(cm1e_sim_segment_t *segment, const char *interface_nam
     if (error)
         return error;
     end_by_signals();
-    printf("%u simulated slave%s on %s; `help` lists what can be done to them\n",
+    printf("%u simulated slave%s on %s; `help` lists the commands\n",
            cm1e_sim_segment_slave_count(segment), cm1e_sim_segment_slave_count(segment) == 1 ? "" : "s",
            interface_name);
     fflush(stdout);
@@ -171,19 +171,19 @@ int command_sim(int argc, char **argv)
     static const struct argp_option table[] = {
         {"interface", 'i', "INTERFACE", 0, "Network interface to answer on", 0},
         {"pdo-order", 'o', "ORDER", 0, "ug-4.4 (default) or ug-7.2: the order of objects in the PDO mappings", 0},
-        {"sii", KEY_SII, "FILE", 0, "A slave boots from this image of its SII instead of the tables; once for the "
-         "first slave, again for the second ...", 0},
+        {"sii", KEY_SII, "FILE", 0, "A slave boots from this SII image instead of the tables; the first option is for "
+         "the first slave, the second for the second, and so on", 0},
         {"bridge", KEY_BRIDGE, "MODEL", 0, "A Cool MUSCLE Bridge with four motors behind the other slaves: eb01, eb02 "
-         "or eb12; again for another one", 0},
+         "or eb12; repeat it for another one", 0},
         {"io", KEY_IO, "KIND", 0, "A simple device behind the other slaves: module (8 outputs wired to 8 inputs), "
-         "terminal (4 and 4, with device emulation) or coupler (no process data, with device emulation); again for "
+         "terminal (4 and 4, with device emulation) or coupler (no process data, with device emulation); repeat it for "
          "another one", 0},
         {0}};
     static const struct argp argp = {
         table, parse, "[BUS-FILE]",
-        "Serves a simulated network until Ctrl-C, or its terminal is closed; without a bus file one CM1-E-17S30D, "
-        "firmware 1.3.5, or as many as there are SII images, or, with --bridge, none. "
-        "Lines on standard input act on it; `help` lists them.", NULL, NULL, NULL};
+        "Serves a simulated network until Ctrl-C, or until its terminal is closed. Without a bus file it has one "
+        "CM1-E-17S30D, firmware 1.3.5, or one for each SII image, or none with --bridge. It takes commands on standard "
+        "input; `help` lists them.", NULL, NULL, NULL};
     sim_options_t options = {0};
     if (argp_parse(&argp, argc, argv, 0, NULL, &options))
         return EXIT_WRONG_USE;

@@ -73,9 +73,9 @@ int command_status(int argc, char **argv)
 {
     static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
     static const struct argp argp = {NULL, parse, NULL,
-                                     "Shows every drive's state, error and measurements, and which slaves are no "
-                                     "motors. The network goes to Pre-Operational: do not use it beside another "
-                                     "master.",
+                                     "Shows state, error and measurements of every drive, and which slaves are not "
+                                     "motors. It brings the network to Pre-Operational: do not use it while another "
+                                     "master runs.",
                                      children, NULL, NULL};
     common_options_t options = {0};
     argp_parse(&argp, argc, argv, 0, NULL, &options);

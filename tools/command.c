@@ -15,7 +15,7 @@ enum { KEY_PCAP = 0x100, KEY_JSON };
 
 static const struct argp_option common_option_table[] = {
     {"interface", 'i', "INTERFACE", 0, "Network interface, or sim, or sim:BUS-FILE", 1},
-    {"bus", 'b', "BUS-FILE", 0, "What hangs where (YAML, see docs/BUS-FILE.md)", 1},
+    {"bus", 'b', "BUS-FILE", 0, "Description of the network (YAML, see docs/BUS-FILE.md)", 1},
     {"json", KEY_JSON, NULL, 0, "Write JSON", 1},
     {"pcap", KEY_PCAP, "FILE", 0, "Record every frame for Wireshark", 1},
     {0},
@@ -68,7 +68,7 @@ bool load_configuration(const common_options_t *options, cm1e_bus_config_t *conf
 {
     cm1e_diag_t diag = {0};
     if (!options->interface_name && !options->bus_file) {
-        complain("say which network: -i INTERFACE (\"-i sim\" for a simulated one) or -b BUS-FILE");
+        complain("the network is missing: -i INTERFACE (\"-i sim\" for a simulated one) or -b BUS-FILE");
         return false;
     }
     if (options->bus_file) {
@@ -122,10 +122,10 @@ static bool refuse_bridge(const cm1e_bus_t *bus, const char *interface_name)
     const cm1e_slave_info_t *bridge = first_bridge(bus);
     if (!bridge)
         return true;
-    complain("slave %u is a bridge: how far a motor behind it turns by a count depends on its K37, which no scan "
-             "shows. Ask each motor", bridge->position);
+    complain("slave %u is a bridge: K37 of each motor behind it says how far the motor turns per count, and no scan "
+             "shows it. Ask each motor", bridge->position);
     print_questions(bus, interface_name);
-    fprintf(stderr, "and put the answers into a bus file, which you give with -b:\n");
+    fprintf(stderr, "and put the answers into a bus file for the option -b:\n");
     print_bus_file(bus, interface_name);
     return false;
 }

@@ -9,7 +9,7 @@ static const struct {
     command_fn run;
 } commands[] = {
     {"scan", "list the slaves of a network", command_scan},
-    {"status", "show every drive's state, error and measurements in words", command_status},
+    {"status", "show state, error and measurements of every drive", command_status},
     {"sdo", "read or write an object of a slave", command_sdo},
     {"cml", "send strings to a motor behind a Cool MUSCLE bridge", command_cml},
     {"sii", "read, write or show the EEPROM of a slave", command_sii},
@@ -17,7 +17,7 @@ static const struct {
     {"move", "move one axis", command_move},
     {"sim", "serve a simulated network on a network interface", command_sim},
     {"generate", "write files for other masters", command_generate},
-    {"check", "check a file for other masters, whoever wrote it", command_check},
+    {"check", "check a file for other masters, from any source", command_check},
     {"diff", "compare a file with the live devices that it describes", command_diff},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
@@ -28,8 +28,8 @@ static void print_usage(FILE *file)
           "Drives Myostat CM1-E servo motors, and Cool Muscle motors behind a bridge, over EtherCAT.\n\n", file);
     for (int i = 0; i < COMMAND_COUNT; i++)
         fprintf(file, "  %-10s %s\n", commands[i].name, commands[i].summary);
-    fputs("\n`cm1e COMMAND --help` shows a command's options. `-i sim` is a simulated network in this process,\n"
-          "`-i eth1` a real one (needs the right to open raw sockets).\n", file);
+    fputs("\n`cm1e COMMAND --help` shows a command's options. `-i sim` is a simulated network in this process,\n`-i "
+          "eth1` a real one (it needs the right to open raw sockets).\n", file);
 }
 
 /* What was printed and did not arrive (a full disk, a closed pipe) is no success. */

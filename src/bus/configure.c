@@ -45,7 +45,7 @@ static cm1e_error_t check_cycle_time(const cm1e_bus_t *bus, const cm1e_bus_slave
         known = known || cm1e_device_cycle_times_ns[i] == cycle_ns;
     if (!known)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_CYCLE_TIME, 0,
-                             "The cycle time of %lld us is none of 200, 250, 500 and 1000 us, which %s accepts.",
+                             "The cycle time of %lld us is not one of 200, 250, 500 and 1000 us, which %s accepts.",
                              (long long)(cycle_ns / 1000), cm1e_bus_label(bus, slave, label));
     if (slave->firmware && !slave->firmware->all_cycle_times && cycle_ns != 1000000)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_CYCLE_TIME, 0,
@@ -73,7 +73,7 @@ static cm1e_error_t read_mappings(cm1e_bus_t *bus, cm1e_diag_t *diag)
             continue;
         if (!ended && !cm1e_mapping_idle(job)) {
             cm1e_acyclic_cancel(bus);
-            return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "%s takes too long to tell its PDO mapping.",
+            return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0, "%s takes too long to report its PDO mapping.",
                                  cm1e_bus_label_first(bus, slave, label));
         }
         if (job->error == CM1E_ERROR_PDO_MAPPING)
@@ -164,7 +164,7 @@ static cm1e_error_t set_watchdogs(cm1e_bus_t *bus, cm1e_diag_t *diag)
                          write_word(bus, slave, REG_WATCHDOG_PROCESS_DATA, CM1E_WATCHDOG_TIME);
         if (!set && cm1e_bus_has_motors(slave)) /* another device may have none */
             return cm1e_diag_set(diag, CM1E_ERROR_BUS_WORKING_COUNTER, 0,
-                                 "%s does not take the time of its watchdog. Check its cables and its power.",
+                                 "%s does not accept the time of its watchdog. Check its cables and its power.",
                                  cm1e_bus_label_first(bus, slave, label));
     }
     return CM1E_OK;
@@ -175,7 +175,7 @@ cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag)
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_bus_configure()", "", diag);
     if (bus->phase < BUS_IDENTIFIED || bus->phase >= BUS_OPERATING)
-        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Configuring the slaves needs them identified before.");
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Identify the slaves before configuring them.");
     if (bus->phase == BUS_CONFIGURED)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The slaves are configured already: scan again to start anew.");
     cm1e_bus_enter(bus);

@@ -105,7 +105,7 @@ static cm1e_error_t check_model(const cm1e_bus_t *bus, const cm1e_bus_slave_t *s
     if (!slave->info.is_bridge || cm1e_bridge_name(slave->info.model))
         return CM1E_OK;
     snprintf(problem, sizeof problem,
-             "Slave %u is a bridge that tells the motors %u, %u, %u, %u (objects 0xF511:01 ... 0xF514:01), which no "
+             "Slave %u is a bridge that reports the motors %u, %u, %u, %u (objects 0xF511:01 ... 0xF514:01), which no "
              "known model has: EB01 has 1, 1, 1, 1 (CM1), EB02 2, 2, 2, 2 (CM2), EB12 1, 1, 2, 2.",
              slave->info.position, motors[0], motors[1], motors[2], motors[3]);
     return identity_error(bus, diag, problem);
@@ -137,8 +137,8 @@ static cm1e_error_t check_firmware(const cm1e_bus_t *bus, const cm1e_axis_config
     if (!axis->firmware[0] || !strcmp(plain_version(axis->firmware), plain_version(slave->info.software_version)))
         return CM1E_OK;
     snprintf(problem, sizeof problem,
-             "Axis \"%s\" (slave %u): the configuration expects firmware %s, the device tells \"%s\" (object 0x100A). "
-             "Correct \"firmware\" or leave it out.", axis->name, slave->info.position, axis->firmware,
+             "Axis \"%s\" (slave %u): the configuration expects firmware %s, the device reports \"%s\" (object "
+             "0x100A). Correct \"firmware\" or leave it out.", axis->name, slave->info.position, axis->firmware,
              slave->info.software_version);
     return identity_error(bus, diag, problem);
 }
@@ -235,7 +235,7 @@ cm1e_error_t cm1e_bus_identify(cm1e_bus_t *bus, cm1e_diag_t *diag)
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_bus_identify()", "", diag);
     if (bus->phase < BUS_SCANNED || bus->phase >= BUS_OPERATING)
-        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Identifying the slaves needs a scan before.");
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Scan the bus before identifying the slaves.");
     cm1e_bus_set_phase(bus, BUS_SCANNED);
     memset(bus->axis_position, 0, sizeof bus->axis_position);
     for (uint32_t i = 0; i < bus->slave_count; i++)

@@ -132,7 +132,7 @@ static void took(cm1e_mapping_job_t *job)
     case MAPPING_READ_COUNT:
         job->step = MAPPING_READ_PDO;
         if (job->data[0] != job->choice.count)
-            end_wrong_assignment(job, "it assigns another number of PDOs than it was told");
+            end_wrong_assignment(job, "it assigns another number of PDOs than was written");
         break;
     case MAPPING_READ_PDO:
         if (cm1e_get_u16(job->data) != job->choice.pdos[job->direction][job->place])

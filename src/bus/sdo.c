@@ -130,7 +130,7 @@ void cm1e_sdo_queue_cancel(cm1e_bus_t *bus, cm1e_error_t error)
 static cm1e_error_t transfer(cm1e_bus_t *bus, cm1e_sdo_t *sdo, cm1e_diag_t *diag)
 {
     if (!bus || bus->phase < BUS_SCANNED)
-        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "SDO transfers need a scan of the bus before.");
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Scan the bus before SDO transfers.");
     cm1e_bus_enter(bus);
     const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, sdo->position);
     if (!slave)

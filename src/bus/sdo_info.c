@@ -36,7 +36,7 @@ static cm1e_error_t diagnose(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slav
 static cm1e_error_t ask(cm1e_bus_t *bus, uint16_t position, cm1e_info_request_t *request, cm1e_diag_t *diag)
 {
     if (!bus || bus->phase < BUS_SCANNED)
-        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "SDO information needs a scan of the bus before.");
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Scan the bus before reading SDO information.");
     cm1e_bus_enter(bus);
     cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
     if (!slave)

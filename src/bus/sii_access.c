@@ -149,14 +149,14 @@ static cm1e_error_t check_image(const uint8_t *image, size_t size, const cm1e_si
                                 cm1e_diag_t *diag)
 {
     if (!image || size < 2 * WORD_CATEGORIES || size % 2 || size > CM1E_SII_IMAGE_MAX)
-        return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "%zu bytes are no SII image: it has whole words, at least 128 "
-                             "bytes.", size);
+        return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "%zu bytes are not an SII image, which has whole words and at "
+                             "least 128 bytes.", size);
     cm1e_sii_t sii;
     view_t view = {image, size};
     if (cm1e_sii_read_header(&sii, read_from_image, &view) != SII_OK ||
         cm1e_sii_read_categories(&sii, read_from_image, &view) != SII_OK)
-        return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "The SII image is not whole: its categories do not end within "
-                             "its %zu bytes. No scan would get past a slave with it.", size);
+        return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0, "The SII image is incomplete: its categories do not end within "
+                             "its %zu bytes. A scan would stop at a slave with it.", size);
     if (!checksum_good(image) && !options->force_checksum)
         return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0,
                              "The checksum of the SII image is wrong: word 7 holds 0x%02X, words 0-6 give 0x%02X. A "

@@ -128,14 +128,14 @@ static bool compare_float(const compare_t *compare, const yaml_node_t *node, con
     errno = 0;
     const double value = strtod(text, NULL);
     if (errno)
-        return wrong(compare, node, "%s is %s; expected a number of a size that can be computed with", key,
+        return wrong(compare, node, "%s is %s; expected a number that is neither too large nor too small", key,
                      found(node, shown));
     if (value != 0)
         return true;
     for (const char *const *allowed = cm1e_busfile_zero_allowed; *allowed; allowed++)
         if (strcmp(*allowed, key) == 0)
             return true;
-    return wrong(compare, node, "%s is 0; expected another number (without the key its default holds)", key);
+    return wrong(compare, node, "%s is 0; expected another number (leave the key out for its default)", key);
 }
 
 static bool compare_bool(const compare_t *compare, const yaml_node_t *node, const char *key)
@@ -218,7 +218,7 @@ static bool compare_mapping(const compare_t *compare, const yaml_node_t *node, c
         if (i < 0)
             return wrong(compare, name, "unknown key %s in %s; expected one of: %s", found(name, shown), key, keys);
         if (seen[i])
-            return wrong(compare, name, "key '%s' for the second time in %s; expected it once", fields[i].key, key);
+            return wrong(compare, name, "key '%s' is given twice in %s; expected once", fields[i].key, key);
         seen[i] = true;
         if (!compare_value(compare, yaml_document_get_node(compare->document, pair->value), &fields[i].value,
                            fields[i].key))

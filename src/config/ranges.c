@@ -46,7 +46,7 @@ static bool is_text(const char *text, size_t size)
     return true;
 }
 #define IS_TEXT(array) is_text(array, sizeof(array))
-#define NO_TEXT "is no text that ends within %zu bytes and holds no control characters"
+#define NO_TEXT "is not a text of less than %zu bytes without control characters"
 
 /* ---- the bus ----------------------------------------------------------------------------------------------------- */
 
@@ -64,8 +64,8 @@ static bool check_cycle_time(const check_t *check)
         return bus_wrong(check, "frame_timeout_us", "is %g; expected at most the cycle time, %g",
                          (double)check->config->frame_timeout_ns / 1000, (double)cycle / 1000);
     if (check->config->lost_cycles_limit * cycle > longest_silence_ns)
-        return bus_wrong(check, "lost_cycles_limit", "is %u; expected 1 ... %u with a cycle of %g us: a bus that is lost "
-                         "is to be noticed within %g ms, before the watchdog of a motor (100 ms) acts",
+        return bus_wrong(check, "lost_cycles_limit", "is %u; expected 1 ... %u with a cycle of %g us: a lost bus must "
+                         "be noticed within %g ms, before the watchdog of a motor (100 ms) acts",
                          check->config->lost_cycles_limit, (unsigned)(longest_silence_ns / cycle), (double)cycle / 1000,
                          (double)longest_silence_ns * 1e-6);
     return true;
@@ -84,7 +84,7 @@ static bool check_bus(const check_t *check)
         return bus_wrong(check, "second_interface", "is %s like the first; expected the other end of the ring",
                          config->second_interface);
     if (config->virtual_time && !cm1e_interface_is_simulated(config->interface_name))
-        return bus_wrong(check, "virtual_time", "is on for the interface %s; expected it with interface sim only",
+        return bus_wrong(check, "virtual_time", "is on with the interface %s; expected only with interface sim",
                          config->interface_name);
     if (config->sim_pdo_order != CM1E_PDO_ORDER_UG_4_4 && config->sim_pdo_order != CM1E_PDO_ORDER_UG_7_2)
         return bus_wrong(check, "sim_pdo_order", "is %d; expected one of the enumeration", (int)config->sim_pdo_order);
@@ -219,8 +219,8 @@ static bool check_gear(const check_t *check)
                           {"unit.units_per_revolution", axis->units_per_revolution != 0}};
     for (int i = 0; i < 3; i++)
         if (by_revolutions[i].given && axis->counts_per_unit != 0)
-            return axis_wrong(check, by_revolutions[i].key, "is given, and counts_per_unit too, which already says "
-                              "what it would; expected counts_per_unit alone, or gear and units_per_revolution");
+            return axis_wrong(check, by_revolutions[i].key, "is given, and counts_per_unit too, which already defines "
+                              "the unit; expected only counts_per_unit, or gear and units_per_revolution");
     if (axis->gear_numerator > 1000000)
         return axis_wrong(check, "unit.gear_numerator", "is %u; expected 1 ... 1000000", axis->gear_numerator);
     if (axis->gear_denominator > 1000000)
@@ -255,9 +255,9 @@ static bool check_modulo(const check_t *check)
                      CM1E_LARGEST_MODULO_COUNTS, "counts"))
         return false;
     if (!cm1e_unit_modulo(axis, &turn))
-        return axis_wrong(check, "unit.modulo_range", "is %.17g, and with the unit of the axis no fraction of counts "
-                          "that can be computed with; expected fewer digits, or gear and units_per_revolution instead "
-                          "of counts_per_unit", axis->modulo_range);
+        return axis_wrong(check, "unit.modulo_range", "is %.17g, which with the unit of the axis is not a fraction of "
+                          "counts that can be computed exactly; expected fewer digits, or gear and "
+                          "units_per_revolution instead of counts_per_unit", axis->modulo_range);
     if (axis->software_limit_negative != 0 || axis->software_limit_positive != 0)
         return axis_wrong(check, "software_limits", "are given, and unit.modulo_range too: the positions of a modulo "
                           "axis repeat and have no ends; expected one of them");
@@ -459,8 +459,9 @@ static bool check_inputs(const check_t *check)
             return axis_wrong(check, switches[i].key, "is 1, through which a CM1 talks to the bridge; expected 2 ... "
                               "4");
     if (inputs->limit_negative && inputs->limit_negative == inputs->limit_positive)
-        return axis_wrong(check, "inputs.limit_negative", "is %u, the input of the other limit switch too; expected "
-                          "an input of its own, or nobody knows which way leads off it", inputs->limit_negative);
+        return axis_wrong(check, "inputs.limit_negative", "is %u, which is the input of the other limit switch too; "
+                          "expected another input, so that the direction away from a switch "
+                          "is known", inputs->limit_negative);
     return true;
 }
 
@@ -481,7 +482,7 @@ static bool check_in_position(const check_t *check)
     const double time_s = axis->in_position_time_s, timeout_s = axis->in_position_timeout_s;
     if (axis->max_position_lag != 0 && axis->in_position_window > axis->max_position_lag)
         return axis_wrong(check, "in_position.window", "is %.10g, and limits.position_lag %.10g, beyond which the axis "
-                          "stops with an error; expected no larger a window", axis->in_position_window,
+                          "stops with an error; expected a window not above it", axis->in_position_window,
                           axis->max_position_lag);
     const double time = time_s != 0 ? time_s : CM1E_IN_POSITION_TIME_S;
     const double timeout = timeout_s != 0 ? timeout_s : CM1E_IN_POSITION_TIMEOUT_S;
@@ -527,8 +528,8 @@ static bool check_model(const check_t *check)
         if (at_same_address(check, i))
             motors[check->config->axes[i].channel - 1] = check->config->axes[i].motor;
     return cm1e_bridge_model_with(motors, &model) ||
-           axis_wrong(check, "motor", "is %s at channel %u, which no bridge has beside the others; expected CM1 at all "
-                      "channels (EB01), CM2 at all (EB02), or CM1 at 1 and 2 and CM2 at 3 and 4 (EB12)",
+           axis_wrong(check, "motor", "is %s at channel %u, which no bridge has together with the others; expected CM1 "
+                      "at all channels (EB01), CM2 at all (EB02), or CM1 at 1 and 2 and CM2 at 3 and 4 (EB12)",
                       check->axis->motor, check->axis->channel);
 }
 
@@ -537,11 +538,11 @@ static bool check_k37(const check_t *check)
     const cm1e_axis_config_t *axis = check->axis;
     const cm1e_bridge_motor_t motor = motor_of(axis);
     if (!axis->k37_stated)
-        return axis_wrong(check, "k37", "is missing; expected the K37 of the motor, by which counts and speeds have "
-                          "their meaning: send it \"K37.%u\" with cm1e cml", axis->channel);
+        return axis_wrong(check, "k37", "is missing; expected the K37 of the motor, which defines counts and speeds: "
+                          "send it \"K37.%u\" with cm1e cml", axis->channel);
     if (cm1e_bridge_counts_per_revolution(axis->k37) > 0 && cm1e_bridge_position_limit(motor, axis->k37) > 0)
         return true;
-    return axis_wrong(check, "k37", "is %u; expected 0 ... 8 or 10, 40 ... 50, the same 20 higher%s", axis->k37,
+    return axis_wrong(check, "k37", "is %u; expected 0 ... 8 or 10, 40 ... 50, or each of these plus 20%s", axis->k37,
                       motor == CM1E_BRIDGE_CM2 ? ", or 80 ... 88 or 90" : "");
 }
 
@@ -555,7 +556,7 @@ static bool check_absent(const check_t *check)
         const char *reason;
     } keys[] = {
         {"explicit_id", axis->address_kind == CM1E_ADDRESS_EXPLICIT_ID, "it has no rotary switches"},
-        {"firmware", axis->firmware[0] != '\0', "none of it makes a difference"},
+        {"firmware", axis->firmware[0] != '\0', "its firmware makes no difference"},
         {"mapping", axis->mapping != CM1E_MAPPING_DYNAMIC, "it has one mapping only"},
         {"motion", axis->motion != CM1E_MOTION_HOST, "it makes no moves of its own"},
         {"wire.velocity_unit", axis->velocity_unit_stated, "no velocities go over the wire"},
@@ -573,8 +574,8 @@ static bool check_bridge(const check_t *check)
     const cm1e_axis_config_t *axis = check->axis;
     const int64_t cycle_time_ns = check->config->cycle_time_ns;
     if (axis->channel == 0)
-        return !axis->k37_stated || axis_wrong(check, "k37", "is given without a channel; expected it behind a bridge "
-                                               "only, a CM1-E has 50000 counts in a revolution");
+        return !axis->k37_stated || axis_wrong(check, "k37", "is given without a channel; expected only behind a "
+                                               "bridge: a CM1-E has 50000 counts in a revolution");
     if (cycle_time_ns != 0 && cycle_time_ns != CM1E_BRIDGE_CYCLE_TIME_NS)
         return axis_wrong(check, "channel", "is given, and a bridge runs at 1000 us only; the cycle time is %g us",
                           (double)cycle_time_ns / 1000);

@@ -430,8 +430,8 @@ cm1e_error_t cm1e_sii_read(cm1e_description_file_t *file, const uint8_t *image, 
 {
     if (size < CM1E_SII_HEADER_BYTES || size > CM1E_SII_SIZE_MAX)
         return cm1e_diag_set(diag, CM1E_ERROR_FILE, 0,
-                             "%zu bytes are no image of an SII: it has %d bytes before its categories, and 8 MiB at "
-                             "most", size, CM1E_SII_HEADER_BYTES);
+                             "%zu bytes are not an SII image: one has %d bytes before its categories, and at "
+                             "most 8 MiB", size, CM1E_SII_HEADER_BYTES);
     cm1e_description_t *device = CM1E_APPEND(&file->arena, &file->devices);
     if (file->arena.failed)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");

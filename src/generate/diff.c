@@ -56,7 +56,7 @@ static void name_revisions(cm1e_findings_t *findings, const cm1e_description_fil
     }
     if (count > 1 && chosen->revision != live->revision)
         cm1e_findings_add(findings, CM1E_RULE_DIFFERS_IDENTITY, chosen->identity_place,
-                          "The file has no device of revision 0x%08X; it has %s. What follows is about 0x%08X.",
+                          "The file has no device of revision 0x%08X; it has %s. The findings below are about 0x%08X.",
                           (unsigned)live->revision, revisions, (unsigned)chosen->revision);
 }
 
@@ -154,8 +154,8 @@ static void compare_ends(cm1e_findings_t *findings, const cm1e_eni_t *document, 
     const size_t described = document->devices.count;
     if (position == described && slaves > described)
         cm1e_findings_add(findings, CM1E_RULE_DIFFERS, document->devices.at[described - 1].place,
-                          "The file's network ends with this slave, number %zu; the one that is there has %u. A master "
-                          "that starts by the file refuses it.", described, (unsigned)slaves);
+                          "The network of the file ends with this slave, number %zu; the real network has %u. A master "
+                          "that uses the file refuses it.", described, (unsigned)slaves);
     for (size_t i = slaves; position == slaves && i < described; i++)
         cm1e_findings_add(findings, CM1E_RULE_DIFFERS, document->devices.at[i].place,
                           "The file has slave %zu, \"%s\" (vendor 0x%08X, product 0x%08X), here; the network ends with "

@@ -30,12 +30,12 @@ static const struct {
 };
 
 static const char profile_warning[] =
-    "the profile mapping leaves the motion to the motor: MOVE and its like do not work with it, a program has to write "
-    "DRIVE_CONTROLWORD; profile velocity and acceleration come from VR(300) on. For motions of the controller take the "
-    "mapping dynamic or csp.";
+    "with the profile mapping the motor computes the motion: MOVE and similar commands do not work, and a program has "
+    "to write DRIVE_CONTROLWORD; profile velocity and acceleration come from VR(300) on. For motions of the controller "
+    "use the mapping dynamic or csp.";
 static const char csv_warning[] =
     "in CSV the controller closes the position loop: gains and the scale of its output have to be tuned before the "
-    "motor may turn. Take the mapping dynamic or csp unless you need it.";
+    "motor may turn. Use the mapping dynamic or csp unless you need CSV.";
 static const char bridge_warning[] =
     "the bridge's guide does not say where its sync managers lie; here they are the CM1-E's. Compare the file with the "
     "bridge before use (cm1e diff).";
@@ -254,8 +254,8 @@ static cm1e_error_t check_identities(const plan_t *plan, cm1e_diag_t *diag)
                 devices[i].revision == devices[j].revision)
                 return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
                                      "devices %zu and %zu have the same vendor 0x%08X, product 0x%08X and revision "
-                                     "0x%08X: the controller could not tell them apart. One entry serves all motors "
-                                     "of that revision; for another mapping make a file of its own",
+                                     "0x%08X: the controller could not tell them apart. One entry serves all motors of "
+                                     "that revision; make a separate file for another mapping",
                                      j + 1, i + 1, (unsigned)devices[i].vendor_id, (unsigned)devices[i].product_code,
                                      (unsigned)devices[i].revision);
     return CM1E_OK;

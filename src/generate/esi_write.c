@@ -487,7 +487,7 @@ static cm1e_error_t check(const cm1e_description_file_t *file, cm1e_diag_t *diag
         for (size_t s = 0; s < device->slots.count; s++)
             if (device->slots.at[s].choices.count == 0)
                 return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                                     "slot %zu of %s can hold no module: an ESI needs one at least for every slot",
+                                     "slot %zu of %s can hold no module: an ESI needs at least one for every slot",
                                      s + 1, device->type);
     }
     return CM1E_OK;

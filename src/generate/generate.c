@@ -90,9 +90,9 @@ static cm1e_error_t check_identities(const cm1e_description_file_t *described, c
         for (size_t j = 0; j < i; j++)
             if (devices[i].product_code == devices[j].product_code && devices[i].revision == devices[j].revision)
                 return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                                     "devices %zu and %zu have the same product 0x%08X and revision 0x%08X: which of "
-                                     "them a master takes is not defined. One device has all mappings to choose from; "
-                                     "for another default make a file of its own", j + 1, i + 1,
+                                     "devices %zu and %zu have the same product 0x%08X and revision 0x%08X: it is "
+                                     "undefined which of them a master uses. One device has all mappings to choose "
+                                     "from; make a separate file for another default", j + 1, i + 1,
                                      (unsigned)devices[i].product_code, (unsigned)devices[i].revision);
     return CM1E_OK;
 }
@@ -156,8 +156,8 @@ static uint32_t place_of(const cm1e_bus_config_t *network, uint32_t axis, const 
 static cm1e_error_t place_unknown(const cm1e_bus_config_t *network, const cm1e_axis_config_t *axis, cm1e_diag_t *diag)
 {
     return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                         "axis %td (%s): where it stands on the wire does not follow from the configuration, or "
-                         "another device stands between the axes; make the ENI from a scan of the network",
+                         "axis %td (%s): its place on the wire does not follow from the configuration, or another "
+                         "device stands between the axes; make the ENI from a scan of the network",
                          axis - network->axes + 1, axis->name);
 }
 
@@ -195,15 +195,16 @@ static cm1e_error_t describe_bridge(cm1e_description_file_t *described, const no
             continue;
         if (found)
             return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                                 "%s: an %s and an %s can both be the bridge there; the motor of each of its axes says "
-                                 "which", node->name, cm1e_bridge_name(found->model), cm1e_bridge_name(device->model));
+                                 "%s: an %s and an %s can both be the bridge there; state the motor of each of "
+                                 "its axes", node->name, cm1e_bridge_name(found->model),
+                                 cm1e_bridge_name(device->model));
         found = device;
     }
     if (!found)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                             "%s: behind a bridge, whose guide states no identity, and no device is given that has "
-                             "these motors: state model (eb01, eb02, eb12), vendor, product code and revision, as "
-                             "`cm1e scan` shows them; or make the ENI from a scan of the network", node->name);
+                             "%s: it is behind a bridge, whose guide states no identity, and no given device has these "
+                             "motors: state model (eb01, eb02, eb12), vendor, product code and revision, as `cm1e "
+                             "scan` shows them; or make the ENI from a scan of the network", node->name);
     return cm1e_describe(described, found, CM1E_ESI_FLAT, diag);
 }
 
@@ -248,7 +249,7 @@ static cm1e_error_t generate_eni(cm1e_file_t *file, const cm1e_generate_options_
     const cm1e_bus_config_t *network = options->network;
     if (!network || cm1e_motors_before(network, network->axis_count) == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                             "an ENI describes a network: which axes with a motor are there?");
+                             "an ENI describes a network, but no axis with a motor is configured");
     cm1e_error_t error = cm1e_bus_config_check(network, diag);
     cm1e_eni_slave_t *slaves = calloc(network->axis_count, sizeof *slaves);
     node_t *nodes = calloc(network->axis_count, sizeof *nodes);
@@ -279,7 +280,8 @@ cm1e_error_t cm1e_generate(cm1e_file_t *file, const cm1e_generate_options_t *opt
     for (size_t i = 0; options->devices && i < options->device_count && options->format != CM1E_FILE_SII; i++)
         if (options->devices[i].alias != 0 || options->devices[i].serial_number != 0)
             return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                                 "alias and serial number belong to one device and its SII; %s speaks of all of a kind",
+                                 "alias and serial number belong to one device and its SII; %s describes all devices "
+                                 "of a kind",
                                  cm1e_file_format_name(options->format));
     switch (options->format) {
     case CM1E_FILE_SII:

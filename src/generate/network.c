@@ -21,8 +21,8 @@ static cm1e_error_t describe_by_tables(cm1e_description_file_t *file, const cm1e
     const cm1e_firmware_info_t *firmware = cm1e_firmware_from_version(slave->software_version);
     if (!firmware)
         return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0,
-                             "slave %u (%s) does not tell its firmware version (object 0x100A), on which its mappings "
-                             "depend", slave->position, slave->name);
+                             "slave %u (%s) does not report its firmware version (object 0x100A), on which its "
+                             "mappings depend", slave->position, slave->name);
     snprintf(options.firmware, sizeof options.firmware, "%s", firmware->version);
     return cm1e_describe(file, &options, CM1E_ESI_FLAT, diag);
 }

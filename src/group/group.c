@@ -87,10 +87,11 @@ static cm1e_error_t refused_by_state(cm1e_group_t *group, group_trigger_t trigge
     if (rule->refusal)
         return cm1e_group_refuse(group, (group_refusal_t){
             .error = rule->refusal,
-            .why = trigger == TRIGGER_CONFIGURE ? "Axes come and go in GroupDisabled: MC_GroupDisable first." : NULL});
+            .why = trigger == TRIGGER_CONFIGURE ? "Axes can be added and removed only in GroupDisabled: use "
+                                                  "MC_GroupDisable first." : NULL});
     if (group->state == CM1E_GROUP_DISABLED && group->led)
         return cm1e_group_refuse(group, (group_refusal_t){.error = CM1E_ERROR_GROUP_STATE,
-                                                          .why = "Its axes still come to rest."});
+                                                          .why = "Its axes have not come to rest yet."});
     return cm1e_group_refuse(group, (group_refusal_t){.error = CM1E_OK});
 }
 
@@ -126,19 +127,22 @@ cm1e_error_t cm1e_group_add(cm1e_group_t *group, AXIS_REF_t reference, uint32_t 
     if (ident == 0)
         ident = free_ident(group);
     if (ident == 0 || ident > CM1E_GROUP_AXES)
-        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "IdentInGroup 1 ... 8 is right; there are 8 places.");
+        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "IdentInGroup must be 1 ... 8.");
     if (group->member[ident - 1].Handle != 0)
-        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, ident, "This place is taken: MC_RemoveAxisFromGroup.");
+        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, ident, "This place is taken: use MC_RemoveAxisFromGroup "
+                                                                    "first.");
     if (count_members(group) > 0 && cm1e_axis_bus(axis) != group->bus)
-        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "The axis belongs to another bus than those it has.");
+        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "The axis belongs to another bus than the other axes "
+                                                                "of the group.");
     if (cm1e_axis_configuration(axis)->motion == CM1E_MOTION_DRIVE)
-        return refuse_member(group, CM1E_ERROR_UNSUPPORTED, 0, "The axis moves by profiles of its drive: it needs "
+        return refuse_member(group, CM1E_ERROR_UNSUPPORTED, 0, "The drive computes the profiles of this axis: it needs "
                              "`motion: host` in the bus file.");
     if (cm1e_axis_configuration(axis)->type == CM1E_AXIS_ENCODER)
         return refuse_member(group, CM1E_ERROR_AXIS_VIRTUAL, 0, "An encoder cannot be moved.");
     for (uint32_t other = 1; other <= CM1E_GROUP_AXES; other++)
         if (group->member[other - 1].Handle == reference.Handle)
-            return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, other, "The axis has this place in it already.");
+            return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, other, "The axis has this place in the group "
+                                                                        "already.");
     if (!cm1e_axis_join(axis, group))
         return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "The axis belongs to another group.");
     group->bus = cm1e_axis_bus(axis);
@@ -188,7 +192,7 @@ cm1e_error_t cm1e_group_enable(cm1e_group_t *group)
     if (refused)
         return refused;
     if (count_members(group) == 0)
-        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "It has no axes: MC_AddAxisToGroup first.");
+        return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "It has no axes: use MC_AddAxisToGroup first.");
     group->state = cm1e_group_rule(group->state, TRIGGER_ENABLE)->next;
     group->error = CM1E_OK;
     return CM1E_OK;

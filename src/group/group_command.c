@@ -90,21 +90,21 @@ static cm1e_error_t check_modes(cm1e_group_t *group, const cm1e_group_command_t 
         return refuse(group, CM1E_ERROR_AXIS_BUFFER_MODE, 0.0, NULL);
     if (command->kind == CM1E_GROUP_HALT)
         return is_blending(command) ? refuse(group, CM1E_ERROR_AXIS_BUFFER_MODE, 0.0,
-                                             "MC_GroupHalt comes to rest: mcAborting, mcBuffered are right.") : CM1E_OK;
+                                             "MC_GroupHalt supports only mcAborting and mcBuffered.") : CM1E_OK;
     if (command->coordinates != mcACS)
         return refuse(group, CM1E_ERROR_GROUP_COORD_SYSTEM, 0.0, NULL);
     if (command->transition != mcTMNone && command->transition != mcTMCornerDistance &&
         command->transition != mcTMMaxCornerDeviation)
         return refuse(group, CM1E_ERROR_GROUP_TRANSITION, 0.0,
-                      "mcTMNone, mcTMCornerDistance and mcTMMaxCornerDeviation are there.");
+                      "Supported are mcTMNone, mcTMCornerDistance and mcTMMaxCornerDeviation.");
     if (is_blending(command) && command->transition != mcTMNone &&
         !(command->transition_parameter > 0.0 && isfinite(command->transition_parameter)))
         return refuse(group, CM1E_ERROR_GROUP_TRANSITION, command->transition_parameter,
-                      "TransitionParameter has to be above 0: u before the corner, or away from it.");
+                      "TransitionParameter must be above 0: the distance in u before the corner, or from it.");
     if (is_circle(command->kind) && command->circ_mode != mcBorder && command->circ_mode != mcCenter)
-        return refuse(group, CM1E_ERROR_UNSUPPORTED, 0.0, "CircMode mcBorder and mcCenter are there.");
+        return refuse(group, CM1E_ERROR_UNSUPPORTED, 0.0, "CircMode must be mcBorder or mcCenter.");
     if (is_circle(command->kind) && command->path_choice != mcClockwise && command->path_choice != mcCounterClockwise)
-        return refuse(group, CM1E_ERROR_INVALID_ARGUMENT, 0.0, "PathChoice is mcClockwise or mcCounterClockwise.");
+        return refuse(group, CM1E_ERROR_INVALID_ARGUMENT, 0.0, "PathChoice must be mcClockwise or mcCounterClockwise.");
     return CM1E_OK;
 }
 
@@ -112,11 +112,11 @@ static cm1e_error_t check(cm1e_group_t *group, const cm1e_group_command_t *comma
 {
     if (is_move(command->kind) && !is_limit(command->velocity))
         return refuse(group, CM1E_ERROR_AXIS_VELOCITY_RANGE, command->velocity,
-                      "0 (as much as the axes allow) or more is right.");
+                      "It must be 0 (as much as the axes allow) or above.");
     if ((is_move(command->kind) && !is_limit(command->acceleration)) || !is_limit(command->deceleration) ||
         !is_limit(command->jerk))
         return refuse(group, CM1E_ERROR_AXIS_DYNAMICS_RANGE, 0.0,
-                      "Acceleration, Deceleration and Jerk are 0 (as much as the axes allow) or more.");
+                      "Acceleration, Deceleration and Jerk must be 0 (as much as the axes allow) or above.");
     return command->kind == CM1E_GROUP_STOP ? CM1E_OK : check_modes(group, command);
 }
 

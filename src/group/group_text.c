@@ -35,7 +35,7 @@ static void bounds_text(const cm1e_group_t *group, char *text, size_t size)
 {
     const group_refusal_t *refusal = &group->refusal;
     snprintf(text, size,
-             "Axes group \"%s\": on this path axis \"%s\" (IdentInGroup %u) would get to %.6g u; its software limits "
+             "Axes group \"%s\": on this path axis \"%s\" (IdentInGroup %u) would reach %.6g u; its software limits "
              "are %.6g ... %.6g u.",
              group->config.name, name_of(group, refusal->ident), (unsigned)refusal->ident, refusal->value,
              refusal->lower, refusal->upper);
@@ -47,8 +47,8 @@ static void axis_text(const cm1e_group_t *group, char *text, size_t size)
     cm1e_axis_info_t info;
     const bool there = cm1e_axis_read(group->member[ident - 1], &info) == CM1E_OK;
     snprintf(text, size,
-             "Axes group \"%s\": axis \"%s\" (IdentInGroup %u) is in %s%s; for a motion of the group every axis has "
-             "to be powered and in Standstill.",
+             "Axes group \"%s\": axis \"%s\" (IdentInGroup %u) is in %s%s; for a motion of the group every axis must "
+             "be powered and in Standstill.",
              group->config.name, name_of(group, ident), (unsigned)ident,
              there ? cm1e_axis_state_name(info.state) : "no state, as it does not exist any more",
              there && info.state == CM1E_AXIS_STANDSTILL ? ", but waits for a master, or is not ready yet" : "");
@@ -59,10 +59,10 @@ static const char *const path_texts[] = {
     [CM1E_PATH_FINE] = "",
     [CM1E_PATH_FULL] = " Wait until one of them is done.",
     [CM1E_PATH_NO_NUMBER] = " A position is not a finite number, or farther away than the axis counts.",
-    [CM1E_PATH_NO_ARC] = " Right are two axes at least, and points that neither coincide nor lie in a line; a centre "
-                         "is as far from the end as from the beginning.",
+    [CM1E_PATH_NO_ARC] = " A circle needs at least two axes, and points that neither coincide nor lie on a line; the "
+                         "centre must be as far from the end as from the beginning.",
     [CM1E_PATH_OUT_OF_BOUNDS] = "",
-    [CM1E_PATH_NO_TRANSITION] = " TransitionParameter has to be above 0.",
+    [CM1E_PATH_NO_TRANSITION] = " TransitionParameter must be above 0.",
 };
 
 static void refusal_text(const cm1e_group_t *group, char *text, size_t size)

@@ -158,14 +158,14 @@ static cm1e_error_t shut_down(cm1e_scheduler_t *s, cm1e_diag_t *diag)
         cycle(s);
     if (s->shut_down && s->refused)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
-                             "%s was called in a task, which is refused there: it frees or stops what the cycle works "
-                             "with. The run was ended in order instead; in a task cm1e_scheduler_stop() does that.",
+                             "%s was called in a task, where it is refused, because it frees or stops what the cycle "
+                             "uses. The run was ended in order instead; use cm1e_scheduler_stop() in a task.",
                              s->refused);
     if (s->shut_down)
         return CM1E_OK;
     return cm1e_diag_set(diag, CM1E_ERROR_TIMEOUT, 0,
-                         "The axes were not at rest and disabled within %.1f s after the stop; the bus was stopped all "
-                         "the same.", (double)s->config.stop_timeout_ns * 1e-9);
+                         "The axes were not at rest and disabled within %.1f s after the stop; the bus was stopped "
+                         "nevertheless.", (double)s->config.stop_timeout_ns * 1e-9);
 }
 
 static cm1e_error_t take_real_time(cm1e_scheduler_t *s, realtime_t *realtime, cm1e_diag_t *diag)
@@ -200,7 +200,7 @@ static cm1e_error_t check_operation(const cm1e_scheduler_t *s, cm1e_diag_t *diag
 {
     const uint32_t present = cm1e_bus_operation(s->bus);
     if (present == 0)
-        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The bus is not in operation: cm1e_bus_start() comes before.");
+        return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The bus is not in operation: call cm1e_bus_start() first.");
     if (present != s->operation)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
                              "The bus was started again since this scheduler was made: make a new one.");

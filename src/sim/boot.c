@@ -36,7 +36,7 @@ static bool check_identity(const boot_t *boot)
                       (unsigned)device->product_code);
     if (image->revision != device->revision)
         return REFUSE(boot, "is one of revision 0x%08X; with its firmware this slave has 0x%08X. The bus file says "
-                      "which firmware it plays", (unsigned)image->revision, (unsigned)device->revision);
+                      "which firmware it simulates", (unsigned)image->revision, (unsigned)device->revision);
     return true;
 }
 

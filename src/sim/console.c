@@ -285,7 +285,7 @@ static cm1e_error_t clear_error(call_t *call)
 {
     call->drive->held_code = call->drive->shown_code = 0;
     cm1e_sim_fsa_update_error(call->drive);
-    say(call, "slave %u: no cause of an error is left; a fault still wants a fault reset", call->position);
+    say(call, "slave %u: no cause of an error is left; a fault still needs a fault reset", call->position);
     return CM1E_OK;
 }
 
@@ -510,7 +510,7 @@ static cm1e_error_t find_slave(call_t *call, const command_t *command)
     if (command->subject == NO_SLAVE || (command->subject == DRIVE_OR_ALL && call->count < 2))
         return CM1E_OK;
     if (call->count < 2)
-        return REFUSE(call, "which slave? usage: %s %s", command->word, command->usage);
+        return REFUSE(call, "the slave is missing; usage: %s %s", command->word, command->usage);
     long position;
     if (!parse_whole(call->words[1], 10, 1, (long)count, &position))
         return REFUSE(call, "\"%s\": expected a slave, 1 to %u", call->words[1], count);
@@ -531,7 +531,7 @@ static cm1e_error_t run_command(call_t *call, const command_t *command)
         return error;
     const int arguments = call->count - (call->slave ? 2 : 1);
     if (arguments < command->least)
-        return REFUSE(call, "something is missing; usage: %s %s", command->word, command->usage);
+        return REFUSE(call, "an argument is missing; usage: %s %s", command->word, command->usage);
     if (arguments > command->most)
         return REFUSE(call, "\"%s\" is too much; usage: %s %s", argument(call, command->most), command->word,
                       command->usage);
@@ -541,7 +541,7 @@ static cm1e_error_t run_command(call_t *call, const command_t *command)
 static cm1e_error_t run_line(call_t *call, const char *line)
 {
     if (!split(call, line))
-        return REFUSE(call, "more or longer words than any command has; help lists the commands");
+        return REFUSE(call, "too many or too long words; help lists the commands");
     if (call->count == 0)
         return REFUSE(call, "an empty line; help lists the commands");
     for (int i = 0; i < COMMAND_COUNT; i++)

@@ -254,7 +254,7 @@ def check_diff(folder):
         file.seek(2 * 0x0A)
         file.write(b"\x99")
     none = run("cm1e", "diff", image, "-i", "sim")
-    expect(none.returncode == WRONG_USE and "describes none" in none.stderr, "diff of another product", none)
+    expect(none.returncode == WRONG_USE and "does not describe any slave" in none.stderr, "diff of another product", none)
 
 
 def check_dictionary():
@@ -299,7 +299,7 @@ def check_cml(folder):
     told = cml("--json", stdin="?99.1\n*\n^.1\n?99.3")
     objects = [json.loads(part + "}") for part in told.stdout.split("}\n") if part]
     expect([entry["lines"] for entry in objects] == [["Ux.1=8"], [], ["Ux.3=16"]] and
-           "may move" in objects[1]["error"] and "to which motor" in told.stderr, "cml line by line as JSON", told)
+           "may move" in objects[1]["error"] and "names no connector" in told.stderr, "cml line by line as JSON", told)
     cut = cml("-a", "left", stdin="(\0?99\n?99\n")
     expect(cut.returncode == WRONG_USE and cut.stdout == "Ux.1=8  in position\n" and "byte 0" in cut.stderr,
            "a line with a byte 0", cut)
@@ -448,7 +448,7 @@ def check_bridge(folder):
     expect(move.returncode == 0 and json.loads(move.stdout)["axis"] == "left", "move behind a bridge", move)
     check_unknown_bridge(folder, bus)
     refused = run("cm1e", "generate", "eni", "-b", bus, "-o", "-")
-    expect(refused.returncode == WRONG_USE and "left, lift: behind a bridge" in refused.stderr, "ENI", refused)
+    expect(refused.returncode == WRONG_USE and "left, lift: it is behind a bridge" in refused.stderr, "ENI", refused)
     configured = run("cm1e", "generate", "eni", "-b", bus, "-o", "-", "--device", "eb12", "--vendor", "0xAA77",
                      "--product", "0xEB12", "--revision", "0x10000")
     path = os.path.join(folder, "bridge.eni")
@@ -552,14 +552,14 @@ WRONG = [
     (["generate", "esi", "-o", "x", "--firmware", "1.3.5", *BRIDGE], WRONG_USE, "vendor"),
     (["generate", "esi", "-o", "x", "--mapping", "fast"], WRONG_USE, "profile"),
     (["generate", "esi", "-o", "x", "--config-data", SOURCE], WRONG_USE, "folder"),
-    (["generate", "esi", "-o", "x", "--config-data", f"{SOURCE}/README.md"], WRONG_USE, "no image"),
-    (["generate", "esi", "-o", ""], WRONG_USE, "where to"),
+    (["generate", "esi", "-o", "x", "--config-data", f"{SOURCE}/README.md"], WRONG_USE, "not an SII image"),
+    (["generate", "esi", "-o", ""], WRONG_USE, "the output is missing"),
     (["generate", "esi", "-o", "x", *BRIDGE[:2], "--vendor", "-1"], WRONG_USE, "the vendor ID"),
-    (["generate", "sii", "-o", "x", "--layout", "mdp"], WRONG_USE, "--layout is for esi"),
-    (["generate", "esi", "-o", "x", "--alias", "7"], WRONG_USE, "--alias is for sii"),
-    (["generate", "esi", "-o", "x", "--dc-mode", "7"], WRONG_USE, "--dc-mode is for ec-extend"),
+    (["generate", "sii", "-o", "x", "--layout", "mdp"], WRONG_USE, "--layout is only for esi"),
+    (["generate", "esi", "-o", "x", "--alias", "7"], WRONG_USE, "--alias is only for sii"),
+    (["generate", "esi", "-o", "x", "--dc-mode", "7"], WRONG_USE, "--dc-mode is only for ec-extend"),
     (["generate", "esi", "-o", "x", "--from", "y", "--layout", "mdp"], WRONG_USE, "--layout"),
-    (["generate", "sii", "-o", "x", "--number", "2"], WRONG_USE, "--number is for --from"),
+    (["generate", "sii", "-o", "x", "--number", "2"], WRONG_USE, "--number is only for --from"),
     (["generate", "esi", "-o", "x", "-i", "sim"], WRONG_USE, "ENI"),
     (["generate", "esi", "-o", "x", "--program", "y"], WRONG_USE, "ec-extend"),
     (["generate", "sii", "-o", "x", "--device", "cm1-e", "--device", "cm1-e"], WRONG_USE, "one device"),
@@ -633,7 +633,7 @@ def check_axes_without_a_motor(folder):
     expect(run("cm1e", "scan", "-b", empty, "-i", "sim").returncode == 0, "scan with virtual axes only",
            run("cm1e", "scan", "-b", empty, "-i", "sim"))
     eni = run("cm1e", "generate", "eni", "-b", empty, "-o", "-")
-    expect(eni.returncode == WRONG_USE and "axes with a motor" in eni.stderr, "ENI of virtual axes only", eni)
+    expect(eni.returncode == WRONG_USE and "no axis with a motor" in eni.stderr, "ENI of virtual axes only", eni)
 
 
 def main():

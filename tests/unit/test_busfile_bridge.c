@@ -85,7 +85,7 @@ static void test_motors_are_those_of_a_bridge(void)
             good++;
             expect_good();
         } else {
-            expect_wrong("which no bridge has beside the others");
+            expect_wrong("which no bridge has together with the others");
         }
     }
     TEST_ASSERT_EQUAL(16 + 16 + 16 - 4 - 4, good); /* three models, less what fits two; none stated fits all */

@@ -386,7 +386,7 @@ static void test_sizes_that_no_image_has_are_refused(void)
     static const size_t sizes[] = {0, 1, CM1E_SII_HEADER_BYTES - 1, CM1E_SII_SIZE_MAX + 1u, SIZE_MAX};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         TEST_ASSERT_EQUAL_INT(CM1E_ERROR_FILE, cm1e_sii_read(&file, image, sizes[i], findings, &diag));
-        TEST_ASSERT_NOT_NULL(strstr(diag.text, "no image of an SII"));
+        TEST_ASSERT_NOT_NULL(strstr(diag.text, "not an SII image"));
         TEST_ASSERT_EQUAL_size_t(0, file.devices.count);
     }
 }

@@ -131,22 +131,22 @@ static void test_identity_of_a_bridge_has_to_be_stated(void)
     static const cm1e_device_options_t incomplete[] = {{.model = CM1E_DEVICE_EB12, .vendor_id = 0xAA77}};
     static const cm1e_device_options_t a_motor[] = {{.model = CM1E_DEVICE_CM1E}};
     set_network(4, mixed_axes);
-    bridge_refused(NULL, 0, "A2, A3: behind a bridge, whose guide states no identity");
+    bridge_refused(NULL, 0, "A2, A3: it is behind a bridge, whose guide states no identity");
     bridge_refused(a_motor, 1, "whose guide states no identity");
     bridge_refused(incomplete, 1, "missing");
     bridge_refused(two_bridges, 2, "an EB01 and an EB02 can both be the bridge there");
     strcpy(configured.axes[1].motor, "CM1");
     strcpy(configured.axes[2].motor, "CM1");
-    bridge_refused(&two_bridges[1], 1, "no device is given that has these motors");
+    bridge_refused(&two_bridges[1], 1, "no given device has these motors");
 }
 
 static void test_places_that_do_not_follow_are_refused(void)
 {
     static const uint16_t gap[][2] = {{1, 1}, {1, 2}, {3, 0}}, first_missing[][2] = {{2, 1}, {2, 2}};
     set_network(3, gap);
-    bridge_refused(eb12, 1, "axis 3 (A3): where it stands");
+    bridge_refused(eb12, 1, "axis 3 (A3): its place on the wire");
     set_network(2, first_missing);
-    bridge_refused(eb12, 1, "axis 1 (A1): where it stands");
+    bridge_refused(eb12, 1, "axis 1 (A1): its place on the wire");
 }
 
 /* ---- what is in it ---------------------------------------------------------------------------------------------- */

@@ -118,7 +118,7 @@ static void test_one_axis_is_a_group_too(void)
     TEST_ASSERT_EQUAL_DOUBLE(2.0, group_at(0));
     group_refused(&(cm1e_group_command_t){.kind = CM1E_GROUP_CIRCULAR_ABSOLUTE, .auxiliary = {3.0}, .position = {4.0}},
                   CM1E_ERROR_GROUP_PATH);
-    group_told("two axes at least");
+    group_told("at least two axes");
 }
 
 static void test_modulo_and_inverted_axes(void)
@@ -357,7 +357,7 @@ static void test_software_limits_and_directions(void)
     cm1e_group_enable(group);
     cm1e_group_command_t c = line_to(2.1, 0.0, 1.0);
     group_refused(&c, CM1E_ERROR_GROUP_PATH);
-    group_told("would get to 2.1 u; its software limits are -1 ... 2 u");
+    group_told("would reach 2.1 u; its software limits are -1 ... 2 u");
     c = (cm1e_group_command_t){.kind = CM1E_GROUP_CIRCULAR_ABSOLUTE, .auxiliary = {2.5, 0.5}, .position = {0.0, 1.0}};
     group_refused(&c, CM1E_ERROR_GROUP_PATH); /* it bulges over it */
     c = line_to(2.0, 1.0, 0.0);

@@ -135,7 +135,7 @@ static void test_members_by_place(void)
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_GROUP_MEMBER, cm1e_group_add(group, axes_reference(1), 1));
     group_told("place is taken");
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_GROUP_MEMBER, cm1e_group_add(group, axes_reference(0), 5));
-    group_told("has this place in it already");
+    group_told("has this place in the group already");
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_FB_AXIS_REF, cm1e_group_add(group, (AXIS_REF_t){0}, 2));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_FB_AXIS_REF, cm1e_group_add(group, (AXIS_REF_t){4711}, 2));
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_group_add(group, axes_reference(1), 8));
@@ -395,7 +395,7 @@ static void test_disable_stops_along_the_path(void)
     axes_must_be(0, CM1E_AXIS_SYNCHRONIZED_MOTION);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_GROUP_STATE, cm1e_group_enable(group));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_GROUP_STATE, cm1e_group_remove(group, 1));
-    group_told("still come to rest");
+    group_told("have not come to rest yet");
     while (axes_state(0) == CM1E_AXIS_SYNCHRONIZED_MOTION) {
         axes_cycles(1);
         TEST_ASSERT_TRUE(group_off_line(0, 0, 5, 2) < 5e-9);

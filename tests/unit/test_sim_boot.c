@@ -159,7 +159,7 @@ static void test_a_damaged_image_is_refused_with_the_place(void)
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_FILE, cm1e_sim_segment_boot(segment, 2, image, 0x200, &diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "damaged"), diag.text);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_FILE, cm1e_sim_segment_boot(segment, 2, image, 100, &diag));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "100 bytes are no image"), diag.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "100 bytes are not an SII image"), diag.text);
     /* A warning is none of that. */
     image[0x38] = 0x04;
     TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, cm1e_sim_segment_boot(segment, 2, image, size, &diag), diag.text);

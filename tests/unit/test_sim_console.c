@@ -64,7 +64,7 @@ static void test_wrong_lines_are_refused_in_words(void)
         const char *line, *words;
     } rows[] = {
         {"", "empty"}, {"   \t ", "empty"}, {"hello", "\"hello\" is not a command"}, {"POWER 1 off", "not a command"},
-        {"power", "which slave"}, {"power 0 off", "1 to 4"}, {"power 5 off", "1 to 4"}, {"power -1 off", "1 to 4"},
+        {"power", "slave is missing"}, {"power 0 off", "1 to 4"}, {"power 5 off", "1 to 4"}, {"power -1 off", "1 to 4"},
         {"power 1x off", "1 to 4"}, {"power x off", "1 to 4"}, {"power 99999999999999999999 off", "1 to 4"},
         {"power 1", "usage: power <slave> on|off"}, {"power 1 maybe", "on or off"}, {"power 1 off now", "too much"},
         {"power 4 off", "not a CM1-E"}, {"power off 1", "1 to 4"},
@@ -77,11 +77,11 @@ static void test_wrong_lines_are_refused_in_words(void)
         {"error 1", "usage"}, {"error 1 1234", "2310 4310"}, {"error 1 7310 forever", "expected hold"},
         {"error 1 clear hold", "clear"}, {"error 1 73100", "7310"}, {"error 1 7310 hold on", "too much"},
         {"power-up-fault 1 never", "always"}, {"power-up-fault 1 -1", "0 to 1000"}, {"power-up-fault 1", "usage"},
-        {"power-cycle 1 0", "1 to 60000"}, {"power-cycle 1 60001", "1 to 60000"}, {"power-cycle", "which slave"},
-        {"unplug", "which slave"}, {"unplug 1 2", "too much"}, {"replug 9", "1 to 4"},
+        {"power-cycle 1 0", "1 to 60000"}, {"power-cycle 1 60001", "1 to 60000"}, {"power-cycle", "slave is missing"},
+        {"unplug", "slave is missing"}, {"unplug 1 2", "too much"}, {"replug 9", "1 to 4"},
         {"lose", "usage"}, {"lose many", "frames"}, {"lose -1", "frames"}, {"lose 1000001", "1000000"},
         {"lose 1 2", "too much"}, {"corrupt", "usage"}, {"delay 1", "usage"}, {"delay 1 0", "1 to 1000000"},
-        {"delay 1 x", "microseconds"}, {"status 9", "1 to 4"}, {"status 1 2", "too much"}, {"show", "which slave"},
+        {"delay 1 x", "microseconds"}, {"status 9", "1 to 4"}, {"status 1 2", "too much"}, {"show", "slave is missing"},
         {"show 4", "not a CM1-E"}, {"help me", "too much"}, {"1 2 3 4 5 6 7 8", "help"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
