@@ -3,7 +3,7 @@
 #include "bridge/cool_muscle.h"
 #include "edge.h"
 
-/** The block has no CommandAborted: a string that nobody knows of any more is an error. */
+/** The block has no CommandAborted: a string that the axis no longer remembers is an error. */
 static void poll(CM_SendCML_t *fb, const cm1e_axis_t *axis)
 {
     const cm1e_axis_cml_t sent = cm1e_axis_cml_state(axis, fb->Private.command);

@@ -4,7 +4,7 @@ fb_outputs_t cm1e_fb_couple(cm1e_coupling_private_t *fb, const AXIS_REF_t *slave
                             const cm1e_axis_command_t *command)
 {
     const cm1e_coupling_master_t *masters = command->coupling->master;
-    if (fb->common.state != FB_BUSY) { /* so they are those of the edge as soon as it is busy */
+    if (fb->common.state != FB_BUSY) { /* so they are those of the edge while the block is busy */
         fb->master = masters[0].axis.Handle;
         fb->second_master = masters[1].axis.Handle;
     }

@@ -18,7 +18,7 @@ cm1e_axis_t *cm1e_fb_axis(const cm1e_fb_private_t *fb) { return axis_of_handle(f
 
 void cm1e_fb_fail(cm1e_fb_private_t *fb, cm1e_error_t error) { set_state(fb, FB_ERROR, error); }
 
-/** TRUE once per rising edge of Execute or Enable. */
+/** Whether this call has a rising edge of Execute or Enable. */
 static bool rising_edge(cm1e_fb_private_t *fb, BOOL trigger)
 {
     const bool edge = trigger && !fb->trigger_before;
@@ -35,7 +35,7 @@ static void *latch(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *h
     return object;
 }
 
-/** The axis of a block at work; NULL and an error where it was changed or is gone. */
+/** The axis of a busy block; NULL and an error if it was changed or no longer exists. */
 static void *check(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle)
 {
     if (!handle || *handle != fb->axis_handle) {
@@ -93,7 +93,7 @@ void cm1e_fb_polled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_erro
     case CM1E_COMMAND_DONE: set_state(fb, FB_DONE, CM1E_OK); break;
     case CM1E_COMMAND_ERROR: set_state(fb, FB_ERROR, error); break;
     case CM1E_COMMAND_ABORTED:
-    case CM1E_COMMAND_UNKNOWN: /* so many commands came after it that the axis has forgotten it */
+    case CM1E_COMMAND_UNKNOWN: /* the axis no longer remembers it because of the many commands after it */
     default: set_state(fb, FB_ABORTED, CM1E_OK); break;
     }
 }
@@ -118,7 +118,7 @@ fb_outputs_t cm1e_fb_outputs(const cm1e_fb_private_t *fb)
     };
 }
 
-/** New inputs of a command that is under way or waits; FALSE: they were refused. */
+/** Hands on new inputs of an active or waiting command. Returns false if they were refused. */
 static bool update(cm1e_fb_private_t *fb, cm1e_axis_t *axis, BOOL continuous_update,
                    const cm1e_axis_command_t *command)
 {

@@ -11,7 +11,7 @@
 #include "axis/axis.h"
 #include "cm1e/plcopen.h"
 
-/** What a block shows; exactly one of the last four while Execute is TRUE. */
+/** Outputs of a block. While Execute is TRUE, exactly one of the last four is TRUE. */
 typedef enum fb_state { FB_IDLE = 0, FB_BUSY, FB_DONE, FB_ABORTED, FB_ERROR } fb_state_t;
 
 /** What a block of the Execute type has to do in this call. */
@@ -24,58 +24,59 @@ typedef enum fb_step {
 typedef struct cm1e_fb_outputs {
     BOOL done, busy, active, aborted, error;
     WORD error_id;
-    BOOL reached;  /**< InVelocity and its like (2.4.1): TRUE at times while Busy and Active */
+    BOOL reached;  /**< InVelocity and similar outputs (2.4.1): may rise and fall while Busy and Active */
     BOOL synchronizing; /**< StartSync */
-    UDINT ends;    /**< of the profile of a cam, so far */
+    UDINT ends;    /**< number of ends of the cam profile so far */
     LREAL covered; /**< CoveredDistance, AbsolutePhaseShift, CoveredPhaseShift */
 } fb_outputs_t;
 
-/** What a block may work on: an axis, or an axes group (group_edge.h). */
+/** The object of a block: an axis, or an axes group (group_edge.h). */
 typedef struct fb_object {
-    void *(*find)(UINT handle); /**< NULL: there is none */
-    cm1e_error_t none;          /**< the error then */
+    void *(*find)(UINT handle); /**< NULL: the handle names none */
+    cm1e_error_t none;          /**< error if there is none */
 } fb_object_t;
 
-/** `handle` NULL: none was given. `*object` is valid unless the step is FB_STEP_NONE. */
+/** The step of this call. `handle` NULL: no object was given. `*object` is valid unless the step is FB_STEP_NONE. */
 fb_step_t cm1e_fb_execute_on(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle, BOOL execute,
                              void **object);
-/** `*axis` is valid unless the step is FB_STEP_NONE. */
+/** The step of this call for a block of an axis. `*axis` is valid unless the step is FB_STEP_NONE. */
 fb_step_t cm1e_fb_execute(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, cm1e_axis_t **axis);
-/** Result of the start. */
+/** Reports the result of the start. */
 void cm1e_fb_started(cm1e_fb_private_t *fb, cm1e_error_t error);
-/** What became of it so far. */
+/** Reports the present status of the command. */
 void cm1e_fb_polled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error);
-/** The same for a block without CommandAborted: what another one has taken the place of is CM1E_ERROR_CANCELLED. */
+/** cm1e_fb_polled() for a block without CommandAborted: a command that another one replaced is CM1E_ERROR_CANCELLED. */
 void cm1e_fb_polled_or_cancelled(cm1e_fb_private_t *fb, cm1e_command_state_t state, cm1e_error_t error);
 fb_outputs_t cm1e_fb_outputs(const cm1e_fb_private_t *fb);
 
 /** A whole block of the Execute type that is one motion command: starts it at the edge, hands on new inputs while
- *  ContinuousUpdate says so (2.4.6: TRUE at the edge and ever since), and shows what has become of it. A refused update
- *  is an error of the block; the motion goes on without it by the last good inputs. */
+ *  ContinuousUpdate allows that (2.4.6: TRUE at the edge and ever since), and shows its status. A refused update is an
+ *  error of the block; the motion goes on with the last good inputs. */
 fb_outputs_t cm1e_fb_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute, BOOL continuous_update,
                             const cm1e_axis_command_t *command);
-/** The same for a block that has a reason of its own not to start: `refusal` is an error at the edge. */
+/** cm1e_fb_motion() for a block with its own reason not to start: `refusal` is an error at the edge. */
 fb_outputs_t cm1e_fb_motion_unless(cm1e_error_t refusal, cm1e_fb_private_t *fb, const AXIS_REF_t *reference,
                                    BOOL execute, BOOL continuous_update, const cm1e_axis_command_t *command);
-/** The same for a motion along a table, which is locked to time: nothing could be changed on the way, so TRUE for
- *  ContinuousUpdate is refused. */
+/** cm1e_fb_motion() for a motion along a table. It is locked to time and cannot be changed, so ContinuousUpdate TRUE is
+ *  refused. */
 fb_outputs_t cm1e_fb_table_motion(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute,
                                   BOOL continuous_update, cm1e_command_kind_t kind, MC_BUFFER_MODE buffer_mode,
                                   const cm1e_axis_table_t *table);
-/** TRUE: no edge, the same axis, no inputs to hand on, and its command was the active one. */
+/** Whether nothing has changed at the inputs: no edge, the same axis, no new inputs, and the command was the active
+ *  one. */
 static inline bool fb_same(const cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute)
 {
     return fb->active && fb->state == FB_BUSY && !fb->continuous_update && !execute == !fb->trigger_before &&
            reference && reference->Handle == fb->axis_handle;
 }
-/** ... and it still is, so that the outputs stand as they are. Most calls of a block are such; they cost little that
- *  way. */
+/** Whether the command is also still active, so that the outputs do not change. Most calls are of this kind, and this
+ *  check makes them cheap. */
 static inline bool fb_stands(const cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL execute)
 {
     return fb_same(fb, reference, execute) && cm1e_axis_runs(*reference, fb->command);
 }
 
-/* What the files of motion blocks have in common: inputs and outputs of the standard's names. */
+/* Common code of the motion blocks: inputs and outputs with the names of the standard. */
 #define FB_STANDS(fb) fb_stands(&(fb)->Private, (fb)->Axis, (fb)->Execute)
 #define FB_DYNAMICS(fb)                                                                                              \
     .acceleration = (fb)->Acceleration, .deceleration = (fb)->Deceleration, .jerk = (fb)->Jerk
@@ -87,28 +88,28 @@ static inline bool fb_stands(const cm1e_fb_private_t *fb, const AXIS_REF_t *refe
      (fb)->ErrorID = (out).error_id)
 #define FB_SHOW_ACTIVE(fb, out) (FB_SHOW(fb, out), (fb)->Active = (out).active)
 
-/** The axis that the block works on, latched at its last rising edge; NULL: none. */
+/** The axis of the block, latched at its last rising edge; NULL: none. */
 cm1e_axis_t *cm1e_fb_axis(const cm1e_fb_private_t *fb);
 /** An error of the block itself, shown until Execute or Enable falls. */
 void cm1e_fb_fail(cm1e_fb_private_t *fb, cm1e_error_t error);
 
-/** The Enable type: what is to be read, or NULL when disabled or in error. */
+/** A block of the Enable type: the object to read, or NULL if the block is disabled or in error. */
 void *cm1e_fb_enable_on(cm1e_fb_private_t *fb, const fb_object_t *kind, const UINT *handle, BOOL enable);
-/** The same for an axis: the axis to be read, or NULL when disabled or in error (2.2.3: such an error needs a new
- *  edge). */
+/** A block of the Enable type: the axis to read, or NULL if the block is disabled or in error (2.2.3: such an error
+ *  needs a new edge). */
 const cm1e_axis_t *cm1e_fb_enable(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable);
-/** The same for blocks that read: TRUE and a copy of the axis's data when it can be read. */
+/** A block that reads: returns true and a copy of the values of the axis, if it can be read. */
 BOOL cm1e_fb_read(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, BOOL enable, cm1e_axis_info_t *info);
 
-/** What a block that reads shows: a `passing` error keeps Busy TRUE, Valid comes back by itself (2.2.3, figure 5). */
+/** Outputs of a block that reads. A `passing` error keeps Busy TRUE, and Valid returns by itself (2.2.3, figure 5). */
 typedef struct cm1e_fb_reading {
     BOOL valid, busy, error;
     WORD error_id;
 } fb_reading_t;
-/** `axis`: what cm1e_fb_enable() gave. */
+/** Sets the outputs; `axis` is the result of cm1e_fb_enable(). */
 fb_reading_t cm1e_fb_reading(const cm1e_fb_private_t *fb, const void *axis, cm1e_error_t passing);
 
-/** Nothing is queued in this version (2.4.2 for blocks that move nothing). */
+/** Administrative commands are not queued in this version (2.4.2). */
 static inline cm1e_error_t fb_refuse_execution_mode(MC_EXECUTION_MODE mode)
 {
     return mode == mcImmediately ? CM1E_OK : CM1E_ERROR_UNSUPPORTED;

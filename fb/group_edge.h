@@ -1,7 +1,7 @@
 /**
  * @file group_edge.h
- * What the blocks of axes groups have in common, on the edge logic of edge.h: the group is latched as axes are there.
- * All @rt cycle.
+ * Common code of the blocks of axes groups, based on the edge logic of edge.h. The group is latched like an axis. All
+ * @rt cycle.
  */
 #ifndef CM1E_FB_GROUP_EDGE_H
 #define CM1E_FB_GROUP_EDGE_H
@@ -11,37 +11,37 @@
 #include "edge.h"
 #include "group/group.h"
 
-/** `*group` is valid unless the step is FB_STEP_NONE. */
+/** The step of this call. `*group` is valid unless the step is FB_STEP_NONE. */
 fb_step_t cm1e_fb_group_execute(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute,
                                 cm1e_group_t **group);
-/** The group that the block works on, latched at its last rising edge; NULL: none. */
+/** The group of the block, latched at its last rising edge; NULL: none. */
 cm1e_group_t *cm1e_fb_group(const cm1e_fb_private_t *fb);
-/** A whole block that does something to a group at once, when its edge comes: Done or Error in the same call. */
+/** A whole block that acts on a group at its edge: Done or Error come in the same call. */
 fb_outputs_t cm1e_fb_group_act(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute,
                                cm1e_error_t (*act)(cm1e_group_t *group));
 /** A whole block that is one command. */
 fb_outputs_t cm1e_fb_group_motion(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute,
                                   const cm1e_group_command_t *command);
-/** The Enable type: the group to be read, or NULL when disabled or in error. */
+/** A block of the Enable type: the group to read, or NULL if the block is disabled or in error. */
 cm1e_group_t *cm1e_fb_group_enable(cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL enable);
 
-/** TRUE: nothing has happened to the block, and its outputs stand as they are. */
+/** Whether nothing has happened to the block, so that its outputs do not change. */
 static inline bool fb_group_stands(const cm1e_fb_private_t *fb, const AXES_GROUP_REF_t *reference, BOOL execute)
 {
     return fb->active && fb->state == FB_BUSY && !execute == !fb->trigger_before && reference &&
            reference->Handle == fb->axis_handle && cm1e_group_runs(*reference, fb->command);
 }
 
-/* Of blocks without Active and CommandAborted. */
+/* Outputs of blocks without Active and CommandAborted. */
 #define FB_SHOW_DONE(fb, out)                                                                                        \
     ((fb)->Done = (out).done, (fb)->Busy = (out).busy, (fb)->Error = (out).error, (fb)->ErrorID = (out).error_id)
 #define FB_SHOW_READING(fb, out)                                                                                     \
     ((fb)->Valid = (out).valid, (fb)->Busy = (out).busy, (fb)->Error = (out).error, (fb)->ErrorID = (out).error_id)
-/* Of blocks that move a group. */
+/* Outputs of blocks that move a group. */
 #define FB_SHOW_GROUP_MOTION(fb, out)                                                                                \
     ((fb)->Done = (out).done, FB_SHOW_ACTIVE(fb, out), (fb)->CommandAccepted = (out).busy || (out).done,             \
      (fb)->CommandID = (fb)->CommandAccepted ? (fb)->Private.command : 0)
-/* Their inputs of the standard's names. */
+/* Inputs of these blocks, with the names of the standard. */
 #define FB_GROUP_INPUTS(fb)                                                                                          \
     .velocity = (fb)->Velocity, FB_DYNAMICS(fb), .coordinates = (fb)->CoordSystem, .buffer_mode = (fb)->BufferMode,  \
     .transition = (fb)->TransitionMode, .transition_parameter = (fb)->TransitionParameter

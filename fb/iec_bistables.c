@@ -1,4 +1,4 @@
-/* SR and RS (IEC 61131-3, 2.5.2.3.1): the input with the 1 goes first. */
+/* SR and RS (IEC 61131-3, 2.5.2.3.1): the input with the 1 takes precedence. */
 #include "cm1e/iec.h"
 
 void SR(SR_t *fb) { fb->Q1 = fb->S1 || (!fb->R && fb->Q1); }

@@ -1,5 +1,5 @@
-/* CTU, CTD, CTUD (IEC 61131-3, 2.5.2.3.3). They count edges of the inputs to the ends of the type, not of PV; an edge
- * while R or LD acts is used up. An input of TRUE at the first call is an edge, as for R_TRIG. */
+/* CTU, CTD, CTUD (IEC 61131-3, 2.5.2.3.3). They count edges of the inputs up to the limits of the type, not of PV. An
+ * edge while R or LD acts is lost. An input that is TRUE at the first call is an edge, as for R_TRIG. */
 #include "cm1e/iec.h"
 
 static BOOL rising(BOOL input, BOOL *before)

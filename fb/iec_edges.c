@@ -1,6 +1,6 @@
-/* R_TRIG and F_TRIG (IEC 61131-3, 2.5.2.3.2). An input of TRUE at the first call is a rising edge; an input of FALSE is
- * no falling one: nothing has fallen. That is what CODESYS and TwinCAT do; the text of the second edition would have
- * F_TRIG.Q TRUE there. */
+/* R_TRIG and F_TRIG (IEC 61131-3, 2.5.2.3.2). An input that is TRUE at the first call is a rising edge. An input that
+ * is FALSE is not a falling edge. CODESYS and TwinCAT do the same; the text of the second edition would set F_TRIG.Q
+ * there. */
 #include "cm1e/iec.h"
 
 void R_TRIG(R_TRIG_t *fb)

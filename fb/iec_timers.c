@@ -1,10 +1,7 @@
-/*
- * TON, TOF, TP (IEC 61131-3, 2.5.2.3.4) on the time of the scan. The edge is at 0: a time is over in the first call
- * that comes PT or more after it, with PT 0 in the call of the edge. A PT that changes while the time runs is followed;
- * what is over stays over. A negative PT acts as 0.
- *
- * What has passed is a difference of two times in 64 bits without a sign: right for every pair of them.
- */
+/* TON, TOF, TP (IEC 61131-3, 2.5.2.3.4) on the time of the scan. The time begins at the edge and is over in the first
+ * call that comes PT or more after it, with PT 0 in the call of the edge. If PT changes while the time runs, the new PT
+ * applies; a time that is over stays over. A negative PT acts as 0. What has passed is a difference of two times in 64
+ * bits without a sign: right for every pair of them. */
 #include "cm1e/iec.h"
 #include "cm1e/scan_time.h"
 
@@ -19,7 +16,7 @@ static TIME run(cm1e_iec_timer_t *timer, TIME preset)
 {
     const TIME now = cm1e_scan_time(), most = preset > 0 ? preset : 0;
     if (now < timer->start)
-        timer->start = now; /* somebody set the time back */
+        timer->start = now; /* the time was set back */
     const uint64_t passed = (uint64_t)now - (uint64_t)timer->start;
     timer->running = passed < (uint64_t)most;
     return timer->running ? (TIME)passed : most;
@@ -57,8 +54,8 @@ void TOF(TOF_t *fb)
     }
 }
 
-/** Not triggered again before the call after the one in which a pulse ends: Q is seen FALSE between two pulses, and no
- *  pulse is longer than PT and a scan. */
+/** A pulse can be triggered again in the call after the one in which it ends: Q is FALSE between two pulses, and no
+ *  pulse is longer than PT and one scan. */
 void TP(TP_t *fb)
 {
     cm1e_iec_timer_t *timer = &fb->Private;

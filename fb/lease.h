@@ -1,8 +1,8 @@
 /**
  * @file lease.h
- * How long an axis goes on with what a block has to want in every call (MC_Jog, MC_DigitalCamSwitch) when the block is
- * no longer called: four times the time between its last two calls, so that a late task is no reason to stop, at least
- * 100 ms, at most 1 s; 1 s where there was no call before.
+ * The time after which an axis ends the action of a block that must be called in every cycle (MC_Jog,
+ * MC_DigitalCamSwitch) and is no longer called. It is four times the time between the last two calls, so that a late
+ * task does not end it, at least 100 ms and at most 1 s. Before the second call it is 1 s.
  */
 #ifndef CM1E_FB_LEASE_H
 #define CM1E_FB_LEASE_H

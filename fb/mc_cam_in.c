@@ -1,6 +1,6 @@
 #include "coupling.h"
 
-/** In the first call after each, also of a task that runs more rarely than the bus. */
+/** TRUE in the first call after each end, also in a task that is slower than the bus cycle. */
 static void show_ends(MC_CamIn_t *fb, UDINT ends)
 {
     fb->EndOfProfile = ends > fb->Private.ends;

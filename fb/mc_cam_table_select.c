@@ -1,6 +1,6 @@
 #include "edge.h"
 
-/** The cam is copied at the edge; which master it is for, MC_CamIn says. */
+/** The cam is copied at the edge; MC_CamIn names its master. */
 static cm1e_error_t take(MC_CamTableSelect_t *fb, cm1e_axis_t *slave)
 {
     fb->CamTableID = 0;

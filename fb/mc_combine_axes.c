@@ -1,6 +1,6 @@
 #include "coupling.h"
 
-/** The standard gives both a sign. A ratio that is out of range keeps a 0, which the axis refuses. */
+/** In the standard both numbers have a sign. A ratio that is out of range becomes 0, which the axis refuses. */
 static cm1e_coupling_master_t master(const AXIS_REF_t *axis, MC_SOURCE source, DINT numerator, DINT denominator)
 {
     const int64_t signed_numerator = denominator < 0 ? -(int64_t)numerator : numerator;

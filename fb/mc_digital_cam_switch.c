@@ -4,31 +4,29 @@
 #include "edge.h"
 #include "lease.h"
 
-/*
- * 3.32. Each switch is looked at by two points that run with the axis: the one that switches on and the one that
- * switches off. A negative compensation puts a point ahead by the way of that time at the present velocity; a positive
- * one delays what has been seen by that time, which is exact however the velocity changes. Where the two points differ,
- * the one that enters switches on, the one that leaves switches off; where they agree, they are right, so that an axis
- * that stops between them ends with the switch as its position says.
- */
+/* 3.32. Two points that move with the axis evaluate each switch: one switches on, the other switches off. A negative
+ * compensation puts a point ahead by the distance of that time at the present velocity. A positive compensation delays
+ * the switching by that time, which is exact even if the velocity changes. While the two points differ, the one that
+ * enters switches on and the one that leaves switches off. When they agree, their state applies, so that an axis that
+ * stops between them ends with the switch at the state of its position. */
 
-/* So long the actual position may be unknown before the outputs go off: a lost frame is no reason. */
+/* Time for which the actual position may be unknown before the outputs go off: a single lost frame does not count. */
 static const TIME unseen_ns = 20000000;
-/* Fewer counts than this are no motion when the direction matters: a motor that stands trembles. */
+/* Fewer counts than this do not count as motion for the direction, because a motor at standstill trembles. */
 static const double trembling_counts = 20.0;
 
-/** What a call knows of the axis. */
+/** The axis as one call sees it. */
 typedef struct look {
     cm1e_axis_measures_t axis;
     TIME now;
     double position, velocity;
-    bool first;      /* nothing is known of a last call */
-    int direction;   /* of the last motion: 1 positive, 2 negative, 0 there was none */
+    bool first;      /* there was no earlier call */
+    int direction;   /* direction of the last motion: 1 positive, 2 negative, 0 none */
 } look_t;
 
 /* ---- positions --------------------------------------------------------------------------------------------------- */
 
-/** The shortest way from `a` to `b`. */
+/** The shortest distance from `a` to `b`. */
 static double way_between(const look_t *look, double a, double b)
 {
     const double range = look->axis.modulo_range;
@@ -44,7 +42,7 @@ static bool inside(const look_t *look, const MC_CAMSWITCH *cam, double position)
     return cam->FirstOnPosition <= cam->LastOnPosition ? above && below : above || below;
 }
 
-/** The point moves to `position`; its way since the last call, with its sign. */
+/** Moves the point to `position`. Returns its signed distance since the last call. */
 static double move(const look_t *look, cm1e_cam_point_t *point, double position)
 {
     const double way = look->first ? 0.0 : way_between(look, point->position, position);
@@ -52,7 +50,7 @@ static double move(const look_t *look, cm1e_cam_point_t *point, double position)
     return way;
 }
 
-/** A point that has come `way` to `position` came over `place`. */
+/** Whether a point that moved by `way` to `position` has passed `place`. */
 static bool crossed(const look_t *look, double position, double way, double place)
 {
     const double to_place = way_between(look, position - way, place);
@@ -72,7 +70,7 @@ static void follow(const look_t *look, const MC_CAMSWITCH *cam, double hysteresi
     bool now = inside(look, cam, position);
     if (!now && !point->inside && crossed(look, position, way, cam->FirstOnPosition) &&
         crossed(look, position, way, cam->LastOnPosition))
-        now = true; /* a switch that is shorter than the way of a call is on for one */
+        now = true; /* a switch that is shorter than the distance of one call is on for one call */
     if (now != point->inside && !look->first && hysteresis > 0.0)
         point->held = first <= last ? 1 : 2;
     point->inside = now;
@@ -120,8 +118,8 @@ static bool wanted_by_time(const look_t *look, const MC_CAMSWITCH *cam, const MC
 
 static TIME delay(TIME compensation) { return compensation > 0 ? compensation : 0; }
 
-/** On from when it is wanted until it is no longer, each later by its delay. What is on of the time before lasts as
- *  long as it has to; one that has not begun yet and the next one become one. */
+/** Applies the delays of switching on and off. An earlier on-time lasts to its end; one that has not begun yet and the
+ *  next one become one. */
 static bool delayed(const look_t *look, const MC_TRACK *track, bool wanted, TIME off_delay, cm1e_cam_switch_t *state)
 {
     if (wanted && !state->wanted) {
@@ -140,7 +138,7 @@ static bool delayed(const look_t *look, const MC_TRACK *track, bool wanted, TIME
 
 static bool evaluate(const look_t *look, const MC_CAMSWITCH *cam, const MC_TRACK *track, cm1e_cam_switch_t *state)
 {
-    if (cam->CamSwitchMode == 1) /* Duration says how long: both ends are delayed alike */
+    if (cam->CamSwitchMode == 1) /* Duration sets the length: both ends have the same delay */
         return delayed(look, track, wanted_by_time(look, cam, track, state), delay(track->OnCompensation), state);
     return delayed(look, track, wanted_by_position(look, cam, track, state), delay(track->OffCompensation), state);
 }
@@ -188,7 +186,7 @@ static cm1e_error_t evaluate_all(MC_DigitalCamSwitch_t *fb, const look_t *look, 
     return CM1E_OK;
 }
 
-/** The direction turns when the axis comes back by more than it trembles; a set-point does not. */
+/** The direction changes when the axis comes back by more than its tremble; a set-point does not tremble. */
 static void follow_direction(cm1e_cam_private_t *p, look_t *look, double trembling)
 {
     const double away = look->first ? 0.0 : way_between(look, p->turn, look->position);
@@ -211,7 +209,7 @@ static void forget(cm1e_cam_private_t *p)
         p->switches[i] = (cm1e_cam_switch_t){0};
 }
 
-/** FALSE: the position is not known. */
+/** Returns false if the position is not known. */
 static bool look_at(MC_DigitalCamSwitch_t *fb, const cm1e_axis_t *axis, look_t *look)
 {
     cm1e_cam_private_t *p = &fb->Private;
@@ -224,7 +222,7 @@ static bool look_at(MC_DigitalCamSwitch_t *fb, const cm1e_axis_t *axis, look_t *
     if (actual && !info.online)
         return false;
     const double since_s = (double)(look->now - p->seen) * 1e-9, trembling = trembling_counts * look->axis.resolution;
-    /* Farther than the axis can have moved: its coordinates were changed, and nothing was passed on the way. */
+    /* The change is larger than the axis can have moved: the coordinates were changed, and no switch was passed. */
     const double most = 2.0 * look->axis.max_velocity * since_s + trembling;
     look->first = !p->running || fabs(way_between(look, p->position, look->position)) > most;
     follow_direction(p, look, actual ? trembling : 0.0);

@@ -4,12 +4,11 @@
 #include "edge.h"
 #include "lease.h"
 
-/*
- * TwinCAT's MC_Jog, made of the axis's commands. A jog begins with the rising edge of one button while the other one is
- * not pressed. In the modes of holding it is a move to the software limit, which ends there without an error, or a
- * velocity where there is none; it ends when the button is released, when the other one is pressed as well, and by the
- * axis itself when this block is no longer called. Inching moves one step, whatever becomes of the button.
- */
+/* TwinCAT's MC_Jog, made of commands of the axis. A jog begins with the rising edge of one button while the other one
+ * is not pressed. In the modes with a held button it is a move to the software limit, which ends there without an
+ * error, or a motion at a velocity if there is no limit. It ends when the button is released or the other one is
+ * pressed too; the axis ends it when this block is no longer called. Inching moves one step, independent of the
+ * button. */
 
 typedef struct jog {
     double velocity, acceleration, deceleration, jerk;
@@ -21,7 +20,7 @@ static cm1e_error_t choose(const MC_Jog_t *fb, const cm1e_axis_measures_t *measu
     *jog = (jog_t){.velocity = fb->Velocity, .acceleration = fb->Acceleration, .deceleration = fb->Deceleration,
                    .jerk = fb->Jerk};
     const bool standard = fb->Mode == MC_JOGMODE_STANDARD_SLOW || fb->Mode == MC_JOGMODE_STANDARD_FAST;
-    if (!standard && !(fb->Velocity > 0.0)) /* the axis would take a negative one as the other direction */
+    if (!standard && !(fb->Velocity > 0.0)) /* the axis would take a negative velocity as the other direction */
         return CM1E_ERROR_AXIS_VELOCITY_RANGE;
     switch ((int)fb->Mode) {
     case MC_JOGMODE_STANDARD_SLOW:
@@ -40,8 +39,8 @@ static cm1e_error_t choose(const MC_Jog_t *fb, const cm1e_axis_measures_t *measu
     }
 }
 
-/** One step from `position` in the direction of `sign`; to the next multiple of it, where a thousandth of it away from
- *  one counts as being there. */
+/** Target of one step from `position` in the direction of `sign`. INCHING_MODULO goes to the next multiple; within a
+ *  thousandth of a multiple the axis counts as being there. */
 static double step(const MC_Jog_t *fb, double position, double sign)
 {
     if (fb->Mode == MC_JOGMODE_INCHING)
@@ -50,8 +49,8 @@ static double step(const MC_Jog_t *fb, double position, double sign)
     return sign * ((floor(steps + 0.001) + 1.0) * fb->Position) - position;
 }
 
-/** What the axis is to do over a way of `distance` (not used while a button is held), where `room` is left to the limit
- *  that lies ahead; infinite: there is none. */
+/** The command for the axis. `distance` is the step (not used while a button is held), `room` the distance to the limit
+ *  ahead; infinite if there is none. */
 static cm1e_axis_command_t command_of(const MC_Jog_t *fb, const jog_t *jog, double limit, double room, double distance)
 {
     cm1e_axis_command_t command = {.velocity = jog->velocity, .acceleration = jog->acceleration,
@@ -84,12 +83,13 @@ static cm1e_error_t start(MC_Jog_t *fb, cm1e_axis_t *axis)
     const double limit = fb->Private.backwards ? measures.lower : measures.upper;
     const double room = sign * (limit - info.set_position);
     const double distance = jog.held ? 0.0 : sign * step(fb, info.set_position, sign);
-    if (!jog.held && !(distance > 0.0 && isfinite(distance))) /* a multiple that numbers cannot tell from where it is */
+    if (!jog.held && !(distance > 0.0 && isfinite(distance))) /* the multiple equals the present position within the
+                                                               * precision of numbers */
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     fb->Private.held = jog.held;
     fb->Private.deceleration = jog.deceleration;
     fb->Private.jerk = jog.jerk;
-    /* At the limit: what moves the axis ends there all the same, and an axis that may not move says so. */
+    /* At the limit: the present motion ends there in any case, and a disabled direction is reported. */
     const cm1e_axis_command_t command = room > measures.resolution ? command_of(fb, &jog, limit, room, distance)
                                                                    : (cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT};
     return cm1e_axis_start(axis, &command, &fb->Private.common.command);
@@ -114,7 +114,7 @@ static void poll(MC_Jog_t *fb, cm1e_axis_t *axis)
     const bool both = fb->JogForward && fb->JogBackwards, released = p->held && !button;
     const bool at_limit = status.state == CM1E_COMMAND_DONE && p->held && !p->stopping;
     if (at_limit && button && !both)
-        return; /* it stands there, and the button is still pressed */
+        return; /* the axis stands at the limit, and the button is still pressed */
     if (status.state == CM1E_COMMAND_ACTIVE && !p->stopping && (both || released))
         stop(fb, axis);
     else

@@ -10,7 +10,7 @@ void MC_MoveSuperimposed(MC_MoveSuperimposed_t *fb)
     };
     const BOOL busy_before = fb->Busy;
     const fb_outputs_t out = cm1e_fb_motion(&fb->Private, fb->Axis, fb->Execute, fb->ContinuousUpdate, &command);
-    if (busy_before || out.busy) /* what was covered at its end stays to be read */
+    if (busy_before || out.busy) /* the distance covered at the end stays readable */
         fb->CoveredDistance = out.covered;
     fb->Done = out.done;
     FB_SHOW(fb, out);

@@ -10,7 +10,7 @@ void MC_MoveVelocity(MC_MoveVelocity_t *fb)
         .buffer_mode = fb->BufferMode,
     };
     const fb_outputs_t out = cm1e_fb_motion(&fb->Private, fb->Axis, fb->Execute, fb->ContinuousUpdate, &command);
-    /* 2.4.1: it speaks of the set-point, may fall and rise again, and ends neither Busy nor Active. */
+    /* 2.4.1: InVelocity refers to the set-point, may fall and rise again, and ends neither Busy nor Active. */
     fb->InVelocity = out.reached;
     FB_SHOW_ACTIVE(fb, out);
 }

@@ -13,7 +13,7 @@ void MC_PhasingRelative(MC_PhasingRelative_t *fb)
     };
     const BOOL busy_before = fb->Busy;
     const fb_outputs_t out = cm1e_fb_couple(&fb->Private, fb->Slave, fb->Execute, FALSE, &command);
-    if (busy_before || out.busy) /* what it was at its end stays to be read */
+    if (busy_before || out.busy) /* the value at the end stays readable */
         fb->CoveredPhaseShift = out.covered;
     fb->Done = out.done;
     FB_SHOW_ACTIVE(fb, out);

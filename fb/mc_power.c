@@ -1,11 +1,9 @@
 #include "core/rare.h"
 #include "edge.h"
 
-/**
- * Enable is a level for the power stage, not for the block (3.1). The axis is latched at Enable's rising edge, and this
- * block stays responsible for it until the stage is off: giving it another axis meanwhile is an error that is shown,
- * but the latched axis goes on following Enable, so that the program can still switch it off.
- */
+/** Enable is a level for the power stage, not for the block (3.1). The axis is latched at Enable's rising edge, and
+ *  this block controls it until the power stage is off. Another axis meanwhile is an error of the block, but the
+ *  latched axis goes on following Enable, so that the program can still switch it off. */
 static void release(cm1e_fb_private_t *fb)
 {
     fb->axis_handle = 0;
@@ -23,7 +21,8 @@ static void take(cm1e_fb_private_t *fb, const AXIS_REF_t *reference)
         cm1e_fb_fail(fb, CM1E_ERROR_FB_AXIS_REF);
 }
 
-/** The stage cannot come on: the axis says why. Goes away by itself after MC_Reset (2.2.3, figure 5). */
+/** The power stage cannot switch on, and the error of the axis says why. This error ends by itself after MC_Reset
+ *  (2.2.3, figure 5). */
 static cm1e_error_t reason_for_no_power(const cm1e_axis_t *axis)
 {
     cm1e_axis_info_t info;
@@ -31,7 +30,7 @@ static cm1e_error_t reason_for_no_power(const cm1e_axis_t *axis)
     return info.state == CM1E_AXIS_ERROR_STOP ? info.error : CM1E_OK;
 }
 
-/** Tells the axis what the inputs say; returns an error that may pass. */
+/** Passes the inputs to the axis. Returns an error that may end by itself. */
 static cm1e_error_t follow_inputs(MC_Power_t *fb, cm1e_axis_t *axis)
 {
     const cm1e_error_t error = cm1e_axis_power(axis, fb, fb->Enable, fb->EnablePositive, fb->EnableNegative);
@@ -47,7 +46,7 @@ static cm1e_error_t follow_inputs(MC_Power_t *fb, cm1e_axis_t *axis)
     return error || fb->Status ? error : reason_for_no_power(axis);
 }
 
-/** Nothing has changed since the last call, as in most: the outputs stand as they are. */
+/** Nothing has changed since the last call, which is the usual case: the outputs do not change. */
 static bool stands(const MC_Power_t *fb)
 {
     return fb->Enable && fb->Status && fb->Valid && fb->Private.trigger_before && fb->Axis &&

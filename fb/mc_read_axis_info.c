@@ -1,7 +1,8 @@
 #include "axis/axis_signals.h"
 #include "edge.h"
 
-/** Valid also while the drive is off the bus: CommunicationReady says so, and the switches are those last seen. */
+/** Valid also while the drive is off the bus: CommunicationReady shows that, and the switches have their last
+ *  values. */
 void MC_ReadAxisInfo(MC_ReadAxisInfo_t *fb)
 {
     cm1e_axis_info_t info = {0};

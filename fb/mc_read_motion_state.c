@@ -3,8 +3,8 @@
 #include "axis/axis_signals.h"
 #include "edge.h"
 
-/* The measured velocity is never quite still: this much of the axis's maximum, and at least so many counts/s, is no
- * change; and a change counts for so long. */
+/* The measured velocity is noisy: a change below this share of the axis maximum, or below this number of counts/s, is
+ * ignored. A change is shown for this time. */
 static const double dead_share = 0.005, dead_counts_per_s = 2000.0;
 static const TIME change_ns = 50000000;
 
@@ -24,8 +24,8 @@ static void show_set(MC_ReadMotionState_t *fb, const cm1e_axis_info_t *info)
     show(fb, v, v * a > 0.0 || (v == 0.0 && a != 0.0), v * a < 0.0);
 }
 
-/** The speed drags a reference behind it that is a dead band wide: what pulls it up accelerates, what pushes it down
- *  decelerates, as long as that has happened a moment ago. Noise within the band moves nothing. */
+/** The speed moves a reference with a dead band. While the reference has risen within the last moment, the axis
+ *  accelerates; while it has fallen, the axis decelerates. Noise within the dead band has no effect. */
 static void show_actual(MC_ReadMotionState_t *fb, const cm1e_axis_t *axis, const cm1e_axis_info_t *info, bool begins)
 {
     cm1e_motion_private_t *p = &fb->Private;

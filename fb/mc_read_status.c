@@ -3,7 +3,7 @@
 void MC_ReadStatus(MC_ReadStatus_t *fb)
 {
     cm1e_axis_info_t info = {0};
-    /* The state diagram is the axis's own: valid also while the drive is off the bus. */
+    /* The axis itself has the state diagram, so the block is valid also while the drive is off the bus. */
     const BOOL valid = cm1e_fb_read(&fb->Private, fb->Axis, fb->Enable, &info);
     const fb_outputs_t out = cm1e_fb_outputs(&fb->Private);
     fb->Valid = valid;

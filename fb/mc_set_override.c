@@ -6,7 +6,7 @@ void MC_SetOverride(MC_SetOverride_t *fb)
     cm1e_axis_t *axis = enabled ? cm1e_fb_axis(&fb->Private) : NULL;
     const cm1e_error_t error = axis ? cm1e_axis_set_override(axis, fb->VelFactor, fb->AccFactor, fb->JerkFactor)
                                     : CM1E_OK;
-    /* Factors that are refused change nothing, and better ones end the error (figure 36, 4). */
+    /* Refused factors change nothing, and valid ones end the error (figure 36, 4). */
     const fb_reading_t out = cm1e_fb_reading(&fb->Private, axis, error);
     fb->Enabled = out.valid;
     fb->Busy = out.busy;

@@ -1,6 +1,6 @@
 #include "edge.h"
 
-/** The position of this axis cannot be told from the input of another motor. */
+/** An input of another motor cannot give the position of this axis. */
 static cm1e_error_t signal_of_another_axis(const MC_StepAbsoluteSwitch_t *fb)
 {
     const UINT handle = fb->ReferenceSignal.Axis.Handle;

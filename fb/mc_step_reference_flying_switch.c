@@ -1,6 +1,6 @@
 #include "edge.h"
 
-/* Not in this version: MC_TouchProbe and MC_SetPosition do it in two blocks. */
+/* Not implemented in this version: use MC_TouchProbe and MC_SetPosition. */
 void MC_StepReferenceFlyingSwitch(MC_StepReferenceFlyingSwitch_t *fb)
 {
     const cm1e_axis_command_t none = {.kind = CM1E_COMMAND_HOMING_STEP};

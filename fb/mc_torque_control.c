@@ -1,6 +1,7 @@
 #include "edge.h"
 
-/** 3.13. The CM1-E knows positions and velocities only (0x6502 = 0x1A5, UG 6.2): an error that says so, no more. */
+/** 3.13. The CM1-E has position and velocity modes only (0x6502 = 0x1A5, UG 6.2), so the block always shows an
+ *  error. */
 void MC_TorqueControl(MC_TorqueControl_t *fb)
 {
     cm1e_axis_t *axis = NULL;

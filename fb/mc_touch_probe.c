@@ -13,15 +13,16 @@ static cm1e_error_t arm(MC_TouchProbe_t *fb, cm1e_axis_t *axis)
 static void poll(MC_TouchProbe_t *fb, const cm1e_axis_t *axis)
 {
     const cm1e_probe_status_t status = cm1e_axis_probe_status(axis, fb->Private.command);
-    cm1e_fb_polled(&fb->Private, status.state, status.error); /* UNKNOWN, taken over by another, shows as aborted */
+    cm1e_fb_polled(&fb->Private, status.state, status.error); /* UNKNOWN (another block took over the trigger) is
+                                                               * shown as aborted */
     if (status.state == CM1E_COMMAND_DONE) {
         fb->RecordedPosition = status.position;
         fb->Uncertainty = status.uncertainty;
     }
 }
 
-/** The axis waits for the trigger, also while the block is not called; what was recorded stays until the next edge of
- *  Execute. */
+/** The axis waits for the trigger, also while the block is not called. The recorded position stays until the next edge
+ *  of Execute. */
 void MC_TouchProbe(MC_TouchProbe_t *fb)
 {
     cm1e_axis_t *axis = NULL;

@@ -19,7 +19,8 @@ static void poll(MC_WriteDigitalOutput_t *fb, cm1e_axis_t *axis)
     cm1e_fb_polled(&fb->Private, state, error);
 }
 
-/** Done in the call after the edge: the value has left with the cycle of the edge. Behind a bridge an SDO brings it. */
+/** Done comes in the call after the edge: the value was sent in the cycle of the edge. Behind a bridge an SDO transfers
+ *  it. */
 void MC_WriteDigitalOutput(MC_WriteDigitalOutput_t *fb)
 {
     cm1e_axis_t *axis = NULL;

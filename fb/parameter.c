@@ -1,6 +1,6 @@
 #include "parameter.h"
 
-/** An object of the drive, read again and again: a transfer always waits or is under way. */
+/** Reads an object of the drive repeatedly: a transfer always waits or runs. */
 static cm1e_error_t read_object(cm1e_fb_private_t *fb, cm1e_axis_t *axis, INT number, fb_parameter_t *shown)
 {
     double value;
@@ -16,7 +16,7 @@ static cm1e_error_t read_object(cm1e_fb_private_t *fb, cm1e_axis_t *axis, INT nu
     DWORD ticket;
     const cm1e_error_t refused = cm1e_axis_object_start(axis, number, false, 0.0, &ticket);
     if (refused == CM1E_OK)
-        fb->command = ticket; /* full: again in the next call */
+        fb->command = ticket; /* the queue is full: try again in the next call */
     return error ? error : refused == CM1E_ERROR_FULL ? CM1E_OK : refused;
 }
 
@@ -36,7 +36,8 @@ void cm1e_fb_read_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *reference, 
 {
     const bool edge = enable && !fb->trigger_before;
     const bool readable = cm1e_fb_enable(fb, reference, enable) != NULL;
-    /* A wrong number or a refusal of the drive goes away by itself or with another number: Busy stays (2.2.3). */
+    /* The error of a wrong number or of a refusal by the drive ends by itself or with another number, so Busy stays
+     * TRUE (2.2.3). */
     cm1e_error_t error = CM1E_OK;
     if (edge || !readable) {
         fb->command = 0;
@@ -64,7 +65,7 @@ static cm1e_error_t start(cm1e_fb_private_t *fb, cm1e_axis_t *axis, INT number, 
     return cm1e_axis_object_start(axis, number, true, value, &fb->command);
 }
 
-/** A block that was not called for so long that its result is gone cannot say what became of it. */
+/** A block that was not called for a long time may have lost its result. */
 static void poll_object(cm1e_fb_private_t *fb, const cm1e_axis_t *axis)
 {
     double written;
@@ -86,7 +87,7 @@ fb_outputs_t cm1e_fb_write_parameter(cm1e_fb_private_t *fb, const AXIS_REF_t *re
         cm1e_fb_started(fb, error ? error : start(fb, axis, number, boolean, value));
         break;
     case FB_STEP_POLL:
-        if (fb->command == 0) /* of the axis: done at the edge, shown a call later, as by all blocks */
+        if (fb->command == 0) /* parameter of the axis: done at the edge, shown in the next call, as in all blocks */
             cm1e_fb_polled(fb, CM1E_COMMAND_DONE, CM1E_OK);
         else
             poll_object(fb, axis);

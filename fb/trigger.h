@@ -1,6 +1,6 @@
 /**
  * @file trigger.h
- * MC_TRIGGER_REF as the axis understands it, for MC_TouchProbe and MC_AbortTrigger.
+ * Converts MC_TRIGGER_REF for the axis; used by MC_TouchProbe and MC_AbortTrigger.
  */
 #ifndef CM1E_FB_TRIGGER_H
 #define CM1E_FB_TRIGGER_H
@@ -8,7 +8,8 @@
 #include "axis/axis_signals.h"
 #include "edge.h"
 
-/** NULL: input 1 goes on. An input of another motor is CM1E_ERROR_UNSUPPORTED: its inputs are of another moment. */
+/** NULL selects the rising edge of input 1. An input of another motor is CM1E_ERROR_UNSUPPORTED, because it is sampled
+ *  at another moment. */
 static inline cm1e_error_t fb_trigger(const MC_TRIGGER_REF *reference, const cm1e_fb_private_t *fb,
                                       cm1e_axis_trigger_t *trigger)
 {

@@ -1,4 +1,4 @@
-/** cm1e check: the cross-checker, for files of any of the formats. */
+/** cm1e check: the cross-checker for files of all formats. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -23,12 +23,12 @@ typedef struct cml_options {
     int count;
 } cml_options_t;
 
-/** What the strings go to, and what is to be put right at the end. */
+/** The receiver of the strings, and what has to be restored at the end. */
 typedef struct session {
     const cml_options_t *options;
     cm1e_bus_t *bus;
     uint16_t slave;
-    unsigned channel; /**< 0: each string says it */
+    unsigned channel; /**< 0: each string names it */
     bool used[CM1E_BRIDGE_AXES], moved[CM1E_BRIDGE_AXES];
 } session_t;
 
@@ -105,7 +105,7 @@ static bool choose_axis(session_t *session, const cm1e_bus_config_t *config, cm1
     return true;
 }
 
-/* The only bridge, where none is named. */
+/* The only bridge, if none is named. */
 static bool choose_slave(session_t *session)
 {
     unsigned bridges = 0;
@@ -123,7 +123,7 @@ static bool choose_slave(session_t *session)
     return false;
 }
 
-/* The connector that a string names, of its first command that does; 0: none does. */
+/* The connector that the first command with a connector names; 0: none. */
 static unsigned named_channel(const char *text)
 {
     do {
@@ -184,14 +184,14 @@ static void print_text(const session_t *session, const cm1e_cml_exchange_t *exch
                  exchange->strays == 1 ? "answers" : "answer", exchange->stray);
 }
 
-/* Before anything is sent to the slave, its mode among that. */
+/* Called before anything is sent to the slave, including its mode. */
 static bool refused_here(cm1e_error_t error)
 {
     return error == CM1E_ERROR_INVALID_ARGUMENT || error == CM1E_ERROR_CM_NO_BRIDGE ||
            error == CM1E_ERROR_CML_STRING || error == CM1E_ERROR_CML_MOTION;
 }
 
-/* What was typed, or its beginning, as a terminal may see it. */
+/* The beginning of the input, safe for a terminal. */
 static const char *show(const char *text, char shown[CM1E_CML_BYTES + 1])
 {
     size_t size = 0;
@@ -201,7 +201,7 @@ static const char *show(const char *text, char shown[CM1E_CML_BYTES + 1])
     return shown;
 }
 
-/** Sends a string and shows what came back, in `results` where that is not NULL. */
+/** Sends a string and shows the answer, in `results` if that is not NULL. */
 static int send_string(session_t *session, const char *text, json_t *results)
 {
     static cm1e_cml_exchange_t exchange;
@@ -257,7 +257,7 @@ static int refuse_binary(const char *line)
     return EXIT_WRONG_USE;
 }
 
-/* Line by line until the end of the input; a line that fails does not end it, but shows in the exit status. */
+/* Sends the input line by line. A line that fails does not end it, but sets the exit status. */
 static int send_lines(session_t *session)
 {
     const bool prompts = isatty(STDIN_FILENO) && isatty(STDOUT_FILENO);
@@ -271,7 +271,7 @@ static int send_lines(session_t *session)
         const ssize_t size = getline(&line, &room, stdin);
         if (size < 0)
             break;
-        const bool whole = strlen(line) == (size_t)size; /* else there is a byte 0 in it */
+        const bool whole = strlen(line) == (size_t)size; /* otherwise the line contains a byte 0 */
         line[strcspn(line, "\r\n")] = '\0';
         if (line[0] == '\0' && whole)
             continue;
@@ -288,7 +288,8 @@ static int send_lines(session_t *session)
     return status;
 }
 
-/* Back to csp, without torque after what may have moved a motor: nobody watches it from here on. */
+/* Returns to csp; without torque after strings that may have moved a motor, because no program supervises it any
+ * more. */
 static int leave(session_t *session)
 {
     int status = EXIT_OK;
@@ -310,8 +311,8 @@ static int run_session(session_t *session, const cm1e_bus_config_t *config, cm1e
     return sent != EXIT_OK ? sent : left;
 }
 
-/* Also where the terminal or the reader of our output is gone: a motor that moves by a string is freed at the end, and
- * no watchdog does it for us. */
+/* Also if the terminal or the reader of our output is closed: a motor that moves by a string must be freed at the end,
+ * and no watchdog does that. */
 static void end_in_order(void)
 {
     const struct sigaction end = {.sa_handler = on_signal}, ignore = {.sa_handler = SIG_IGN};

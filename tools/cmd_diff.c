@@ -1,4 +1,4 @@
-/** cm1e diff: a file beside the live devices that it describes. */
+/** cm1e diff: compares a file with the live devices that it describes. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,7 +33,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 }
 
 /** Compares with one slave and prints it, or appends it to `json`. EXIT_WRONG_USE: it could not be compared;
- *  `*described` says whether the file is about it at all. */
+ *  `*described` says whether the file describes this slave. */
 static int diff_slave(cm1e_bus_t *bus, const diff_options_t *options, const input_t *input, uint16_t position,
                       json_t *json, bool *described, cm1e_diag_t *diag)
 {

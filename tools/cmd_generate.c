@@ -28,10 +28,10 @@ typedef struct generate_options {
     struct {
         const char *path;
         uint32_t vendor_id, product_code;
-    } config_of[MAX_DEVICES]; /**< the image that a device's configuration words come from; NULL: none */
+    } config_of[MAX_DEVICES]; /**< image with the configuration words of a device; NULL: none */
 } generate_options_t;
 
-/* Options that not every format has; elsewhere they would do nothing. */
+/* Options that only some formats have; for other formats they are refused. */
 static const struct {
     int key;
     const char *name;
@@ -52,7 +52,7 @@ static const struct {
 };
 enum { RESTRICTED = sizeof restricted / sizeof restricted[0] };
 
-/* A word out of a few; EINVAL and a complaint that lists them. */
+/* Selects a word of a list; otherwise EINVAL and a complaint that shows the list. */
 typedef struct choice {
     const char *word;
     int value;
@@ -85,7 +85,7 @@ static cm1e_device_options_t *device_of(generate_options_t *options)
     return &options->devices[options->what.device_count - 1];
 }
 
-/* --device begins the next one; what follows is about it. The first one needs no --device. */
+/* --device begins the next device, and the options after it belong to it. The first device needs no --device. */
 static error_t begin_device(generate_options_t *options, const char *word)
 {
     int model;
@@ -103,8 +103,8 @@ static error_t begin_device(generate_options_t *options, const char *word)
     return 0;
 }
 
-/* Configuration words of another device can make this one unreachable: the file has to be an image, and a whole one. Of
- * which device is looked at when all options are read. */
+/* Configuration words of another device can make this one unreachable, so the file must be a complete image. Its device
+ * is checked when all options are read. */
 static bool parse_config_data(const char *path, generate_options_t *options)
 {
     input_t input;
@@ -218,7 +218,7 @@ static void check_restricted(const generate_options_t *options, struct argp_stat
     }
 }
 
-/* Whose configuration words they are. */
+/* Checks that the configuration words belong to the described device. */
 static void check_config_data(const generate_options_t *options, struct argp_state *state)
 {
     for (size_t i = 0; i < options->what.device_count; i++) {
@@ -332,7 +332,7 @@ static cm1e_error_t generate_from_file(cm1e_file_t *file, const generate_options
     return error;
 }
 
-/* A network that is there is scanned; one that is only described is taken from its bus file. */
+/* With an interface the network is scanned; otherwise it is taken from the bus file. */
 static cm1e_error_t generate_network(cm1e_file_t *file, generate_options_t *options, cm1e_diag_t *diag)
 {
     static cm1e_bus_config_t config;
@@ -355,7 +355,7 @@ static cm1e_error_t generate_network(cm1e_file_t *file, generate_options_t *opti
     return error;
 }
 
-/* EXIT_WRONG_USE where the options do not fit together, but not what a file read has in it. */
+/* EXIT_WRONG_USE if the options contradict each other, but not for the contents of a file. */
 static int refuse(const generate_options_t *options, cm1e_error_t error, const cm1e_diag_t *diag)
 {
     if (diag->text[0])
@@ -363,7 +363,7 @@ static int refuse(const generate_options_t *options, cm1e_error_t error, const c
     return error == CM1E_ERROR_CONFIG && !options->from ? EXIT_WRONG_USE : EXIT_FAILED;
 }
 
-/* Both files, or neither where one of them is refused. */
+/* Writes both files, or none if one of them is refused. */
 static int write_files(const generate_options_t *options, const cm1e_file_t *file)
 {
     cm1e_file_t program = {0};

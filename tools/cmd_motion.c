@@ -1,4 +1,4 @@
-/** cm1e move, cm1e home: one axis, enabled, moved or homed, and disabled again, by a program of function blocks. */
+/** cm1e move, cm1e home: a program of function blocks enables one axis, moves or homes it, and disables it. */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -30,7 +30,7 @@ typedef struct motion_options {
 typedef enum motion_step { STEP_POWER, STEP_RESET, STEP_RUN, STEP_HALT, STEP_SETTLE, STEP_POWER_OFF, STEP_END
 } motion_step_t;
 
-/** The program: its blocks, its step, and what came out. */
+/** The program: its blocks, its step, and its result. */
 typedef struct motion_program {
     const motion_options_t *options;
     cm1e_scheduler_t *scheduler;
@@ -42,7 +42,8 @@ typedef struct motion_program {
     MC_MoveRelative_t move_relative;
     MC_MoveVelocity_t move_velocity;
     MC_Halt_t halt;
-    MC_MoveRelative_t settle; /**< by 0, behind the halt, which is done with its set-point: done when the motor is */
+    MC_MoveRelative_t settle; /**< Distance 0 behind the halt: the halt is done with its set-point, this move when
+                                   the motor has arrived */
     MC_Home_t home;
     cm1e_axis_info_t before, after;
     int64_t started_ns, ended_ns;
@@ -64,7 +65,7 @@ static error_t parse_real_option(char *arg, const char *what, double *value)
     return parse_real(arg, what, value) ? 0 : EINVAL;
 }
 
-/* In a block 0 is the default; who writes it here means something else. Which others are right, the axis says. */
+/* 0 is the default of the block, so a written 0 is refused here. The axis checks all other values. */
 static error_t parse_other_than_0(char *arg, const char *what, double *value)
 {
     if (!parse_real(arg, what, value))
@@ -85,7 +86,7 @@ static error_t parse_seconds(char *arg, double *value)
     return EINVAL;
 }
 
-/* Whether the options of a move fit together. */
+/* Whether the options of a move are consistent. */
 static void check_move(const motion_options_t *options, struct argp_state *state)
 {
     if (options->kind == MOTION_NONE)
@@ -98,7 +99,7 @@ static void check_move(const motion_options_t *options, struct argp_state *state
         argp_error(state, "--speed already states the velocity: leave --velocity out");
 }
 
-/* Before anything moves. */
+/* Checked before anything moves. */
 static void check_files(const motion_options_t *options, struct argp_state *state)
 {
     const bool no_csv_name = options->csv_file && !options->csv_file[0];
@@ -263,7 +264,7 @@ static void program(void *context)
         if (!p->power.Status)
             p->step = STEP_END;
         break;
-    case STEP_END: /* what a failure was shows some ms later, where a bridge has to ask its motor */
+    case STEP_END: /* the cause of a failure is known some ms later if a bridge has to ask its motor */
         if (!p->failed || cm1e_scheduler_time_ns(p->scheduler) - p->ended_ns > DETAILS_NS)
             cm1e_scheduler_stop(p->scheduler);
         break;
@@ -290,7 +291,7 @@ static void prepare(motion_program_t *p, const motion_options_t *options)
         .Acceleration = options->acceleration, .Deceleration = options->deceleration, .Jerk = options->jerk};
 }
 
-/* Where the motor was to go; where it just turned, its set-point. */
+/* Target of the motor; for --speed its set-point. */
 static double target_of(const motion_program_t *p)
 {
     switch (p->options->kind) {
@@ -301,7 +302,7 @@ static double target_of(const motion_program_t *p)
     }
 }
 
-/* How far beyond that it is; across the ends of a modulo axis the short way. NAN: it was not to go anywhere. */
+/* Deviation from the target; on a modulo axis the shorter one. NAN: there was no target. */
 static double deviation_of(const motion_program_t *p)
 {
     if (p->started_ns == 0 || (p->options->kind == MOTION_SPEED && !p->done))
@@ -369,7 +370,8 @@ static void complete(double *value, double otherwise)
         *value = otherwise;
 }
 
-/* What is not given is the bus file's. Of another method the defaults: its offset would lead elsewhere. */
+/* Values that are not given are those of the bus file. With another method they are defaults, because the offset would
+ * not fit. */
 static void complete_homing(motion_options_t *options, const cm1e_homing_config_t *configured)
 {
     static const cm1e_homing_config_t defaults;
@@ -384,7 +386,7 @@ static void complete_homing(motion_options_t *options, const cm1e_homing_config_
     complete(&homing->timeout_s, rest->timeout_s);
 }
 
-/* A trace that cannot be written is told before anything moves. */
+/* A trace that cannot be written is an error before anything moves. */
 static bool files_can_be_written(const motion_options_t *options)
 {
     cm1e_diag_t diag = {0};

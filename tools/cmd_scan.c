@@ -1,4 +1,4 @@
-/** cm1e scan: what is on the network. */
+/** cm1e scan: lists the slaves of the network. */
 #include <stdio.h>
 #include <string.h>
 
@@ -47,7 +47,7 @@ static json_t *slave_as_json(const cm1e_slave_info_t *slave)
                      slave->software_version);
 }
 
-/** The widest of the texts of a column, and what it has at least. */
+/** Width of a column: its widest text, but not below a minimum. */
 static int wider(int width, const char *text)
 {
     const int wanted = (int)cm1e_text_width(text);
@@ -104,7 +104,7 @@ int command_scan(int argc, char **argv)
     } else {
         print_table(bus);
     }
-    /* A bus file says what should be there: compare. */
+    /* A bus file states the expected slaves: compare. */
     const bool as_expected = config.axis_count == 0 || cm1e_bus_identify(bus, &diag) == CM1E_OK;
     return close_bus(bus, &options, as_expected ? EXIT_OK : fail(&diag));
 }

@@ -1,5 +1,5 @@
-/** cm1e sdo read|write|list: one object of one slave, by its type in the device tables where the slave is a CM1-E or a
- *  bridge; or the dictionary that the slave tells of itself. */
+/** cm1e sdo read|write|list: one object of one slave, with its type from the device tables if the slave is a CM1-E or a
+ *  bridge; or the dictionary of the slave. */
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -78,7 +78,8 @@ static bool parse_object(const char *word, uint16_t *index, uint8_t *subindex)
     return true;
 }
 
-/** Row of the type to use: the one asked for, else the device table's; -1: unknown (raw bytes); -2: complained. */
+/** Row of the type to use: the given type, otherwise that of the device table. -1: unknown (raw bytes); -2:
+ *  complained. */
 static int find_type(const char *name, const cm1e_entry_t *entry)
 {
     if (name) {
@@ -128,7 +129,7 @@ static void print_value(const uint8_t *data, size_t size, int type, const cm1e_e
     }
 }
 
-/** The bytes to write for a word; 0 and a complaint where it is no value of the type. */
+/** Converts a word to bytes. Returns 0, with a complaint, if it is not a value of the type. */
 static size_t encode_value(const char *word, int type, uint8_t *data)
 {
     if (types[type].type == CM1E_TYPE_STRING) {
@@ -150,7 +151,7 @@ static size_t encode_value(const char *word, int type, uint8_t *data)
     return types[type].bytes;
 }
 
-/** Why a refusal was to be expected. */
+/** Explains an expected refusal. */
 static int fail_at(const cm1e_entry_t *entry, const cm1e_diag_t *diag)
 {
     const int status = fail(diag);
@@ -201,8 +202,8 @@ static int transfer(cm1e_bus_t *bus, const sdo_options_t *options, cm1e_diag_t *
     return error == CM1E_OK ? EXIT_OK : fail_at(entry, diag);
 }
 
-/** A negative value looks like an option: such a word goes to the end, behind a "--". Nothing looks so behind a "--" of
- *  the user. */
+/** A negative value looks like an option, so such a word is moved to the end, behind a "--". Words behind a "--" of the
+ *  user are not moved. */
 static int shelter_negative_value(int argc, char **argv, char **sheltered)
 {
     static char end_of_options[] = "--";

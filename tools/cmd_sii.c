@@ -1,4 +1,4 @@
-/** cm1e sii read|write|decode: the EEPROM that says who a slave is. */
+/** cm1e sii read|write|decode: the EEPROM with the identity of a slave. */
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -52,7 +52,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
-/** The open bus that the options name; NULL and a complaint, with the exit status. No scan: a damaged SII stops it. */
+/** Opens the bus of the options; NULL, a complaint and the exit status after an error. It does not scan, because a
+ *  damaged SII stops a scan. */
 static cm1e_bus_t *open_bus(const sii_options_t *options, int *status)
 {
     static cm1e_bus_config_t config;
@@ -106,7 +107,7 @@ static int run_read(cm1e_bus_t *bus, const sii_options_t *options, uint16_t posi
 
 /* ---- write ------------------------------------------------------------------------------------------------------ */
 
-/** On the disk before anything is changed, and never in place of another one. */
+/** The backup is on the disk before anything is changed, and never overwrites a file. */
 static bool write_backup(const char *path, const input_t *image)
 {
     const int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
@@ -123,7 +124,7 @@ static bool write_backup(const char *path, const input_t *image)
     return false;
 }
 
-/** Refused before the first word: the backup holds nothing that is not in the slave. */
+/** Refused before the first word was written, so the backup is not needed. */
 static bool nothing_written(cm1e_error_t error)
 {
     return error == CM1E_ERROR_FILE || error == CM1E_ERROR_STATE || error == CM1E_ERROR_CONFIG ||

@@ -1,5 +1,5 @@
-/** cm1e status: every drive's state, error and measurements in words, read over SDO without touching the motor; of the
- *  slaves that are no motor, name and state. What is read of a CM1-E: status_drive.c; of a bridge: status_bridge.c. */
+/** cm1e status: state, error and measurements of every drive, read over SDO without acting on the motor; name and state
+ *  of other slaves. status_drive.c reads a CM1-E, status_bridge.c a bridge. */
 #include <stdio.h>
 
 #include "command.h"
@@ -33,7 +33,7 @@ static void print_drive(const cm1e_slave_info_t *slave, const drive_status_t *dr
         printf("  %-18s %s\n", drive_label(drive, i), drive_text(drive, i, text, sizeof text));
 }
 
-/** Appends to `all`, or prints where that is NULL. FALSE: the statusword cannot be read. */
+/** Appends to `all`, or prints if that is NULL. Returns false if the statusword cannot be read. */
 static bool show_drive(cm1e_bus_t *bus, const cm1e_slave_info_t *slave, json_t *all, cm1e_diag_t *diag)
 {
     drive_status_t drive;
@@ -45,7 +45,7 @@ static bool show_drive(cm1e_bus_t *bus, const cm1e_slave_info_t *slave, json_t *
     return readable;
 }
 
-/** A slave that is no motor: an I/O module, a coupler ... */
+/** A slave that is not a motor: an I/O module, a coupler ... */
 static void show_other(const cm1e_slave_info_t *slave, json_t *all)
 {
     char state[48];

@@ -94,7 +94,7 @@ static const cm1e_slave_info_t *first_bridge(const cm1e_bus_t *bus)
     return NULL;
 }
 
-/** What to ask the motors of a bridge for. */
+/** The command that asks the motors of a bridge for K37. */
 static void print_questions(const cm1e_bus_t *bus, const char *interface_name)
 {
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++)
@@ -102,7 +102,7 @@ static void print_questions(const cm1e_bus_t *bus, const char *interface_name)
             fprintf(stderr, "  cm1e cml -i %s --slave %u \"K37.%d\"\n", interface_name, (unsigned)position, id);
 }
 
-/** A bus file that the loader takes when K37 stands in it. */
+/** A bus file that can be loaded when the K37 values are filled in. */
 static void print_bus_file(const cm1e_bus_t *bus, const char *interface_name)
 {
     unsigned axis = 0;

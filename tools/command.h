@@ -1,6 +1,6 @@
 /**
  * @file command.h
- * What the subcommands of `cm1e` share: options, configuration, output, the error line. Each subcommand is a file
+ * Common code of the subcommands of `cm1e`: options, configuration, output, the error line. Each subcommand is a file
  * cmd_<name>.c with one function of this type; it returns the exit status of the process.
  */
 #ifndef CM1E_TOOLS_COMMAND_H
@@ -38,16 +38,16 @@ typedef struct common_options {
 } common_options_t;
 extern const struct argp common_argp;
 
-/** The configuration that the options describe: the bus file's, with the interface of -i in place of its own; without a
- *  bus file no axes are expected. Complains on standard error and returns false where it cannot be had. */
+/** Loads the configuration of the options: the bus file, with the interface of -i in place of its own. Without a bus
+ *  file no axes are expected. After an error it complains on standard error and returns false. */
 bool load_configuration(const common_options_t *options, cm1e_bus_config_t *config);
 
 /** As load_configuration(), but without a bus file the network is scanned and every CM1-E found becomes an axis with
- *  default settings (unit: revolution). Of a motor behind a bridge no scan shows how far a count is: where there is a
- *  bridge, it complains and writes a bus file to be completed. */
+ *  default settings (unit: revolution). A scan does not show K37 of a motor behind a bridge: if there is a bridge, the
+ *  function complains and prints a bus file to be completed. */
 bool load_axes(const common_options_t *options, cm1e_bus_config_t *config);
 
-/** Closes the bus; returns the exit status, EXIT_FAILED and a complaint where frames are missing in the pcap file. */
+/** Closes the bus. Returns the exit status: EXIT_FAILED, with a complaint, if frames are missing in the pcap file. */
 int close_bus(cm1e_bus_t *bus, const common_options_t *options, int status);
 
 /** Finds an axis of the configuration by name or number (1 = first); -1 and a complaint: there is none. */
@@ -65,7 +65,7 @@ bool parse_real(const char *word, const char *what, double *value);
 int fail(const cm1e_diag_t *diag);
 void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/** A text as JSON, which has to be UTF-8; what is not, and control characters, become "?". NULL counts as "". */
+/** A text as JSON, which must be UTF-8; other bytes and control characters become "?". NULL counts as "". */
 json_t *text_as_json(const char *text);
 
 /** Prints a JSON value on standard output with a final newline, and releases it. */

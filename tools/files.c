@@ -9,7 +9,7 @@
 #include "command.h"
 #include "core/output.h"
 
-/* More than any of the readers takes, so that their own limit can be named. */
+/* More than any reader accepts, so that the readers report their own limits. */
 enum { INPUT_LIMIT = 64 << 20, PIECE = 65536 };
 
 static bool read_all(FILE *file, const char *path, input_t *input)
@@ -79,7 +79,7 @@ bool write_output(const char *path, const void *bytes, size_t size)
     cm1e_output_t output;
     cm1e_error_t error = cm1e_output_open(&output, path, &diag);
     if (error == CM1E_OK) {
-        fwrite(bytes, 1, size, output.file); /* what does not arrive, the end tells */
+        fwrite(bytes, 1, size, output.file); /* a failed write is reported at the end */
         error = cm1e_output_close(&output, &diag);
     }
     if (error != CM1E_OK)

@@ -1,6 +1,6 @@
 /**
  * @file files.h
- * Reading and writing whole files for the subcommands that need it.
+ * Reads and writes whole files for the subcommands.
  */
 #ifndef CM1E_TOOLS_FILES_H
 #define CM1E_TOOLS_FILES_H
@@ -21,18 +21,18 @@ typedef struct input {
  *  the library reads. */
 bool read_input(const char *path, input_t *input);
 
-/** Writes a whole file ("-": standard output) under a temporary name beside it, then renames: nobody sees half a file.
- *  False and a complaint: it cannot be written. */
+/** Writes a whole file ("-": standard output) under a temporary name beside it, then renames it, so that no reader sees
+ *  an incomplete file. False and a complaint: it cannot be written. */
 bool write_output(const char *path, const void *bytes, size_t size);
 
-/** Prints findings as compilers do, "FILE:LINE: error: text [rule]", and how many there are; or as JSON. Returns the
- *  exit status: EXIT_FAILED where there is an error among them. */
+/** Prints findings in the format of compilers, "FILE:LINE: error: text [rule]", and their number; or as JSON. Returns
+ *  the exit status: EXIT_FAILED if one of them is an error. */
 int print_findings(const char *path, const char *format, const cm1e_findings_t *findings, bool json);
 /** "error" or "warning". */
 const char *finding_severity(const cm1e_finding_t *finding);
-/** A JSON array of them; `place` is what their lines are called. */
+/** The findings as a JSON array; `place` is the key of their lines. */
 json_t *findings_as_list(const cm1e_findings_t *findings, const char *place);
-/** What print_findings() prints as one JSON object, and its exit status alone. */
+/** The JSON object of print_findings(), and its exit status. */
 json_t *findings_as_json(const char *path, const char *format, const cm1e_findings_t *findings);
 int findings_status(const cm1e_findings_t *findings);
 

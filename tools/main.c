@@ -32,7 +32,7 @@ static void print_usage(FILE *file)
           "eth1` a real one (it needs the right to open raw sockets).\n", file);
 }
 
-/* What was printed and did not arrive (a full disk, a closed pipe) is no success. */
+/* Output that was not written (a full disk, a closed pipe) is a failure. */
 static int finish(int status)
 {
     if (fflush(stdout) == 0 && !ferror(stdout))

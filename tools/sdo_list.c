@@ -38,7 +38,7 @@ const char *availability_mark(const cm1e_entry_t *entry)
     return marks[entry ? entry->availability : CM1E_AVAILABLE];
 }
 
-/** A refusal concerns one object; everything else would concern the next one, too. */
+/** A refusal concerns one object; every other error would repeat for the next one. */
 static bool goes_on(cm1e_error_t error) { return error == CM1E_OK || error == CM1E_ERROR_SDO_ABORT; }
 
 /* ---- values ----------------------------------------------------------------------------------------------------- */
@@ -73,7 +73,7 @@ static json_t *value_as_json(const char *type, const uint8_t *bytes, size_t size
     return json_string(text);
 }
 
-/** The present value; NULL: it cannot be read, or it is not to be. */
+/** The present value; NULL: it cannot be read, or was not requested. */
 static json_t *read_value(list_t *list, const cm1e_entry_info_t *entry, const char *type)
 {
     uint8_t bytes[VALUE_BYTES];
@@ -87,7 +87,7 @@ static json_t *read_value(list_t *list, const cm1e_entry_info_t *entry, const ch
 
 /* ---- one entry -------------------------------------------------------------------------------------------------- */
 
-/** "rw" in the states; "p": in Pre-Operational alone; "-": never. */
+/** "rw" for all states; "p": in Pre-Operational only; "-": never. */
 static char access_letter(uint16_t access, uint16_t preop, uint16_t others, char letter)
 {
     return (access & others) ? letter : (access & preop) ? 'p' : '-';

@@ -32,7 +32,7 @@ bool read_bridge(cm1e_bus_t *bus, uint16_t position, bridge_status_t *status, cm
     cm1e_diag_t other;
     bool readable = true;
     if (cm1e_bridge_read(bus, position, &status->info, diag) != CM1E_OK)
-        return false; /* silent: so it would be for each of these */
+        return false; /* the bridge is silent: each further read would fail too */
     for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++) {
         bridge_motor_reading_t *motor = &status->motors[i];
         if (read_value(bus, position, i, OBJ_6041_STATUSWORD, 2, &motor->statusword, diag) != CM1E_OK)
@@ -50,7 +50,7 @@ static const char *model_name(const cm1e_bridge_info_t *info)
     return info->model_known ? cm1e_bridge_name(info->model) : "of an unknown model";
 }
 
-/* Of an unknown motor the CM2's table, which has the other one's bits and one more. */
+/* For an unknown motor the table of the CM2 is used: it has all bits of the CM1 and one more. */
 static cm1e_bridge_motor_t motor_of(const cm1e_bridge_channel_t *channel)
 {
     return channel->type.known && channel->type.value == CM1E_BRIDGE_CM1 ? CM1E_BRIDGE_CM1 : CM1E_BRIDGE_CM2;
@@ -92,7 +92,7 @@ static const char *mode_name(const bridge_motor_reading_t *motor)
     return name ? name : "not a mode of the guide";
 }
 
-/* What is to be done; "": nothing. */
+/* What the user should do; "": nothing. */
 static const char *cure_of(const cm1e_bridge_channel_t *channel)
 {
     if (channel->status.known && cm1e_bridge_status_is_error(motor_of(channel), channel->status.value))
@@ -108,7 +108,7 @@ static const char *axis_name(const cm1e_bus_config_t *config, const cm1e_slave_i
     return axis >= 0 ? config->axes[axis].name : "";
 }
 
-/** The device's own numbers, in the order of the printed lines. */
+/** The values of the device, in the order of the printed lines. */
 static const struct {
     size_t offset;
     const char *key, *label, *unit;
@@ -136,7 +136,7 @@ static const cm1e_bridge_value_t *number(const cm1e_bridge_info_t *info, int n)
 
 /* ---- as text ---------------------------------------------------------------------------------------------------- */
 
-/* "12", or in words why it is not there. */
+/* "12", or the reason why the value is missing. */
 static const char *text_of(const cm1e_bridge_value_t *value, char *text, size_t size)
 {
     if (value->known)

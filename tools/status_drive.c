@@ -6,7 +6,7 @@
 #include "core/bytes.h"
 #include "device/device.h"
 
-/** What is read, in the order of the printed lines; values as the device has them. */
+/** The objects to read, in the order of the printed lines, with the values of the device. */
 static const struct {
     uint16_t index;
     uint8_t bytes;
@@ -59,7 +59,7 @@ bool read_drive(cm1e_bus_t *bus, uint16_t position, drive_status_t *drive, cm1e_
 
 /* ---- in words --------------------------------------------------------------------------------------------------- */
 
-/** 0x603F holds also what is no error: no mode selected, disabled by command ... (UG 7.3.1). */
+/** 0x603F has codes that are not errors too: no mode selected, disabled by command ... (UG 7.3.1). */
 static bool is_error(const drive_status_t *drive)
 {
     const cm1e_device_error_t *row = cm1e_device_error((uint16_t)drive->readings[ERROR_CODE].value);

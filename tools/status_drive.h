@@ -1,6 +1,6 @@
 /**
  * @file status_drive.h
- * What `cm1e status` reads and says of a CM1-E.
+ * Reads a CM1-E for `cm1e status`.
  */
 #ifndef CM1E_TOOLS_STATUS_DRIVE_H
 #define CM1E_TOOLS_STATUS_DRIVE_H
@@ -12,7 +12,7 @@
 
 enum { DRIVE_READINGS = 8, DRIVE_TEXT_BYTES = 320 };
 
-/** One object: its value, or why there is none. A firmware may have it in another size than the guide. */
+/** One object: its value, or the reason why it is missing. A firmware may have another size than the guide. */
 typedef struct reading {
     bool valid;
     double value;
@@ -25,11 +25,11 @@ typedef struct drive_status {
     reading_t readings[DRIVE_READINGS];
 } drive_status_t;
 
-/** FALSE, with the reason in `diag`: the statusword cannot be read. */
+/** Returns false, with the reason in `diag`, if the statusword cannot be read. */
 bool read_drive(cm1e_bus_t *bus, uint16_t position, drive_status_t *drive, cm1e_diag_t *diag);
-/** What the n-th reading is about; of 0x603F "error", or "note" where its code is no error. */
+/** Name of the n-th reading; for 0x603F "error", or "note" if the code is not an error. */
 const char *drive_label(const drive_status_t *drive, int i);
-/** Its value in words, or why it cannot be read; `text`. */
+/** Writes the value as text, or the reason why it cannot be read. Returns `text`. */
 const char *drive_text(const drive_status_t *drive, int i, char *text, size_t size);
 json_t *drive_status_as_json(const cm1e_slave_info_t *slave, const drive_status_t *drive);
 

@@ -1,9 +1,9 @@
 /**
  * @file busfile.h
- * What the files of this room share; private to it. Loading a bus file takes these steps, each with its own diagnosis:
- * read the bytes, scan them for YAML that has no place in a bus file, compare every node with the schema, let libcyaml
- * fill the structures, convert, check ranges and contradictions. libcyaml alone would take "4x" for 4, NaN for a speed
- * and "maybe" for TRUE, and names the place of a wrong key only roughly; hence the comparison before it.
+ * Shared declarations of this room; private to it. A bus file is loaded in these steps, each with its own diagnosis:
+ * read the bytes, reject YAML features that a bus file does not use, compare every node with the schema, let libcyaml
+ * fill the structures, convert, check ranges and contradictions. libcyaml alone would accept "4x" as 4, NaN as a speed
+ * and "maybe" as true, and it reports the place of a wrong key only roughly; hence the comparison before it.
  */
 #ifndef CM1E_BUSFILE_BUSFILE_H
 #define CM1E_BUSFILE_BUSFILE_H
@@ -25,14 +25,14 @@ cm1e_error_t cm1e_busfile_read(const char *path, uint8_t **bytes, size_t *size, 
 /** The one document in `bytes`; the caller deletes it on success. */
 cm1e_error_t cm1e_busfile_parse(const uint8_t *bytes, size_t size, yaml_document_t *document,
                                 cm1e_config_problem_t *problem);
-/** Line and column of the node at problem->path, or of the deepest node on the way there that exists. */
+/** Finds line and column of the node at problem->path, or of the deepest existing node on that path. */
 void cm1e_busfile_locate(yaml_document_t *document, cm1e_config_problem_t *problem);
 
 /* ---- schema.c, compare.c: keys and types ------------------------------------------------------------------------- */
 
 enum { CM1E_BUSFILE_VELOCITY_COUNTS_PER_S = 1, CM1E_BUSFILE_VELOCITY_COUNTS_PER_MS = 2 };
 
-/** One axis as the file has it: what goes straight into the configuration, and what is converted. */
+/** One axis of the file: values that are copied into the configuration, and values that are converted. */
 typedef struct cm1e_busfile_axis {
     cm1e_axis_config_t axis;
     uint16_t position, alias, explicit_id;
@@ -57,7 +57,7 @@ typedef struct cm1e_busfile_integer_range {
     int64_t minimum, maximum;
 } cm1e_busfile_integer_range_t;
 extern const cm1e_busfile_integer_range_t cm1e_busfile_integer_ranges[];
-/** Keys of numbers for which 0 is a value; for the others it would silently mean the default. Ends with NULL. */
+/** Keys of numbers for which 0 is a valid value; for the others 0 would silently select the default. Ends with NULL. */
 extern const char *const cm1e_busfile_zero_allowed[];
 
 /** Compares every node of the document with the schema. Numbers are read in the thread's locale: it must be "C". */

@@ -28,7 +28,7 @@ static bool wrong(const compare_t *compare, const yaml_node_t *node, const char 
 
 enum { SHOWN = 48 };
 
-/* What the file has at this place, short and printable whatever it is. */
+/* The contents of the file at this place, short and printable. */
 static const char *found(const yaml_node_t *node, char text[SHOWN])
 {
     if (node->type == YAML_SEQUENCE_NODE)

@@ -11,7 +11,8 @@
 
 /* ---- libcyaml ---------------------------------------------------------------------------------------------------- */
 
-/* libcyaml tells what is wrong in the first line of its log, and where in the lines of a backtrace, innermost first. */
+/* libcyaml reports the error in the first line of its log, and its place in the lines of a backtrace, innermost
+ * first. */
 static void take_log_line(cyaml_log_t level, void *context, const char *format, va_list args)
 {
     (void)level;
@@ -148,7 +149,7 @@ static cm1e_error_t load_in_c_locale(cm1e_bus_config_t *config, const uint8_t *b
     return error;
 }
 
-/* "path:line:column: text"; of a long path the end, which tells more. */
+/* "path:line:column: text"; a long path is cut at its beginning. */
 static cm1e_error_t report(cm1e_diag_t *diag, cm1e_error_t error, const char *path,
                            const cm1e_config_problem_t *problem)
 {

@@ -94,7 +94,7 @@ static const cyaml_schema_field_t in_position_fields[] = {
     AXIS_BOOL("done_waits", in_position_done_waits),
     CYAML_FIELD_END,
 };
-/* Pointers, because 0 is a limit too and tells nothing of a key that is not there. */
+/* Pointers, because 0 is a valid limit and cannot mark a missing key. */
 #define LIMIT(key, member) CYAML_FIELD_FLOAT_PTR(key, OPTIONAL | CYAML_FLAG_POINTER, cm1e_busfile_axis_t, member)
 static const cyaml_schema_field_t software_limit_fields[] = {
     LIMIT("negative", software_limit_negative),

@@ -1,6 +1,6 @@
 /**
  * @file interface.h
- * What the name of an interface says.
+ * The kinds of interface names.
  */
 #ifndef CM1E_CONFIG_INTERFACE_H
 #define CM1E_CONFIG_INTERFACE_H
@@ -9,9 +9,10 @@
 #include <string.h>
 
 #define CM1E_SIM_INTERFACE "sim"
-#define CM1E_SIM_FILE_PREFIX "sim:" /**< the path of a bus file follows, which describes the segment */
+#define CM1E_SIM_FILE_PREFIX "sim:" /**< followed by the path of a bus file that describes the segment */
 
-/** The name of a simulated segment. "" is one too, since "sim" is the default. Every other name is a network interface. */
+/** Whether a name is that of a simulated segment. "" is one too, since "sim" is the default. Every other name is a
+ *  network interface. */
 static inline bool cm1e_interface_is_simulated(const char *name)
 {
     return name[0] == '\0' || strcmp(name, CM1E_SIM_INTERFACE) == 0 ||

@@ -1,6 +1,6 @@
 /**
  * @file problem.h
- * What is wrong with a configuration, found by its check or by the reader of a bus file.
+ * A fault of a configuration, found by its check or by the reader of a bus file.
  */
 #ifndef CM1E_CONFIG_PROBLEM_H
 #define CM1E_CONFIG_PROBLEM_H
@@ -10,7 +10,7 @@
 
 #include "cm1e/config.h"
 
-/** What is wrong, and where: by line and column where they are known, else by the path of a key. */
+/** The fault and its place: line and column if they are known, otherwise the path of a key. */
 typedef struct cm1e_config_problem {
     size_t line, column; /**< 1 ...; line 0: not known */
     char path[96];       /**< "axes[0].limits.velocity"; "": the configuration as a whole */
@@ -19,7 +19,8 @@ typedef struct cm1e_config_problem {
 
 enum { CM1E_CAM_POINTS_MINIMUM = 2, CM1E_CAM_POINTS_MAXIMUM = 4096 };
 
-/** Ranges and contradictions. true: nothing is wrong. On false the problem has a path, and no line. */
+/** Checks ranges and contradictions. Returns true if there is no fault. After false the problem has a path, but no
+ *  line. */
 bool cm1e_config_find_problem(const cm1e_bus_config_t *config, cm1e_config_problem_t *problem);
 
 #endif

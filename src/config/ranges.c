@@ -34,7 +34,7 @@ bool cm1e_config_axis_wrong(const check_t *check, const char *key, const char *f
     return false;
 }
 
-/* Ends within its array and holds nothing that would garble a terminal or a log. */
+/* Whether a text ends within its array and has no control characters. */
 static bool is_text(const char *text, size_t size)
 {
     const char *end = memchr(text, '\0', size);
@@ -98,7 +98,7 @@ static bool check_bus(const check_t *check)
 /* BY_REVOLUTION: in counts, the minimum in those of a CM1-E. */
 typedef enum scale { AS_IS, IN_COUNTS, BY_REVOLUTION } scale_t;
 
-/* A number of the axis configuration; 0 is its default. Where an object is named, its range in the dictionary holds. */
+/* A number of the axis configuration; 0 is its default. If an object is named, its range in the dictionary applies. */
 typedef struct number {
     const char *key;
     size_t offset;
@@ -107,7 +107,7 @@ typedef struct number {
     double minimum, maximum;
     uint16_t index;
     uint8_t subindex;
-    double behind_bridge; /* what 1 in the bridge's object means here; 0: the CM1-E's range holds there too */
+    double behind_bridge; /* meaning of 1 in the object of the bridge; 0: the range of the CM1-E applies there too */
 } number_t;
 
 #define FIELD(member) offsetof(cm1e_axis_config_t, member)
@@ -147,7 +147,7 @@ static const number_t numbers[] = {
     {"sim.sensor_input3_counts", FIELD(sim.sensor_input3), AS_IS, "counts", -1e12, 1e12, 0, 0, 0},
 };
 
-/* The motor behind the bridge; of one that is left open, the one that can do more. */
+/* The motor behind the bridge; if it is not stated, the one with the larger range. */
 static cm1e_bridge_motor_t motor_of(const cm1e_axis_config_t *axis)
 {
     return strcmp(axis->motor, cm1e_bridge_motor_name(CM1E_BRIDGE_CM1)) == 0 ? CM1E_BRIDGE_CM1 : CM1E_BRIDGE_CM2;
@@ -171,8 +171,8 @@ static bool check_range(const check_t *check, const char *key, double value, sca
     }
     if (scale == BY_REVOLUTION)
         minimum *= cm1e_unit_count(check->axis);
-    /* Whole counts are what reaches the wire, so 0.3 mm of 1/3 counts is no reason to refuse the exact bound; nor is
-     * what doubles make of a part of a revolution, which may be less than a count. */
+    /* Only whole counts are sent, so a fraction of a count beyond the exact bound is accepted: a rounded decimal, or
+     * the rounding of doubles for a part of a revolution. */
     const double least = scale == BY_REVOLUTION ? minimum * (1.0 - 1e-9) : minimum;
     const double exact = value * check->counts_per_unit, whole = round(exact);
     const double counts = scale == BY_REVOLUTION && minimum < 1.0 && fabs(exact) < 1.0 ? exact : whole;
@@ -264,7 +264,7 @@ static bool check_modulo(const check_t *check)
     return true;
 }
 
-/* The compensation of backlash comes on top of every motion, so its velocity is kept free. */
+/* The compensation of backlash is added to every motion, so its velocity is kept free. */
 static bool check_velocity(check_t *check)
 {
     const cm1e_axis_config_t *axis = check->axis;
@@ -348,7 +348,7 @@ static bool at_same_address(const check_t *check, uint32_t other)
            cm1e_axis_address(check->config, other) == cm1e_axis_address(check->config, check->index);
 }
 
-/* At the address of an earlier entry: only behind the same bridge, each at a connector of its own. */
+/* An earlier entry has the same address: allowed only behind one bridge, each axis at its own connector. */
 static bool may_share(const check_t *check, uint32_t other)
 {
     const unsigned channel = check->axis->channel, taken = check->config->axes[other].channel;
@@ -411,8 +411,8 @@ static bool check_software_limits(const check_t *check)
 {
     const cm1e_axis_config_t *axis = check->axis;
     const double negative = axis->software_limit_negative, positive = axis->software_limit_positive;
-    /* The axis keeps positions as doubles: whole counts are exact up to 2^53. Behind a bridge the motor counts no
-     * further than its K37 allows. Infinite: none on this side. */
+    /* The axis keeps positions as doubles: whole counts are exact up to 2^53. Behind a bridge K37 limits the counts of
+     * the motor. Infinite: no limit on this side. */
     const double most = axis->channel ? cm1e_bridge_position_limit(motor_of(axis), axis->k37) : 9e15;
     if ((negative != -INFINITY &&
          !check_range(check, "software_limits.negative", negative, IN_COUNTS, -most, most, "counts")) ||
@@ -425,7 +425,7 @@ static bool check_software_limits(const check_t *check)
                       negative);
 }
 
-/* UG 6.2.4, 4a, and as true of the bridge: an offset on the far side of a hard stop drives the load into it. */
+/* UG 6.2.4, 4a, valid for the bridge too: an offset on the far side of a hard stop drives the load into it. */
 static bool check_homing(const check_t *check)
 {
     const cm1e_homing_config_t *homing = &check->axis->homing;
@@ -546,7 +546,7 @@ static bool check_k37(const check_t *check)
                       motor == CM1E_BRIDGE_CM2 ? ", or 80 ... 88 or 90" : "");
 }
 
-/* What only a CM1-E has. */
+/* Keys that only a CM1-E has. */
 static bool check_absent(const check_t *check)
 {
     const cm1e_axis_config_t *axis = check->axis;

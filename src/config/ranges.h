@@ -1,6 +1,6 @@
 /**
  * @file ranges.h
- * What the sources of the check share; private to this room.
+ * Shared declarations of the check; private to this room.
  */
 #ifndef CM1E_CONFIG_RANGES_H
 #define CM1E_CONFIG_RANGES_H
@@ -19,12 +19,12 @@ typedef struct check {
     char name[CM1E_NAME_LENGTH + 8];
 } check_t;
 
-/** false: what is wrong is in the problem, after the name of axis and key. */
+/** Returns false, with the fault in the problem, after the names of axis and key. */
 __attribute__((format(printf, 3, 4)))
 bool cm1e_config_axis_wrong(const check_t *check, const char *key, const char *format, ...);
 #define axis_wrong cm1e_config_axis_wrong
 
-/** Of a virtual axis or an encoder: nothing is said of a motor. */
+/** Checks that a virtual axis or an encoder has no keys of a motor. */
 bool cm1e_config_check_without_motor(const check_t *check);
 
 #endif

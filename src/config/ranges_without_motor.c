@@ -1,4 +1,4 @@
-/* What an axis without a motor has to leave out of its entry. */
+/* Keys that an axis without a motor must not have. */
 #include "config/ranges.h"
 
 static bool any_input(const cm1e_input_config_t *inputs)
@@ -20,7 +20,7 @@ static bool any_sim(const cm1e_sim_axis_config_t *sim)
            sim->no_sensors;
 }
 
-/* What means nothing without a motor; of an encoder also what is said of motions. */
+/* Keys without a meaning for an axis without a motor, and for an encoder also the keys of motions. */
 bool cm1e_config_check_without_motor(const check_t *check)
 {
     const cm1e_axis_config_t *axis = check->axis;

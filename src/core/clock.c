@@ -16,7 +16,7 @@ static int64_t monotonic_now_ns(const cm1e_clock_t *clock)
 
 static void monotonic_sleep_until_ns(cm1e_clock_t *clock, int64_t time_ns)
 {
-    /* A time in the past costs tens of microseconds in the kernel, which arms a timer all the same. */
+    /* A time in the past costs tens of microseconds, because the kernel arms a timer even then. */
     if (time_ns <= monotonic_now_ns(clock))
         return;
     const struct timespec t = {.tv_sec = time_ns / NS_PER_S, .tv_nsec = time_ns % NS_PER_S};

@@ -1,7 +1,7 @@
 /**
  * @file clock.h
- * The one clock seam: all time in the library, SOEM's included, comes from here. Monotonic time of the machine, or a
- * virtual clock that only advances when somebody waits on it. Times are int64_t nanoseconds.
+ * All time in the library, SOEM's included, comes from this interface: the monotonic clock of the machine, or a virtual
+ * clock that advances only when a thread waits on it. Times are int64_t nanoseconds.
  */
 #ifndef CM1E_CORE_CLOCK_H
 #define CM1E_CORE_CLOCK_H
@@ -12,7 +12,7 @@ typedef struct cm1e_clock cm1e_clock_t;
 
 typedef struct cm1e_clock_ops {
     int64_t (*now_ns)(const cm1e_clock_t *clock);
-    void (*sleep_until_ns)(cm1e_clock_t *clock, int64_t time_ns); /**< absolute; returns at once if past */
+    void (*sleep_until_ns)(cm1e_clock_t *clock, int64_t time_ns); /**< absolute time; returns at once if it is past */
 } cm1e_clock_ops_t;
 
 struct cm1e_clock {
@@ -26,9 +26,9 @@ static inline void cm1e_clock_sleep_until(cm1e_clock_t *clock, int64_t time_ns)
     clock->ops->sleep_until_ns(clock, time_ns);
 }
 
-/** CLOCK_MONOTONIC, slept on with absolute time. Shared, never freed. @rt any */
+/** CLOCK_MONOTONIC, with absolute sleeps. Shared, never freed. @rt any */
 cm1e_clock_t *cm1e_clock_monotonic(void);
-/** A clock that stands at `start_ns` and is moved by cm1e_clock_sleep_until() only. @rt any */
+/** Makes a clock that starts at `start_ns` and is advanced only by cm1e_clock_sleep_until(). @rt any */
 void cm1e_clock_init_virtual(cm1e_clock_t *clock, int64_t start_ns);
 
 /** The clock of the calling thread: what SOEM's osal functions use. Default: monotonic. Thread local. @rt cycle */

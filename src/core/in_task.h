@@ -1,7 +1,7 @@
 /**
  * @file in_task.h
- * Whether this thread runs the tasks of a scheduler just now. What waits there would keep the set-points from the
- * motors, what frees the bus or the scheduler there would pull them from under the cycle: both are refused.
+ * Whether this thread runs the tasks of a scheduler at present. Functions that wait would delay the set-points of the
+ * motors, and functions that free the bus or the scheduler would free what the cycle uses. Both are refused in a task.
  */
 #ifndef CM1E_CORE_IN_TASK_H
 #define CM1E_CORE_IN_TASK_H
@@ -10,17 +10,18 @@
 
 #include "cm1e/error.h"
 
-/** Around the tasks of a cycle. @rt cycle */
+/** Called before and after the tasks of a cycle. @rt cycle */
 void cm1e_in_task_begin(void);
 void cm1e_in_task_end(void);
-/** TRUE: the calling thread is between the two. @rt cycle */
+/** Whether the calling thread is between the two calls. @rt cycle */
 bool cm1e_in_task(void);
 
-/** The error of a function that waits, CM1E_ERROR_STATE: names the function ("cm1e_bus_scan()"), and what a task has
- *  `instead` of it: a sentence, or "". */
+/** CM1E_ERROR_STATE of a function that waits. The text names the function ("cm1e_bus_scan()") and what a task uses
+ *  `instead`: a sentence, or "". */
 cm1e_error_t cm1e_in_task_refuse(const char *function, const char *instead, cm1e_diag_t *diag);
 
-/** For a function that returns no error: TRUE in a task, and the scheduler hears of it after this cycle's tasks. */
+/** For a function that returns no error: returns true in a task, and the scheduler is told after the tasks of this
+ *  cycle. */
 bool cm1e_in_task_note(const char *function);
 /** The first function noted in this thread since this was called last; NULL: none. @rt cycle */
 const char *cm1e_in_task_noted(void);

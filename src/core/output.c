@@ -20,10 +20,10 @@ static void forget(cm1e_output_t *output)
     *output = (cm1e_output_t){0};
 }
 
-/** A new file beside its place, with the rights that the present one has or a new one would get; NULL: errno. */
+/** Creates a new file beside the final one, with the rights of the present file or of a new one. NULL: see errno. */
 static FILE *create_beside(char *temporary, const struct stat *present)
 {
-    const int descriptor = mkstemp(temporary); /* creates exclusively: follows no link, takes nobody's file */
+    const int descriptor = mkstemp(temporary); /* creates exclusively: follows no link, overwrites no file */
     const mode_t mask = umask(0);
     umask(mask);
     FILE *file = descriptor >= 0 ? fdopen(descriptor, "wb") : NULL;
@@ -40,7 +40,7 @@ static FILE *create_beside(char *temporary, const struct stat *present)
     return NULL;
 }
 
-/** Where the file really goes, and what is there; false: errno. */
+/** Resolves the final place of the file and what exists there. false: see errno. */
 static bool find_place(cm1e_output_t *output, const char *path, struct stat *present, bool *there)
 {
     *there = stat(path, present) == 0;
@@ -93,7 +93,7 @@ cm1e_error_t cm1e_output_close(cm1e_output_t *output, cm1e_diag_t *diag)
     return result;
 }
 
-/** A device or a pipe is not opened: its other end would see that. */
+/** A device or a pipe is not opened, because its other end would notice. */
 cm1e_error_t cm1e_output_check(const char *path, cm1e_diag_t *diag)
 {
     cm1e_output_t output;

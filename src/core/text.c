@@ -4,8 +4,8 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Bytes of the character at the beginning of a text, and which it is (RFC 3629: shortest form, no surrogates, to
- * U+10FFFF); 0: it is none. */
+/* Decodes the first character of a text (RFC 3629: shortest form, no surrogates, up to U+10FFFF). Returns its number of
+ * bytes; 0 if it is not valid. */
 static int character_at(const unsigned char *text, uint32_t *character)
 {
     static const struct {

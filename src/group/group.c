@@ -25,7 +25,7 @@ cm1e_error_t cm1e_group_refuse(cm1e_group_t *group, group_refusal_t refusal)
 void cm1e_group_fail(cm1e_group_t *group, cm1e_error_t error, uint32_t culprit)
 {
     if (group->state == CM1E_GROUP_ERROR_STOP || group->state == CM1E_GROUP_DISABLED)
-        return; /* the first cause is the one to tell; a disabled group only lets its axes come to rest */
+        return; /* the first cause is kept; a disabled group only lets its axes come to rest */
     cm1e_group_end_all(group, CM1E_COMMAND_ERROR, CM1E_ERROR_GROUP_ERROR_STOP);
     group->error = error;
     group->culprit = culprit;
@@ -34,7 +34,7 @@ void cm1e_group_fail(cm1e_group_t *group, cm1e_error_t error, uint32_t culprit)
     cm1e_group_brake(group, 0.0, 0.0);
 }
 
-/* Of the axes that MC_GroupReset resets: done when none of them is in ErrorStop, and the others have come to rest. */
+/* State of MC_GroupReset. It is done when none of its axes is in ErrorStop and the others have come to rest. */
 static void refresh_reset(cm1e_group_t *group)
 {
     if (group->reset_state != CM1E_COMMAND_ACTIVE || group->led)
@@ -79,7 +79,7 @@ void cm1e_group_refresh(cm1e_group_t *group)
 
 /* ---- members ----------------------------------------------------------------------------------------------------- */
 
-/* A state that refuses, or axes that still come to rest. */
+/* Refuses because of the state, or because axes have not come to rest yet. */
 static cm1e_error_t refused_by_state(cm1e_group_t *group, group_trigger_t trigger)
 {
     cm1e_group_refresh(group);
@@ -219,7 +219,7 @@ cm1e_error_t cm1e_group_reset(cm1e_group_t *group)
 {
     cm1e_group_refresh(group);
     group->reset_error = CM1E_OK;
-    group->reset_state = CM1E_COMMAND_DONE; /* elsewhere nothing is to be reset, and nothing happens */
+    group->reset_state = CM1E_COMMAND_DONE; /* in other states there is nothing to reset */
     if (group->state != CM1E_GROUP_ERROR_STOP)
         return CM1E_OK;
     group->reset_state = CM1E_COMMAND_ACTIVE;

@@ -13,28 +13,29 @@
 
 typedef struct cm1e_group cm1e_group_t;
 
-/** NULL: the handle names no group. @rt cycle */
+/** The group of a handle; NULL if the handle names no group. @rt cycle */
 cm1e_group_t *cm1e_group_from_reference(const AXES_GROUP_REF_t *reference);
 
 /* ---- members: in GroupDisabled, and while none of them is moved any more ----------------------------------------- */
 
-/** `ident` 1 ... CM1E_GROUP_AXES; 0: the first free one. CM1E_ERROR_GROUP_MEMBER: taken, in a group already, or of
- *  another bus; CM1E_ERROR_FB_AXIS_REF; CM1E_ERROR_UNSUPPORTED: the axis's motions are the drive's;
- *  CM1E_ERROR_AXIS_VIRTUAL: it is an encoder. @rt cycle */
+/** Adds an axis. `ident` is 1 ... CM1E_GROUP_AXES; 0 selects the first free place. CM1E_ERROR_GROUP_MEMBER: the place
+ *  is taken, or the axis is in a group already or belongs to another bus. CM1E_ERROR_FB_AXIS_REF: no axis.
+ *  CM1E_ERROR_UNSUPPORTED: the drive computes the profiles of the axis. CM1E_ERROR_AXIS_VIRTUAL: the axis is an
+ *  encoder. @rt cycle */
 cm1e_error_t cm1e_group_add(cm1e_group_t *group, AXIS_REF_t axis, uint32_t ident);
 /** @rt cycle */
 cm1e_error_t cm1e_group_remove(cm1e_group_t *group, uint32_t ident);
-/** In every state, as cm1e_group_disable(); what moves is stopped first, and then the axes are no members any more.
- *  @rt cycle */
+/** Removes all axes, in every state, like cm1e_group_disable(). A moving group is stopped first; then the axes are no
+ *  longer members. @rt cycle */
 cm1e_error_t cm1e_group_ungroup(cm1e_group_t *group);
-/** CM1E_ERROR_GROUP_MEMBER: there is none. @rt cycle */
+/** The axis with this `ident`. CM1E_ERROR_GROUP_MEMBER: there is none. @rt cycle */
 cm1e_error_t cm1e_group_member(const cm1e_group_t *group, uint32_t ident, AXIS_REF_t *axis);
 
 /* ---- the state diagram ------------------------------------------------------------------------------------------- */
 
-/** CM1E_ERROR_GROUP_MEMBER: there are no axes. @rt cycle */
+/** Enables the group. CM1E_ERROR_GROUP_MEMBER: it has no axes. @rt cycle */
 cm1e_error_t cm1e_group_enable(cm1e_group_t *group);
-/** In every state; commands are aborted, and what moves is stopped along its path. @rt cycle */
+/** Disables the group, in every state. Commands are aborted, and a moving group is stopped along its path. @rt cycle */
 cm1e_error_t cm1e_group_disable(cm1e_group_t *group);
 /** Also resets the axes that are in ErrorStop. Poll with cm1e_group_reset_state(). @rt cycle */
 cm1e_error_t cm1e_group_reset(cm1e_group_t *group);
@@ -52,8 +53,8 @@ typedef enum cm1e_group_kind {
     CM1E_GROUP_KIND_COUNT,
 } cm1e_group_kind_t;
 
-/** Positions by IdentInGroup - 1, u; places without an axis are of no matter. Zero dynamics: as much as the axes
- *  allow. */
+/** A motion command. Positions are in u, by IdentInGroup - 1; places without an axis are ignored. Dynamics of 0 select
+ *  as much as the axes allow. */
 typedef struct cm1e_group_command {
     cm1e_group_kind_t kind;
     double position[CM1E_GROUP_AXES];  /**< target or distance */
@@ -67,10 +68,10 @@ typedef struct cm1e_group_command {
     double transition_parameter;
 } cm1e_group_command_t;
 
-/** Starts a command, appends it to those that wait, or refuses it (then *id is 0 and nothing has changed). @rt cycle */
+/** Starts a command, appends it to the waiting ones, or refuses it; then *id is 0 and nothing has changed. @rt cycle */
 cm1e_error_t cm1e_group_start(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t *id);
 cm1e_command_status_t cm1e_group_command_status(const cm1e_group_t *group, cm1e_command_id_t id);
-/** TRUE while this is the active command of a group that exists. @rt cycle */
+/** Whether this is the active command of an existing group. @rt cycle */
 bool cm1e_group_runs(AXES_GROUP_REF_t reference, cm1e_command_id_t id);
 /** MC_GroupStop.Execute is (still) TRUE: while it is, the group stays in GroupStopping. @rt cycle */
 void cm1e_group_hold_stop(cm1e_group_t *group, cm1e_command_id_t id, bool hold);
@@ -79,7 +80,7 @@ cm1e_error_t cm1e_group_set_override(cm1e_group_t *group, double velocity);
 
 /* ---- readings ---------------------------------------------------------------------------------------------------- */
 
-/** Takes in what has become of the axes since, then shows. @rt cycle */
+/** Updates the group from the states of its axes, then copies its values. @rt cycle */
 void cm1e_group_get(cm1e_group_t *group, cm1e_group_info_t *info);
 /** Positions and velocities of the axes, by IdentInGroup - 1 (0: no axis); `path` is the velocity along the path. In
  *  u as the axes show them. CM1E_ERROR_AXIS_OFFLINE: actual values of an axis are not known. @rt cycle */

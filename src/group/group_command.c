@@ -122,7 +122,7 @@ static cm1e_error_t check(cm1e_group_t *group, const cm1e_group_command_t *comma
 
 /* ---- where it goes ----------------------------------------------------------------------------------------------- */
 
-/* Where a position of a modulo axis is: its repetition next to where the path ends. */
+/* The repetition of a modulo position that is closest to the end of the path. */
 static bool on_the_line(const cm1e_axis_t *axis, double from, double *position)
 {
     const double range = cm1e_axis_configuration(axis)->modulo_range;
@@ -134,7 +134,7 @@ static bool on_the_line(const cm1e_axis_t *axis, double from, double *position)
     return true;
 }
 
-/* Target and auxiliary point by axes of the path, as it counts. `origin`: what relative positions count from. */
+/* Target and auxiliary point in the coordinates of the path. Relative positions count from `origin`. */
 static cm1e_error_t resolve(cm1e_group_t *group, const cm1e_group_command_t *command, const double *origin,
                             double *target, double *auxiliary)
 {
@@ -158,7 +158,7 @@ static cm1e_error_t resolve(cm1e_group_t *group, const cm1e_group_command_t *com
     return CM1E_OK;
 }
 
-/* MC_Power may permit one direction only. Of a circle the axes in its plane go both ways. */
+/* MC_Power may permit one direction only. On a circle the axes in its plane move in both directions. */
 static cm1e_error_t check_directions(cm1e_group_t *group, const cm1e_group_command_t *command, const double *target)
 {
     double end[CM1E_PATH_AXES];
@@ -229,7 +229,7 @@ static cm1e_error_t append(cm1e_group_t *group, const cm1e_group_command_t *comm
 
 /* ---- start ------------------------------------------------------------------------------------------------------- */
 
-/* From GroupStandby. */
+/* Starts a command from GroupStandby. */
 static cm1e_error_t begin_move(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)
 {
     cm1e_error_t error = cm1e_group_begin_path(group);
@@ -238,7 +238,7 @@ static cm1e_error_t begin_move(cm1e_group_t *group, const cm1e_group_command_t *
     return error ? error : cm1e_group_lead(group, false);
 }
 
-/* Behind those that are there. */
+/* Appends a command to the waiting ones. */
 static cm1e_error_t wait_behind(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)
 {
     double end[CM1E_PATH_AXES];
@@ -246,13 +246,13 @@ static cm1e_error_t wait_behind(cm1e_group_t *group, const cm1e_group_command_t 
         return refuse(group, CM1E_ERROR_FULL, 0.0, NULL);
     cm1e_path_end(&group->path, end);
     const cm1e_error_t error = append(group, command, end, !group->halting, id);
-    if (!error && group->halting) /* what is behind the halt does not begin before it has come to rest */
+    if (!error && group->halting) /* a command behind the halt begins only when the group has come to rest */
         cm1e_path_stop(&group->path, group->halt_deceleration, group->halt_jerk);
     return error;
 }
 
-/* In their place: along the present path to rest, and on from there. A relative line counts from where the axes are
- * now; a circle, which begins at that rest, counts from there. */
+/* Replaces the present commands: the group comes to rest along the present path and goes on from there. A relative line
+ * counts from where the axes are now, a relative circle from where it begins. */
 static cm1e_error_t replace(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)
 {
     double rest[CM1E_PATH_AXES];
@@ -282,7 +282,7 @@ static cm1e_error_t start_move(cm1e_group_t *group, const cm1e_group_command_t *
     return error;
 }
 
-/* Of a halt that waits its turn is all that is left to do: to be at rest then. */
+/* A waiting halt is done when it becomes active and the group is at rest. */
 static cm1e_error_t start_halt(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)
 {
     if (group->state == CM1E_GROUP_STANDBY) {
@@ -305,7 +305,7 @@ static cm1e_error_t start_halt(cm1e_group_t *group, const cm1e_group_command_t *
     return CM1E_OK;
 }
 
-/* Where the group stands, it holds those of its axes that stand, so that nothing else moves them. */
+/* A group at rest holds those of its axes that are at rest, so that no other command moves them. */
 static void start_stop(cm1e_group_t *group, const cm1e_group_command_t *command, cm1e_command_id_t id)
 {
     if (group->state == CM1E_GROUP_STANDBY && cm1e_group_begin_path(group) == CM1E_OK)
@@ -333,7 +333,7 @@ static cm1e_error_t start(cm1e_group_t *group, const cm1e_group_command_t *comma
     if (error)
         return error;
     if (group->state == CM1E_GROUP_STANDBY)
-        cm1e_group_let_go(group); /* nobody, unless an axis was left out of its last cycle */
+        cm1e_group_let_go(group); /* no axis asks, unless it was left out of its last cycle */
     if (is_move(command->kind))
         error = start_move(group, command, id);
     else if (command->kind == CM1E_GROUP_HALT)

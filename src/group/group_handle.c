@@ -1,5 +1,5 @@
-/* AXES_GROUP_REF: the table of all groups of the process. A handle is a place in it and a count of its uses, so that
- * one that is kept beyond its group names none. */
+/* AXES_GROUP_REF: the table of all groups of the process. A handle is a place in the table and a count of its uses, so
+ * that a handle that outlives its group names no other group. */
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +15,7 @@ static bool take_handle(cm1e_group_t *group)
         if (atomic_load(&table[i]))
             continue;
         uint8_t use = (uint8_t)(atomic_fetch_add(&uses[i], 1) + 1);
-        if (use == 0) /* 0 is left to "no group" */
+        if (use == 0) /* 0 means "no group" */
             use = (uint8_t)(atomic_fetch_add(&uses[i], 1) + 1);
         group->handle = (uint16_t)(use << 8 | i);
         cm1e_group_t *none = NULL;

@@ -1,8 +1,6 @@
-/*
- * The motion of a group: a path, a step of it in every cycle, and the axes that ask for their part of it. The first one
- * that asks makes the step. While the group moves, or holds still in GroupStopping, its axes are led; when all is done
- * they get a last set-point and stand by themselves.
- */
+/* The motion of a group along its path. In every cycle the first axis that asks for its set-point makes the step for
+ * all axes. The group leads its axes while it moves or while GroupStopping holds them. At the end the axes get a last
+ * set-point and are then free. */
 #include "group/group_private.h"
 
 bool cm1e_group_at_rest(const cm1e_group_t *group)
@@ -21,12 +19,12 @@ void cm1e_group_brake(cm1e_group_t *group, double deceleration, double jerk)
 
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
 
-/* What of the state diagram depends on the motion. */
+/* The transitions of the state diagram that depend on the motion. */
 static void after_step(cm1e_group_t *group)
 {
     const cm1e_path_sample_t *sample = &group->sample;
     const bool at_rest = cm1e_group_at_rest(group);
-    if (group->halting && at_rest) { /* before what waited for it, which may be done in the same step */
+    if (group->halting && at_rest) { /* before the commands that waited for it, which may be done in the same step */
         group->halting = false;
         cm1e_group_finish(group, group->queue.ids[group->queue.first]);
         cm1e_path_go_on(&group->path);
@@ -65,7 +63,7 @@ static cm1e_lead_t next(void *context, uint32_t index, double *position, double 
     return CM1E_LEAD_LAST;
 }
 
-/* Standing still in GroupStopping an axis may be taken away: there is nothing that could be left. */
+/* At rest in GroupStopping an axis may be released: it leaves no path. */
 static void lost(void *context, uint32_t index, cm1e_error_t error)
 {
     cm1e_group_t *group = context;
@@ -75,7 +73,7 @@ static void lost(void *context, uint32_t index, cm1e_error_t error)
         cm1e_group_fail(group, CM1E_ERROR_GROUP_AXIS, group->ident[index]);
 }
 
-/* All axes tell of a pause before the first of them asks again. */
+/* All axes report a pause before the first of them asks again. */
 static void paused(void *context, uint32_t index)
 {
     cm1e_group_t *group = context;

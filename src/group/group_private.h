@@ -12,7 +12,7 @@
 
 enum { GROUP_HANDLES = 32, GROUP_RECORDS = 64 };
 
-/** What the state diagram tells apart. */
+/** The triggers of the state diagram. */
 typedef enum group_trigger {
     TRIGGER_CONFIGURE = 0, /**< MC_AddAxisToGroup, MC_RemoveAxisFromGroup */
     TRIGGER_ENABLE,
@@ -21,7 +21,7 @@ typedef enum group_trigger {
     TRIGGER_MOVE,
     TRIGGER_HALT,
     TRIGGER_STOP,
-    TRIGGER_AT_REST,       /**< everything that was commanded is done, MC_GroupStop is no longer held */
+    TRIGGER_AT_REST,       /**< all commands are done, MC_GroupStop is no longer held */
     TRIGGER_FAIL,
     TRIGGER_COUNT,
 } group_trigger_t;
@@ -39,18 +39,18 @@ typedef struct group_record {
 } group_record_t;
 
 typedef struct group_queue {
-    cm1e_command_id_t ids[CM1E_GROUP_COMMANDS]; /**< in their order: a ring */
+    cm1e_command_id_t ids[CM1E_GROUP_COMMANDS]; /**< ring, in order */
     int first, count;
 } group_queue_t;
 
-/** What was refused last, for the text. */
+/** The last refusal, for the text. */
 typedef struct group_refusal {
     cm1e_error_t error;   /**< CM1E_OK: nothing */
-    uint32_t ident;       /**< of the axis that it is about; 0: none */
+    uint32_t ident;       /**< IdentInGroup of the axis concerned; 0: none */
     cm1e_path_refusal_t path;
-    double value;         /**< where that axis would get to; or what was asked for */
+    double value;         /**< position that the axis would reach, or the value given */
     double lower, upper;
-    const char *why;      /**< a sentence; NULL: the error says it */
+    const char *why;      /**< a sentence; NULL: the text of the error is enough */
 } group_refusal_t;
 
 struct cm1e_group {
@@ -59,22 +59,22 @@ struct cm1e_group {
     cm1e_group_state_t state;
     AXIS_REF_t member[CM1E_GROUP_AXES]; /**< by IdentInGroup - 1; handle 0: none */
     const cm1e_bus_t *bus;              /**< of the members */
-    bool ungroup;                       /**< when nothing moves any more */
+    bool ungroup;                       /**< released when nothing moves any more */
 
     /* the motion: axes of the path are members in their order, without the gaps */
     int axes;
     uint8_t ident[CM1E_GROUP_AXES];     /**< IdentInGroup of the axes of the path */
-    unsigned led, asked, paused;        /**< bits of axes of the path: led by the group; who has had this sample; who
-                                             told of this pause */
-    bool ending;                        /**< the sample is the last one */
+    unsigned led, asked, paused;        /**< bits of axes of the path: led by the group; has had this sample; has
+                                             reported this pause */
+    bool ending;                        /**< the present sample is the last one */
     bool halting;                       /**< MC_GroupHalt brakes, with ... */
     double halt_deceleration, halt_jerk;
     double override;
     cm1e_path_sample_t sample;
-    cm1e_path_t path, before;           /**< the latter: as it was, for commands that are refused after all */
+    cm1e_path_t path, before;           /**< copy of the path, for commands that are refused later */
 
     /* commands */
-    cm1e_command_id_t last_id, stop;    /**< stop: whose MC_GroupStop holds the group in GroupStopping */
+    cm1e_command_id_t last_id, stop;    /**< stop: the MC_GroupStop that holds the group in GroupStopping */
     bool stop_held;
     group_queue_t queue;
     group_record_t records[GROUP_RECORDS];
@@ -91,32 +91,32 @@ struct cm1e_group {
 const group_rule_t *cm1e_group_rule(cm1e_group_state_t state, group_trigger_t trigger);
 
 /* group.c */
-/** NULL: no member, or the axis is gone. */
+/** The member with this `ident`; NULL: no member, or the axis no longer exists. */
 cm1e_axis_t *cm1e_group_axis(const cm1e_group_t *group, uint32_t ident);
-/** The axis, if it still is there, is no member any more. */
+/** Removes the member; the axis may no longer exist. */
 void cm1e_group_leave(cm1e_group_t *group, uint32_t ident);
-/** Takes in what has become of the axes while nothing moved them. */
+/** Updates the group from the states of its axes while it is at rest. */
 void cm1e_group_refresh(cm1e_group_t *group);
 cm1e_error_t cm1e_group_refuse(cm1e_group_t *group, group_refusal_t refusal);
-/** To GroupErrorStop: commands end with an error, what still is led is braked along the path. */
+/** Goes to GroupErrorStop: commands end with an error, and axes that are still led brake along the path. */
 void cm1e_group_fail(cm1e_group_t *group, cm1e_error_t error, uint32_t culprit);
 
 /* group_command.c */
 void cm1e_group_record(cm1e_group_t *group, cm1e_command_id_t id, cm1e_command_state_t state, cm1e_error_t error);
-/** The first of the queue has ended. */
+/** Ends the first command of the queue. */
 void cm1e_group_finish(cm1e_group_t *group, cm1e_command_id_t id);
-/** All of the queue have. */
+/** Ends all commands of the queue. */
 void cm1e_group_end_all(cm1e_group_t *group, cm1e_command_state_t state, cm1e_error_t error);
 
 /* group_motion.c */
-/** Whether the set-points stand. */
+/** Whether the set-points are at rest. */
 bool cm1e_group_at_rest(const cm1e_group_t *group);
 /** Begins a path without segments where the members are. */
 cm1e_error_t cm1e_group_begin_path(cm1e_group_t *group);
-/** Takes the axes of the path, all standing. Refused: nothing has changed. `some`: takes those
- *  that can be taken. */
+/** Leads the axes of the path, which are all at rest. After a refusal nothing has changed. `some`: leads those axes
+ *  that can be led. */
 cm1e_error_t cm1e_group_lead(cm1e_group_t *group, bool some);
-/** Lets them go; those that move ramp down by themselves. */
+/** Releases the axes; moving axes ramp down by themselves. */
 void cm1e_group_let_go(cm1e_group_t *group);
 /** Brakes along the path and drops what is behind it. */
 void cm1e_group_brake(cm1e_group_t *group, double deceleration, double jerk);

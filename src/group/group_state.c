@@ -4,8 +4,9 @@
 #define REFUSED(why) {.refusal = CM1E_ERROR_GROUP_##why}
 #define TO(state) {.refusal = CM1E_OK, .next = CM1E_GROUP_##state}
 
-/* MC_GroupDisable and MC_UngroupAllAxes are taken in every state. GroupStopping takes another MC_GroupStop only when no
- * MC_GroupStop holds it (group_command.c). MC_GroupReset outside GroupErrorStop changes nothing, as MC_Reset. */
+/* MC_GroupDisable and MC_UngroupAllAxes are accepted in every state. GroupStopping accepts another MC_GroupStop only
+ * when no MC_GroupStop holds it (group_command.c). MC_GroupReset outside GroupErrorStop changes nothing, like
+ * MC_Reset. */
 static const group_rule_t rules[CM1E_GROUP_STATE_COUNT][TRIGGER_COUNT] = {
     [CM1E_GROUP_DISABLED] = {
         [TRIGGER_CONFIGURE] = TO(DISABLED),

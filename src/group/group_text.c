@@ -1,4 +1,4 @@
-/* What happened to a group, in sentences. */
+/* Error texts of a group. */
 #include <stdio.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@ static const char *name_of(const cm1e_group_t *group, uint32_t ident)
     return ident ? cm1e_axis_name(group->member[ident - 1]) : "";
 }
 
-/* Behind what was said: what the axis says itself. */
+/* Appends the error text of the axis. */
 static void add_axis_text(const cm1e_group_t *group, uint32_t ident, char *text, size_t size)
 {
     const size_t used = strlen(text);

@@ -11,15 +11,15 @@
 
 #include "motion/profile.h"
 
-/** Of the slave: position (u) and its derivatives by the master's position. */
+/** A state of the slave: position (u) and its derivatives by the master's position. */
 typedef struct cm1e_curve_point {
     double position, slope, curvature, third;
 } cm1e_curve_point_t;
 
-/** Over from <= master <= from + length (length > 0). */
+/** The polynomial for from <= master <= from + length (length > 0). */
 typedef struct cm1e_curve {
     double from, length;
-    double coefficient[6];      /**< of powers of (master - from) */
+    double coefficient[6];      /**< coefficients of powers of (master - from) */
 } cm1e_curve_t;
 
 typedef struct cm1e_curve_extremes {
@@ -28,11 +28,11 @@ typedef struct cm1e_curve_extremes {
     double curvature, third;        /**< absolute values */
 } cm1e_curve_extremes_t;
 
-/** The only one that meets position, slope and curvature at both ends; `from` and `to` are the master's positions, in
- *  either order. FALSE: there is none that doubles can hold. */
+/** Makes the curve that meets position, slope and curvature at both ends. `from` and `to` are the master's positions,
+ *  in either order. Returns false if doubles cannot represent it. */
 bool cm1e_curve_between(cm1e_curve_t *curve, double from, const cm1e_curve_point_t *first, double to,
                         const cm1e_curve_point_t *last);
-/** At a position of the master; outside of its stretch the polynomial goes on. */
+/** The curve at a position of the master; outside of its interval the polynomial continues. */
 static inline cm1e_curve_point_t cm1e_curve_at(const cm1e_curve_t *curve, double master)
 {
     const double *c = curve->coefficient, x = master - curve->from;
@@ -43,10 +43,10 @@ static inline cm1e_curve_point_t cm1e_curve_at(const cm1e_curve_t *curve, double
         .third = 6 * c[3] + x * (24 * c[4] + x * (60 * c[5])),
     };
 }
-/** Over all of its stretch, between the ends too. */
+/** Extremes over the whole interval. */
 void cm1e_curve_extremes(const cm1e_curve_t *curve, cm1e_curve_extremes_t *extremes);
 
-/** What the slave does there while its master moves so; velocity and acceleration of the master, u of it. */
+/** Motion of the slave at a point of the curve, for a velocity and an acceleration of the master in u of the master. */
 static inline cm1e_motion_state_t cm1e_curve_motion(const cm1e_curve_point_t *point, double velocity,
                                                     double acceleration)
 {
@@ -57,8 +57,8 @@ static inline double cm1e_curve_jerk(const cm1e_curve_point_t *point, double vel
 {
     return (point->third * velocity * velocity + 3 * point->curvature * acceleration) * velocity + point->slope * jerk;
 }
-/** The other way round: the point (but for `third`, which is 0) at which the slave moves as it does. FALSE: the master
- *  stands and the slave does not, or the master is too slow for a slope to be a number. */
+/** The inverse: the point (with `third` 0) that corresponds to the motion of the slave. Returns false if the master
+ *  stands and the slave does not, or if the master is too slow for a finite slope. */
 bool cm1e_curve_point_of(cm1e_curve_point_t *point, const cm1e_motion_state_t *slave, double velocity,
                          double acceleration);
 

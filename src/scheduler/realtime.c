@@ -12,7 +12,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-/** The deepest that a cycle's calls may reach; touched beforehand, so that no page fault happens in the cycle. */
+/** Stack that the calls of a cycle may need. It is touched before the run, so that no page fault happens in the
+ *  cycle. */
 enum { STACK_TOUCHED = 64 * 1024, PAGE = 4096 };
 
 /** Sanitizers map terabytes of shadow memory, which cannot be locked. */
@@ -92,7 +93,7 @@ bool cm1e_realtime_begin(realtime_t *realtime, const cm1e_scheduler_config_t *co
 {
     *realtime = (realtime_t){.timer_slack_ns = (int)prctl(PR_GET_TIMERSLACK)};
     advice[0] = '\0';
-    prctl(PR_SET_TIMERSLACK, 1); /* a thread that is not real time would wake up to 50 us late by design */
+    prctl(PR_SET_TIMERSLACK, 1); /* the kernel wakes a thread that is not real time up to 50 us late */
     const bool bound = config->cpu <= 0 || bind_to_cpu(realtime, config->cpu);
     if (!bound)
         snprintf(advice, size,

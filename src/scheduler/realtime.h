@@ -1,7 +1,7 @@
 /**
  * @file realtime.h
  * What the operating system can do for the thread that runs the cycle: SCHED_FIFO, locked memory, a touched stack, one
- * CPU, exact timers. A missing privilege is told in words that say what to do.
+ * CPU, exact timers. The advice about a missing privilege says what to do.
  */
 #ifndef CM1E_SCHEDULER_REALTIME_H
 #define CM1E_SCHEDULER_REALTIME_H
@@ -15,7 +15,7 @@
 
 enum { REALTIME_DEFAULT_PRIORITY = 80 };
 
-/** How the thread was before. */
+/** State of the thread before, to be restored. */
 typedef struct realtime {
     bool fifo, bound;
     int policy, timer_slack_ns;
@@ -23,9 +23,10 @@ typedef struct realtime {
     cpu_set_t cpus;
 } realtime_t;
 
-/** For the calling thread. TRUE: real time is in force; else `advice` says what is missing, "" if nothing was asked. */
+/** Requests real time for the calling thread. Returns true if it is in force. Otherwise `advice` says what is missing,
+ *  "" if nothing was requested. */
 bool cm1e_realtime_begin(realtime_t *realtime, const cm1e_scheduler_config_t *config, char *advice, size_t size);
-/** The thread is again as it was. Locked memory stays locked. */
+/** Restores the thread. Locked memory stays locked. */
 void cm1e_realtime_end(const realtime_t *realtime);
 
 #endif

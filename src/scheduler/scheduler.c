@@ -20,7 +20,7 @@
 
 struct cm1e_scheduler {
     cm1e_bus_t *bus;
-    uint32_t operation;    /**< of the bus, in which the axes were made */
+    uint32_t operation;    /**< start number of the bus for which the axes were made */
     cm1e_clock_t *clock;
     cm1e_scheduler_config_t config;
     int64_t cycle_time_ns;
@@ -29,15 +29,15 @@ struct cm1e_scheduler {
     task_list_t tasks;
     trace_t trace;
     statistics_t statistics;
-    atomic_bool stop;      /**< asked for, by anybody */
+    atomic_bool stop;      /**< a stop was requested */
     bool run;              /**< cm1e_scheduler_run() was called */
     bool shutting_down;    /**< programs no longer run */
-    const char *refused;   /**< what a task called that would have ended all this under the cycle; NULL: nothing */
-    bool shut_down;        /**< every drive is disabled, or gone */
+    const char *refused;   /**< function that a task called and that would have freed what the cycle uses; NULL: none */
+    bool shut_down;        /**< every drive is disabled or offline */
     int64_t start_ns;      /**< of cycle 0 */
-    int64_t number;        /**< of this cycle; skipped ones count */
-    int64_t begin_ns;      /**< when this cycle really began */
-    int64_t sent_ns;       /**< when the outputs of the last one were made */
+    int64_t number;        /**< number of this cycle; skipped cycles count */
+    int64_t begin_ns;      /**< actual start of this cycle */
+    int64_t sent_ns;       /**< time of the outputs of the last cycle */
 };
 
 /* ---- the cycle ------------------------------------------------------------------------------------------------- */
@@ -61,7 +61,7 @@ static void shut_down_axes(cm1e_scheduler_t *s)
 /** Number of the cycle to whose time a moment belongs. */
 static int64_t cycle_of(const cm1e_scheduler_t *s, int64_t time_ns) { return (time_ns - s->start_ns) / s->cycle_time_ns; }
 
-/** After a few missed cycles the motor has hardly slowed down; after more it stands (CSP). */
+/** After a few missed cycles the motor has hardly slowed down; after more it is at rest (CSP). */
 static void after_missed(cm1e_axis_t *axis, int64_t missed, int64_t silence_ns)
 {
     if (missed > CM1E_AXIS_RIDDEN_OUT_CYCLES)
@@ -73,7 +73,7 @@ static void after_missed(cm1e_axis_t *axis, int64_t missed, int64_t silence_ns)
 static void set_outputs(cm1e_scheduler_t *s)
 {
     const int64_t now_ns = cm1e_clock_now(s->clock), silence_ns = now_ns - s->sent_ns - s->cycle_time_ns;
-    const int64_t missed = cycle_of(s, now_ns) - cycle_of(s, s->sent_ns) - 1; /* in which no frame was sent */
+    const int64_t missed = cycle_of(s, now_ns) - cycle_of(s, s->sent_ns) - 1; /* cycles in which no frame was sent */
     s->sent_ns = now_ns;
     for (uint32_t i = 0; i < s->axis_count && missed > 0; i++)
         after_missed(s->axes[i], missed, silence_ns);
@@ -81,7 +81,7 @@ static void set_outputs(cm1e_scheduler_t *s)
         cm1e_axis_outputs(s->axes[i]);
 }
 
-/** A task that asked for the end of what it runs on gets the end of the run, in order. */
+/** A task called a function that would free what it runs on: the run ends in order instead. */
 static void run_tasks(cm1e_scheduler_t *s)
 {
     cm1e_in_task_begin();
@@ -94,8 +94,8 @@ static void run_tasks(cm1e_scheduler_t *s)
     cm1e_scheduler_stop(s);
 }
 
-/** receive -> inputs -> programs -> axes -> outputs -> send. At the end of a run the programs' place is taken by the
- *  axes' shut-down. */
+/** receive -> inputs -> programs -> axes -> outputs -> send. At the end of a run the shut-down of the axes replaces the
+ *  programs. */
 static void scan(cm1e_scheduler_t *s)
 {
     take_inputs(s, cm1e_bus_receive(s->bus));
@@ -108,7 +108,7 @@ static void scan(cm1e_scheduler_t *s)
     cm1e_bus_send(s->bus);
 }
 
-/** Waits for the planned start. A thread that is woken a whole cycle late or more takes the cycle that it finds. */
+/** Waits for the planned start. A thread that wakes up one cycle late or more continues with the present cycle. */
 static void wait_for_start(cm1e_scheduler_t *s)
 {
     cm1e_clock_sleep_until(s->clock, planned_ns(s, s->number));
@@ -124,7 +124,8 @@ static void wait_for_start(cm1e_scheduler_t *s)
     }
 }
 
-/** The next cycle is the first whose start is still to come: missed ones are left out, never caught up in a burst. */
+/** The next cycle is the first one whose start is in the future: missed cycles are skipped, never executed in a
+ *  burst. */
 static void end_cycle(cm1e_scheduler_t *s)
 {
     const int64_t end_ns = cm1e_clock_now(s->clock);
@@ -194,8 +195,8 @@ static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *d
     return error;
 }
 
-/** Without this the cycles of a stopped bus would pass without a frame and without an error, and those of one that was
- *  started again would write where the process data of their axes lay before. */
+/** Without this check the cycles of a stopped bus would pass without a frame and without an error. The cycles of a
+ *  restarted bus would write to the old place of the process data. */
 static cm1e_error_t check_operation(const cm1e_scheduler_t *s, cm1e_diag_t *diag)
 {
     const uint32_t present = cm1e_bus_operation(s->bus);
@@ -221,7 +222,7 @@ cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns
         return other_operation;
     scheduler->run = true;
     cm1e_clock_t *clock_before = cm1e_clock_current();
-    cm1e_clock_make_current(scheduler->clock); /* this thread may not be the one that opened the bus */
+    cm1e_clock_make_current(scheduler->clock); /* this thread may differ from the one that opened the bus */
     const cm1e_error_t error = run(scheduler, duration_ns, diag);
     cm1e_clock_make_current(clock_before);
     return error;

@@ -4,18 +4,18 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 
-/** What ends or suspends a program by default, from outside or from a write of its own; any of it while a motor moves
- *  would leave that motor without a ramp. Not here: SIGKILL and SIGSTOP, which nobody can take; signals of a crash; and
- *  those that a program uses for itself (SIGUSR1, SIGALRM ...). */
+/** Signals that end or suspend a program by default, from outside or because of its own write. During a motion each of
+ *  them would leave the motor without a ramp. Not in the list: SIGKILL and SIGSTOP, which cannot be caught, signals of
+ *  a crash, and signals that a program uses for itself (SIGUSR1, SIGALRM ...). */
 static const struct {
     int number;
-    bool is_order; /**< to end: it counts also where it was ignored before, as a shell ignores SIGINT of what it runs in
-                        the background. The others end nothing while they are ignored (nohup), so they stay so */
+    bool is_order; /**< true: it acts even if it was ignored before, because a shell ignores SIGINT for background
+                        programs. The others stay ignored if they were (nohup) */
 } signals[] = {
     {SIGINT, true},   {SIGTERM, true},
     {SIGHUP, false},  /* the terminal is closed, the connection to it is lost */
     {SIGQUIT, false}, {SIGTSTP, false}, /* Ctrl-\, Ctrl-Z: while the program is suspended, no frame is sent */
-    {SIGPIPE, false}, /* whoever read our output is gone */
+    {SIGPIPE, false}, /* the reader of our output has closed it */
     {SIGXCPU, false}, {SIGXFSZ, false}, /* limits of time and of the size of a file (trace, pcap) */
 };
 enum { SIGNALS = sizeof signals / sizeof signals[0] };
@@ -24,8 +24,8 @@ static _Atomic(cm1e_scheduler_t *) attached;
 static struct sigaction before[SIGNALS];
 static bool taken[SIGNALS];
 
-/** Only what is async-signal-safe: two lock-free atomic accesses. A second signal finds the run ending already and
- *  changes nothing: the ramp is bounded by itself. */
+/** Async-signal-safe: two lock-free atomic accesses. A second signal changes nothing, because the run is ending already
+ *  and the ramp is bounded. */
 static void on_signal(int number)
 {
     (void)number;

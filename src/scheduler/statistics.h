@@ -1,7 +1,7 @@
 /**
  * @file statistics.h
- * Numbers that the cycle writes and any thread may read: relaxed atomics with one writer. Each number read is right;
- * two of them may be of neighbouring cycles.
+ * Numbers that the cycle writes and any thread may read: relaxed atomics with one writer. Each number is consistent;
+ * two numbers may be of neighbouring cycles.
  */
 #ifndef CM1E_SCHEDULER_STATISTICS_H
 #define CM1E_SCHEDULER_STATISTICS_H
@@ -28,7 +28,7 @@ typedef struct statistics {
 void cm1e_distribution_add(distribution_t *distribution, int64_t time_ns);
 /** @rt cycle */
 void cm1e_statistics_note_bus(statistics_t *statistics, const cm1e_bus_counters_t *counters);
-/** What real-time privileges came to; once, before the first cycle. */
+/** Stores the result of requesting real time; called once, before the first cycle. */
 void cm1e_statistics_publish_realtime(statistics_t *statistics, bool realtime, const char *advice);
 /** @rt any */
 void cm1e_statistics_read(const statistics_t *statistics, cm1e_scheduler_statistics_t *copy);

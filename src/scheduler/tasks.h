@@ -13,10 +13,10 @@ typedef struct task {
     void *context;
     uint32_t priority;
     int64_t every;       /**< cycles */
-    int64_t next_cycle;  /**< number of the cycle that it is due in */
+    int64_t next_cycle;  /**< number of the cycle in which it is due */
 } task_t;
 
-/** In the order in which they run. */
+/** Tasks, in the order in which they run. */
 typedef struct task_list {
     task_t tasks[CM1E_MAX_TASKS];
     uint32_t count;
@@ -25,7 +25,7 @@ typedef struct task_list {
 /** @rt init */
 cm1e_error_t cm1e_tasks_add(task_list_t *list, const cm1e_task_config_t *config, int64_t cycle_time_ns,
                             cm1e_diag_t *diag);
-/** Calls what is due in cycle `number` (0 = first; numbers grow, some may be missing). @rt cycle */
+/** Calls the tasks that are due in cycle `number` (0 = first; numbers rise, some may be missing). @rt cycle */
 void cm1e_tasks_run(task_list_t *list, int64_t number);
 
 #endif

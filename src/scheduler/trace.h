@@ -15,7 +15,7 @@ typedef struct cm1e_trace_sample {
     cm1e_axis_state_t state;
 } trace_sample_t;
 
-/** A moment that the program gave a name. */
+/** A moment that the program marked. */
 typedef struct cm1e_trace_mark {
     int64_t time_ns;
     const char *text;
@@ -25,12 +25,12 @@ enum { TRACE_MARKS = 64 };
 
 typedef struct trace {
     uint32_t axes, capacity, every;
-    uint32_t first, used;     /**< samples: the oldest one, and how many there are */
+    uint32_t first, used;     /**< samples: index of the oldest, and their number */
     uint32_t until_next;      /**< cycles until the next one is recorded */
     const char **names;       /**< of the axes */
     int64_t *times_ns;        /**< [capacity] */
     trace_sample_t *samples;  /**< [capacity][axes] */
-    trace_mark_t marks[TRACE_MARKS]; /**< a ring as well */
+    trace_mark_t marks[TRACE_MARKS]; /**< ring of marks */
     uint32_t first_mark, mark_count;
 } trace_t;
 
@@ -53,7 +53,8 @@ const trace_mark_t *cm1e_trace_mark_at(const trace_t *trace, uint32_t n);
 /** Writers of a file's content. */
 void cm1e_trace_print_csv(const trace_t *trace, FILE *file);
 void cm1e_trace_print_svg(const trace_t *trace, FILE *file);
-/** Writes under a temporary name and renames, so that nobody ever sees half a file; in the "C" locale. @rt block */
+/** Writes under a temporary name and renames, so that no reader sees an incomplete file; in the "C" locale.
+ *  @rt block */
 cm1e_error_t cm1e_trace_write_file(const trace_t *trace, const char *path,
                                    void (*print)(const trace_t *trace, FILE *file), cm1e_diag_t *diag);
 

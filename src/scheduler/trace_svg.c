@@ -1,9 +1,7 @@
-/*
- * The trace as a picture: a column of panels per axis (position, velocity, torque over time), above them a band that
+/* The trace as a picture: a column of panels per axis (position, velocity, torque over time), above them a band that
  * shows the axis's state in colour, and the program's marks as dashed lines with their text. Every curve is thinned to
- * the smallest and largest value of each of a few hundred slices of time, so that nothing that happened is lost and the
- * file stays below half a megabyte.
- */
+ * the smallest and largest value of each of a few hundred slices of time, so that no peak is lost and the file stays
+ * below half a megabyte. */
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -41,7 +39,7 @@ static const struct panel {
 };
 enum { PANELS = sizeof panels / sizeof panels[0] };
 
-/** The more a reader must not miss a state, the higher its rank: it wins the slice of time that it falls into. */
+/** Rank of a state: the state with the highest rank in a slice of time is shown. */
 static const struct {
     const char *colour;
     int rank;
@@ -334,7 +332,8 @@ static double column_height(const plot_t *plot)
 
 /* ---- marks ------------------------------------------------------------------------------------------------------ */
 
-/** Rather too wide than too narrow, in the font of the class tick. A byte that goes on with a character has none. */
+/** Estimated width in the font of the class tick, rather too wide than too narrow. Continuation bytes of a character
+ *  have no width. */
 static double letter_width(char c)
 {
     if (((unsigned char)c & 0xC0) == 0x80)
@@ -369,7 +368,8 @@ static bool is_free(const plot_t *plot, const label_t *label)
     return true;
 }
 
-/** To the right of its mark where there is room up to the next column, else to the left; in the lowest free row. */
+/** Places a text to the right of its mark if there is room up to the next column, else to the left; in the lowest free
+ *  row. */
 static void place_label(plot_t *plot, const trace_mark_t *mark)
 {
     label_t label = {.text = mark->text};
@@ -394,7 +394,8 @@ static void place_labels(plot_t *plot)
         place_label(plot, cm1e_trace_mark_at(plot->trace, n));
 }
 
-/** From the rows of their texts above `band` down to `bottom`; the texts last, so that no line runs through one. */
+/** Draws the marks from the rows of their texts above `band` down to `bottom`; the texts last, so that no line crosses
+ *  one. */
 static void print_marks(const plot_t *plot, const box_t *band, double bottom)
 {
     for (uint32_t n = 0; n < plot->label_count; n++) {
