@@ -1,3 +1,4 @@
+#include "coupling/coupling.h"
 #include "edge.h"
 
 /** The cam is copied at the edge; MC_CamIn names its master. */

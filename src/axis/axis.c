@@ -4,8 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "axis/axis_cam.h"
-#include "axis/axis_coupling.h"
 #include "axis/axis_handle.h"
 
 cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t index, cm1e_diag_t *diag)
@@ -21,10 +19,6 @@ cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t inde
     }
     if (!error)
         error = cm1e_axis_table_init(axis, diag);
-    if (!error)
-        error = cm1e_axis_cams_init(axis, diag);
-    if (!error)
-        error = cm1e_axis_coupling_init(axis, diag);
     axis->mode = !error && !cm1e_drive_supports(&axis->drive, CM1E_MODE_CSP) ? CM1E_MODE_CSV : CM1E_MODE_CSP;
     if (!error && !cm1e_axis_handle_take(axis, &axis->handle))
         error = cm1e_diag_set(diag, CM1E_ERROR_FULL, 0, "There are already %d axes in this process.",
@@ -32,8 +26,6 @@ cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t inde
     if (error) {
         cm1e_drive_free(&axis->drive);
         free(axis->tables);
-        free(axis->cams);
-        cm1e_axis_coupling_free(axis);
         free(axis);
         return error;
     }
@@ -57,10 +49,10 @@ void cm1e_axis_destroy(cm1e_axis_t *axis)
     cm1e_axis_handle_give_back(axis->handle);
     cm1e_drive_free(&axis->drive);
     free(axis->tables);
-    free(axis->cams);
     if (axis->motor_hooks)
         axis->motor_hooks->free(axis);
-    cm1e_axis_coupling_free(axis);
+    if (axis->coupling_hooks)
+        axis->coupling_hooks->free(axis);
     free(axis);
 }
 
@@ -162,7 +154,7 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
     if (drive->feedback.fresh)
         cm1e_axis_track(axis);
     if (axis->observed)
-        cm1e_axis_observe(axis);
+        axis->coupling_hooks->observe(axis);
     if (axis->probes_armed > 0 && drive->feedback.fresh)
         cm1e_axis_probe_step(axis);
     if (drive->watch.lost || (drive->watch.al_state & 0x0F) == CM1E_AL_INIT)
@@ -202,8 +194,8 @@ void cm1e_axis_advance(cm1e_axis_t *axis)
     axis->advanced = true;
     if (axis->silent_before > 0)
         cm1e_axis_after_silence(axis);
-    if (axis_follows(axis) || axis->awaited)
-        cm1e_axis_advance_masters(axis);
+    if (axis_follows(axis) || axis->awaits)
+        axis->coupling_hooks->advance_masters(axis);
     if (axis->kept != 0 || axis->drive.command.digital_outputs != 0)
         cm1e_axis_signals_step(axis);
     const bool undisturbed = moves_on(axis);
@@ -214,8 +206,8 @@ void cm1e_axis_advance(cm1e_axis_t *axis)
     }
     if (!axis->frozen || !set_points_move(axis))
         cm1e_axis_motion_step(axis);
-    if (axis->awaited && !axis->frozen)
-        cm1e_axis_await_step(axis);
+    if (axis->awaits && !axis->frozen)
+        axis->coupling_hooks->await_step(axis);
     if (axis->backlash.gap > 0.0 && !axis->frozen)
         cm1e_axis_backlash_step(axis);
     if (axis->objects.head != axis->objects.next)

@@ -166,12 +166,6 @@ void cm1e_axis_hold_cycle(cm1e_axis_t *axis, int64_t missed);
 /** Starts a command or refuses it (then *id is 0 and nothing has changed). CM1E_ERROR_UNSUPPORTED: not by the profiles
  *  of a drive (`motion: drive`). @rt cycle */
 cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
-/** MC_CamTableSelect (4.2): copies a cam into the memory of its slave, where the last CM1E_AXIS_CAMS stay for
- *  CAM_IN; one that is followed, or that a waiting command names, is not overwritten: CM1E_ERROR_FULL.
- *  CM1E_ERROR_AXIS_CAM_TABLE. @rt cycle */
-enum { CM1E_AXIS_CAMS = 4 };
-cm1e_error_t cm1e_axis_cam_select(cm1e_axis_t *slave, const MC_CAM_REF *cam, bool periodic, bool master_absolute,
-                                  bool slave_absolute, MC_CAM_ID *id);
 /** ContinuousUpdate (2.4.6): the present inputs of a command; the same ones cost a comparison. Relative values count
  *  from where the command began; the buffer mode stays what it was. A refused update changes nothing: the motion goes
  *  on by the last good inputs, and the error is for the block to show. After the command's end nothing happens.

@@ -9,7 +9,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "axis/axis_coupling.h"
+#include "axis/axis_private.h"
 
 /* What an exit velocity may differ by when it is asked again on the way. */
 static const double same_velocity = 1e-9;
@@ -198,9 +198,8 @@ static cm1e_error_t check_behind(cm1e_axis_t *axis, int index, move_t *move)
 /* What goes on when it has reached what it was to reach, and then lets the next command take its place. */
 static bool hands_over(const cm1e_axis_t *axis)
 {
-    const follow_t *follow = axis->coupling->now;
     if (kind_row(axis->kind)->plan == PLAN_COUPLING)
-        return !follow->waits_for_end || follow->cam.left != 0.0;
+        return axis->coupling_hooks->hands_over(axis);
     return kind_row(axis->kind)->is_endless;
 }
 
@@ -266,7 +265,7 @@ bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *at, double offset_
     from_t from = *at;
     while (axis->waiting.count > 0) {
         const command_kind_t *kind = kind_row(waiting_move(axis, 0)->kind);
-        const command_method_t *method = &cm1e_axis_methods[kind->plan];
+        const command_method_t *method = cm1e_axis_method(axis, kind->plan);
         if (axis->superimposed.id && (axis->superimposed.alone || !kind->carries_superimposed))
             return false; /* nothing goes on top of these, or it has all the limits: they wait for its end */
         if (method->awaits && method->awaits(axis, &from, offset_s))

@@ -1,8 +1,8 @@
 /* Commands: posted by function blocks, known by number, one of them active. */
 #include <math.h>
 
-#include "axis/axis_coupling.h"
 #include "axis/axis_handle.h"
+#include "axis/axis_private.h"
 
 /* ---- records ----------------------------------------------------------------------------------------------------- */
 
@@ -37,7 +37,8 @@ void cm1e_axis_remember_end(cm1e_axis_t *axis, cm1e_command_kind_t kind, cm1e_er
 
 void cm1e_axis_waiting_end(cm1e_axis_t *axis, cm1e_command_state_t state)
 {
-    cm1e_axis_await_nothing(axis);
+    if (axis->awaits)
+        axis->coupling_hooks->await_nothing(axis);
     for (int i = 0; i < axis->waiting.count; i++)
         cm1e_axis_record(axis, waiting_move(axis, i)->id, state,
                          state == CM1E_COMMAND_ERROR ? CM1E_ERROR_AXIS_ERROR_STOP : CM1E_OK);
@@ -50,25 +51,27 @@ void cm1e_axis_commands_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_
     cm1e_axis_command_end(axis, state, error);
     cm1e_axis_lead_end(axis, error);
     cm1e_axis_superimposed_end(axis, state, state == CM1E_COMMAND_ERROR ? CM1E_ERROR_AXIS_ERROR_STOP : CM1E_OK);
-    if (state == CM1E_COMMAND_ERROR) /* else it ends when its master is left */
-        cm1e_axis_phasing_end(axis, state, CM1E_ERROR_AXIS_ERROR_STOP);
+    if (state == CM1E_COMMAND_ERROR && axis->coupling_hooks) /* else it ends when its master is left */
+        axis->coupling_hooks->phasing_end(axis, state, CM1E_ERROR_AXIS_ERROR_STOP);
     cm1e_axis_waiting_end(axis, state);
 }
 
 cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_command_id_t id)
 {
-    if (id != 0 && id == axis->active)
-        return (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE, .reached = axis->reached,
-                                       .synchronizing = axis_follows(axis) && !axis->coupling->now->in_step,
-                                       .ends = axis_follows(axis) ? axis->coupling->ends : 0};
+    cm1e_command_status_t status = {.state = CM1E_COMMAND_ACTIVE, .reached = axis->reached};
+    if (id != 0 && id == axis->active) {
+        if (axis_follows(axis))
+            axis->coupling_hooks->tell(axis, &status);
+        return status;
+    }
     for (int i = 0; i < axis->waiting.count; i++)
         if (axis->waiting.moves[(axis->waiting.first + i) % CM1E_AXIS_BUFFER_DEPTH].id == id)
             return (cm1e_command_status_t){.state = CM1E_COMMAND_BUFFERED};
     const superimposed_t *on_top = &axis->superimposed;
     if (id != 0 && id == on_top->id)
         return (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE, .covered = on_top->now.position};
-    cm1e_command_status_t status;
-    if (cm1e_axis_phasing_status(axis, id, &status))
+    const coupling_hooks_t *hooks = axis->coupling_hooks;
+    if (hooks && hooks->phasing_status(axis, id, &status))
         return status;
     const command_record_t *record = &axis->records[id % COMMANDS_REMEMBERED];
     if (id == 0 || record->id != id)
@@ -76,7 +79,7 @@ cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_com
     return (cm1e_command_status_t){.state = (cm1e_command_state_t)record->state,
                                    .error = (cm1e_error_t)record->error,
                                    .covered = id == on_top->ended ? on_top->covered
-                                                                  : cm1e_axis_phasing_covered(axis, id)};
+                                              : hooks             ? hooks->phasing_covered(axis, id) : 0.0};
 }
 
 bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id)
@@ -91,8 +94,7 @@ bool cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id, cm1e_comma
     if (!axis || id == 0 || axis->active != id || !axis_follows(axis))
         return false;
     status->reached = axis->reached;
-    status->synchronizing = !axis->coupling->now->in_step;
-    status->ends = axis->coupling->ends;
+    axis->coupling_hooks->tell(axis, status);
     return true;
 }
 
@@ -351,7 +353,7 @@ cm1e_error_t cm1e_axis_buffer_homing(cm1e_axis_t *axis, const cm1e_axis_command_
 static bool has_to_wait(const cm1e_axis_t *axis, const cm1e_axis_command_t *command)
 {
     return command->buffer_mode != mcAborting && kind_row(command->kind)->has_buffer_mode &&
-           !is_beside(command->kind) && (axis->active || axis->awaited) && axis->state != CM1E_AXIS_STOPPING;
+           !is_beside(command->kind) && (axis->active || axis->awaits) && axis->state != CM1E_AXIS_STOPPING;
 }
 
 /* What can be said without a look at the numbers. */
@@ -384,11 +386,13 @@ static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command,
     if ((unsigned)command->kind >= CM1E_COMMAND_KIND_COUNT)
         return CM1E_ERROR_INVALID_ARGUMENT;
     const command_kind_t *kind = kind_row(command->kind);
-    const command_method_t *method = &cm1e_axis_methods[kind->plan];
+    const command_method_t *method = cm1e_axis_method(axis, kind->plan);
     const bool waits = has_to_wait(axis, command);
     cm1e_error_t error = check(axis, command, waits);
     if (error)
         return error;
+    if (!method->start)
+        return CM1E_ERROR_UNSUPPORTED;
     if (waits)
         return method->buffer(axis, command, id);
     error = method->start(axis, command, id);

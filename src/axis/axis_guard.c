@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "axis/axis_coupling.h"
+#include "axis/axis_private.h"
 #include "core/rare.h"
 
 /* What sums of doubles leave, relative and in counts. */
@@ -156,7 +156,7 @@ void cm1e_axis_guard_renew(cm1e_axis_t *axis)
 
 void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t guard)
 {
-    guard.by_actual = axis_follows(axis) && axis->coupling->now->by_actual;
+    guard.by_actual = axis_follows(axis) && axis->coupling_hooks->by_actual(axis);
     if (axis->state != CM1E_AXIS_ERROR_STOP)
         axis->guard = guard;
     cm1e_axis_fail(axis, CM1E_ERROR_AXIS_COUPLING_LIMIT, guard.asked, guard.allowed);

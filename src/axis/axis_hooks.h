@@ -6,7 +6,7 @@
 #ifndef CM1E_AXIS_AXIS_HOOKS_H
 #define CM1E_AXIS_AXIS_HOOKS_H
 
-#include "axis/axis.h"
+#include "axis/axis_move.h"
 
 /** What only a motor behind a bridge has (src/bridge): other modes than those of motion, and the way back from them. */
 typedef struct motor_hooks {
@@ -19,10 +19,61 @@ typedef struct motor_hooks {
     cm1e_error_t (*refuses_power)(cm1e_axis_t *axis);
     /** CM1E_OK, or why MC_Home cannot be. */
     cm1e_error_t (*refuses_homing)(cm1e_axis_t *axis);
-    /** At the end of a run: neither CML nor CMD moves the motor any more. TRUE at the latest 2 s after the first call. */
+    /** At the end of a run: neither CML nor CMD moves the motor any more. TRUE 2 s after the first call. */
     bool (*released)(cm1e_axis_t *axis);
     /** What was refused or has failed; FALSE: this error is not one of those. */
     bool (*text)(const cm1e_axis_t *axis, cm1e_error_t error, char *text, size_t size);
 } motor_hooks_t;
+
+/** Couplings (src/coupling): what the axis follows, and who follows it. Those from `step` on are called only while
+ *  the axis follows (axis_follows()). */
+typedef struct coupling_hooks {
+    const command_method_t *methods; /**< by command_plan_t; without `start`: not theirs */
+    void (*free)(cm1e_axis_t *axis); /**< @rt init */
+    /** With the inputs of every cycle in which somebody may follow its actual value (cm1e_axis_t.observed). */
+    void (*observe)(cm1e_axis_t *axis);
+    /** Before the set-point, while it follows or awaits: those that it follows make theirs first. */
+    void (*advance_masters)(cm1e_axis_t *axis);
+    /** After the set-point, while a waiting command awaits its master (cm1e_axis_t.awaits). */
+    void (*await_step)(cm1e_axis_t *axis);
+    /** Nothing is awaited any more. */
+    void (*await_nothing)(cm1e_axis_t *axis);
+    /** After a pause of so long, or silence (0): masters begin anew before their slave, slaves after their master. */
+    void (*resume_masters)(cm1e_axis_t *axis, int64_t pause_ns);
+    void (*resume_slaves)(cm1e_axis_t *axis);
+    /** Running and waiting phase shifts end. */
+    void (*phasing_end)(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
+    /** FALSE: `id` is not a phase shift that runs or waits. */
+    bool (*phasing_status)(const cm1e_axis_t *axis, cm1e_command_id_t id, cm1e_command_status_t *status);
+    /** Of the last one that has ended; 0: it was another command. */
+    double (*phasing_covered)(const cm1e_axis_t *axis, cm1e_command_id_t id);
+    /** What was refused (`refused`), or has failed; FALSE: this error is not one of couplings. */
+    bool (*text)(const cm1e_axis_t *axis, cm1e_error_t error, bool refused, char *text, size_t size);
+    /** What is wrong with the cam that was refused last. */
+    void (*cam_text)(const cm1e_axis_t *axis, char *text, size_t size);
+
+    /** The set-point of the cycle. FALSE: it does not come from the masters any more, but from the axis's profile. */
+    bool (*step)(cm1e_axis_t *axis);
+    /** That of the cycle in which the coupling has begun, without going on. */
+    void (*first_set_point)(cm1e_axis_t *axis);
+    /** Commands that wait may begin now that the command has reached what it was to reach. */
+    bool (*hands_over)(const cm1e_axis_t *axis);
+    /** What was superimposed for so long has become part of the way; u. */
+    void (*shift)(cm1e_axis_t *axis, double way);
+    /** What is followed is an actual value. */
+    bool (*by_actual)(const cm1e_axis_t *axis);
+    /** After a pause or silence: whether it has to begin anew with its masters; and it does. */
+    bool (*begins_anew)(const cm1e_axis_t *axis);
+    void (*after_pause)(cm1e_axis_t *axis);
+    /** The axis leaves its masters; and: because the bus is lost. */
+    void (*left)(cm1e_axis_t *axis);
+    void (*held)(cm1e_axis_t *axis);
+    /** In ErrorStop it follows its masters to their standstill. */
+    bool (*stops_with_masters)(const cm1e_axis_t *axis);
+    /** It has failed: what else stops. */
+    void (*failed)(cm1e_axis_t *axis);
+    /** `synchronizing` and `ends` of the active command. */
+    void (*tell)(const cm1e_axis_t *axis, cm1e_command_status_t *status);
+} coupling_hooks_t;
 
 #endif

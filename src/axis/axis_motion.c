@@ -1,7 +1,7 @@
 /* The set-point of every cycle: planned once at the command, sampled here. */
 #include <math.h>
 
-#include "axis/axis_coupling.h"
+#include "axis/axis_private.h"
 #include "core/rare.h"
 
 /* CSV only (a mapping without target position): the position loop is ours then. 1/s. */
@@ -29,7 +29,7 @@ static void begin_run(cm1e_axis_t *axis, const from_t *from, position_t target, 
     axis->paused = false;
     axis->stands = false;
     if (axis_follows(axis))
-        cm1e_axis_phasing_forget(axis);
+        axis->coupling_hooks->left(axis);
     axis->activity = ACTIVITY_PROFILE;
 }
 
@@ -281,7 +281,7 @@ CM1E_RARE static void follow_over_end(cm1e_axis_t *axis, double time_s)
     while (at_end(axis, time_s)) {
         if (!profile_ended(axis, fmax(time_s - axis->profile.duration_s, 0.0))) {
             if (axis_follows(axis))
-                cm1e_axis_coupled_begin(axis);
+                axis->coupling_hooks->first_set_point(axis);
             return;
         }
         if (!axis->reached && !axis->stands)
@@ -330,7 +330,7 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
             profile_step(axis);
         break;
     case ACTIVITY_COUPLED:
-        if (!cm1e_axis_coupled_step(axis) && axis->activity == ACTIVITY_PROFILE)
+        if (!axis->coupling_hooks->step(axis) && axis->activity == ACTIVITY_PROFILE)
             profile_step(axis);
         break;
     case ACTIVITY_HOMING:

@@ -15,7 +15,7 @@ typedef enum activity {
     ACTIVITY_FREE = 0, /**< nowhere: no torque, the set-point is the actual position */
     ACTIVITY_HOLD,     /**< it stands */
     ACTIVITY_PROFILE,  /**< a profile, of a command or of a stopping ramp */
-    ACTIVITY_COUPLED,  /**< other axes, its masters (axis_coupling.h) */
+    ACTIVITY_COUPLED,  /**< other axes, its masters (src/coupling) */
     ACTIVITY_HOMING,   /**< the drive's own homing (axis_home.c) */
     ACTIVITY_DRIVE,    /**< the drive's own profile (axis_drive_profile.c) */
     ACTIVITY_LED,      /**< somebody above (axis_lead.c) */
@@ -120,7 +120,8 @@ typedef struct command_method {
 } command_method_t;
 
 /* axis_method.c */
-extern const command_method_t cm1e_axis_methods[];
+/** Of a room above the axis, or its own; without `start`: the axis cannot do it. */
+const command_method_t *cm1e_axis_method(const cm1e_axis_t *axis, command_plan_t plan);
 
 /* axis_motion.c */
 /** A profile takes over that began at `from`, `offset_s` before the present set-point. */

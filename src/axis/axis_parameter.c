@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#include "axis/axis_cam.h"
+#include "axis/axis_private.h"
 
 /* The axis keeps positions as doubles: whole counts are exact up to 2^53. */
 static const double farthest_limit_counts = 9e15;
@@ -276,7 +276,7 @@ void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size)
         snprintf(text, size, "Axis \"%s\": no touch probe at input %d: %s.%s", name, refused->number,
                  cm1e_strerror(refused->error), cm1e_axis_signals_advice(axis, refused->error));
     } else if (refused->what == NOT_SET_CAM) {
-        cm1e_axis_cam_table_text(axis, text, size);
+        axis->coupling_hooks->cam_text(axis, text, size);
     } else if (cm1e_axis_parameter_is_object(refused->number)) {
         cm1e_axis_object_text(axis, text, size);
     } else if (!row(refused->number)) {

@@ -11,7 +11,7 @@
  * stands at its last target by then, in CSV it has gone on with its last velocity. What moves begins anew from rest, or
  * from where the motor must be by now. Stops and ramps of errors end where they stand.
  */
-#include "axis/axis_coupling.h"
+#include "axis/axis_private.h"
 
 /* Counts/s; resolution of the actual velocity of old firmware, and of one that is the difference of two positions. */
 static const double velocity_noise = 3000.0;
@@ -82,10 +82,10 @@ static void begin_anew(cm1e_axis_t *axis, double velocity)
         return;
     }
     if (axis_follows(axis))
-        cm1e_axis_coupling_shift(axis, axis->superimposed.now.position);
+        axis->coupling_hooks->shift(axis, axis->superimposed.now.position);
     cm1e_axis_superimposed_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK); /* what is left of it belongs to the base now */
     if (axis_follows(axis)) {
-        cm1e_axis_coupled_after_pause(axis);
+        axis->coupling_hooks->after_pause(axis);
         return;
     }
     const cm1e_error_t error = move_anew(axis);
@@ -101,7 +101,7 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
         return;
     axis->resumed = true;
     if (axis_follows(axis))
-        cm1e_axis_resume_masters(axis, pause_ns);
+        axis->coupling_hooks->resume_masters(axis, pause_ns);
     if (!goes_on)
         axis->backlash.offset_velocity = 0.0;
     if (!set_points_move(axis))
@@ -128,15 +128,6 @@ static double velocity_left(const cm1e_axis_t *axis)
     return fmax(-most, fmin(kept, most));
 }
 
-static bool master_began_anew(const cm1e_axis_t *axis)
-{
-    const follow_t *follow = axis->coupling->now;
-    for (int i = 0; i < follow->count; i++)
-        if (follow->links[i].master && follow->links[i].master->began_anew)
-            return true;
-    return false;
-}
-
 /* Made of several: begun anew, a part of it would be lost. */
 static bool is_composite(const cm1e_axis_t *axis)
 {
@@ -145,7 +136,7 @@ static bool is_composite(const cm1e_axis_t *axis)
 
 static void go_on_or_begin_anew(cm1e_axis_t *axis)
 {
-    const bool follows_on = axis_follows(axis) && (axis->coupling->now->by_actual || master_began_anew(axis));
+    const bool follows_on = axis_follows(axis) && axis->coupling_hooks->begins_anew(axis);
     if (is_composite(axis) && !follows_on && axis->shaken <= CM1E_AXIS_RIDDEN_OUT_CYCLES * CM1E_SHAKEN_BY_SILENCE)
         return;
     const double left = axis_led(axis) ? 0.0 : velocity_left(axis);
@@ -160,8 +151,9 @@ void cm1e_axis_after_silence(cm1e_axis_t *axis)
         return;
     axis->resumed = true;
     if (axis_follows(axis))
-        cm1e_axis_resume_masters(axis, 0);
+        axis->coupling_hooks->resume_masters(axis, 0);
     if (set_points_move(axis))
         go_on_or_begin_anew(axis);
-    cm1e_axis_resume_slaves(axis);
+    if (axis->coupling_hooks)
+        axis->coupling_hooks->resume_slaves(axis);
 }

@@ -8,8 +8,8 @@
  */
 #include <math.h>
 
-#include "axis/axis_coupling.h"
 #include "axis/axis_handle.h"
+#include "axis/axis_private.h"
 
 /* How long a drive that cannot be heard any more counts as "still there" at the end. */
 static const int64_t gone_after_ns = 100 * MS_IN_NS;
@@ -25,7 +25,7 @@ void cm1e_axis_become_free(cm1e_axis_t *axis)
 {
     cm1e_axis_lead_end(axis, CM1E_ERROR_AXIS_ERROR_STOP);
     if (axis_follows(axis))
-        cm1e_axis_phasing_forget(axis);
+        axis->coupling_hooks->left(axis);
     axis->activity = ACTIVITY_FREE;
     axis->energized = false;
     axis->stepping.pushing = axis->stepping.after_stop = false;
@@ -64,10 +64,10 @@ static void fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bou
     axis->error_value = value;
     axis->error_bound = bound;
     cm1e_axis_go(axis, ON_ERROR);
-    if (!followed || !axis->coupling->stopping)
+    if (!followed || !axis->coupling_hooks->stops_with_masters(axis))
         wind_down(axis, ramp);
     if (followed)
-        cm1e_axis_coupling_failed(axis);
+        axis->coupling_hooks->failed(axis);
 }
 
 void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound)
@@ -107,10 +107,8 @@ void cm1e_axis_hold_unheard(cm1e_axis_t *axis)
     if (axis->mode != CM1E_MODE_CSP || cm1e_drive_is_virtual(&axis->drive) || !set_points_move(axis))
         return;
     cm1e_axis_keep_torque(axis, axis->set_velocity);
-    if (axis_follows(axis)) {
-        cm1e_axis_phasing_forget(axis);
-        axis->coupling->stopping = false;
-    }
+    if (axis_follows(axis))
+        axis->coupling_hooks->held(axis);
     axis->target = axis->set;
     axis->set_velocity = axis->set_acceleration = 0.0;
     axis->activity = ACTIVITY_HOLD;

@@ -123,9 +123,9 @@ struct cm1e_axis {
     bool resumed;                   /**< a pause or silence before this cycle has been dealt with ... */
     bool began_anew;                /**< ... by another velocity than it had */
     bool reset_sent;
+    bool awaits;                    /**< the first waiting command begins at a place of its master (StartSync), until
+                                         when what runs goes on */
     cm1e_error_t reset_error;
-    struct follow *awaited;         /**< F of the first waiting command: it begins at a place of its master (StartSync),
-                                         until when what runs goes on; NULL: none does */
     const void *power_owner;
     double cycle_s;
     int64_t profile_cycles;         /**< since it began ... */
@@ -209,9 +209,8 @@ struct cm1e_axis {
     stepping_t stepping;
     const motor_hooks_t *motor_hooks; /**< NULL: the motor is a CM1-E, or there is none */
     struct cool_muscle *muscle;     /**< theirs */
-    struct coupling *coupling;      /**< what it follows */
-    struct link *slaves;            /**< who follows it */
-    struct cams *cams;              /**< that it may follow (axis_cam.h) */
+    const coupling_hooks_t *coupling_hooks; /**< NULL: it cannot follow, nor be followed */
+    struct coupling *coupling;      /**< theirs */
 };
 
 /** Counts of this motor that are as far as so many of a CM1-E; two at least, as one is rounding. */
@@ -343,7 +342,7 @@ static inline from_t from_base(const cm1e_axis_t *axis)
                     axis->brakes_hard ? 0.0 : axis->set_acceleration - on_top->acceleration,
                     axis->superimposed.moving && !axis->superimposed.alone};
 }
-/** F of a coupling is what moves the axis. */
+/** Its masters move the axis. */
 static inline bool axis_follows(const cm1e_axis_t *axis) { return axis->activity == ACTIVITY_COUPLED; }
 /** Fills `target` and `origin` of a command that begins there. */
 cm1e_error_t cm1e_axis_resolve(const cm1e_axis_t *axis, const from_t *from, move_t *move);

@@ -15,7 +15,7 @@
  */
 #include <math.h>
 
-#include "axis/axis_coupling.h"
+#include "axis/axis_private.h"
 
 static const double same_moment = 1e-6; /* cycles */
 
@@ -137,7 +137,7 @@ static void give_to_base(cm1e_axis_t *axis)
     axis->base_line = cm1e_axis_line(axis, axis->base);
     axis->target = cm1e_position_plus(axis->target, counts);
     if (axis_follows(axis))
-        cm1e_axis_coupling_shift(axis, covered);
+        axis->coupling_hooks->shift(axis, covered);
     if (axis->active) {
         axis->move.origin = cm1e_position_plus(axis->move.origin, counts);
         axis->move.target = cm1e_position_plus(axis->move.target, counts);

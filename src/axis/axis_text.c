@@ -3,7 +3,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "axis/axis_coupling.h"
+#include "axis/axis_private.h"
+
+static bool coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool refused, char *text, size_t size)
+{
+    return axis->coupling_hooks && axis->coupling_hooks->text(axis, error, refused, text, size);
+}
 
 /* Without a bound it is the drive that says so, in a motion of its own. */
 static void lag_text(const cm1e_axis_t *axis, char *text, size_t size)
@@ -95,9 +100,7 @@ void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t siz
     const not_set_t *ended = &axis->not_set;
     if (ended->number == CM1E_COMMAND_HOME && ended->error == axis->home.refused)
         refused_homing_text(axis, text, size);
-    else if (ended->error == CM1E_ERROR_AXIS_SYNC_WAY)
-        cm1e_axis_way_text(axis, text, size);
-    else
+    else if (ended->error != CM1E_ERROR_AXIS_SYNC_WAY || !coupling_text(axis, ended->error, true, text, size))
         snprintf(text, size, "Axis \"%s\": %s, running or waiting, was ended: %s.", axis->config->name,
                  kind_row((unsigned)ended->number)->name, cm1e_strerror(ended->error));
     if (ended->error == CM1E_ERROR_AXIS_POSITION_RANGE)
@@ -220,9 +223,6 @@ static const struct {
     {CM1E_ERROR_AXIS_VIRTUAL, refused_virtual_text},
     {CM1E_ERROR_AXIS_HOMING_METHOD, cm1e_axis_home_wrong_text},
     {CM1E_ERROR_AXIS_HOMING_PARAMETER, cm1e_axis_home_wrong_text},
-    {CM1E_ERROR_AXIS_SYNC_WAY, cm1e_axis_way_text},
-    {CM1E_ERROR_AXIS_CAM_ID, cm1e_axis_cam_id_text},
-    {CM1E_ERROR_AXIS_CAM_START, cm1e_axis_cam_start_text},
 };
 
 static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
@@ -230,7 +230,7 @@ static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
     const bool by_numbers = axis->refusal == CM1E_ERROR_AXIS_VELOCITY_RANGE ||
                             axis->refusal == CM1E_ERROR_AXIS_DYNAMICS_RANGE ||
                             axis->refusal == CM1E_ERROR_AXIS_POSITION_RANGE;
-    if (by_numbers && cm1e_axis_phasing_text(axis, text, size))
+    if (coupling_text(axis, axis->refusal, true, text, size))
         return;
     if (by_numbers && kind_row(axis->refused.kind)->plan != PLAN_TABLE && too_small(axis, &axis->refused)) {
         refused_small_text(axis, text, size);
@@ -241,8 +241,7 @@ static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
             refusal_texts[i].text(axis, text, size);
             return;
         }
-    if ((axis->motor_hooks && axis->motor_hooks->text(axis, axis->refusal, text, size)) ||
-        cm1e_axis_coupling_text(axis, axis->refusal, true, text, size))
+    if (axis->motor_hooks && axis->motor_hooks->text(axis, axis->refusal, text, size))
         return;
     if (axis->refusal == CM1E_ERROR_UNSUPPORTED && drive_profiles(axis)) {
         refused_by_drive_text(axis, text, size);
@@ -291,6 +290,6 @@ void cm1e_axis_error_text(AXIS_REF_t reference, char *text, size_t size)
             texts[i].text(axis, text, size);
             return;
         }
-    if (!cm1e_axis_coupling_text(axis, axis->error, false, text, size))
+    if (!coupling_text(axis, axis->error, false, text, size))
         other_text(axis, text, size);
 }

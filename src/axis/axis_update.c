@@ -2,7 +2,7 @@
  * ContinuousUpdate (2.4.6): new inputs of a command that runs or waits. What has not changed costs a comparison. What
  * has is planned anew from the present set-point; relative values go on counting from where the command began.
  */
-#include "axis/axis_coupling.h"
+#include "axis/axis_private.h"
 
 move_t cm1e_axis_move_of(const cm1e_axis_command_t *command)
 {
@@ -83,7 +83,7 @@ static cm1e_error_t update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_a
 {
     if (id == 0 || (unsigned)command->kind >= CM1E_COMMAND_KIND_COUNT)
         return CM1E_ERROR_INVALID_ARGUMENT;
-    const command_method_t *method = &cm1e_axis_methods[kind_row(command->kind)->plan];
+    const command_method_t *method = cm1e_axis_method(axis, kind_row(command->kind)->plan);
     return method->update ? method->update(axis, id, command) : CM1E_ERROR_INVALID_ARGUMENT;
 }
 

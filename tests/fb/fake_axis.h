@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "axis/axis.h"
+#include "coupling/coupling.h"
 
 enum { FAKE_AXES = 2, FAKE_COMMANDS = 8 };
 

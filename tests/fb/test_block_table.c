@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "axis/axis.h"
+#include "coupling/coupling.h"
 #include "block_table.h"
 #include "fb_bench.h"
 

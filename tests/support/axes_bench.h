@@ -24,6 +24,7 @@
 #include "assembly/assembly.h"
 #include "axis/axis.h"
 #include "axis/axis_private.h"
+#include "coupling/coupling.h"
 #include "fake_bus.h"
 
 enum { AXES_MOST = FAKE_SLAVES };

@@ -10,6 +10,7 @@
 #include "assembly/assembly.h"
 #include "axis/axis.h"
 #include "axis/axis_private.h"
+#include "coupling/coupling.h"
 #include "unity.h"
 
 #include "fake_bus.h"

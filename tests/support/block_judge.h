@@ -15,7 +15,7 @@
 
 #include "assembly/assembly.h"
 #include "axis/axis.h"
-#include "axis/axis_coupling.h"
+#include "coupling/coupling_private.h"
 #include "block_table.h"
 #include "group/group_private.h"
 
@@ -311,7 +311,7 @@ static void call(instance_t *fb)
     judged_at = fb->of;
     const cm1e_axis_state_t state = judged.axis->state;
     /* MC_GearInPos waits for its StartSync, alone or behind another command. */
-    const bool before_it = judged.axis->active || judged.axis->waiting.count > 0 || judged.axis->awaited;
+    const bool before_it = judged.axis->active || judged.axis->waiting.count > 0 || judged.axis->coupling->awaited;
     const bool may_wait = before_it && v->buffer_mode != NOWHERE && fb->memory[v->buffer_mode] != mcAborting;
     MUST(state == judged.state, "the state changed from %s to %s between two calls", cm1e_axis_state_name(judged.state),
          cm1e_axis_state_name(state));

@@ -3,7 +3,7 @@
 
 #include "../support/axes_bench.h"
 #include "motion_check.h"
-#include "axis/axis_cam.h"
+#include "coupling/coupling_cam.h"
 
 void setUp(void) {}
 void tearDown(void) { axes_end(); }
@@ -41,7 +41,7 @@ static void test_the_last_four_cams_stay(void)
         const MC_CAM_REF table = table_of(2 + i);
         ids[i] = selected(0, &table, i % 2, i % 3);
         for (int k = 0; k <= i; k++) {
-            const cam_slot_t *slot = cm1e_axis_cam_of(axes_axis(0), ids[k]);
+            const cam_slot_t *slot = cm1e_cam_memory_find(axes_axis(0), ids[k]);
             if (k <= i - CM1E_AXIS_CAMS) {
                 TEST_ASSERT_NULL(slot);
                 continue;
@@ -54,8 +54,8 @@ static void test_the_last_four_cams_stay(void)
                 TEST_ASSERT_EQUAL_DOUBLE(p % 2, slot->knots[p].slave);
         }
     }
-    TEST_ASSERT_NULL(cm1e_axis_cam_of(axes_axis(0), 0));
-    TEST_ASSERT_NULL(cm1e_axis_cam_of(axes_axis(0), 12345));
+    TEST_ASSERT_NULL(cm1e_cam_memory_find(axes_axis(0), 0));
+    TEST_ASSERT_NULL(cm1e_cam_memory_find(axes_axis(0), 12345));
 }
 
 static void test_a_bad_cam_costs_no_good_one_and_is_told(void)
@@ -90,7 +90,7 @@ static void test_a_bad_cam_costs_no_good_one_and_is_told(void)
         points[i].Master = i * 1e-120;
     refused(&table, CM1E_ERROR_AXIS_CAM_TABLE, "close together");
     for (int i = 0; i < CM1E_AXIS_CAMS; i++)
-        TEST_ASSERT_NOT_NULL(cm1e_axis_cam_of(axes_axis(0), ids[i]));
+        TEST_ASSERT_NOT_NULL(cm1e_cam_memory_find(axes_axis(0), ids[i]));
     table = table_of(3);
     (void)selected(0, &table, false, false);
     TEST_ASSERT_EQUAL_STRING("", axes_text(0));
@@ -101,7 +101,7 @@ static void test_a_cam_is_a_copy(void)
 {
     axes_begin(1);
     const MC_CAM_REF table = table_of(4);
-    const cam_slot_t *slot = cm1e_axis_cam_of(axes_axis(0), selected(0, &table, false, true));
+    const cam_slot_t *slot = cm1e_cam_memory_find(axes_axis(0), selected(0, &table, false, true));
     memset(points, 0xff, sizeof points);
     cm1e_cam_place_t place = {0};
     cm1e_cam_sample_t sample;

@@ -7,7 +7,7 @@
 #include "unity.h"
 
 #include "../support/axes_bench.h"
-#include "axis/axis_coupling.h"
+#include "coupling/coupling_private.h"
 #include "../support/random_master.h"
 
 enum { RUNS = 150, HISTORY = 4 };

@@ -26,7 +26,7 @@ static void test_every_kind_can_be_done(void)
 {
     for (unsigned kind = 0; kind < CM1E_COMMAND_KIND_COUNT; kind++) {
         const command_kind_t *row = kind_row(kind);
-        const command_method_t *method = &cm1e_axis_methods[row->plan];
+        const command_method_t *method = cm1e_axis_method(axis, row->plan);
         const bool waits = row->has_buffer_mode && !is_beside(kind);
         TEST_ASSERT_TRUE_MESSAGE(method->start, row->name);
         if (waits)

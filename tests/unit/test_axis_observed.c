@@ -3,7 +3,7 @@
 #include "unity.h"
 
 #include "../support/axes_bench.h"
-#include "axis/axis_coupling.h"
+#include "coupling/coupling_private.h"
 
 void setUp(void) {}
 void tearDown(void) { axes_end(); }

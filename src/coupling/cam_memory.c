@@ -2,11 +2,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "axis/axis_coupling.h"
+#include "coupling/coupling_private.h"
 
 enum { DEFAULT_POINTS = 128 };
 
-cm1e_error_t cm1e_axis_cams_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
+cm1e_error_t cm1e_cam_memory_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {
     const int points = axis->config->cam_points ? axis->config->cam_points : DEFAULT_POINTS;
     cams_t *cams = calloc(1, sizeof *cams + (size_t)CAM_SLOTS * (size_t)points * sizeof cams->knots[0]);
@@ -16,15 +16,15 @@ cm1e_error_t cm1e_axis_cams_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
     cams->points = points;
     for (int i = 0; i < CAM_SLOTS; i++)
         cams->slots[i].knots = &cams->knots[i * points];
-    axis->cams = cams;
+    axis->coupling->cams = cams;
     return CM1E_OK;
 }
 
-const cam_slot_t *cm1e_axis_cam_of(const cm1e_axis_t *axis, MC_CAM_ID id)
+const cam_slot_t *cm1e_cam_memory_find(const cm1e_axis_t *axis, MC_CAM_ID id)
 {
     for (int i = 0; id != 0 && i < CAM_SLOTS; i++)
-        if (axis->cams->slots[i].id == id)
-            return &axis->cams->slots[i];
+        if (axis->coupling->cams->slots[i].id == id)
+            return &axis->coupling->cams->slots[i];
     return NULL;
 }
 
@@ -32,7 +32,7 @@ const cam_slot_t *cm1e_axis_cam_of(const cm1e_axis_t *axis, MC_CAM_ID id)
 static bool used(cm1e_axis_t *axis, const cam_slot_t *slot)
 {
     const coupling_t *c = axis->coupling;
-    if ((axis_follows(axis) && c->now->cam.slot == slot) || (axis->awaited && axis->awaited->cam.slot == slot))
+    if ((axis_follows(axis) && c->now->cam.slot == slot) || (c->awaited && c->awaited->cam.slot == slot))
         return true;
     for (int i = 0; i < COUPLINGS_WAITING; i++)
         if (c->waiting[i].coupling.cam == slot->id && cm1e_axis_find_waiting(axis, c->waiting[i].id))
@@ -54,10 +54,10 @@ static cam_slot_t *to_go(cm1e_axis_t *axis, bool *room)
     cam_slot_t *oldest = NULL;
     int count = 0;
     for (int i = 0; i < CAM_SLOTS; i++) {
-        cam_slot_t *slot = &axis->cams->slots[i];
+        cam_slot_t *slot = &axis->coupling->cams->slots[i];
         count += slot->id != 0;
         if (slot->id != 0 && !used(axis, slot) &&
-            (!oldest || axis->cams->last - slot->id > axis->cams->last - oldest->id))
+            (!oldest || axis->coupling->cams->last - slot->id > axis->coupling->cams->last - oldest->id))
             oldest = slot;
     }
     *room = count < CM1E_AXIS_CAMS;
@@ -66,7 +66,7 @@ static cam_slot_t *to_go(cm1e_axis_t *axis, bool *room)
 
 static cm1e_error_t select_cam(cm1e_axis_t *axis, const MC_CAM_REF *table, bool periodic, cam_slot_t **taken)
 {
-    cams_t *cams = axis->cams;
+    cams_t *cams = axis->coupling->cams;
     bool room;
     cam_slot_t *oldest = to_go(axis, &room), *slot = empty_slot(cams);
     if (!room && !oldest)
@@ -99,9 +99,9 @@ cm1e_error_t cm1e_axis_cam_select(cm1e_axis_t *slave, const MC_CAM_REF *cam, boo
 }
 
 /* In words what is wrong with the cam that was refused last, and what would be right. */
-void cm1e_axis_cam_table_text(const cm1e_axis_t *axis, char *text, size_t size)
+void cm1e_cam_table_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    const cams_t *cams = axis->cams;
+    const cams_t *cams = axis->coupling->cams;
     const char *name = axis->config->name;
     const int point = cams->wrong + 1;
     if (axis->not_set.error == CM1E_ERROR_FULL) {
@@ -137,21 +137,21 @@ void cm1e_axis_cam_table_text(const cm1e_axis_t *axis, char *text, size_t size)
     }
 }
 
-void cm1e_axis_cam_id_text(const cm1e_axis_t *axis, char *text, size_t size)
+void cm1e_cam_id_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     char ids[12 * CAM_SLOTS] = "";
     size_t used_bytes = 0;
     for (int i = 0; i < CAM_SLOTS; i++)
-        if (axis->cams->slots[i].id != 0)
+        if (axis->coupling->cams->slots[i].id != 0)
             used_bytes += (size_t)snprintf(ids + used_bytes, sizeof ids - used_bytes, " %u",
-                                           (unsigned)axis->cams->slots[i].id);
+                                           (unsigned)axis->coupling->cams->slots[i].id);
     snprintf(text, size, "Axis \"%s\": %s. The last %d of this slave stay, now:%s.", axis->config->name,
              cm1e_strerror(CM1E_ERROR_AXIS_CAM_ID), CM1E_AXIS_CAMS, used_bytes ? ids : " none");
 }
 
-void cm1e_axis_cam_start_text(const cm1e_axis_t *axis, char *text, size_t size)
+void cm1e_cam_start_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    const cam_refused_t *r = &axis->cams->refused;
+    const cam_refused_t *r = &axis->coupling->cams->refused;
     snprintf(text, size, "Axis \"%s\" is at %.6g u with %.6g u/s, where the cam would have it at %.6g u with %.6g u/s. "
              "Bring it there first, or let it get there: mcRampIn, or a MasterStartDistance.", axis->config->name,
              r->position, r->velocity, r->wanted_position, r->wanted_velocity);

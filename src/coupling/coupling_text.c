@@ -1,7 +1,7 @@
 /* Couplings in sentences: what was refused, and what they were lost for. */
 #include <stdio.h>
 
-#include "axis/axis_coupling.h"
+#include "coupling/coupling_private.h"
 
 static const char *const troubles[] = {
     [MASTER_GOOD] = "is well",
@@ -66,8 +66,33 @@ static bool mode_text(const cm1e_axis_t *axis, char *text, size_t size)
     return mode != NULL;
 }
 
-bool cm1e_axis_coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool refused, char *text, size_t size)
+static bool refusal_text(const cm1e_axis_t *axis, cm1e_error_t error, char *text, size_t size)
 {
+    switch (error) {
+    case CM1E_ERROR_AXIS_VELOCITY_RANGE:
+    case CM1E_ERROR_AXIS_DYNAMICS_RANGE:
+    case CM1E_ERROR_AXIS_POSITION_RANGE:
+        return cm1e_phasing_text(axis, text, size);
+    case CM1E_ERROR_AXIS_SYNC_WAY:
+        cm1e_coupling_approach_text(axis, text, size);
+        return true;
+    case CM1E_ERROR_AXIS_CAM_ID:
+        cm1e_cam_id_text(axis, text, size);
+        return true;
+    case CM1E_ERROR_AXIS_CAM_START:
+        cm1e_cam_start_text(axis, text, size);
+        return true;
+    case CM1E_ERROR_INVALID_ARGUMENT:
+        return mode_text(axis, text, size);
+    default:
+        return false;
+    }
+}
+
+bool cm1e_coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool refused, char *text, size_t size)
+{
+    if (refused && refusal_text(axis, error, text, size))
+        return true;
     const char *name = axis->config->name, *other = axis->coupling->other_name;
     switch (error) {
     case CM1E_ERROR_AXIS_MASTER:
@@ -84,8 +109,6 @@ bool cm1e_axis_coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool r
     case CM1E_ERROR_AXIS_NOT_COUPLED:
         not_coupled_text(axis, text, size);
         return true;
-    case CM1E_ERROR_INVALID_ARGUMENT:
-        return refused && mode_text(axis, text, size);
     case CM1E_ERROR_AXIS_RATIO:
         ratio_text(axis, text, size);
         return true;

@@ -1,7 +1,7 @@
-/* F by a cam (MC_CamIn): where it is placed, and what it asks of the slave (axis_cam.h). */
+/* The coupling function by a cam (MC_CamIn): where it is placed, what it asks of the slave (coupling_cam.h). */
 #include <math.h>
 
-#include "axis/axis_coupling.h"
+#include "coupling/coupling_private.h"
 
 /* A slave is where the cam wants it, and moves like it, when what is left to be done is as little as this. */
 static const double same_place_counts = 10.0;
@@ -9,7 +9,7 @@ static const double same_motion_cycles = 1.0; /* of the axis's own acceleration 
 
 static const double largest_scaling = 1e9;
 
-/* ---- F ----------------------------------------------------------------------------------------------------------- */
+/* ---- the coupling function --------------------------------------------------------------------------------------- */
 
 /* Divided, so that a master at an end of the cam is exactly there. */
 static double place_in_cam(const cam_place_t *cam, const link_t *link, double counts)
@@ -71,8 +71,8 @@ static void remember(cam_place_t *cam, const cm1e_cam_sample_t *now)
     cam->sampled = true;
 }
 
-/* A way into step has led to here, a moment ago: at an end of a single-shot the master comes by that end. */
-void cm1e_axis_cam_enter(follow_t *follow, double counts)
+/* An approach has led to here, a moment ago: at an end of a single-shot the master comes by that end. */
+void cm1e_cam_in_enter(follow_t *follow, double counts)
 {
     cam_place_t *cam = &follow->cam;
     const cm1e_cam_t *table = &cam->slot->cam;
@@ -87,7 +87,7 @@ static void sample_point(const cm1e_axis_t *axis, const follow_t *follow, const 
                          from_t *point)
 {
     const cam_place_t *cam = &follow->cam;
-    const sight_t *seen = &follow->links[0].seen;
+    const master_view_t *seen = &follow->links[0].seen;
     const double steeper = cam->slave_scaling * cam->finer;
     const cm1e_curve_point_t here = {.slope = steeper * sample->point.slope,
                                      .curvature = steeper * sample->point.curvature * cam->finer};
@@ -117,10 +117,10 @@ static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link
            fabs(follow->cam.slave_scaling / follow->cam.master_scaling);
 }
 
-static const follow_kind_t cam_kind = {evaluate, steepest};
+static const coupling_function_t cam_kind = {evaluate, steepest};
 
 /* At the ends of a single-shot, from within: that is where the master is on it. */
-void cm1e_axis_cam_point(const cm1e_axis_t *axis, const follow_t *follow, double counts, position_t *position,
+void cm1e_cam_in_point(const cm1e_axis_t *axis, const follow_t *follow, double counts, position_t *position,
                          cm1e_curve_point_t *point)
 {
     const cam_place_t *cam = &follow->cam;
@@ -158,7 +158,7 @@ static double part_of(double asked, double most, double needed)
     return fmin(asked, fmax(fmin(most - needed, largest_part * most), least_part * most));
 }
 
-cm1e_motion_limits_t cm1e_axis_cam_leaves(const cm1e_axis_t *axis, const follow_t *follow,
+cm1e_motion_limits_t cm1e_cam_leaves(const cm1e_axis_t *axis, const follow_t *follow,
                                           const cm1e_motion_limits_t *asked)
 {
     const cm1e_motion_limits_t nothing = {0}, *most = &axis->maximum;
@@ -207,7 +207,7 @@ static cm1e_error_t take_numbers(const cm1e_axis_t *axis, const cm1e_axis_t *mas
 static void begins_at_end(const cm1e_axis_t *axis, const follow_t *follow, double *beyond, position_t *slave)
 {
     const follow_t *before = axis->coupling->now;
-    if (!axis->coupling->at_end || before->kind != &cam_kind || before->links[0].master != follow->links[0].master)
+    if (!axis->coupling->at_end || before->function != &cam_kind || before->links[0].master != follow->links[0].master)
         return;
     const cam_place_t *cam = &before->cam;
     const cm1e_cam_t *table = &cam->slot->cam;
@@ -264,7 +264,7 @@ static bool contained(const cm1e_axis_t *axis, const from_t *from, const cam_pla
 
 static bool on_it(cm1e_axis_t *axis, const from_t *from, const from_t *wanted)
 {
-    cam_refused_t *refused = &axis->cams->refused;
+    cam_refused_t *refused = &axis->coupling->cams->refused;
     const double way = cm1e_position_minus(wanted->position, from->position);
     const double velocity = wanted->velocity - from->velocity;
     *refused = (cam_refused_t){cm1e_axis_units(axis, from->position), cm1e_axis_units(axis, wanted->position),
@@ -282,22 +282,22 @@ static cm1e_error_t by_way(cm1e_axis_t *axis, follow_t *follow, const move_t *mo
     const cm1e_cam_t *table = &cam->slot->cam;
     const bool absolute = cam->slot->slave_absolute && coupling->start_mode != mcRelative;
     const double scale = follow->links[0].master->scale;
-    way_t *way = &follow->way;
-    way->then = follow->kind;
-    way->mode = mcShortest;
-    way->turn = absolute ? axis->modulo_range : 0.0;
-    way->start_distance = coupling->master_start_distance * scale;
-    way->sync = (coupling->master_sync_position * cam->master_scaling + cam->master_offset) * scale - cam->away;
-    way->again = table->periodic ? fabs(table->length * cam->master_scaling * scale) : 0.0;
-    return cm1e_axis_way_prepare(axis, follow, move, from);
+    approach_t *approach = &follow->approach;
+    approach->then = follow->function;
+    approach->mode = mcShortest;
+    approach->turn = absolute ? axis->modulo_range : 0.0;
+    approach->start_distance = coupling->master_start_distance * scale;
+    approach->sync = (coupling->master_sync_position * cam->master_scaling + cam->master_offset) * scale - cam->away;
+    approach->again = table->periodic ? fabs(table->length * cam->master_scaling * scale) : 0.0;
+    return cm1e_coupling_approach_prepare(axis, follow, move, from);
 }
 
-cm1e_error_t cm1e_axis_cam_prepare(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
+cm1e_error_t cm1e_cam_in_prepare(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
                                    const from_t *from)
 {
-    follow_t *follow = cm1e_axis_follow_spare(axis);
-    const cam_slot_t *slot = cm1e_axis_cam_of(axis, coupling->cam);
-    *follow = (follow_t){.kind = &cam_kind, .cam.slot = slot, .to_position = true, .in_step = true,
+    follow_t *follow = cm1e_coupling_spare(axis);
+    const cam_slot_t *slot = cm1e_cam_memory_find(axis, coupling->cam);
+    *follow = (follow_t){.function = &cam_kind, .cam.slot = slot, .to_position = true, .in_step = true,
                          .waits_for_end = true};
     cam_place_t *cam = &follow->cam;
     if (!slot)
@@ -306,7 +306,7 @@ cm1e_error_t cm1e_axis_cam_prepare(cm1e_axis_t *axis, const move_t *move, const 
         return CM1E_ERROR_INVALID_ARGUMENT;
     cm1e_error_t error = take_numbers(axis, cm1e_axis_from_reference(&coupling->master[0].axis), coupling, cam);
     if (!error)
-        error = cm1e_axis_link(axis, follow, &coupling->master[0]);
+        error = cm1e_coupling_link(axis, follow, &coupling->master[0]);
     if (error)
         return error;
     cm1e_cam_sample_t sample;
@@ -336,11 +336,11 @@ static bool same_numbers(const cm1e_axis_coupling_t *a, const cm1e_axis_coupling
            a->master_scaling == b->master_scaling && a->slave_scaling == b->slave_scaling;
 }
 
-cm1e_error_t cm1e_axis_cam_update(cm1e_axis_t *axis, const cm1e_axis_coupling_t *coupling)
+cm1e_error_t cm1e_cam_in_update(cm1e_axis_t *axis, const cm1e_axis_coupling_t *coupling)
 {
     cm1e_axis_coupling_t *inputs = &axis->coupling->inputs;
     const follow_t *now = axis->coupling->now;
-    if (now->kind != &cam_kind || same_numbers(inputs, coupling))
+    if (now->function != &cam_kind || same_numbers(inputs, coupling))
         return CM1E_OK;
     const from_t from = from_base(axis);
     cam_place_t cam = now->cam; /* zeros and all: relative values count from where the command began (2.4.6) */
@@ -352,7 +352,7 @@ cm1e_error_t cm1e_axis_cam_update(cm1e_axis_t *axis, const cm1e_axis_coupling_t 
         return error;
     if (!contained(axis, &from, &cam))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    follow_t *follow = cm1e_axis_follow_spare(axis);
+    follow_t *follow = cm1e_coupling_spare(axis);
     *follow = *now;
     follow->links[0].listed = false;
     follow->cam = cam;
@@ -361,6 +361,6 @@ cm1e_error_t cm1e_axis_cam_update(cm1e_axis_t *axis, const cm1e_axis_coupling_t 
     inputs->slave_offset = coupling->slave_offset;
     inputs->master_scaling = coupling->master_scaling;
     inputs->slave_scaling = coupling->slave_scaling;
-    cm1e_axis_follow(axis, follow, &from, &limits);
+    cm1e_coupling_follow(axis, follow, &from, &limits);
     return CM1E_OK;
 }

@@ -1,7 +1,7 @@
 /* The masters of a follower: who follows whom, in which order they advance, and what is seen of them. */
 #include <string.h>
 
-#include "axis/axis_coupling.h"
+#include "coupling/coupling_private.h"
 
 /* Counts by which a master's position may differ from what its velocities explain: rounding of where a ramp without a
  * limit of jerk has its corner. */
@@ -14,11 +14,11 @@ static void advance_masters(follow_t *follow)
             cm1e_axis_advance(follow->links[i].master);
 }
 
-void cm1e_axis_advance_masters(cm1e_axis_t *axis)
+void cm1e_coupling_advance_masters(cm1e_axis_t *axis)
 {
     if (axis_follows(axis))
         advance_masters(axis->coupling->now);
-    advance_masters(axis->awaited);
+    advance_masters(axis->coupling->awaited);
 }
 
 static void resume(cm1e_axis_t *master, int64_t pause_ns)
@@ -36,15 +36,29 @@ static void resume_masters(follow_t *follow, int64_t pause_ns)
             resume(follow->links[i].master, pause_ns);
 }
 
-void cm1e_axis_resume_masters(cm1e_axis_t *axis, int64_t pause_ns)
+void cm1e_coupling_resume_masters(cm1e_axis_t *axis, int64_t pause_ns)
 {
     resume_masters(axis->coupling->now, pause_ns);
-    resume_masters(axis->awaited, pause_ns);
+    resume_masters(axis->coupling->awaited, pause_ns);
 }
 
-void cm1e_axis_resume_slaves(cm1e_axis_t *axis)
+static bool master_began_anew(const follow_t *follow)
 {
-    for (link_t *link = axis->slaves; link; link = link->next)
+    for (int i = 0; i < follow->count; i++)
+        if (follow->links[i].master && follow->links[i].master->began_anew)
+            return true;
+    return false;
+}
+
+bool cm1e_coupling_begins_anew(const cm1e_axis_t *axis)
+{
+    const follow_t *now = axis->coupling->now;
+    return now->by_actual || master_began_anew(now);
+}
+
+void cm1e_coupling_resume_slaves(cm1e_axis_t *axis)
+{
+    for (link_t *link = axis->coupling->slaves; link; link = link->next)
         cm1e_axis_after_silence(link->slave);
 }
 
@@ -69,7 +83,7 @@ static bool search(cm1e_axis_t *from, const cm1e_axis_t *goal, uint64_t mark)
     if (c->mark == mark)
         return false;
     c->mark = mark;
-    return search_masters(axis_follows(from) ? c->now : NULL, goal, mark) || search_masters(from->awaited, goal, mark);
+    return search_masters(axis_follows(from) ? c->now : NULL, goal, mark) || search_masters(c->awaited, goal, mark);
 }
 
 static bool would_follow_itself(cm1e_axis_t *slave, cm1e_axis_t *master)
@@ -78,19 +92,19 @@ static bool would_follow_itself(cm1e_axis_t *slave, cm1e_axis_t *master)
     return search(master, slave, mark);
 }
 
-void cm1e_axis_list_links(follow_t *follow)
+void cm1e_coupling_list_links(follow_t *follow)
 {
     for (int i = 0; i < follow->count; i++) {
         link_t *link = &follow->links[i];
-        link->next = link->master->slaves;
-        link->master->slaves = link;
+        link->next = link->master->coupling->slaves;
+        link->master->coupling->slaves = link;
         link->listed = true;
     }
 }
 
 static void unlist(link_t *link)
 {
-    link_t **place = link->listed && link->master ? &link->master->slaves : NULL;
+    link_t **place = link->listed && link->master ? &link->master->coupling->slaves : NULL;
     while (place && *place != link)
         place = &(*place)->next;
     if (place)
@@ -98,22 +112,49 @@ static void unlist(link_t *link)
     link->listed = false;
 }
 
-void cm1e_axis_unlist_links(follow_t *follow)
+void cm1e_coupling_unlist_links(follow_t *follow)
 {
     for (int i = 0; i < follow->count; i++)
         unlist(&follow->links[i]);
 }
 
-void cm1e_axis_unlink(cm1e_axis_t *axis)
+void cm1e_coupling_unlink(cm1e_axis_t *axis)
 {
     for (int i = 0; i < FOLLOWS; i++)
-        cm1e_axis_unlist_links(&axis->coupling->follows[i]);
-    while (axis->slaves) {
-        link_t *link = axis->slaves;
-        axis->slaves = link->next;
+        cm1e_coupling_unlist_links(&axis->coupling->follows[i]);
+    while (axis->coupling->slaves) {
+        link_t *link = axis->coupling->slaves;
+        axis->coupling->slaves = link->next;
         link->master = NULL;
         link->listed = false;
     }
+}
+
+/* ---- which coupling is prepared, and which waits ----------------------------------------------------------------- */
+
+follow_t *cm1e_coupling_spare(cm1e_axis_t *axis)
+{
+    coupling_t *c = axis->coupling;
+    follow_t *spare = c->follows;
+    while (spare == c->now || spare == axis->coupling->awaited)
+        spare++;
+    return spare;
+}
+
+void cm1e_coupling_await(cm1e_axis_t *axis, follow_t *follow)
+{
+    axis->coupling->awaited = follow;
+    axis->awaits = true;
+    axis->coupling->due = false;
+    cm1e_coupling_list_links(follow);
+}
+
+void cm1e_coupling_await_nothing(cm1e_axis_t *axis)
+{
+    if (axis->coupling->awaited)
+        cm1e_coupling_unlist_links(axis->coupling->awaited);
+    axis->coupling->awaited = NULL;
+    axis->awaits = false;
 }
 
 /* ---- what is seen of them ---------------------------------------------------------------------------------------- */
@@ -132,7 +173,7 @@ static master_trouble_t trouble_of_set_value(const cm1e_axis_t *master)
 static master_trouble_t see_actual(link_t *link, position_t *position)
 {
     from_t seen;
-    const master_trouble_t trouble = cm1e_axis_see_actual(link->master, link->slave->advanced, &seen);
+    const master_trouble_t trouble = cm1e_coupling_see_actual(link->master, link->slave->advanced, &seen);
     if (trouble)
         return trouble;
     *position = seen.position;
@@ -185,7 +226,7 @@ static void know_ways(link_t *link, double cycle_s)
                                                            : same_way_counts + corner * fabs(master->scale);
 }
 
-static bool jumped(const link_t *link, const sight_t *before)
+static bool jumped(const link_t *link, const master_view_t *before)
 {
     const double way = (link->seen.velocity + before->velocity) * link->half_cycle;
     return fabs(link->seen.counts - before->counts - way) > link->most_unexplained;
@@ -207,7 +248,7 @@ static inline master_trouble_t look(cm1e_axis_t *slave, follow_t *follow, bool o
     master_trouble_t worst = MASTER_GOOD;
     for (int i = 0; i < follow->count; i++) {
         link_t *link = &follow->links[i];
-        const sight_t before = link->seen;
+        const master_view_t before = link->seen;
         position_t position = {0};
         const master_trouble_t trouble = see(link, &position);
         if (trouble)
@@ -223,10 +264,10 @@ static inline master_trouble_t look(cm1e_axis_t *slave, follow_t *follow, bool o
     return worst;
 }
 
-master_trouble_t cm1e_axis_look(cm1e_axis_t *slave, follow_t *follow) { return look(slave, follow, false); }
-master_trouble_t cm1e_axis_see(cm1e_axis_t *slave, follow_t *follow) { return look(slave, follow, true); }
+master_trouble_t cm1e_coupling_look(cm1e_axis_t *slave, follow_t *follow) { return look(slave, follow, false); }
+master_trouble_t cm1e_coupling_see(cm1e_axis_t *slave, follow_t *follow) { return look(slave, follow, true); }
 
-cm1e_error_t cm1e_axis_link(cm1e_axis_t *slave, follow_t *follow, const cm1e_coupling_master_t *asked)
+cm1e_error_t cm1e_coupling_link(cm1e_axis_t *slave, follow_t *follow, const cm1e_coupling_master_t *asked)
 {
     cm1e_axis_t *master = cm1e_axis_from_reference(&asked->axis);
     if (!master || master->drive.bus != slave->drive.bus)

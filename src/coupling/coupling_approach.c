@@ -1,12 +1,12 @@
 /*
- * Ways into step over the master's position: MC_GearInPos (4.7), and MC_CamIn with a MasterStartDistance. Until the
- * master comes to where the way begins, whatever the slave does goes on (4.7, note 1): the command waits, first of all,
- * with its masters seen in every cycle. Then F is the curve, and behind its end the gear or the cam, for good.
+ * Approaches over the master's position: MC_GearInPos (4.7), and MC_CamIn with a MasterStartDistance. Until the master
+ * comes to where the approach begins, whatever the slave does goes on (4.7, note 1): the command waits, first of all,
+ * with its masters seen in every cycle. Then the coupling function is the curve, and behind its end a gear or a cam.
  */
 #include <math.h>
 #include <stdio.h>
 
-#include "axis/axis_coupling.h"
+#include "coupling/coupling_private.h"
 
 /* Counts of a master that are none, and what of a limit is rounding. */
 static const double same_place = 1e-3;
@@ -15,56 +15,57 @@ static const double relative_tolerance = 1e-6;
 /* Repetitions of the place, farther and farther away, that are tried: each leaves the slave more way. */
 enum { REPETITIONS = 4 };
 
-/* ---- F ----------------------------------------------------------------------------------------------------------- */
+/* ---- the coupling function --------------------------------------------------------------------------------------- */
 
 static void arrive(follow_t *follow)
 {
     link_t *link = &follow->links[0];
-    const way_t *way = &follow->way;
-    follow->kind = way->then;
+    const approach_t *approach = &follow->approach;
+    follow->function = approach->then;
     follow->in_step = true;
     if (follow->cam.slot) {
-        cm1e_axis_cam_enter(follow, way->sync);
+        cm1e_cam_in_enter(follow, approach->sync);
         return;
     }
-    follow->anchor = way->end; /* from here on the gear counts from where they met */
-    link->origin = cm1e_position_plus(link->origin, way->sync);
-    link->seen.counts -= way->sync;
+    follow->anchor = approach->end; /* from here on the gear counts from where they met */
+    link->origin = cm1e_position_plus(link->origin, approach->sync);
+    link->seen.counts -= approach->sync;
 }
 
 /* Before its beginning, where a master comes to that turns round on the way, the slave goes on as it began. */
-static cm1e_curve_point_t point_at(const way_t *way, double master)
+static cm1e_curve_point_t point_at(const approach_t *approach, double master)
 {
-    const double beyond = (master - way->first) * (way->first < 0.0 ? 1.0 : -1.0);
+    const double beyond = (master - approach->first) * (approach->first < 0.0 ? 1.0 : -1.0);
     if (beyond >= 0.0)
-        return cm1e_curve_at(&way->curve, master);
-    const cm1e_curve_point_t first = cm1e_curve_at(&way->curve, way->first);
-    return (cm1e_curve_point_t){.position = first.position + first.slope * (master - way->first), .slope = first.slope};
+        return cm1e_curve_at(&approach->curve, master);
+    const cm1e_curve_point_t first = cm1e_curve_at(&approach->curve, approach->first);
+    return (cm1e_curve_point_t){.position = first.position + first.slope * (master - approach->first),
+                                .slope = first.slope};
 }
 
 static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
 {
-    const way_t *way = &follow->way;
+    const approach_t *approach = &follow->approach;
     const link_t *link = &follow->links[0];
-    const double counts = link->seen.counts - way->sync, master = counts / link->master->scale;
-    const double left = (way->first < 0.0 ? -master : master) * fabs(link->master->scale);
+    const double counts = link->seen.counts - approach->sync, master = counts / link->master->scale;
+    const double left = (approach->first < 0.0 ? -master : master) * fabs(link->master->scale);
     if (left <= same_place) {
         arrive(follow);
-        follow->kind->evaluate(axis, follow, point);
+        follow->function->evaluate(axis, follow, point);
         return;
     }
-    const cm1e_curve_point_t here = point_at(way, master);
+    const cm1e_curve_point_t here = point_at(approach, master);
     const cm1e_motion_state_t motion = cm1e_curve_motion(&here, link->seen.velocity, link->seen.acceleration);
-    *point = (from_t){.position = cm1e_position_towards(way->begin, motion.position * axis->scale),
+    *point = (from_t){.position = cm1e_position_towards(approach->begin, motion.position * axis->scale),
                       .velocity = motion.velocity, .acceleration = motion.acceleration};
 }
 
 static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link)
 {
-    return fmax(follow->way.steepest, follow->way.then->steepest(axis, follow, link));
+    return fmax(follow->approach.steepest, follow->approach.then->steepest(axis, follow, link));
 }
 
-static const follow_kind_t way_kind = {evaluate, steepest};
+static const coupling_function_t way_kind = {evaluate, steepest};
 
 /* ---- its beginning ----------------------------------------------------------------------------------------------- */
 
@@ -72,7 +73,7 @@ static bool beyond(cm1e_axis_t *axis, const char *what, const char *unit, double
 {
     if (asked <= fmax(allowed, fabs(now)) * (1.0 + relative_tolerance))
         return false;
-    axis->cams->way_refused = (way_refused_t){what, unit, asked, allowed};
+    axis->coupling->cams->approach_refused = (approach_refused_t){what, unit, asked, allowed};
     return true;
 }
 
@@ -91,21 +92,21 @@ static bool keeps_limits(cm1e_axis_t *axis, const follow_t *follow, const from_t
 static cm1e_error_t plan(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *limits,
                          double sync)
 {
-    way_t *way = &follow->way;
+    approach_t *approach = &follow->approach;
     const link_t *link = &follow->links[0];
     const cm1e_motion_state_t slave = {0.0, from->velocity, from->acceleration};
     const double first = (link->seen.counts - sync) / link->master->scale;
     cm1e_curve_point_t begin, end = {.slope = link->ratio};
     cm1e_curve_t curve;
     cm1e_curve_extremes_t extremes;
-    position_t meeting = way->end;
+    position_t meeting = approach->end;
     if (follow->cam.slot)
-        cm1e_axis_cam_point(axis, follow, sync, &meeting, &end);
+        cm1e_cam_in_point(axis, follow, sync, &meeting, &end);
     const double place = cm1e_position_minus(meeting, from->position) / axis->scale;
-    axis->cams->way_refused = (way_refused_t){0};
+    axis->coupling->cams->approach_refused = (approach_refused_t){0};
     if (!cm1e_curve_point_of(&begin, &slave, link->seen.velocity, link->seen.acceleration))
         return CM1E_ERROR_AXIS_SYNC_WAY;
-    end.position = cm1e_approach_end(way->mode, 0.0, begin.slope, place, end.slope, -first, way->turn);
+    end.position = cm1e_approach_end(approach->mode, 0.0, begin.slope, place, end.slope, -first, approach->turn);
     if (!cm1e_curve_between(&curve, first, &begin, 0.0, &end))
         return CM1E_ERROR_AXIS_SYNC_WAY;
     cm1e_curve_extremes(&curve, &extremes);
@@ -116,61 +117,61 @@ static cm1e_error_t plan(cm1e_axis_t *axis, follow_t *follow, const from_t *from
     const double shift = (end.position - place) * axis->scale; /* turns of a modulo slave */
     if (!cm1e_position_reaches(meeting, shift))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    way->curve = curve;
-    way->first = first;
-    way->steepest = fmax(fabs(extremes.least_slope), fabs(extremes.most_slope));
-    way->sync = sync;
-    way->begin = from->position;
-    way->end = cm1e_position_plus(meeting, shift);
-    way->awaited = AWAIT_NOTHING;
+    approach->curve = curve;
+    approach->first = first;
+    approach->steepest = fmax(fabs(extremes.least_slope), fabs(extremes.most_slope));
+    approach->sync = sync;
+    approach->begin = from->position;
+    approach->end = cm1e_position_plus(meeting, shift);
+    approach->awaited = AWAIT_NOTHING;
     follow->cam.slave_zero = cm1e_position_plus(follow->cam.slave_zero, shift);
     return CM1E_OK;
 }
 
-/* In counts: which way the master goes, or is to go, on the way into step. */
+/* In counts: the sign of where the master goes, or is to go, during the approach. */
 static double direction(const follow_t *follow)
 {
-    const double distance = follow->way.start_distance;
+    const double distance = follow->approach.start_distance;
     const link_t *link = &follow->links[0];
     return copysign(1.0, distance != 0.0 ? distance : link->seen.velocity * link->master->scale);
 }
 
-/* Counts of the master since it was where the way begins; where that comes again, since the last time. */
+/* Counts of the master since it was where the approach begins; where that comes again, since the last time. */
 static double since_start(const follow_t *follow, double counts)
 {
-    const way_t *way = &follow->way;
-    const double since = (counts - (way->sync - way->start_distance)) * direction(follow);
-    return way->again > 0.0 ? since - floor(since / way->again + 1e-12) * way->again : since;
+    const approach_t *approach = &follow->approach;
+    const double since = (counts - (approach->sync - approach->start_distance)) * direction(follow);
+    return approach->again > 0.0 ? since - floor(since / approach->again + 1e-12) * approach->again : since;
 }
 
-/* Counts of the master to where the way ends, in the direction in which it goes. */
+/* Counts of the master to where the approach ends, in the direction in which it goes. */
 static double ahead(const follow_t *follow)
 {
-    const way_t *way = &follow->way;
-    const double left = (way->sync - follow->links[0].seen.counts) * direction(follow);
-    const double next = way->again > 0.0 ? left - floor(left / way->again) * way->again : left;
-    return way->again > 0.0 && next <= same_place ? next + way->again : next;
+    const approach_t *approach = &follow->approach;
+    const double left = (approach->sync - follow->links[0].seen.counts) * direction(follow);
+    const double next = approach->again > 0.0 ? left - floor(left / approach->again) * approach->again : left;
+    return approach->again > 0.0 && next <= same_place ? next + approach->again : next;
 }
 
-cm1e_error_t cm1e_axis_way_begin(cm1e_axis_t *axis, follow_t *follow, const move_t *move, const from_t *from)
+cm1e_error_t cm1e_coupling_approach_begin(cm1e_axis_t *axis, follow_t *follow, const move_t *move, const from_t *from)
 {
-    const way_t *way = &follow->way;
+    const approach_t *approach = &follow->approach;
     const double counts = follow->links[0].seen.counts, sign = direction(follow);
     cm1e_motion_limits_t limits;
     cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
     if (error)
         return error;
-    if (way->start_distance != 0.0) {
-        const double left = fabs(way->start_distance) - since_start(follow, counts);
+    if (approach->start_distance != 0.0) {
+        const double left = fabs(approach->start_distance) - since_start(follow, counts);
         if (left > same_place)
             return plan(axis, follow, from, &limits, counts + sign * left);
-        axis->cams->way_refused = (way_refused_t){0}; /* it has gone over all of it in one cycle */
+        axis->coupling->cams->approach_refused = (approach_refused_t){0}; /* it has gone over all of it in one cycle */
         return CM1E_ERROR_AXIS_SYNC_WAY;
     }
     const double next = ahead(follow);
     error = CM1E_ERROR_AXIS_SYNC_WAY;
-    for (int i = 0; i < REPETITIONS && error == CM1E_ERROR_AXIS_SYNC_WAY && (i == 0 || way->again > 0.0); i++)
-        error = plan(axis, follow, from, &limits, counts + sign * (next + i * way->again));
+    for (int i = 0; i < REPETITIONS && error == CM1E_ERROR_AXIS_SYNC_WAY && (i == 0 || approach->again > 0.0); i++)
+        error = plan(axis, follow, from, &limits, counts + sign * (next + i * approach->again));
     return error;
 }
 
@@ -179,64 +180,64 @@ cm1e_error_t cm1e_axis_way_begin(cm1e_axis_t *axis, follow_t *follow, const move
 /* Both stand where they are to meet. */
 static bool met_already(const cm1e_axis_t *axis, follow_t *follow, const from_t *from)
 {
-    const way_t *way = &follow->way;
+    const approach_t *approach = &follow->approach;
     const link_t *link = &follow->links[0];
-    const double few_counts = 2.0, left = way->sync - link->seen.counts;
-    const double master = way->again > 0.0 ? remainder(left, way->again) : left;
-    const double u = cm1e_position_minus(way->end, from->position) / axis->scale;
-    const double slave = (way->turn > 0.0 ? remainder(u, way->turn) : u);
+    const double few_counts = 2.0, left = approach->sync - link->seen.counts;
+    const double master = approach->again > 0.0 ? remainder(left, approach->again) : left;
+    const double u = cm1e_position_minus(approach->end, from->position) / axis->scale;
+    const double slave = (approach->turn > 0.0 ? remainder(u, approach->turn) : u);
     if (fabs(master) > few_counts || fabs(slave * axis->scale) > few_counts || link->seen.velocity != 0.0 ||
         from->velocity != 0.0)
         return false;
-    follow->way.sync = link->seen.counts + master;
-    follow->way.end = cm1e_position_plus(from->position, slave * axis->scale);
+    follow->approach.sync = link->seen.counts + master;
+    follow->approach.end = cm1e_position_plus(from->position, slave * axis->scale);
     return true;
 }
 
-cm1e_error_t cm1e_axis_way_prepare(cm1e_axis_t *axis, follow_t *follow, const move_t *move, const from_t *from)
+cm1e_error_t cm1e_coupling_approach_prepare(cm1e_axis_t *axis, follow_t *follow, const move_t *move, const from_t *from)
 {
-    way_t *way = &follow->way;
+    approach_t *approach = &follow->approach;
     const link_t *link = &follow->links[0];
-    follow->kind = &way_kind;
+    follow->function = &way_kind;
     follow->in_step = false;
     follow->to_position = true;
-    if (way->start_distance != 0.0) {
-        const double since = since_start(follow, link->seen.counts), all = fabs(way->start_distance);
-        const bool under_way = way->again > 0.0 ? since <= same_place
+    if (approach->start_distance != 0.0) {
+        const double since = since_start(follow, link->seen.counts), all = fabs(approach->start_distance);
+        const bool under_way = approach->again > 0.0 ? since <= same_place
                                                 : since >= -same_place && since < all - same_place;
-        way->awaited = under_way ? AWAIT_NOTHING : AWAIT_PLACE;
+        approach->awaited = under_way ? AWAIT_NOTHING : AWAIT_PLACE;
     } else if (met_already(axis, follow, from)) {
         arrive(follow);
         return CM1E_OK;
     } else {
-        way->awaited = link->seen.velocity == 0.0 || ahead(follow) <= same_place ? AWAIT_MOTION : AWAIT_NOTHING;
+        approach->awaited = link->seen.velocity == 0.0 || ahead(follow) <= same_place ? AWAIT_MOTION : AWAIT_NOTHING;
     }
-    return way->awaited ? CM1E_OK : cm1e_axis_way_begin(axis, follow, move, from);
+    return approach->awaited ? CM1E_OK : cm1e_coupling_approach_begin(axis, follow, move, from);
 }
 
-/* The master has come over the beginning of the way, or goes towards its end. */
+/* The master has come over the beginning of the approach, or goes towards its end. */
 static bool due(const follow_t *follow, double before)
 {
-    const way_t *way = &follow->way;
+    const approach_t *approach = &follow->approach;
     const link_t *link = &follow->links[0];
-    if (way->awaited == AWAIT_MOTION)
+    if (approach->awaited == AWAIT_MOTION)
         return link->seen.velocity != 0.0 && ahead(follow) > same_place;
     const double moved = (link->seen.counts - before) * direction(follow);
     const double since = since_start(follow, link->seen.counts);
     return since >= 0.0 && since < moved * (1.0 + relative_tolerance);
 }
 
-void cm1e_axis_await_step(cm1e_axis_t *axis)
+void cm1e_coupling_await_step(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
-    follow_t *next = axis->awaited;
+    follow_t *next = axis->coupling->awaited;
     const double before = next->links[0].seen.counts;
     const from_t from = from_base(axis);
-    const master_trouble_t trouble = cm1e_axis_look(axis, next);
+    const master_trouble_t trouble = cm1e_coupling_look(axis, next);
     if (!trouble && !due(next, before))
         return;
-    const bool may_come = !trouble && next->way.awaited == AWAIT_MOTION && next->links[0].seen.acceleration != 0.0;
-    if (may_come && cm1e_axis_way_begin(axis, next, waiting_move(axis, 0), &from) == CM1E_ERROR_AXIS_SYNC_WAY)
+    const bool may_come = !trouble && next->approach.awaited == AWAIT_MOTION && next->links[0].seen.acceleration != 0.0;
+    if (may_come && cm1e_coupling_approach_begin(axis, next, waiting_move(axis, 0), &from) == CM1E_ERROR_AXIS_SYNC_WAY)
         return; /* it becomes faster, or slower */
     c->due = true;
     c->due_error = trouble ? CM1E_ERROR_AXIS_MASTER_LOST : CM1E_OK;
@@ -251,34 +252,34 @@ static bool is_place(const cm1e_axis_t *axis, double units)
     return isfinite(units) && cm1e_axis_position_from_units(axis, units, &unused);
 }
 
-cm1e_error_t cm1e_axis_gear_in_pos_prepare(cm1e_axis_t *axis, const move_t *move,
+cm1e_error_t cm1e_gear_in_pos_prepare(cm1e_axis_t *axis, const move_t *move,
                                            const cm1e_axis_coupling_t *coupling, const from_t *from)
 {
-    follow_t *follow = cm1e_axis_follow_spare(axis);
-    const cm1e_error_t error = cm1e_axis_gear_prepare(axis, move, coupling, from);
+    follow_t *follow = cm1e_coupling_spare(axis);
+    const cm1e_error_t error = cm1e_gear_prepare(axis, move, coupling, from);
     if (error)
         return error;
     if ((unsigned)coupling->sync_mode > mcSlowDown)
         return CM1E_ERROR_INVALID_ARGUMENT;
     const link_t *link = &follow->links[0];
     const cm1e_axis_t *master = link->master;
-    way_t *way = &follow->way;
+    approach_t *approach = &follow->approach;
     if (!is_place(master, coupling->master_sync_position) ||
         !cm1e_axis_can_count(master, coupling->master_start_distance) ||
-        !cm1e_axis_position_from_units(axis, coupling->slave_sync_position, &way->end))
+        !cm1e_axis_position_from_units(axis, coupling->slave_sync_position, &approach->end))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    way->then = follow->kind;
-    way->mode = coupling->sync_mode;
-    way->turn = axis->modulo_range;
-    way->start_distance = coupling->master_start_distance * master->scale;
-    way->sync = (coupling->master_sync_position - cm1e_axis_units(master, link->origin)) * master->scale;
-    way->again = master->modulo_range * fabs(master->scale);
-    return cm1e_axis_way_prepare(axis, follow, move, from);
+    approach->then = follow->function;
+    approach->mode = coupling->sync_mode;
+    approach->turn = axis->modulo_range;
+    approach->start_distance = coupling->master_start_distance * master->scale;
+    approach->sync = (coupling->master_sync_position - cm1e_axis_units(master, link->origin)) * master->scale;
+    approach->again = master->modulo_range * fabs(master->scale);
+    return cm1e_coupling_approach_prepare(axis, follow, move, from);
 }
 
-void cm1e_axis_way_text(const cm1e_axis_t *axis, char *text, size_t size)
+void cm1e_coupling_approach_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    const way_refused_t *r = &axis->cams->way_refused;
+    const approach_refused_t *r = &axis->coupling->cams->approach_refused;
     if (r->what)
         snprintf(text, size, "Axis \"%s\": the way into step needs a %s of %.6g %s at the master's present velocity; "
                  "up to %.6g is allowed. Give it more way (MasterStartDistance), or let the master go slower.",

@@ -1,6 +1,6 @@
 /*
  * MC_PhasingAbsolute, MC_PhasingRelative (4.8, 4.9): the slave sees its master shifted. The shift is a motion of its
- * own in u of the master, from its present state to the one asked for; it moves the slave through F as the master does.
+ * own in u of the master, from its present state to the one asked for; the coupling function brings it to the slave.
  *
  * It is never the active command: it has a record of its own, and one after the other may wait behind it. It belongs to
  * the first master, and stays, running or not, while the axis follows that one, by whatever gear or cam.
@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "axis/axis_coupling.h"
+#include "coupling/coupling_private.h"
 
 static const double same_moment = 1e-6; /* cycles */
 static const double relative_tolerance = 1e-9;
@@ -19,7 +19,7 @@ static const double relative_tolerance = 1e-9;
 static double steepest(const cm1e_axis_t *axis)
 {
     const follow_t *now = axis->coupling->now;
-    const double slope = fabs(now->kind->steepest(axis, now, 0));
+    const double slope = fabs(now->function->steepest(axis, now, 0));
     return slope > 0.0 ? slope : 1.0;
 }
 
@@ -169,7 +169,7 @@ static cm1e_error_t replace(cm1e_axis_t *axis, move_t *move)
     return CM1E_OK;
 }
 
-cm1e_error_t cm1e_axis_phasing(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+cm1e_error_t cm1e_phasing_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     const coupling_t *c = axis->coupling;
     const cm1e_axis_t *master = command->coupling ? cm1e_axis_from_reference(&command->coupling->master[0].axis) : NULL;
@@ -190,7 +190,7 @@ cm1e_error_t cm1e_axis_phasing(cm1e_axis_t *axis, const cm1e_axis_command_t *com
 
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
 
-void cm1e_axis_phasing_step(cm1e_axis_t *axis)
+void cm1e_phasing_step(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
     phasing_t *phasing = &c->phasing;
@@ -204,7 +204,7 @@ void cm1e_axis_phasing_step(cm1e_axis_t *axis)
     begin_waiting(axis);
 }
 
-void cm1e_axis_phasing_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
+void cm1e_phasing_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
 {
     phasing_t *phasing = &axis->coupling->phasing;
     if (!phasing->id)
@@ -219,7 +219,7 @@ void cm1e_axis_phasing_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_e
     phasing->moving = cm1e_profile_to_velocity(&phasing->profile, &axis->coupling->phase, 0.0, &limits) == CM1E_OK;
 }
 
-void cm1e_axis_phasing_rest(cm1e_axis_t *axis)
+void cm1e_phasing_stand(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
     record(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
@@ -228,15 +228,15 @@ void cm1e_axis_phasing_rest(cm1e_axis_t *axis)
     c->phase.velocity = c->phase.acceleration = 0.0;
 }
 
-void cm1e_axis_phasing_forget(cm1e_axis_t *axis)
+void cm1e_phasing_forget(cm1e_axis_t *axis)
 {
-    cm1e_axis_phasing_rest(axis);
+    cm1e_phasing_stand(axis);
     axis->coupling->phase.position = 0.0;
 }
 
 /* ---- what is told of it ------------------------------------------------------------------------------------------ */
 
-bool cm1e_axis_phasing_status(const cm1e_axis_t *axis, cm1e_command_id_t id, cm1e_command_status_t *status)
+bool cm1e_phasing_status(const cm1e_axis_t *axis, cm1e_command_id_t id, cm1e_command_status_t *status)
 {
     const coupling_t *c = axis->coupling;
     if (id == 0 || !c->phasing.id)
@@ -254,13 +254,13 @@ bool cm1e_axis_phasing_status(const cm1e_axis_t *axis, cm1e_command_id_t id, cm1
     return false;
 }
 
-double cm1e_axis_phasing_covered(const cm1e_axis_t *axis, cm1e_command_id_t id)
+double cm1e_phasing_covered(const cm1e_axis_t *axis, cm1e_command_id_t id)
 {
     const coupling_t *c = axis->coupling;
     return id == c->phasing.ended ? c->phasing.covered : 0.0;
 }
 
-bool cm1e_axis_phasing_text(const cm1e_axis_t *axis, char *text, size_t size)
+bool cm1e_phasing_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const cm1e_axis_command_t *refused = &axis->refused;
     if (kind_row(refused->kind)->plan != PLAN_PHASING || !axis_follows(axis))

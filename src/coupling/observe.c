@@ -6,7 +6,7 @@
  */
 #include <math.h>
 
-#include "axis/axis_coupling.h"
+#include "coupling/coupling_private.h"
 
 enum { DEFAULT_FILTER_CYCLES = 10 };
 
@@ -54,7 +54,7 @@ static void begin(cm1e_axis_t *axis)
     own->begun = axis->observed = true;
 }
 
-void cm1e_axis_observe(cm1e_axis_t *axis)
+void cm1e_coupling_observe(cm1e_axis_t *axis)
 {
     observed_t *own = &axis->coupling->own;
     const bool fresh = axis->drive.feedback.fresh;
@@ -72,7 +72,7 @@ void cm1e_axis_observe(cm1e_axis_t *axis)
     look(axis);
 }
 
-master_trouble_t cm1e_axis_see_actual(cm1e_axis_t *master, bool of_this_cycle, from_t *seen)
+master_trouble_t cm1e_coupling_see_actual(cm1e_axis_t *master, bool of_this_cycle, from_t *seen)
 {
     const observed_t *own = &master->coupling->own;
     if (master->state == CM1E_AXIS_ERROR_STOP)

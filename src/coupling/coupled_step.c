@@ -1,28 +1,11 @@
-/* Followers: their set-point of every cycle, and how F begins (axis_coupling.h). */
-#include "axis/axis_coupling.h"
+/* Followers: their set-point of every cycle, and how a coupling begins (coupling_private.h). */
+#include "coupling/coupling_private.h"
 #include "core/rare.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 static const double same_moment = 1e-6; /* cycles */
 static const double rounding_counts = 1e-3;
-
-cm1e_error_t cm1e_axis_coupling_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
-{
-    axis->coupling = calloc(1, sizeof *axis->coupling);
-    axis->observed = axis->config->type == CM1E_AXIS_ENCODER;
-    return axis->coupling ? CM1E_OK : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for what axis \"%s\" "
-                                                    "may follow.", axis->config->name);
-}
-
-void cm1e_axis_coupling_free(cm1e_axis_t *axis)
-{
-    if (axis->coupling)
-        cm1e_axis_unlink(axis);
-    free(axis->coupling);
-    axis->coupling = NULL;
-}
 
 /* ---- what is not in step yet ------------------------------------------------------------------------------------- */
 
@@ -32,63 +15,63 @@ static double at_most(double asked, double most, double used)
     return fmin(asked, fmax(most - used, least_part * most));
 }
 
-/* What F leaves of the axis's limits. The velocity of the rest goes to 0 while the axis's own grows or shrinks to F's.
- * An acceleration of F that helps on the way leaves all of them. */
+/* What the coupling function leaves of the axis's limits. The velocity of the catch-up goes to 0 while the axis's own
+ * grows or shrinks to that of the function. An acceleration of the function that helps leaves all of them. */
 static cm1e_motion_limits_t limits_beside(const cm1e_axis_t *axis, const from_t *f, double f_jerk, bool full_jerk)
 {
-    const rest_t *rest = &axis->coupling->rest;
+    const catch_up_t *catch_up = &axis->coupling->catch_up;
     if (axis->coupling->now->to_position)
-        return cm1e_axis_cam_leaves(axis, axis->coupling->now, &rest->asked);
+        return cm1e_cam_leaves(axis, axis->coupling->now, &catch_up->asked);
     const cm1e_motion_limits_t *most = &axis->maximum;
-    const double now = f->velocity + rest->now.velocity, way = rest->now.velocity > 0.0 ? -1.0 : 1.0;
-    const bool helps = f->acceleration * way <= 0.0 && rest->now.acceleration * way >= 0.0;
+    const double now = f->velocity + catch_up->now.velocity, way = catch_up->now.velocity > 0.0 ? -1.0 : 1.0;
+    const bool helps = f->acceleration * way <= 0.0 && catch_up->now.acceleration * way >= 0.0;
     const double used = helps ? 0.0 : fabs(f->acceleration);
-    const double up = at_most(rest->asked.acceleration, most->acceleration, used);
-    const double down = at_most(rest->asked.deceleration, most->deceleration, used);
+    const double up = at_most(catch_up->asked.acceleration, most->acceleration, used);
+    const double down = at_most(catch_up->asked.deceleration, most->deceleration, used);
     const double change = now * f->velocity < 0.0 ? fmin(up, down) : fabs(f->velocity) > fabs(now) ? up : down;
-    const double jerk = full_jerk ? rest->asked.jerk : at_most(rest->asked.jerk, most->jerk, fabs(f_jerk));
-    /* A part of what F leaves: F may become faster, and the limit of jerk lets the rest give way slowly only. */
+    const double jerk = full_jerk ? catch_up->asked.jerk : at_most(catch_up->asked.jerk, most->jerk, fabs(f_jerk));
+    /* A part of what the function leaves: it may become faster, and the catch-up gives way by its jerk only. */
     const double part = 0.1, taken = (1.0 - part) * most->velocity + part * fabs(f->velocity);
-    const double velocity = rest->to_place ? at_most(rest->asked.velocity, most->velocity, taken)
-                                          : 2.0 * (most->velocity + fabs(rest->now.velocity));
+    const double velocity = catch_up->to_place ? at_most(catch_up->asked.velocity, most->velocity, taken)
+                                          : 2.0 * (most->velocity + fabs(catch_up->now.velocity));
     return (cm1e_motion_limits_t){velocity, change, change, jerk};
 }
 
-static void plan_rest(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits)
+static void plan_catch_up(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits)
 {
     coupling_t *c = axis->coupling;
-    rest_t *rest = &c->rest;
+    catch_up_t *catch_up = &c->catch_up;
     const cm1e_error_t error =
-        rest->to_place ? cm1e_profile_to_position(&rest->profile, &rest->now, 0.0, limits)
-                       : cm1e_profile_to_velocity(&rest->profile, &rest->now, 0.0, limits);
-    rest->cycles = 0;
-    rest->on = error || rest->profile.duration_s > 0.0 || rest->now.position != 0.0;
+        catch_up->to_place ? cm1e_profile_to_position(&catch_up->profile, &catch_up->now, 0.0, limits)
+                       : cm1e_profile_to_velocity(&catch_up->profile, &catch_up->now, 0.0, limits);
+    catch_up->cycles = 0;
+    catch_up->on = error || catch_up->profile.duration_s > 0.0 || catch_up->now.position != 0.0;
     if (error) /* numbers that doubles cannot hold: it ends as it is, for the guard to judge */
-        rest->profile = (cm1e_profile_t){.end = rest->now};
+        catch_up->profile = (cm1e_profile_t){.end = catch_up->now};
 }
 
 /* A gear that accelerates may need all of the axis's limits: lost distance is made up when it no longer does. */
 static bool goes_to_place(const coupling_t *c, bool steady)
 {
-    return c->now->to_position || (c->rest.made_up && steady);
+    return c->now->to_position || (c->catch_up.made_up && steady);
 }
 
-static void next_of_rest(cm1e_axis_t *axis)
+static void next_of_catch_up(cm1e_axis_t *axis)
 {
-    rest_t *rest = &axis->coupling->rest;
-    cm1e_profile_sample(&rest->profile, (double)++rest->cycles * axis->cycle_s, &rest->now);
+    catch_up_t *catch_up = &axis->coupling->catch_up;
+    cm1e_profile_sample(&catch_up->profile, (double)++catch_up->cycles * axis->cycle_s, &catch_up->now);
 }
 
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
 
 static from_t sum_of(const cm1e_axis_t *axis, const from_t *f)
 {
-    const cm1e_motion_state_t *rest = &axis->coupling->rest.now, *on_top = &axis->superimposed.now;
+    const cm1e_motion_state_t *catch_up = &axis->coupling->catch_up.now, *on_top = &axis->superimposed.now;
     from_t sum = *f;
-    if (axis->coupling->rest.on) {
-        sum.position = cm1e_position_plus(sum.position, rest->position * axis->scale);
-        sum.velocity += rest->velocity;
-        sum.acceleration += rest->acceleration;
+    if (axis->coupling->catch_up.on) {
+        sum.position = cm1e_position_plus(sum.position, catch_up->position * axis->scale);
+        sum.velocity += catch_up->velocity;
+        sum.acceleration += catch_up->acceleration;
     }
     if (axis->superimposed.id) {
         sum.position = cm1e_position_plus(sum.position, on_top->position * axis->scale);
@@ -98,10 +81,6 @@ static from_t sum_of(const cm1e_axis_t *axis, const from_t *f)
     return sum;
 }
 
-/* A ramp of ErrorStop has no limit of jerk, nor has who follows it. */
-static bool keeps_jerk(const coupling_t *c) { return !c->now->linear && !c->now->by_actual && !c->stopping; }
-bool cm1e_axis_coupling_smooth(const cm1e_axis_t *axis) { return keeps_jerk(axis->coupling); }
-
 typedef struct verdict {
     guard_t guard;
     bool smooth; /**< it keeps the limits between the set-points too */
@@ -109,16 +88,16 @@ typedef struct verdict {
 
 static verdict_t judge_sum(const cm1e_axis_t *axis, const from_t *sum)
 {
-    const bool kept_jerk = keeps_jerk(axis->coupling);
+    const bool kept_jerk = coupling_keeps_jerk(axis->coupling);
     const guard_t guard = cm1e_axis_guard(axis, sum, kept_jerk);
     return (verdict_t){guard, !guard.limit && (!kept_jerk || cm1e_axis_guard_smooth(axis, sum))};
 }
 
-/* How the rest may go on in a cycle: by its plan; planned anew beside what F has come to need, first with all its jerk,
- * which may go against F's; and without any jerk. */
+/* How the catch-up may go on in a cycle: by its plan; planned anew beside what the coupling function has come to need,
+ * first with all its jerk, which may go against that of the function; and without any jerk. */
 typedef enum attempt { AS_PLANNED = 0, WITH_ALL_JERK, WITH_JERK_LEFT, WITHOUT_JERK, ATTEMPTS } attempt_t;
 
-/* The least jerk with which F can have come over this cycle. Its own may change in the middle of it. */
+/* The smallest jerk with which the coupling function can have come over this cycle. It may change in the middle. */
 static double jerk_of_f(const cm1e_axis_t *axis, const from_t *f)
 {
     const coupling_t *c = axis->coupling;
@@ -129,41 +108,43 @@ static double jerk_of_f(const cm1e_axis_t *axis, const from_t *f)
 
 static void go_on(cm1e_axis_t *axis, const from_t *f, attempt_t attempt)
 {
-    rest_t *rest = &axis->coupling->rest;
+    catch_up_t *catch_up = &axis->coupling->catch_up;
     const double t = axis->cycle_s;
     if (attempt == WITH_ALL_JERK || attempt == WITH_JERK_LEFT) {
-        rest->to_place = goes_to_place(axis->coupling, f->acceleration == 0.0 && axis->coupling->f_acceleration == 0.0);
+        const bool steady = f->acceleration == 0.0 && axis->coupling->f_acceleration == 0.0;
+        catch_up->to_place = goes_to_place(axis->coupling, steady);
         const cm1e_motion_limits_t limits = limits_beside(axis, f, jerk_of_f(axis, f), attempt == WITH_ALL_JERK);
-        plan_rest(axis, &limits);
+        plan_catch_up(axis, &limits);
     }
-    const double v = rest->now.velocity, a = rest->now.acceleration;
+    const double v = catch_up->now.velocity, a = catch_up->now.acceleration;
     if (attempt == WITHOUT_JERK) {
-        rest->now = (cm1e_motion_state_t){rest->now.position + t * (v + t * a / 2.0), v + t * a, a};
-        rest->profile.duration_s = INFINITY;
-    } else if (rest->on) {
-        next_of_rest(axis);
+        catch_up->now = (cm1e_motion_state_t){catch_up->now.position + t * (v + t * a / 2.0), v + t * a, a};
+        catch_up->profile.duration_s = INFINITY;
+    } else if (catch_up->on) {
+        next_of_catch_up(axis);
     }
 }
 
 /* In a cycle that begins with `before`. */
-static from_t attempt_to(cm1e_axis_t *axis, const from_t *f, const rest_t *before, attempt_t attempt,
+static from_t attempt_to(cm1e_axis_t *axis, const from_t *f, const catch_up_t *before, attempt_t attempt,
                          verdict_t *verdict)
 {
-    rest_t *rest = &axis->coupling->rest;
+    catch_up_t *catch_up = &axis->coupling->catch_up;
     const bool disturbed = f->acceleration != 0.0 || axis->coupling->f_acceleration != 0.0;
-    *rest = *before;
-    rest->held_back = attempt == WITHOUT_JERK || (attempt > AS_PLANNED && disturbed);
+    *catch_up = *before;
+    catch_up->held_back = attempt == WITHOUT_JERK || (attempt > AS_PLANNED && disturbed);
     go_on(axis, f, attempt);
     const from_t sum = sum_of(axis, f);
     *verdict = judge_sum(axis, &sum);
     return sum;
 }
 
-/* Once F has come to need more of the limits than was left to it, the rest is planned anew in every cycle until it has
- * ended: it takes what there is. Where F leaves none that is smooth, what keeps the limits has to do. */
-static from_t with_rest(cm1e_axis_t *axis, const from_t *f, verdict_t *verdict)
+/* Once the coupling function has come to need more of the limits than was left to it, the catch-up is planned anew in
+ * every cycle until it has ended: it takes what there is. Where the function leaves no smooth one, one that keeps the
+ * limits has to do. */
+static from_t with_catch_up(cm1e_axis_t *axis, const from_t *f, verdict_t *verdict)
 {
-    const rest_t before = axis->coupling->rest;
+    const catch_up_t before = axis->coupling->catch_up;
     from_t sum;
     if (!before.on) {
         sum = sum_of(axis, f);
@@ -177,7 +158,7 @@ static from_t with_rest(cm1e_axis_t *axis, const from_t *f, verdict_t *verdict)
     attempt_t kept = ATTEMPTS;
     for (int attempt = first; attempt < ATTEMPTS; attempt++) {
         sum = attempt_to(axis, f, &before, (attempt_t)attempt, verdict);
-        /* At a border that F leads over, the rest could hold the axis for ever. */
+        /* At a border that the function leads over, the catch-up could hold the axis for ever. */
         if (verdict->smooth || verdict->guard.limit == GUARD_DIRECTION ||
             verdict->guard.limit == GUARD_SOFTWARE_LIMIT)
             return sum;
@@ -190,16 +171,16 @@ static from_t with_rest(cm1e_axis_t *axis, const from_t *f, verdict_t *verdict)
 /* What is superimposed gives way too, by a cycle without jerk. */
 static from_t with_superimposed(cm1e_axis_t *axis, const from_t *f, verdict_t *verdict)
 {
-    const rest_t rest_before = axis->coupling->rest;
+    const catch_up_t catch_up_before = axis->coupling->catch_up;
     const cm1e_motion_state_t before = axis->superimposed.now;
     cm1e_motion_state_t unused = {0};
     cm1e_axis_superimposed_step(axis, &unused);
-    const from_t sum = with_rest(axis, f, verdict);
+    const from_t sum = with_catch_up(axis, f, verdict);
     if (!verdict->guard.limit || !axis->superimposed.moving)
         return sum;
-    axis->coupling->rest = rest_before;
+    axis->coupling->catch_up = catch_up_before;
     cm1e_axis_superimposed_hold(axis, &before);
-    return with_rest(axis, f, verdict);
+    return with_catch_up(axis, f, verdict);
 }
 
 static void emit(cm1e_axis_t *axis, const from_t *point)
@@ -215,41 +196,42 @@ static void emit(cm1e_axis_t *axis, const from_t *point)
 }
 
 /* Lost distance is not made up (4.5, note 1). */
-static void end_rest(cm1e_axis_t *axis)
+static void end_catch_up(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
-    const double left = c->rest.profile.end.position;
-    if (!c->rest.made_up)
+    const double left = c->catch_up.profile.end.position;
+    if (!c->catch_up.made_up)
         c->now->anchor = cm1e_position_plus(c->now->anchor, left * axis->scale);
-    c->rest.on = false;
-    c->rest.now = (cm1e_motion_state_t){0};
+    c->catch_up.on = false;
+    c->catch_up.now = (cm1e_motion_state_t){0};
 }
 
-/* The rest has come to its end. The distance that was lost meanwhile waits for F to be steady. */
-static void rest_ended(cm1e_axis_t *axis, const from_t *f)
+/* The catch-up has come to its end. The distance that was lost meanwhile waits until the function is steady. */
+static void catch_up_ended(cm1e_axis_t *axis, const from_t *f)
 {
-    rest_t *rest = &axis->coupling->rest;
-    if (!rest->made_up || rest->to_place || fabs(rest->now.position * axis->scale) < rounding_counts) {
-        end_rest(axis);
+    catch_up_t *catch_up = &axis->coupling->catch_up;
+    if (!catch_up->made_up || catch_up->to_place || fabs(catch_up->now.position * axis->scale) < rounding_counts) {
+        end_catch_up(axis);
         return;
     }
-    rest->held_back = false;
+    catch_up->held_back = false;
     if (f->acceleration != 0.0)
         return;
-    rest->to_place = true;
+    catch_up->to_place = true;
     const cm1e_motion_limits_t limits = limits_beside(axis, f, 0.0, true);
-    plan_rest(axis, &limits);
+    plan_catch_up(axis, &limits);
 }
 
 static void after_set_point(cm1e_axis_t *axis, const from_t *f)
 {
     coupling_t *c = axis->coupling;
-    rest_t *rest = &c->rest;
-    if (rest->on && (double)rest->cycles * axis->cycle_s >= rest->profile.duration_s - same_moment * axis->cycle_s)
-        rest_ended(axis, f);
+    catch_up_t *catch_up = &c->catch_up;
+    const double time_s = (double)catch_up->cycles * axis->cycle_s;
+    if (catch_up->on && time_s >= catch_up->profile.duration_s - same_moment * axis->cycle_s)
+        catch_up_ended(axis, f);
     if (axis->superimposed.id)
         cm1e_axis_superimposed_after(axis);
-    axis->reached = !rest->on && c->now->in_step;
+    axis->reached = !catch_up->on && c->now->in_step;
     if (axis->reached && axis->waiting.count > 0 &&
         (!c->now->waits_for_end || c->end_of_profile || c->now->cam.left != 0.0)) {
         const from_t from = from_base(axis);
@@ -273,39 +255,39 @@ static bool stop_alone(cm1e_axis_t *axis, guard_t guard)
 /* At the end of keep_ratio. */
 static void stand_with_masters(cm1e_axis_t *axis, const from_t *f)
 {
-    if (!axis->coupling->stopping || axis->coupling->rest.on || f->velocity != 0.0 || f->acceleration != 0.0)
+    if (!axis->coupling->stopping || axis->coupling->catch_up.on || f->velocity != 0.0 || f->acceleration != 0.0)
         return;
     axis->coupling->stopping = false;
     axis->activity = ACTIVITY_HOLD;
 }
 
-/* Seldom there is something beside F, or a set-point that has to be looked at twice. */
+/* Seldom there is something beside the coupling function, or a set-point that has to be looked at twice. */
 CM1E_RARE static guard_t judge(cm1e_axis_t *axis, const from_t *f, from_t *next)
 {
     verdict_t verdict;
     *next = *f;
     if (axis->superimposed.id)
         *next = with_superimposed(axis, f, &verdict);
-    else if (axis->coupling->rest.on)
-        *next = with_rest(axis, f, &verdict);
+    else if (axis->coupling->catch_up.on)
+        *next = with_catch_up(axis, f, &verdict);
     else
-        return cm1e_axis_look_closely(axis, f, keeps_jerk(axis->coupling));
+        return cm1e_axis_look_closely(axis, f, coupling_keeps_jerk(axis->coupling));
     return verdict.guard;
 }
 
-bool cm1e_axis_coupled_step(cm1e_axis_t *axis)
+bool cm1e_coupling_step(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
     from_t f, sum;
     const from_t *next = &f;
     if (c->phasing.moving)
-        cm1e_axis_phasing_step(axis);
-    const master_trouble_t trouble = cm1e_axis_see(axis, c->now);
-    if (trouble && !(c->stopping && trouble == MASTER_STOPPING) && !cm1e_axis_follows_to_the_end(axis, trouble))
+        cm1e_phasing_step(axis);
+    const master_trouble_t trouble = cm1e_coupling_see(axis, c->now);
+    if (trouble && !(c->stopping && trouble == MASTER_STOPPING) && !cm1e_coupling_follows_to_the_end(axis, trouble))
         return stop_alone(axis, (guard_t){.limit = GUARD_KEPT});
     c->end_of_profile = false;
-    c->now->kind->evaluate(axis, c->now, &f);
-    if (c->rest.on || axis->superimposed.id || !cm1e_axis_well_within(axis, &f, keeps_jerk(c))) {
+    c->now->function->evaluate(axis, c->now, &f);
+    if (c->catch_up.on || axis->superimposed.id || !cm1e_axis_well_within(axis, &f, coupling_keeps_jerk(c))) {
         const guard_t guard = judge(axis, &f, &sum);
         if (guard.limit)
             return stop_alone(axis, guard);
@@ -317,7 +299,7 @@ bool cm1e_axis_coupled_step(cm1e_axis_t *axis)
     if (axis_follows(axis))
         after_set_point(axis, &f);
     if (axis->config->coupling_stop == CM1E_COUPLING_STOP_KEEP_RATIO && axis_follows(axis)) {
-        cm1e_axis_keep_ratio(axis);
+        cm1e_coupling_keep_ratio(axis);
         stand_with_masters(axis, &f);
     }
     return true;
@@ -325,29 +307,20 @@ bool cm1e_axis_coupled_step(cm1e_axis_t *axis)
 
 /* ---- beginnings -------------------------------------------------------------------------------------------------- */
 
-follow_t *cm1e_axis_follow_spare(cm1e_axis_t *axis)
-{
-    coupling_t *c = axis->coupling;
-    follow_t *spare = c->follows;
-    while (spare == c->now || spare == axis->awaited)
-        spare++;
-    return spare;
-}
-
 /* What rounding leaves of nothing at all. */
-static bool is_nothing(const cm1e_axis_t *axis, const cm1e_motion_state_t *rest)
+static bool is_nothing(const cm1e_axis_t *axis, const cm1e_motion_state_t *left)
 {
     const double counts = 1e-6, t = axis->cycle_s, scale = fabs(axis->scale);
-    return fabs(rest->position) * scale < counts && fabs(rest->velocity) * scale * t < counts &&
-           fabs(rest->acceleration) * scale * t * t < counts;
+    return fabs(left->position) * scale < counts && fabs(left->velocity) * scale * t < counts &&
+           fabs(left->acceleration) * scale * t * t < counts;
 }
 
-/* Where lost distance is not made up, F begins where the axis is; a difference of rounding would add up. */
-static void begin_rest(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *asked, bool made_up)
+/* Where lost distance is not made up, the function begins where the axis is; a difference of rounding would add up. */
+static void begin_catch_up(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *asked, bool made_up)
 {
     coupling_t *c = axis->coupling;
     from_t f;
-    c->now->kind->evaluate(axis, c->now, &f);
+    c->now->function->evaluate(axis, c->now, &f);
     double counts = cm1e_position_minus(from->position, f.position);
     if (!made_up) {
         if (fabs(counts) > rounding_counts)
@@ -356,69 +329,69 @@ static void begin_rest(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_
     }
     c->f_velocity = f.velocity;
     c->f_acceleration = f.acceleration;
-    c->rest = (rest_t){.asked = *asked, .made_up = made_up,
+    c->catch_up = (catch_up_t){.asked = *asked, .made_up = made_up,
                        .now = {counts / axis->scale, from->velocity - f.velocity, from->acceleration - f.acceleration},
                        .held_back = f.acceleration != 0.0};
-    if (is_nothing(axis, &c->rest.now))
-        c->rest.now = (cm1e_motion_state_t){0};
-    c->rest.to_place = goes_to_place(c, f.acceleration == 0.0);
+    if (is_nothing(axis, &c->catch_up.now))
+        c->catch_up.now = (cm1e_motion_state_t){0};
+    c->catch_up.to_place = goes_to_place(c, f.acceleration == 0.0);
     const cm1e_motion_limits_t limits = limits_beside(axis, &f, 0.0, true);
-    plan_rest(axis, &limits);
+    plan_catch_up(axis, &limits);
 }
 
-void cm1e_axis_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked)
+void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked)
 {
     coupling_t *c = axis->coupling;
     if (!axis_follows(axis) || c->now->links[0].master != follow->links[0].master)
-        cm1e_axis_phasing_forget(axis);
+        cm1e_phasing_forget(axis);
     if (c->now)
-        cm1e_axis_unlist_links(c->now);
-    cm1e_axis_await_nothing(axis);
-    cm1e_axis_list_links(follow);
+        cm1e_coupling_unlist_links(c->now);
+    cm1e_coupling_await_nothing(axis);
+    cm1e_coupling_list_links(follow);
     c->now = follow;
     c->end_of_profile = c->stopping = c->due = false;
-    begin_rest(axis, from, asked, c->now->to_position);
+    begin_catch_up(axis, from, asked, c->now->to_position);
     axis->activity = ACTIVITY_COUPLED;
     cm1e_axis_guard_renew(axis);
     axis->reached = axis->paused = axis->stands = axis->along_table = false;
 }
 
-/* Where all stand at their last targets, they are in step as before: the rest is none but what it was. */
-void cm1e_axis_coupled_after_pause(cm1e_axis_t *axis)
+/* Where all stand at their last targets, they are in step as before: the catch-up is what it was. */
+void cm1e_coupling_after_pause(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
     const from_t from = from_set(axis);
-    const cm1e_motion_limits_t asked = c->rest.asked;
-    cm1e_axis_phasing_rest(axis);
-    const master_trouble_t trouble = cm1e_axis_look(axis, c->now);
+    const cm1e_motion_limits_t asked = c->catch_up.asked;
+    cm1e_phasing_stand(axis);
+    const master_trouble_t trouble = cm1e_coupling_look(axis, c->now);
     if (trouble && !(c->stopping && trouble == MASTER_STOPPING)) {
         (void)stop_alone(axis, (guard_t){.limit = GUARD_KEPT});
         return;
     }
     /* A slave that was in step gets back into its place; on its way there, lost distance is not made up (4.5, note 1).
      * A motor that went on by itself in CSV is not asked to come back. */
-    const bool was_in_step = !c->rest.on || c->rest.made_up, comes_back = axis->mode == CM1E_MODE_CSP ||
+    const bool was_in_step = !c->catch_up.on || c->catch_up.made_up, comes_back = axis->mode == CM1E_MODE_CSP ||
                                                                           axis->silent_before > 0;
-    begin_rest(axis, &from, &asked, c->now->to_position || (was_in_step && comes_back));
+    begin_catch_up(axis, &from, &asked, c->now->to_position || (was_in_step && comes_back));
     axis->reached = false;
 }
 
-void cm1e_axis_coupling_shift(cm1e_axis_t *axis, double way)
+void cm1e_coupling_shift(cm1e_axis_t *axis, double way)
 {
     follow_t *now = axis->coupling->now;
     const double counts = way * axis->scale;
-    position_t *const places[] = {&now->anchor, &now->cam.slave_zero, &now->way.begin, &now->way.end};
+    position_t *const places[] = {&now->anchor, &now->cam.slave_zero, &now->approach.begin, &now->approach.end};
     for (int i = 0; i < 4; i++)
         *places[i] = cm1e_position_plus(*places[i], counts);
 }
 
-void cm1e_axis_coupled_begin(cm1e_axis_t *axis)
+void cm1e_coupling_first_set_point(cm1e_axis_t *axis)
 {
     from_t f;
     cm1e_motion_state_t unused = {0};
     if (axis->superimposed.id)
         cm1e_axis_superimposed_step(axis, &unused);
-    axis->coupling->now->kind->evaluate(axis, axis->coupling->now, &f);
+    axis->coupling->now->function->evaluate(axis, axis->coupling->now, &f);
     const from_t point = sum_of(axis, &f);
     emit(axis, &point);
 }

@@ -1,14 +1,14 @@
 /* Commands of followers: those that begin at once, those that wait, and those that wait for their master. */
-#include "axis/axis_coupling.h"
+#include "coupling/coupling_private.h"
 
 typedef cm1e_error_t prepare_t(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
                                const from_t *from);
 
 static prepare_t *const preparers[CM1E_COMMAND_KIND_COUNT] = {
-    [CM1E_COMMAND_GEAR_IN] = cm1e_axis_gear_prepare,
-    [CM1E_COMMAND_GEAR_IN_POS] = cm1e_axis_gear_in_pos_prepare,
-    [CM1E_COMMAND_CAM_IN] = cm1e_axis_cam_prepare,
-    [CM1E_COMMAND_COMBINE_AXES] = cm1e_axis_gear_prepare,
+    [CM1E_COMMAND_GEAR_IN] = cm1e_gear_prepare,
+    [CM1E_COMMAND_GEAR_IN_POS] = cm1e_gear_in_pos_prepare,
+    [CM1E_COMMAND_CAM_IN] = cm1e_cam_in_prepare,
+    [CM1E_COMMAND_COMBINE_AXES] = cm1e_gear_prepare,
 };
 
 /* Some numbers are too small to compute with, whatever the masters do when it begins. */
@@ -39,7 +39,7 @@ static void take(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling
     axis->move = *move;
     axis->coupling->inputs = *coupling;
     axis->coupling->ends = 0;
-    cm1e_axis_follow(axis, follow, from, limits);
+    cm1e_coupling_follow(axis, follow, from, limits);
 }
 
 static bool same_master(const cm1e_coupling_master_t *a, const cm1e_coupling_master_t *b)
@@ -71,7 +71,7 @@ static cm1e_error_t update_active(cm1e_axis_t *axis, const cm1e_axis_command_t *
     move_t move = cm1e_axis_move_of(command);
     cm1e_motion_limits_t limits;
     if (axis_follows(axis) && command->kind == axis->kind && command->kind == CM1E_COMMAND_CAM_IN)
-        return cm1e_axis_cam_update(axis, command->coupling);
+        return cm1e_cam_in_update(axis, command->coupling);
     if (!axis_follows(axis) || command->kind != axis->kind || !begins_anew(command->kind))
         return CM1E_ERROR_INVALID_ARGUMENT;
     if (cm1e_axis_same_inputs(&axis->move, &move) && same_inputs(&c->inputs, command->coupling))
@@ -82,7 +82,7 @@ static cm1e_error_t update_active(cm1e_axis_t *axis, const cm1e_axis_command_t *
     move.id = axis->move.id;
     axis->move = move;
     c->inputs = *command->coupling;
-    cm1e_axis_follow(axis, cm1e_axis_follow_spare(axis), &from, &limits);
+    cm1e_coupling_follow(axis, cm1e_coupling_spare(axis), &from, &limits);
     return CM1E_OK;
 }
 
@@ -104,31 +104,17 @@ static waiting_coupling_t *free_place(cm1e_axis_t *axis)
     return NULL;
 }
 
-static void await(cm1e_axis_t *axis, follow_t *follow)
-{
-    axis->awaited = follow;
-    axis->coupling->due = false;
-    cm1e_axis_list_links(follow);
-}
-
-void cm1e_axis_await_nothing(cm1e_axis_t *axis)
-{
-    if (axis->awaited)
-        cm1e_axis_unlist_links(axis->awaited);
-    axis->awaited = NULL;
-}
-
-/* What runs goes on, as the active command, until the master is where the way begins; all that waits is aborted. */
+/* What runs goes on, as the active command, until the master is where the approach begins; what waits is aborted. */
 static void take_later(cm1e_axis_t *axis, move_t *move, const cm1e_axis_coupling_t *coupling, follow_t *follow)
 {
     cm1e_axis_waiting_end(axis, CM1E_COMMAND_ABORTED);
     move->id = cm1e_axis_next_id(axis);
     *free_place(axis) = (waiting_coupling_t){move->id, *coupling};
     *waiting_move(axis, axis->waiting.count++) = *move;
-    await(axis, follow);
+    cm1e_coupling_await(axis, follow);
 }
 
-cm1e_error_t cm1e_axis_couple(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+cm1e_error_t cm1e_coupling_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     const from_t from = from_set(axis);
     move_t move = cm1e_axis_move_of(command);
@@ -137,8 +123,8 @@ cm1e_error_t cm1e_axis_couple(cm1e_axis_t *axis, const cm1e_axis_command_t *comm
                                                  : CM1E_ERROR_INVALID_ARGUMENT;
     if (error)
         return error;
-    follow_t *follow = cm1e_axis_follow_spare(axis);
-    if (follow->way.awaited) {
+    follow_t *follow = cm1e_coupling_spare(axis);
+    if (follow->approach.awaited) {
         take_later(axis, &move, command->coupling, follow);
         *id = move.id;
         return CM1E_OK;
@@ -152,7 +138,7 @@ cm1e_error_t cm1e_axis_couple(cm1e_axis_t *axis, const cm1e_axis_command_t *comm
 /* ---- buffered ---------------------------------------------------------------------------------------------------- */
 
 /* Before it waits it has its place: what it waits for may be there already, and it begins at once. */
-cm1e_error_t cm1e_axis_coupling_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+cm1e_error_t cm1e_coupling_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     move_t move = cm1e_axis_move_of(command);
     waiting_coupling_t *place = free_place(axis);
@@ -177,19 +163,19 @@ static from_t at_present(const cm1e_axis_t *axis, const from_t *from, double lat
     return here;
 }
 
-bool cm1e_axis_coupling_awaits(cm1e_axis_t *axis, const from_t *from, double late_s)
+bool cm1e_coupling_awaits(cm1e_axis_t *axis, const from_t *from, double late_s)
 {
     coupling_t *c = axis->coupling;
-    if (axis->awaited)
+    if (axis->coupling->awaited)
         return !c->due;
     const move_t *move = waiting_move(axis, 0);
     const waiting_coupling_t *waiting = waiting_of(axis, move->id);
     const from_t here = at_present(axis, from, late_s);
-    follow_t *follow = cm1e_axis_follow_spare(axis);
+    follow_t *follow = cm1e_coupling_spare(axis);
     cm1e_motion_limits_t limits;
-    if (!waiting || prepare(axis, move, &waiting->coupling, &here, &limits) || !follow->way.awaited)
+    if (!waiting || prepare(axis, move, &waiting->coupling, &here, &limits) || !follow->approach.awaited)
         return false;
-    await(axis, follow);
+    cm1e_coupling_await(axis, follow);
     return true;
 }
 
@@ -201,32 +187,32 @@ static cm1e_error_t begin_awaited(cm1e_axis_t *axis, const move_t *move, const c
     cm1e_motion_limits_t limits;
     cm1e_error_t error = c->due_error ? c->due_error : cm1e_axis_limits_of(axis, from, move, &limits);
     if (!error)
-        error = cm1e_axis_way_begin(axis, axis->awaited, move, from);
+        error = cm1e_coupling_approach_begin(axis, axis->coupling->awaited, move, from);
     if (error)
-        cm1e_axis_await_nothing(axis);
+        cm1e_coupling_await_nothing(axis);
     else
-        take(axis, move, coupling, axis->awaited, from, &limits);
+        take(axis, move, coupling, axis->coupling->awaited, from, &limits);
     return error;
 }
 
 /* It follows from the present set-point on. */
-cm1e_error_t cm1e_axis_coupling_begin(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s)
+cm1e_error_t cm1e_coupling_begin(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s)
 {
     const waiting_coupling_t *waiting = waiting_of(axis, move->id);
     const from_t here = at_present(axis, from, late_s);
     cm1e_motion_limits_t limits;
-    if (waiting && axis->awaited)
+    if (waiting && axis->coupling->awaited)
         return begin_awaited(axis, move, &waiting->coupling, &here);
     axis->coupling->at_end = axis_follows(axis) && axis->coupling->end_of_profile;
     const cm1e_error_t error = waiting ? prepare(axis, move, &waiting->coupling, &here, &limits)
                                        : CM1E_ERROR_AXIS_STATE;
     axis->coupling->at_end = false;
     if (!error)
-        take(axis, move, &waiting->coupling, cm1e_axis_follow_spare(axis), &here, &limits);
+        take(axis, move, &waiting->coupling, cm1e_coupling_spare(axis), &here, &limits);
     return error;
 }
 
-cm1e_error_t cm1e_axis_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
+cm1e_error_t cm1e_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
 {
     if (!command->coupling)
         return CM1E_ERROR_INVALID_ARGUMENT;
@@ -237,7 +223,7 @@ cm1e_error_t cm1e_axis_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, 
         return CM1E_OK; /* it has ended */
     if (waiting->kind != (uint8_t)command->kind || command->kind == CM1E_COMMAND_GEAR_IN_POS)
         return CM1E_ERROR_INVALID_ARGUMENT;
-    if (waiting == waiting_move(axis, 0) && axis->awaited)
+    if (waiting == waiting_move(axis, 0) && axis->coupling->awaited)
         return CM1E_OK; /* it is placed already, and waits for its master only */
     move_t move = cm1e_axis_move_of(command);
     move.id = id;

@@ -8,7 +8,7 @@
  */
 #include <string.h>
 
-#include "axis/axis_coupling.h"
+#include "coupling/coupling_private.h"
 
 static bool keeps_ratio(const cm1e_axis_t *axis)
 {
@@ -32,7 +32,7 @@ static bool in_force(const link_t *link)
     return axis_follows(link->slave) && (link == &now->links[0] || link == &now->links[1]);
 }
 
-void cm1e_axis_coupling_failed(cm1e_axis_t *axis)
+void cm1e_coupling_failed(cm1e_axis_t *axis)
 {
     const follow_t *follow = axis->coupling->now;
     if (axis->config->coupling_stop != CM1E_COUPLING_STOP_COUPLED)
@@ -42,13 +42,13 @@ void cm1e_axis_coupling_failed(cm1e_axis_t *axis)
         if (!master)
             continue;
         fail_with(master, axis, INFINITY);
-        for (const link_t *link = master->slaves; link; link = link->next)
+        for (const link_t *link = master->coupling->slaves; link; link = link->next)
             if (in_force(link))
                 fail_with(link->slave, axis, INFINITY);
     }
 }
 
-bool cm1e_axis_follows_to_the_end(cm1e_axis_t *axis, master_trouble_t trouble)
+bool cm1e_coupling_follows_to_the_end(cm1e_axis_t *axis, master_trouble_t trouble)
 {
     if (trouble != MASTER_STOPPING || !keeps_ratio(axis))
         return false;
@@ -62,7 +62,7 @@ static double braking_together(const cm1e_axis_t *axis)
 {
     const follow_t *follow = axis->coupling->now;
     const link_t *link = &follow->links[0];
-    const double slope = follow->kind->steepest(axis, follow, 0);
+    const double slope = follow->function->steepest(axis, follow, 0);
     if (follow->count != 1 || link->source != mcSetValue || !set_points_move(link->master) || !(slope > 0.0))
         return 0.0;
     return fmin(axis->emergency.deceleration, link->master->emergency.deceleration * slope);
@@ -76,7 +76,8 @@ static guard_t limit_ahead(const cm1e_axis_t *axis, double braking)
     const double end = line + v * fabs(v) / (2.0 * braking) + v * t;
     /* In that cycle the acceleration may grow too; what it is then takes time to end. */
     const double a = fabs(axis->set_acceleration) + axis->guarding.jerk, toward = axis->set_acceleration * v;
-    const double peak = fabs(v) + (cm1e_axis_coupling_smooth(axis) && toward > 0.0 ? a * a * axis->guarding.ease : 0.0);
+    const bool eases = coupling_keeps_jerk(axis->coupling) && toward > 0.0;
+    const double peak = fabs(v) + (eases ? a * a * axis->guarding.ease : 0.0);
     if (peak > most)
         return (guard_t){.limit = GUARD_VELOCITY, .asked = peak, .allowed = most};
     if (axis->software_limits && ((v > 0.0 && end > axis->upper) || (v < 0.0 && end < axis->lower)))
@@ -85,7 +86,7 @@ static guard_t limit_ahead(const cm1e_axis_t *axis, double braking)
     return (guard_t){.limit = GUARD_KEPT};
 }
 
-void cm1e_axis_keep_ratio(cm1e_axis_t *axis)
+void cm1e_coupling_keep_ratio(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
     if (!keeps_ratio(axis) || c->stopping || c->phase.velocity != 0.0) /* a shift has its own way to its rest */
@@ -95,6 +96,6 @@ void cm1e_axis_keep_ratio(cm1e_axis_t *axis)
     if (!guard.limit)
         return;
     c->stopping = true;
-    fail_with(c->now->links[0].master, axis, braking / c->now->kind->steepest(axis, c->now, 0));
+    fail_with(c->now->links[0].master, axis, braking / c->now->function->steepest(axis, c->now, 0));
     cm1e_axis_guard_fail(axis, guard);
 }

@@ -1,7 +1,7 @@
 /**
- * @file axis_cam.h
- * Cams (Part 1, 4.2 and 4.3) and ways into step over the master's position (4.3, 4.7), as the sources about followers
- * see them. Everything here runs in the cycle unless marked otherwise.
+ * @file coupling_cam.h
+ * Cams (Part 1, 4.2 and 4.3) and approaches over the master's position (4.3, 4.7), as the sources of this room see
+ * them. Everything here runs in the cycle unless marked otherwise.
  *
  * A cam as MC_CamIn places it, with M the master's position and the scalings and offsets of the command:
  *
@@ -11,10 +11,11 @@
  * The zeros are those of the axes' coordinates when the command began, or, of what is relative, where the master was
  * then, and where they have to be for the slave to be on the cam where it was (but for SlaveOffset).
  */
-#ifndef CM1E_AXIS_AXIS_CAM_H
-#define CM1E_AXIS_AXIS_CAM_H
+#ifndef CM1E_COUPLING_COUPLING_CAM_H
+#define CM1E_COUPLING_COUPLING_CAM_H
 
 #include "axis/axis_private.h"
+#include "coupling/coupling.h"
 #include "motion/approach.h"
 #include "motion/cam.h"
 
@@ -29,35 +30,35 @@ typedef struct cam_slot {
 /** Those that stay, and one more to take the next one in. */
 enum { CAM_SLOTS = CM1E_AXIS_CAMS + 1 };
 
-/** What the way into step waits for. */
+/** What an approach waits for. */
 typedef enum awaited {
     AWAIT_NOTHING = 0,
-    AWAIT_PLACE,                   /**< the master comes over the place where the way begins */
+    AWAIT_PLACE,                   /**< the master comes over the place where the approach begins */
     AWAIT_MOTION,                  /**< the master goes towards the place where it ends */
 } awaited_t;
 
-/** A way into step: a curve over the master's position, from what the slave does to what it shall do when the master is
+/** An approach is a curve over the master's position, from what the slave does to what it shall do when the master is
  *  at a place. Counts of the master are those of the link. */
-typedef struct way {
-    const struct follow_kind *then; /**< F behind it */
+typedef struct approach {
+    const struct coupling_function *then; /**< the coupling function behind it */
     awaited_t awaited;             /**< it is still to come */
-    double start_distance;         /**< counts of the master, signed as the way it goes; 0: from where it is */
-    double sync;                   /**< counts of the master where the way ends */
+    double start_distance;         /**< counts of the master, signed as it goes; 0: from where it is */
+    double sync;                   /**< counts of the master where it ends */
     double again;                  /**< counts after which that place comes again; 0: it does not */
     MC_SYNC_MODE mode;
     double turn;                   /**< u of the slave, whose places so far apart are the same; 0: there are none */
     position_t begin, end;         /**< of the slave */
-    double first;                  /**< u of the master, counted from the end: where the way begins */
+    double first;                  /**< u of the master, counted from the end: where it begins */
     double steepest;               /**< largest slope of it, without sign */
     cm1e_curve_t curve;            /**< u of the slave from `begin` over u of the master from the end */
-} way_t;
+} approach_t;
 
-/** What a way into step would have asked of the slave, for the text. */
-typedef struct way_refused {
+/** What an approach would have asked of the slave, for the text. */
+typedef struct approach_refused {
     const char *what;              /**< NULL: the master stands while the slave moves, or has gone over it */
     const char *unit;
     double asked, allowed;
-} way_refused_t;
+} approach_refused_t;
 
 /** Where a slave was that should have been on its cam, and where that wanted it; u, u/s; for the text. */
 typedef struct cam_refused {
@@ -72,13 +73,13 @@ typedef struct cams {
     cm1e_cam_fault_t fault;        /**< of the last cam that was refused, for the text ... */
     int wrong;                     /**< ... at which point, from 0 */
     cam_refused_t refused;
-    way_refused_t way_refused;
+    approach_refused_t approach_refused;
     cm1e_cam_knot_t knots[];
 } cams_t;
 
 /** A cam that is followed. */
 typedef struct cam_place {
-    const cam_slot_t *slot;        /**< NULL: it is another kind of F */
+    const cam_slot_t *slot;        /**< NULL: it is another coupling function */
     position_t slave_zero;
     double away;                   /**< counts of the master from its zero to where its slave began to follow it */
     double master_offset, master_scaling, slave_offset, slave_scaling;
@@ -90,12 +91,13 @@ typedef struct cam_place {
     double left;                   /**< ... and to which it left it, having gone through it; 0: not yet */
 } cam_place_t;
 
-cm1e_error_t cm1e_axis_cams_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */
+cm1e_error_t cm1e_cam_memory_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */
 /** NULL: there is none of that number. */
-const cam_slot_t *cm1e_axis_cam_of(const cm1e_axis_t *axis, MC_CAM_ID id);
-void cm1e_axis_way_text(const cm1e_axis_t *axis, char *text, size_t size);
-void cm1e_axis_cam_id_text(const cm1e_axis_t *axis, char *text, size_t size);
-void cm1e_axis_cam_start_text(const cm1e_axis_t *axis, char *text, size_t size);
-void cm1e_axis_cam_table_text(const cm1e_axis_t *axis, char *text, size_t size);
+const cam_slot_t *cm1e_cam_memory_find(const cm1e_axis_t *axis, MC_CAM_ID id);
+void cm1e_coupling_approach_text(const cm1e_axis_t *axis, char *text, size_t size);
+void cm1e_cam_id_text(const cm1e_axis_t *axis, char *text, size_t size);
+void cm1e_cam_start_text(const cm1e_axis_t *axis, char *text, size_t size);
+/** What is wrong with the cam that was refused last, and what would be right. */
+void cm1e_cam_table_text(const cm1e_axis_t *axis, char *text, size_t size);
 
 #endif

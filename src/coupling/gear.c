@@ -1,7 +1,7 @@
 /* MC_GearIn, MC_CombineAxes: the sum of the masters' motions, each by its ratio. And the way out again. */
 #include <math.h>
 
-#include "axis/axis_coupling.h"
+#include "coupling/coupling_private.h"
 
 static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
 {
@@ -22,7 +22,7 @@ static double steepest(const cm1e_axis_t *axis, const follow_t *follow, int link
     return fabs(follow->links[link].ratio);
 }
 
-static const follow_kind_t gear = {evaluate, steepest};
+static const coupling_function_t gear = {evaluate, steepest};
 
 /* Whole numbers as far as doubles hold them, so that they are rounded once: positions are this times counts. */
 static double counts_ratio(const cm1e_axis_t *slave, const cm1e_axis_t *master, double numerator, double denominator)
@@ -32,14 +32,14 @@ static double counts_ratio(const cm1e_axis_t *slave, const cm1e_axis_t *master, 
            (denominator * (slave->unit.units * master->unit.counts));
 }
 
-cm1e_error_t cm1e_axis_gear_prepare(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
+cm1e_error_t cm1e_gear_prepare(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
                                     const from_t *from)
 {
-    follow_t *follow = cm1e_axis_follow_spare(axis);
+    follow_t *follow = cm1e_coupling_spare(axis);
     const int masters = move->kind == CM1E_COMMAND_COMBINE_AXES ? 2 : 1;
     if (coupling->combine != mcAddAxes && coupling->combine != mcSubAxes)
         return CM1E_ERROR_INVALID_ARGUMENT;
-    *follow = (follow_t){.kind = &gear, .anchor = from->position, .in_step = true};
+    *follow = (follow_t){.function = &gear, .anchor = from->position, .in_step = true};
     for (int i = 0; i < masters; i++) {
         const cm1e_coupling_master_t *master = &coupling->master[i];
         if (master->numerator == 0 || master->denominator == 0) {
@@ -47,7 +47,7 @@ cm1e_error_t cm1e_axis_gear_prepare(cm1e_axis_t *axis, const move_t *move, const
             axis->coupling->denominator = master->denominator;
             return CM1E_ERROR_AXIS_RATIO;
         }
-        const cm1e_error_t error = cm1e_axis_link(axis, follow, master);
+        const cm1e_error_t error = cm1e_coupling_link(axis, follow, master);
         if (error)
             return error;
         link_t *link = &follow->links[i];
@@ -67,7 +67,7 @@ static bool leaves(cm1e_command_kind_t out, cm1e_command_kind_t in)
 }
 
 /* Done at once; what goes on is a command that no block owns. */
-cm1e_error_t cm1e_axis_decouple(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
+cm1e_error_t cm1e_gear_out(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     const from_t from = from_set(axis);
     move_t move = {.kind = (uint8_t)command->kind, .end_velocity = from_base(axis).velocity};
