@@ -1,9 +1,9 @@
 #include "bus/bus_internal.h"
 
-/* Datagrams beside the process data. Each slave has at most one under way; which of its state machines it serves is
- * noted in `owner`. Nothing here waits unless told so. */
+/* Datagrams in addition to the process data. Each slave has at most one on its way; `owner` says for which of its state
+ * machines. Functions wait only if they are given a time to wait. */
 
-/** Lets the job of a slave have the CoE client when it is free. */
+/** Gives the CoE client to the job of a slave when the client is idle. */
 static void feed_job(cm1e_bus_slave_t *slave, int64_t now_ns)
 {
     if (!cm1e_coe_idle(&slave->coe))
@@ -15,7 +15,7 @@ static void feed_job(cm1e_bus_slave_t *slave, int64_t now_ns)
         cm1e_coe_begin(&slave->coe, sdo, now_ns);
 }
 
-/** What this slave wants to send next, by precedence. */
+/** The next datagram of this slave, by precedence. */
 static bool next_datagram(cm1e_bus_slave_t *slave, int64_t now_ns)
 {
     if (!cm1e_recovery_idle(&slave->recovery)) {
@@ -116,7 +116,7 @@ void cm1e_bus_pump(cm1e_bus_t *bus)
     const int64_t now_ns = cm1e_bus_enter(bus);
     if (bus->exchanging) {
         if (bus->next_cycle_ns <= now_ns - bus->config.cycle_time_ns)
-            bus->next_cycle_ns = now_ns; /* the first one, or far behind: no burst to catch up */
+            bus->next_cycle_ns = now_ns; /* the first one, or far behind: no burst */
         bus->next_cycle_ns += bus->config.cycle_time_ns;
         if (bus->in_flight)
             cm1e_bus_receive(bus);
@@ -126,7 +126,7 @@ void cm1e_bus_pump(cm1e_bus_t *bus)
     }
     cm1e_acyclic_send(bus, now_ns, CM1E_DATAGRAMS_IN_FLIGHT);
     cm1e_acyclic_receive(bus, CM1E_FRAME_LOST_NS);
-    /* The pause bounds what a slave that always has an answer, but never the right one, can cost. */
+    /* The pause bounds the load of a slave that always answers, but never correctly. */
     cm1e_clock_sleep_until(bus->clock, now_ns + CM1E_PUMP_PERIOD_NS);
 }
 

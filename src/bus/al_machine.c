@@ -3,7 +3,7 @@
 #include "core/bytes.h"
 
 enum { AL_STATUS_BYTES = 6 }; /**< status, 2 reserved bytes, status code */
-/** Looks at AL status, in which a slave with a processor takes an acknowledgement. */
+/** AL status at which a slave with a processor accepts an acknowledgement. */
 enum { ACKNOWLEDGE_LOOKS = 10 };
 
 static void end(cm1e_al_machine_t *machine, cm1e_error_t error)
@@ -41,9 +41,9 @@ static void write_control(const cm1e_al_machine_t *machine, cm1e_datagram_t *d, 
     cm1e_put_u16(d->data, (uint16_t)value);
 }
 
-/** The present state and the acknowledge bit; on the way to Init at once Init, which needs no configuration. A slave
- *  with device emulation copies AL control to AL status, so it shows the bit as an error that every acknowledgement
- *  renews: an error that is still shown is answered without the bit, in turns. */
+/** Requests the present state with the acknowledge bit; for Init it requests Init at once, which needs no
+ *  configuration. A slave with device emulation copies AL control to AL status, so every acknowledgement shows as a new
+ *  error. If the error is still shown, the next request therefore alternately omits the bit. */
 static unsigned acknowledgement(const cm1e_al_machine_t *machine)
 {
     const unsigned state = machine->target == CM1E_AL_INIT ? CM1E_AL_INIT : machine->state & AL_STATE_MASK;
@@ -128,7 +128,7 @@ void cm1e_al_result(cm1e_al_machine_t *machine, const cm1e_datagram_t *d, int64_
 {
     (void)now_ns;
     if (d->working_counter != 1)
-        return; /* lost or not answered: the same again, until the deadline */
+        return; /* lost or not answered: repeated until the deadline */
     switch (machine->step) {
     case AL_IDLE:
         break;

@@ -36,7 +36,7 @@ typedef struct cm1e_al_machine {
 
 static inline bool cm1e_al_idle(const cm1e_al_machine_t *machine) { return machine->step == AL_IDLE; }
 void cm1e_al_request(cm1e_al_machine_t *machine, uint8_t target, int64_t deadline_ns);
-/** A slave that does not support the request simply lets the deadline pass: ID 0, no error. */
+/** A slave that does not support the request does not answer before the deadline: ID 0, no error. */
 void cm1e_al_read_id(cm1e_al_machine_t *machine, int64_t deadline_ns);
 void cm1e_al_cancel(cm1e_al_machine_t *machine);
 bool cm1e_al_next(cm1e_al_machine_t *machine, cm1e_datagram_t *datagram, int64_t now_ns);

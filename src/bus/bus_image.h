@@ -1,6 +1,6 @@
 /**
  * @file bus_image.h
- * What the drive room sees of the bus: the process image, located by object, resolved once at start-up.
+ * The interface of the bus for the drive room: the process image, with objects located once at start-up.
  */
 #ifndef CM1E_BUS_BUS_IMAGE_H
 #define CM1E_BUS_BUS_IMAGE_H
@@ -28,8 +28,8 @@ const uint8_t *cm1e_bus_inputs(const cm1e_bus_t *bus);
 typedef struct cm1e_slave_watch {
     uint16_t al_state, al_status_code;
     bool lost;
-    bool silent; /**< it gave no inputs for as many cycles as are ridden out, while others did */
-    bool fresh;  /**< its own inputs are those of this cycle, also where the working counter is wrong */
+    bool silent; /**< it gave no inputs for more cycles than are tolerated, while other slaves did */
+    bool fresh;  /**< its own inputs are those of this cycle, even if the working counter is wrong */
 } cm1e_slave_watch_t;
 cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position);
 /** Asks the supervision to bring a slave that came back (reset, power cycle, replug) to Operational again, with its
@@ -38,8 +38,8 @@ cm1e_slave_watch_t cm1e_bus_slave_watch(const cm1e_bus_t *bus, uint16_t position
  *  asked. @rt cycle */
 void cm1e_bus_request_recovery(cm1e_bus_t *bus, uint16_t position);
 
-/** Number of the present operation, from 1: so often has cm1e_bus_operate() succeeded, and the bus was not stopped
- *  since. 0: it is not in Operational. What was resolved in one operation does not hold in the next. @rt init */
+/** Number of the present operation, from 1: the number of times that cm1e_bus_operate() succeeded. 0: the bus is not in
+ *  Operational. Locations that were resolved in one operation are not valid in the next. @rt init */
 uint32_t cm1e_bus_operation(const cm1e_bus_t *bus);
 cm1e_clock_t *cm1e_bus_clock(cm1e_bus_t *bus);
 /** The firmware of a slave as object 0x100A tells; NULL: unreadable. @rt init */

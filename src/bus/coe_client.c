@@ -7,7 +7,7 @@
 enum { DEFAULT_TIMEOUT_NS = 1000000000 };
 /** For all fragments of an answer together. */
 #define INFO_TIMEOUT_NS INT64_C(3000000000)
-/** A slave that talks about other things for so long is given up. */
+/** A transfer is given up if the slave sends only other messages for this time. */
 enum { DISCARD_LIMIT = 64 };
 
 /* CoE services and SDO command specifiers (ETG.1000.6 sections 5.6.1 and 5.6.2). */
@@ -18,7 +18,7 @@ enum {
     SDO_ABORT = 0x80, SPECIFIER_MASK = 0xE0,
     BIT_COMPLETE_ACCESS = 0x10, BIT_TOGGLE = 0x10, BIT_EXPEDITED = 0x02, BIT_SIZE_GIVEN = 0x01, BIT_LAST = 0x01,
 };
-/** What a slave is told of a transfer that is given up (ETG.1000.6 table 41). */
+/** Abort code for a transfer that is given up (ETG.1000.6 table 41). */
 #define ABORT_TOGGLE 0x05030000u
 #define ABORT_TIMEOUT 0x05040000u
 #define ABORT_COMMAND 0x05040001u
@@ -64,14 +64,14 @@ static bool is_transfer(const cm1e_coe_client_t *client)
     return client->phase >= COE_UPLOAD && client->phase <= COE_DOWNLOAD_SEGMENT;
 }
 
-/** What the slave still sends for this transfer must not be taken for the next one's answer. */
+/** Later answers to this transfer must not be taken as answers to the next one. */
 static void distrust(cm1e_coe_client_t *client)
 {
     client->doubtful = true;
     client->last_index = client->sdo ? client->sdo->index : 0;
 }
 
-/** The slave may hold the transfer open: it has to be told. */
+/** The slave may hold the transfer open, so it gets an abort. */
 static void owe_abort(cm1e_coe_client_t *client, uint32_t code)
 {
     client->abort = (cm1e_owed_abort_t){true, client->awaited_index, client->awaited_subindex, code};
@@ -271,7 +271,7 @@ static void begin(cm1e_coe_client_t *client, int64_t timeout_ns, int64_t now_ns)
         start_transfer(client);
 }
 
-/** No answer comes; the next one may be the link layer's word that the slave did not want the abort. */
+/** An abort has no answer; the next message may be the link layer's refusal of the abort. */
 static void after_abort(cm1e_coe_client_t *client)
 {
     client->abort.owed = false;
@@ -305,7 +305,7 @@ static void discard(cm1e_coe_client_t *client)
         give_up(client, CM1E_ERROR_BUS_MAILBOX);
 }
 
-/** Index and sub-index of an answer are those that were asked for. */
+/** Whether index and sub-index of an answer are the requested ones. */
 static bool addressed(const cm1e_coe_client_t *client, const uint8_t *body)
 {
     return cm1e_get_u16(body + 3) == client->awaited_index && body[5] == client->awaited_subindex;
@@ -317,7 +317,7 @@ static void take_expedited(cm1e_coe_client_t *client, const uint8_t *body)
     const bool size_given = body[2] & BIT_SIZE_GIVEN;
     size_t bytes = size_given ? 4u - (body[2] >> 2 & 3u) : 4u;
     if (!size_given && bytes > sdo->size)
-        bytes = sdo->size; /* the slave does not tell how many of the four count */
+        bytes = sdo->size; /* the slave does not say how many of the four bytes are valid */
     if (bytes > sdo->size) {
         finish(client, CM1E_ERROR_INVALID_ARGUMENT, 0);
         return;
@@ -371,7 +371,7 @@ static void on_upload_segment(cm1e_coe_client_t *client, const uint8_t *body, si
     if (!last) {
         request_upload_segment(client);
     } else if (client->done != client->total) {
-        abandon(client, CM1E_ERROR_BUS_MAILBOX, ABORT_GENERAL); /* less than announced is not the object */
+        abandon(client, CM1E_ERROR_BUS_MAILBOX, ABORT_GENERAL); /* less data than announced is an error */
     } else {
         client->sdo->size = client->total;
         finish(client, CM1E_OK, 0);
@@ -467,7 +467,7 @@ static bool is_answer(const cm1e_info_request_t *info, const uint8_t *data, size
            (info->kind != INFO_ENTRY || data[2] == info->subindex);
 }
 
-/** How many fragments follow is what the slave's count says; not all slaves set the bit that says it, too. */
+/** The count of the slave says how many fragments follow; not all slaves set the corresponding bit. */
 static void on_fragment(cm1e_coe_client_t *client, const uint8_t *data, size_t size, uint16_t left, bool incomplete)
 {
     cm1e_info_request_t *info = client->info;
@@ -524,13 +524,13 @@ static void on_coe(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
     } else if ((body[2] & SPECIFIER_MASK) == SDO_ABORT) {
         on_abort(client, body);
     } else if (service == SERVICE_SDO_REQUEST) {
-        discard(client); /* a slave has nothing to request but an abort */
+        discard(client); /* the only request of a slave is an abort */
     } else {
         on_sdo(client, body, size);
     }
 }
 
-/** The slave's link layer refused a message: the request, or an abort of which it wants to know nothing. */
+/** The link layer of the slave refused a message: the request, or an abort that it does not accept. */
 static void on_mailbox_error(cm1e_coe_client_t *client, const uint8_t *body, size_t size)
 {
     const bool old = client->phase == COE_ABORT || client->phase == COE_DRAIN;

@@ -3,8 +3,8 @@
  * The CoE client of one slave (ETG.1000.6 section 5.6): one SDO transfer at a time, expedited, normal or segmented,
  * with or without complete access, or one request of SDO information; one datagram at a time; no clock inside, no
  * waiting. Nothing a slave sends is trusted: type, service, command, index, sub-index, toggle, fragments and every
- * length are checked before a byte is taken. A slave that may hold a transfer open which is given up gets an SDO abort:
- * at once, or before the next transfer where the time is over.
+ * length are checked before a byte is taken. If a transfer is given up while the slave may still hold it open, the
+ * slave gets an SDO abort: at once, or before the next transfer if the time is over.
  */
 #ifndef CM1E_BUS_COE_CLIENT_H
 #define CM1E_BUS_COE_CLIENT_H
@@ -15,13 +15,13 @@
 typedef enum cm1e_coe_phase {
     COE_IDLE = 0,
     COE_DRAIN, /**< until the slave has read the last message of the earlier transfer */
-    COE_FENCE, /**< an upload whose answer proves that no answer of an earlier, given-up transfer can follow */
+    COE_FENCE, /**< an upload whose answer proves that no answer of an earlier transfer can follow */
     COE_UPLOAD,
     COE_UPLOAD_SEGMENT,
     COE_DOWNLOAD,
     COE_DOWNLOAD_SEGMENT,
     COE_INFORMATION,
-    COE_ABORT, /**< tells the slave that a transfer is given up: this one, or the one before */
+    COE_ABORT, /**< aborts a transfer that is given up: this one, or the one before */
 } cm1e_coe_phase_t;
 
 /** A transfer that was given up while the slave may still hold it open (ETG.1000.6 section 5.6.2.7). */
@@ -35,11 +35,11 @@ typedef struct cm1e_owed_abort {
 /** What SDO information is asked for (ETG.1000.6 table 43); the answer has the next number. */
 typedef enum cm1e_info_kind { INFO_LIST = 1, INFO_OBJECT = 3, INFO_ENTRY = 5 } cm1e_info_kind_t;
 
-/** One request of SDO information. The answer is what stands behind its header, of all fragments in a row. */
+/** One request of SDO information. The answer is the data behind its header, of all fragments in order. */
 typedef struct cm1e_info_request {
     cm1e_info_kind_t kind;
     uint16_t index;          /**< of the object; INFO_LIST: which list */
-    uint8_t subindex, values;/**< INFO_ENTRY: values asked for beside what every answer has */
+    uint8_t subindex, values;/**< INFO_ENTRY: requested values in addition to those of every answer */
     uint8_t *answer;
     size_t size;             /**< room, then bytes */
     size_t taken;
@@ -68,8 +68,8 @@ typedef struct cm1e_coe_client {
     bool doubtful;                /**< the last transfer was given up: its answer may still come */
     uint16_t last_index;          /**< of that transfer */
     cm1e_owed_abort_t abort;      /**< not yet delivered */
-    bool abort_sent;              /**< since the last answer: a mailbox error may be about it */
-    cm1e_error_t failure;         /**< in COE_ABORT: how this transfer ends; CM1E_OK: it has not begun */
+    bool abort_sent;              /**< since the last answer: a mailbox error may refer to it */
+    cm1e_error_t failure;         /**< in COE_ABORT: result of this transfer; CM1E_OK: it has not begun */
     uint8_t fence;                /**< which of the fences was used last */
     uint16_t awaited_index;
     uint8_t awaited_subindex;
@@ -79,9 +79,9 @@ typedef struct cm1e_coe_client {
     cm1e_emergency_t emergency;
 } cm1e_coe_client_t;
 
-/** Forgets everything but the addresses, as after Init -> Pre-Operational; a transfer in work ends with `error`. */
+/** Resets everything except the addresses, as after Init -> Pre-Operational; a running transfer ends with `error`. */
 void cm1e_coe_reset(cm1e_coe_client_t *client, cm1e_error_t error);
-/** Gives up the transfer in work, if there is one. */
+/** Gives up the running transfer, if there is one. */
 void cm1e_coe_cancel(cm1e_coe_client_t *client, cm1e_error_t error);
 static inline bool cm1e_coe_idle(const cm1e_coe_client_t *client) { return !client->sdo && !client->info; }
 /** Starts a transfer; the client must be idle. */

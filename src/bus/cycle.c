@@ -2,7 +2,7 @@
 
 #include "bus/bus_internal.h"
 
-/** What the inputs hold when they leave: a slave that takes part in the cycle leaves none of it. */
+/** Marker in the input bytes of a frame: a slave that takes part in the cycle overwrites all of it. */
 enum { INPUT_PATTERN = 0xA5 };
 
 static bool is_silent(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
@@ -14,8 +14,8 @@ static bool is_silent(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
     return slave->placement.input_bytes > 0;
 }
 
-/** Finds out who took no part. True: with slaves that did not (3 less for each, or what they have) and slaves that took
- *  no outputs (2 less for each) the working counter is what it must be. */
+/** Finds the slaves that did not take part. Returns true if they explain the working counter: 3 less for each such
+ *  slave (or its own share), 2 less for each slave that took no outputs. */
 static bool find_silent_slaves(cm1e_bus_t *bus, int working_counter)
 {
     int missing = bus->expected_working_counter - working_counter, takers = 0;
@@ -31,8 +31,8 @@ static bool find_silent_slaves(cm1e_bus_t *bus, int working_counter)
     return missing >= 0 && missing % 2 == 0 && missing <= 2 * takers;
 }
 
-/** A cycle whose working counter is wrong: the inputs of the slaves that took part are none the worse for it, if it can
- *  be told who did not. */
+/** A cycle with a wrong working counter: the inputs of the slaves that took part are valid, if the others can be
+ *  identified. */
 static void take_slave_by_slave(cm1e_bus_t *bus, int working_counter)
 {
     bus->partly_fresh = find_silent_slaves(bus, working_counter);
@@ -51,14 +51,15 @@ static void forget_silence(cm1e_bus_t *bus)
     bus->any_silent = false;
 }
 
-/** What a received process image is worth. */
+/** Judges a received process image. */
 static cm1e_error_t judge(cm1e_bus_t *bus, int working_counter)
 {
     if (working_counter == DATAGRAM_LOST) {
         bus->counters.lost_frames++;
         return CM1E_ERROR_BUS_LOST;
     }
-    /* No slave changes outputs on their way. If they are not those that left, neither the inputs can be believed. */
+    /* No slave changes outputs on their way. If they differ from those that were sent, the inputs are not trusted
+     * either. */
     if (memcmp(bus->image, bus->sent_outputs, bus->output_bytes) != 0) {
         bus->counters.lost_frames++;
         return CM1E_ERROR_BUS_LOST;
@@ -111,7 +112,7 @@ void cm1e_bus_send(cm1e_bus_t *bus)
     if (!bus->exchanging)
         return;
     const int64_t now_ns = cm1e_bus_enter(bus);
-    if (bus->in_flight) /* never two: the old one is given up */
+    if (bus->in_flight) /* never two frames: the old one is given up */
         cm1e_soem_receive_process_data(bus->soem, 0);
     memcpy(bus->image, bus->outputs, bus->output_bytes);
     mute_recovering(bus);

@@ -1,7 +1,7 @@
 /**
  * @file datagram.h
- * One EtherCAT datagram outside the process data, and the registers that the bus reads and writes with it. Everything
- * here is plain data: the state machines of the bus fill a datagram and judge its answer, none of them knows SOEM.
+ * One EtherCAT datagram outside the process data, and the registers that the bus reads and writes with it. Datagrams
+ * are plain data: the state machines of the bus fill a datagram and judge its answer, without SOEM.
  */
 #ifndef CM1E_BUS_DATAGRAM_H
 #define CM1E_BUS_DATAGRAM_H
@@ -52,7 +52,7 @@ enum {
 /** Working counter of a datagram whose frame did not come back. */
 enum { DATAGRAM_LOST = -1 };
 
-/** A datagram: filled by who wants it sent; `working_counter` and, for a read, `data` are filled when it is back. */
+/** A datagram. The sender fills it; `working_counter` and, for a read, `data` are filled when it is back. */
 typedef struct cm1e_datagram {
     uint8_t command;     /**< cm1e_command_t */
     uint8_t frame_index; /**< SOEM's, while it is on its way */

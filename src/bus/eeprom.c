@@ -26,7 +26,7 @@ static void pause_for(int64_t time_ns)
     cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + time_ns);
 }
 
-/** With some patience for frames that were disturbed. */
+/** Repeats a datagram a few times if its frame was disturbed. */
 static bool read_register(cm1e_eeprom_t *eeprom, uint16_t offset, uint8_t *data, uint16_t size)
 {
     int answered = 0;
@@ -36,7 +36,7 @@ static bool read_register(cm1e_eeprom_t *eeprom, uint16_t offset, uint8_t *data,
     return !eeprom->lost;
 }
 
-/** Tried once: an interface at work takes no request, so one that was taken cannot simply be repeated. */
+/** Tried once: a busy interface accepts no request, so a request that was accepted cannot be repeated. */
 static bool write_register(cm1e_eeprom_t *eeprom, uint16_t offset, uint8_t *data, uint16_t size)
 {
     eeprom->lost = cm1e_soem_transfer(eeprom->soem, COMMAND_FPWR, eeprom->station, offset, data, size) != 1;
@@ -116,7 +116,8 @@ bool cm1e_eeprom_read(cm1e_eeprom_t *eeprom, uint32_t word, uint8_t bytes[4])
     return true;
 }
 
-/** Whether a word is there. Read from the begin of its group, whatever the size of groups is: never beyond the end. */
+/** Whether a word exists. It is read from the beginning of its group, whatever the size of groups is, so never beyond
+ *  the end. */
 static bool holds(cm1e_eeprom_t *eeprom, uint32_t word, uint16_t value)
 {
     uint8_t bytes[4];
@@ -134,7 +135,7 @@ bool cm1e_eeprom_write(cm1e_eeprom_t *eeprom, uint32_t word, uint16_t value)
         cm1e_put_u16(bytes, value);
         if (!write_register(eeprom, REG_EEPROM_DATA, bytes, sizeof value))
             continue;
-        /* Whether a request whose answer is lost was taken, the memory tells. */
+        /* If the answer to a request is lost, the memory shows whether it was accepted. */
         request(eeprom, EEPROM_WRITE, word);
         if (!wait_idle(eeprom, WRITE_TIMEOUT_NS, &status))
             return false;

@@ -12,15 +12,15 @@ typedef struct cm1e_eeprom {
     cm1e_soem_t *soem;
     uint16_t station;
     bool lost;              /**< the slave itself does not answer */
-    bool was_offered;       /**< the slave's processor had the interface when it was taken */
-    uint32_t group_word;    /**< what `group` holds */
+    bool was_offered;       /**< the slave's processor had the interface before */
+    uint32_t group_word;    /**< address of the words in `group` */
     unsigned group_bytes;   /**< 0: nothing */
     uint8_t group[8];
 } cm1e_eeprom_t;
 
 /** Takes the interface from the slave's processor; false: lost. */
 bool cm1e_eeprom_take(cm1e_eeprom_t *eeprom);
-/** Gives it back where the processor had it. */
+/** Returns the interface to the processor, if that had it. */
 void cm1e_eeprom_give_back(cm1e_eeprom_t *eeprom);
 /** Two words from word address `word` on. False: `lost`, or the EEPROM does not answer. */
 bool cm1e_eeprom_read(cm1e_eeprom_t *eeprom, uint32_t word, uint8_t bytes[4]);

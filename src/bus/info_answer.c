@@ -5,7 +5,7 @@
 #include "core/bytes.h"
 #include "core/text.h"
 
-/* What stands before the name: of an object, of an entry. */
+/* Bytes before the name: of an object, of an entry. */
 enum { OBJECT_BYTES = 6, ENTRY_BYTES = 10 };
 
 bool cm1e_info_take_list(uint16_t *indexes, size_t room, size_t *count, const uint8_t *answer, size_t size)
@@ -32,7 +32,7 @@ bool cm1e_info_take_object(cm1e_object_info_t *info, const uint8_t *answer, size
     return true;
 }
 
-/** A value of `bytes` bytes at `*place`; NULL: the answer is over. One that is too long is passed over. */
+/** Reads a value of `bytes` bytes at `*place`; NULL: the answer has ended. A value that is too long is skipped. */
 static const uint8_t *take_value(cm1e_info_value_t *value, const uint8_t *place, const uint8_t *end, size_t bytes)
 {
     if (!place || (size_t)(end - place) < bytes)

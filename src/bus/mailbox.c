@@ -4,9 +4,9 @@
 
 #include "core/bytes.h"
 
-/** Looks at the sync managers before a message in doubt is written again: a slave may be busy reading it. */
+/** Polls of the sync managers before an unconfirmed message is written again: the slave may be busy reading it. */
 enum { DOUBT_LOOKS = 3, REPEAT_LOOKS = 20 };
-/** The repeated answer itself, and one that the repetition pushed back into the slave's queue. */
+/** Possible repetitions: the repeated answer, and one that the slave returned to its queue. */
 enum { SUSPECTS_AFTER_REPEAT = 2 };
 
 /* Places in the 8 bytes of a sync manager (ETG.1000.4 table 60). */
@@ -100,11 +100,11 @@ static void after_write(cm1e_mailbox_t *mailbox, int working_counter)
         mailbox->write_lost = true;
         enter(mailbox, MAILBOX_POLL);
     } else if (mailbox->write_lost) {
-        enter(mailbox, MAILBOX_POLL); /* refused because full: perhaps of the very message that we write again */
+        enter(mailbox, MAILBOX_POLL); /* refused because full, perhaps with the message that is being repeated */
     }
 }
 
-/** A full SM1 proves nothing about a lost write: it may be an emergency, or an answer that we have already. */
+/** A full SM1 does not prove that a lost write arrived: it may be an emergency, or a repeated answer. */
 static void after_poll(cm1e_mailbox_t *mailbox, const cm1e_datagram_t *d)
 {
     if (d->working_counter != 1)
@@ -124,7 +124,7 @@ static void after_poll(cm1e_mailbox_t *mailbox, const cm1e_datagram_t *d)
 
 static bool after_read(cm1e_mailbox_t *mailbox, const cm1e_datagram_t *d)
 {
-    /* Lost; or not answered, although it was seen to be full: who knows whether it was emptied? */
+    /* Lost; or not answered although SM1 was full: it is unknown whether it was emptied. */
     if (d->working_counter != 1) {
         mailbox->repeat_bit = !mailbox->repeat_bit;
         mailbox->suspects = SUSPECTS_AFTER_REPEAT;
@@ -134,8 +134,8 @@ static bool after_read(cm1e_mailbox_t *mailbox, const cm1e_datagram_t *d)
     enter(mailbox, MAILBOX_POLL);
     const uint8_t counter = d->data[5] >> 4 & 7;
     const bool same = counter && counter == mailbox->received_counter;
-    /* One that we have already: the lost frame had not reached the slave, or it was repeated twice. A slave that gives
-     * every answer the same number would become deaf to us, so such a one is not judged by it. */
+    /* A repetition: the lost frame had not reached the slave, or the answer was repeated twice. A slave that gives
+     * every answer the same number is not judged by the number. */
     if (same && (mailbox->counting == COUNTING || (mailbox->counting == COUNTING_UNKNOWN && mailbox->suspects > 0)))
         return false;
     if (mailbox->counting == COUNTING_UNKNOWN && mailbox->received_counter)
@@ -165,7 +165,7 @@ bool cm1e_mailbox_result(cm1e_mailbox_t *mailbox, const cm1e_datagram_t *d)
     case MAILBOX_REPEAT_WAIT: {
         const bool acknowledged = d->working_counter == 1 &&
                                   !(d->data[SM_PDI_CONTROL] & SM_ACTIVATE_REPEAT) == !mailbox->repeat_bit;
-        /* A slave that knows no repeat request never acknowledges: poll on, the caller's time is the bound. */
+        /* A slave without repeat requests never acknowledges: go on polling until the time of the caller is over. */
         if (acknowledged || ++mailbox->tries >= REPEAT_LOOKS)
             enter(mailbox, MAILBOX_POLL);
         break;

@@ -1,8 +1,8 @@
 /**
  * @file mailbox.h
- * The link layer of one slave's mailbox (ETG.1000.4 section 5.6 and 6.7): hands over one message, fetches the
- * answers, one datagram at a time. A lost frame never loses or doubles a message: a write is repeated with the same
- * counter, a read is asked for again by the repeat bit. Knows neither CoE nor a clock; who uses it bounds the time.
+ * The link layer of one slave's mailbox (ETG.1000.4 section 5.6 and 6.7): hands over one message, fetches the answers,
+ * one datagram at a time. A lost frame never loses or doubles a message: a write is repeated with the same counter, and
+ * the repeat bit requests a read again. It knows neither CoE nor a clock; its user bounds the time.
  */
 #ifndef CM1E_BUS_MAILBOX_H
 #define CM1E_BUS_MAILBOX_H
@@ -32,8 +32,8 @@ typedef struct cm1e_mailbox {
     uint8_t received_counter;         /**< of the last message accepted */
     bool repeat_bit;                  /**< as last written to SM1 activate */
     bool draining;                    /**< looks until the slave has read what is in SM0 */
-    bool write_lost;                  /**< nobody knows whether the message was delivered */
-    unsigned suspects;                /**< so many of the next answers may be ones that we have already */
+    bool write_lost;                  /**< it is unknown whether the message was delivered */
+    unsigned suspects;                /**< number of following answers that may be repetitions */
     enum { COUNTING_UNKNOWN = 0, COUNTING, NOT_COUNTING } counting; /**< does the slave number its answers? */
     unsigned tries;                   /**< in the present state */
     uint16_t size;                    /**< of `message` with its header */
@@ -46,17 +46,18 @@ void cm1e_mailbox_reset(cm1e_mailbox_t *mailbox);
 uint16_t cm1e_mailbox_room(const cm1e_mailbox_t *mailbox);
 /** Where the body of the next message is to be written before cm1e_mailbox_send(). */
 uint8_t *cm1e_mailbox_body(cm1e_mailbox_t *mailbox);
-/** Starts to send the message whose body has `size` bytes; afterwards answers are fetched until cm1e_mailbox_stop(). */
+/** Starts sending the message, whose body has `size` bytes; afterwards answers are fetched until
+ *  cm1e_mailbox_stop(). */
 void cm1e_mailbox_send(cm1e_mailbox_t *mailbox, uint8_t type, uint16_t size);
 void cm1e_mailbox_stop(cm1e_mailbox_t *mailbox);
-/** Looks, and fetches answers, until the slave has read what is in its mailbox: a lost write of the next message could
- *  not be told from it. Then cm1e_mailbox_drained() is true. */
+/** Polls, and fetches answers, until the slave has read the message in its mailbox; otherwise a lost write of the next
+ *  message could not be detected. Then cm1e_mailbox_drained() is true. */
 void cm1e_mailbox_drain(cm1e_mailbox_t *mailbox);
 static inline bool cm1e_mailbox_drained(const cm1e_mailbox_t *mailbox)
 {
     return mailbox->state == MAILBOX_POLL && !mailbox->draining;
 }
-/** The message is in the slave's mailbox, for certain. */
+/** Whether the message is certainly in the mailbox of the slave. */
 static inline bool cm1e_mailbox_delivered(const cm1e_mailbox_t *mailbox)
 {
     return mailbox->state == MAILBOX_POLL && !mailbox->write_lost;
@@ -64,7 +65,7 @@ static inline bool cm1e_mailbox_delivered(const cm1e_mailbox_t *mailbox)
 
 /** Fills the datagram that is to be sent next; false: none. */
 bool cm1e_mailbox_next(cm1e_mailbox_t *mailbox, cm1e_datagram_t *datagram);
-/** Takes a datagram that is back (or lost). TRUE: its data is a new message, header included. */
+/** Takes a datagram that is back (or lost). Returns true if its data is a new message, header included. */
 bool cm1e_mailbox_result(cm1e_mailbox_t *mailbox, const cm1e_datagram_t *datagram);
 
 #endif

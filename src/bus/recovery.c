@@ -32,7 +32,7 @@ static void enter(cm1e_bus_slave_t *slave, cm1e_recovery_step_t step, int64_t no
     slave->recovery.deadline_ns = now_ns + (step == RECOVERY_PAUSE ? PAUSE_NS : actions[step].time_ns);
 }
 
-/** Noted at once: who asked for the recovery must not ask again because supervision comes by later. */
+/** Noted at once: the axis that requested the recovery must not request it again before the next supervision. */
 static void succeed(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t al_status_code)
 {
     cm1e_supervision_note(slave, al_state, al_status_code);
@@ -51,8 +51,8 @@ static void advance(cm1e_bus_slave_t *slave, int64_t now_ns)
     succeed(slave, slave->al.state, slave->al.code);
 }
 
-/** A device that was given the address and did not prove to be ours may not keep it: ours, plugged in elsewhere, would
- *  answer at the same one. */
+/** A device that got the address but is not the expected one must not keep it: the expected one, plugged in elsewhere,
+ *  would answer at the same address. */
 static bool must_release(const cm1e_recovery_t *recovery)
 {
     return recovery->address_given && recovery->step >= RECOVERY_ADDRESS && recovery->step <= RECOVERY_BRIDGE;
@@ -102,7 +102,7 @@ static bool next_find(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_n
 static void result_find(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
 {
     const uint16_t station = cm1e_get_u16(d->data), alias = cm1e_get_u16(d->data + 2);
-    /* Another station address: a slave further down now stands at this place, ours is still away. */
+    /* Another station address: a later slave is now at this place, and the expected one is still missing. */
     if ((station != 0 && station != slave->facts.station) || alias != slave->facts.alias)
         fail(slave, now_ns);
     else
@@ -118,7 +118,7 @@ static bool next_address(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t no
     return true;
 }
 
-/** By its place: at the address another one may answer too. */
+/** Addressed by its place, because another slave may answer at the address too. */
 static bool next_release(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     (void)now_ns;
@@ -149,7 +149,7 @@ static bool next_look(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_n
 static void result_look(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int64_t now_ns)
 {
     /* In Safe-Operational or above it kept its configuration: only the watchdog or a request took it out of OP. If that
-     * was not enough the last time, it wants to be led up from Init (AL status codes 0x0021, 0x0022 ...). */
+     * failed the last time, it must start from Init (AL status codes 0x0021, 0x0022 ...). */
     const uint16_t status = cm1e_get_u16(d->data), state = status & AL_STATE_MASK;
     const bool above = state == CM1E_AL_SAFE_OP || state == CM1E_AL_OP;
     const bool configured = above && slave->recovery.failed_at != RECOVERY_OP;
@@ -316,7 +316,7 @@ static bool next_serial(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now
     return check_identity(slave, d, now_ns, 4, slave->info.serial_number);
 }
 
-/** Which motors are behind a bridge, no identity tells. */
+/** The identity of a bridge does not tell its motors. */
 static bool next_bridge(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     cm1e_recognition_t *job = &slave->recognition;
@@ -342,7 +342,7 @@ static bool next_bridge(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now
     return cm1e_coe_next(&slave->coe, d, now_ns);
 }
 
-/** The same PDOs again, and the same layout must come out: the image of the running bus cannot change. */
+/** Assigns the PDOs again; the layout must not change, because the image of the running bus is fixed. */
 static bool next_mapping(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     cm1e_mapping_job_t *job = &slave->mapping;
@@ -425,7 +425,7 @@ void cm1e_recovery_result(cm1e_bus_slave_t *slave, const cm1e_datagram_t *d, int
     const cm1e_recovery_step_t step = slave->recovery.step;
     if (step <= RECOVERY_PAUSE)
         return;
-    /* The sub-machines judge losses themselves; a register without answer is asked for again until the deadline. */
+    /* The sub-machines handle losses themselves; a register without an answer is read again until the deadline. */
     const bool machine = actions[step].result == result_al || actions[step].result == result_coe;
     if (machine || d->working_counter == 1)
         actions[step].result(slave, d, now_ns);

@@ -1,8 +1,8 @@
 /**
  * @file recovery.h
- * Brings one slave that left the network state (watchdog, reset, power cycle, replug) back to Operational while the
- * others keep running: found again by its place, proved to be the same device, configured as before. One datagram or
- * SDO transfer at a time, no clock inside. As long as it does not succeed it starts again, after a pause.
+ * Brings one slave that left Operational (watchdog, reset, power cycle, replug) back while the others keep running. The
+ * slave is found by its place, verified to be the same device, and configured as before. One datagram or SDO transfer
+ * at a time, no clock inside. After a failure it tries again, after a pause.
  */
 #ifndef CM1E_BUS_RECOVERY_H
 #define CM1E_BUS_RECOVERY_H
@@ -34,7 +34,7 @@ typedef enum cm1e_recovery_step {
     RECOVERY_WATCHDOG,
     RECOVERY_SAFE_OP,
     RECOVERY_OP,
-    RECOVERY_RELEASE,        /**< take the station address back from a device that did not prove to be ours */
+    RECOVERY_RELEASE,        /**< remove the station address from a device that is not the expected one */
     RECOVERY_STEPS,
 } cm1e_recovery_step_t;
 
@@ -49,8 +49,8 @@ typedef struct cm1e_recovery {
     uint8_t data[4];
 } cm1e_recovery_t;
 
-/** TRUE from the moment that the slave is known to be out of Operational until it is seen there again: it gets outputs
- *  of zeros meanwhile, so that no stale command acts in the cycle in which it arrives. */
+/** Whether the slave is out of Operational and was not seen there again. It gets outputs of zeros meanwhile, so that no
+ *  stale command acts in the cycle in which it reaches Operational. */
 static inline bool cm1e_recovery_mutes(const cm1e_recovery_t *recovery) { return recovery->step >= RECOVERY_EEPROM; }
 static inline bool cm1e_recovery_idle(const cm1e_recovery_t *recovery) { return recovery->step == RECOVERY_IDLE; }
 void cm1e_recovery_begin(struct cm1e_bus_slave *slave);

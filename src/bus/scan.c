@@ -49,7 +49,7 @@ static void read_explicit_ids(cm1e_bus_t *bus)
         bus->slaves[i].info.explicit_id = bus->slaves[i].al.explicit_id;
 }
 
-/** Object 0x100A of every slave that has a mailbox; one that does not answer stays "". */
+/** Reads object 0x100A of every slave with a mailbox; "" if it does not answer. */
 static void read_software_versions(cm1e_bus_t *bus)
 {
     const int64_t now_ns = cm1e_clock_now(bus->clock);
@@ -75,7 +75,7 @@ static void read_software_versions(cm1e_bus_t *bus)
     }
 }
 
-/** Of every slave that has a mailbox and is no CM1-E. */
+/** Asks every slave with a mailbox that is not a CM1-E. */
 static void recognise_bridges(cm1e_bus_t *bus)
 {
     const int64_t deadline_ns = cm1e_clock_now(bus->clock) + RECOGNITION_NS;

@@ -5,7 +5,7 @@
 
 enum { SDO_MAX_BYTES = 1 << 24 };
 
-/** What can be said of a transfer without asking the slave. */
+/** Checks a transfer without asking the slave. */
 static cm1e_error_t check(const cm1e_bus_t *bus, const cm1e_sdo_t *sdo)
 {
     if (__atomic_load_n(&bus->phase, __ATOMIC_ACQUIRE) < BUS_SCANNED)
@@ -16,10 +16,11 @@ static cm1e_error_t check(const cm1e_bus_t *bus, const cm1e_sdo_t *sdo)
     return slave->facts.coe ? CM1E_OK : CM1E_ERROR_UNSUPPORTED;
 }
 
-/** Stands in a place of the ring whose transfer was ended before the bus took it over. */
+/** Marks a place of the ring whose transfer ended before the bus took it over. */
 static cm1e_sdo_t ended;
 
-/** Ends a transfer that waits in a place of the ring; false: somebody else has had it. The place stays taken. */
+/** Ends a transfer that waits in a place of the ring. Returns false if another thread took it. The place stays
+ *  occupied. */
 static bool end_in_ring(cm1e_sdo_t **place, cm1e_sdo_t *sdo, cm1e_error_t error)
 {
     if (!__atomic_compare_exchange_n(place, &sdo, &ended, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
@@ -50,8 +51,8 @@ cm1e_error_t cm1e_sdo_submit(cm1e_bus_t *bus, cm1e_sdo_t *sdo)
     cm1e_sdo_t **place =
         &queue->ring[__atomic_fetch_add(&queue->head, 1, __ATOMIC_RELAXED) % CM1E_SDO_WAITING_MAX];
     __atomic_store_n(place, sdo, __ATOMIC_SEQ_CST); /* free: `waiting` is at most as many as there are */
-    /* A bus that stopped since the check has emptied its queue perhaps without this one, and comes back no more. Either
-     * it sees the transfer, or we see its phase. */
+    /* A bus that stopped after the check may have emptied its queue without this transfer. Either the bus sees the
+     * transfer, or this thread sees the phase of the bus. */
     const bool stopped = __atomic_load_n(&bus->phase, __ATOMIC_SEQ_CST) < BUS_SCANNED;
     return stopped && end_in_ring(place, sdo, CM1E_ERROR_STATE) ? CM1E_ERROR_STATE : CM1E_OK;
 }
@@ -70,14 +71,15 @@ static void take_over(cm1e_sdo_queue_t *queue)
     }
 }
 
-/** A recovery that was asked for while nothing is wrong, as far as is known, ends after three datagrams: other axes of
- *  the slave need not know. */
+/** A recovery that was requested without a known fault ends after three datagrams, so other axes of the slave are not
+ *  affected. */
 static bool may_be_well(const cm1e_bus_slave_t *slave)
 {
     return cm1e_recovery_idle(&slave->recovery) || slave->watch.al_state == CM1E_AL_OP;
 }
 
-/** Begins a transfer, or ends it at once where the slave cannot answer. False: its slave is at work for another. */
+/** Begins a transfer, or ends it at once if the slave cannot answer. Returns false if the slave is busy with another
+ *  transfer. */
 static bool dispatch(cm1e_bus_t *bus, cm1e_sdo_t *sdo, int64_t now_ns)
 {
     const cm1e_error_t error = check(bus, sdo);
@@ -117,7 +119,7 @@ void cm1e_sdo_queue_cancel(cm1e_bus_t *bus, cm1e_error_t error)
         __atomic_fetch_sub(&queue->waiting, 1, __ATOMIC_ACQ_REL);
     }
     queue->listed = 0;
-    /* Behind a place that its thread is only about to fill there may be filled ones. */
+    /* There may be filled places behind one that its thread has not filled yet. */
     for (unsigned i = 0; i < CM1E_SDO_WAITING_MAX; i++) {
         cm1e_sdo_t *sdo = __atomic_load_n(&queue->ring[i], __ATOMIC_SEQ_CST);
         if (sdo && sdo != &ended)
@@ -141,7 +143,7 @@ static cm1e_error_t transfer(cm1e_bus_t *bus, cm1e_sdo_t *sdo, cm1e_diag_t *diag
         return cm1e_diag_set(diag, error, 0, "Too many SDO transfers wait.");
     if (error != CM1E_OK)
         return cm1e_bus_diagnose_sdo(bus, slave, sdo, "SDO transfer", diag);
-    /* The transfer lives on the caller's stack: it must have ended before we return, and the client sees to that. */
+    /* The transfer is on the caller's stack, so it must end before this function returns; the client ensures that. */
     while (cm1e_sdo_state(sdo) == CM1E_SDO_BUSY)
         cm1e_bus_pump(bus);
     if (cm1e_sdo_state(sdo) == CM1E_SDO_ERROR)
@@ -168,7 +170,7 @@ cm1e_error_t cm1e_sdo_write(cm1e_bus_t *bus, uint16_t position, uint16_t index, 
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_sdo_write()", INSTEAD, diag);
-    union { /* the transfer reads only when it writes */
+    union { /* a write transfer only reads the data */
         const void *in;
         void *out;
     } bytes = {.in = data};

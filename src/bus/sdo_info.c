@@ -7,7 +7,7 @@
 #include "bus/info_answer.h"
 #include "core/in_task.h"
 
-/* The list type and all indexes that there can be. */
+/* The list type and the maximum number of indexes. */
 enum { LIST_BYTES_MAX = 2 + 2 * 0x10000 };
 enum { INFO_VALUES = INFO_VALUE_UNIT | INFO_VALUE_DEFAULT | INFO_VALUE_MINIMUM | INFO_VALUE_MAXIMUM };
 
@@ -46,7 +46,7 @@ static cm1e_error_t ask(cm1e_bus_t *bus, uint16_t position, cm1e_info_request_t 
     if (!slave->facts.coe)
         return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "%s has no object dictionary: its SII announces no CoE.",
                              cm1e_bus_label_first(bus, slave, label));
-    /* Transfers that others have begun end by themselves. */
+    /* Transfers of other threads end by themselves. */
     while (!cm1e_coe_idle(&slave->coe) || !cm1e_mapping_idle(&slave->mapping))
         cm1e_bus_pump(bus);
     cm1e_coe_begin_info(&slave->coe, request, cm1e_clock_now(bus->clock));
@@ -102,7 +102,7 @@ cm1e_error_t cm1e_sdo_info_entry(cm1e_bus_t *bus, uint16_t position, uint16_t in
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_sdo_info_entry()", "", diag);
     uint8_t answer[CM1E_DATAGRAM_MAX];
-    /* A slave whose values do not have the length that it says itself is asked for the description alone. */
+    /* If the values of a slave do not have the length that it states, only the description is requested. */
     static const uint8_t values[] = {INFO_VALUES, 0};
     for (unsigned i = 0; i < sizeof values; i++) {
         cm1e_info_request_t request = {.kind = INFO_ENTRY, .index = index, .subindex = subindex, .values = values[i],

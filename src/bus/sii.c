@@ -15,7 +15,7 @@ typedef struct source {
     uint8_t *image;
 } source_t;
 
-/** Words come in pairs: the image has room for one more behind an odd end. */
+/** Words are read in pairs: the image has room for one more behind an odd end. */
 static bool fetch(const source_t *source, uint32_t word, uint32_t count)
 {
     for (const uint32_t end = word + count; word < end; word += 2)
@@ -32,7 +32,7 @@ static cm1e_sii_result_t describe(cm1e_description_file_t *file, const uint8_t *
 
 cm1e_sii_result_t cm1e_sii_read_header(cm1e_sii_t *sii, cm1e_sii_reader reader, void *context)
 {
-    /* Identity and mailbox; the rest of the header would only cost time, with every slave. */
+    /* Identity and mailbox; the rest of the header is not needed and would cost time for every slave. */
     static const struct {
         uint8_t word, count;
     } wanted[] = {{CM1E_SII_VENDOR / 2, 8}, {CM1E_SII_MAILBOX / 2, 5}};
@@ -60,7 +60,7 @@ cm1e_sii_result_t cm1e_sii_read_header(cm1e_sii_t *sii, cm1e_sii_reader reader, 
     return result;
 }
 
-/** The categories up to the end mark; those that nobody reads are left as they are. `*size`: bytes up to there. */
+/** Reads the categories up to the end mark; unused categories are skipped. `*size`: bytes up to the mark. */
 static cm1e_sii_result_t fetch_categories(const source_t *source, size_t room, size_t *size)
 {
     uint32_t word = WORD_CATEGORIES;

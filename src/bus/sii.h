@@ -1,8 +1,8 @@
 /**
  * @file sii.h
- * What the bus needs of a slave's SII (EEPROM; ETG.2010), fetched with bounds from whatever is in there: no length in
- * it is believed, the way through the categories always leads forward and ends. What the words mean is the affair of
- * description/sii.h. Pure: words come through a function.
+ * Reads the part of a slave's SII (EEPROM; ETG.2010) that the bus needs, with bounds: no length in it is trusted, and
+ * the loop over the categories always goes forward and ends. description/sii.h defines the meaning of the words. Pure
+ * functions: a callback reads the words.
  */
 #ifndef CM1E_BUS_SII_H
 #define CM1E_BUS_SII_H
@@ -22,7 +22,7 @@ typedef struct cm1e_sii {
     uint16_t mailbox_out_start, mailbox_out_length, mailbox_in_start, mailbox_in_length;
     bool coe, complete_access;
     bool no_lrw;                                       /**< the slave cannot do LRW */
-    char name[CM1E_SII_NAME];                          /**< printable, "" where there is none */
+    char name[CM1E_SII_NAME];                          /**< printable; "": none */
     uint8_t sync_manager_count;
     cm1e_sii_sync_manager_t sync_managers[CM1E_SII_SYNC_MANAGERS];
     uint32_t bits[2][CM1E_SII_SYNC_MANAGERS];          /**< process data: [0] outputs (RxPDO), [1] inputs, by SM */

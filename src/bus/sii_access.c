@@ -30,7 +30,7 @@ typedef struct session {
 static uint16_t word_at(const uint8_t *image, uint32_t word) { return cm1e_get_u16(image + 2 * (size_t)word); }
 static uint32_t dword_at(const uint8_t *image, uint32_t word) { return cm1e_get_u32(image + 2 * (size_t)word); }
 
-/** Bytes of the EEPROM by word 0x3E; 0: it states none (erased, never filled in, more than there can be). */
+/** Bytes of the EEPROM by word 0x3E; 0: not stated (erased, never written, or more than possible). */
 static size_t stated_size(uint16_t word)
 {
     return word == 0 || word == ERASED || word >= LARGEST_KBIT ? 0 : (word + (size_t)1) * CM1E_SII_BYTES_PER_KBIT;
@@ -144,7 +144,7 @@ static bool checksum_good(const uint8_t *image)
     return word_at(image, WORD_CHECKSUM) % 256 == cm1e_sii_crc8(image, 2 * WORD_CHECKSUM);
 }
 
-/** What can be said of an image alone. */
+/** Checks an image without a slave. */
 static cm1e_error_t check_image(const uint8_t *image, size_t size, const cm1e_sii_write_options_t *options,
                                 cm1e_diag_t *diag)
 {
@@ -198,7 +198,7 @@ static cm1e_error_t check_identity(const session_t *session, const uint8_t *imag
     return CM1E_OK;
 }
 
-/** Words 0-6 without the alias: nothing to lose where the slave's own are not valid. */
+/** Compares words 0-6 without the alias. If those of the slave are not valid, there is nothing to protect. */
 static cm1e_error_t check_configuration(const session_t *session, const uint8_t *image, const uint8_t *present,
                                         const cm1e_sii_write_options_t *options, cm1e_diag_t *diag)
 {
@@ -230,7 +230,7 @@ static cm1e_error_t check_size(session_t *session, const uint8_t *image, size_t 
 
 /* ---- writing ---------------------------------------------------------------------------------------------------- */
 
-/** What a slave's own alias and serial number are worth: nothing where its header is not valid. */
+/** Whether the slave's own alias and serial number are valid: not if its header is invalid. */
 static void keep_alias_and_serial(uint8_t *wanted, const uint8_t *present)
 {
     if (!checksum_good(present))
@@ -253,8 +253,8 @@ static cm1e_error_t diagnose_write(const session_t *session, uint32_t word, cons
                          "protected against writing?)", written);
 }
 
-/** Categories, then the header, then what the controller itself loads: whatever stops it, the slave stays one that
- *  can be addressed and whose SII has a size. */
+/** Writes the categories, then the header, then the words that the controller loads: if the writing stops, the slave
+ *  can still be addressed, and its SII has a size. */
 static cm1e_error_t write_words(session_t *session, const uint8_t *wanted, const uint8_t *present, size_t size,
                                 cm1e_diag_t *diag)
 {

@@ -58,9 +58,9 @@ void cm1e_soem_destroy(cm1e_soem_t *soem)
 
 static uint16_t bytes_of(uint32_t bits) { return (uint16_t)((bits + 7) / 8); }
 
-/** SOEM maps what it finds in `Obits`, `SMtype` and `SM`, and asks the slave nothing, when configindex is set. The SII
- *  says where in the controller's memory, not how: a damaged one could leave out the watchdog trigger of the outputs
- *  (bit 6), and a motor would go on for ever when the frames stay away. */
+/** SOEM maps what it finds in `Obits`, `SMtype` and `SM`, and asks the slave nothing, when configindex is set. From the
+ *  SII only the place in the controller's memory is used, not the control byte: a damaged SII could omit the watchdog
+ *  trigger of the outputs (bit 6), and a motor would go on for ever when the frames stop. */
 static void set_direction(ec_slavet *slave, int sm, uint8 type, uint16_t bits)
 {
     const cm1e_sync_manager_t *standard = &cm1e_device_sync_managers[sm];
@@ -182,7 +182,8 @@ void cm1e_soem_post(cm1e_soem_t *soem, cm1e_datagram_t *d, int64_t now_ns)
     ecx_outframe_red(&soem->port, d->frame_index);
 }
 
-/** The frame that came back under our index is ours: same command and length, same address where nobody changes it. */
+/** Whether the frame that came back under this index is the expected one: same command and length, and same address if
+ *  no slave changes it. */
 static bool is_answer(const cm1e_datagram_t *d, const uint8_t *frame)
 {
     const bool fixed_address = d->command == COMMAND_FPRD || d->command == COMMAND_FPWR;

@@ -6,7 +6,7 @@
 
 enum { REGISTER_TRIES = 3 };
 
-/** One slave's register, with some patience for frames that were disturbed. */
+/** Reads a register of one slave; repeats it a few times if a frame was disturbed. */
 static bool read_of(cm1e_soem_t *soem, uint16_t station, uint16_t offset, uint8_t *data, uint16_t size)
 {
     int answered = 0;
@@ -29,7 +29,8 @@ static void write_all(cm1e_soem_t *soem, uint16_t offset, const uint8_t *data, u
     ecx_BWR(&soem->port, 0, offset, size, bytes, EC_TIMEOUTRET3);
 }
 
-/** Every slave as after power-on, as far as the bus uses it; also those that another master left in operation. */
+/** Resets every slave to its state after power-on, as far as the bus uses it; also slaves that another master left in
+ *  operation. */
 static void set_defaults(cm1e_soem_t *soem)
 {
     static const uint8_t zeros[64];
@@ -38,13 +39,13 @@ static void set_defaults(cm1e_soem_t *soem)
         uint8_t bytes[2];
     } settings[] = {
         {ECT_REG_DLALIAS, 1, {0, 0}},                            /* configured addresses count, not the alias */
-        {ECT_REG_STADR, 2, {0, 0}},                              /* old ones would be doubled where places changed */
+        {ECT_REG_STADR, 2, {0, 0}},                              /* old addresses would be doubled if places changed */
         {ECT_REG_ALCTL, 2, {EC_STATE_INIT, 0}},                  /* errors: al_machine.c, where one is shown */
         {ECT_REG_DLPORT, 1, {0, 0}},                             /* all ports automatic */
         {ECT_REG_IRQMASK, 2, {0x04, 0}},
         {ECT_REG_DCSYNCACT, 1, {0, 0}},                          /* no SYNC signals */
-        {ECT_REG_EEPCFG, 1, {2, 0}},                             /* the SII is taken from the devices ... */
-        {ECT_REG_EEPCFG, 1, {0, 0}},                             /* ... and is the master's */
+        {ECT_REG_EEPCFG, 1, {2, 0}},                             /* take the SII from the devices */
+        {ECT_REG_EEPCFG, 1, {0, 0}},                             /* assign the SII to the master */
     };
     for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++)
         write_all(soem, settings[i].offset, settings[i].bytes, settings[i].size);
@@ -53,7 +54,7 @@ static void set_defaults(cm1e_soem_t *soem)
     write_all(soem, ECT_REG_RXERR, zeros, 8);
 }
 
-/** Gives it its address and reads its alias. */
+/** Gives a slave its address and reads its alias. */
 static bool take_address(cm1e_soem_t *soem, uint16_t position)
 {
     ec_slavet *slave = &soem->slaves[position];
@@ -126,7 +127,7 @@ static void set_sync_manager(ec_slavet *slave, int sm, const cm1e_sii_sync_manag
     slave->SM[sm].SMflags = htoel(from->control | (uint32)from->enable << 16);
 }
 
-/** What SOEM's mapping wants to know of a slave. */
+/** Data of a slave that SOEM's mapping needs. */
 static void fill_slave(cm1e_soem_t *soem, uint16_t position)
 {
     ec_slavet *slave = &soem->slaves[position];

@@ -22,7 +22,7 @@ cm1e_error_t cm1e_bus_all_to_state(cm1e_bus_t *bus, uint8_t target, int64_t time
     const int64_t deadline_ns = cm1e_clock_now(bus->clock) + timeout_ns;
     for (uint32_t i = 0; i < bus->slave_count; i++)
         cm1e_al_request(&bus->slaves[i].al, target, deadline_ns);
-    /* The machines end by themselves; the margin is for datagrams still under way then. */
+    /* The machines end by themselves; the margin is for datagrams that are still on their way. */
     cm1e_bus_pump_until_idle(bus, deadline_ns + CM1E_STATE_TIMEOUT_NS);
     cm1e_error_t first = CM1E_OK;
     for (uint32_t i = 0; i < bus->slave_count; i++) {

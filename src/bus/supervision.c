@@ -1,8 +1,8 @@
 #include "bus/bus_internal.h"
 #include "core/bytes.h"
 
-/** One slave's AL status in each cycle, in turn. A slave is called lost after three questions in a row that came back
- *  unanswered: a single one may be a disturbed frame. */
+/** One slave's AL status in each cycle, in turn. A slave counts as lost after three unanswered questions in a row: a
+ *  single one may be a disturbed frame. */
 enum { AL_STATUS_BYTES = 6, UNANSWERED_LIMIT = 3 };
 
 void cm1e_supervision_note(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t al_status_code)
@@ -24,8 +24,9 @@ void cm1e_supervision_send(cm1e_bus_t *bus, int64_t now_ns)
     bus->watch_sent = true;
 }
 
-/** No axis asks for a device between the axes, and as long as it is missing, the working counter of all is wrong. It
- *  gets zeros as outputs, always; a motor is never brought back unasked. */
+/** No axis requests the recovery of a device between the axes, but while it is missing, the working counter of all is
+ *  wrong. So it is brought back without a request, always with zeros as outputs. A motor is never brought back without
+ *  a request. */
 static void recover_unasked(cm1e_bus_t *bus, cm1e_bus_slave_t *slave)
 {
     if (!cm1e_bus_has_motors(slave) && slave->watch.al_state != CM1E_AL_OP)

@@ -1,9 +1,8 @@
 /**
  * @file arena.h
- * Memory of one file that is read or written: taken piece by piece, given back at once. Nobody has to look for NULL:
- * when memory ends, `failed` is set, what is asked for next goes into a sink, and who owns the arena asks once, at the
- * end.
- * One thread at a time.
+ * Memory of one file that is read or written: allocated piece by piece, freed at once. Callers need not check for NULL:
+ * when memory ends, `failed` is set, later allocations return a sink, and the owner of the arena checks once, at the
+ * end. One thread at a time.
  */
 #ifndef CM1E_DESCRIPTION_ARENA_H
 #define CM1E_DESCRIPTION_ARENA_H
@@ -22,10 +21,10 @@ typedef struct cm1e_arena_block cm1e_arena_block_t;
 typedef struct cm1e_arena {
     cm1e_arena_block_t *blocks;
     size_t used;      /**< bytes in all */
-    bool failed;      /**< some allocation was refused: what was built with the arena is not complete */
+    bool failed;      /**< an allocation failed: the data in the arena is incomplete */
 } cm1e_arena_t;
 
-/** Gives everything back; the arena is valid again, and empty. @rt init */
+/** Frees everything; the arena is then empty and valid. @rt init */
 void cm1e_arena_free(cm1e_arena_t *arena);
 /** `size` zeroed bytes, aligned for anything; `size` at most CM1E_ARENA_SINK, or check `failed` before use. @rt init */
 void *cm1e_arena_take(cm1e_arena_t *arena, size_t size);
@@ -42,7 +41,7 @@ const char *cm1e_arena_format(cm1e_arena_t *arena, const char *format, ...) __at
         type *at;                                                                                                   \
         size_t count;                                                                                               \
     }
-/** Pointer to a new zeroed item at the end of a list; good until the next one is appended to that list. */
+/** Pointer to a new zeroed item at the end of a list; valid until the next one is appended. */
 #define CM1E_APPEND(arena, list)                                                                                    \
     ((list)->at = cm1e_arena_grow((arena), (list)->at, (list)->count, sizeof *(list)->at),                          \
      (arena)->failed ? cm1e_arena_take((arena), sizeof *(list)->at) : (void *)&(list)->at[(list)->count++])

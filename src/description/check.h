@@ -1,7 +1,7 @@
 /**
  * @file check.h
- * The cross-checker: what a schema does not see. A rule has a name, a row in CM1E_RULES and, by test_check_*, a file
- * that is broken in exactly that way. docs/CHECK-RULES.md explains them to users.
+ * The cross-checker: rules that a schema cannot express. A rule has a name, a row in CM1E_RULES and, by test_check_*, a
+ * file that is broken in exactly that way. docs/CHECK-RULES.md explains them to users.
  */
 #ifndef CM1E_DESCRIPTION_CHECK_H
 #define CM1E_DESCRIPTION_CHECK_H
@@ -141,29 +141,29 @@ typedef enum cm1e_rule {
     CM1E_RULE_COUNT,
 } cm1e_rule_t;
 
-/** Beyond so many findings nobody reads them: the last one then says that there are more. */
+/** Maximum number of findings; the last one then says that there are more. */
 #define CM1E_FINDINGS_MAX 1000
 
 struct cm1e_findings {
-    cm1e_arena_t arena; /**< `failed`: something was not checked, so no finding does not mean that all is well */
+    cm1e_arena_t arena; /**< `failed`: a part was not checked, so an empty list does not mean that there is no fault */
     CM1E_LIST(cm1e_finding_t) list;
 };
 
-/** Empty; NULL: no memory. Freed with cm1e_findings_free(). */
+/** Makes an empty list; NULL: no memory. Free it with cm1e_findings_free(). */
 cm1e_findings_t *cm1e_findings_create(void);
-/** The same rule at the same place with the same text counts once. Names out of a file lose what could act on a
- *  terminal (cm1e_text_clean()). */
+/** Adds a finding. An equal rule, place and text count once. Names out of a file are cleaned of characters that could
+ *  act on a terminal (cm1e_text_clean()). */
 void cm1e_findings_add(cm1e_findings_t *findings, cm1e_rule_t rule, cm1e_place_t place, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/** Whether there is a finding of that rule at that place; of place 0 nothing is known. */
+/** Whether there is a finding of that rule at that place; always false for place 0. */
 bool cm1e_findings_has(const cm1e_findings_t *findings, cm1e_rule_t rule, cm1e_place_t place);
-/** Sorts by line; call it when all are in. */
+/** Sorts by line; call it after the last finding. */
 void cm1e_findings_sort(cm1e_findings_t *findings);
 
 /** First address behind the memory of a sync manager: process data has three buffers behind each other, a mailbox, or
  *  what has its mode, one (ETG.1000.4 6.7). */
 uint32_t cm1e_sync_manager_end(const cm1e_described_sync_manager_t *manager);
-/** Sync managers of one device that lie on top of each other; those without a length or not enabled lie nowhere. */
+/** Finds sync managers of one device that overlap; those without a length or not enabled are ignored. */
 void cm1e_check_overlap(cm1e_findings_t *findings, const cm1e_described_sync_manager_t *managers, size_t count);
 
 /** Every rule about devices, for every device of a file; MDP devices also with their slots expanded. */

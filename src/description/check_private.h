@@ -1,17 +1,16 @@
 /**
  * @file check_private.h
- * What the files of the cross-checker share; private to this room.
+ * Shared declarations of the cross-checker; private to this room.
  */
 #ifndef CM1E_DESCRIPTION_CHECK_PRIVATE_H
 #define CM1E_DESCRIPTION_CHECK_PRIVATE_H
 
 #include "description/check.h"
 
-/** Begin of whatever is searched by a number: dictionaries and lists are not walked, because a file decides how large
- *  they are. */
+/** First member of items that are searched by a number: they are sorted, because a file decides how many there are. */
 typedef struct cm1e_check_key {
     uint32_t number;
-    size_t order;   /**< in the file: of two with one number, the first comes first */
+    size_t order;   /**< place in the file: of two with equal numbers the first comes first */
 } cm1e_check_key_t;
 /** Sorts `count` items that begin with a key. */
 void cm1e_check_sort(void *items, size_t count, size_t item_size);
@@ -30,9 +29,10 @@ typedef struct cm1e_check {
     cm1e_findings_t *findings;
     cm1e_arena_t *arena;                     /**< for what is needed while checking */
     const cm1e_description_t *device;
-    bool by_default;                         /**< the modules are those that the file chooses when nobody else does */
+    bool by_default;                         /**< the modules are the default modules of the file */
     uint16_t slot_index_increment;
-    bool is_modular;                         /**< one mistake in a module shows in every slot and every choice */
+    bool is_modular;                         /**< findings so far, because one mistake in a module shows in every
+                                                  slot and every choice */
     bool has_dictionary, states_mappability;
     /* By their number: whether a PDO, a start-up command is of a module that states no objects at all. */
     const bool *silent_pdos, *silent_commands;
@@ -41,7 +41,7 @@ typedef struct cm1e_check {
     const cm1e_check_key_t *objects, *pdos;  /**< by index, sorted */
 } cm1e_check_t;
 
-/** As cm1e_findings_add(), without what another slot or choice of modules already brought to light at that place. */
+/** As cm1e_findings_add(), but without a finding that another slot or choice of modules already has at that place. */
 void cm1e_check_add(const cm1e_check_t *check, cm1e_rule_t rule, cm1e_place_t place, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
@@ -55,7 +55,7 @@ const cm1e_described_pdo_t *cm1e_check_only_pdo(const cm1e_check_t *check, uint1
 bool cm1e_check_default(const cm1e_check_t *check, uint16_t index, uint8_t subindex, uint32_t *value,
                         cm1e_place_t *place);
 
-/** Which indexes were there already. */
+/** The indexes that exist already. */
 typedef struct cm1e_check_seen {
     uint8_t bits[0x10000 / 8];
 } cm1e_check_seen_t;
@@ -77,7 +77,7 @@ typedef struct cm1e_check_sorted_types {
     const cm1e_type_definition_t **at;
     size_t count;
 } cm1e_check_sorted_types_t;
-/** Where a name of a type is looked up: in the dictionary it stands in, then in that of the device. */
+/** Scope of a type name: its own dictionary, then that of the device. */
 typedef struct cm1e_check_types {
     cm1e_check_sorted_types_t own, common;
 } cm1e_check_types_t;
@@ -96,13 +96,13 @@ void cm1e_check_pdo_types(const cm1e_check_t *check, const cm1e_pdo_list_t *pdos
 const char *cm1e_check_value_text(char *text, size_t room, const cm1e_described_entry_t *entry, cm1e_bytes_t data);
 bool cm1e_check_within_range(const cm1e_described_entry_t *entry, cm1e_bytes_t data);
 
-/** Of a device with its slots filled. */
+/** Checks a device with its slots filled. */
 void cm1e_check_dictionary(const cm1e_check_t *check);
 void cm1e_check_identity(const cm1e_check_t *check);
 void cm1e_check_devices(const cm1e_check_t *check, const cm1e_description_file_t *file);
 void cm1e_check_sync_managers(const cm1e_check_t *check);
 void cm1e_check_mailbox(const cm1e_check_t *check);
-/** PDOs of the device, or of a module, by themselves. */
+/** Checks the PDOs of the device, or of a module, by themselves. */
 void cm1e_check_own_pdos(const cm1e_check_t *check, const cm1e_pdo_list_t *pdos);
 void cm1e_check_pdos(const cm1e_check_t *check);
 void cm1e_check_excludes(const cm1e_check_t *check);

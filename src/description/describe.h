@@ -13,9 +13,9 @@
 cm1e_error_t cm1e_describe(cm1e_description_file_t *file, const cm1e_device_options_t *options,
                            cm1e_esi_layout_t layout, cm1e_diag_t *diag);
 
-/** Appends a simple device of the simulator: no mailbox, vendor 0. */
+/** Appends a simple device of the simulator, with no mailbox and vendor 0. */
 void cm1e_describe_io(cm1e_description_file_t *file, cm1e_sim_io_t kind);
-/** The one of 1 byte out and 1 byte in, with a state machine of its own. */
+/** Appends the module with 1 byte out and 1 byte in, which has its own state machine. */
 static inline void cm1e_describe_io_module(cm1e_description_file_t *file)
 {
     cm1e_describe_io(file, CM1E_SIM_IO_MODULE);
@@ -46,7 +46,7 @@ void cm1e_describe_own_objects(cm1e_arena_t *arena, cm1e_description_t *device, 
                                bool (*is_of_module)(uint16_t index));
 /** NULL: there is no such entry. */
 cm1e_described_entry_t *cm1e_describe_entry_of(const cm1e_object_list_t *objects, uint16_t index, uint8_t subindex);
-/** Puts another default in place of that of the tables; does nothing where there is no such entry. */
+/** Replaces the default of the tables; does nothing if there is no such entry. */
 void cm1e_describe_default(cm1e_arena_t *arena, const cm1e_object_list_t *objects, uint16_t index, uint8_t subindex,
                            int64_t value);
 /** Parameters of the motor itself: the guides give no values, except where they give a range. */
@@ -65,7 +65,7 @@ void cm1e_describe_communication(cm1e_arena_t *arena, cm1e_description_t *device
 /** FALSE: the configuration words 0-6 (14 bytes) are the ones that we guess, as an image of ours holds them, or there
  *  are none: they must not get from there into a device as if they were those of a real one. */
 bool cm1e_describe_config_is_known(const uint8_t *config);
-/** What the EEPROM holds besides. `bootstrap`: it has a mailbox in the state Bootstrap. */
+/** Adds the other contents of the EEPROM. `bootstrap`: there is a mailbox in the state Bootstrap. */
 void cm1e_describe_eeprom(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_device_options_t *options,
                           bool bootstrap);
 /** A module of a drive; NULL: the file already has it. Modules with one ident have to have one content. */

@@ -1,9 +1,9 @@
 /**
  * @file description.h
- * What a device is, in the words that all files about it share: identity, mailbox, sync managers, FMMUs, PDOs, object
- * dictionary, start-up commands, modules. Made from the tables of src/device (describe.h), from a file (ESI, SII, ENI),
- * or from a live device; checked (check.h), compared (compare.h) and written without asking where it came from.
- * Everything a description points to lives in its arena. Not thread safe; nothing here is for the cycle.
+ * The description of a device that all file formats share: identity, mailbox, sync managers, FMMUs, PDOs, object
+ * dictionary, start-up commands, modules. It is made from the tables of src/device (describe.h), from a file (ESI, SII,
+ * ENI), or from a live device. It is checked (check.h), compared (compare.h) and written independent of its origin.
+ * Everything that a description points to is in its arena. Not thread safe; nothing here is for the cycle.
  */
 #ifndef CM1E_DESCRIPTION_DESCRIPTION_H
 #define CM1E_DESCRIPTION_DESCRIPTION_H
@@ -15,7 +15,7 @@
 #include "description/arena.h"
 #include "device/device.h"
 
-/** Where something stands in its file: a line, 1 = first; in an SII image the byte address. 0: in no file. */
+/** Place of an item in its file: the line, 1 = first; in an SII image the byte address. 0: not from a file. */
 typedef uint32_t cm1e_place_t;
 
 /** Raw bytes, little endian where they are a number. `data` NULL: not given. */
@@ -150,7 +150,7 @@ typedef struct cm1e_init_command {
     uint16_t index;
     uint8_t subindex;
     bool depends_on_slot, fixed, complete_access;
-    bool adapts;             /**< ESI: AdaptAutomatically; the master puts what the user chose in place of `data` */
+    bool adapts;             /**< ESI: AdaptAutomatically; the master replaces `data` by the choice of the user */
     cm1e_bytes_t data;
     const char *comment;     /**< NULL: none */
 } cm1e_init_command_t;
@@ -259,13 +259,13 @@ typedef struct cm1e_description {
     CM1E_LIST(cm1e_slot_t) slots; /**< what they can hold: the file's modules, by ident */
 } cm1e_description_t;
 
-/** What a file holds. Valid when zeroed; cm1e_description_file_free() gives everything back. */
+/** The contents of a file. Valid when zeroed; cm1e_description_file_free() frees everything. */
 typedef struct cm1e_description_file {
     cm1e_arena_t arena;
     uint32_t vendor_id;
     const char *vendor_name;
     cm1e_place_t vendor_place;
-    const char *comment;      /**< what a person should know who opens the file; NULL: nothing */
+    const char *comment;      /**< note for a reader of the file; NULL: none */
     CM1E_LIST(cm1e_description_t) devices;
     CM1E_LIST(cm1e_module_t) modules; /**< of the whole file (ESI: Descriptions/Modules) */
 } cm1e_description_file_t;
@@ -273,7 +273,7 @@ typedef struct cm1e_description_file {
 /** @rt init */
 void cm1e_description_file_free(cm1e_description_file_t *file);
 
-/** A description in which nothing is stated: every "not stated" of the fields above. @rt any */
+/** Initialises a description: every field has its "not stated" value. @rt any */
 void cm1e_description_init(cm1e_description_t *device);
 
 /* ---- asking a description --------------------------------------------------------------------------------------- */

@@ -1,10 +1,10 @@
 /**
  * @file sii.h
- * The SII image (ETG.1000.6 5.4, ETG.2010): what a slave's EEPROM holds and every master reads. Written from a
- * description, whatever that was made of, and read into one; the simulator boots from it. Any thread.
+ * The SII image (ETG.1000.6 5.4, ETG.2010): the contents of a slave's EEPROM, which every master reads. An image is
+ * written from a description and read into one; the simulator boots from it. Any thread.
  *
- * A description holds what masters use: identity, mailboxes, strings, General, FMMU, SyncM, TxPDO, RxPDO, DC. What
- * else an image has (categories of the maker, pictures, current on the E-bus, strings nobody refers to) is skipped on
+ * A description holds what masters use: identity, mailboxes, strings, General, FMMU, SyncM, TxPDO, RxPDO, DC. What else
+ * an image has (categories of the maker, pictures, current on the E-bus, strings nobody refers to) is skipped on
  * reading, so an image of another maker's tool does not come back byte for byte; one that was written here does. To
  * keep an image as it is, keep its bytes.
  */
@@ -31,7 +31,7 @@ enum {
     CM1E_SII_MAILBOX = 0x30, CM1E_SII_PROTOCOLS = 0x38, CM1E_SII_KBIT = 0x7C, CM1E_SII_VERSION = 0x7E,
 };
 enum {
-    CM1E_SII_CONFIG_BYTES = 14,    /**< words 0-6, which the checksum is of */
+    CM1E_SII_CONFIG_BYTES = 14,    /**< words 0-6, which the checksum covers */
     CM1E_SII_BOOTSTRAP_BYTES = 8,  /**< start and length of the mailbox out, then in */
     CM1E_SII_BYTES_PER_KBIT = 128, /**< the size word counts kbit, less one */
 };

@@ -16,7 +16,7 @@ typedef struct reader {
     unsigned string_count;
     bool cut;                 /* the present category is longer than the image: what it lacks is said already */
     bool has_general;
-    bool has_details;         /* ... up to those of the mailbox's protocols: */
+    bool has_details;         /* details up to those of the mailbox protocols: */
     uint8_t coe, foe, eoe;
 } reader_t;
 

@@ -13,7 +13,7 @@ enum { WRITTEN_BY_MASTER = 0x04, DIRECTION_MASK = 0x0C, MODE_MASK = 0x03, MODE_M
 
 /* ---- indexes, names, references --------------------------------------------------------------------------------- */
 
-/* The same Index, and where there are names the same name, twice in a list. */
+/* Finds an Index, and a name if there are names, that exists twice in a list. */
 #define CHECK_UNIQUE(findings, list, what, name_of)                                                                 \
     do {                                                                                                            \
         for (size_t i = 1; i < (list).count; i++)                                                                   \

@@ -31,7 +31,7 @@ typedef struct types {
     CM1E_LIST(const definition_t *) definitions;
     CM1E_LIST(const definition_t *) of_objects; /* in the order of the objects; NULL: of a base type */
     void *names;                                /* trees of tsearch(): of all types ... */
-    void *shapes;                               /* ... and definitions by what their object is like */
+    void *shapes;                               /* definitions by the shape of their object */
 } types_t;
 
 static int compare_given(const char *a, const char *b)
@@ -193,7 +193,7 @@ static const char **item_types(cm1e_arena_t *arena, const cm1e_described_object_
     return names.at;
 }
 
-/* The same index with different content twice in a file is wrong, but not for us to hide. */
+/* Two objects with the same index and different contents are wrong, but are written unchanged. */
 static const char *definition_name(types_t *types, uint16_t index)
 {
     const char *name = cm1e_arena_format(types->arena, "DT%04X", index);

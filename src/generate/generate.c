@@ -131,7 +131,7 @@ typedef struct node {
     char name[CM1E_SLAVE_NAME];
 } node_t;
 
-/* The same bridge: the check of the configuration has seen to it that the channels differ. */
+/* Another axis of the same bridge; the check of the configuration ensures that the channels differ. */
 static bool is_behind(const node_t *node, const cm1e_axis_config_t *axis)
 {
     return node->axis && axis->channel && axis->address && node->axis->address_kind == axis->address_kind &&

@@ -2,7 +2,7 @@
 
 #include "motion/approach.h"
 
-/* Of a turn: what rounding makes of a slave that is in step already. */
+/* Fraction of a turn: tolerance of rounding for a slave that is in synchronism already. */
 static const double same_place = 1e-9;
 
 void cm1e_approach_demand(const cm1e_curve_extremes_t *extremes, double master_velocity, cm1e_motion_limits_t *demand)

@@ -1,14 +1,12 @@
-/*
- * All three kinds of curve are kept as position, slope and curvature at the points: the polynomial of degree 5 between
- * two of them is the straight line, the cubic or the polynomial that was asked for.
- */
+/* All three kinds of curve are stored as position, slope and curvature at the points: the polynomial of degree 5
+ * between two points is then the straight line, the cubic or the polynomial. */
 #include <math.h>
 #include <stddef.h>
 
 #include "core/rare.h"
 #include "motion/cam.h"
 
-/* Of what is known already: an interval that could add no more to the extremes is not looked into. */
+/* Fraction of the known extremes: an interval that cannot exceed them by more is not evaluated. */
 static const double next_to_nothing = 1e-9;
 
 static double span(const cm1e_cam_knot_t *knots, int i) { return knots[i + 1].master - knots[i].master; }
@@ -78,7 +76,7 @@ static void draw_spline(cm1e_cam_knot_t *knots, int count, bool periodic)
                                             h * (knots[count - 2].curvature + 2 * knots[count - 1].curvature) / 6;
 }
 
-/** FALSE: doubles cannot hold it. */
+/** Returns false if doubles cannot represent it. */
 static bool interval(const cm1e_cam_t *cam, int i, cm1e_curve_t *curve)
 {
     const cm1e_cam_knot_t *a = &cam->knots[i], *b = a + 1;
@@ -215,7 +213,7 @@ static void find(const cm1e_cam_t *cam, cm1e_cam_place_t *place, double phase)
             high = middle;
     }
     place->knot = low;
-    (void)interval(cam, low, &place->curve); /* it was possible when the cam was compiled */
+    (void)interval(cam, low, &place->curve); /* cannot fail: it succeeded when the cam was compiled */
 }
 
 /** In a period, of the one that `place` has found. */

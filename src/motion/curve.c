@@ -1,7 +1,5 @@
-/*
- * Everything about extremes is reckoned over 0 <= t <= 1, where the coefficients of a polynomial and of its derivatives
- * are of the same size whatever the units are.
- */
+/* Extremes are computed over 0 <= t <= 1, where the coefficients of a polynomial and of its derivatives are of the same
+ * size whatever the units are. */
 #include <math.h>
 
 #include "motion/curve.h"

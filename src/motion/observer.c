@@ -2,7 +2,7 @@
 
 #include "motion/observer.h"
 
-/* Counts: an estimate that is so near to rest is at rest. */
+/* Counts: an estimate that is this close to rest counts as at rest. */
 static const double at_rest = 1e-9;
 
 void cm1e_observer_init(cm1e_observer_t *observer, double cycle_s, double time_constant_s, double delay_s,
@@ -45,7 +45,7 @@ void cm1e_observer_step(cm1e_observer_t *observer, int64_t counts, bool valid)
     observer->offset -= whole;
     if (valid && counts == observer->counts && fabs(observer->offset) < at_rest &&
         fabs(observer->velocity) * t < at_rest && fabs(observer->acceleration) * t * t < at_rest)
-        cm1e_observer_reset(observer, counts); /* rather than on through ever smaller numbers */
+        cm1e_observer_reset(observer, counts); /* instead of continuing with ever smaller numbers */
 }
 
 cm1e_observed_t cm1e_observer_now(const cm1e_observer_t *observer)

@@ -1,17 +1,15 @@
-/*
- * How fast a position can be passed. The way that the shortest change from (v, a) to a velocity w >= 0 needs is
- * shortest for the velocity that easing the acceleration leads to; from there on it grows with w, about like a square
- * root at its beginning. Below, braking, it first grows with w too, since easing the deceleration at a higher velocity
- * takes more way, and then shrinks. So the velocities that fit into a way are those up to some velocity and those
- * between two higher ones, and either may be none.
- */
+/* Maximum velocity with which a position can be passed. The fastest change from (v, a) to a velocity w >= 0 needs the
+ * smallest distance for the velocity to which reducing the acceleration to 0 leads. Above it the distance grows with w,
+ * at first about like a square root. Below it, while braking, the distance first grows with falling w and then shrinks,
+ * since reducing the deceleration at a higher velocity takes more distance. So the velocities that fit into a distance
+ * are those up to some velocity and those between two higher ones; either set may be empty. */
 #include <math.h>
 
 #include "motion/pieces.h"
 
 enum { SOLVER_STEPS_MAX = 200, NEWTON_STEPS = 12 };
 
-/** All mirrored so that the target is to be passed with a velocity >= 0. */
+/** All values are mirrored so that the target is passed with a velocity >= 0. */
 typedef struct {
     const cm1e_motion_limits_t *limits;
     double velocity, acceleration, distance, noise;
@@ -25,7 +23,7 @@ static double way(const passing_t *passing, double velocity)
     return cm1e_pieces_displacement(&change, passing->velocity);
 }
 
-/** Exactly when cm1e_profile_to_state() goes there without a run-up. */
+/** Whether cm1e_profile_to_state() goes there without a run-up. */
 static bool fits(const passing_t *passing, double velocity)
 {
     const double needed = way(passing, velocity);
@@ -33,8 +31,8 @@ static bool fits(const passing_t *passing, double velocity)
            passing->noise + 4 * DBL_EPSILON * fabs(needed) + CM1E_MOTION_TOO_SHORT * fabs(needed);
 }
 
-/** The velocity between one that fits and one that does not where that changes: regula falsi in the root of the
- *  velocity, where an end that stays twice counts half (Illinois). */
+/** The limit between a velocity that fits and one that does not: regula falsi in the root of the velocity, with the
+ *  Illinois modification. */
 static double last_fitting(const passing_t *passing, double fitting, double too_much)
 {
     const double enough = 1e-13 * fabs(passing->distance);
@@ -63,8 +61,9 @@ static double last_fitting(const passing_t *passing, double fitting, double too_
     return fitting + low * low;
 }
 
-/** The same in closed form, or by Newton's method from above on a convex function, for an axis that goes towards the
- *  target and gets faster: from (v, a) as from (rest, 0), only without the way from there. NaN: another case. */
+/** That limit in closed form, or by Newton's method from above on a convex function, for an axis that moves towards the
+ *  target and accelerates: the change from (v, a) is the change from (rest, 0) without the distance up to (v, a). NaN:
+ *  the case is not of this kind. */
 static double last_rise(const passing_t *passing)
 {
     const cm1e_motion_limits_t *limits = passing->limits;
@@ -74,7 +73,7 @@ static double last_rise(const passing_t *passing)
     const double ramp = fabs(a) / jerk, rest = v - fabs(a) * ramp / 2;
     if (v < 0 || fabs(a) > most || (a < 0 && rest < 0))
         return NAN;
-    /* From -a the velocity falls to rest, while the position goes on as it would have come from there with a. */
+    /* From -a the velocity falls to `rest`; the distance equals that of the rise from there with a. */
     const double way = ramp * (rest + fabs(a) * ramp / 6), whole = passing->distance + (a < 0 ? -way : way);
     const double edge = most / jerk * most, long_way = rest - edge / 2;
     const double velocity = sqrt(fmax(0, long_way * long_way + 2 * whole * most)) - edge / 2;

@@ -5,7 +5,7 @@
 #include "motion/path_private.h"
 
 static const double LARGEST = 1e15;
-/** Of what the axes can do. What is asked to be slower would last for longer than a number can say. */
+/** Minimum as a fraction of what the axes can do. A slower command would last longer than a number can represent. */
 static const double LEAST = 1e-12;
 
 static bool is_limit(double value) { return value >= 0; } /* also infinite */
@@ -32,7 +32,7 @@ cm1e_error_t cm1e_path_begin(cm1e_path_t *path, const cm1e_path_config_t *config
     return CM1E_OK;
 }
 
-/** The slowest that a path goes by, for what is slower. */
+/** Minimum velocity of a path. */
 static cm1e_motion_limits_t least_limits(const cm1e_path_t *path)
 {
     cm1e_motion_limits_t least = {INFINITY, INFINITY, INFINITY, INFINITY};
@@ -84,7 +84,7 @@ static cm1e_path_refusal_t check(const cm1e_path_t *path, const double *end, con
     return transition && !(command->parameter > 0) ? CM1E_PATH_NO_TRANSITION : CM1E_PATH_FINE;
 }
 
-/** The ring has a place for the next segment: what is made there counts only once it is taken in. */
+/** The ring has a place for the next segment; its contents count only when the segment is accepted. */
 static cm1e_error_t take_in(cm1e_path_t *path, const cm1e_path_command_t *command, cm1e_path_problem_t *problem)
 {
     cm1e_path_segment_t *segment = segment_at(path, path->segment_count);
@@ -197,7 +197,7 @@ static bool is_at_rest(const cm1e_path_t *path)
     return path->element_count == 0 || (path->stopping && path->time_s >= path->profile.duration_s);
 }
 
-/** Takes back a stop; one that is so far on that the way cannot be planned from it is carried through first. */
+/** Cancels a stop. If no continuation can be planned any more, the stop is completed first. */
 static void try_to_go_on(cm1e_path_t *path)
 {
     if (!must_stop(path) && path->stopping && !is_at_rest(path)) /* at rest, the next step goes on */
@@ -302,7 +302,7 @@ static bool go_to_next(cm1e_path_t *path, cm1e_path_sample_t *sample)
     const double over_s = path->time_s - path->profile.duration_s;
     path->along = (cm1e_motion_state_t){path->profile.end.position, path->profile.end.velocity, 0};
     if (path->stopping) {
-        const double slack = 1e-12 * path->along.position; /* how near an end is as good as there */
+        const double slack = 1e-12 * path->along.position; /* tolerance of an end */
         while (path->element_count > 0 && cm1e_path_here(path) >= cm1e_path_element(path, 0)->length - slack)
             pop(path, sample);
         path->time_s = path->profile.duration_s;

@@ -1,20 +1,18 @@
-/*
- * Lines and arcs. Everything is reckoned from an end, never from a centre: the centre of an arc that is nearly straight
- * is so far away that a position reckoned from there would have lost its digits.
- */
+/* Lines and arcs. Positions are computed from an end, never from a centre: the centre of an almost straight arc is so
+ * far away that a position computed from there would lose its precision. */
 #include <math.h>
 
 #include "motion/path_piece.h"
 
 static const double PI = 3.14159265358979323846;
 
-/** Points that lie in a line to within this part of their distance make no arc. */
+/** Points that lie on a line to within this fraction of their distance do not define an arc. */
 static const double STRAIGHT = 1e-10;
 
-/** How much the distances of both ends from the centre may differ, in parts of the radius. */
+/** Tolerance of the distances of both ends from the centre, as a fraction of the radius. */
 static const double OUT_OF_ROUND = 1e-6;
 
-/** Ends that are no further apart than this part of the radius are one. */
+/** Ends that are closer than this fraction of the radius count as equal. */
 static const double FULL_CIRCLE = 1e-9;
 
 enum { X, Y, Z };
@@ -123,7 +121,7 @@ bool cm1e_path_make_border_arc(cm1e_path_piece_t *piece, const cm1e_path_frame_t
     return true;
 }
 
-/** The side from which the way round is seen; FALSE: no plane. */
+/** The normal of the plane, which defines the sense of rotation. Returns false if there is no plane. */
 static bool find_normal(vector_t first, vector_t second, double radius, vector_t *normal)
 {
     *normal = cross(first, second);
@@ -164,7 +162,7 @@ bool cm1e_path_make_centre_arc(cm1e_path_piece_t *piece, const cm1e_path_frame_t
     const vector_t u[2] = {scaled(1 / radius, first), scaled(1 / norm(second), second)};
     const vector_t v[2] = {cross(normal, u[0]), cross(normal, u[1])};
     set_arc(piece, frame, radius, angle, u, v);
-    /* Both ends are kept: what the second one is out of round is spread over the way. */
+    /* Both ends are kept: the deviation of the second one from the circle is distributed along the arc. */
     for (int i = 0; i < frame->space; i++)
         piece->direction[i] = (to[i] - from[i] - radius * (u[1].x[i] - u[0].x[i])) / piece->length;
     return true;

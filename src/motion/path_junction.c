@@ -1,7 +1,5 @@
-/*
- * What becomes of the place where two segments meet: a stop, a passage, or a curve that takes the place of both ends.
- * And which elements are planned in one.
- */
+/* The junction of two segments: a stop, a passage, or a curve that replaces both ends; and which elements are planned
+ * together. */
 #include <math.h>
 
 #include "motion/path_private.h"
@@ -11,16 +9,16 @@ enum { TRIES = 4 };
 /** A break of the tangent by more than this (rad, or u per u of path) is a corner. */
 static const double CORNER = 1e-3;
 
-/** A step of the acceleration by this part of what the limit of jerk allows in a cycle is none. */
+/** A step of the acceleration below this fraction of what the jerk limit allows in a cycle is ignored. */
 static const double NO_STEP = 1e-6;
 
 /** How much of an arc a transition may take (rad), and how far back a corner may turn that it goes round (cosine). */
 static const double MOST_OF_ARC = 0.7, BACK = -0.9;
 
-/** A transition over less than this part of the segments is none. */
+/** A transition shorter than this fraction of the segments is omitted. */
 static const double NO_REACH = 1e-6;
 
-/** Between the points at which it is measured a curve may be further off. */
+/** Allowance for a larger deviation of a curve between the evaluated points. */
 static const double BETWEEN_POINTS = 0.98;
 
 /** Which part of the time in which the acceleration comes to 0 a junction between runs costs: one way or the other only
@@ -272,7 +270,7 @@ static double least_time(const cm1e_path_element_t *element, double way)
                                      isinf(element->limits.jerk) ? 0 : cbrt(6 * way / element->limits.jerk)));
 }
 
-/** The curve is made. */
+/** Makes the curve. */
 static bool try_transition(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_path_segment_t *segment, double reach)
 {
     const int last = path->element_count - 1;
@@ -290,7 +288,7 @@ static bool try_transition(cm1e_path_t *path, cm1e_path_segment_t *before, cm1e_
     const double rest = segment->piece.length - reach;
     cm1e_path_element_t *main = push(path, &segment->piece, reach, rest, &segment->command, 1);
     set_entry(path, last + 2, fmin(curve->highest, main->highest), junction);
-    const bool worth = slow <= least_time(&saved, reach) + least_time(main, reach); /* or it is sooner to stop */
+    const bool worth = slow <= least_time(&saved, reach) + least_time(main, reach); /* or a stop is faster */
     for (int i = 0; worth && i < 3; i++) {
         if (cm1e_path_plan(path, last))
             return true;

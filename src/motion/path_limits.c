@@ -1,23 +1,21 @@
-/*
- * What the limits of the axes allow along a piece. With q the position of an axis over the length, v, a and j the
- * motion along the path, the axis has the velocity q' v, the acceleration q'' v2 + q' a and the jerk
- * q''' v3 + 3 q'' v a + q' j. A line has no q'' and no q''', and what its limits are is plain. Where the path bends the
- * limits share what the axis can do: the more acceleration along the path, the less velocity. Chosen is the share with
- * which the piece is soonest passed.
- */
+/* What the limits of the axes allow along a piece. With q the position of an axis over the length, v, a and j the
+ * motion along the path, the axis has the velocity q' v, the acceleration q'' v2 + q' a and the jerk q''' v3 + 3 q'' v
+ * a + q' j. For a line q'' and q''' are 0, and the limits follow directly. In a bend the terms share the limits of the
+ * axis: more acceleration along the path leaves less velocity. The share with the shortest time over the piece is
+ * chosen. */
 #include <math.h>
 
 #include "motion/path_piece.h"
 
 enum { STEPS_LEAST = 24, STEPS_MOST = 96, BENDS_MAX = (STEPS_MOST + 1) * CM1E_PATH_AXES, SOLVER_STEPS = 40 };
 
-/** Between the points of a curve that are looked at it may bend more by this much. */
+/** Allowance for a stronger bend of a curve between the evaluated points. */
 static const double BETWEEN_POINTS = 1.01;
 
-/** What rounding makes of a limit that is used up. */
+/** Allowance for rounding at a limit that is fully used. */
 static const double ROUNDING = 1e-9;
 
-/** A velocity lower by this part is as good. */
+/** A velocity that is lower by this fraction counts as equal. */
 static const double ENOUGH = 1e-4;
 
 /** Sizes of the derivatives of an axis by the length, and its limits. */
@@ -26,9 +24,9 @@ typedef struct {
 } bend_t;
 
 typedef struct {
-    cm1e_motion_limits_t straight; /**< what can be had as if nothing were bent */
-    double velocity; /**< beyond which the bends alone ask too much */
-    bool round; /**< a circle: what is along and what is across are never at their most at the same time */
+    cm1e_motion_limits_t straight; /**< limits without the bend */
+    double velocity; /**< velocity above which the bend alone exceeds the limits */
+    bool round; /**< a circle: the terms along and across never reach their maxima at the same time */
     int count;
     bend_t bend[BENDS_MAX];
 } bends_t;
@@ -48,7 +46,7 @@ static void add(bends_t *bends, const cm1e_path_axis_t *axis, double share, cons
     }
 }
 
-/** The sharper a curve turns, the shorter is the way over the middle of its parameter. */
+/** The sharper a curve, the shorter the distance over the middle of its parameter. */
 static int steps_over(const cm1e_path_piece_t *curve)
 {
     double shortest = INFINITY;
@@ -91,8 +89,8 @@ static void look(bends_t *bends, const cm1e_path_piece_t *piece, const cm1e_path
     bends->velocity = fmin(bends->straight.velocity, fmin(1 / sqrt(curvature), 1 / cbrt(change)));
 }
 
-/** The velocity at which the jerk is what it may be. Of a circle it is halved down to, else it is the root of a cubic
- *  that Newton's method comes to from above. */
+/** The velocity at which the jerk reaches its limit. For a circle it is found by bisection, otherwise as the root of a
+ *  cubic by Newton's method from above. */
 static double velocity_for_jerk(const bends_t *bends, const bend_t *bend, double velocity, double a, double pushed)
 {
     if (!bends->round) {

@@ -1,17 +1,15 @@
-/*
- * How fast along the path. Elements that are joined are one run: one profile goes over all of them, with the lowest of
- * their limits. At the beginning of a run the acceleration along the path is 0, and its velocity is looked ahead for
- * from the end of everything backwards, twice: as the commands and the override want it, and as the axes' limits need
- * it. From a run that is entered with no more than the second, the next one can always be entered so too; so whatever
- * has been planned can be followed to the end, and what is planned anew on the way is taken only where it can be.
- */
+/* The velocity along the path. Joined elements are one run: one profile covers all of them, with the lowest of their
+ * limits. At the beginning of a run the acceleration along the path is 0. Its velocity comes from a look-ahead from the
+ * end of the path backwards, made twice: as commands and override request it, and as the limits of the axes require it.
+ * If a run is entered with at most the second velocity, the next run can be entered in the same way. So every plan can
+ * be followed to its end, and a new plan during the motion is used only if it keeps this condition. */
 #include <math.h>
 
 #include "motion/path_private.h"
 
 enum { SLOWEST_STEPS = 16, FIND_STEPS = 60, WIDER_MOST = 6 };
 
-/** A way longer by this part of it is as long. */
+/** A distance that is longer by this fraction counts as equal. */
 static const double AS_LONG = 1e-9;
 
 static double factor(const cm1e_path_t *path) { return path->override > 0 ? path->override : 1; }
@@ -262,7 +260,7 @@ static bool widen(cm1e_path_t *path, const cm1e_motion_state_t *start, cm1e_path
     return planned;
 }
 
-/** FALSE: nothing has changed. */
+/** Returns false if nothing has changed. */
 static bool plan_anew(cm1e_path_t *path, const cm1e_path_run_t *on, double soft, double hard, bool faster)
 {
     const cm1e_motion_state_t start = {cm1e_path_here(path), path->along.velocity, path->along.acceleration};

@@ -36,7 +36,7 @@ typedef struct coe_server {
 
 void cm1e_sim_coe_reset(cm1e_sim_slave_t *slave);
 /** Handles a request of `length` bytes (CoE header first); fills `answer` with at most `room` bytes, or leaves its
- *  length 0 where there is nothing to say. Returns 0 or a mailbox error detail. */
+ *  length 0 if there is no answer. Returns 0 or a mailbox error detail. */
 uint16_t cm1e_sim_coe_request(cm1e_sim_slave_t *slave, const uint8_t *request, size_t length, mailbox_message_t *answer,
                               size_t room);
 /** The next fragment of a list under way; false: none. */

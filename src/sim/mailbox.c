@@ -187,7 +187,7 @@ static void handle_request(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm
     const uint8_t *request = slave->memory + sm->start;
     const uint16_t length = cm1e_get_u16(request + AT_LENGTH);
     const uint8_t type = request[AT_TYPE] & TYPE, counter = request[AT_TYPE] >> COUNTER_SHIFT & COUNTER;
-    /* The same counter again: the master resent it because the answering frame was lost (ETG.1000.4 5.6). */
+    /* A repeated counter: the master sent the message again because the answering frame was lost (ETG.1000.4 5.6). */
     if (counter && counter == mailbox->request_counter)
         return;
     mailbox->request_counter = counter;

@@ -15,8 +15,8 @@ typedef struct cm1e_sim_slave cm1e_sim_slave_t;
 
 enum {
     MAILBOX_HEADER = 6,
-    MAILBOX_MIN_BYTES = 34,   /**< smallest mailbox: what the slave stack of most devices demands */
-    MAILBOX_MAX_BYTES = 1486, /**< what fits into a frame */
+    MAILBOX_MIN_BYTES = 34,   /**< minimum size of a mailbox, as most slave stacks require */
+    MAILBOX_MAX_BYTES = 1486, /**< maximum size, limited by a frame */
     MAILBOX_EMERGENCIES = 8,
     EMERGENCY_BYTES = 8,
 };
@@ -36,12 +36,12 @@ typedef struct mailbox_message {
 
 typedef struct mailbox {
     bool running;              /**< from Pre-Operational on */
-    int64_t request_due_ns;    /**< when the request in the write mailbox is looked at */
+    int64_t request_due_ns;    /**< time at which the request in the write mailbox is processed */
     uint8_t request_counter;   /**< of the last request taken; 0: none yet */
     uint8_t answer_counter;
     mailbox_message_t answer;  /**< waits for the read mailbox */
-    /* Whole mailboxes as they stood in the RAM, for repeat requests: the one loaded last, the one read before it, and
-     * one moved aside by a repeated one. Lengths of 0: none. */
+    /* Whole mailboxes from the RAM, for repeat requests: the last loaded one, the one read before it, and one that a
+     * repeated one replaced. Length 0: none. */
     uint8_t loaded;            /**< which of the two was loaded last */
     uint16_t kept_length[2], held_length;
     uint8_t kept[2][MAILBOX_MAX_BYTES];
@@ -52,7 +52,7 @@ typedef struct mailbox {
 
 void cm1e_sim_mailbox_start(cm1e_sim_slave_t *slave);
 void cm1e_sim_mailbox_stop(cm1e_sim_slave_t *slave);
-/** The master has written, read, or asked for a repetition. */
+/** Handles a write, a read or a repeat request of the master. */
 void cm1e_sim_mailbox_written(cm1e_sim_slave_t *slave);
 void cm1e_sim_mailbox_read(cm1e_sim_slave_t *slave);
 void cm1e_sim_mailbox_repeat(cm1e_sim_slave_t *slave);

@@ -1,8 +1,9 @@
 /**
  * @file mechanics.h
- * What hangs on a motor's shaft: inertia, Coulomb and viscous friction, an external load torque, two hard stops.
- * Positions in counts of the shaft since the simulation began. Integrated with the semi-implicit Euler method in steps
- * that the caller chooses (at most 250 us); no step can add energy, whatever the parameters. @rt cycle but for init.
+ * The mechanics on the shaft of a motor: inertia, Coulomb and viscous friction, an external load torque, two hard
+ * stops. Positions are counts of the shaft since the simulation began. They are integrated with the semi-implicit Euler
+ * method in steps that the caller chooses (at most 250 us); no step can add energy, whatever the parameters. @rt cycle
+ * but for init.
  */
 #ifndef CM1E_SIM_MECHANICS_H
 #define CM1E_SIM_MECHANICS_H
@@ -28,11 +29,11 @@ typedef struct cm1e_mechanics {
     double step_s, damping;  /**< 1 / (1 + viscous_rate * step_s), kept for the step length used last */
 } cm1e_mechanics_t;
 
-/** Zeros in `config` mean the defaults of cm1e/config.h. The shaft stands at 0. */
+/** Initialises the mechanics, with the shaft at rest at 0. Zeros in `config` select the defaults of cm1e/config.h. */
 void cm1e_mechanics_init(cm1e_mechanics_t *mechanics, const cm1e_sim_axis_config_t *config, double rotor_inertia);
 /** Lets `step_s` seconds pass with `torque` Nm from the motor. */
 void cm1e_mechanics_step(cm1e_mechanics_t *mechanics, double torque, double step_s);
-/** Standing, and friction holds the load: without motor torque nothing will move. */
+/** Whether the shaft is at rest and friction holds the load: without motor torque nothing moves. */
 bool cm1e_mechanics_at_rest(const cm1e_mechanics_t *mechanics);
 /** Pressed against or standing at a hard stop. */
 bool cm1e_mechanics_at_stop(const cm1e_mechanics_t *mechanics);

@@ -1,7 +1,7 @@
 /**
  * @file search.h
- * How a simulated motor looks for its origin: to a hard stop or to a sensor, from there to an offset, all with its
- * servo. What the CM1-E's homing (UG 6.2.4) and the Cool Muscle's origin search (BR 6.4) have in common. @rt cycle.
+ * The origin search of a simulated motor: to a hard stop or a sensor, then to an offset, with its servo. It is common
+ * to the CM1-E's homing (UG 6.2.4) and the Cool Muscle's origin search (BR 6.4). @rt cycle.
  */
 #ifndef CM1E_SIM_SEARCH_H
 #define CM1E_SIM_SEARCH_H
@@ -28,7 +28,7 @@ typedef struct cm1e_sim_search {
     bool sensor;           /**< is on now; kept up to date before every step */
     double edge;           /**< where it switches, on the scale of the mechanics; NAN: not known */
     double speed, acceleration;
-    double offset;         /**< counts from the origin found to where 0 shall be */
+    double offset;         /**< counts from the origin to the position 0 */
     double target;         /**< counts on the scale of the mechanics */
     double stalled_s;      /**< how long the torque limit has held the motor, or a move has been settling */
 } cm1e_sim_search_t;
@@ -40,10 +40,10 @@ typedef struct cm1e_sim_searcher {
     int64_t *zero;
 } cm1e_sim_searcher_t;
 
-/** Begins, with direction, sensor, edge, speed, acceleration and offset set. */
+/** Begins a search; direction, sensor, edge, speed, acceleration and offset must be set. */
 void cm1e_sim_search_begin(cm1e_sim_search_t *search, bool by_sensor);
 void cm1e_sim_search_step(cm1e_sim_search_t *search, const cm1e_sim_searcher_t *motor, double step_s);
-/** Stops, without leaving the phase. */
+/** Stops the motor without leaving the phase. */
 void cm1e_sim_search_stand(const cm1e_sim_search_t *search, const cm1e_sim_searcher_t *motor, double step_s);
 static inline bool cm1e_sim_search_running(const cm1e_sim_search_t *search)
 {

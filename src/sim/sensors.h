@@ -1,7 +1,7 @@
 /**
  * @file sensors.h
- * The sensors along the way of a simulated axis, wired to the motor's inputs 2 and 3, and the inputs that the console
- * holds. @rt cycle.
+ * The sensors of a simulated axis, wired to the motor's inputs 2 and 3, and the inputs that the console holds. @rt
+ * cycle.
  */
 #ifndef CM1E_SIM_SENSORS_H
 #define CM1E_SIM_SENSORS_H
@@ -22,9 +22,9 @@ typedef struct cm1e_sim_sensors {
 void cm1e_sim_sensors_init(cm1e_sim_sensors_t *sensors, const cm1e_sim_axis_config_t *config);
 /** Bit 0: input 1. */
 uint8_t cm1e_sim_sensors_inputs(const cm1e_sim_sensors_t *sensors, double position);
-/** Where input 2 or 3 switches; NAN: nowhere, the console holds it. */
+/** Position at which input 2 or 3 switches; NAN: none, because the console holds it. */
 double cm1e_sim_sensors_edge(const cm1e_sim_sensors_t *sensors, unsigned input);
-/** One input is held on or off, or follows its sensor again. */
+/** Holds an input on or off, or lets it follow its sensor again. */
 void cm1e_sim_sensors_hold(cm1e_sim_sensors_t *sensors, uint8_t input, bool held, bool on);
 
 #endif

@@ -15,7 +15,7 @@ typedef struct cm1e_servo {
     double reference_velocity; /**< counts/s */
     double feed_forward;       /**< counts/s, the velocity fed forward */
     double last_velocity;      /**< reference_velocity of the last step */
-    bool own_profile;          /**< the reference is a profile of the drive's own, not the master's set-points */
+    bool own_profile;          /**< the reference is a profile of the drive, not a set-point of the master */
     double torque_limit;       /**< Nm */
     double integral;           /**< Nm, holds the load at rest */
     double torque;             /**< Nm, of the last step */
@@ -25,12 +25,12 @@ typedef struct cm1e_servo {
     double step_s, response;   /**< gain of the implicit step, kept for the step length used last */
 } cm1e_servo_t;
 
-/** Tuned to the mechanics as a commissioned drive is. */
+/** Initialises the servo, tuned to the mechanics like a commissioned drive. */
 void cm1e_servo_init(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics);
 /** Starts to hold the present position with no torque. */
 void cm1e_servo_catch(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics);
-/** For a reference without a position to go to: where it has stopped and the shaft has come to rest, it stays, with the
- *  torque that holds it, and nothing is left to correct. */
+/** For a reference without a target position: when it has stopped and the shaft is at rest, the servo holds that place
+ *  with the present torque, and no deviation remains. */
 void cm1e_servo_rest(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics);
 /** Torque for the next `step_s` seconds, at whose end the reference applies. */
 double cm1e_servo_step(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics, double step_s);

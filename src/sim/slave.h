@@ -41,9 +41,9 @@ typedef struct cm1e_sim_app_ops {
     /** When it has to be advanced next, though nothing arrives: INT64_MIN: it moves, INT64_MAX: it rests, and any time
      *  may pass in one step. NULL: never. */
     int64_t (*due)(const void *app);
-    /** A state change asked for and allowed by the controller; 0 to agree, or an AL status code. Also called with
-     *  to = from's lower state when the controller falls back by itself. With device emulation (0x0141 bit 0) nobody
-     *  is asked: it tells, and `to` is whatever the master wrote. */
+    /** A state change asked for and allowed by the controller; 0 to agree, or an AL status code. Also called with to =
+     *  from's lower state when the controller falls back by itself. With device emulation (0x0141 bit 0) the
+     *  application cannot refuse: the call is a notification, and `to` is what the master wrote. */
     uint16_t (*state_change)(void *app, uint8_t from, uint8_t to);
     /** Sizes of the process data in bytes as the present PDO assignment makes them (checked against SM2/SM3). */
     void (*process_data_sizes)(void *app, uint16_t *output_bytes, uint16_t *input_bytes);
@@ -77,7 +77,7 @@ typedef struct cm1e_sim_slave cm1e_sim_slave_t;
 cm1e_sim_slave_t *cm1e_sim_slave_create(const uint8_t *sii, size_t sii_size, const cm1e_sim_app_ops_t *ops, void *app);
 void cm1e_sim_slave_destroy(cm1e_sim_slave_t *slave);
 void *cm1e_sim_slave_app(cm1e_sim_slave_t *slave);
-/** The table it was created with: tells what kind of application cm1e_sim_slave_app() is. */
+/** The table of its creation; it shows the kind of application of cm1e_sim_slave_app(). */
 const cm1e_sim_app_ops_t *cm1e_sim_slave_ops(const cm1e_sim_slave_t *slave);
 
 /** For the application: queue a CoE emergency (ETG.1000.6 5.6.4); false: the queue is full and it is dropped. */
@@ -98,7 +98,8 @@ static inline cm1e_sim_slave_t *cm1e_sim_io_module_create(void) { return cm1e_si
  *  are played; NULL, one or all of them: the defaults of cm1e/config.h, and K37 = 10. NULL: no bridge, or no memory. */
 cm1e_sim_slave_t *cm1e_sim_bridge_create(cm1e_device_model_t model,
                                          const cm1e_axis_config_t *const axes[CM1E_BRIDGE_AXES], uint16_t alias);
-/** Its guide states no identity. The vendor is Muscle Corporation in ETG's list, the rest is the simulator's own. */
+/** Identity of the simulated bridge; its guide states none. The vendor is Muscle Corporation in ETG's list, the rest
+ *  belongs to the simulator. */
 #define CM1E_SIM_BRIDGE_VENDOR_ID 0x0000AA77u
 #define CM1E_SIM_BRIDGE_REVISION 0x00010000u
 /** 0xEB01, 0xEB02, 0xEB12 */

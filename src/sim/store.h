@@ -1,7 +1,7 @@
 /**
  * @file store.h
  * The object dictionary of a simulated device with a present value for each of its entries, and the rules of SDO access
- * that hold for every device: which abort code says what (ETG.1000.6 table 41). Private to the simulator.
+ * that apply to every device, with their abort codes (ETG.1000.6 table 41). Private to the simulator.
  */
 #ifndef CM1E_SIM_STORE_H
 #define CM1E_SIM_STORE_H
@@ -29,13 +29,14 @@ typedef struct cm1e_sim_cell {
 /** Object number n of the device tables, in order of index; NULL: no more. */
 typedef const cm1e_object_t *(*cm1e_sim_objects_fn)(const void *context, size_t n);
 
-/** Every value is the default of the tables. FALSE: no memory; destroy it all the same. */
+/** Initialises every value with the default of the tables. Returns false if there is no memory; destroy the store in
+ *  that case too. */
 bool cm1e_sim_store_create(cm1e_sim_store_t *store, cm1e_sim_objects_fn objects, const void *context,
                            cm1e_firmware_t firmware);
 void cm1e_sim_store_destroy(cm1e_sim_store_t *store);
 /** NULL: no more. */
 const cm1e_object_t *cm1e_sim_store_object(const cm1e_sim_store_t *store, size_t n);
-/** 0, or the abort code that says what is missing; the cell is then NULL and NULL. */
+/** Finds an entry. Returns 0, or the abort code for what is missing; the cell then has two NULL pointers. */
 uint32_t cm1e_sim_store_find(const cm1e_sim_store_t *store, uint16_t index, uint8_t subindex, cm1e_sim_cell_t *cell);
 /** Does nothing where there is no such entry. */
 void cm1e_sim_store_set(cm1e_sim_store_t *store, uint16_t index, uint8_t subindex, int64_t value);
