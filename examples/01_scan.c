@@ -1,5 +1,5 @@
 /*
- * Lists what hangs on the network.
+ * Lists the slaves of a network.
  *
  *     01_scan          the simulated segment
  *     01_scan eth1     that network interface (as root, or with cap_net_raw)

@@ -12,7 +12,8 @@
 static cm1e_scheduler_t *scheduler;
 static AXIS_REF_t axis;
 
-/* Function blocks are plain structs; what is not named here is 0. Units: revolutions, revolutions per second. */
+/* Function blocks are plain structs; members that are not named here are 0. Units: revolutions, revolutions per
+ * second. */
 static MC_Power_t power = {.Axis = &axis, .EnablePositive = TRUE, .EnableNegative = TRUE};
 static MC_MoveRelative_t there = {.Axis = &axis, .Distance = 1, .Velocity = 2, .Acceleration = 20};
 static MC_MoveRelative_t back = {.Axis = &axis, .Distance = -1, .Velocity = 2, .Acceleration = 20};
@@ -41,7 +42,8 @@ static cm1e_error_t run(const char *interface_name, cm1e_bus_t **bus, cm1e_diag_
     static cm1e_bus_config_t config;
     const cm1e_task_config_t task = {.name = "motion", .program = program};
     cm1e_bus_config_init(&config, interface_name, 1);
-    config.axes[0].in_position_done_waits = true; /* Done: the motor is there, and not only its set-point */
+    config.axes[0].in_position_done_waits = true; /* Done waits until the motor is in position, not only its
+                                                   * set-point */
     cm1e_error_t error = cm1e_bus_open(bus, &config, why);
     if (error == CM1E_OK)
         error = cm1e_bus_start(*bus, why);
@@ -55,7 +57,7 @@ static cm1e_error_t run(const char *interface_name, cm1e_bus_t **bus, cm1e_diag_
     return error == CM1E_OK ? cm1e_scheduler_run(scheduler, 0, why) : error;
 }
 
-/* What went wrong, in sentences. */
+/* The errors, in sentences. */
 static void tell_error(void)
 {
     char text[CM1E_AXIS_ERROR_TEXT_BYTES];

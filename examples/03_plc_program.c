@@ -36,7 +36,7 @@ typedef enum step {
     STEP_END,
 } step_t;
 
-/* One axis with its blocks, and what is told about it in the end. */
+/* One axis with its blocks, and its results for the end. */
 typedef struct unit {
     AXIS_REF_t axis;
     MC_Power_t power;
@@ -64,7 +64,7 @@ static struct machine {
     int64_t step_begin_ns, end_ns;
     unsigned rounds, resets;
     BOOL homed;
-    WORD refusal; /* ErrorID of a block that a healthy axis refused */
+    WORD refusal; /* ErrorID of a block that an axis without an error refused */
     BOOL fault_raised, fault_handled;
     char power_off[32], power_on[32]; /* lines for the simulated segment */
 } m;
@@ -211,7 +211,7 @@ static void run_step(void)
     }
 }
 
-/* A block that fails on an axis without an error was given something that the axis cannot do. */
+/* A block that fails on an axis without an error had inputs that the axis cannot execute. */
 static WORD refusal_of(const unit_t *u)
 {
     if (u->status.ErrorStop)
@@ -247,7 +247,7 @@ static void watch_unit(unit_t *u)
     if (cm1e_axis_read(u->axis, &info) != CM1E_OK)
         return;
     u->max_velocity = fmax(u->max_velocity, fabs(info.actual_velocity));
-    if (info.state != CM1E_AXIS_HOMING) /* there the drive leads, and gives positions a new zero */
+    if (info.state != CM1E_AXIS_HOMING) /* during homing the drive moves the axis and sets a new zero */
         u->max_lag = fmax(u->max_lag, fabs(info.position_lag));
     if (info.state == CM1E_AXIS_ERROR_STOP && !u->in_error) {
         u->errors++;
@@ -258,7 +258,7 @@ static void watch_unit(unit_t *u)
 }
 
 /* Switches the motor power of one axis off in the middle of a move, and on again before the reset. Only a simulated
- * segment obeys; the lines are those of `cm1e sim`. */
+ * segment can do that; the commands are those of `cm1e sim`. */
 static void play_fault(void)
 {
     char answer[128];
@@ -354,12 +354,12 @@ static cm1e_error_t describe(cm1e_bus_config_t *config, const options_t *options
     return CM1E_OK;
 }
 
-/* The ways differ, the times do not: dynamics in proportion to the way let all axes arrive together. */
+/* The distances differ, the times do not: dynamics in proportion to the distance let all axes arrive together. */
 static void make_unit(unit_t *u, const cm1e_axis_config_t *config, double counts)
 {
     const double counts_per_unit = config->counts_per_unit > 0 ? config->counts_per_unit : 50000;
     const BOOL homes_clockwise = config->homing.method % 2 != 0;
-    const double way = counts / counts_per_unit; /* from the end at which the axis was homed into the free */
+    const double way = counts / counts_per_unit; /* away from the end at which the axis was homed */
     const double target = homes_clockwise == (config->invert ? TRUE : FALSE) ? way : -way;
     const MC_MoveAbsolute_t move = {.Axis = &u->axis, .Velocity = 2 * way, .Acceleration = 16 * way,
                                     .Deceleration = 16 * way, .Jerk = 300 * way};
@@ -475,7 +475,7 @@ static void print_report(void)
         printf("%s\n", s.advice);
 }
 
-/* Whether everything went as it was meant to. */
+/* Whether everything went as intended. */
 static BOOL machine_did_well(void)
 {
     for (uint32_t i = 0; i < m.unit_count; i++)

@@ -1,7 +1,7 @@
 /*
  * Two moves of one axis, one after the other, in all six buffer modes (PLCopen Part 1, 2.4.2): a fast one and then a
  * slow one on the way there, a slow one and then a fast one on the way back. The second command is always given halfway
- * through the first move. What differs is the velocity with which the axis passes the end of the first move: the
+ * through the first move. The modes differ in the velocity with which the axis passes the end of the first move: the
  * program measures and prints it, and `--svg FILE` shows it.
  *
  *     04_buffer_modes -i sim --svg modes.svg

@@ -27,7 +27,7 @@
 
 #define MS INT64_C(1000000)
 
-/* A key begins to repeat after half a second or so, then comes many times a second. */
+/* A key begins to repeat after about half a second, then comes many times a second. */
 static const int64_t first_hold_ns = 700 * MS, next_hold_ns = 150 * MS, dead_ns = 200 * MS;
 
 static example_t example;
@@ -65,7 +65,7 @@ static line_t script[LINES];
 static int lines;
 static bool scripted;
 
-/* The script is played by the time of the cycle, so that it is the same on virtual time. */
+/* The script uses the time of the cycle, so that it is the same on virtual time. */
 static void play(int64_t now_ns)
 {
     static int next;
@@ -81,7 +81,7 @@ static void play(int64_t now_ns)
     atomic_fetch_add(&alive, 1);
 }
 
-/* The panel has shown no sign of life for a while. */
+/* The panel has not responded for a while. */
 static bool panel_is_dead(int64_t now_ns)
 {
     static int alive_before;
@@ -254,6 +254,6 @@ int main(int argc, char **argv)
     if (error == CM1E_OK)
         error = scripted ? example_run(&example, program, &why) : run_with_terminal(&why);
     printf("the axis is at %.3f u\n", (double)atomic_load(&shown_position) / 1000);
-    example.finished = true; /* a panel has no end of its own: Ctrl-C and a closed terminal are as good as q */
+    example.finished = true; /* a panel does not end by itself: Ctrl-C and a closed terminal end it like q */
     return example_end(&example, error, &why, true);
 }

@@ -42,7 +42,7 @@ static BOOL call_steps(void)
     move.Position = places[homing];
     move.Velocity = onto.Velocity = finish.Velocity = fast;
     off.Velocity = slow;
-    onto.SetPosition = NAN; /* too fast to say where the switch is */
+    onto.SetPosition = NAN; /* too fast to measure the position of the switch */
     off.SetPosition = switch_position;
     onto.TimeLimit = off.TimeLimit = at_most;
     onto.DistanceLimit = off.DistanceLimit = 6;
@@ -69,7 +69,8 @@ static void program(void *context)
     if (power.Status && call_steps()) {
         cm1e_axis_read(example.axis, &now);
         if (step == SLOW)
-            changed[homing] = now.set_position - standing_at; /* the axis stands: only its places have other names */
+            changed[homing] = now.set_position - standing_at; /* the axis is at rest: only its positions have other
+                                                               * values */
         step = step == AWAY ? GO : step + 1;
         homing += step == GO;
     }

@@ -16,7 +16,7 @@
 
 enum { AXES = 4, RESTING = 3 };
 
-/* Revolutions from the hard stop, each axis into the free. */
+/* Revolutions from the hard stop, away from it. */
 static const struct {
     const char *name;
     int8_t method; /* 1: hard stop CW, 2: hard stop CCW (BR 6.4.1) */

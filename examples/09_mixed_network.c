@@ -1,8 +1,8 @@
 /*
- * One program for both kinds of motor: a CM1-E, an I/O module of somebody else, and a CM1 and a CM2 behind an EtherCAT
+ * One program for both kinds of motor: a CM1-E, an I/O module of another maker, and a CM1 and a CM2 behind an EtherCAT
  * Cool MUSCLE Bridge. Only the description of the network knows which is which; the blocks and the sequence are the
- * same for every axis. Where a bridge cannot do what a CM1-E can, a block says so in words: the last step asks all
- * axes for their torque, which a bridge does not tell.
+ * same for every axis. If a bridge does not support a function, the block reports that: the last step reads the torque
+ * of all axes, which a bridge does not provide.
  *
  *     09_mixed_network -i sim --svg mixed.svg
  */

@@ -1,8 +1,8 @@
 /*
- * Two rollers that follow a shaft which is none: a virtual axis. The left one gets in step at once, wherever it is
- * (MC_GearIn), the right one so that its 0 degrees meet those of the shaft (MC_GearInPos). A mark on the web would show
- * the left one out of register; MC_PhasingRelative turns it by what is missing, while everything goes on. Then the
- * shaft goes faster, turns round and stops, and both stay with it.
+ * Two rollers that follow a virtual shaft. The left one synchronises at once, wherever it is (MC_GearIn), the right one
+ * so that its 0 degrees meet those of the shaft (MC_GearInPos). A mark on the web would show that the left one is out
+ * of register. MC_PhasingRelative turns it by the remaining offset during the motion. Then the shaft goes faster,
+ * reverses and stops, and both rollers follow it.
  *
  *     10_electronic_gear -i sim --svg gear.svg
  */
@@ -32,7 +32,7 @@ static MC_PhasingRelative_t phasing = {.Master = &axes[SHAFT], .Slave = &axes[LE
                                        .Acceleration = 720, .Deceleration = 720};
 static step_t step;
 static int64_t step_began_ns;
-static LREAL before[AXES], after[AXES], worst[AXES]; /* degrees behind the shaft; what that changes by later on */
+static LREAL before[AXES], after[AXES], worst[AXES]; /* degrees behind the shaft; later change of that angle */
 
 static void describe_network(cm1e_bus_config_t *config)
 {
@@ -48,7 +48,7 @@ static void describe_network(cm1e_bus_config_t *config)
     }
 }
 
-/* How far a roller is behind the shaft, -180 ... 180 degrees, by the set-points of the cycle before. */
+/* Angle of a roller behind the shaft, -180 ... 180 degrees, by the set-points of the cycle before. */
 static LREAL behind(int roller)
 {
     cm1e_axis_info_t shaft, now;
@@ -90,7 +90,7 @@ static void call_blocks(void)
     MC_Halt(&halt);
 }
 
-/* Whatever has an error ends the run: power off, which ramps down what still turns. */
+/* Any error ends the run: power off, which ramps down the axes that still turn. */
 static void watch(void)
 {
     bool failed = example_failed(&example, axes[LEFT], gear_in.Error, gear_in.ErrorID) ||
@@ -126,7 +126,7 @@ static void program(void *context)
                                         "off"};
     (void)context;
     if (step == STEP_PHASING && !phasing.Execute)
-        phasing.PhaseShift = before[LEFT] - before[RIGHT]; /* what is missing to the one in register */
+        phasing.PhaseShift = before[LEFT] - before[RIGHT]; /* the offset to the roller in register */
     call_blocks();
     measure();
     watch();

@@ -1,9 +1,9 @@
 /*
  * A flying shear: it cuts pieces of a moving belt without stopping it. The belt is an encoder, whose counts the program
- * brings (here it makes them itself; in a plant they come from an encoder on the bus). The carriage follows a periodic
- * cam, a turn of which is one piece: it gets up to the speed of the belt, goes with it while the knife cuts, and
+ * writes (here it computes them; in a plant they come from an encoder on the bus). The carriage follows a periodic cam,
+ * a turn of which is one piece: it accelerates to the speed of the belt, moves with it while the knife cuts, and
  * returns. While the belt runs the pieces become longer: another cam takes over between two cuts. The belt changes its
- * speed on the way; the cuts stay where they are.
+ * speed meanwhile; the cuts stay where they are.
  *
  *     11_flying_shear -i sim --svg shear.svg
  */
@@ -14,7 +14,8 @@
 enum { BELT = 0, CARRIAGE, AXES, CAMS = 2, POINTS = 4, CUTS_OF_EACH = 4, COUNTS_PER_MM = 100, MOST_CUTS = 16 };
 typedef enum step { STEP_POWER = 0, STEP_SELECT, STEP_FOLLOW, STEP_OUT, STEP_HALT, STEP_BACK, STEP_OFF } step_t;
 
-/* mm. Up to the speed of the belt on the first 100 mm of it, with it on the next 100 mm, back on what is left. */
+/* mm. The carriage accelerates to the speed of the belt on the first 100 mm, moves with it on the next 100 mm, and
+ * returns on the rest. */
 static const LREAL lengths[CAMS] = {400, 600}, cut_from = 100, cut_to = 200;
 
 static example_t example;
@@ -49,7 +50,7 @@ static void describe_network(cm1e_bus_config_t *config)
 
 static void make_cam(int i)
 {
-    const LREAL sync = cut_from / 2; /* half of the way that the belt goes meanwhile */
+    const LREAL sync = cut_from / 2; /* half of the distance of the belt meanwhile */
     const MC_CAM_POINT p[POINTS] = {
         {0, 0, 0, 0}, {cut_from, sync, 1, 0}, {cut_to, sync + cut_to - cut_from, 1, 0}, {lengths[i], 0, 0, 0},
     };
@@ -61,7 +62,7 @@ static void make_cam(int i)
                               .MasterValueSource = mcActualValue, .BufferMode = i == 0 ? mcAborting : mcBuffered};
 }
 
-/* The belt of this machine: it gets up to 150 mm/s, later to 250, and stops at the end. */
+/* The belt of this machine: it accelerates to 150 mm/s, later to 250, and stops at the end. */
 static void drive_belt(void)
 {
     const double wanted = step == STEP_FOLLOW ? (turns < 2 ? 150 : 250) : 0, most = 0.1; /* mm/s, mm/s in a cycle */
@@ -70,7 +71,7 @@ static void drive_belt(void)
     cm1e_axis_write_encoder(belt, (uint32_t)(int64_t)llround(belt_mm * COUNTS_PER_MM), true);
 }
 
-/* The knife comes down in the middle of the way with the belt. */
+/* The knife comes down in the middle of the motion with the belt. */
 static void cut(void)
 {
     static LREAL position_before;

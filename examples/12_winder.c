@@ -1,8 +1,8 @@
 /*
- * A winder: a wire comes with the speed of a line (a virtual axis), the spool takes it up, and a guide lays it turn
+ * A winder: a wire comes at the speed of a line (a virtual axis), the spool takes it up, and a guide lays it turn
  * beside turn. With every pair of layers the spool gets thicker, and its gear ratio smaller (MC_GearIn with
- * ContinuousUpdate), so that the surface goes on with the speed of the wire. The guide follows the spool, which is the
- * line's slave and the guide's master, by a cam that goes there and back with rounded ends.
+ * ContinuousUpdate), so that the surface keeps the speed of the wire. The guide follows the spool, which is the line's
+ * slave and the guide's master, by a cam that goes there and back with rounded ends.
  *
  *     12_winder -i sim --svg winder.svg
  */
@@ -46,7 +46,7 @@ static void describe_network(cm1e_bus_config_t *config)
     }
 }
 
-/* There and back; between the ends the guide goes by the thickness of the wire in every turn. */
+/* There and back; between the ends the guide moves by the thickness of the wire in every turn. */
 static void make_cam(void)
 {
     const LREAL t = turns_of_layer, r = turns_of_end, s = wire * r / 2, width = wire * (t - r);

@@ -1,7 +1,7 @@
 /*
- * An XY table that goes along an outline: lines and arcs from a small CSV file, with their corners rounded so that the
+ * An XY table that moves along an outline: lines and arcs from a small CSV file, with their corners rounded so that the
  * table need not stop. Two motors are an axes group (PLCopen Part 4); each row of the file is a block of its own,
- * buffered behind the one before. `--outline FILE` draws where the table has been over what was asked for.
+ * buffered behind the one before. `--outline FILE` draws the actual path over the commanded one.
  *
  *     13_xy_table -i sim examples/outline.csv --outline outline.svg
  */
@@ -104,7 +104,7 @@ static cm1e_error_t read_file(cm1e_diag_t *why)
 
 static BOOL row_is_done(const row_t *row) { return row->arc ? row->curve.Done : row->line.Done; }
 
-/* A few rows are ahead of the one under way: enough to know where to slow down. */
+/* A few rows are given ahead of the active one, so that the look-ahead knows where to slow down. */
 static void call_rows(void)
 {
     for (int i = 0; i < row_count; i++) {
