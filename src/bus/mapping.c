@@ -68,7 +68,7 @@ static cm1e_sdo_t *prepare(cm1e_mapping_job_t *job)
     return &job->sdo;
 }
 
-/** The same step for the next PDO, or `next` with the first one. */
+/** Repeats the step for the next PDO, or goes to `next` with the first PDO. */
 static void next_pdo(cm1e_mapping_job_t *job, cm1e_mapping_step_t next)
 {
     if (++job->place < job->choice.count)

@@ -63,7 +63,7 @@ void cm1e_mapping_begin(cm1e_mapping_job_t *job, uint16_t position, const cm1e_p
 static inline bool cm1e_mapping_idle(const cm1e_mapping_job_t *job) { return job->step == MAPPING_IDLE; }
 /** The transfer to begin now; NULL: the job has ended (or it is idle). The last one returned must have ended. */
 cm1e_sdo_t *cm1e_mapping_next(cm1e_mapping_job_t *job);
-/** The same entries at the same places. */
+/** Whether two layouts have equal entries at equal places. */
 bool cm1e_mapping_equal(const cm1e_mapped_direction_t *a, const cm1e_mapped_direction_t *b);
 /** NULL: not mapped at a whole byte with 1 ... 4 whole bytes. */
 const cm1e_mapped_entry_t *cm1e_mapping_find(const cm1e_mapped_direction_t *direction, uint16_t index,

@@ -84,7 +84,7 @@ static cm1e_ec_reference_t reference(cm1e_xml_reader_t *reader, const xmlNode *n
     return (cm1e_ec_reference_t){.place = cm1e_xml_line(node), .text = cm1e_xml_text(reader, node)};
 }
 
-/* So that comparing all with all stays short. */
+/* Limit that keeps the comparison of all pairs short. */
 static bool is_counted(cm1e_xml_reader_t *reader, const xmlNode *node, size_t *count)
 {
     if (node && ++*count > MAX_IN_LIST)

@@ -1,15 +1,13 @@
-/*
- * To a position and a velocity there, in the shortest time. From any state there is one motion that gets to the target
- * velocity soonest. If it ends short of the target, the axis pushes: it goes for the velocity limit in the direction of
- * the target, as fast as it may, and changes at the switching time to the motion that gets to the target velocity
- * soonest. So the switching time is the first root of the reach, which is where the axis then gets to the target
- * velocity. With a target velocity towards the target, or none, the reach never falls. With one that points away from
- * it, the reach falls as long as the axis does not get to more than a standstill in between, and grows from then on, up
- * to a cruise of any length; and if the axis starts in the middle of a fall of the velocity, the reach first grows
- * to a hill. That covers starts with any acceleration, short ways that never bring the acceleration to zero in
- * between, targets that can only be reached by way of an overshoot or a run-up, and starts outside the limits, since
- * both motions come inside on the shortest way.
- */
+/* Plans to a position with a velocity there, in the shortest time. From any state one motion reaches the target
+ * velocity soonest. If that motion ends short of the target, the axis pushes: it accelerates towards the velocity limit
+ * in the direction of the target, and changes at the switching time to the motion that reaches the target velocity
+ * soonest. The position at which it then has the target velocity is called the reach, so the switching time is the
+ * first root of the reach (minus the target). With a target velocity towards the target, or 0, the reach never falls.
+ * With a target velocity away from the target, the reach falls while the axis does not get beyond standstill in
+ * between, and grows afterwards, up to a cruise of any length. If the axis starts while its velocity falls, the reach
+ * first grows to a maximum, the hill. This covers starts with any acceleration, short distances without zero
+ * acceleration in between, targets that need an overshoot or a run-up, and starts outside the limits, because both
+ * motions return inside the limits first. */
 #include "motion/profile.h"
 
 #include <float.h>
@@ -20,24 +18,24 @@
 
 enum { SOLVER_STEPS_MAX = 120, HILL_STEPS = 30 };
 
-/** What the axis pushes for, the piece of the push within which the change to the target velocity begins, and the state
- *  in which that piece is entered. */
+/** The problem: target of the push, the piece of the push in which the change to the target velocity begins, and the
+ *  state at the start of that piece. */
 typedef struct {
     const cm1e_motion_limits_t *limits;
     double start_velocity, start_acceleration, target, target_velocity;
     double per_jerk, per_deceleration; /**< 1 / the limit */
-    bool simple; /**< the change of velocity needs no look at standstill, nor more than limits->velocity */
+    bool simple; /**< the change of velocity crosses neither standstill nor limits->velocity */
     cm1e_piece_t piece;
     double position, velocity;
-    double reached; /**< where the change leads from this state */
+    double reached; /**< end of the change from this state */
 } push_t;
 
-/** Where the axis gets to the target velocity when it begins to change to it after a time of the piece. */
+/** The reach: position at which the axis has the target velocity, if the change begins after a time of the piece. */
 typedef struct {
     double position, slope;
 } reach_t;
 
-/** A step of the position by this part of the way is none. */
+/** A step of the position by this fraction of the distance is ignored. */
 static const double OVERLOOKED = 1e-11;
 
 /** Beyond these the powers and products of the numbers would leave the range of doubles. */
@@ -56,8 +54,8 @@ bool cm1e_motion_is_valid(const cm1e_motion_state_t *start, const cm1e_motion_li
 }
 
 /** Makes the profile out of pieces that were planned mirrored by `sign` and relative to the start. The start and the
- *  end state are taken as they are, not as rounding left them. Refuses pieces that do not lead to the end: the numbers
- *  are then too far apart for doubles. */
+ *  end state are exact, without rounding. Refuses pieces that do not lead to the end: the numbers are then too far
+ *  apart for doubles. */
 static cm1e_error_t build(cm1e_profile_t *profile, const cm1e_motion_state_t *start, const cm1e_pieces_t *pieces,
                           double sign, const cm1e_motion_state_t *end, const cm1e_motion_limits_t *limits)
 {
@@ -65,7 +63,7 @@ static cm1e_error_t build(cm1e_profile_t *profile, const cm1e_motion_state_t *st
     profile->segment_count = pieces->count;
     for (int i = 0; i < pieces->count; i++) {
         const cm1e_piece_t *piece = &pieces->piece[i];
-        if (piece->jerk == 0 && piece->acceleration == 0) /* the cruise may be long: no rounded velocity there */
+        if (piece->jerk == 0 && piece->acceleration == 0) /* the cruise may be long, so its velocity must be exact */
             velocity = i + 1 < pieces->count ? limits->velocity : sign * end->velocity;
         profile->segments[i] = (cm1e_profile_segment_t){
             .start_s = time,
@@ -87,7 +85,7 @@ static cm1e_error_t build(cm1e_profile_t *profile, const cm1e_motion_state_t *st
     return isfinite(time) && isfinite(noise) && fabs(missing) <= noise ? CM1E_OK : CM1E_ERROR_INVALID_ARGUMENT;
 }
 
-/** Valid where the change begins by lowering the acceleration; where it does not, push and change are the same. */
+/** Valid if the change begins by lowering the acceleration; otherwise push and change are equal. */
 static reach_t simple_reach(const push_t *push, double time)
 {
     const double d = push->limits->deceleration, w = push->target_velocity, per_jerk = push->per_jerk;
@@ -98,7 +96,8 @@ static reach_t simple_reach(const push_t *push, double time)
         return (reach_t){state.position + less * push->per_deceleration * ((v + w) / 2),
                          v * (1 + a * push->per_deceleration)};
     }
-    /* The change from (v, a) is the change from (peak, 0) plus the way from (v, a) to there, backwards if a < 0. */
+    /* The change from (v, a) is the change from (peak, 0) plus the distance from (v, a) to there, backwards if a <
+     * 0. */
     const double ramp = a * per_jerk, less = v + a * ramp / 2 - w, edge = d * per_jerk;
     const double mean = w + less / 2;
     double duration, duration_slope;
@@ -147,7 +146,7 @@ static reach_t reach(const push_t *push, double time)
     return push->simple ? simple_reach(push, time) : any_reach(push, time);
 }
 
-/** From which time of the piece on the reach is what reach() says; its duration if nowhere. */
+/** The time of the piece from which on reach() is valid; its duration if never. */
 static double growth_start(const push_t *push)
 {
     const cm1e_piece_t *piece = &push->piece;
@@ -165,8 +164,8 @@ static double growth_start(const push_t *push)
 
 /** The switching time between low and high, where the reach is below and not below the target; `from`: the reach at
  *  low. The reach mostly grows from there on like a power of the time, with an exponent between 1/2 and 4 that changes
- *  on the way: Newton's method on its logarithm comes close from anywhere, Newton's method proper does the rest, and
- *  bisection takes over where that leaves the bracket or its steps do not get shorter. */
+ *  on the way: Newton's method on its logarithm comes close from any start, plain Newton does the rest, and bisection
+ *  takes over if it leaves the bracket or its steps do not get shorter. */
 static double solve(const push_t *push, double low, double from, double high, reach_t at_high)
 {
     const double origin = low, missing = push->target - from;
@@ -204,8 +203,8 @@ static double steepest(const push_t *push, double velocity)
     return jerk * change.piece[0].duration_s;
 }
 
-/** What has the sign of the derivative of the reach where the push has the acceleration -x. It begins to change from a
- *  state that lies on the change from (peak, 0); seen over x this is a parabola, or nearly. */
+/** An expression with the sign of the derivative of the reach, where the push has the acceleration -x. It begins to
+ *  change from a state that lies on the change from (peak, 0); seen over x this is a parabola, or nearly. */
 static double hill_slope(const push_t *push, double at_rest, double x)
 {
     const double peak = at_rest + x * (x / push->limits->jerk);
@@ -234,7 +233,7 @@ static double hill(const push_t *push)
     return (-piece->acceleration - grows) / jerk;
 }
 
-/** When to switch within the piece; a negative number: not in this one. */
+/** The switching time within the piece; negative: not in this piece. */
 static double switching_time(push_t *push, bool first)
 {
     const double end = push->piece.duration_s, grows = growth_start(push), top = first ? hill(push) : 0;
@@ -257,11 +256,11 @@ static double switching_time(push_t *push, bool first)
 }
 
 /** The piece up to the switching time, and the change. With a target velocity towards the target, the reach begins to
- *  grow infinitely fast, from one double to the next by more than can be overlooked: then the one before the target is
- *  taken, and what is missing is gone at target velocity. */
+ *  grow infinitely fast, so that adjacent doubles differ too much. Then the value before the target is taken, and the
+ *  remaining distance is covered at target velocity. */
 static void append_change(cm1e_pieces_t *pieces, const push_t *push, double time)
 {
-    const int count = pieces->count; /* and what the last one is, before another may be merged with it */
+    const int count = pieces->count; /* and the last piece, before another may be merged with it */
     const cm1e_piece_t last = count > 0 ? pieces->piece[count - 1] : (cm1e_piece_t){0, 0, 0};
     const cm1e_piece_t *piece = &push->piece;
     const double w = push->target_velocity;
@@ -344,9 +343,9 @@ cm1e_error_t cm1e_profile_to_state(cm1e_profile_t *profile, const cm1e_motion_st
     const double distance = target_position - start->position;
     const double change = cm1e_pieces_displacement(&pieces, start->velocity);
     double noise = cm1e_motion_noise(start->position, target_position, change);
-    if ((distance - change) * target_velocity < 0) /* too short by that much: nothing to run up anew for */
+    if ((distance - change) * target_velocity < 0) /* too short only by rounding: no run-up */
         noise += CM1E_MOTION_TOO_SHORT * fabs(change);
-    else if (target_velocity != 0) /* as passing velocities leave it */
+    else if (target_velocity != 0) /* tolerance of cm1e_profile_passing_velocity() */
         noise += OVERLOOKED * fabs(change);
     if (fabs(distance - change) <= noise)
         return build(profile, start, &pieces, 1, &end, limits);
@@ -373,6 +372,6 @@ cm1e_error_t cm1e_profile_to_velocity(cm1e_profile_t *profile, const cm1e_motion
     cm1e_pieces_t pieces;
     pieces.count = 0;
     cm1e_pieces_append_velocity_change(&pieces, start->velocity, start->acceleration, velocity, limits);
-    const cm1e_motion_state_t end = {NAN, velocity, 0}; /* wherever it is reached */
+    const cm1e_motion_state_t end = {NAN, velocity, 0}; /* without a target position */
     return build(profile, start, &pieces, 1, &end, limits);
 }

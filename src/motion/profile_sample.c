@@ -3,7 +3,7 @@
 
 #include "motion/profile.h"
 
-/** The last segment is reckoned backwards from the end state: so the profile runs into its end without a step, and a
+/** The last segment is computed backwards from the end state, so the profile reaches its end without a step, and a
  *  decelerating axis cannot pass its target by a rounding error. */
 static cm1e_profile_stretch_t stretch_of(const cm1e_profile_t *profile, int index)
 {
@@ -44,8 +44,8 @@ void cm1e_profile_sample(const cm1e_profile_t *profile, double time_s, cm1e_moti
 
 enum { PLACES = 3 };
 
-/** Where a segment begins, and where it turns: besides its start it can do so where its velocity is zero,
- *  v + a t + j t2 / 2 = 0. In their order; one that it does not have is the one before. */
+/** Where a segment begins, and where it turns: besides its start it can do so where its velocity is zero, v + a t + j
+ *  t2 / 2 = 0. In order; a missing one equals the one before. */
 static void places(const cm1e_profile_t *profile, int index, double position[PLACES])
 {
     const cm1e_profile_segment_t *segment = &profile->segments[index];

@@ -59,7 +59,8 @@ static double start_value(cm1e_table_kind_t kind, const cm1e_motion_state_t *sta
                                          : start->acceleration;
 }
 
-/** Puts the axis before the points. A point at time 0 has to be the axis, or takes its place (acceleration). */
+/** Puts the state of the axis before the points. A point at time 0 must equal that state, or replaces it
+ *  (acceleration). */
 static bool take_points(table_t *table, cm1e_table_kind_t kind, const cm1e_motion_state_t *start,
                         const cm1e_table_point_t *points, int count)
 {
@@ -199,7 +200,7 @@ static cm1e_motion_state_t next(const cm1e_table_knot_t *knot, const cm1e_motion
                                  here->velocity + t * (a + b) / 2, b};
 }
 
-/** Takes one state into the extremes, with an acceleration that grows or shrinks |v|. */
+/** Adds one state to the extremes; the acceleration increases or decreases |v|. */
 static void widen(cm1e_table_extremes_t *extremes, const cm1e_motion_state_t *state, bool grows)
 {
     double *limit = grows ? &extremes->acceleration : &extremes->deceleration;
@@ -209,7 +210,8 @@ static void widen(cm1e_table_extremes_t *extremes, const cm1e_motion_state_t *st
     *limit = fmax(*limit, fabs(state->acceleration));
 }
 
-/** A piece falls into parts where velocity and acceleration keep their signs: there all is monotonic. */
+/** A piece is divided into parts in which velocity and acceleration keep their signs; there all values are
+ *  monotonic. */
 static void widen_by_piece(cm1e_table_extremes_t *extremes, const cm1e_table_knot_t *knot,
                            const cm1e_motion_state_t *here)
 {

@@ -1,7 +1,7 @@
 /*
- * The primitive under every profile: the shortest way from (v, a) to (w, 0).
+ * The primitive of every profile: the fastest change from (v, a) to (w, 0).
  *
- * All functions but the last look at it mirrored so that the velocity has to grow ("up"). The ceiling of the
+ * All functions except the last use it mirrored so that the velocity has to grow ("up"). The ceiling of the
  * acceleration is then the deceleration limit below standstill, where |v| shrinks, and the acceleration limit above it.
  * Where the ceiling falls at standstill, the acceleration has to come down before: it must obey the lower limit when v
  * gets there.
@@ -48,12 +48,12 @@ static void append_rise(cm1e_pieces_t *pieces, double dv, double a, double a_end
     cm1e_pieces_append(pieces, -jerk, peak, (peak - a_end) / jerk);
 }
 
-/** From (v < 0, a >= 0) to (w > 0, 0). */
+/** The change from (v < 0, a >= 0) to (w > 0, 0). */
 static void append_rise_through_zero(cm1e_pieces_t *pieces, double v, double a, double w,
                                      const cm1e_motion_limits_t *limits)
 {
     const double above = limits->acceleration, below = limits->deceleration, jerk = limits->jerk;
-    /* What the acceleration may be at v = 0: within both limits, and not too much to arrive at w. */
+    /* Maximum acceleration at v = 0: within both limits, and low enough to arrive at w. */
     const double lower = fmin(above, below);
     const double allowed = 2 * jerk * w < lower * lower ? sqrt(2 * jerk * w) : lower;
     /* Squares of the acceleration at v = 0 when jerk is applied from now on, upwards and downwards. */
@@ -108,8 +108,8 @@ void cm1e_pieces_append_velocity_change(cm1e_pieces_t *pieces, double velocity, 
         sign = w >= v ? 1 : -1;
         append_up_trapezoid(&up, sign * v, sign * w, limits);
     } else {
-        /* Where the velocity gets to if the acceleration is only brought to zero. Rounding makes no motion: even the
-         * last bits of a velocity, which take the root of their size in time, would move a fast axis by something. */
+        /* The velocity after the acceleration is brought to zero. Rounding must not cause a motion: even the last bits
+         * of a velocity take time (the root of their size), and would move a fast axis noticeably. */
         const double ease = fabs(a) * (a / jerk) / 2, missing = w - v - ease;
         if (fabs(missing) <= 1e-13 * (fabs(v) + fabs(w) + fabs(ease))) {
             cm1e_pieces_append(pieces, a > 0 ? -jerk : jerk, a, fabs(a) / jerk);

@@ -9,7 +9,7 @@ typedef struct device {
     uint8_t switches;
     const char *firmware;
 } device_t;
-/** ... and what the configuration expects. */
+/** The network that the configuration expects. */
 typedef struct expected {
     cm1e_address_kind_t kind;
     uint16_t address;

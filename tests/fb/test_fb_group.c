@@ -308,7 +308,7 @@ START_TEST(test_every_move_behind_every_other_in_every_mode)
 }
 END_TEST
 
-/* The same instance: nothing of its first command is shown any more. */
+/* A new edge of the same instance: its outputs no longer show the first command. */
 START_TEST(test_every_move_triggered_again)
 {
     for (int phase = 1; phase < 700; phase += 43) {

@@ -543,7 +543,7 @@ START_TEST(test_random_buttons)
 }
 END_TEST
 
-/* The same with faults, resets and power that goes: nothing moves that no button moves. */
+/* Random jogs with faults, resets and lost power: nothing moves without a button. */
 START_TEST(test_random_buttons_and_faults)
 {
     static const char *const faults[] = {"lose 1", "lose 2", "lose 30", "power 1 off", "error 1 2310", "error 1 7500",

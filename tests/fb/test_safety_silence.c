@@ -318,7 +318,7 @@ static const variant_t variants[] = {
 };
 enum { VARIANTS = sizeof variants / sizeof variants[0], STRIDE = 47, SAMPLED_STRIDE = 997 };
 
-/** The same motion without a fault shows what the servo does by itself. */
+/** The motion without a fault shows what the servo does by itself. */
 static void run_undisturbed(const variant_t *variant)
 {
     length = 0;

@@ -327,7 +327,7 @@ static void test_a_cam_is_changed_for_another_while_it_runs(void)
     }
 }
 
-/* The same with a cam that goes through the same state: no way at all. */
+/* A cam that passes the present state needs no approach. */
 static void test_a_cam_that_goes_on_where_the_other_is_needs_no_ramp(void)
 {
     axes_begin(2);

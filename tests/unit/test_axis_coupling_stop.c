@@ -283,7 +283,7 @@ static void test_the_ratio_is_kept_on_the_ramp_of_a_master_that_fails(void)
     stands_and_can_be_reset(SLAVE);
 }
 
-/* ... as far as the slave can: a ramp that is too steep for it is left. */
+/* The slave follows only as far as it can: it leaves a ramp that is too steep for it. */
 static void test_a_ramp_that_is_too_steep_is_not_followed(void)
 {
     axes_describe(2);

@@ -133,7 +133,7 @@ static void test_the_motion_before_goes_on_until_start_sync(void)
     meets(later, 20, 9, 1, 8000);
 }
 
-/* ... and from a gear, without a step (the bench watches). */
+/* From a gear, without a step (the bench checks that). */
 static void test_from_one_gear_into_another(void)
 {
     axes_begin(2);

@@ -350,7 +350,7 @@ static void test_what_is_buffered_is_not_kept_waiting(void)
         }
 }
 
-/* The same set-points in every cycle, with and without the option. */
+/* The set-points are equal in every cycle, with and without the option. */
 static void test_a_chain_moves_as_without_it(void)
 {
     enum { CYCLES = 2500 };

@@ -384,7 +384,7 @@ static void test_set_position_moves_nothing_and_keeps_the_lag(void)
     }
 }
 
-/* The same motion with and without: to the count. */
+/* The motion is equal with and without it, to the count. */
 static void test_set_position_in_motion_leaves_the_motion_as_it_is(void)
 {
     enum { CYCLES = 900 };

@@ -308,7 +308,7 @@ static void test_it_goes_on_through_a_change_of_ratio(void)
     }
 }
 
-/* The same by ContinuousUpdate (2.4.6), in every hundredth cycle. */
+/* Changes by ContinuousUpdate (2.4.6), in every hundredth cycle. */
 static void test_it_goes_on_while_the_ratio_is_updated_again_and_again(void)
 {
     axes_move_velocity(MASTER, 6.0);

@@ -84,7 +84,7 @@ static void test_devices_share_groups(void)
     TEST_ASSERT_EQUAL_STRING("odd", text(DEVICE "[4]/GroupType"));
 }
 
-/* The same vendor: as many devices as wanted; modules of the same content are there once. */
+/* With one vendor a file can have any number of devices; modules with equal contents exist once. */
 static void test_several_motors_are_in_one_file(void)
 {
     static const char *const firmwares[] = {"1.2.0", "1.3.5", "1.3.5"};
