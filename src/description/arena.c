@@ -13,7 +13,7 @@ struct cm1e_arena_block {
     _Alignas(ALIGNMENT) uint8_t memory[];
 };
 
-/* Of all arenas: nobody reads what is in it. */
+/* The sink of all arenas: its contents are never read. */
 static _Alignas(ALIGNMENT) _Thread_local uint8_t sink[CM1E_ARENA_SINK];
 
 void cm1e_arena_free(cm1e_arena_t *arena)

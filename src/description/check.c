@@ -5,8 +5,8 @@
 #include "description/check_private.h"
 #include "description/expand.h"
 
-/* Bounds on what a file that means harm can make us do: rounds of choices of modules, and objects and PDO entries in
- * all of them together. A device of hundreds of modules needs a few rounds. */
+/* Limits against malicious files: rounds of choices of modules, and the total of objects and PDO entries in all rounds.
+ * A device with hundreds of modules needs a few rounds. */
 enum { ROUNDS_MAX = 512, WORK_MAX = 4000000 };
 
 void cm1e_check_add(const cm1e_check_t *check, cm1e_rule_t rule, cm1e_place_t place, const char *format, ...)
@@ -60,7 +60,7 @@ static ptrdiff_t find_index(const cm1e_check_key_t *keys, size_t count, uint16_t
 const cm1e_check_entry_t *cm1e_check_find_entry(const cm1e_check_t *check, uint16_t index, uint8_t subindex)
 {
     const uint32_t key = (uint32_t)index << 8 | subindex;
-    /* Of several, the last: a module's takes the place of the device's. */
+    /* The last of several: that of a module replaces that of the device. */
     const size_t behind = cm1e_check_first(check->entries, check->entry_count, sizeof *check->entries, key + 1);
     return behind > 0 && check->entries[behind - 1].key.number == key ? &check->entries[behind - 1] : NULL;
 }
@@ -165,8 +165,8 @@ static void check_flat(cm1e_check_t *check)
 
 /* ---- choices of modules ------------------------------------------------------------------------------------------ */
 
-/* Round 0: what the file chooses by default. Further rounds: every place takes the next alternatives of its slot, until
- * each has had its turn. false: all had. */
+/* Round 0 takes the default modules. In further rounds every place takes the next alternative of its slot, until all
+ * were taken. Returns false when there is none left. */
 static bool choose(const cm1e_description_t *device, unsigned round, uint32_t *idents, size_t places)
 {
     if (round == 0) {
@@ -190,7 +190,7 @@ static bool choose(const cm1e_description_t *device, unsigned round, uint32_t *i
     return more;
 }
 
-/* A module without a dictionary says nothing of the objects that its PDOs and commands name. */
+/* A module without a dictionary cannot be checked for the objects of its PDOs and commands. */
 static void mark_silent(cm1e_check_t *check, const cm1e_description_file_t *file, const cm1e_description_t *device,
                         const uint32_t *idents, size_t places)
 {
@@ -218,7 +218,7 @@ static size_t work_of(const cm1e_description_t *device)
     return work;
 }
 
-/* One choice of modules; returns how much there was to do. */
+/* Checks one choice of modules; returns the amount of work. */
 static size_t check_choice(const cm1e_check_t *of_device, const cm1e_description_file_t *file, const uint32_t *idents,
                            size_t places, bool by_default)
 {
@@ -232,7 +232,7 @@ static size_t check_choice(const cm1e_check_t *of_device, const cm1e_description
     mark_silent(&check, file, of_device->device, idents, places);
     if (!arena.failed)
         check_flat(&check);
-    if (arena.failed && by_default) /* alternatives that nobody has memory for are left out */
+    if (arena.failed && by_default) /* alternatives are skipped if there is no memory */
         check.findings->arena.failed = true;
     const size_t work = work_of(&expanded) + places * file->modules.count;
     cm1e_arena_free(&arena);

@@ -2,8 +2,8 @@
 
 #include "description/check_private.h"
 
-/* What mapping objects (0x1600 ..., 0x1A00 ...), assignment objects (0x1C12, 0x1C13) and start-up commands say of the
- * process data, beside the PDOs. */
+/* Compares mapping objects (0x1600 ..., 0x1A00 ...), assignment objects (0x1C12, 0x1C13) and start-up commands with the
+ * PDOs. */
 
 enum { ASSIGNMENT_BASE = 0x1C10, ROWS_MAX = 254 };
 enum { FIRST_MAPPING = 0x1600, LAST_RX_MAPPING = 0x17FF, FIRST_TX_MAPPING = 0x1A00, LAST_MAPPING = 0x1BFF };
@@ -11,7 +11,7 @@ enum { FIRST_MAPPING = 0x1600, LAST_RX_MAPPING = 0x17FF, FIRST_TX_MAPPING = 0x1A
 /* Rows of a mapping or an assignment object, by default or as start-up commands leave them. */
 typedef struct rows {
     uint32_t at[ROWS_MAX];
-    unsigned count;          /* as stated, whatever there is room for */
+    unsigned count;          /* as stated, may exceed the array */
     cm1e_place_t place;      /* of the count */
     cm1e_place_t places[ROWS_MAX];
     bool given[ROWS_MAX];
@@ -86,7 +86,7 @@ static bool is_same(const cm1e_check_t *check, const mapped_t *pdo, const mapped
     return (pdo->index == row->index || moved) && pdo->subindex == row->subindex;
 }
 
-/* Where the PDO has another length than the object, that is told as PDO_ENTRY_SIZE. */
+/* A PDO entry with another length than its object is reported as PDO_ENTRY_SIZE. */
 static bool is_told_by_size(const cm1e_check_t *check, const mapped_t *pdo, const mapped_t *row)
 {
     const cm1e_check_entry_t *found = cm1e_check_find_entry(check, pdo->index, pdo->subindex);
@@ -210,8 +210,8 @@ static void set_rows(rows_t *rows, const cm1e_init_command_t *command, size_t ro
                 command->place);
 }
 
-/* What is in the object when all commands are through. false: none writes it, or it is left empty for the master to
- * fill. */
+/* Contents of the object after all commands. Returns false if no command writes it, or if it stays empty for the
+ * master. */
 static bool commanded_rows(const cm1e_check_t *check, uint16_t object, size_t row_bytes, size_t first, rows_t *rows)
 {
     const cm1e_description_t *device = check->device;

@@ -2,11 +2,11 @@
 
 #include "description/check_private.h"
 
-/* Who the device says it is: 0x1000 and 0x1018 beside the description's head. */
+/* Compares the identity of the device, 0x1000 and 0x1018, with the head of the description. */
 
 enum { OBJECT_DEVICE_TYPE = 0x1000, OBJECT_IDENTITY = 0x1018, OBJECT_SM_TYPES = 0x1C00, PROFILE_MODULAR = 5001 };
 
-/* A default of 0 is what files write for a value that the device fills in itself. */
+/* Files state the default 0 for a value that the device fills in itself. */
 static bool stated(const cm1e_check_t *check, uint16_t index, uint8_t subindex, uint32_t *value, cm1e_place_t *place)
 {
     return cm1e_check_default(check, index, subindex, value, place) && *value != 0;
@@ -37,8 +37,8 @@ static void check_identity_object(const cm1e_check_t *check)
 }
 
 /* One channel: 0x1000 is its profile with the additional information above it. Several channels have each their own in
- * 0xF010; then 0x1000 has one of their profiles, or that of modular devices (ETG.5001), and what it likes above. With
- * slots that profile is right for one channel, too. */
+ * 0xF010; then 0x1000 has one of their profiles, or that of modular devices (ETG.5001), with any value above it. With
+ * slots that profile is also right for one channel. */
 static void check_device_type(const cm1e_check_t *check)
 {
     const cm1e_description_t *device = check->device;

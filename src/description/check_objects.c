@@ -3,7 +3,7 @@
 
 #include "description/check_private.h"
 
-/* The objects of a dictionary by themselves: what is stated of a sub-index fits to its type and to the rest. */
+/* Checks the objects of a dictionary: the data of a sub-index must fit its type and each other. */
 
 enum { SUBINDEXES = 256 };
 
@@ -28,7 +28,7 @@ static value_kind_t kind_of(const cm1e_described_entry_t *entry)
     }
 }
 
-/* A text may be shorter than its room; what a type of unknown shape needs is not known but for its length. */
+/* A text may be shorter than its size; of an unknown type only the length can be checked. */
 static void check_data_size(const cm1e_check_t *check, const cm1e_described_object_t *object,
                             const cm1e_described_entry_t *entry, const char *what, cm1e_bytes_t data)
 {
@@ -57,7 +57,7 @@ static double real_of(cm1e_bytes_t data)
     return value;
 }
 
-/* Whether a < b; false where that cannot be said. */
+/* Whether a < b; false if they cannot be compared. */
 static bool is_less(value_kind_t kind, cm1e_bytes_t a, cm1e_bytes_t b)
 {
     if (a.size == 0 || a.size != b.size || a.size > sizeof(uint64_t))

@@ -1,8 +1,8 @@
 #include "description/check_private.h"
 
-/* What PDOs map, beside the dictionary; and which of them rule each other out. */
+/* Compares the PDO entries with the dictionary, and checks which PDOs exclude each other. */
 
-/* Below are data types, which stand in mappings for bits that nobody uses (CiA 301, dummy mapping). */
+/* Indexes below are data types, which mappings use for unused bits (CiA 301, dummy mapping). */
 enum { FIRST_OBJECT = 0x1000 };
 
 /* ---- entries ----------------------------------------------------------------------------------------------------- */

@@ -20,7 +20,7 @@ static const char *const use_names[] = {
     [CM1E_SM_MAILBOX_IN] = "the mailbox from the device", [CM1E_SM_OUTPUTS] = "outputs", [CM1E_SM_INPUTS] = "inputs",
 };
 
-/* Bytes that the PDOs of each sync manager have by default; what a file invents beyond all memory is cut there. */
+/* Bytes of the PDOs of each sync manager by default, limited to the memory. */
 static void count_bytes(const cm1e_description_t *device, uint32_t *bytes)
 {
     for (size_t n = 0; n < device->sync_managers.count; n++)
@@ -194,7 +194,8 @@ static uint32_t bytes_of(const cm1e_check_t *check, cm1e_sync_manager_use_t use,
     return sum;
 }
 
-/* A sync manager for outputs (inputs), PDOs for it, and none of them assigned: the device would run without any. */
+/* There is a sync manager for outputs (inputs) and PDOs for it, but none is assigned: the device would run without
+ * them. */
 static void check_carries(const cm1e_check_t *check, bool transmit)
 {
     const cm1e_description_t *device = check->device;

@@ -121,7 +121,7 @@ static int by_offset(const void *left, const void *right)
 
 static const char *name_of(const cm1e_type_item_t *item) { return text_of(item->name); }
 
-/* One item behind the other, none over another's bits, none beyond the end. Gaps are usual: behind sub-index 0, before
+/* Items must be in order, must not overlap, and must not exceed the end. Gaps are usual: behind sub-index 0, before
  * words, in place of sub-indexes that a device does not have. */
 static void check_layout(const cm1e_check_t *check, const cm1e_type_definition_t *type)
 {
@@ -204,7 +204,7 @@ static size_t number_of(const cm1e_check_sorted_types_t *types, const char *name
     return found ? low : SIZE_MAX;
 }
 
-/* Follows what a type is made of, with a stack of its own: how deep that goes is the file's choice. */
+/* Follows the members of a type with its own stack, because the file decides the depth. */
 static void follow(const cm1e_check_t *check, const cm1e_check_sorted_types_t *types, uint8_t *visits, step_t *stack,
                    size_t first)
 {

@@ -32,7 +32,7 @@ static void compare_identity(const comparison_t *c)
                 (unsigned)file->revision, (unsigned)device->revision);
 }
 
-/** As far as both are stated: an ESI may state the begin alone. Bytes `from` ... `to` - 1 do not count. */
+/** Compares what both sides state: an ESI may state only the beginning. Bytes `from` ... `to` - 1 are ignored. */
 static bool same_bytes(cm1e_bytes_t a, cm1e_bytes_t b, size_t from, size_t to)
 {
     for (size_t i = 0; a.data && b.data && i < a.size && i < b.size; i++)
@@ -258,7 +258,7 @@ static void compare_entry(const comparison_t *c, const cm1e_described_object_t *
         DIFFERS(c, DIFFERS_OBJECT, file->place, "%s has %u bits in the file, %u in the device.", what,
                 (unsigned)file->bits, (unsigned)device->bits);
     compare_access(c, what, file, device);
-    /* A variable has the name of its object; rows of mappings are called after what they map, or not at all. */
+    /* A variable has the name of its object; rows of mappings have the name of the mapped object, or none. */
     const bool in_mapping = object->index >= FIRST_MAPPING_OBJECT && object->index <= LAST_MAPPING_OBJECT;
     if (object->code != CM1E_OBJECT_VAR && !in_mapping)
         compare_name(c, file->place, what, file->name, device->name);

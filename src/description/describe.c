@@ -10,7 +10,7 @@ static const char *type_name(cm1e_arena_t *arena, const cm1e_entry_t *entry)
     return cm1e_type_name(arena, (uint16_t)entry->type, entry->bits);
 }
 
-/* A range is worth stating where a value can be written and the type alone would allow more. */
+/* A range is stated if the value can be written and the type would allow more. */
 static bool range_matters(const cm1e_entry_t *entry)
 {
     const bool is_signed =
@@ -28,7 +28,7 @@ void cm1e_describe_range(cm1e_arena_t *arena, cm1e_described_entry_t *described,
     described->comment = cm1e_arena_format(arena, "%" PRId64 " ... %" PRId64, minimum, maximum);
 }
 
-/* What a person should know who writes a value: its range, and what the device makes of it. */
+/* Comment for a user who writes the value: its range, and its rounding. */
 static void describe_range(cm1e_arena_t *arena, cm1e_described_entry_t *described, const cm1e_entry_t *entry)
 {
     cm1e_describe_range(arena, described, entry->minimum, entry->maximum);

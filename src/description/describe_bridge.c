@@ -100,7 +100,7 @@ static void describe_pdos(cm1e_arena_t *arena, cm1e_pdo_list_t *list, const cm1e
         }
 }
 
-/* csp is what a bridge starts in; another one may have been left in it by who used it before. */
+/* A bridge starts in csp, but an earlier master may have left it in another mode. */
 static cm1e_init_command_t *describe_start_mode(cm1e_arena_t *arena, cm1e_init_command_list_t *list, unsigned axis)
 {
     const unsigned index = OBJ_6060_MODES_OF_OPERATION + axis * CM1E_BRIDGE_INDEX_INCREMENT;

@@ -64,7 +64,7 @@ cm1e_init_command_t *cm1e_describe_init_command(cm1e_arena_t *arena, cm1e_init_c
     return command;
 }
 
-/* A master whose user chose other PDOs puts those in place. */
+/* A master replaces them if its user chose other PDOs. */
 static void assign(cm1e_arena_t *arena, cm1e_init_command_list_t *list, bool transmit, unsigned subindex,
                    int64_t value, const char *comment)
 {

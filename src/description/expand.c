@@ -3,7 +3,7 @@
 /* PDO mapping objects move with their PDOs (ETG.5001): 0x1600 ... 0x1BFF. */
 enum { FIRST_MAPPING_OBJECT = 0x1600, LAST_MAPPING_OBJECT = 0x1BFF };
 
-/* How far the slot of a module moves what depends on it. */
+/* Increment of the slot for the parts of a module that depend on it. */
 typedef struct offset {
     uint32_t index, pdo;
 } offset_t;
@@ -48,7 +48,7 @@ static uint32_t default_choice(const cm1e_slot_t *slot)
     return 0;
 }
 
-/* As many of a slot as there must be; a default stands there once even where it need not. */
+/* The minimum number of instances of a slot; a default module is there at least once. */
 void cm1e_description_default_modules(const cm1e_description_t *device, uint32_t *idents, size_t count)
 {
     size_t place = 0;
@@ -120,7 +120,7 @@ void cm1e_description_expand(cm1e_arena_t *arena, cm1e_description_t *expanded, 
 {
     *expanded = *device;
     expanded->slots.at = NULL, expanded->slots.count = 0;
-    /* Lists of their own: appending to those of the device would write behind them. */
+    /* Own lists, because appending to those of the device would write behind their end. */
     COPY_LIST(arena, &expanded->objects, &device->objects, cm1e_described_object_t);
     COPY_LIST(arena, &expanded->pdos, &device->pdos, cm1e_described_pdo_t);
     COPY_LIST(arena, &expanded->init_commands, &device->init_commands, cm1e_init_command_t);

@@ -14,13 +14,13 @@ typedef struct reader {
     size_t size;
     const char *strings[SII_STRINGS_MAX + 1]; /* by number, 1 = first */
     unsigned string_count;
-    bool cut;                 /* the present category is longer than the image: what it lacks is said already */
+    bool cut;                 /* the present category is longer than the image, which is reported already */
     bool has_general;
     bool has_details;         /* details up to those of the mailbox protocols: */
     uint8_t coe, foe, eoe;
 } reader_t;
 
-/* The content of a category as far as the image has it. */
+/* The contents of a category, limited to the image. */
 typedef struct part {
     const uint8_t *bytes;
     size_t size;
@@ -308,7 +308,7 @@ static void read_dc_modes(reader_t *r, const part_t *part)
 static void read_txpdos(reader_t *r, const part_t *part) { read_pdos(r, part, true); }
 static void read_rxpdos(reader_t *r, const part_t *part) { read_pdos(r, part, false); }
 
-/* Strings come first, wherever they stand: the others refer to them. */
+/* Strings are read first, wherever they are, because the other categories refer to them. */
 static const struct {
     uint16_t type;
     const char *name;

@@ -7,8 +7,8 @@
 #include "core/bytes.h"
 #include "description/sii_format.h"
 
-/* The image as it grows; strings are collected first, because their category comes first and others refer to it. What
- * does not fit is counted and not written. */
+/* The image as it grows; strings are collected first, because their category comes first and others refer to it. Data
+ * that does not fit is counted, but not written. */
 typedef struct writer {
     uint8_t *image;
     size_t at, size;
@@ -135,7 +135,7 @@ static unsigned string_number(writer_t *w, const char *text)
     return w->string_count;
 }
 
-/* Distributed clocks that nobody switches on are those of a device without them: the category says nothing then. */
+/* If no mode switches distributed clocks on, the category is omitted, as for a device without them. */
 static bool has_dc_category(const cm1e_description_t *device)
 {
     for (size_t i = 0; i < device->dc_modes.count; i++)

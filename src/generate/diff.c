@@ -24,8 +24,7 @@ static cm1e_error_t not_described(const cm1e_description_t *live, cm1e_diag_t *d
                          "0x%08X", (unsigned)live->vendor_id, (unsigned)live->product_code);
 }
 
-/** The device of that revision; where the file has none, the newest one before it, or the first. NULL: no such
- *  product. */
+/** The device of that revision; otherwise the newest one before it, or the first. NULL: no such product. */
 static const cm1e_description_t *choose(const cm1e_description_file_t *file, const cm1e_description_t *live)
 {
     const cm1e_description_t *best = NULL;
@@ -62,7 +61,7 @@ static void name_revisions(cm1e_findings_t *findings, const cm1e_description_fil
 
 /* ---- modules ---------------------------------------------------------------------------------------------------- */
 
-/** More modules than this to choose from for one slot are not looked at. */
+/** Maximum number of alternative modules of a slot that are compared. */
 enum { CHOICES_MAX = 16 };
 
 typedef struct modular {
@@ -148,7 +147,7 @@ static cm1e_error_t diff_ec_extend(cm1e_findings_t *findings, const void *bytes,
     return error;
 }
 
-/* An ENI is of a whole network: what one of both has behind the last slave that both have. */
+/* An ENI describes a whole network: reports slaves of one side behind the last slave that both have. */
 static void compare_ends(cm1e_findings_t *findings, const cm1e_eni_t *document, uint16_t position, uint32_t slaves)
 {
     const size_t described = document->devices.count;

@@ -116,7 +116,7 @@ static void check_place(cm1e_findings_t *findings, const cm1e_eni_device_t *devi
                           (long long)bit + CM1E_ENI_DATAGRAM_HEADER * 8);
 }
 
-/* A stretch of an image, in bits. */
+/* A range of an image, in bits. */
 typedef struct stretch {
     uint64_t start, end;
     cm1e_place_t place;
@@ -246,7 +246,7 @@ static void check_image(cm1e_findings_t *findings, const cm1e_eni_t *document, b
 
 /* ---- frames ----------------------------------------------------------------------------------------------------- */
 
-/* What one slave adds to the working counter of a logical command. */
+/* Contribution of one slave to the working counter of a logical command. */
 static uint64_t count_of(uint8_t code, bool reads, bool writes)
 {
     if (code == CM1E_ENI_LRW)
@@ -254,7 +254,7 @@ static uint64_t count_of(uint8_t code, bool reads, bool writes)
     return code == CM1E_ENI_LRD ? reads : writes;
 }
 
-/* What all slaves in Operational add. The FMMUs of a slave follow one another in the list. */
+/* Contribution of all slaves in Operational. The FMMUs of a slave are adjacent in the list. */
 static uint64_t expected_count(const cm1e_eni_command_t *command, const fmmu_list_t *fmmus)
 {
     const uint64_t end = (uint64_t)command->address + command->length;

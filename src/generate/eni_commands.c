@@ -65,7 +65,7 @@ static void write_number(maker_t *maker, uint32_t transitions, uint8_t code, uin
     set_number(maker->arena, command, value, size);
 }
 
-/* On the way back a slave may have left already, so that nobody answers. */
+/* On the way back a slave may have left already, so an answer is not required. */
 static void clear(maker_t *maker, uint32_t transitions, uint8_t code, uint16_t reg, size_t size, const char *comment)
 {
     static const uint8_t zeros[64];
@@ -99,9 +99,10 @@ static void request(maker_t *maker, uint32_t transitions, uint8_t code, uint8_t 
         command->count = CM1E_ENI_NOT_GIVEN;
 }
 
-/* Waits for a state. Forward an error indication (bit 4) is no arrival; back it is all the same. A slave with device
- * emulation copies AL control to AL status, also the acknowledge bit, with which Init and Pre-Operational are
- * requested. It has no mailbox, which needs a processor: where there is one, Pre-Operational is checked strictly. */
+/* Waits for a state. On the way up an error indication (bit 4) means failure; on the way back it is ignored. A slave
+ * with device emulation copies AL control to AL status, also the acknowledge bit, with which Init and Pre-Operational
+ * are requested. It has no mailbox, which needs a processor: where there is one, Pre-Operational is checked
+ * strictly. */
 static void await(maker_t *maker, uint32_t transitions, uint8_t code, uint8_t al, bool forward, int32_t timeout_ms,
                   const char *comment)
 {

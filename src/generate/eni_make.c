@@ -270,8 +270,8 @@ static void place_process_data(maker_t *maker, cm1e_eni_device_t *device, uint32
     add_variables(maker, &maker->document->inputs, device, CM1E_SM_INPUTS, bit);
 }
 
-/* The states of all slaves, or-ed together, at the end of every cycle: with this, and the working counters, a master
- * sees that somebody fell out. */
+/* The states of all slaves, or-ed together, at the end of every cycle: with this and the working counters a master
+ * detects that a slave left Operational. */
 static void add_state_check(maker_t *maker, size_t slaves)
 {
     enum { STATE_BYTES = 2 };

@@ -12,7 +12,7 @@ enum { U8 = 0xFF, U16 = 0xFFFF };
 #define S32_LEAST ((int64_t)INT32_MIN)
 #define S32_MOST ((int64_t)INT32_MAX)
 
-/* More than any network or slave can have; the checks count on it. */
+/* Limits above those of any network or slave; the checks rely on them. */
 enum { MAX_DEVICES = 65535, MAX_PDOS = 1024, MAX_ASSIGNED = 255, MAX_CYCLIC_COMMANDS = 4096 };
 
 /* Whether one more may be there. */
@@ -153,7 +153,7 @@ static bool read_range(reader_t *r, const xmlNode *node, cm1e_eni_range_t *range
 
 static cm1e_sync_manager_use_t read_use(reader_t *r, const xmlNode *node)
 {
-    /* "Sm0" is TwinCAT's for one that nothing goes through. */
+    /* TwinCAT writes "Sm0" for a sync manager without data. */
     return (cm1e_sync_manager_use_t)cm1e_word_value(cm1e_words_of_sync_managers,
                                                     cm1e_xml_child_text(r, node, "Type", ""), CM1E_SM_UNUSED);
 }

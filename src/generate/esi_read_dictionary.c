@@ -53,7 +53,7 @@ static uint8_t read_access(cm1e_xml_reader_t *reader, const xmlNode *node)
     return result;
 }
 
-/* A size, a place or a bound, which the checker may add up without fear. */
+/* A size, a place or a bound, limited so that the checker can add them without overflow. */
 static int64_t number_of(cm1e_xml_reader_t *reader, const xmlNode *node, const char *name)
 {
     const int64_t limit = (int64_t)SUBINDEXES << 33;
@@ -187,7 +187,7 @@ static cm1e_bytes_t read_string(dictionary_t *dictionary, const xmlNode *node)
     return (cm1e_bytes_t){(const uint8_t *)text, text ? strlen(text) : 0};
 }
 
-/* Bytes; a single digit is the number that it is. */
+/* Bytes; a single digit is a number. */
 static cm1e_bytes_t read_data(dictionary_t *dictionary, const xmlNode *node)
 {
     const char *text = cm1e_xml_text(dictionary->reader, node);

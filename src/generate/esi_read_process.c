@@ -159,13 +159,13 @@ static void read_dc_modes(cm1e_xml_reader_t *reader, const xmlNode *node, cm1e_d
     }
 }
 
-/* Part of the image of an EEPROM, if it is as long. */
+/* Part of the image of an EEPROM, if the image is long enough. */
 static cm1e_bytes_t part_of(cm1e_bytes_t image, size_t at, size_t size)
 {
     return image.size >= at + size ? (cm1e_bytes_t){image.data + at, size} : (cm1e_bytes_t){0};
 }
 
-/* Either the words that matter, or the image. */
+/* Either the necessary words, or the image. */
 static void read_eeprom(cm1e_xml_reader_t *reader, const xmlNode *node, cm1e_description_t *device)
 {
     const xmlNode *child = cm1e_xml_child(node, "Eeprom");

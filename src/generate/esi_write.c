@@ -272,7 +272,7 @@ static void put_eeprom(cm1e_xml_writer_t *xml, const cm1e_description_t *device)
 
 /* ---- devices and modules ---------------------------------------------------------------------------------------- */
 
-/* All of a kind, or none: the schema wants them together. */
+/* All of a kind or none: the schema requires them together. */
 static bool has_state_timeouts(const cm1e_described_timeouts_t *timeouts)
 {
     return timeouts->preop >= 0 && timeouts->safeop_op >= 0 && timeouts->back_to_init >= 0 &&
@@ -473,7 +473,7 @@ static void put_vendor(cm1e_xml_writer_t *xml, uint32_t id, const char *name)
     cm1e_xml_close(xml);
 }
 
-/* What the schema wants and a description may not have. */
+/* Checks what the schema requires and a description may lack. */
 static cm1e_error_t check(const cm1e_description_file_t *file, cm1e_diag_t *diag)
 {
     for (size_t i = 0; i < file->devices.count; i++) {

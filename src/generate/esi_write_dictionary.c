@@ -63,7 +63,7 @@ static const char *generic_name(cm1e_arena_t *arena, unsigned subindex)
     return cm1e_arena_format(arena, "SubIndex %03u", subindex);
 }
 
-/* An array type has one item for all elements: no place for what only one of them is called or measured in. */
+/* An array type has one item for all elements, so it has no place for a name or unit of a single element. */
 static bool is_array(cm1e_arena_t *arena, const cm1e_described_object_t *object)
 {
     if (object->code != CM1E_OBJECT_ARRAY || object->entries.count < 2 || object->entries.at[0].subindex != 0)
@@ -130,14 +130,14 @@ static int compare_numbers(int64_t a, int64_t b)
     return (a > b) - (a < b);
 }
 
-/* Beside an item's Name, where that is not what the sub-index is called. */
+/* Written in addition to the Name of an item, if the sub-index has another name. */
 static const char *display_name(const definition_t *definition, size_t item)
 {
     const char *name = definition->object->entries.at[item].name;
     return is_given(name) && strcmp(name, definition->item_names[item]) != 0 ? name : "";
 }
 
-/* By what will be written: what is read again later must have the same shapes. */
+/* Compares by the written form, because a file that is read again must give the same shapes. */
 static int compare_items(const definition_t *a, const definition_t *b, size_t item)
 {
     const cm1e_described_entry_t *left = &a->object->entries.at[item], *right = &b->object->entries.at[item];

@@ -75,7 +75,7 @@ static cm1e_error_t describe_all(cm1e_description_file_t *described, const cm1e_
     const bool is_esi = options->format == CM1E_FILE_ESI;
     for (size_t i = 0; i < count && error == CM1E_OK; i++) {
         cm1e_device_options_t device = devices[i];
-        if (is_esi) /* it speaks of all devices of a kind: the alias of the one that was read is not theirs */
+        if (is_esi) /* the file describes all devices of a kind, so the alias of one device is not used */
             memset(device.config_data + CM1E_SII_ALIAS, 0, 2);
         error = cm1e_describe(described, &device, is_esi ? options->layout : CM1E_ESI_FLAT, diag);
     }
@@ -124,9 +124,9 @@ static cm1e_error_t generate_ec_extend(cm1e_file_t *file, const cm1e_generate_op
 
 /* ---- ENI of a configuration ------------------------------------------------------------------------------------- */
 
-/* A slave of the network: an axis, or the bridge that up to four of them stand behind. */
+/* A slave of the network: an axis, or a bridge with up to four axes. */
 typedef struct node {
-    const cm1e_axis_config_t *axis;       /* the first of them; NULL: nothing is known to stand there */
+    const cm1e_axis_config_t *axis;       /* its first axis; NULL: no axis is known there */
     const char *motors[CM1E_BRIDGE_AXES]; /* as configured, "": any */
     char name[CM1E_SLAVE_NAME];
 } node_t;
@@ -138,8 +138,8 @@ static bool is_behind(const node_t *node, const cm1e_axis_config_t *axis)
            node->axis->address == axis->address;
 }
 
-/* Place on the wire (0 = first) of the slave of an axis, `count` are known before it; where the configuration does not
- * say, one that there is not. */
+/* Place on the wire (0 = first) of the slave of an axis, if `count` slaves are known before it. If the configuration
+ * does not state it, the result is an invalid place. */
 static uint32_t place_of(const cm1e_bus_config_t *network, uint32_t axis, const node_t *nodes, uint32_t count)
 {
     const cm1e_axis_config_t *config = &network->axes[axis];
@@ -184,7 +184,7 @@ static cm1e_error_t find_nodes(node_t *nodes, uint32_t *count, const cm1e_bus_co
     return CM1E_OK;
 }
 
-/* The bridge's guide states no identity: it has to be one of those that the user states. */
+/* The guide of the bridge states no identity, so the user must state it. */
 static cm1e_error_t describe_bridge(cm1e_description_file_t *described, const node_t *node,
                                     const cm1e_generate_options_t *options, cm1e_diag_t *diag)
 {
@@ -236,7 +236,8 @@ static cm1e_error_t describe_nodes(cm1e_eni_slave_t *slaves, cm1e_description_fi
     cm1e_error_t error = CM1E_OK;
     for (uint32_t i = 0; i < count && error == CM1E_OK; i++)
         error = describe_node(described, &nodes[i], options, diag);
-    for (uint32_t i = 0; i < count && error == CM1E_OK; i++) { /* only now: the list of devices moved while it grew */
+    for (uint32_t i = 0; i < count && error == CM1E_OK; i++) { /* set at the end, because the list of devices moves
+                                                                * while it grows */
         const cm1e_axis_config_t *config = nodes[i].axis;
         slaves[i] = (cm1e_eni_slave_t){.device = &described->devices.at[i], .name = nodes[i].name,
                                        .alias = config->address_kind == CM1E_ADDRESS_ALIAS ? config->address : 0};

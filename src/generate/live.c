@@ -21,7 +21,7 @@ typedef struct live {
     cm1e_diag_t *diag;
 } live_t;
 
-/** A refusal concerns one object; everything else would concern the next one, too. */
+/** A refusal concerns one object; every other error would repeat for the next one. */
 static bool goes_on(cm1e_error_t error) { return error == CM1E_OK || error == CM1E_ERROR_SDO_ABORT; }
 
 /* ---- SII -------------------------------------------------------------------------------------------------------- */
@@ -207,8 +207,8 @@ static bool is_mapping(uint16_t index)
     return (index >= RXPDO_FIRST && index <= RXPDO_LAST) || (index >= TXPDO_FIRST && index <= TXPDO_LAST);
 }
 
-/** The mapping objects in place of the SII's PDOs: what the device does, not what it promises. Which there are, the
- *  dictionary says, or the SII where the device does not tell its dictionary. */
+/** Reads the mapping objects instead of the PDOs of the SII, because the device uses them. The dictionary lists them;
+ *  without a dictionary the SII does. */
 static cm1e_error_t describe_pdos(live_t *live)
 {
     const cm1e_description_t *device = live->device;

@@ -8,8 +8,8 @@
 #include "generate/file.h"
 #include "generate/live.h"
 
-/* What the tables say of a CM1-E of this firmware with the chosen mapping, or of a bridge of this model: start-up
- * commands, sync managers, PDOs. */
+/* The description from the tables of a CM1-E of this firmware with the chosen mapping, or of a bridge of this model:
+ * start-up commands, sync managers, PDOs. */
 static cm1e_error_t describe_by_tables(cm1e_description_file_t *file, const cm1e_slave_info_t *slave,
                                        cm1e_mapping_t mapping, cm1e_diag_t *diag)
 {
@@ -27,7 +27,8 @@ static cm1e_error_t describe_by_tables(cm1e_description_file_t *file, const cm1e
     return cm1e_describe(file, &options, CM1E_ESI_FLAT, diag);
 }
 
-/* The tables know it. The guide states no identity of a bridge: one with zeros in it goes by its SII. */
+/* Whether the tables describe the slave. The guide states no identity of a bridge, so a bridge with zeros in its
+ * identity is described by its SII. */
 static bool is_in_tables(const cm1e_slave_info_t *slave)
 {
     return slave->is_cm1e || (slave->is_bridge && cm1e_bridge_name(slave->model) && slave->vendor_id &&
@@ -64,7 +65,7 @@ static cm1e_described_pdo_entry_t named(const cm1e_described_pdo_entry_t *live, 
     return *live;
 }
 
-/* The manual has two orders of the objects in the mappings, so the device's own counts. */
+/* The manual has two orders of the objects in the mappings, so the order of the device is used. */
 static void take_mappings(cm1e_arena_t *arena, cm1e_description_t *device, const cm1e_description_t *live)
 {
     for (size_t i = 0; i < device->pdos.count; i++) {
@@ -83,7 +84,7 @@ static void take_mappings(cm1e_arena_t *arena, cm1e_description_t *device, const
     device->revision = live->revision;
 }
 
-/* Which protocols its mailbox speaks, and whether it has one in Bootstrap, is the device's own word too. */
+/* The device also states the protocols of its mailbox, and whether it has one in Bootstrap. */
 static void take_mailbox(cm1e_description_t *device, const cm1e_description_t *live)
 {
     cm1e_mailbox_protocols_t *mailbox = &device->mailbox;
@@ -96,7 +97,8 @@ static void take_mailbox(cm1e_description_t *device, const cm1e_description_t *l
     device->eeprom.bootstrap = live->eeprom.bootstrap;
 }
 
-/* Appends what stands at `position`: a CM1-E with the chosen mapping, a bridge, another device as its SII has it. */
+/* Appends the slave at `position`: a CM1-E with the chosen mapping, a bridge, or another device described by its
+ * SII. */
 static cm1e_error_t describe_slave(cm1e_description_file_t *file, cm1e_bus_t *bus, const cm1e_slave_info_t *slave,
                                    cm1e_mapping_t mapping, cm1e_findings_t *findings, cm1e_diag_t *diag)
 {
@@ -140,7 +142,7 @@ cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_m
     }
     if (error == CM1E_OK && described.arena.failed)
         error = cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
-    /* Only now: the list of devices moved while it grew. */
+    /* Set at the end, because the list of devices moves while it grows. */
     for (uint32_t i = 0; error == CM1E_OK && i < count; i++)
         slaves[i].device = &described.devices.at[i];
     if (error == CM1E_OK)

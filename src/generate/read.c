@@ -65,7 +65,8 @@ static bool is_utf16(const uint8_t *bytes, size_t size)
     return size >= 2 && ((bytes[0] == 0xFF && bytes[1] == 0xFE) || (bytes[0] == 0xFE && bytes[1] == 0xFF));
 }
 
-/* No text (which has no zeros), and its checksum or its size and version words say that it is an image. */
+/* An image is not a text (it contains zeros), and its checksum, or its size and version words, are those of an
+ * image. */
 static bool looks_like_sii(const uint8_t *bytes, size_t size)
 {
     if (size < CM1E_SII_HEADER_BYTES || size % 2 != 0 || is_utf16(bytes, size) ||

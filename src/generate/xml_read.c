@@ -15,7 +15,7 @@
 static const char bom[] = "\xEF\xBB\xBF";
 enum { MAX_DEPTH = 100, MAX_TAG_BYTES = 65536, LONGEST_NUMBER = 64 };
 
-/* What stops the parser from outside XML's own rules. */
+/* Limits of the parser beyond the rules of XML. */
 typedef struct guard {
     size_t parts;        /* elements, attributes, comments so far */
     const char *refused; /* why, NULL: not refused */
@@ -48,7 +48,7 @@ static bool count_parts(xmlParserCtxt *context, size_t parts)
     return false;
 }
 
-/* A DTD is where entities come from, and external files; none of the formats has one. */
+/* A DTD can define entities and external files; none of the formats has one. */
 static void on_dtd(void *context, const xmlChar *name, const xmlChar *external, const xmlChar *system)
 {
     (void)name, (void)external, (void)system;
@@ -82,7 +82,7 @@ static void on_instruction(void *context, const xmlChar *target, const xmlChar *
         xmlSAX2ProcessingInstruction(context, target, text);
 }
 
-/* libxml2 reports some errors of encodings to nobody in particular, which would print them. */
+/* libxml2 reports some errors of encodings without a parser, which would print them. */
 static void on_error(void *context, xmlError *error)
 {
     (void)context, (void)error;
@@ -299,7 +299,7 @@ static const char *kept(cm1e_xml_reader_t *reader, xmlChar *content)
     return copied ? copy : "";
 }
 
-/* Takes the content over; what is too long for a number is cut so that it is none. */
+/* Takes over the contents; a text that is too long for a number is cut, so that it is not a number. */
 static const char *word(char text[LONGEST_NUMBER], xmlChar *content)
 {
     size_t length;
