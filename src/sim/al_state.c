@@ -96,12 +96,12 @@ static void enter(cm1e_sim_slave_t *slave, uint8_t state)
         else
             cm1e_sim_mailbox_start(slave);
     }
-    /* A watchdog that ran out before counts from now. */
+    /* A watchdog that has expired starts anew. */
     if (state == CM1E_AL_OP)
         cm1e_sim_al_watchdog_trigger(slave);
 }
 
-/* ETG.1000.6 table 9: what may follow what, and what must be in order before. */
+/* ETG.1000.6 table 9: the allowed transitions, and their conditions. */
 static const struct transition {
     uint8_t from, to;
     uint16_t (*check)(cm1e_sim_slave_t *slave);
@@ -168,8 +168,8 @@ static bool emulates_device(const cm1e_sim_slave_t *slave)
     return slave->memory[ESC_PDI_CONTROL + 1] & DEVICE_EMULATION;
 }
 
-/* A slave without a processor: its controller copies what AL control has to AL status at once, also an acknowledgement
- * (which then reads as an error) and a state that there is not. Nothing is checked, and there is no AL status code. */
+/* A slave without a processor: its controller copies AL control to AL status at once, also an acknowledgement (which
+ * then reads as an error) and an unknown state. Nothing is checked, and there is no AL status code. */
 static void emulate_device(cm1e_sim_slave_t *slave, uint16_t request)
 {
     const uint8_t to = request & STATE;
@@ -197,7 +197,7 @@ void cm1e_sim_al_power_on(cm1e_sim_slave_t *slave)
 void cm1e_sim_al_control(cm1e_sim_slave_t *slave)
 {
     const uint16_t request = cm1e_get_u16(slave->memory + ESC_AL_CONTROL);
-    /* Without a valid SII the slave's processor does not run: nobody reads the request. */
+    /* Without a valid SII the slave's processor does not run, so no one reads the request. */
     if (!slave->sii_valid || (slave->al_due_ns != ESC_NEVER && request == slave->al_request))
         return;
     if (emulates_device(slave)) {
@@ -227,7 +227,7 @@ void cm1e_sim_al_due(cm1e_sim_slave_t *slave)
 void cm1e_sim_slave_fall_back(cm1e_sim_slave_t *slave, uint8_t al_state, uint16_t al_status_code)
 {
     if (slave->changing_state || emulates_device(slave))
-        return; /* the application says so by its answer; with device emulation AL status is the master's alone */
+        return; /* the answer of the application decides; with device emulation only the master sets AL status */
     slave->al_due_ns = ESC_NEVER;
     if (al_state < slave->al_state && find_transition(slave->al_state, al_state)) {
         ask_application(slave, al_state);

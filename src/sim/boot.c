@@ -5,7 +5,7 @@
 #include "sim/cm1e_app.h"
 #include "sim/esc.h"
 
-/* An image and the device that is to boot from it, which has one of its own from the tables. */
+/* An image, and the device that boots from it instead of its own image from the tables. */
 typedef struct boot {
     uint32_t position;
     cm1e_sim_slave_t *slave;
@@ -42,7 +42,7 @@ static bool check_identity(const boot_t *boot)
 
 static bool is_mailbox(cm1e_sync_manager_use_t use) { return use == CM1E_SM_MAILBOX_OUT || use == CM1E_SM_MAILBOX_IN; }
 
-/* Where the buffers lie is the image's affair, what they are for is not. */
+/* The image defines the place of the buffers, but not their purpose. */
 static bool check_sync_managers(const boot_t *boot)
 {
     const cm1e_description_t *image = boot->image, *device = boot->device;
@@ -66,8 +66,8 @@ static bool same_entry(const cm1e_described_pdo_entry_t *left, const cm1e_descri
     return left->index == right->index && left->subindex == right->subindex && left->bits == right->bits;
 }
 
-/* Which PDOs a sync manager carries by default is the image's affair too: the device's own default is that of its
- * objects 0x1C12 and 0x1C13, and a master assigns or reads them. */
+/* The image also defines the default PDOs of a sync manager. The default of the device is that of its objects 0x1C12
+ * and 0x1C13, which a master writes or reads. */
 static bool check_pdo(const boot_t *boot, const cm1e_described_pdo_t *pdo)
 {
     const cm1e_described_pdo_t *own = cm1e_description_pdo(boot->device, pdo->index);
@@ -95,7 +95,7 @@ static bool fits(const boot_t *boot)
     return good;
 }
 
-/* What a file lacks behind its end is empty cells. */
+/* Cells behind the end of the file are empty. */
 static cm1e_error_t take_image(const boot_t *boot, const uint8_t *image, size_t size)
 {
     const size_t stated = boot->image->eeprom.byte_size, bytes = size > stated ? size : stated;

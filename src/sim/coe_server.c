@@ -27,7 +27,7 @@ uint16_t cm1e_sim_coe_request(cm1e_sim_slave_t *slave, const uint8_t *request, s
     if (room > sizeof answer->data)
         room = sizeof answer->data;
     answer->type = MAILBOX_TYPE_COE;
-    /* Any request ends a list under way. */
+    /* Any request ends an unfinished list. */
     slave->coe.list_type = 0;
     switch (cm1e_get_u16(request) >> SERVICE_SHIFT) {
     case SERVICE_SDO_REQUEST:

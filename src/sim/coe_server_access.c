@@ -47,7 +47,7 @@ static uint32_t read_highest_subindex(cm1e_sim_slave_t *slave, uint16_t index, u
     return abort;
 }
 
-/* What cannot be read, although the object as a whole can, reads as zero. */
+/* An entry that cannot be read, in an object that can, reads as zero. */
 static bool reads_as_zero(uint32_t abort, unsigned subindex)
 {
     return abort == SDO_ABORT_WRITE_ONLY ||
@@ -102,7 +102,7 @@ static uint32_t write_entries(cm1e_sim_slave_t *slave, uint16_t index, unsigned 
         if (bytes > size - at)
             return SDO_ABORT_TYPE_LENGTH;
         const uint32_t abort = write_entry(slave, index, (uint8_t)sub, data + at, bytes);
-        /* Read-only entries in between may be written with what they hold. */
+        /* Read-only entries in between may be written with their present values. */
         if (abort && (abort != SDO_ABORT_READ_ONLY || !same_as_present(slave, index, (uint8_t)sub, data + at, bytes)))
             return abort;
         at += bytes;
@@ -127,7 +127,7 @@ static uint32_t write_complete(cm1e_sim_slave_t *slave, uint16_t index, uint8_t 
     if (subindex == 0) {
         if (size < SUBINDEX_0_BYTES)
             return SDO_ABORT_TYPE_LENGTH;
-        /* The number of entries becomes 0 first and what it shall be last, as for single access to an assignment. */
+        /* The number of entries is set to 0 first and to its new value last, as for single access to an assignment. */
         const uint8_t none = 0;
         if (count_writable) {
             last = data[0];

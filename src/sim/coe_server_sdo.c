@@ -46,7 +46,7 @@ static void answer_begin(sdo_t *sdo, uint8_t command)
     sdo->answer->length = MESSAGE_BYTES;
 }
 
-/* An abort travels as a request, and its command byte is 0x80 and nothing else: masters look for exactly that. */
+/* An abort is sent as a request, and its command byte is exactly 0x80, which masters expect. */
 static void answer_abort(sdo_t *sdo, uint32_t code)
 {
     sdo->coe->transfer = COE_TRANSFER_NONE;

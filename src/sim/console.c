@@ -108,7 +108,7 @@ static const char *al_state_name(uint8_t state)
     }
 }
 
-/* The state, and why the slave is not where the master wants it. */
+/* The state, and the reason if it is not the requested one. */
 static void say_al(call_t *call, cm1e_sim_slave_t *slave)
 {
     say(call, "%s", al_state_name(cm1e_sim_slave_al_state(slave)));
@@ -224,7 +224,7 @@ static cm1e_error_t run_switches(call_t *call)
     return CM1E_OK;
 }
 
-/* The n-th argument is the input, the next one what becomes of it. */
+/* The n-th argument is the input, the next one its new state. */
 static cm1e_error_t hold_input(call_t *call, cm1e_sim_sensors_t *sensors, int n, long least, long most)
 {
     static const char *const words[] = {"off", "on", "auto", NULL};

@@ -17,7 +17,7 @@ typedef struct command {
     uint8_t addressing, access;
 } command_t;
 
-/* By number; no access: the slave lets the datagram pass. */
+/* By number. Without an access the slave passes the datagram on. */
 static const command_t commands[] = {
     [1] = {BY_POSITION, READS},              /* APRD */
     [2] = {BY_POSITION, WRITES},             /* APWR */

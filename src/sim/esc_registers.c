@@ -8,7 +8,7 @@ typedef struct range {
     uint16_t first, last;
 } range_t;
 
-/* What the master may write; everything else of the register space is read-only for it or reserved. */
+/* Registers that the master may write; all others are read-only or reserved. */
 static const range_t writable_ranges[] = {
     {0x0010, 0x0011}, {0x0100, 0x0103}, {0x0120, 0x0121}, {0x0200, 0x0201}, {0x0300, 0x030D}, {0x0310, 0x0313},
     {0x0400, 0x0401}, {0x0410, 0x0411}, {0x0420, 0x0421}, {0x0442, 0x0443}, {0x0500, 0x0500}, {0x0502, 0x050F},
@@ -65,7 +65,7 @@ static void sync_managers_written(cm1e_sim_slave_t *slave)
     cm1e_sim_mailbox_repeat(slave);
 }
 
-/* What a write into a range sets off, in the order of execution. */
+/* Actions of a write into a range, in the order of execution. */
 static const struct effect {
     uint16_t first, last;
     void (*act)(cm1e_sim_slave_t *slave);
@@ -99,7 +99,7 @@ bool cm1e_sim_esc_registers_write(cm1e_sim_slave_t *slave, uint16_t address, con
         cm1e_sim_esc_dc_received(slave, data);
         return true;
     }
-    /* Bytes that the write itself makes writable are not: what counts is the state before the frame. */
+    /* Bytes that the write itself would make writable are not written: the state before the frame counts. */
     bool any = false, sii_writable = cm1e_sim_esc_sii_writable(slave);
     uint8_t before[ESC_REGISTER_BYTES / 8] = {0};
     for (size_t i = 0; i < length; i++)

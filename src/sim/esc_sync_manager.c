@@ -56,14 +56,14 @@ void cm1e_sim_esc_sm_decode(cm1e_sim_slave_t *slave, unsigned number)
     const esc_sync_manager_t before = *sm;
     sm->start = cm1e_get_u16(r + AT_START);
     sm->length = cm1e_get_u16(r + AT_LENGTH);
-    /* One that does not lie in the RAM has nothing to guard. */
+    /* A sync manager outside of the RAM guards nothing. */
     sm->active = (r[AT_ACTIVATE] & 0x01) && sm->length > 0 && sm->start >= ESC_REGISTER_BYTES &&
                  (uint32_t)sm->start + sm->length <= ESC_MEMORY_BYTES;
     sm->mailbox = (r[AT_CONTROL] & CONTROL_MODE) == MODE_MAILBOX;
     sm->master_writes = (r[AT_CONTROL] & CONTROL_DIRECTION) == DIRECTION_WRITE;
     sm->triggers_watchdog = (r[AT_CONTROL] & CONTROL_WATCHDOG) != 0;
     sm->locked = (r[AT_PDI] & 0x01) != 0;
-    /* Nothing but the activate bit can change while the sync manager is on. */
+    /* Only the activate bit can change while the sync manager is on. */
     if (before.active != sm->active || before.locked != sm->locked)
         reset_buffers(slave, sm);
 }
@@ -104,7 +104,7 @@ size_t cm1e_sim_esc_sm_span(cm1e_sim_slave_t *slave, uint32_t address, uint32_t 
     return end - address;
 }
 
-/* Fresh inputs, once for a frame, and not until somebody reads them. */
+/* Fresh inputs are made once for a frame, and only when they are read. */
 static void refresh_inputs(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm)
 {
     if (sm->role != ESC_ROLE_INPUTS || !slave->inputs_stale || slave->al_state < CM1E_AL_SAFE_OP || !slave->ops->inputs)

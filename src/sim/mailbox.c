@@ -32,7 +32,7 @@ void cm1e_sim_mailbox_stop(cm1e_sim_slave_t *slave)
     cm1e_sim_coe_reset(slave);
 }
 
-/* Where the master's repeat request and our acknowledgement of it stand. */
+/* Bits of the master's repeat request and of its acknowledgement. */
 static uint8_t *repeat_registers(cm1e_sim_slave_t *slave)
 {
     const esc_sync_manager_t *sm = cm1e_sim_esc_sm(slave, ESC_ROLE_MAILBOX_IN);
@@ -229,7 +229,7 @@ void cm1e_sim_mailbox_due(cm1e_sim_slave_t *slave)
             slave->mailbox_due_ns = mailbox->request_due_ns;
         }
     }
-    /* A list goes on where no new request ends it. */
+    /* A list continues unless a new request ends it. */
     if (!in->full && !out->full && mailbox->answer.length == 0 &&
         cm1e_sim_coe_next_fragment(slave, &mailbox->answer, room))
         load_next(slave, in);

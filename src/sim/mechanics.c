@@ -24,7 +24,7 @@ void cm1e_mechanics_init(cm1e_mechanics_t *mechanics, const cm1e_sim_axis_config
     };
 }
 
-/* Friction takes at most the velocity that is there: it stops a shaft and holds it, but never turns it round. */
+/* Friction removes at most the present velocity: it stops and holds a shaft, but never reverses it. */
 static double with_friction(double velocity, double most)
 {
     if (velocity > most)
@@ -46,7 +46,7 @@ void cm1e_mechanics_step(cm1e_mechanics_t *m, double torque, double step_s)
 
     const double before = m->position;
     double position = before + velocity * step_s;
-    /* A stop is rigid and swallows the impact: the shaft stands at it until something pulls it away. */
+    /* A stop is rigid and absorbs the impact: the shaft stays there until a torque moves it away. */
     if (position > m->stop_positive) {
         position = m->stop_positive;
         velocity = velocity > 0 ? 0 : velocity;

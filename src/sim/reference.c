@@ -26,7 +26,7 @@ bool cm1e_sim_move_step(cm1e_servo_t *servo, double target, double velocity, dou
         return true;
     }
     /* The velocity from which steps of `most` end at the target, from v^2 / 2a + v step / 2 = distance. The last step
-     * is cut to what is left where that is nearly what it would be anyway. */
+     * is cut to the remaining distance, if it is nearly equal. */
     const double stopping = sqrt(most * most / 4 + 2 * acceleration * fabs(distance)) - most / 2;
     const double fastest = fmin(stopping, velocity), last = distance / step_s;
     cm1e_sim_ramp(&servo->reference_velocity, distance < 0 ? -fastest : fastest, acceleration, step_s);
@@ -45,7 +45,7 @@ void cm1e_sim_line_begin(cm1e_sim_line_t *line, cm1e_servo_t *servo, double goal
 }
 
 /* A straight line from the last target to the new one, on a time base of the drive's own that follows the outputs
- * slowly: without SYNC0 they come a little early or late, and the motor is not to feel it. */
+ * slowly: without SYNC0 they come a little early or late, and the motor should not feel it. */
 void cm1e_sim_line_target(cm1e_sim_line_t *line, double goal, double cycle_s)
 {
     const double late_s = line->slot_s - cycle_s;
@@ -54,7 +54,7 @@ void cm1e_sim_line_target(cm1e_sim_line_t *line, double goal, double cycle_s)
     line->goal = goal;
 }
 
-/* The line goes on for a while where the next target is late; then the motor stands at the last one. */
+/* If the next target is late, the line continues for a while; then the motor stops at the last target. */
 void cm1e_sim_line_step(cm1e_sim_line_t *line, cm1e_servo_t *servo, double cycle_s, double step_s)
 {
     line->slot_s += step_s;

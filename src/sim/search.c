@@ -8,7 +8,7 @@
 #define STALL_TIME_S 0.03           /* so long at the torque limit means a hard stop */
 #define IN_POSITION 0.3             /* counts */
 #define SETTLED_VELOCITY 20.0       /* counts/s */
-#define SETTLED_TIME_S 0.03         /* since the reference arrived: no master misses that a search was under way */
+#define SETTLED_TIME_S 0.03         /* time since the reference arrived, so that every master sees that a search ran */
 #define SETTLE_TIME_S 0.5           /* a move ends after this, in position or not */
 
 typedef const cm1e_sim_searcher_t motor_t;
@@ -76,7 +76,7 @@ static cm1e_sim_search_phase_t search_stop(cm1e_sim_search_t *search, motor_t *m
     return SEARCH_APPROACH;
 }
 
-/* TRUE: there, and standing; this place is 0 now, to the count. */
+/* Returns true when the motor is at rest there; this place is then exactly 0. */
 static bool move(cm1e_sim_search_t *search, motor_t *motor, double step_s)
 {
     const cm1e_mechanics_t *mechanics = motor->mechanics;

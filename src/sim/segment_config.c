@@ -5,13 +5,13 @@
 
 enum { EXPLICIT_ID_MAX = 254 };
 
-/* What stands at one place: a CM1-E, which is one axis, or a bridge with up to four. Empty: no motor. */
+/* One place: a CM1-E, which is one axis, or a bridge with up to four. Empty: no motor. */
 typedef struct place {
     const cm1e_axis_config_t *axis;                        /* the first of the list */
     const cm1e_axis_config_t *channels[CM1E_BRIDGE_AXES];  /* behind a bridge */
 } place_t;
 
-/* FALSE: somebody is there already, or there is no such connector. */
+/* Returns false if the place is taken, or if there is no such connector. */
 static bool take_place(place_t *place, const cm1e_axis_config_t *axis)
 {
     const bool shared = place->axis && place->axis->channel && axis->channel;
@@ -37,7 +37,7 @@ static place_t *place_of_bridge(place_t *places, const cm1e_axis_config_t *axis)
     return NULL;
 }
 
-/* Axes with a position stand there; the others fill the places that are left, in the order of the list. */
+/* Axes with a position take that place; the others fill the remaining places, in the order of the list. */
 static bool place_axes(const cm1e_bus_config_t *config, place_t *places, cm1e_diag_t *diag)
 {
     for (uint32_t i = 0; i < config->axis_count; i++) {
@@ -68,7 +68,7 @@ static bool place_axes(const cm1e_bus_config_t *config, place_t *places, cm1e_di
     return true;
 }
 
-/* An axis at position 3 says that two slaves stand before it: where they are no motors, they are `sim_gaps`. */
+/* An axis at position 3 means that two slaves are before it: places without a motor get the device of `sim_gaps`. */
 static uint32_t last_place(const place_t *places)
 {
     uint32_t count = CM1E_MAX_SLAVES;
@@ -138,7 +138,7 @@ cm1e_sim_segment_t *cm1e_sim_segment_create(const cm1e_bus_config_t *config, cm1
         return NULL;
     }
     uint32_t count = last_place(places);
-    if (count == 0 && config->axis_count > 0) /* virtual axes only: frames need somebody to pass */
+    if (count == 0 && config->axis_count > 0) /* virtual axes only: frames need a slave to pass */
         count = 1;
     for (uint32_t i = 0; i < count; i++)
         if (add_place(segment, config, &places[i], diag) != CM1E_OK) {

@@ -6,7 +6,7 @@
 #define BANDWIDTH_RAD_PER_S 500.0
 /* The integral acts a few times slower than the loop, which keeps it stable (Routh). */
 #define INTEGRAL_RATE_PER_S (BANDWIDTH_RAD_PER_S / 6)
-/* Of the velocity fed forward to follow set-points: they are whole counts, a step of one is no velocity to follow. */
+/* Filter of the velocity fed forward for set-points: they are whole counts, and a step of one count is no velocity. */
 #define SMOOTHING_S 1e-3
 /* The encoder's resolution: within half a count there is no error to correct. */
 #define DEAD_BAND_COUNTS 0.25
@@ -39,8 +39,8 @@ void cm1e_servo_rest(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics)
     servo->integral = servo->torque;
 }
 
-/* A profile of the drive's own is known exactly: its velocity and acceleration are fed forward. What the master sends
- * is smoothed. Returns the acceleration, counts/s2. */
+/* Velocity and acceleration of a profile of the drive are known exactly and fed forward. Set-points of the master are
+ * smoothed. Returns the acceleration, counts/s2. */
 static double feed_forward(cm1e_servo_t *s, double step_s)
 {
     const double change = s->reference_velocity - s->last_velocity;
@@ -50,7 +50,7 @@ static double feed_forward(cm1e_servo_t *s, double step_s)
     return s->own_profile ? change / step_s : 0;
 }
 
-/* Nm that such a motion takes, but for the load from outside. */
+/* Torque in Nm for such a motion, without the external load. */
 static double torque_of_motion(const cm1e_servo_t *s, const cm1e_mechanics_t *mechanics, double acceleration)
 {
     const double velocity = s->reference_velocity;
@@ -59,8 +59,8 @@ static double torque_of_motion(const cm1e_servo_t *s, const cm1e_mechanics_t *me
 }
 
 /* The torque is that of a spring and damper at the end of the step (implicit Euler), so the loop is stable for any step
- * length. A profile of the drive's own ends where it should: what friction takes is added, and the integral takes the
- * load. A motor that follows set-points lags by a few counts: there the integral works at standstill only. */
+ * length. A profile of the drive ends exactly: friction is compensated, and the integral takes the load. A motor that
+ * follows set-points lags by a few counts: there the integral acts only at standstill. */
 double cm1e_servo_step(cm1e_servo_t *s, const cm1e_mechanics_t *mechanics, double step_s)
 {
     if (step_s != s->step_s) {
