@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cm1e/version.h"
 #include "command.h"
 
 static const struct {
@@ -52,7 +53,7 @@ int main(int argc, char **argv)
         return EXIT_OK;
     }
     if (strcmp(argv[1], "--version") == 0) {
-        puts("cm1e " CM1E_VERSION);
+        printf("cm1e %s\n", cm1e_version());
         return EXIT_OK;
     }
     argp_err_exit_status = EXIT_WRONG_USE;

@@ -92,12 +92,12 @@ def defaults(block):
 
 def block(declaration, symbol):
     clause = " ".join(declaration.tags.get("clause", []))
-    label = f' __asm__("{symbol}{declaration.name}")' if symbol else ""
+    label = f' CM1E_SYMBOL("{symbol}{declaration.name}")' if symbol else ""
     name = declaration.name
     return (comment(f"{clause}. {declaration.doc} @rt cycle")
             + f"typedef struct {name} {{\n{members(declaration.variables)}}} {name}_t;\n"
             + defaults(declaration)
-            + f"void {name}({name}_t *fb){label};\n")
+            + f"CM1E_API void {name}({name}_t *fb){label};\n")
 
 
 def declaration_text(declaration, symbol):
@@ -120,7 +120,8 @@ def header(file):
     for paragraph in (file.title + (" " + file.text if file.text else "")).split("\n\n"):
         about += "".join(f" * {line}\n" for line in textwrap.wrap(" ".join(paragraph.split()), WIDTH - 3))
     about += f" * Generated from {file.path} by fb/interface/generate.py; change it there.\n */\n"
-    includes = "".join(f'#include "{name}"\n' for name in file.includes)
+    exports = any(item.kind == "block" for item in file.declarations)
+    includes = "".join(f'#include "{name}"\n' for name in ["cm1e/api.h"] * exports + file.includes)
     body = "\n".join(declaration_text(item, file.symbol) for item in file.declarations if "external" not in item.tags)
     return (f"{about}#ifndef {guard}\n#define {guard}\n\n{includes}\n"
             f'#ifdef __cplusplus\nextern "C" {{\n#endif\n\n{body}\n#ifdef __cplusplus\n}}\n#endif\n#endif\n')

@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "cm1e/api.h"
 #include "cm1e/error.h"
 #include "cm1e/iec_types.h"
 
@@ -35,7 +36,7 @@ typedef enum cm1e_axis_state {
 } cm1e_axis_state_t;
 
 /** "Standstill" ... ; never NULL. @rt any */
-const char *cm1e_axis_state_name(cm1e_axis_state_t state);
+CM1E_API const char *cm1e_axis_state_name(cm1e_axis_state_t state);
 
 /** What an axis shows; one consistent copy. Units: u, u/s, % of rated torque. */
 typedef struct cm1e_axis_info {
@@ -59,20 +60,20 @@ typedef struct cm1e_axis_info {
 } cm1e_axis_info_t;
 
 /** CM1E_ERROR_FB_AXIS_REF for a handle that names no axis. @rt cycle (call it in a program of the axis's scheduler) */
-cm1e_error_t cm1e_axis_read(AXIS_REF_t axis, cm1e_axis_info_t *info);
+CM1E_API cm1e_error_t cm1e_axis_read(AXIS_REF_t axis, cm1e_axis_info_t *info);
 /** What the encoder shows now, of an axis with `type: encoder`; 32 bits that wrap around are counted on. A program of
  *  the axis's scheduler calls it in every cycle: in a cycle without a call, or with `valid` FALSE, the axis is offline.
  *  It is taken in at the beginning of the next cycle, as are the positions of motors. CM1E_ERROR_UNSUPPORTED: the axis
  *  is no encoder. @rt cycle */
-cm1e_error_t cm1e_axis_write_encoder(AXIS_REF_t axis, uint32_t counts, bool valid);
+CM1E_API cm1e_error_t cm1e_axis_write_encoder(AXIS_REF_t axis, uint32_t counts, bool valid);
 /** The configured name; "" for a handle that names no axis. @rt any */
-const char *cm1e_axis_name(AXIS_REF_t axis);
+CM1E_API const char *cm1e_axis_name(AXIS_REF_t axis);
 /** Large enough for every text of cm1e_axis_error_text(). */
 enum { CM1E_AXIS_ERROR_TEXT_BYTES = 1024 };
 /** The axis's error as sentences: what happened, with which numbers, what to do. Without an error: why the last command
  *  was refused or the last homing could not start, and what would be right; "" where nothing was. A buffer that is
  *  too small gets the beginning. @rt block */
-void cm1e_axis_error_text(AXIS_REF_t axis, char *text, size_t size);
+CM1E_API void cm1e_axis_error_text(AXIS_REF_t axis, char *text, size_t size);
 
 #ifdef __cplusplus
 }

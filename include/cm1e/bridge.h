@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "cm1e/api.h"
 #include "cm1e/bus.h"
 #include "cm1e/config.h"
 #include "cm1e/error.h"
@@ -67,19 +68,19 @@ typedef struct cm1e_bridge_info {
  *  CM1E_ERROR_UNSUPPORTED: the slave is no bridge. An answer that does not come ends it, so that a bridge which falls
  *  silent takes one time-out and not seventy: its error is returned, what came before it is known, and what would have
  *  come after has that error too. @rt block */
-cm1e_error_t cm1e_bridge_read(cm1e_bus_t *bus, uint16_t position, cm1e_bridge_info_t *info, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_bridge_read(cm1e_bus_t *bus, uint16_t position, cm1e_bridge_info_t *info, cm1e_diag_t *diag);
 
 /** Bits per second of a baud rate code; 0: one that the guide does not have. @rt any */
-uint32_t cm1e_bridge_bits_per_second(uint32_t baud_rate);
+CM1E_API uint32_t cm1e_bridge_bits_per_second(uint32_t baud_rate);
 
 #define CM1E_BRIDGE_STATUS_TEXT 240 /**< enough for the longest text of cm1e_bridge_status_text() */
 
 /** A motor's status in words: "in position", "counter overflow, overload". What the guide does not list is taken apart
  *  bit by bit, and said to be unlisted: "motor free, unknown bits 0x40 (0x50 is not listed in the guide)". Returns
  *  `text`. @rt block */
-const char *cm1e_bridge_status_text(cm1e_bridge_motor_t motor, uint32_t status, char *text, size_t size);
+CM1E_API const char *cm1e_bridge_status_text(cm1e_bridge_motor_t motor, uint32_t status, char *text, size_t size);
 /** What the user does about it: of several errors about the first. "": it is no error. @rt any */
-const char *cm1e_bridge_status_cure(cm1e_bridge_motor_t motor, uint32_t status);
+CM1E_API const char *cm1e_bridge_status_cure(cm1e_bridge_motor_t motor, uint32_t status);
 
 #ifdef __cplusplus
 }

@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "cm1e/api.h"
 #include "cm1e/config.h"
 #include "cm1e/error.h"
 
@@ -55,53 +56,53 @@ typedef struct cm1e_bus_counters {
 
 /** Opens the interface (network interface or simulated segment); sends nothing yet. `config` is copied.
  *  The bus is freed with cm1e_bus_close(). @rt init */
-cm1e_error_t cm1e_bus_open(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_bus_open(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm1e_diag_t *diag);
 
 /** Finds the slaves and brings them to Pre-Operational. Expects nothing: see cm1e_bus_identify(). @rt init */
-cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Slaves that the last scan found; 0 before. @rt any */
-uint32_t cm1e_bus_slave_count(const cm1e_bus_t *bus);
+CM1E_API uint32_t cm1e_bus_slave_count(const cm1e_bus_t *bus);
 /** NULL where there is no such slave (1 = first). Valid until the next scan. While the cycle runs, it keeps `al_state`
  *  and `al_status_code` up to date: they are for its thread then. @rt any */
-const cm1e_slave_info_t *cm1e_bus_slave(const cm1e_bus_t *bus, uint32_t position);
+CM1E_API const cm1e_slave_info_t *cm1e_bus_slave(const cm1e_bus_t *bus, uint32_t position);
 
 /** Matches the scan with the configured axes: a wrong, missing, doubled or extra slave is an error that names what was
  *  expected and what was found. Extra is a CM1-E, or a bridge, that no axis is configured for; a device of another kind
  *  may stand between the axes and runs with the process data of its SII. Not every motor behind a bridge needs an axis:
  *  the others get the controlword 0 and stay as they are from power-on, a CM1 holding its position (BR 6.1.1). Without
  *  any configured axis everything is accepted; a revision that is not known is no error. @rt init */
-cm1e_error_t cm1e_bus_identify(cm1e_bus_t *bus, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_bus_identify(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Position of an axis's slave (axis 0 = first configured); 0: none. @rt any */
-uint16_t cm1e_bus_axis_position(const cm1e_bus_t *bus, uint32_t axis);
+CM1E_API uint16_t cm1e_bus_axis_position(const cm1e_bus_t *bus, uint32_t axis);
 
 /** Writes the chosen mapping, reads it back, resolves every object, maps the process image, goes to Safe-Operational.
  *  CM1E_ERROR_CONFIG: the frames of so many slaves take too long for the cycle time. After an error scan again.
  *  @rt init */
-cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** To Operational, exchanging the process image at the cycle time meanwhile. @rt init */
-cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_bus_operate(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Scan, identify, configure, operate. @rt init */
-cm1e_error_t cm1e_bus_start(cm1e_bus_t *bus, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_bus_start(cm1e_bus_t *bus, cm1e_diag_t *diag);
 /** Safe-Operational, then Init. The drives must be disabled before. Never fails: does what it still can. Refused in a
  *  task of a scheduler, as cm1e_bus_close(): the run ends in order, with an error. @rt init */
-void cm1e_bus_stop(cm1e_bus_t *bus);
+CM1E_API void cm1e_bus_stop(cm1e_bus_t *bus);
 /** Stops if need be, closes the interface, frees. NULL is allowed. CM1E_ERROR_IO: it is closed, but not every frame
  *  arrived in the pcap file; CM1E_ERROR_STATE: refused in a task. @rt init */
-cm1e_error_t cm1e_bus_close(cm1e_bus_t *bus);
+CM1E_API cm1e_error_t cm1e_bus_close(cm1e_bus_t *bus);
 
 /** Takes in the frame(s) sent in the last cycle. CM1E_OK: all inputs are fresh; CM1E_ERROR_BUS_LOST or
  *  CM1E_ERROR_BUS_WORKING_COUNTER: the inputs are the previous ones (those of the slaves that did not take part).
  *  @rt cycle */
-cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus);
+CM1E_API cm1e_error_t cm1e_bus_receive(cm1e_bus_t *bus);
 /** Sends the outputs, and at most one datagram of mailbox work or supervision per slave in need. @rt cycle */
-void cm1e_bus_send(cm1e_bus_t *bus);
+CM1E_API void cm1e_bus_send(cm1e_bus_t *bus);
 /** CM1E_OK, or why the slaves of the bus cannot be trusted now: the last error after `lost_cycles_limit` bad cycles in
  *  a row. Returns to CM1E_OK by itself when the cycle is good again. @rt cycle */
-cm1e_error_t cm1e_bus_health(const cm1e_bus_t *bus);
+CM1E_API cm1e_error_t cm1e_bus_health(const cm1e_bus_t *bus);
 /** What went wrong so far. Lives as long as the bus. @rt cycle */
-const cm1e_bus_counters_t *cm1e_bus_counters(const cm1e_bus_t *bus);
+CM1E_API const cm1e_bus_counters_t *cm1e_bus_counters(const cm1e_bus_t *bus);
 /** The bus's own copy, with defaults filled in. Lives as long as the bus. @rt any */
-const cm1e_bus_config_t *cm1e_bus_configuration(const cm1e_bus_t *bus);
+CM1E_API const cm1e_bus_config_t *cm1e_bus_configuration(const cm1e_bus_t *bus);
 
 /* ---- SDO -------------------------------------------------------------------------------------------------------- */
 
@@ -123,28 +124,28 @@ typedef struct cm1e_sdo {
 } cm1e_sdo_t;
 
 /** State of a transfer; everything else in it may be read once this says DONE or ERROR (acquire). @rt any */
-cm1e_sdo_state_t cm1e_sdo_state(const cm1e_sdo_t *sdo);
+CM1E_API cm1e_sdo_state_t cm1e_sdo_state(const cm1e_sdo_t *sdo);
 
 /** Hands a transfer to the bus; it is worked on within the cycle, one datagram at a time, never blocking it.
  *  CM1E_ERROR_FULL when 64 transfers wait. Any thread may submit, several at a time. @rt cycle */
-cm1e_error_t cm1e_sdo_submit(cm1e_bus_t *bus, cm1e_sdo_t *sdo);
+CM1E_API cm1e_error_t cm1e_sdo_submit(cm1e_bus_t *bus, cm1e_sdo_t *sdo);
 /** Reads and waits, before the cycle runs (the caller owns the bus). `*size`: room, then bytes read. In a task of a
  *  scheduler CM1E_ERROR_STATE, as everything that waits: cm1e_sdo_submit() is for that. @rt block */
-cm1e_error_t cm1e_sdo_read(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex, void *data,
-                           size_t *size, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_sdo_read(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex, void *data,
+                                    size_t *size, cm1e_diag_t *diag);
 /** Writes and waits, as cm1e_sdo_read(). @rt block */
-cm1e_error_t cm1e_sdo_write(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex, const void *data,
-                            size_t size, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_sdo_write(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex,
+                                     const void *data, size_t size, cm1e_diag_t *diag);
 /** Text of an SDO abort code (ETG.1000.6); never NULL. @rt any */
-const char *cm1e_sdo_abort_text(uint32_t abort_code);
+CM1E_API const char *cm1e_sdo_abort_text(uint32_t abort_code);
 /** Text of an AL status code; never NULL. @rt any */
-const char *cm1e_al_status_text(uint16_t al_status_code);
+CM1E_API const char *cm1e_al_status_text(uint16_t al_status_code);
 
 /* ---- the simulated segment behind interface "sim" ---------------------------------------------------------------- */
 
 /** Acts on the simulated segment with one console line, e.g. "power 2 off" ("help" lists them), and writes the answer
  *  to `answer`. CM1E_ERROR_UNSUPPORTED on a network interface. @rt cycle */
-cm1e_error_t cm1e_bus_simulate(cm1e_bus_t *bus, const char *line, char *answer, size_t size);
+CM1E_API cm1e_error_t cm1e_bus_simulate(cm1e_bus_t *bus, const char *line, char *answer, size_t size);
 
 #ifdef __cplusplus
 }

@@ -8,6 +8,7 @@
 #ifndef CM1E_CM_BRIDGE_H
 #define CM1E_CM_BRIDGE_H
 
+#include "cm1e/api.h"
 #include "cm1e/mc_types.h"
 
 #ifdef __cplusplus
@@ -52,7 +53,7 @@ typedef struct CM_SendCML {
     INT Strays;        /**< lines that came and answer nothing that was asked: of an earlier query, or sent unasked */
     cm1e_fb_private_t Private;
 } CM_SendCML_t;
-void CM_SendCML(CM_SendCML_t *fb);
+CM1E_API void CM_SendCML(CM_SendCML_t *fb);
 
 /** BR 6.2.2. Switches the mode of operation (BR appendix 3): at rest and without an error of the motor. CMD and
  *  CPIO are dead ends: from there no way leads to CSP but switching the bridge off and on. @rt cycle */
@@ -68,7 +69,7 @@ typedef struct CM_SetMode {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } CM_SetMode_t;
-void CM_SetMode(CM_SetMode_t *fb);
+CM1E_API void CM_SetMode(CM_SetMode_t *fb);
 
 /** BR 7.1. Gives a command of CMD mode (BR appendix 1). An origin search moves the motor by the bridge's own
  *  parameters, without limits of the axis; it is aborted and the motor freed when its time is over, when the bus
@@ -84,7 +85,7 @@ typedef struct CM_Command {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } CM_Command_t;
-void CM_Command(CM_Command_t *fb);
+CM1E_API void CM_Command(CM_Command_t *fb);
 
 #ifdef __cplusplus
 }

@@ -11,6 +11,7 @@
 #ifndef CM1E_CML_H
 #define CM1E_CML_H
 
+#include "cm1e/api.h"
 #include "cm1e/bus.h"
 
 #ifdef __cplusplus
@@ -29,11 +30,11 @@ typedef enum cm1e_cml_kind {
 } cm1e_cml_kind_t;
 
 /** The kind of its strongest command, in the order above. @rt cycle */
-cm1e_cml_kind_t cm1e_cml_kind(const char *text);
+CM1E_API cm1e_cml_kind_t cm1e_cml_kind(const char *text);
 
 /** NULL: can be sent to the motor at connector `id` (1 ... 4). Otherwise what is wrong, to be read after "the string":
  *  "is empty", "is longer than 64 bytes" ... Static storage. @rt cycle */
-const char *cm1e_cml_check(const char *text, unsigned id);
+CM1E_API const char *cm1e_cml_check(const char *text, unsigned id);
 
 typedef enum cm1e_cml_what {
     CM1E_CML_NOTHING = 0, /**< "Null": no answer has come yet */
@@ -54,7 +55,7 @@ typedef struct cm1e_cml_answer {
 
 /** Reads one line with its CR or LF at the end, which is how a line that was cut is known. `bytes` need no final 0, and
  *  what is behind one does not count. CM1E_ERROR_CML_ANSWER: it is damaged. @rt cycle */
-cm1e_error_t cm1e_cml_parse(cm1e_cml_answer_t *answer, const void *bytes, size_t size);
+CM1E_API cm1e_error_t cm1e_cml_parse(cm1e_cml_answer_t *answer, const void *bytes, size_t size);
 
 /** A string for a motor behind a bridge, and what came back. Zero it, then fill in the first part. */
 typedef struct cm1e_cml_exchange {
@@ -79,11 +80,12 @@ typedef struct cm1e_cml_exchange {
  *  3.2) and leaves it there: see cm1e_cml_leave(). For a scanned bus whose cycle does not run, Pre-Operational or
  *  higher. CM1E_ERROR_CML_STRING, _MOTION: nothing was sent; CM1E_ERROR_CM_SEARCH: the motor said "Ux" instead of
  *  "Origin". Where an error ends a string that may have moved the motor, the motor is freed. @rt block */
-cm1e_error_t cm1e_cml_exchange(cm1e_bus_t *bus, cm1e_cml_exchange_t *exchange, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_cml_exchange(cm1e_bus_t *bus, cm1e_cml_exchange_t *exchange, cm1e_diag_t *diag);
 
 /** Brings an axis that is in CML mode back to csp, for which the motor must stand (BR appendix 3.3); an axis in another
  *  mode stays in it. `free_motor`: frees the motor before, as after strings that may have moved it. @rt block */
-cm1e_error_t cm1e_cml_leave(cm1e_bus_t *bus, uint16_t position, uint8_t channel, bool free_motor, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_cml_leave(cm1e_bus_t *bus, uint16_t position, uint8_t channel, bool free_motor,
+                                     cm1e_diag_t *diag);
 
 #ifdef __cplusplus
 }

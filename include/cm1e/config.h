@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "cm1e/api.h"
 #include "cm1e/error.h"
 
 #ifdef __cplusplus
@@ -185,14 +186,14 @@ typedef struct cm1e_bus_config {
 } cm1e_bus_config_t;
 
 /** A configuration of `axis_count` default axes, at positions 1 ... n, on `interface_name` (NULL: "sim"). @rt init */
-void cm1e_bus_config_init(cm1e_bus_config_t *config, const char *interface_name, uint32_t axis_count);
+CM1E_API void cm1e_bus_config_init(cm1e_bus_config_t *config, const char *interface_name, uint32_t axis_count);
 
 /** Reads a bus file (YAML; format: docs/BUS-FILE.md). On failure `config` is untouched and `diag` names file, line,
  *  column, what was found and what was expected. @rt init */
-cm1e_error_t cm1e_bus_config_load(cm1e_bus_config_t *config, const char *path, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_bus_config_load(cm1e_bus_config_t *config, const char *path, cm1e_diag_t *diag);
 
 /** Checks ranges and contradictions of a configuration made by hand (a bus file is checked on loading). @rt init */
-cm1e_error_t cm1e_bus_config_check(const cm1e_bus_config_t *config, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_bus_config_check(const cm1e_bus_config_t *config, cm1e_diag_t *diag);
 
 #ifdef __cplusplus
 }

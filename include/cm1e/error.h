@@ -10,6 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "cm1e/api.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -132,13 +134,13 @@ typedef enum cm1e_error {
 } cm1e_error_t;
 
 /** One line of text for an error; never NULL, also for numbers that are no error. Static storage. @rt any */
-const char *cm1e_strerror(cm1e_error_t error);
+CM1E_API const char *cm1e_strerror(cm1e_error_t error);
 
 /** ErrorID (WORD) for an error, 0 for CM1E_OK. @rt cycle */
-uint16_t cm1e_error_id(cm1e_error_t error);
+CM1E_API uint16_t cm1e_error_id(cm1e_error_t error);
 
 /** The error behind an ErrorID; CM1E_ERROR_NOT_FOUND for a number that is not ours. @rt any */
-cm1e_error_t cm1e_error_from_id(uint16_t error_id);
+CM1E_API cm1e_error_t cm1e_error_from_id(uint16_t error_id);
 
 /** A diagnosis: the error, the foreign code it came with, and a sentence that names cause, place and cure.
  *  Filled by functions that run before or beside the cycle; owned by the caller. */
@@ -150,8 +152,8 @@ typedef struct cm1e_diag {
 
 /** Fills a diagnosis (printf style) and returns `error`; `diag` may be NULL. Control characters and what is no UTF-8,
  *  as a name out of a file can have them, become "?". @rt block */
-cm1e_error_t cm1e_diag_set(cm1e_diag_t *diag, cm1e_error_t error, uint32_t foreign_code, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+CM1E_API cm1e_error_t cm1e_diag_set(cm1e_diag_t *diag, cm1e_error_t error, uint32_t foreign_code, const char *format,
+                                    ...) CM1E_PRINTF(4, 5);
 
 #ifdef __cplusplus
 }

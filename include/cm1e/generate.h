@@ -12,6 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "cm1e/api.h"
 #include "cm1e/bus.h"
 #include "cm1e/config.h"
 #include "cm1e/error.h"
@@ -72,35 +73,37 @@ typedef struct cm1e_file {
 } cm1e_file_t;
 
 /** Frees what a file holds; a zeroed one is allowed. @rt init */
-void cm1e_file_free(cm1e_file_t *file);
+CM1E_API void cm1e_file_free(cm1e_file_t *file);
 
 /** Writes a file. CM1E_ERROR_CONFIG: the options do not fit together, `diag` says which and what would be right.
  *  @rt init */
-cm1e_error_t cm1e_generate(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_generate(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag);
 
 /** Writes the TrioBASIC start program that goes with an EC_EXTEND file of these devices: axis set-up, move and reset
  *  for each axis (UG 11.2.1). @rt init */
-cm1e_error_t cm1e_generate_trio_program(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_generate_trio_program(cm1e_file_t *file, const cm1e_generate_options_t *options,
+                                                 cm1e_diag_t *diag);
 
 /** Writes the ENI of the network that a scan found. A CM1-E that is a configured axis has its name and mapping; the
  *  others run with `mapping`; a bridge has the names of its axes; devices of another kind by their SII. The bus has
  *  been scanned and does not operate; the caller owns it. CM1E_ERROR_STATE: it knows no slave; CM1E_ERROR_UNSUPPORTED:
  *  a CM1-E does not tell its firmware. @rt block */
-cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_mapping_t mapping, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_generate_eni_of_bus(cm1e_file_t *file, cm1e_bus_t *bus, cm1e_mapping_t mapping,
+                                               cm1e_diag_t *diag);
 
 /** Reads a file of any of the formats and writes it anew in `format`: the same one, or ESI and SII out of each other.
  *  `device` is the one of an ESI that an SII is for, 0 = first; CM1E_ERROR_NOT_FOUND: there is none of that number. A
  *  file that cm1e_generate() wrote comes back as it was. CM1E_ERROR_FILE: it cannot be read, `diag` says where;
  *  CM1E_ERROR_UNSUPPORTED: `format` needs what this file does not have. @rt init */
-cm1e_error_t cm1e_generate_from(cm1e_file_t *file, const void *bytes, size_t size, cm1e_file_format_t format,
-                                size_t device, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_generate_from(cm1e_file_t *file, const void *bytes, size_t size, cm1e_file_format_t format,
+                                         size_t device, cm1e_diag_t *diag);
 
 /* ---- reading and checking --------------------------------------------------------------------------------------- */
 
 /** By the content, whatever the file is called. @rt any */
-cm1e_file_format_t cm1e_file_recognise(const void *bytes, size_t size);
+CM1E_API cm1e_file_format_t cm1e_file_recognise(const void *bytes, size_t size);
 /** "ESI", "EC_EXTEND", "SII", "ENI", "unknown". @rt any */
-const char *cm1e_file_format_name(cm1e_file_format_t format);
+CM1E_API const char *cm1e_file_format_name(cm1e_file_format_t format);
 
 /** What a check or a comparison found. */
 typedef struct cm1e_finding {
@@ -112,23 +115,23 @@ typedef struct cm1e_finding {
 typedef struct cm1e_findings cm1e_findings_t;
 
 /** In the order of lines. Lives as long as `findings`. @rt any */
-const cm1e_finding_t *cm1e_findings_at(const cm1e_findings_t *findings, size_t n);
+CM1E_API const cm1e_finding_t *cm1e_findings_at(const cm1e_findings_t *findings, size_t n);
 /** @rt any */
-size_t cm1e_findings_count(const cm1e_findings_t *findings);
+CM1E_API size_t cm1e_findings_count(const cm1e_findings_t *findings);
 /** NULL is allowed. @rt init */
-void cm1e_findings_free(cm1e_findings_t *findings);
+CM1E_API void cm1e_findings_free(cm1e_findings_t *findings);
 
 /** Checks a file of any of the formats by every rule of docs/CHECK-RULES.md. CM1E_OK: it was read, `*findings` (to be
  *  freed) says what is wrong with its content; CM1E_ERROR_FILE: it cannot be read, `diag` says where. @rt init */
-cm1e_error_t cm1e_check_file(cm1e_findings_t **findings, const void *bytes, size_t size, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_check_file(cm1e_findings_t **findings, const void *bytes, size_t size, cm1e_diag_t *diag);
 
 /** Compares a file with the device at `position`: dictionary, mapping, SII, as far as the file speaks of them. Slaves
  *  that an ENI has and the network has not, or the other way round, are told at the last slave that both have. The
  *  bus has been scanned and does not operate; the caller owns it. CM1E_OK: `*findings`, to be freed, are the
  *  differences; CM1E_ERROR_NOT_FOUND: the file does not describe this device; CM1E_ERROR_FILE: it cannot be read.
  *  @rt block */
-cm1e_error_t cm1e_diff_file(cm1e_findings_t **findings, const void *bytes, size_t size, cm1e_bus_t *bus,
-                            uint16_t position, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_diff_file(cm1e_findings_t **findings, const void *bytes, size_t size, cm1e_bus_t *bus,
+                                     uint16_t position, cm1e_diag_t *diag);
 
 #ifdef __cplusplus
 }

@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "cm1e/api.h"
 #include "cm1e/axis.h"
 #include "cm1e/error.h"
 #include "cm1e/iec_types.h"
@@ -39,7 +40,7 @@ typedef enum cm1e_group_state {
 } cm1e_group_state_t;
 
 /** "GroupStandby" ... ; never NULL. @rt any */
-const char *cm1e_group_state_name(cm1e_group_state_t state);
+CM1E_API const char *cm1e_group_state_name(cm1e_group_state_t state);
 
 /** All zero is good. */
 typedef struct cm1e_group_config {
@@ -58,18 +59,18 @@ typedef struct cm1e_group_info {
 } cm1e_group_info_t;
 
 /** Makes a group without axes, in GroupDisabled. CM1E_ERROR_FULL: there are 32 in this process. @rt init */
-cm1e_error_t cm1e_group_create(AXES_GROUP_REF_t *group, const cm1e_group_config_t *config, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_group_create(AXES_GROUP_REF_t *group, const cm1e_group_config_t *config, cm1e_diag_t *diag);
 /** CM1E_ERROR_GROUP_STATE: it still moves axes, and nothing has happened. Blocks that name it show an error from then
  *  on. Not while the cycle of its axes runs. @rt init */
-cm1e_error_t cm1e_group_destroy(AXES_GROUP_REF_t group);
+CM1E_API cm1e_error_t cm1e_group_destroy(AXES_GROUP_REF_t group);
 /** CM1E_ERROR_GROUP_REF for a handle that names no group. @rt cycle (in a program of the axes' scheduler) */
-cm1e_error_t cm1e_group_read(AXES_GROUP_REF_t group, cm1e_group_info_t *info);
+CM1E_API cm1e_error_t cm1e_group_read(AXES_GROUP_REF_t group, cm1e_group_info_t *info);
 
 /** Large enough for every text of cm1e_group_error_text(). */
 enum { CM1E_GROUP_ERROR_TEXT_BYTES = 1536 };
 /** The group's error as sentences: what happened, to which axis, what to do. Without an error: why the last command was
  *  refused; "" where nothing was. A buffer that is too small gets the beginning. @rt block */
-void cm1e_group_error_text(AXES_GROUP_REF_t group, char *text, size_t size);
+CM1E_API void cm1e_group_error_text(AXES_GROUP_REF_t group, char *text, size_t size);
 
 #ifdef __cplusplus
 }

@@ -8,6 +8,7 @@
 #ifndef CM1E_IEC_H
 #define CM1E_IEC_H
 
+#include "cm1e/api.h"
 #include "cm1e/iec_types.h"
 
 #ifdef __cplusplus
@@ -35,7 +36,7 @@ typedef struct TON {
     TIME ET; /**< ns, 0 ... PT; elapsed */
     cm1e_iec_timer_t Private;
 } TON_t;
-void TON(TON_t *fb) __asm__("iec_TON");
+CM1E_API void TON(TON_t *fb) CM1E_SYMBOL("iec_TON");
 
 /** IEC 61131-3, 2.5.2.3.4. Off-delay: Q follows IN, but goes off only when IN has been off for PT. @rt cycle */
 typedef struct TOF {
@@ -46,7 +47,7 @@ typedef struct TOF {
     TIME ET; /**< ns, 0 ... PT; elapsed */
     cm1e_iec_timer_t Private;
 } TOF_t;
-void TOF(TOF_t *fb) __asm__("iec_TOF");
+CM1E_API void TOF(TOF_t *fb) CM1E_SYMBOL("iec_TOF");
 
 /** IEC 61131-3, 2.5.2.3.4. Pulse: Q is on for PT from the rising edge of IN, whatever IN does meanwhile. @rt cycle */
 typedef struct TP {
@@ -57,7 +58,7 @@ typedef struct TP {
     TIME ET; /**< ns, 0 ... PT; elapsed */
     cm1e_iec_timer_t Private;
 } TP_t;
-void TP(TP_t *fb) __asm__("iec_TP");
+CM1E_API void TP(TP_t *fb) CM1E_SYMBOL("iec_TP");
 
 /** IEC 61131-3, 2.5.2.3.2. Rising edge: Q is TRUE for the call in which CLK has become TRUE, the first call
  *  included. @rt cycle */
@@ -67,7 +68,7 @@ typedef struct R_TRIG {
     BOOL Q;
     cm1e_iec_edges_t Private;
 } R_TRIG_t;
-void R_TRIG(R_TRIG_t *fb) __asm__("iec_R_TRIG");
+CM1E_API void R_TRIG(R_TRIG_t *fb) CM1E_SYMBOL("iec_R_TRIG");
 
 /** IEC 61131-3, 2.5.2.3.2. Falling edge: Q is TRUE for the call in which CLK has become FALSE, but not for the
  *  first call. @rt cycle */
@@ -77,7 +78,7 @@ typedef struct F_TRIG {
     BOOL Q;
     cm1e_iec_edges_t Private;
 } F_TRIG_t;
-void F_TRIG(F_TRIG_t *fb) __asm__("iec_F_TRIG");
+CM1E_API void F_TRIG(F_TRIG_t *fb) CM1E_SYMBOL("iec_F_TRIG");
 
 /** IEC 61131-3, 2.5.2.3.1. Bistable, set goes first. @rt cycle */
 typedef struct SR {
@@ -85,7 +86,7 @@ typedef struct SR {
     /* outputs */
     BOOL Q1;
 } SR_t;
-void SR(SR_t *fb) __asm__("iec_SR");
+CM1E_API void SR(SR_t *fb) CM1E_SYMBOL("iec_SR");
 
 /** IEC 61131-3, 2.5.2.3.1. Bistable, reset goes first. @rt cycle */
 typedef struct RS {
@@ -93,7 +94,7 @@ typedef struct RS {
     /* outputs */
     BOOL Q1;
 } RS_t;
-void RS(RS_t *fb) __asm__("iec_RS");
+CM1E_API void RS(RS_t *fb) CM1E_SYMBOL("iec_RS");
 
 /** IEC 61131-3, 2.5.2.3.3. Counts up at rising edges of CU, past PV to the largest INT. @rt cycle */
 typedef struct CTU {
@@ -105,7 +106,7 @@ typedef struct CTU {
     INT CV;
     cm1e_iec_edges_t Private;
 } CTU_t;
-void CTU(CTU_t *fb) __asm__("iec_CTU");
+CM1E_API void CTU(CTU_t *fb) CM1E_SYMBOL("iec_CTU");
 
 /** IEC 61131-3, 2.5.2.3.3. Counts down at rising edges of CD, past 0 to the smallest INT. @rt cycle */
 typedef struct CTD {
@@ -117,7 +118,7 @@ typedef struct CTD {
     INT CV;
     cm1e_iec_edges_t Private;
 } CTD_t;
-void CTD(CTD_t *fb) __asm__("iec_CTD");
+CM1E_API void CTD(CTD_t *fb) CM1E_SYMBOL("iec_CTD");
 
 /** IEC 61131-3, 2.5.2.3.3. Counts up and down; edges of both in one call change nothing. @rt cycle */
 typedef struct CTUD {
@@ -131,7 +132,7 @@ typedef struct CTUD {
     INT CV;
     cm1e_iec_edges_t Private;
 } CTUD_t;
-void CTUD(CTUD_t *fb) __asm__("iec_CTUD");
+CM1E_API void CTUD(CTUD_t *fb) CM1E_SYMBOL("iec_CTUD");
 
 #ifdef __cplusplus
 }

@@ -6,6 +6,7 @@
 #ifndef CM1E_MC_ADMINISTRATIVE_H
 #define CM1E_MC_ADMINISTRATIVE_H
 
+#include "cm1e/api.h"
 #include "cm1e/mc_types.h"
 
 #ifdef __cplusplus
@@ -26,7 +27,7 @@ typedef struct MC_SetPosition {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_SetPosition_t;
-void MC_SetPosition(MC_SetPosition_t *fb);
+CM1E_API void MC_SetPosition(MC_SetPosition_t *fb);
 
 /** 3.18. Sets factors for velocity, acceleration and jerk of all motions of the axis. They stay when Enable falls.
  *  @rt cycle */
@@ -44,7 +45,7 @@ typedef struct MC_SetOverride {
 } MC_SetOverride_t;
 /** Its initial values: `MC_SetOverride_t fb = {.Axis = &axis, MC_SETOVERRIDE_DEFAULTS};` */
 #define MC_SETOVERRIDE_DEFAULTS .VelFactor = 1.0, .AccFactor = 1.0, .JerkFactor = 1.0
-void MC_SetOverride(MC_SetOverride_t *fb);
+CM1E_API void MC_SetOverride(MC_SetOverride_t *fb);
 
 /** 3.19. Reads a parameter of the axis. @rt cycle */
 typedef struct MC_ReadParameter {
@@ -57,7 +58,7 @@ typedef struct MC_ReadParameter {
     LREAL Value;         /**< in the parameter's unit */
     cm1e_fb_private_t Private;
 } MC_ReadParameter_t;
-void MC_ReadParameter(MC_ReadParameter_t *fb);
+CM1E_API void MC_ReadParameter(MC_ReadParameter_t *fb);
 
 /** 3.19. Reads a parameter of the axis of type BOOL. @rt cycle */
 typedef struct MC_ReadBoolParameter {
@@ -70,7 +71,7 @@ typedef struct MC_ReadBoolParameter {
     BOOL Value;
     cm1e_fb_private_t Private;
 } MC_ReadBoolParameter_t;
-void MC_ReadBoolParameter(MC_ReadBoolParameter_t *fb);
+CM1E_API void MC_ReadBoolParameter(MC_ReadBoolParameter_t *fb);
 
 /** 3.20. Writes a parameter of the axis. @rt cycle */
 typedef struct MC_WriteParameter {
@@ -85,7 +86,7 @@ typedef struct MC_WriteParameter {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_WriteParameter_t;
-void MC_WriteParameter(MC_WriteParameter_t *fb);
+CM1E_API void MC_WriteParameter(MC_WriteParameter_t *fb);
 
 /** 3.20. Writes a parameter of the axis of type BOOL. @rt cycle */
 typedef struct MC_WriteBoolParameter {
@@ -100,7 +101,7 @@ typedef struct MC_WriteBoolParameter {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_WriteBoolParameter_t;
-void MC_WriteBoolParameter(MC_WriteBoolParameter_t *fb);
+CM1E_API void MC_WriteBoolParameter(MC_WriteBoolParameter_t *fb);
 
 /** 3.21. Reads a digital input of a motor. @rt cycle */
 typedef struct MC_ReadDigitalInput {
@@ -113,7 +114,7 @@ typedef struct MC_ReadDigitalInput {
     BOOL Value;      /**< the input is on */
     cm1e_fb_private_t Private;
 } MC_ReadDigitalInput_t;
-void MC_ReadDigitalInput(MC_ReadDigitalInput_t *fb);
+CM1E_API void MC_ReadDigitalInput(MC_ReadDigitalInput_t *fb);
 
 /** 3.22. Reads back a digital output of a motor. @rt cycle */
 typedef struct MC_ReadDigitalOutput {
@@ -126,7 +127,7 @@ typedef struct MC_ReadDigitalOutput {
     BOOL Value;       /**< the output is on */
     cm1e_fb_private_t Private;
 } MC_ReadDigitalOutput_t;
-void MC_ReadDigitalOutput(MC_ReadDigitalOutput_t *fb);
+CM1E_API void MC_ReadDigitalOutput(MC_ReadDigitalOutput_t *fb);
 
 /** 3.23. Writes a digital output of a motor, once. @rt cycle */
 typedef struct MC_WriteDigitalOutput {
@@ -141,7 +142,7 @@ typedef struct MC_WriteDigitalOutput {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_WriteDigitalOutput_t;
-void MC_WriteDigitalOutput(MC_WriteDigitalOutput_t *fb);
+CM1E_API void MC_WriteDigitalOutput(MC_WriteDigitalOutput_t *fb);
 
 /** 3.24. Reads the actual position. @rt cycle */
 typedef struct MC_ReadActualPosition {
@@ -153,7 +154,7 @@ typedef struct MC_ReadActualPosition {
     LREAL Position; /**< u */
     cm1e_fb_private_t Private;
 } MC_ReadActualPosition_t;
-void MC_ReadActualPosition(MC_ReadActualPosition_t *fb);
+CM1E_API void MC_ReadActualPosition(MC_ReadActualPosition_t *fb);
 
 /** 3.25. Reads the actual velocity. @rt cycle */
 typedef struct MC_ReadActualVelocity {
@@ -165,7 +166,7 @@ typedef struct MC_ReadActualVelocity {
     LREAL Velocity; /**< u/s; signed */
     cm1e_fb_private_t Private;
 } MC_ReadActualVelocity_t;
-void MC_ReadActualVelocity(MC_ReadActualVelocity_t *fb);
+CM1E_API void MC_ReadActualVelocity(MC_ReadActualVelocity_t *fb);
 
 /** 3.26. Reads the actual torque. @rt cycle */
 typedef struct MC_ReadActualTorque {
@@ -177,7 +178,7 @@ typedef struct MC_ReadActualTorque {
     LREAL Torque; /**< % of rated torque; signed */
     cm1e_fb_private_t Private;
 } MC_ReadActualTorque_t;
-void MC_ReadActualTorque(MC_ReadActualTorque_t *fb);
+CM1E_API void MC_ReadActualTorque(MC_ReadActualTorque_t *fb);
 
 /** 3.27. Reads the state of the axis: one of the eight outputs is TRUE while Valid is. @rt cycle */
 typedef struct MC_ReadStatus {
@@ -189,7 +190,7 @@ typedef struct MC_ReadStatus {
     BOOL ErrorStop, Disabled, Stopping, Homing, Standstill, DiscreteMotion, ContinuousMotion, SynchronizedMotion;
     cm1e_fb_private_t Private;
 } MC_ReadStatus_t;
-void MC_ReadStatus(MC_ReadStatus_t *fb);
+CM1E_API void MC_ReadStatus(MC_ReadStatus_t *fb);
 
 /** 3.28. Reads what the axis is doing: one of the first three of the values is TRUE while Valid is. @rt cycle */
 typedef struct MC_ReadMotionState {
@@ -206,7 +207,7 @@ typedef struct MC_ReadMotionState {
     BOOL DirectionNegative; /**< the position falls */
     cm1e_motion_private_t Private;
 } MC_ReadMotionState_t;
-void MC_ReadMotionState(MC_ReadMotionState_t *fb);
+CM1E_API void MC_ReadMotionState(MC_ReadMotionState_t *fb);
 
 /** 3.29. Reads inputs and conditions of the axis. @rt cycle */
 typedef struct MC_ReadAxisInfo {
@@ -226,7 +227,7 @@ typedef struct MC_ReadAxisInfo {
     BOOL AxisWarning;        /**< the drive warns */
     cm1e_fb_private_t Private;
 } MC_ReadAxisInfo_t;
-void MC_ReadAxisInfo(MC_ReadAxisInfo_t *fb);
+CM1E_API void MC_ReadAxisInfo(MC_ReadAxisInfo_t *fb);
 
 /** 3.30. Reads the error of the axis, that is why it is in ErrorStop. @rt cycle */
 typedef struct MC_ReadAxisError {
@@ -239,7 +240,7 @@ typedef struct MC_ReadAxisError {
     WORD DeviceErrorCode; /**< 0x603F of the drive beside it (not in the standard) */
     cm1e_fb_private_t Private;
 } MC_ReadAxisError_t;
-void MC_ReadAxisError(MC_ReadAxisError_t *fb);
+CM1E_API void MC_ReadAxisError(MC_ReadAxisError_t *fb);
 
 /** 3.31. Takes the axis out of ErrorStop. @rt cycle */
 typedef struct MC_Reset {
@@ -251,7 +252,7 @@ typedef struct MC_Reset {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_Reset_t;
-void MC_Reset(MC_Reset_t *fb);
+CM1E_API void MC_Reset(MC_Reset_t *fb);
 
 /** 3.32. Switches outputs by the axis's position, as cams on its shaft would. @rt cycle */
 typedef struct MC_DigitalCamSwitch {
@@ -268,7 +269,7 @@ typedef struct MC_DigitalCamSwitch {
     WORD ErrorID;
     cm1e_cam_private_t Private;
 } MC_DigitalCamSwitch_t;
-void MC_DigitalCamSwitch(MC_DigitalCamSwitch_t *fb);
+CM1E_API void MC_DigitalCamSwitch(MC_DigitalCamSwitch_t *fb);
 
 /** 3.33. Records the position at the first trigger event after the edge. @rt cycle */
 typedef struct MC_TouchProbe {
@@ -288,7 +289,7 @@ typedef struct MC_TouchProbe {
     LREAL Uncertainty;                  /**< u; the event was at most so far from there (not in the standard) */
     cm1e_fb_private_t Private;
 } MC_TouchProbe_t;
-void MC_TouchProbe(MC_TouchProbe_t *fb);
+CM1E_API void MC_TouchProbe(MC_TouchProbe_t *fb);
 
 /** 3.34. Ends the waiting of MC_TouchProbe for a trigger. @rt cycle */
 typedef struct MC_AbortTrigger {
@@ -301,7 +302,7 @@ typedef struct MC_AbortTrigger {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_AbortTrigger_t;
-void MC_AbortTrigger(MC_AbortTrigger_t *fb);
+CM1E_API void MC_AbortTrigger(MC_AbortTrigger_t *fb);
 
 #ifdef __cplusplus
 }

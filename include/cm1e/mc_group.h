@@ -9,6 +9,7 @@
 #ifndef CM1E_MC_GROUP_H
 #define CM1E_MC_GROUP_H
 
+#include "cm1e/api.h"
 #include "cm1e/group.h"
 #include "cm1e/mc_types.h"
 
@@ -27,7 +28,7 @@ typedef struct MC_AddAxisToGroup {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_AddAxisToGroup_t;
-void MC_AddAxisToGroup(MC_AddAxisToGroup_t *fb);
+CM1E_API void MC_AddAxisToGroup(MC_AddAxisToGroup_t *fb);
 
 /** Part 4 v2.0, 9.2. Takes an axis out of a group. @rt cycle */
 typedef struct MC_RemoveAxisFromGroup {
@@ -39,7 +40,7 @@ typedef struct MC_RemoveAxisFromGroup {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_RemoveAxisFromGroup_t;
-void MC_RemoveAxisFromGroup(MC_RemoveAxisFromGroup_t *fb);
+CM1E_API void MC_RemoveAxisFromGroup(MC_RemoveAxisFromGroup_t *fb);
 
 /** Part 4 v2.0, 9.3. Takes all axes out of a group. What moves is stopped along its path first. @rt cycle */
 typedef struct MC_UngroupAllAxes {
@@ -50,7 +51,7 @@ typedef struct MC_UngroupAllAxes {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_UngroupAllAxes_t;
-void MC_UngroupAllAxes(MC_UngroupAllAxes_t *fb);
+CM1E_API void MC_UngroupAllAxes(MC_UngroupAllAxes_t *fb);
 
 /** Part 4 v2.0, 9.4. Tells which axis is at a place of a group. @rt cycle */
 typedef struct MC_GroupReadConfiguration {
@@ -65,7 +66,7 @@ typedef struct MC_GroupReadConfiguration {
     UINT AxisID;                    /**< its handle */
     cm1e_fb_private_t Private;
 } MC_GroupReadConfiguration_t;
-void MC_GroupReadConfiguration(MC_GroupReadConfiguration_t *fb);
+CM1E_API void MC_GroupReadConfiguration(MC_GroupReadConfiguration_t *fb);
 
 /** Part 4 v2.0, 9.6. Enables a group: GroupStandby. Moves nothing, and powers nothing. @rt cycle */
 typedef struct MC_GroupEnable {
@@ -76,7 +77,7 @@ typedef struct MC_GroupEnable {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_GroupEnable_t;
-void MC_GroupEnable(MC_GroupEnable_t *fb);
+CM1E_API void MC_GroupEnable(MC_GroupEnable_t *fb);
 
 /** Part 4 v2.0, 9.7. Disables a group. Its commands are aborted; what moves is stopped along its path. @rt cycle */
 typedef struct MC_GroupDisable {
@@ -87,7 +88,7 @@ typedef struct MC_GroupDisable {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_GroupDisable_t;
-void MC_GroupDisable(MC_GroupDisable_t *fb);
+CM1E_API void MC_GroupDisable(MC_GroupDisable_t *fb);
 
 /** Part 4 v2.0, 9.31. Resets a group in GroupErrorStop, and those of its axes that are in ErrorStop as MC_Reset
  *  does. @rt cycle */
@@ -100,7 +101,7 @@ typedef struct MC_GroupReset {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_GroupReset_t;
-void MC_GroupReset(MC_GroupReset_t *fb);
+CM1E_API void MC_GroupReset(MC_GroupReset_t *fb);
 
 /** Part 4 v2.0, 9.29. Reads the state of a group: one of the six outputs is TRUE while Valid is. @rt cycle */
 typedef struct MC_GroupReadStatus {
@@ -114,7 +115,7 @@ typedef struct MC_GroupReadStatus {
     BOOL GroupErrorStop, GroupStandby, GroupStopping, GroupDisabled;
     cm1e_fb_private_t Private;
 } MC_GroupReadStatus_t;
-void MC_GroupReadStatus(MC_GroupReadStatus_t *fb);
+CM1E_API void MC_GroupReadStatus(MC_GroupReadStatus_t *fb);
 
 /** Part 4 v2.0, 9.30. Reads why a group is in GroupErrorStop; cm1e_group_error_text() says it in sentences.
  *  @rt cycle */
@@ -127,7 +128,7 @@ typedef struct MC_GroupReadError {
     WORD GroupErrorID; /**< the cause; 0: none */
     cm1e_fb_private_t Private;
 } MC_GroupReadError_t;
-void MC_GroupReadError(MC_GroupReadError_t *fb);
+CM1E_API void MC_GroupReadError(MC_GroupReadError_t *fb);
 
 /** Part 4 v2.0, 9.25. Stops a group along its path and holds it: it stays in GroupStopping while Execute is TRUE.
  *  @rt cycle */
@@ -142,7 +143,7 @@ typedef struct MC_GroupStop {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_GroupStop_t;
-void MC_GroupStop(MC_GroupStop_t *fb);
+CM1E_API void MC_GroupStop(MC_GroupStop_t *fb);
 
 /** Part 4 v2.0, 9.26. Stops a group along its path; any motion may abort it. @rt cycle */
 typedef struct MC_GroupHalt {
@@ -160,7 +161,7 @@ typedef struct MC_GroupHalt {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_GroupHalt_t;
-void MC_GroupHalt(MC_GroupHalt_t *fb);
+CM1E_API void MC_GroupHalt(MC_GroupHalt_t *fb);
 
 /** Part 4 v2.0, 9.34. Moves a group along a straight line to Position. @rt cycle */
 typedef struct MC_MoveLinearAbsolute {
@@ -185,7 +186,7 @@ typedef struct MC_MoveLinearAbsolute {
     UDINT CommandID;                   /**< its number; 0: none */
     cm1e_fb_private_t Private;
 } MC_MoveLinearAbsolute_t;
-void MC_MoveLinearAbsolute(MC_MoveLinearAbsolute_t *fb);
+CM1E_API void MC_MoveLinearAbsolute(MC_MoveLinearAbsolute_t *fb);
 
 /** Part 4 v2.0, 9.35. Moves a group along a straight line by Distance. @rt cycle */
 typedef struct MC_MoveLinearRelative {
@@ -210,7 +211,7 @@ typedef struct MC_MoveLinearRelative {
     UDINT CommandID;                   /**< its number; 0: none */
     cm1e_fb_private_t Private;
 } MC_MoveLinearRelative_t;
-void MC_MoveLinearRelative(MC_MoveLinearRelative_t *fb);
+CM1E_API void MC_MoveLinearRelative(MC_MoveLinearRelative_t *fb);
 
 /** Part 4 v2.0, 9.36. Moves a group along an arc to EndPoint; further axes go along. @rt cycle */
 typedef struct MC_MoveCircularAbsolute {
@@ -238,7 +239,7 @@ typedef struct MC_MoveCircularAbsolute {
     UDINT CommandID;                   /**< its number; 0: none */
     cm1e_fb_private_t Private;
 } MC_MoveCircularAbsolute_t;
-void MC_MoveCircularAbsolute(MC_MoveCircularAbsolute_t *fb);
+CM1E_API void MC_MoveCircularAbsolute(MC_MoveCircularAbsolute_t *fb);
 
 /** Part 4 v2.0, 9.37. Moves a group along an arc by EndPoint; both points count from where the arc begins.
  *  @rt cycle */
@@ -267,7 +268,7 @@ typedef struct MC_MoveCircularRelative {
     UDINT CommandID;                   /**< its number; 0: none */
     cm1e_fb_private_t Private;
 } MC_MoveCircularRelative_t;
-void MC_MoveCircularRelative(MC_MoveCircularRelative_t *fb);
+CM1E_API void MC_MoveCircularRelative(MC_MoveCircularRelative_t *fb);
 
 /** Part 4 v2.0, 9.14. Reads the positions of the axes of a group, all of the same cycle. @rt cycle */
 typedef struct MC_GroupReadPosition {
@@ -281,7 +282,7 @@ typedef struct MC_GroupReadPosition {
     LREAL Position[8];           /**< u; by IdentInGroup; 0 where there is no axis */
     cm1e_fb_private_t Private;
 } MC_GroupReadPosition_t;
-void MC_GroupReadPosition(MC_GroupReadPosition_t *fb);
+CM1E_API void MC_GroupReadPosition(MC_GroupReadPosition_t *fb);
 
 /** Part 4 v2.0, 9.15. Reads the velocities of the axes of a group, and that along the path. @rt cycle */
 typedef struct MC_GroupReadVelocity {
@@ -296,7 +297,7 @@ typedef struct MC_GroupReadVelocity {
     LREAL PathVelocity;          /**< u/s */
     cm1e_fb_private_t Private;
 } MC_GroupReadVelocity_t;
-void MC_GroupReadVelocity(MC_GroupReadVelocity_t *fb);
+CM1E_API void MC_GroupReadVelocity(MC_GroupReadVelocity_t *fb);
 
 /** Part 4 v2.0, 9.43. Sets a factor on the velocities of the motions of a group; it stays until it is changed.
  *  @rt cycle */
@@ -314,7 +315,7 @@ typedef struct MC_GroupSetOverride {
 } MC_GroupSetOverride_t;
 /** Its initial values: `MC_GroupSetOverride_t fb = {.AxesGroup = &axis, MC_GROUPSETOVERRIDE_DEFAULTS};` */
 #define MC_GROUPSETOVERRIDE_DEFAULTS .VelFactor = 1.0, .AccFactor = 1.0, .JerkFactor = 1.0
-void MC_GroupSetOverride(MC_GroupSetOverride_t *fb);
+CM1E_API void MC_GroupSetOverride(MC_GroupSetOverride_t *fb);
 
 #ifdef __cplusplus
 }

@@ -6,6 +6,7 @@
 #ifndef CM1E_MC_HOMING_H
 #define CM1E_MC_HOMING_H
 
+#include "cm1e/api.h"
 #include "cm1e/mc_types.h"
 
 #ifdef __cplusplus
@@ -32,7 +33,7 @@ typedef struct MC_StepAbsoluteSwitch {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_StepAbsoluteSwitch_t;
-void MC_StepAbsoluteSwitch(MC_StepAbsoluteSwitch_t *fb);
+CM1E_API void MC_StepAbsoluteSwitch(MC_StepAbsoluteSwitch_t *fb);
 
 /** Part 5, 3.2. Searches a limit switch and takes its place as reference. @rt cycle */
 typedef struct MC_StepLimitSwitch {
@@ -52,7 +53,7 @@ typedef struct MC_StepLimitSwitch {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_StepLimitSwitch_t;
-void MC_StepLimitSwitch(MC_StepLimitSwitch_t *fb);
+CM1E_API void MC_StepLimitSwitch(MC_StepLimitSwitch_t *fb);
 
 /** Part 5, 3.3. Runs against a hard stop and takes its place as reference. @rt cycle */
 typedef struct MC_StepBlock {
@@ -73,7 +74,7 @@ typedef struct MC_StepBlock {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_StepBlock_t;
-void MC_StepBlock(MC_StepBlock_t *fb);
+CM1E_API void MC_StepBlock(MC_StepBlock_t *fb);
 
 /** Part 5, 3.4. Searches the reference pulse of an encoder. @rt cycle */
 typedef struct MC_StepReferencePulse {
@@ -93,7 +94,7 @@ typedef struct MC_StepReferencePulse {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_StepReferencePulse_t;
-void MC_StepReferencePulse(MC_StepReferencePulse_t *fb);
+CM1E_API void MC_StepReferencePulse(MC_StepReferencePulse_t *fb);
 
 /** Part 5, 3.5. Searches two marks of a distance coded encoder. @rt cycle */
 typedef struct MC_StepDistanceCoded {
@@ -111,7 +112,7 @@ typedef struct MC_StepDistanceCoded {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_StepDistanceCoded_t;
-void MC_StepDistanceCoded(MC_StepDistanceCoded_t *fb);
+CM1E_API void MC_StepDistanceCoded(MC_StepDistanceCoded_t *fb);
 
 /** Part 5, 3.6. Gives the axis a position where it stands, and ends the homing. @rt cycle */
 typedef struct MC_HomeDirect {
@@ -125,7 +126,7 @@ typedef struct MC_HomeDirect {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_HomeDirect_t;
-void MC_HomeDirect(MC_HomeDirect_t *fb);
+CM1E_API void MC_HomeDirect(MC_HomeDirect_t *fb);
 
 /** Part 5, 3.7. Takes the position of an absolute encoder, and ends the homing. @rt cycle */
 typedef struct MC_HomeAbsolute {
@@ -138,7 +139,7 @@ typedef struct MC_HomeAbsolute {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_HomeAbsolute_t;
-void MC_HomeAbsolute(MC_HomeAbsolute_t *fb);
+CM1E_API void MC_HomeAbsolute(MC_HomeAbsolute_t *fb);
 
 /** Part 5, 3.8. Ends a homing of several steps, after a move away from the reference. @rt cycle */
 typedef struct MC_FinishHoming {
@@ -156,7 +157,7 @@ typedef struct MC_FinishHoming {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_FinishHoming_t;
-void MC_FinishHoming(MC_FinishHoming_t *fb);
+CM1E_API void MC_FinishHoming(MC_FinishHoming_t *fb);
 
 /** Part 5, 3.9. Takes the place of a switch as reference while another block moves the axis. @rt cycle */
 typedef struct MC_StepReferenceFlyingSwitch {
@@ -174,7 +175,7 @@ typedef struct MC_StepReferenceFlyingSwitch {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_StepReferenceFlyingSwitch_t;
-void MC_StepReferenceFlyingSwitch(MC_StepReferenceFlyingSwitch_t *fb);
+CM1E_API void MC_StepReferenceFlyingSwitch(MC_StepReferenceFlyingSwitch_t *fb);
 
 /** Part 5, 3.10. Takes the reference pulse of an encoder while another block moves the axis. @rt cycle */
 typedef struct MC_StepReferenceFlyingRefPulse {
@@ -191,7 +192,7 @@ typedef struct MC_StepReferenceFlyingRefPulse {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_StepReferenceFlyingRefPulse_t;
-void MC_StepReferenceFlyingRefPulse(MC_StepReferenceFlyingRefPulse_t *fb);
+CM1E_API void MC_StepReferenceFlyingRefPulse(MC_StepReferenceFlyingRefPulse_t *fb);
 
 /** Part 5, 3.11. Ends the waiting of the two flying steps; the motion goes on. @rt cycle */
 typedef struct MC_AbortPassiveHoming {
@@ -203,7 +204,7 @@ typedef struct MC_AbortPassiveHoming {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_AbortPassiveHoming_t;
-void MC_AbortPassiveHoming(MC_AbortPassiveHoming_t *fb);
+CM1E_API void MC_AbortPassiveHoming(MC_AbortPassiveHoming_t *fb);
 
 #ifdef __cplusplus
 }

@@ -6,6 +6,7 @@
 #ifndef CM1E_MC_MOTION_H
 #define CM1E_MC_MOTION_H
 
+#include "cm1e/api.h"
 #include "cm1e/config.h"
 #include "cm1e/mc_types.h"
 
@@ -28,7 +29,7 @@ typedef struct MC_Power {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_Power_t;
-void MC_Power(MC_Power_t *fb);
+CM1E_API void MC_Power(MC_Power_t *fb);
 
 /** 3.2. Homes by the motor's own routine (UG 6.2.4). Position: the axis has this position at the reference when
  *  Done. @rt cycle */
@@ -44,7 +45,7 @@ typedef struct MC_Home {
     const cm1e_homing_config_t *Parameters; /**< NULL: the axis's configured homing (not in the standard) */
     cm1e_fb_private_t Private;
 } MC_Home_t;
-void MC_Home(MC_Home_t *fb);
+CM1E_API void MC_Home(MC_Home_t *fb);
 
 /** 3.3. Stops and holds: the axis stays in Stopping while Execute is TRUE (Done and Active together then).
  *  @rt cycle */
@@ -61,7 +62,7 @@ typedef struct MC_Stop {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_Stop_t;
-void MC_Stop(MC_Stop_t *fb);
+CM1E_API void MC_Stop(MC_Stop_t *fb);
 
 /** 3.4. Stops the axis; any motion may abort it. @rt cycle */
 typedef struct MC_Halt {
@@ -76,7 +77,7 @@ typedef struct MC_Halt {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_Halt_t;
-void MC_Halt(MC_Halt_t *fb);
+CM1E_API void MC_Halt(MC_Halt_t *fb);
 
 /** 3.5. Moves to a position and stops there. @rt cycle */
 typedef struct MC_MoveAbsolute {
@@ -95,7 +96,7 @@ typedef struct MC_MoveAbsolute {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_MoveAbsolute_t;
-void MC_MoveAbsolute(MC_MoveAbsolute_t *fb);
+CM1E_API void MC_MoveAbsolute(MC_MoveAbsolute_t *fb);
 
 /** 3.6. Moves by a distance from the set position at the start. @rt cycle */
 typedef struct MC_MoveRelative {
@@ -113,7 +114,7 @@ typedef struct MC_MoveRelative {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_MoveRelative_t;
-void MC_MoveRelative(MC_MoveRelative_t *fb);
+CM1E_API void MC_MoveRelative(MC_MoveRelative_t *fb);
 
 /** 3.7. Moves by a distance from the most recent commanded position, also that of an aborted move; in
  *  ContinuousMotion from the set position. @rt cycle */
@@ -132,7 +133,7 @@ typedef struct MC_MoveAdditive {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_MoveAdditive_t;
-void MC_MoveAdditive(MC_MoveAdditive_t *fb);
+CM1E_API void MC_MoveAdditive(MC_MoveAdditive_t *fb);
 
 /** 3.8. Adds a motion over a distance to the one that is under way, which is not interrupted. @rt cycle */
 typedef struct MC_MoveSuperimposed {
@@ -150,7 +151,7 @@ typedef struct MC_MoveSuperimposed {
     LREAL CoveredDistance; /**< u; added by this block since its start */
     cm1e_fb_private_t Private;
 } MC_MoveSuperimposed_t;
-void MC_MoveSuperimposed(MC_MoveSuperimposed_t *fb);
+CM1E_API void MC_MoveSuperimposed(MC_MoveSuperimposed_t *fb);
 
 /** 3.9. Ends a superimposed motion; the motion below goes on. @rt cycle */
 typedef struct MC_HaltSuperimposed {
@@ -166,7 +167,7 @@ typedef struct MC_HaltSuperimposed {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_HaltSuperimposed_t;
-void MC_HaltSuperimposed(MC_HaltSuperimposed_t *fb);
+CM1E_API void MC_HaltSuperimposed(MC_HaltSuperimposed_t *fb);
 
 /** 3.10. Turns at a velocity until something else comes. A negative Velocity turns the direction round. @rt cycle */
 typedef struct MC_MoveVelocity {
@@ -184,7 +185,7 @@ typedef struct MC_MoveVelocity {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_MoveVelocity_t;
-void MC_MoveVelocity(MC_MoveVelocity_t *fb);
+CM1E_API void MC_MoveVelocity(MC_MoveVelocity_t *fb);
 
 /** 3.11. Moves to a position, arrives there with EndVelocity and goes on with it. @rt cycle */
 typedef struct MC_MoveContinuousAbsolute {
@@ -204,7 +205,7 @@ typedef struct MC_MoveContinuousAbsolute {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_MoveContinuousAbsolute_t;
-void MC_MoveContinuousAbsolute(MC_MoveContinuousAbsolute_t *fb);
+CM1E_API void MC_MoveContinuousAbsolute(MC_MoveContinuousAbsolute_t *fb);
 
 /** 3.12. Moves by a distance, ends it with EndVelocity and goes on with it. @rt cycle */
 typedef struct MC_MoveContinuousRelative {
@@ -223,7 +224,7 @@ typedef struct MC_MoveContinuousRelative {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_MoveContinuousRelative_t;
-void MC_MoveContinuousRelative(MC_MoveContinuousRelative_t *fb);
+CM1E_API void MC_MoveContinuousRelative(MC_MoveContinuousRelative_t *fb);
 
 /** 3.13. Exerts a torque. The CM1-E has no mode for it (0x6502 = 0x1A5): always Error,
  *  CM1E_ERROR_AXIS_NO_TORQUE_MODE. @rt cycle */
@@ -243,7 +244,7 @@ typedef struct MC_TorqueControl {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_TorqueControl_t;
-void MC_TorqueControl(MC_TorqueControl_t *fb);
+CM1E_API void MC_TorqueControl(MC_TorqueControl_t *fb);
 
 /** 3.14. Runs through a table of positions over time. @rt cycle */
 typedef struct MC_PositionProfile {
@@ -260,7 +261,7 @@ typedef struct MC_PositionProfile {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_PositionProfile_t;
-void MC_PositionProfile(MC_PositionProfile_t *fb);
+CM1E_API void MC_PositionProfile(MC_PositionProfile_t *fb);
 
 /** 3.15. Runs through a table of velocities over time and keeps the last one. @rt cycle */
 typedef struct MC_VelocityProfile {
@@ -277,7 +278,7 @@ typedef struct MC_VelocityProfile {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_VelocityProfile_t;
-void MC_VelocityProfile(MC_VelocityProfile_t *fb);
+CM1E_API void MC_VelocityProfile(MC_VelocityProfile_t *fb);
 
 /** 3.16. Runs through a table of accelerations over time and keeps the velocity at its end. @rt cycle */
 typedef struct MC_AccelerationProfile {
@@ -294,7 +295,7 @@ typedef struct MC_AccelerationProfile {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_AccelerationProfile_t;
-void MC_AccelerationProfile(MC_AccelerationProfile_t *fb);
+CM1E_API void MC_AccelerationProfile(MC_AccelerationProfile_t *fb);
 
 /** Tc2_MC2. Moves the axis by push-buttons, as TwinCAT's block of this name. @rt cycle */
 typedef struct MC_Jog {
@@ -313,7 +314,7 @@ typedef struct MC_Jog {
     WORD ErrorID;
     cm1e_jog_private_t Private;
 } MC_Jog_t;
-void MC_Jog(MC_Jog_t *fb);
+CM1E_API void MC_Jog(MC_Jog_t *fb);
 
 #ifdef __cplusplus
 }

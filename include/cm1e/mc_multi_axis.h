@@ -6,6 +6,7 @@
 #ifndef CM1E_MC_MULTI_AXIS_H
 #define CM1E_MC_MULTI_AXIS_H
 
+#include "cm1e/api.h"
 #include "cm1e/mc_types.h"
 
 #ifdef __cplusplus
@@ -31,7 +32,7 @@ typedef struct MC_CamTableSelect {
     MC_CAM_ID CamTableID;       /**< 0: none */
     cm1e_fb_private_t Private;
 } MC_CamTableSelect_t;
-void MC_CamTableSelect(MC_CamTableSelect_t *fb);
+CM1E_API void MC_CamTableSelect(MC_CamTableSelect_t *fb);
 
 /** 4.3. Lets the slave follow its master by a cam. @rt cycle */
 typedef struct MC_CamIn {
@@ -55,7 +56,7 @@ typedef struct MC_CamIn {
     BOOL EndOfProfile;           /**< TRUE in the first call after the master went over an end of the cam */
     cm1e_coupling_private_t Private;
 } MC_CamIn_t;
-void MC_CamIn(MC_CamIn_t *fb);
+CM1E_API void MC_CamIn(MC_CamIn_t *fb);
 
 /** 4.4. Ends the following by a cam; the slave goes on with the velocity that it has. @rt cycle */
 typedef struct MC_CamOut {
@@ -67,7 +68,7 @@ typedef struct MC_CamOut {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_CamOut_t;
-void MC_CamOut(MC_CamOut_t *fb);
+CM1E_API void MC_CamOut(MC_CamOut_t *fb);
 
 /** 4.5. Lets the slave follow its master by a ratio of their velocities, and of their positions from InGear on.
  *  @rt cycle */
@@ -90,7 +91,7 @@ typedef struct MC_GearIn {
 } MC_GearIn_t;
 /** Its initial values: `MC_GearIn_t fb = {.Master = &axis, MC_GEARIN_DEFAULTS};` */
 #define MC_GEARIN_DEFAULTS .RatioNumerator = 1, .RatioDenominator = 1
-void MC_GearIn(MC_GearIn_t *fb);
+CM1E_API void MC_GearIn(MC_GearIn_t *fb);
 
 /** 4.6. Ends the following by a ratio; the slave goes on with the velocity that it has. @rt cycle */
 typedef struct MC_GearOut {
@@ -102,7 +103,7 @@ typedef struct MC_GearOut {
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_GearOut_t;
-void MC_GearOut(MC_GearOut_t *fb);
+CM1E_API void MC_GearOut(MC_GearOut_t *fb);
 
 /** 4.7. Lets the slave follow its master by a ratio of their positions from a point on at which both have given
  *  positions. @rt cycle */
@@ -131,7 +132,7 @@ typedef struct MC_GearInPos {
 } MC_GearInPos_t;
 /** Its initial values: `MC_GearInPos_t fb = {.Master = &axis, MC_GEARINPOS_DEFAULTS};` */
 #define MC_GEARINPOS_DEFAULTS .RatioNumerator = 1, .RatioDenominator = 1
-void MC_GearInPos(MC_GearInPos_t *fb);
+CM1E_API void MC_GearInPos(MC_GearInPos_t *fb);
 
 /** 4.8. Shifts the master's position as the slave sees it, to a phase shift. @rt cycle */
 typedef struct MC_PhasingAbsolute {
@@ -151,7 +152,7 @@ typedef struct MC_PhasingAbsolute {
     LREAL AbsolutePhaseShift; /**< u of the master; the phase shift, while Busy */
     cm1e_coupling_private_t Private;
 } MC_PhasingAbsolute_t;
-void MC_PhasingAbsolute(MC_PhasingAbsolute_t *fb);
+CM1E_API void MC_PhasingAbsolute(MC_PhasingAbsolute_t *fb);
 
 /** 4.9. Shifts the master's position as the slave sees it, by so much more. @rt cycle */
 typedef struct MC_PhasingRelative {
@@ -171,7 +172,7 @@ typedef struct MC_PhasingRelative {
     LREAL CoveredPhaseShift; /**< u of the master; added by this block since its start */
     cm1e_coupling_private_t Private;
 } MC_PhasingRelative_t;
-void MC_PhasingRelative(MC_PhasingRelative_t *fb);
+CM1E_API void MC_PhasingRelative(MC_PhasingRelative_t *fb);
 
 /** 4.10. Lets the slave follow the sum, or the difference, of the motions of two masters. @rt cycle */
 typedef struct MC_CombineAxes {
@@ -196,7 +197,7 @@ typedef struct MC_CombineAxes {
 /** Its initial values: `MC_CombineAxes_t fb = {.Master1 = &axis, MC_COMBINEAXES_DEFAULTS};` */
 #define MC_COMBINEAXES_DEFAULTS .GearRatioNumeratorM1 = 1, .GearRatioDenominatorM1 = 1, .GearRatioNumeratorM2 = 1, \
     .GearRatioDenominatorM2 = 1
-void MC_CombineAxes(MC_CombineAxes_t *fb);
+CM1E_API void MC_CombineAxes(MC_CombineAxes_t *fb);
 
 #ifdef __cplusplus
 }

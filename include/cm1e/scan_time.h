@@ -7,6 +7,7 @@
 #ifndef CM1E_SCAN_TIME_H
 #define CM1E_SCAN_TIME_H
 
+#include "cm1e/api.h"
 #include "cm1e/iec_types.h"
 
 #ifdef __cplusplus
@@ -15,10 +16,10 @@ extern "C" {
 
 /** The time of the scan that begins, ns since any moment. Not before the last one: a timer that sees its time go back
  *  begins anew. @rt cycle */
-void cm1e_scan_time_set(TIME time_ns);
+CM1E_API void cm1e_scan_time_set(TIME time_ns);
 /** Time of this thread's scan, ns; 0 before the first one. In programs of a scheduler: planned start of the cycle on
  *  the clock of the bus. @rt cycle */
-TIME cm1e_scan_time(void);
+CM1E_API TIME cm1e_scan_time(void);
 
 #ifdef __cplusplus
 }

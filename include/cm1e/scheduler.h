@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "cm1e/api.h"
 #include "cm1e/axis.h"
 #include "cm1e/bus.h"
 #include "cm1e/error.h"
@@ -61,16 +62,17 @@ typedef struct cm1e_scheduler_statistics {
 
 /** For a bus in Operational (else CM1E_ERROR_STATE); makes one axis per configured axis. `config` NULL: defaults. The
  *  bus must outlive it. The slaves' watchdog is running: add the tasks and run soon. @rt init */
-cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus, const cm1e_scheduler_config_t *config,
-                                   cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus,
+                                            const cm1e_scheduler_config_t *config, cm1e_diag_t *diag);
 /** NULL is allowed. Not while it runs: in a task it is refused, and the run ends in order with an error. @rt init */
-void cm1e_scheduler_destroy(cm1e_scheduler_t *scheduler);
+CM1E_API void cm1e_scheduler_destroy(cm1e_scheduler_t *scheduler);
 /** Before the scheduler runs. The interval must be a multiple of the bus cycle. @rt init */
-cm1e_error_t cm1e_scheduler_add_task(cm1e_scheduler_t *scheduler, const cm1e_task_config_t *task, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_scheduler_add_task(cm1e_scheduler_t *scheduler, const cm1e_task_config_t *task,
+                                              cm1e_diag_t *diag);
 /** The reference of configured axis `index` (0 = first); Handle 0: none. @rt any */
-AXIS_REF_t cm1e_scheduler_axis(const cm1e_scheduler_t *scheduler, uint32_t index);
+CM1E_API AXIS_REF_t cm1e_scheduler_axis(const cm1e_scheduler_t *scheduler, uint32_t index);
 /** The reference of the axis called `name`; Handle 0: none. @rt any */
-AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *scheduler, const char *name);
+CM1E_API AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *scheduler, const char *name);
 
 /** Runs the cycle in the calling thread for `duration_ns` (0: until cm1e_scheduler_stop()), then stops in order: axes
  *  ramp down, drives are disabled, slaves go to Safe-Operational and Init. Once per scheduler. A missed cycle is left
@@ -80,32 +82,32 @@ AXIS_REF_t cm1e_scheduler_axis_by_name(const cm1e_scheduler_t *scheduler, const 
  *  disabled within the stop timeout. Also CM1E_ERROR_STATE: a task called cm1e_scheduler_destroy(), cm1e_bus_close() or
  *  cm1e_bus_stop(), which was refused and ended the run. Where cycles were run, and after CM1E_ERROR_PERMISSION, the
  *  bus is stopped. @rt init */
-cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns, cm1e_diag_t *diag);
 /** Asks the run to end in order. Any thread, any program, any signal handler. @rt any */
-void cm1e_scheduler_stop(cm1e_scheduler_t *scheduler);
+CM1E_API void cm1e_scheduler_stop(cm1e_scheduler_t *scheduler);
 /** Signals that would end or suspend the program stop this scheduler in order, until it is destroyed: SIGINT, SIGTERM,
  *  SIGHUP (terminal closed), SIGQUIT, SIGTSTP (Ctrl-Z), SIGPIPE, SIGXCPU, SIGXFSZ. A second and every further signal
  *  changes nothing: the ramp is not shortened, and is bounded by `stop_timeout_ns`; only SIGKILL ends it. A signal that
  *  the program ignores stays ignored (SIGHUP under nohup), but for SIGINT and SIGTERM; handlers of the program are
  *  replaced, and act again afterwards. One scheduler per process. @rt init */
-void cm1e_scheduler_stop_on_signals(cm1e_scheduler_t *scheduler);
+CM1E_API void cm1e_scheduler_stop_on_signals(cm1e_scheduler_t *scheduler);
 /** Planned time of this cycle since the first one, the same for a whole scan. @rt cycle */
-int64_t cm1e_scheduler_time_ns(const cm1e_scheduler_t *scheduler);
+CM1E_API int64_t cm1e_scheduler_time_ns(const cm1e_scheduler_t *scheduler);
 /** Gives this cycle a name that the plot of the trace shows (the last 64 are kept). `text` must live until the
  *  scheduler is destroyed. Call it in a program. @rt cycle */
-void cm1e_scheduler_mark(cm1e_scheduler_t *scheduler, const char *text);
+CM1E_API void cm1e_scheduler_mark(cm1e_scheduler_t *scheduler, const char *text);
 /** Before, during and after the run, from any thread. Each number is right; while it runs, two of them may be of
  *  neighbouring cycles. @rt any */
-void cm1e_scheduler_statistics(const cm1e_scheduler_t *scheduler, cm1e_scheduler_statistics_t *statistics);
+CM1E_API void cm1e_scheduler_statistics(const cm1e_scheduler_t *scheduler, cm1e_scheduler_statistics_t *statistics);
 
 /** Whether cm1e_scheduler_write_csv() and its like can write `path`, before the run: CM1E_ERROR_IO and why not. Leaves
  *  nothing behind. @rt block */
-cm1e_error_t cm1e_scheduler_check_path(const char *path, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_scheduler_check_path(const char *path, cm1e_diag_t *diag);
 /** Writes the trace (time; per axis: state, set and actual position and velocity, torque) as CSV, into a new
  *  file beside `path` that is renamed when it is whole. After the run. CM1E_ERROR_STATE without a trace. @rt block */
-cm1e_error_t cm1e_scheduler_write_csv(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_scheduler_write_csv(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);
 /** Writes the trace as a plot that a person can read: panels per axis. As cm1e_scheduler_write_csv(). @rt block */
-cm1e_error_t cm1e_scheduler_write_svg(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_scheduler_write_svg(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);
 
 #ifdef __cplusplus
 }

@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "cm1e/api.h"
 #include "cm1e/bus.h"
 #include "cm1e/error.h"
 
@@ -65,14 +66,14 @@ typedef struct cm1e_entry_info {
 /** Indexes of the objects in a list, as the slave orders them. `*count`: room, then how many.
  *  CM1E_ERROR_INVALID_ARGUMENT: there is not room for all; CM1E_ERROR_SDO_ABORT: the slave refuses; CM1E_ERROR_TIMEOUT:
  *  no answer, as of a slave without this service. @rt block */
-cm1e_error_t cm1e_sdo_info_list(cm1e_bus_t *bus, uint16_t position, cm1e_info_list_t list, uint16_t *indexes,
-                                size_t *count, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_sdo_info_list(cm1e_bus_t *bus, uint16_t position, cm1e_info_list_t list, uint16_t *indexes,
+                                         size_t *count, cm1e_diag_t *diag);
 /** Description of an object. @rt block */
-cm1e_error_t cm1e_sdo_info_object(cm1e_bus_t *bus, uint16_t position, uint16_t index, cm1e_object_info_t *info,
-                                  cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_sdo_info_object(cm1e_bus_t *bus, uint16_t position, uint16_t index, cm1e_object_info_t *info,
+                                           cm1e_diag_t *diag);
 /** Description of a sub-index, with unit, default and range where the slave tells them. @rt block */
-cm1e_error_t cm1e_sdo_info_entry(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex,
-                                 cm1e_entry_info_t *info, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_sdo_info_entry(cm1e_bus_t *bus, uint16_t position, uint16_t index, uint8_t subindex,
+                                          cm1e_entry_info_t *info, cm1e_diag_t *diag);
 
 #ifdef __cplusplus
 }

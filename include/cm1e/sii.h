@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "cm1e/api.h"
 #include "cm1e/bus.h"
 #include "cm1e/error.h"
 
@@ -24,7 +25,8 @@ extern "C" {
 /** Reads the whole EEPROM of the slave at `position` (1 = first) into `image`; `*size`: room, then bytes. Its size is
  *  what word 0x3E states; 2048 bytes (16 kbit) where that states none. CM1E_ERROR_INVALID_ARGUMENT: it does not fit,
  *  `*size` is what it needs. @rt block */
-cm1e_error_t cm1e_sii_read_device(cm1e_bus_t *bus, uint16_t position, uint8_t *image, size_t *size, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_sii_read_device(cm1e_bus_t *bus, uint16_t position, uint8_t *image, size_t *size,
+                                           cm1e_diag_t *diag);
 
 /** What may be written that is refused otherwise. Zeroed: nothing. */
 typedef struct cm1e_sii_write_options {
@@ -41,8 +43,8 @@ typedef struct cm1e_sii_write_options {
  *  CM1E_ERROR_BUS_IDENTITY: another product; CM1E_ERROR_CONFIG: another configuration. In these cases nothing was
  *  written. CM1E_ERROR_TIMEOUT, CM1E_ERROR_BUS_LOST: `diag` says at which word it stopped. Take a backup before, with
  *  cm1e_sii_read_device(): it is the way back. @rt block */
-cm1e_error_t cm1e_sii_write_device(cm1e_bus_t *bus, uint16_t position, const uint8_t *image, size_t size,
-                                   const cm1e_sii_write_options_t *options, cm1e_diag_t *diag);
+CM1E_API cm1e_error_t cm1e_sii_write_device(cm1e_bus_t *bus, uint16_t position, const uint8_t *image, size_t size,
+                                            const cm1e_sii_write_options_t *options, cm1e_diag_t *diag);
 
 #ifdef __cplusplus
 }

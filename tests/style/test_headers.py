@@ -17,13 +17,14 @@ def functions(text):
     """(name, line, preceding doc comment) of every prototype outside of comments and structs."""
     blank = lambda match: re.sub(r"[^\n]", " ", match.group(0))
     code = re.sub(r"/\*.*?\*/", blank, text, flags=re.DOTALL)
+    code = re.sub(r'^extern "C" \{$|^\}$', blank, code, flags=re.MULTILINE)  # around all of a header
     code = re.sub(r"\{[^{}]*\}", blank, code)
     for match in PROTOTYPE.finditer(code):
         name = match.group(1)
         block = text.find(f"typedef struct {name} {{") if f"({name}_t *fb)" in match.group(0) else -1
         before = text[: block if block >= 0 else match.start()].rstrip()  # a function block is documented at its struct
         comment = before[before.rfind("/**"):] if before.endswith("*/") else ""
-        yield name, text.count("\n", 0, match.start()) + 1, comment
+        yield name, text.count("\n", 0, match.start()) + 1, comment, match.group().startswith("CM1E_API ")
 
 
 def main(source, cc, cxx):
@@ -33,7 +34,9 @@ def main(source, cc, cxx):
         path = os.path.join(folder, name)
         with open(path, encoding="utf-8") as file:
             text = file.read()
-        for function, line, comment in functions(text):
+        for function, line, comment, exported in functions(text):
+            if not exported:
+                faults.append(f"{name}:{line}: {function}() lacks CM1E_API")
             if not MARK.search(comment):
                 faults.append(f"{name}:{line}: {function}() lacks a doc comment with @rt cycle|any|init|block")
         for included in re.findall(r'#include [<"]([^>"]+)', text):

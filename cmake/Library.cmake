@@ -1,0 +1,67 @@
+# The library as others link it, made of the objects of the rooms and of SOEM: the shared one of all of them; the static
+# one of those that every program needs, with an archive beside it for each room that is APART. The package has a target
+# per room either way, cm1e::fb, cm1e::scheduler and so on.
+
+# cm1e_package_target(<target> <name in the package>)
+function(cm1e_package_target target name)
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} ARCHIVE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib
+                                             LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+  target_include_directories(${target} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                                 $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+endfunction()
+
+add_library(cm1e_static STATIC $<TARGET_OBJECTS:soem>)
+add_library(cm1e_shared SHARED $<TARGET_OBJECTS:soem>)
+foreach(kind static shared)
+  cm1e_package_target(cm1e_${kind} library)
+  set_target_properties(cm1e_${kind} PROPERTIES OUTPUT_NAME cm1e LINKER_LANGUAGE C)
+endforeach()
+set(CM1E_PACKAGE_static cm1e_static)
+set(CM1E_PACKAGE_shared cm1e_shared)
+
+get_property(rooms GLOBAL PROPERTY CM1E_ROOMS)
+foreach(room ${rooms})
+  foreach(fact DEPENDS LINKS APART)
+    get_property(${fact} GLOBAL PROPERTY CM1E_ROOM_${room}_${fact})
+  endforeach()
+  list(REMOVE_ITEM LINKS soem soem_headers)
+  if(APART)
+    add_library(cm1e_static_${room} STATIC $<TARGET_OBJECTS:cm1e_${room}>)
+    set_target_properties(cm1e_static_${room} PROPERTIES OUTPUT_NAME cm1e_${room} LINKER_LANGUAGE C)
+    list(TRANSFORM DEPENDS PREPEND cm1e_static_)
+    target_link_libraries(cm1e_static_${room} INTERFACE ${DEPENDS} ${LINKS})
+  else()
+    add_library(cm1e_static_${room} INTERFACE)
+    target_sources(cm1e_static PRIVATE $<TARGET_OBJECTS:cm1e_${room}>)
+    target_link_libraries(cm1e_static INTERFACE ${LINKS})
+    target_link_libraries(cm1e_static_${room} INTERFACE cm1e_static)
+  endif()
+  add_library(cm1e_shared_${room} INTERFACE)
+  target_sources(cm1e_shared PRIVATE $<TARGET_OBJECTS:cm1e_${room}>)
+  target_link_libraries(cm1e_shared PRIVATE ${LINKS})
+  target_link_libraries(cm1e_shared_${room} INTERFACE cm1e_shared)
+  foreach(kind static shared)
+    cm1e_package_target(cm1e_${kind}_${room} ${room})
+    list(APPEND CM1E_PACKAGE_${kind} cm1e_${kind}_${room})
+  endforeach()
+endforeach()
+
+target_link_options(cm1e_shared PRIVATE LINKER:-Bsymbolic-functions $<$<NOT:$<BOOL:${CM1E_SANITIZE}>>:LINKER:-z,defs>)
+# Below 1.0 a new minor version may be another interface, so the soname has it too.
+set(soversion ${PROJECT_VERSION_MAJOR})
+if(soversion EQUAL 0)
+  set(soversion 0.${PROJECT_VERSION_MINOR})
+endif()
+set_target_properties(cm1e_shared PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${soversion})
+
+# Tests look at both kinds. Without them the kind that is installed is enough.
+set(CM1E_KIND static)
+set(other shared)
+if(BUILD_SHARED_LIBS)
+  set(CM1E_KIND shared)
+  set(other static)
+endif()
+if(CM1E_SANITIZE OR NOT CM1E_BUILD_TESTS)
+  set(spared ${CM1E_PACKAGE_${other}})
+  set_target_properties(${spared} PROPERTIES EXCLUDE_FROM_ALL ON)
+endif()
