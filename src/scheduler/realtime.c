@@ -101,9 +101,11 @@ bool cm1e_realtime_begin(realtime_t *realtime, const cm1e_scheduler_config_t *co
                  config->cpu);
     if (config->realtime_priority < 0)
         return false;
+    /* The priority first: locking takes tens of milliseconds of computing, and the slaves are in Operational already. On
+     * a busy machine their watchdogs (100 ms) would not wait for it at an ordinary priority. */
+    const bool fifo = take_fifo(realtime, config->realtime_priority);
     touch_stack();
     const bool locked = lock_memory();
-    const bool fifo = take_fifo(realtime, config->realtime_priority);
     if (!fifo || !locked)
         advise(advice, size, fifo, locked, config->realtime_priority);
     return bound && fifo && locked;

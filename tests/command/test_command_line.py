@@ -14,6 +14,9 @@ import tempfile
 import time
 import xml.etree.ElementTree
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+import real_time  # noqa: E402
+
 BIN, SOURCE = sys.argv[1], sys.argv[2]
 FAILED, WRONG_USE = 1, 2
 BRIDGE = ["--device", "eb12", "--vendor", "0xAA77", "--product", "1", "--revision", "2"]
@@ -268,7 +271,7 @@ def check_dictionary():
     expect(text.returncode == 0 and "0x6064  VAR" in text.stdout and " = " not in text.stdout, "sdo list", text)
 
 
-NETWORK_WITH_BRIDGE = """bus: {interface: sim}
+NETWORK_WITH_BRIDGE = """bus: {interface: sim, virtual_time: true}
 axes:
   - {name: solo, position: 1}
   - {name: left, position: 2, channel: 1, motor: CM1, k37: 10}
@@ -318,6 +321,8 @@ def check_cml(folder):
         refused = cml(*words)
         expect(refused.returncode == status and word in refused.stderr and refused.stdout == "" and
                "\x1b" not in refused.stderr, f"cml {words}: \"{word}\"", refused)
+    with open(bus, "w", encoding="utf-8") as file:
+        file.write(NETWORK_WITH_BRIDGE.replace("virtual_time: true", "virtual_time: false"))
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         check_cml_ended(bus, number)
     none = run("cm1e", "cml", "-i", "sim", "?99.1")
@@ -368,13 +373,13 @@ def check_networks(folder):
     for order in ("ug_4_4", "ug_7_2"):
         bus = os.path.join(folder, f"{order}.yaml")
         with open(bus, "w", encoding="utf-8") as file:
-            file.write(text.replace("bus:\n", f"bus:\n  sim_pdo_order: {order}\n", 1))
+            file.write(text.replace("bus:\n", f"bus:\n  virtual_time: true\n  sim_pdo_order: {order}\n", 1))
         configured = run("cm1e", "generate", "eni", "-b", bus, "-o", "-")
         scanned = run("cm1e", "generate", "eni", "-b", bus, "-i", "sim", "-o", "-")
         expect(configured.returncode == 0 and configured.stdout == scanned.stdout, f"ENI of a scan, {order}", scanned)
     gap = os.path.join(folder, "gap.yaml")
     with open(gap, "w", encoding="utf-8") as file:
-        file.write(text.replace("position: 3", "position: 5"))
+        file.write(text.replace("bus:\n", "bus:\n  virtual_time: true\n", 1).replace("position: 3", "position: 5"))
     refused = run("cm1e", "generate", "eni", "-b", gap, "-o", "-")
     expect(refused.returncode == WRONG_USE and "scan" in refused.stderr, "ENI of a bus file with gaps", refused)
     path = os.path.join(folder, "gap.eni")
@@ -392,7 +397,7 @@ def check_no_motor(folder):
     """A network of a coupler alone: it is scanned and shown, and what is no motor is called so."""
     bus = os.path.join(folder, "coupler.yaml")
     with open(bus, "w", encoding="utf-8") as file:
-        file.write("bus: {sim_gaps: coupler}\naxes: [{type: virtual}]\n")
+        file.write("bus: {sim_gaps: coupler, virtual_time: true}\naxes: [{type: virtual}]\n")
     status = run("cm1e", "status", "-b", bus)
     expect(status.returncode == 0 and status.stdout == "slave 1: Coupler, no motor, Pre-Operational\n", "no motor",
            status)
@@ -400,7 +405,7 @@ def check_no_motor(folder):
     expect(json.loads(status.stdout) == [{"position": 1, "name": "Coupler", "firmware": "", "is_motor": False,
                                           "al_state": "Pre-Operational"}], "no motor", status)
     with open(bus, "w", encoding="utf-8") as file:
-        file.write("bus: {sim_gaps: terminal}\naxes: [{position: 2}]\n")
+        file.write("bus: {sim_gaps: terminal, virtual_time: true}\naxes: [{position: 2}]\n")
     status = run("cm1e", "status", "-b", bus)
     expect(status.stdout.startswith("slave 1: Digital terminal 4+4, no motor, Pre-Operational\nslave 2: CM1-E, firmware"),
            "a motor behind a terminal", status)
@@ -411,6 +416,7 @@ def check_no_motor(folder):
 BRIDGED = """\
 bus:
   interface: sim
+  virtual_time: true
 axes:
   - {name: first, position: 1}
   - {name: left, position: 2, channel: 1, motor: CM1, k37: 10}
@@ -476,8 +482,11 @@ def check_unknown_bridge(folder, bus):
 
 
 def check_examples(folder):
+    bus = os.path.join(folder, "virtual.yaml")
+    with open(f"{SOURCE}/examples/three_axes.yaml", encoding="utf-8") as real, open(bus, "w", encoding="utf-8") as file:
+        file.write(real.read().replace("bus:\n", "bus:\n  virtual_time: true\n", 1))
     for words in (["01_scan"], ["02_move_one_axis"],
-                  ["03_plc_program", "-b", f"{SOURCE}/examples/three_axes.yaml", "--seconds", "6",
+                  ["03_plc_program", "-b", bus, "--seconds", "6",
                    "--svg", os.path.join(folder, "example.svg")]):
         result = run(*words)
         expect(result.returncode == 0, " ".join(words), result)
@@ -601,6 +610,7 @@ def check_wrong():
 MIXED = """\
 bus:
   interface: sim
+  virtual_time: true
 axes:
   - {name: line, type: virtual}
   - {name: X}
@@ -637,6 +647,7 @@ def check_axes_without_a_motor(folder):
 
 
 def main():
+    real_time.run_above_others()
     with tempfile.TemporaryDirectory() as folder:
         check_good(folder)
         check_bridge(folder)
@@ -644,9 +655,8 @@ def main():
         check_axes_without_a_motor(folder)
         check_examples(folder)
     check_wrong()
-    print("\n".join(faults) or f"the command line: good use and {len(WRONG)} kinds of wrong use")
-    return 1 if faults else 0
+    real_time.end(faults, f"the command line: good use and {len(WRONG)} kinds of wrong use")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

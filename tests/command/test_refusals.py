@@ -12,6 +12,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+import real_time  # noqa: E402
+
 BIN, SOURCE = sys.argv[1], sys.argv[2]
 FAILED, WRONG_USE = 1, 2
 PCAP_HEADER = 24
@@ -146,15 +149,15 @@ def check_healthy_status():
 
 
 def main():
+    real_time.run_above_others()
     with tempfile.TemporaryDirectory() as folder:
         check_wrong_words(folder)
         check_files_before_the_move(folder)
         check_lost_frames(folder)
     check_no_homing_method()
     check_healthy_status()
-    print("\n".join(faults) or f"refused before anything moves: {len(NUMBERS)} numbers, {len(NAMES)} names, files")
-    return 1 if faults else 0
+    real_time.end(faults, f"refused before anything moves: {len(NUMBERS)} numbers, {len(NAMES)} names, files")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -7,6 +7,7 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <time.h>
@@ -14,6 +15,7 @@
 
 #include "core/bytes.h"
 #include "machine.h"
+#include "real_time.h"
 
 #define MS INT64_C(1000000)
 
@@ -288,22 +290,51 @@ static void remember_policy(void *context)
 
 START_TEST(test_thread_is_as_before_after_the_run)
 {
-    int inside = -1, after = -1;
+    int before = -1, inside = -1, after = -1;
     machine_t machine = {.axis_count = 1, .real_time = true};
     machine_open(&machine);
     machine_add(&machine, "", 0, 0, remember_policy, &inside);
+    run_above_others(false);
+    remember_policy(&before);
     machine_run(&machine, 20 * MS);
     remember_policy(&after);
     cm1e_scheduler_statistics_t s;
     cm1e_scheduler_statistics(machine.scheduler, &s);
     ck_assert_int_eq(inside, s.realtime ? SCHED_FIFO : inside);
-    ck_assert_int_eq(after, SCHED_OTHER);
+    ck_assert_int_eq(before, SCHED_OTHER);
+    ck_assert_int_eq(after, before);
+    machine_close(&machine);
+}
+END_TEST
+
+/* ---- the begin of a run ------------------------------------------------------------------------------------------ */
+
+static int policy_of_locking = -1;
+
+int mlockall(int flags)
+{
+    remember_policy(&policy_of_locking);
+    return (int)syscall(SYS_mlockall, flags);
+}
+
+/** The slaves wait for the first cycle in Operational, with watchdogs of 100 ms. Locking the memory of a large program
+ *  takes tens of milliseconds of computing, and many times that at an ordinary priority on a busy machine. */
+START_TEST(test_memory_is_locked_with_the_priority_of_the_cycle)
+{
+    machine_t machine = {.axis_count = 1, .real_time = true};
+    run_above_others(false);
+    machine_open(&machine);
+    machine_run(&machine, 20 * MS);
+    cm1e_scheduler_statistics_t s;
+    cm1e_scheduler_statistics(machine.scheduler, &s);
+    ck_assert_int_eq(policy_of_locking, s.realtime ? SCHED_FIFO : policy_of_locking);
     machine_close(&machine);
 }
 END_TEST
 
 int main(void)
 {
+    need_real_time();
     Suite *suite = suite_create("real time");
     TCase *all = tcase_create("all");
     const TTest *const tests[] = {
@@ -313,6 +344,7 @@ int main(void)
         test_no_real_time_asked_is_no_advice,
         test_cpu_that_the_machine_lacks_is_told_and_one_it_has_is_used,
         test_thread_is_as_before_after_the_run,
+        test_memory_is_locked_with_the_priority_of_the_cycle,
     };
     tcase_set_timeout(all, 60);
     tcase_add_loop_test(all, test_other_thread_submits_transfers_and_reads_statistics_while_the_cycle_runs, 0, 2);

@@ -16,6 +16,7 @@
 
 #include "cm1e/plcopen.h"
 #include "cm1e/scheduler.h"
+#include "real_time.h"
 
 #define MS INT64_C(1000000)
 
@@ -211,6 +212,7 @@ END_TEST
 
 int main(void)
 {
+    need_real_time();
     Suite *suite = suite_create("signals");
     TCase *all = tcase_create("all");
     tcase_set_timeout(all, 60);

@@ -13,6 +13,7 @@
 #include <oshw.h>
 #include <unity.h>
 
+#include "../support/real_time.h"
 #include "../support/veth.h"
 #include "nic/nic_private.h"
 #include "nic/raw_socket.h"
@@ -324,6 +325,7 @@ static void test_adapters_are_listed(void)
 
 int main(void)
 {
+    need_real_time();
     have_wire = veth_make();
     UNITY_BEGIN();
     RUN_TEST(test_frames_go_out_and_come_back);

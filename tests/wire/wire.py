@@ -12,6 +12,9 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+import real_time  # noqa: E402
+
 SKIPPED = 77
 MASTER_INTERFACE, SLAVE_INTERFACE = "ecm0", "ecs0"
 NOTICES = "notices.txt"
@@ -76,7 +79,7 @@ def join(master, slave):
         check(up.returncode == 0, f"{interface} does not come up: {up.stderr}")
 
 
-def real_time(command, priority):
+def with_priority(command, priority):
     """The command under SCHED_FIFO where that is allowed."""
     allowed = shutil.which("chrt") and subprocess.run(["chrt", "-f", str(priority), "true"],
                                                       capture_output=True).returncode == 0
@@ -116,7 +119,7 @@ class Segment:
         return self.simulator.stdout.readline().rstrip("\n")
 
     def command(self, command, priority=50):
-        return enter(self.master, real_time(command, priority))
+        return enter(self.master, with_priority(command, priority))
 
     def run(self, command, timeout=120):
         """Runs a program in the master's namespace; returns the finished process with its output."""
@@ -133,6 +136,7 @@ def segment(cm1e, *arguments):
     if not shutil.which("ip"):
         skip("the package iproute2 is not installed")
     become_root()
+    real_time.run_above_others()
     with contextlib.ExitStack() as stack:
         def ends_with_us(process):
             stack.callback(process.wait)
@@ -144,7 +148,7 @@ def segment(cm1e, *arguments):
         folder = stack.enter_context(tempfile.TemporaryDirectory())
         notices = stack.enter_context(open(os.path.join(folder, NOTICES), "w", encoding="utf-8"))
         simulator = ends_with_us(subprocess.Popen(
-            enter(slave, real_time([cm1e, "sim", "-i", SLAVE_INTERFACE, *arguments], 60)),
+            enter(slave, with_priority([cm1e, "sim", "-i", SLAVE_INTERFACE, *arguments], 60)),
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=notices, text=True))
         running = Segment(master, slave, simulator, folder)
         greeting = simulator.stdout.readline()
@@ -156,6 +160,7 @@ def segment(cm1e, *arguments):
 
 def check(condition, message):
     if not condition:
+        real_time.skip_on_a_busy_machine([message])
         print("FAILED:", message)
         sys.exit(1)
 
