@@ -1,8 +1,8 @@
 /**
  * @file iec.h
- * The standard function blocks of IEC 61131-3. TIME is 64-bit nanoseconds. A program calls them in its task; the time
- * of timers is that of the scan, the same for all of one scan. The symbols that the linker sees have the prefix iec_,
- * so that an application may have names of its own as short as these.
+ * The standard function blocks of IEC 61131-3. TIME is 64-bit nanoseconds. A program calls the blocks in its task.
+ * Timers use the time of the scan, which is the same for all blocks of one scan. The symbols have the prefix iec_ for
+ * the linker, so that they do not collide with short names of an application.
  * Generated from fb/interface/standard.st by fb/interface/generate.py; change it there.
  */
 #ifndef CM1E_IEC_H
@@ -15,19 +15,19 @@
 extern "C" {
 #endif
 
-/** Clock of a timer that is not to be touched. */
+/** Private state of a timer. */
 typedef struct cm1e_iec_timer {
-    TIME start;  /**< when it began */
+    TIME start;  /**< start of the running time */
     BOOL before; /**< IN at the last call */
     BOOL running;
 } cm1e_iec_timer_t;
 
-/** Input at the last call, not to be touched. */
+/** Private: inputs at the last call. */
 typedef struct cm1e_iec_edges {
     BOOL first, second;
 } cm1e_iec_edges_t;
 
-/** IEC 61131-3, 2.5.2.3.4. On-delay: Q follows IN, but goes on only when IN has been on for PT. @rt cycle */
+/** IEC 61131-3, 2.5.2.3.4. On-delay: Q becomes TRUE when IN has been TRUE for PT, and FALSE with IN. @rt cycle */
 typedef struct TON {
     BOOL IN;
     TIME PT; /**< ns, >= 0 */
@@ -38,7 +38,7 @@ typedef struct TON {
 } TON_t;
 CM1E_API void TON(TON_t *fb) CM1E_SYMBOL("iec_TON");
 
-/** IEC 61131-3, 2.5.2.3.4. Off-delay: Q follows IN, but goes off only when IN has been off for PT. @rt cycle */
+/** IEC 61131-3, 2.5.2.3.4. Off-delay: Q becomes TRUE with IN, and FALSE when IN has been FALSE for PT. @rt cycle */
 typedef struct TOF {
     BOOL IN;
     TIME PT; /**< ns, >= 0 */
@@ -49,7 +49,8 @@ typedef struct TOF {
 } TOF_t;
 CM1E_API void TOF(TOF_t *fb) CM1E_SYMBOL("iec_TOF");
 
-/** IEC 61131-3, 2.5.2.3.4. Pulse: Q is on for PT from the rising edge of IN, whatever IN does meanwhile. @rt cycle */
+/** IEC 61131-3, 2.5.2.3.4. Pulse: Q is TRUE for PT from the rising edge of IN, whatever IN does meanwhile.
+ *  @rt cycle */
 typedef struct TP {
     BOOL IN;
     TIME PT; /**< ns, >= 0 */
@@ -80,7 +81,7 @@ typedef struct F_TRIG {
 } F_TRIG_t;
 CM1E_API void F_TRIG(F_TRIG_t *fb) CM1E_SYMBOL("iec_F_TRIG");
 
-/** IEC 61131-3, 2.5.2.3.1. Bistable, set goes first. @rt cycle */
+/** IEC 61131-3, 2.5.2.3.1. Bistable; set takes precedence. @rt cycle */
 typedef struct SR {
     BOOL S1, R;
     /* outputs */
@@ -88,7 +89,7 @@ typedef struct SR {
 } SR_t;
 CM1E_API void SR(SR_t *fb) CM1E_SYMBOL("iec_SR");
 
-/** IEC 61131-3, 2.5.2.3.1. Bistable, reset goes first. @rt cycle */
+/** IEC 61131-3, 2.5.2.3.1. Bistable; reset takes precedence. @rt cycle */
 typedef struct RS {
     BOOL S, R1;
     /* outputs */
@@ -96,10 +97,10 @@ typedef struct RS {
 } RS_t;
 CM1E_API void RS(RS_t *fb) CM1E_SYMBOL("iec_RS");
 
-/** IEC 61131-3, 2.5.2.3.3. Counts up at rising edges of CU, past PV to the largest INT. @rt cycle */
+/** IEC 61131-3, 2.5.2.3.3. Counts up at rising edges of CU, past PV up to the largest INT. @rt cycle */
 typedef struct CTU {
     BOOL CU;
-    BOOL R; /**< TRUE: CV is 0; goes before CU */
+    BOOL R; /**< TRUE: CV is 0; takes precedence over CU */
     INT PV;
     /* outputs */
     BOOL Q; /**< CV >= PV */
@@ -108,10 +109,10 @@ typedef struct CTU {
 } CTU_t;
 CM1E_API void CTU(CTU_t *fb) CM1E_SYMBOL("iec_CTU");
 
-/** IEC 61131-3, 2.5.2.3.3. Counts down at rising edges of CD, past 0 to the smallest INT. @rt cycle */
+/** IEC 61131-3, 2.5.2.3.3. Counts down at rising edges of CD, past 0 down to the smallest INT. @rt cycle */
 typedef struct CTD {
     BOOL CD;
-    BOOL LD; /**< TRUE: CV is PV; goes before CD */
+    BOOL LD; /**< TRUE: CV is PV; takes precedence over CD */
     INT PV;
     /* outputs */
     BOOL Q;  /**< CV <= 0 */
@@ -123,8 +124,8 @@ CM1E_API void CTD(CTD_t *fb) CM1E_SYMBOL("iec_CTD");
 /** IEC 61131-3, 2.5.2.3.3. Counts up and down; edges of both in one call change nothing. @rt cycle */
 typedef struct CTUD {
     BOOL CU, CD;
-    BOOL R;  /**< TRUE: CV is 0; goes before all */
-    BOOL LD; /**< TRUE: CV is PV; goes before counting */
+    BOOL R;  /**< TRUE: CV is 0; takes precedence over all */
+    BOOL LD; /**< TRUE: CV is PV; takes precedence over counting */
     INT PV;
     /* outputs */
     BOOL QU; /**< CV >= PV */

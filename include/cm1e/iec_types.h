@@ -1,6 +1,6 @@
 /**
  * @file iec_types.h
- * The elementary types of IEC 61131-3 as function blocks use them. BOOL is one byte; TIME is 64-bit nanoseconds.
+ * The elementary types of IEC 61131-3 for the function blocks. BOOL is one byte; TIME is 64-bit nanoseconds.
  */
 #ifndef CM1E_IEC_TYPES_H
 #define CM1E_IEC_TYPES_H

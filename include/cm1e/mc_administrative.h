@@ -13,8 +13,8 @@
 extern "C" {
 #endif
 
-/** 3.17. Shifts the axis's coordinates: set and actual position change alike, nothing moves, also during a motion.
- *  @rt cycle */
+/** 3.17. Shifts the coordinates of the axis: set and actual position change alike, and nothing moves. It works
+ *  during a motion too. @rt cycle */
 typedef struct MC_SetPosition {
     AXIS_REF_t *Axis;
     BOOL Execute;
@@ -29,12 +29,12 @@ typedef struct MC_SetPosition {
 } MC_SetPosition_t;
 CM1E_API void MC_SetPosition(MC_SetPosition_t *fb);
 
-/** 3.18. Sets factors for velocity, acceleration and jerk of all motions of the axis. They stay when Enable falls.
- *  @rt cycle */
+/** 3.18. Sets factors for velocity, acceleration and jerk of all motions of the axis. They are kept when Enable
+ *  falls. @rt cycle */
 typedef struct MC_SetOverride {
     AXIS_REF_t *Axis;
     BOOL Enable;
-    LREAL VelFactor;  /**< 0 ... 1; 0: the axis stands, but not in Standstill */
+    LREAL VelFactor;  /**< 0 ... 1; 0: the axis is at rest, but not in Standstill */
     LREAL AccFactor;  /**< > 0 ... 1; acceleration and deceleration */
     LREAL JerkFactor; /**< > 0 ... 1 */
     /* outputs */
@@ -180,7 +180,8 @@ typedef struct MC_ReadActualTorque {
 } MC_ReadActualTorque_t;
 CM1E_API void MC_ReadActualTorque(MC_ReadActualTorque_t *fb);
 
-/** 3.27. Reads the state of the axis: one of the eight outputs is TRUE while Valid is. @rt cycle */
+/** 3.27. Reads the state of the axis. While Valid is TRUE, exactly one of the eight state outputs is TRUE.
+ *  @rt cycle */
 typedef struct MC_ReadStatus {
     AXIS_REF_t *Axis;
     BOOL Enable;
@@ -192,17 +193,17 @@ typedef struct MC_ReadStatus {
 } MC_ReadStatus_t;
 CM1E_API void MC_ReadStatus(MC_ReadStatus_t *fb);
 
-/** 3.28. Reads what the axis is doing: one of the first three of the values is TRUE while Valid is. @rt cycle */
+/** 3.28. Reads how the axis moves. While Valid is TRUE, exactly one of the first three values is TRUE. @rt cycle */
 typedef struct MC_ReadMotionState {
     AXIS_REF_t *Axis;
     BOOL Enable;
-    MC_SOURCE Source;       /**< which velocity is looked at */
+    MC_SOURCE Source;       /**< which velocity is evaluated */
     /* outputs */
     BOOL Valid, Busy, Error;
     WORD ErrorID;
-    BOOL ConstantVelocity;  /**< also while it is 0 */
-    BOOL Accelerating;      /**< its amount grows */
-    BOOL Decelerating;      /**< its amount falls */
+    BOOL ConstantVelocity;  /**< the velocity does not change; also TRUE at velocity 0 */
+    BOOL Accelerating;      /**< the amount of the velocity grows */
+    BOOL Decelerating;      /**< the amount of the velocity falls */
     BOOL DirectionPositive; /**< the position grows */
     BOOL DirectionNegative; /**< the position falls */
     cm1e_motion_private_t Private;
@@ -229,15 +230,15 @@ typedef struct MC_ReadAxisInfo {
 } MC_ReadAxisInfo_t;
 CM1E_API void MC_ReadAxisInfo(MC_ReadAxisInfo_t *fb);
 
-/** 3.30. Reads the error of the axis, that is why it is in ErrorStop. @rt cycle */
+/** 3.30. Reads the error of the axis: the reason why it is in ErrorStop. @rt cycle */
 typedef struct MC_ReadAxisError {
     AXIS_REF_t *Axis;
     BOOL Enable;
     /* outputs */
     BOOL Valid, Busy, Error;
     WORD ErrorID;
-    WORD AxisErrorID;     /**< an ErrorID of ours; 0: none */
-    WORD DeviceErrorCode; /**< 0x603F of the drive beside it (not in the standard) */
+    WORD AxisErrorID;     /**< ErrorID of the cause; 0: none */
+    WORD DeviceErrorCode; /**< 0x603F of the drive at that error (not in the standard) */
     cm1e_fb_private_t Private;
 } MC_ReadAxisError_t;
 CM1E_API void MC_ReadAxisError(MC_ReadAxisError_t *fb);
@@ -254,12 +255,12 @@ typedef struct MC_Reset {
 } MC_Reset_t;
 CM1E_API void MC_Reset(MC_Reset_t *fb);
 
-/** 3.32. Switches outputs by the axis's position, as cams on its shaft would. @rt cycle */
+/** 3.32. Switches outputs by the position of the axis, like cams on its shaft. @rt cycle */
 typedef struct MC_DigitalCamSwitch {
     AXIS_REF_t *Axis;
     const MC_CAMSWITCH_REF *Switches;
     MC_OUTPUT_REF *Outputs;
-    const MC_TRACK_REF *TrackOptions; /**< NULL: no compensation, no hysteresis */
+    const MC_TRACK_REF *TrackOptions; /**< NULL: no compensation and no hysteresis */
     BOOL Enable;
     DWORD EnableMask;                 /**< bit 0 = track 1; a track whose bit is 0 is off */
     MC_SOURCE ValueSource;            /**< mcSetValue or mcActualValue */
@@ -274,10 +275,10 @@ CM1E_API void MC_DigitalCamSwitch(MC_DigitalCamSwitch_t *fb);
 /** 3.33. Records the position at the first trigger event after the edge. @rt cycle */
 typedef struct MC_TouchProbe {
     AXIS_REF_t *Axis;
-    const MC_TRIGGER_REF *TriggerInput; /**< NULL: input 1 of the axis goes on */
+    const MC_TRIGGER_REF *TriggerInput; /**< NULL: the rising edge of input 1 of the axis */
     BOOL Execute;
     BOOL WindowOnly;                    /**< TRUE: only events between the two positions, both included */
-    LREAL FirstPosition;                /**< u; begin of the window */
+    LREAL FirstPosition;                /**< u; beginning of the window */
     LREAL LastPosition;                 /**< u; end of the window */
     /* outputs */
     BOOL Done;                          /**< an event is recorded */
@@ -286,18 +287,19 @@ typedef struct MC_TouchProbe {
     BOOL Error;
     WORD ErrorID;
     LREAL RecordedPosition;             /**< u; actual position at the event */
-    LREAL Uncertainty;                  /**< u; the event was at most so far from there (not in the standard) */
+    LREAL Uncertainty;                  /**< u; maximum distance of the event from RecordedPosition (not in the
+                                             standard) */
     cm1e_fb_private_t Private;
 } MC_TouchProbe_t;
 CM1E_API void MC_TouchProbe(MC_TouchProbe_t *fb);
 
-/** 3.34. Ends the waiting of MC_TouchProbe for a trigger. @rt cycle */
+/** 3.34. Disarms the trigger of an MC_TouchProbe. @rt cycle */
 typedef struct MC_AbortTrigger {
     AXIS_REF_t *Axis;
     const MC_TRIGGER_REF *TriggerInput; /**< as for MC_TouchProbe */
     BOOL Execute;
     /* outputs */
-    BOOL Done;                          /**< nobody waits for this trigger any more */
+    BOOL Done;                          /**< the trigger is no longer armed */
     BOOL Busy, Error;
     WORD ErrorID;
     cm1e_fb_private_t Private;

@@ -1,9 +1,10 @@
 /**
  * @file mc_group.h
- * The blocks of axes groups (PLCopen Part 4 v2.0, chapter 9): several axes along one path. A group is made with
- * cm1e_group_create(). Positions are arrays, element n for the axis with IdentInGroup n. Lengths, velocities and
- * accelerations along the path are those of the first up to three axes of the group, X, Y and Z; further axes go along
- * in proportion. TransitionVelocity, OrientationMode and Tolerance of the standard, of its level E, are not there.
+ * The blocks of axes groups (PLCopen Part 4 v2.0, chapter 9): several axes along one path. cm1e_group_create() makes a
+ * group. Positions are arrays; array element IdentInGroup - 1 belongs to the axis with that IdentInGroup. Lengths,
+ * velocities and accelerations along the path are those of the first up to three axes of the group, X, Y and Z; further
+ * axes move along in proportion. TransitionVelocity, OrientationMode and Tolerance of the standard, of its level E, are
+ * not implemented.
  * Generated from fb/interface/group.st by fb/interface/generate.py; change it there.
  */
 #ifndef CM1E_MC_GROUP_H
@@ -22,7 +23,7 @@ typedef struct MC_AddAxisToGroup {
     AXES_GROUP_REF_t *AxesGroup;
     AXIS_REF_t *Axis;
     BOOL Execute;
-    MC_IDENT_IN_GROUP IdentInGroup; /**< 0 ... 8; its place; 0: the first free one */
+    MC_IDENT_IN_GROUP IdentInGroup; /**< 0 ... 8; its place; 0 selects the first free one */
     /* outputs */
     BOOL Done, Busy, Error;
     WORD ErrorID;
@@ -42,7 +43,7 @@ typedef struct MC_RemoveAxisFromGroup {
 } MC_RemoveAxisFromGroup_t;
 CM1E_API void MC_RemoveAxisFromGroup(MC_RemoveAxisFromGroup_t *fb);
 
-/** Part 4 v2.0, 9.3. Takes all axes out of a group. What moves is stopped along its path first. @rt cycle */
+/** Part 4 v2.0, 9.3. Takes all axes out of a group. A moving group is stopped along its path first. @rt cycle */
 typedef struct MC_UngroupAllAxes {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
@@ -53,22 +54,23 @@ typedef struct MC_UngroupAllAxes {
 } MC_UngroupAllAxes_t;
 CM1E_API void MC_UngroupAllAxes(MC_UngroupAllAxes_t *fb);
 
-/** Part 4 v2.0, 9.4. Tells which axis is at a place of a group. @rt cycle */
+/** Part 4 v2.0, 9.4. Reads which axis has a place in a group. @rt cycle */
 typedef struct MC_GroupReadConfiguration {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Enable;
     MC_IDENT_IN_GROUP IdentInGroup; /**< 1 ... 8 */
-    MC_COORD_SYSTEM CoordSystem;    /**< mcACS; others are refused */
+    MC_COORD_SYSTEM CoordSystem;    /**< only mcACS is supported */
     /* outputs */
     BOOL Valid, Busy, Error;
     WORD ErrorID;
     AXIS_REF_t Axis;
-    UINT AxisID;                    /**< its handle */
+    UINT AxisID;                    /**< handle of the axis */
     cm1e_fb_private_t Private;
 } MC_GroupReadConfiguration_t;
 CM1E_API void MC_GroupReadConfiguration(MC_GroupReadConfiguration_t *fb);
 
-/** Part 4 v2.0, 9.6. Enables a group: GroupStandby. Moves nothing, and powers nothing. @rt cycle */
+/** Part 4 v2.0, 9.6. Enables a group, which is then in GroupStandby. The block neither moves nor powers an axis.
+ *  @rt cycle */
 typedef struct MC_GroupEnable {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
@@ -79,7 +81,8 @@ typedef struct MC_GroupEnable {
 } MC_GroupEnable_t;
 CM1E_API void MC_GroupEnable(MC_GroupEnable_t *fb);
 
-/** Part 4 v2.0, 9.7. Disables a group. Its commands are aborted; what moves is stopped along its path. @rt cycle */
+/** Part 4 v2.0, 9.7. Disables a group. Its commands are aborted, and a moving group is stopped along its path.
+ *  @rt cycle */
 typedef struct MC_GroupDisable {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
@@ -111,13 +114,13 @@ typedef struct MC_GroupReadStatus {
     BOOL Valid, Busy, Error;
     WORD ErrorID;
     BOOL GroupMoving;
-    BOOL GroupHoming; /**< never, in this version */
+    BOOL GroupHoming; /**< never TRUE in this version */
     BOOL GroupErrorStop, GroupStandby, GroupStopping, GroupDisabled;
     cm1e_fb_private_t Private;
 } MC_GroupReadStatus_t;
 CM1E_API void MC_GroupReadStatus(MC_GroupReadStatus_t *fb);
 
-/** Part 4 v2.0, 9.30. Reads why a group is in GroupErrorStop; cm1e_group_error_text() says it in sentences.
+/** Part 4 v2.0, 9.30. Reads why a group is in GroupErrorStop; cm1e_group_error_text() describes it in sentences.
  *  @rt cycle */
 typedef struct MC_GroupReadError {
     AXES_GROUP_REF_t *AxesGroup;
@@ -135,8 +138,8 @@ CM1E_API void MC_GroupReadError(MC_GroupReadError_t *fb);
 typedef struct MC_GroupStop {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
-    LREAL Deceleration; /**< u/s2, >= 0; 0: as much as the axes allow, as is more */
-    LREAL Jerk;         /**< u/s3, >= 0; 0: as much as the axes allow, as is more */
+    LREAL Deceleration; /**< u/s2, >= 0; 0, or a higher value, selects as much as the axes allow */
+    LREAL Jerk;         /**< u/s3, >= 0; 0, or a higher value, selects as much as the axes allow */
     /* outputs */
     BOOL Done;          /**< the set velocity is 0 */
     BOOL Busy, CommandAborted, Error;
@@ -149,14 +152,14 @@ CM1E_API void MC_GroupStop(MC_GroupStop_t *fb);
 typedef struct MC_GroupHalt {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
-    LREAL Deceleration;        /**< u/s2, >= 0; 0: as much as the axes allow, as is more */
-    LREAL Jerk;                /**< u/s3, >= 0; 0: as much as the axes allow, as is more */
+    LREAL Deceleration;        /**< u/s2, >= 0; 0, or a higher value, selects as much as the axes allow */
+    LREAL Jerk;                /**< u/s3, >= 0; 0, or a higher value, selects as much as the axes allow */
     MC_BUFFER_MODE BufferMode; /**< mcAborting, mcBuffered */
     /* outputs */
     BOOL Done;                 /**< the set velocity is 0 */
     BOOL Busy, Active;
-    BOOL CommandAccepted;      /**< the group has taken it, and it was not aborted */
-    UDINT CommandID;           /**< its number; 0: none */
+    BOOL CommandAccepted;      /**< the group has accepted the command, and it was not aborted */
+    UDINT CommandID;           /**< number of the command; 0: none */
     BOOL CommandAborted, Error;
     WORD ErrorID;
     cm1e_fb_private_t Private;
@@ -168,22 +171,22 @@ typedef struct MC_MoveLinearAbsolute {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
     LREAL Position[8];                 /**< u; target, by IdentInGroup */
-    LREAL Velocity;                    /**< u/s, >= 0; along the path; 0: as much as the axes allow */
-    LREAL Acceleration;                /**< u/s2, >= 0; along the path; 0: as much as the axes allow */
-    LREAL Deceleration;                /**< u/s2, >= 0; along the path; 0: as much as the axes allow */
-    LREAL Jerk;                        /**< u/s3, >= 0; along the path; 0: as much as the axes allow */
-    MC_COORD_SYSTEM CoordSystem;       /**< mcACS; others are refused */
+    LREAL Velocity;                    /**< u/s, >= 0; along the path; 0 selects as much as the axes allow */
+    LREAL Acceleration;                /**< u/s2, >= 0; along the path; 0 selects as much as the axes allow */
+    LREAL Deceleration;                /**< u/s2, >= 0; along the path; 0 selects as much as the axes allow */
+    LREAL Jerk;                        /**< u/s3, >= 0; along the path; 0 selects as much as the axes allow */
+    MC_COORD_SYSTEM CoordSystem;       /**< only mcACS is supported */
     MC_BUFFER_MODE BufferMode;
     MC_TRANSITION_MODE TransitionMode; /**< with BufferMode mcBlending... */
-    LREAL TransitionParameter;         /**< u, > 0; of mcTMCornerDistance, mcTMMaxCornerDeviation */
+    LREAL TransitionParameter;         /**< u, > 0; used by mcTMCornerDistance and mcTMMaxCornerDeviation */
     /* outputs */
-    BOOL Done;                         /**< the end of its part of the path is reached */
+    BOOL Done;                         /**< the group has reached the end of this part of the path */
     BOOL Busy;
-    BOOL Active;                       /**< the group moves by it */
-    BOOL CommandAccepted;              /**< the group has taken it, and it was not aborted */
+    BOOL Active;                       /**< the command moves the group */
+    BOOL CommandAccepted;              /**< the group has accepted the command, and it was not aborted */
     BOOL CommandAborted, Error;
     WORD ErrorID;
-    UDINT CommandID;                   /**< its number; 0: none */
+    UDINT CommandID;                   /**< number of the command; 0: none */
     cm1e_fb_private_t Private;
 } MC_MoveLinearAbsolute_t;
 CM1E_API void MC_MoveLinearAbsolute(MC_MoveLinearAbsolute_t *fb);
@@ -192,28 +195,28 @@ CM1E_API void MC_MoveLinearAbsolute(MC_MoveLinearAbsolute_t *fb);
 typedef struct MC_MoveLinearRelative {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
-    LREAL Distance[8];                 /**< u; way, by IdentInGroup */
-    LREAL Velocity;                    /**< u/s, >= 0; along the path; 0: as much as the axes allow */
-    LREAL Acceleration;                /**< u/s2, >= 0; along the path; 0: as much as the axes allow */
-    LREAL Deceleration;                /**< u/s2, >= 0; along the path; 0: as much as the axes allow */
-    LREAL Jerk;                        /**< u/s3, >= 0; along the path; 0: as much as the axes allow */
-    MC_COORD_SYSTEM CoordSystem;       /**< mcACS; others are refused */
+    LREAL Distance[8];                 /**< u; distance, by IdentInGroup */
+    LREAL Velocity;                    /**< u/s, >= 0; along the path; 0 selects as much as the axes allow */
+    LREAL Acceleration;                /**< u/s2, >= 0; along the path; 0 selects as much as the axes allow */
+    LREAL Deceleration;                /**< u/s2, >= 0; along the path; 0 selects as much as the axes allow */
+    LREAL Jerk;                        /**< u/s3, >= 0; along the path; 0 selects as much as the axes allow */
+    MC_COORD_SYSTEM CoordSystem;       /**< only mcACS is supported */
     MC_BUFFER_MODE BufferMode;
     MC_TRANSITION_MODE TransitionMode; /**< with BufferMode mcBlending... */
-    LREAL TransitionParameter;         /**< u, > 0; of mcTMCornerDistance, mcTMMaxCornerDeviation */
+    LREAL TransitionParameter;         /**< u, > 0; used by mcTMCornerDistance and mcTMMaxCornerDeviation */
     /* outputs */
-    BOOL Done;                         /**< the end of its part of the path is reached */
+    BOOL Done;                         /**< the group has reached the end of this part of the path */
     BOOL Busy;
-    BOOL Active;                       /**< the group moves by it */
-    BOOL CommandAccepted;              /**< the group has taken it, and it was not aborted */
+    BOOL Active;                       /**< the command moves the group */
+    BOOL CommandAccepted;              /**< the group has accepted the command, and it was not aborted */
     BOOL CommandAborted, Error;
     WORD ErrorID;
-    UDINT CommandID;                   /**< its number; 0: none */
+    UDINT CommandID;                   /**< number of the command; 0: none */
     cm1e_fb_private_t Private;
 } MC_MoveLinearRelative_t;
 CM1E_API void MC_MoveLinearRelative(MC_MoveLinearRelative_t *fb);
 
-/** Part 4 v2.0, 9.36. Moves a group along an arc to EndPoint; further axes go along. @rt cycle */
+/** Part 4 v2.0, 9.36. Moves a group along an arc to EndPoint; further axes move along. @rt cycle */
 typedef struct MC_MoveCircularAbsolute {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
@@ -221,22 +224,22 @@ typedef struct MC_MoveCircularAbsolute {
     LREAL AuxPoint[8];                 /**< u; a point of the arc, or its centre */
     LREAL EndPoint[8];                 /**< u; target, by IdentInGroup */
     MC_CIRC_PATHCHOICE PathChoice;     /**< with mcCenter */
-    LREAL Velocity;                    /**< u/s, >= 0; along the path; 0: as much as the axes allow */
-    LREAL Acceleration;                /**< u/s2, >= 0; along the path; 0: as much as the axes allow */
-    LREAL Deceleration;                /**< u/s2, >= 0; along the path; 0: as much as the axes allow */
-    LREAL Jerk;                        /**< u/s3, >= 0; along the path; 0: as much as the axes allow */
-    MC_COORD_SYSTEM CoordSystem;       /**< mcACS; others are refused */
+    LREAL Velocity;                    /**< u/s, >= 0; along the path; 0 selects as much as the axes allow */
+    LREAL Acceleration;                /**< u/s2, >= 0; along the path; 0 selects as much as the axes allow */
+    LREAL Deceleration;                /**< u/s2, >= 0; along the path; 0 selects as much as the axes allow */
+    LREAL Jerk;                        /**< u/s3, >= 0; along the path; 0 selects as much as the axes allow */
+    MC_COORD_SYSTEM CoordSystem;       /**< only mcACS is supported */
     MC_BUFFER_MODE BufferMode;
     MC_TRANSITION_MODE TransitionMode; /**< with BufferMode mcBlending... */
-    LREAL TransitionParameter;         /**< u, > 0; of mcTMCornerDistance, mcTMMaxCornerDeviation */
+    LREAL TransitionParameter;         /**< u, > 0; used by mcTMCornerDistance and mcTMMaxCornerDeviation */
     /* outputs */
-    BOOL Done;                         /**< the end of its part of the path is reached */
+    BOOL Done;                         /**< the group has reached the end of this part of the path */
     BOOL Busy;
-    BOOL Active;                       /**< the group moves by it */
-    BOOL CommandAccepted;              /**< the group has taken it, and it was not aborted */
+    BOOL Active;                       /**< the command moves the group */
+    BOOL CommandAccepted;              /**< the group has accepted the command, and it was not aborted */
     BOOL CommandAborted, Error;
     WORD ErrorID;
-    UDINT CommandID;                   /**< its number; 0: none */
+    UDINT CommandID;                   /**< number of the command; 0: none */
     cm1e_fb_private_t Private;
 } MC_MoveCircularAbsolute_t;
 CM1E_API void MC_MoveCircularAbsolute(MC_MoveCircularAbsolute_t *fb);
@@ -248,33 +251,33 @@ typedef struct MC_MoveCircularRelative {
     BOOL Execute;
     MC_CIRC_MODE CircMode;             /**< what AuxPoint is */
     LREAL AuxPoint[8];                 /**< u; a point of the arc, or its centre */
-    LREAL EndPoint[8];                 /**< u; way, by IdentInGroup */
+    LREAL EndPoint[8];                 /**< u; distance, by IdentInGroup */
     MC_CIRC_PATHCHOICE PathChoice;     /**< with mcCenter */
-    LREAL Velocity;                    /**< u/s, >= 0; along the path; 0: as much as the axes allow */
-    LREAL Acceleration;                /**< u/s2, >= 0; along the path; 0: as much as the axes allow */
-    LREAL Deceleration;                /**< u/s2, >= 0; along the path; 0: as much as the axes allow */
-    LREAL Jerk;                        /**< u/s3, >= 0; along the path; 0: as much as the axes allow */
-    MC_COORD_SYSTEM CoordSystem;       /**< mcACS; others are refused */
+    LREAL Velocity;                    /**< u/s, >= 0; along the path; 0 selects as much as the axes allow */
+    LREAL Acceleration;                /**< u/s2, >= 0; along the path; 0 selects as much as the axes allow */
+    LREAL Deceleration;                /**< u/s2, >= 0; along the path; 0 selects as much as the axes allow */
+    LREAL Jerk;                        /**< u/s3, >= 0; along the path; 0 selects as much as the axes allow */
+    MC_COORD_SYSTEM CoordSystem;       /**< only mcACS is supported */
     MC_BUFFER_MODE BufferMode;
     MC_TRANSITION_MODE TransitionMode; /**< with BufferMode mcBlending... */
-    LREAL TransitionParameter;         /**< u, > 0; of mcTMCornerDistance, mcTMMaxCornerDeviation */
+    LREAL TransitionParameter;         /**< u, > 0; used by mcTMCornerDistance and mcTMMaxCornerDeviation */
     /* outputs */
-    BOOL Done;                         /**< the end of its part of the path is reached */
+    BOOL Done;                         /**< the group has reached the end of this part of the path */
     BOOL Busy;
-    BOOL Active;                       /**< the group moves by it */
-    BOOL CommandAccepted;              /**< the group has taken it, and it was not aborted */
+    BOOL Active;                       /**< the command moves the group */
+    BOOL CommandAccepted;              /**< the group has accepted the command, and it was not aborted */
     BOOL CommandAborted, Error;
     WORD ErrorID;
-    UDINT CommandID;                   /**< its number; 0: none */
+    UDINT CommandID;                   /**< number of the command; 0: none */
     cm1e_fb_private_t Private;
 } MC_MoveCircularRelative_t;
 CM1E_API void MC_MoveCircularRelative(MC_MoveCircularRelative_t *fb);
 
-/** Part 4 v2.0, 9.14. Reads the positions of the axes of a group, all of the same cycle. @rt cycle */
+/** Part 4 v2.0, 9.14. Reads the positions of the axes of a group, all taken in the same cycle. @rt cycle */
 typedef struct MC_GroupReadPosition {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Enable;
-    MC_COORD_SYSTEM CoordSystem; /**< mcACS; others are refused */
+    MC_COORD_SYSTEM CoordSystem; /**< only mcACS is supported */
     MC_SOURCE Source;            /**< mcSetValue, mcActualValue */
     /* outputs */
     BOOL Valid, Busy, Error;
@@ -284,11 +287,11 @@ typedef struct MC_GroupReadPosition {
 } MC_GroupReadPosition_t;
 CM1E_API void MC_GroupReadPosition(MC_GroupReadPosition_t *fb);
 
-/** Part 4 v2.0, 9.15. Reads the velocities of the axes of a group, and that along the path. @rt cycle */
+/** Part 4 v2.0, 9.15. Reads the velocities of the axes of a group, and the velocity along the path. @rt cycle */
 typedef struct MC_GroupReadVelocity {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Enable;
-    MC_COORD_SYSTEM CoordSystem; /**< mcACS; others are refused */
+    MC_COORD_SYSTEM CoordSystem; /**< only mcACS is supported */
     MC_SOURCE Source;            /**< mcSetValue, mcActualValue */
     /* outputs */
     BOOL Valid, Busy, Error;
@@ -299,14 +302,14 @@ typedef struct MC_GroupReadVelocity {
 } MC_GroupReadVelocity_t;
 CM1E_API void MC_GroupReadVelocity(MC_GroupReadVelocity_t *fb);
 
-/** Part 4 v2.0, 9.43. Sets a factor on the velocities of the motions of a group; it stays until it is changed.
+/** Part 4 v2.0, 9.43. Sets a factor for the velocities of all motions of a group; it is kept until it is changed.
  *  @rt cycle */
 typedef struct MC_GroupSetOverride {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Enable;
     LREAL VelFactor;  /**< 0 ... 1 */
-    LREAL AccFactor;  /**< 1; others are refused in this version */
-    LREAL JerkFactor; /**< 1; others are refused in this version */
+    LREAL AccFactor;  /**< 1; other values are refused in this version */
+    LREAL JerkFactor; /**< 1; other values are refused in this version */
     /* outputs */
     BOOL Enabled;     /**< the factors are in force */
     BOOL Busy, Error;

@@ -13,8 +13,8 @@
 extern "C" {
 #endif
 
-/** Part 5, 3.1. Searches an absolute switch, turns round at a limit switch, and takes its place as reference.
- *  @rt cycle */
+/** Part 5, 3.1. Searches an absolute switch, reverses at a limit switch, and uses the place of the switch as
+ *  reference. @rt cycle */
 typedef struct MC_StepAbsoluteSwitch {
     AXIS_REF_t *Axis;
     BOOL Execute;
@@ -22,10 +22,10 @@ typedef struct MC_StepAbsoluteSwitch {
     MC_SWITCH_MODE SwitchMode;
     MC_REF_SIGNAL_REF ReferenceSignal;
     LREAL Velocity;      /**< u/s, > 0 ... maximum; of the search */
-    LREAL SetPosition;   /**< u; position of the axis at the reference; NaN: it keeps its own */
-    LREAL TorqueLimit;   /**< % of rated torque, >= 0; more than this gives up; 0: none */
-    TIME TimeLimit;      /**< ns, >= 0; 0: homing.timeout_s of the axis */
-    LREAL DistanceLimit; /**< u, >= 0; of all ways together; 0: none */
+    LREAL SetPosition;   /**< u; position of the axis at the reference; NaN: positions are not changed */
+    LREAL TorqueLimit;   /**< % of rated torque, >= 0; the step fails above this torque; 0: no limit */
+    TIME TimeLimit;      /**< ns, >= 0; 0 selects homing.timeout_s of the axis */
+    LREAL DistanceLimit; /**< u, >= 0; of all movements together; 0: no limit */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;           /**< the reference is found and set */
@@ -35,17 +35,17 @@ typedef struct MC_StepAbsoluteSwitch {
 } MC_StepAbsoluteSwitch_t;
 CM1E_API void MC_StepAbsoluteSwitch(MC_StepAbsoluteSwitch_t *fb);
 
-/** Part 5, 3.2. Searches a limit switch and takes its place as reference. @rt cycle */
+/** Part 5, 3.2. Searches a limit switch and uses its place as reference. @rt cycle */
 typedef struct MC_StepLimitSwitch {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_HOME_DIRECTION Direction;    /**< positive or negative */
-    MC_SWITCH_MODE LimitSwitchMode; /**< the four that name no direction */
+    MC_SWITCH_MODE LimitSwitchMode; /**< one of the four modes without a direction */
     LREAL Velocity;                 /**< u/s, > 0 ... maximum; of the search */
-    LREAL SetPosition;              /**< u; position of the axis at the reference; NaN: it keeps its own */
-    LREAL TorqueLimit;              /**< % of rated torque, >= 0; more than this gives up; 0: none */
-    TIME TimeLimit;                 /**< ns, >= 0; 0: homing.timeout_s of the axis */
-    LREAL DistanceLimit;            /**< u, >= 0; of all ways together; 0: none */
+    LREAL SetPosition;              /**< u; position of the axis at the reference; NaN: positions are not changed */
+    LREAL TorqueLimit;              /**< % of rated torque, >= 0; the step fails above this torque; 0: no limit */
+    TIME TimeLimit;                 /**< ns, >= 0; 0 selects homing.timeout_s of the axis */
+    LREAL DistanceLimit;            /**< u, >= 0; of all movements together; 0: no limit */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;                      /**< the reference is found and set */
@@ -55,18 +55,20 @@ typedef struct MC_StepLimitSwitch {
 } MC_StepLimitSwitch_t;
 CM1E_API void MC_StepLimitSwitch(MC_StepLimitSwitch_t *fb);
 
-/** Part 5, 3.3. Runs against a hard stop and takes its place as reference. @rt cycle */
+/** Part 5, 3.3. Moves against a hard stop and uses its place as reference. @rt cycle */
 typedef struct MC_StepBlock {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_HOME_DIRECTION Direction;  /**< positive or negative */
     LREAL Velocity;               /**< u/s, > 0 ... maximum; of the search */
-    LREAL SetPosition;            /**< u; position of the axis at the reference; NaN: it keeps its own */
-    LREAL DetectionVelocityLimit; /**< u/s, >= 0; slower than this and pressing is blocked; 0: a tenth of Velocity */
-    TIME DetectionVelocityTime;   /**< ns, >= 0; for so long; 0: 50 ms */
-    LREAL TorqueLimit;            /**< % of rated torque, >= 0; that shows the stop; 0: the position lag shows it */
-    TIME TimeLimit;               /**< ns, >= 0; 0: homing.timeout_s of the axis */
-    LREAL DistanceLimit;          /**< u, >= 0; of all ways together; 0: none */
+    LREAL SetPosition;            /**< u; position of the axis at the reference; NaN: positions are not changed */
+    LREAL DetectionVelocityLimit; /**< u/s, >= 0; below this velocity a pressing motor counts as blocked; 0 selects a
+                                       tenth of Velocity */
+    TIME DetectionVelocityTime;   /**< ns, >= 0; time for which that must last; 0 selects 50 ms */
+    LREAL TorqueLimit;            /**< % of rated torque, >= 0; at this torque the stop is found; 0: the position lag
+                                       shows the stop */
+    TIME TimeLimit;               /**< ns, >= 0; 0 selects homing.timeout_s of the axis */
+    LREAL DistanceLimit;          /**< u, >= 0; of all movements together; 0: no limit */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;                    /**< the stop is found and set */
@@ -83,10 +85,10 @@ typedef struct MC_StepReferencePulse {
     MC_HOME_DIRECTION Direction; /**< positive or negative */
     MC_REF_SIGNAL_REF ReferenceSignal;
     LREAL Velocity;              /**< u/s, > 0 ... maximum; of the search */
-    LREAL SetPosition;           /**< u; position of the axis at the reference; NaN: it keeps its own */
-    LREAL TorqueLimit;           /**< % of rated torque, >= 0; 0: none */
-    TIME TimeLimit;              /**< ns, >= 0; 0: homing.timeout_s of the axis */
-    LREAL DistanceLimit;         /**< u, >= 0; of all ways together; 0: none */
+    LREAL SetPosition;           /**< u; position of the axis at the reference; NaN: positions are not changed */
+    LREAL TorqueLimit;           /**< % of rated torque, >= 0; 0: no limit */
+    TIME TimeLimit;              /**< ns, >= 0; 0 selects homing.timeout_s of the axis */
+    LREAL DistanceLimit;         /**< u, >= 0; of all movements together; 0: no limit */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;                   /**< the reference is found and set */
@@ -102,9 +104,9 @@ typedef struct MC_StepDistanceCoded {
     BOOL Execute;
     MC_HOME_DIRECTION Direction; /**< positive or negative */
     LREAL Velocity;              /**< u/s, > 0 ... maximum; of the search */
-    LREAL TorqueLimit;           /**< % of rated torque, >= 0; 0: none */
-    TIME TimeLimit;              /**< ns, >= 0; 0: homing.timeout_s of the axis */
-    LREAL DistanceLimit;         /**< u, >= 0; of all ways together; 0: none */
+    LREAL TorqueLimit;           /**< % of rated torque, >= 0; 0: no limit */
+    TIME TimeLimit;              /**< ns, >= 0; 0 selects homing.timeout_s of the axis */
+    LREAL DistanceLimit;         /**< u, >= 0; of all movements together; 0: no limit */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;                   /**< the position is known and set */
@@ -114,7 +116,7 @@ typedef struct MC_StepDistanceCoded {
 } MC_StepDistanceCoded_t;
 CM1E_API void MC_StepDistanceCoded(MC_StepDistanceCoded_t *fb);
 
-/** Part 5, 3.6. Gives the axis a position where it stands, and ends the homing. @rt cycle */
+/** Part 5, 3.6. Sets the position of the axis at standstill, and ends the homing. @rt cycle */
 typedef struct MC_HomeDirect {
     AXIS_REF_t *Axis;
     BOOL Execute;
@@ -128,7 +130,7 @@ typedef struct MC_HomeDirect {
 } MC_HomeDirect_t;
 CM1E_API void MC_HomeDirect(MC_HomeDirect_t *fb);
 
-/** Part 5, 3.7. Takes the position of an absolute encoder, and ends the homing. @rt cycle */
+/** Part 5, 3.7. Sets the position from an absolute encoder, and ends the homing. @rt cycle */
 typedef struct MC_HomeAbsolute {
     AXIS_REF_t *Axis;
     BOOL Execute;
@@ -141,15 +143,15 @@ typedef struct MC_HomeAbsolute {
 } MC_HomeAbsolute_t;
 CM1E_API void MC_HomeAbsolute(MC_HomeAbsolute_t *fb);
 
-/** Part 5, 3.8. Ends a homing of several steps, after a move away from the reference. @rt cycle */
+/** Part 5, 3.8. Ends a homing of several steps, after an optional move away from the reference. @rt cycle */
 typedef struct MC_FinishHoming {
     AXIS_REF_t *Axis;
     BOOL Execute;
-    LREAL Distance;     /**< u; 0: no move */
+    LREAL Distance;     /**< u; distance to move; 0: no move */
     LREAL Velocity;     /**< u/s, > 0 ... maximum */
-    LREAL Acceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
-    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
-    LREAL Jerk;         /**< u/s3, 0 ... maximum; 0: the axis's maximum */
+    LREAL Acceleration; /**< u/s2, 0 ... maximum; 0 selects the axis maximum */
+    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0 selects the axis maximum */
+    LREAL Jerk;         /**< u/s3, 0 ... maximum; 0 selects the axis maximum */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;          /**< the axis is homed and in Standstill */
@@ -159,15 +161,15 @@ typedef struct MC_FinishHoming {
 } MC_FinishHoming_t;
 CM1E_API void MC_FinishHoming(MC_FinishHoming_t *fb);
 
-/** Part 5, 3.9. Takes the place of a switch as reference while another block moves the axis. @rt cycle */
+/** Part 5, 3.9. Uses the place of a switch as reference while another block moves the axis. @rt cycle */
 typedef struct MC_StepReferenceFlyingSwitch {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_SWITCH_MODE SwitchMode;
     MC_REF_SIGNAL_REF ReferenceSignal;
     LREAL SetPosition;   /**< u; position of the axis at the reference */
-    TIME TimeLimit;      /**< ns, >= 0; 0: homing.timeout_s of the axis */
-    LREAL DistanceLimit; /**< u, >= 0; of all ways together; 0: none */
+    TIME TimeLimit;      /**< ns, >= 0; 0 selects homing.timeout_s of the axis */
+    LREAL DistanceLimit; /**< u, >= 0; of all movements together; 0: no limit */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;           /**< the reference is found and set */
@@ -177,14 +179,14 @@ typedef struct MC_StepReferenceFlyingSwitch {
 } MC_StepReferenceFlyingSwitch_t;
 CM1E_API void MC_StepReferenceFlyingSwitch(MC_StepReferenceFlyingSwitch_t *fb);
 
-/** Part 5, 3.10. Takes the reference pulse of an encoder while another block moves the axis. @rt cycle */
+/** Part 5, 3.10. Uses the reference pulse of an encoder while another block moves the axis. @rt cycle */
 typedef struct MC_StepReferenceFlyingRefPulse {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_REF_SIGNAL_REF ReferenceSignal;
     LREAL SetPosition;   /**< u; position of the axis at the reference */
-    TIME TimeLimit;      /**< ns, >= 0; 0: homing.timeout_s of the axis */
-    LREAL DistanceLimit; /**< u, >= 0; of all ways together; 0: none */
+    TIME TimeLimit;      /**< ns, >= 0; 0 selects homing.timeout_s of the axis */
+    LREAL DistanceLimit; /**< u, >= 0; of all movements together; 0: no limit */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;           /**< the reference is found and set */
@@ -194,12 +196,12 @@ typedef struct MC_StepReferenceFlyingRefPulse {
 } MC_StepReferenceFlyingRefPulse_t;
 CM1E_API void MC_StepReferenceFlyingRefPulse(MC_StepReferenceFlyingRefPulse_t *fb);
 
-/** Part 5, 3.11. Ends the waiting of the two flying steps; the motion goes on. @rt cycle */
+/** Part 5, 3.11. Cancels the two flying steps; the motion goes on. @rt cycle */
 typedef struct MC_AbortPassiveHoming {
     AXIS_REF_t *Axis;
     BOOL Execute;
     /* outputs */
-    BOOL Done; /**< nobody waits any more */
+    BOOL Done; /**< no flying step waits any more */
     BOOL Busy, CommandAborted, Error;
     WORD ErrorID;
     cm1e_fb_private_t Private;

@@ -14,9 +14,9 @@
 extern "C" {
 #endif
 
-/** 3.1. Controls the power stage. One per axis. Status: the stage is on and set-points act. Error also while the
- *  axis is in ErrorStop and the stage therefore stays off. Answers for the axis latched at Enable's edge until it
- *  is off. @rt cycle */
+/** 3.1. Controls the power stage; an axis has one MC_Power. Status is TRUE while the power stage is on and set-
+ *  points act. Error is TRUE also while the axis is in ErrorStop and the power stage therefore stays off. The block
+ *  controls the axis that was latched at Enable's edge until the power stage is off. @rt cycle */
 typedef struct MC_Power {
     AXIS_REF_t *Axis;
     BOOL Enable;         /**< TRUE: power on, FALSE: off; a level */
@@ -31,8 +31,8 @@ typedef struct MC_Power {
 } MC_Power_t;
 CM1E_API void MC_Power(MC_Power_t *fb);
 
-/** 3.2. Homes by the motor's own routine (UG 6.2.4). Position: the axis has this position at the reference when
- *  Done. @rt cycle */
+/** 3.2. Homes by the motor's own routine (UG 6.2.4). When Done, the axis has the position Position at the
+ *  reference. @rt cycle */
 typedef struct MC_Home {
     AXIS_REF_t *Axis;
     BOOL Execute;
@@ -42,18 +42,18 @@ typedef struct MC_Home {
     BOOL Done;                              /**< the reference is known and set */
     BOOL Busy, Active, CommandAborted, Error;
     WORD ErrorID;
-    const cm1e_homing_config_t *Parameters; /**< NULL: the axis's configured homing (not in the standard) */
+    const cm1e_homing_config_t *Parameters; /**< NULL selects the configured homing of the axis (not in the standard) */
     cm1e_fb_private_t Private;
 } MC_Home_t;
 CM1E_API void MC_Home(MC_Home_t *fb);
 
-/** 3.3. Stops and holds: the axis stays in Stopping while Execute is TRUE (Done and Active together then).
+/** 3.3. Stops the axis and holds it in Stopping while Execute is TRUE. Done and Active are TRUE together then.
  *  @rt cycle */
 typedef struct MC_Stop {
     AXIS_REF_t *Axis;
     BOOL Execute;
-    LREAL Deceleration; /**< u/s2, >= 0; 0: the axis's maximum, as is more */
-    LREAL Jerk;         /**< u/s3, >= 0; 0: the axis's maximum, as is more */
+    LREAL Deceleration; /**< u/s2, >= 0; 0, or a value above the axis maximum, selects the axis maximum */
+    LREAL Jerk;         /**< u/s3, >= 0; 0, or a value above the axis maximum, selects the axis maximum */
     /* outputs */
     BOOL Done;          /**< the set velocity is 0 */
     BOOL Busy;
@@ -68,8 +68,8 @@ CM1E_API void MC_Stop(MC_Stop_t *fb);
 typedef struct MC_Halt {
     AXIS_REF_t *Axis;
     BOOL Execute;
-    LREAL Deceleration; /**< u/s2, >= 0; 0: the axis's maximum, as is more */
-    LREAL Jerk;         /**< u/s3, >= 0; 0: the axis's maximum, as is more */
+    LREAL Deceleration; /**< u/s2, >= 0; 0, or a value above the axis maximum, selects the axis maximum */
+    LREAL Jerk;         /**< u/s3, >= 0; 0, or a value above the axis maximum, selects the axis maximum */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;          /**< the set velocity is 0 */
@@ -84,10 +84,10 @@ typedef struct MC_MoveAbsolute {
     AXIS_REF_t *Axis;
     BOOL Execute, ContinuousUpdate;
     LREAL Position;         /**< u; target */
-    LREAL Velocity;         /**< u/s, > 0 ... maximum; largest on the way, not necessarily reached */
-    LREAL Acceleration;     /**< u/s2, 0 ... maximum; 0: the axis's maximum */
-    LREAL Deceleration;     /**< u/s2, 0 ... maximum; 0: the axis's maximum */
-    LREAL Jerk;             /**< u/s3, 0 ... maximum; 0: the axis's maximum */
+    LREAL Velocity;         /**< u/s, > 0 ... maximum; maximum of the motion, not necessarily reached */
+    LREAL Acceleration;     /**< u/s2, 0 ... maximum; 0 selects the axis maximum */
+    LREAL Deceleration;     /**< u/s2, 0 ... maximum; 0 selects the axis maximum */
+    LREAL Jerk;             /**< u/s3, 0 ... maximum; 0 selects the axis maximum */
     MC_DIRECTION Direction; /**< modulo axes only; 0: mcShortestWay */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
@@ -103,10 +103,10 @@ typedef struct MC_MoveRelative {
     AXIS_REF_t *Axis;
     BOOL Execute, ContinuousUpdate;
     LREAL Distance;     /**< u */
-    LREAL Velocity;     /**< u/s, > 0 ... maximum; largest on the way, not necessarily reached */
-    LREAL Acceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
-    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
-    LREAL Jerk;         /**< u/s3, 0 ... maximum; 0: the axis's maximum */
+    LREAL Velocity;     /**< u/s, > 0 ... maximum; maximum of the motion, not necessarily reached */
+    LREAL Acceleration; /**< u/s2, 0 ... maximum; 0 selects the axis maximum */
+    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0 selects the axis maximum */
+    LREAL Jerk;         /**< u/s3, 0 ... maximum; 0 selects the axis maximum */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;          /**< the set position has gone the distance */
@@ -116,16 +116,16 @@ typedef struct MC_MoveRelative {
 } MC_MoveRelative_t;
 CM1E_API void MC_MoveRelative(MC_MoveRelative_t *fb);
 
-/** 3.7. Moves by a distance from the most recent commanded position, also that of an aborted move; in
- *  ContinuousMotion from the set position. @rt cycle */
+/** 3.7. Moves by a distance from the most recent commanded position, which may be that of an aborted move. In
+ *  ContinuousMotion it counts from the set position. @rt cycle */
 typedef struct MC_MoveAdditive {
     AXIS_REF_t *Axis;
     BOOL Execute, ContinuousUpdate;
     LREAL Distance;     /**< u */
-    LREAL Velocity;     /**< u/s, > 0 ... maximum; largest on the way, not necessarily reached */
-    LREAL Acceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
-    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
-    LREAL Jerk;         /**< u/s3, 0 ... maximum; 0: the axis's maximum */
+    LREAL Velocity;     /**< u/s, > 0 ... maximum; maximum of the motion, not necessarily reached */
+    LREAL Acceleration; /**< u/s2, 0 ... maximum; 0 selects the axis maximum */
+    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0 selects the axis maximum */
+    LREAL Jerk;         /**< u/s3, 0 ... maximum; 0 selects the axis maximum */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
     BOOL Done;          /**< the set position is the new target */
@@ -135,15 +135,16 @@ typedef struct MC_MoveAdditive {
 } MC_MoveAdditive_t;
 CM1E_API void MC_MoveAdditive(MC_MoveAdditive_t *fb);
 
-/** 3.8. Adds a motion over a distance to the one that is under way, which is not interrupted. @rt cycle */
+/** 3.8. Adds a motion over a distance to the running motion, which is not interrupted. @rt cycle */
 typedef struct MC_MoveSuperimposed {
     AXIS_REF_t *Axis;
     BOOL Execute, ContinuousUpdate;
-    LREAL Distance;        /**< u; to be added */
-    LREAL VelocityDiff;    /**< u/s, > 0 ... maximum; largest difference to the motion under way */
-    LREAL Acceleration;    /**< u/s2, 0 ... maximum; in addition to that of the motion under way; 0: what it leaves */
-    LREAL Deceleration;    /**< u/s2, 0 ... maximum; in the same way */
-    LREAL Jerk;            /**< u/s3, 0 ... maximum; in the same way */
+    LREAL Distance;        /**< u; distance to be added */
+    LREAL VelocityDiff;    /**< u/s, > 0 ... maximum; maximum difference to the velocity of the running motion */
+    LREAL Acceleration;    /**< u/s2, 0 ... maximum; in addition to that of the running motion; 0 selects what that
+                                leaves */
+    LREAL Deceleration;    /**< u/s2, 0 ... maximum; as Acceleration */
+    LREAL Jerk;            /**< u/s3, 0 ... maximum; as Acceleration */
     /* outputs */
     BOOL Done;             /**< the distance has been added */
     BOOL Busy, CommandAborted, Error;
@@ -153,12 +154,12 @@ typedef struct MC_MoveSuperimposed {
 } MC_MoveSuperimposed_t;
 CM1E_API void MC_MoveSuperimposed(MC_MoveSuperimposed_t *fb);
 
-/** 3.9. Ends a superimposed motion; the motion below goes on. @rt cycle */
+/** 3.9. Ends a superimposed motion; the base motion goes on. @rt cycle */
 typedef struct MC_HaltSuperimposed {
     AXIS_REF_t *Axis;
     BOOL Execute;
-    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0: what the motion below leaves */
-    LREAL Jerk;         /**< u/s3, 0 ... maximum; in the same way */
+    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0 selects what the base motion leaves */
+    LREAL Jerk;         /**< u/s3, 0 ... maximum; as Deceleration */
     /* outputs */
     BOOL Done;          /**< nothing is superimposed any more */
     BOOL Busy;
@@ -169,34 +170,34 @@ typedef struct MC_HaltSuperimposed {
 } MC_HaltSuperimposed_t;
 CM1E_API void MC_HaltSuperimposed(MC_HaltSuperimposed_t *fb);
 
-/** 3.10. Turns at a velocity until something else comes. A negative Velocity turns the direction round. @rt cycle */
+/** 3.10. Moves at a velocity until another command ends it. A negative Velocity reverses Direction. @rt cycle */
 typedef struct MC_MoveVelocity {
     AXIS_REF_t *Axis;
     BOOL Execute, ContinuousUpdate;
-    LREAL Velocity;         /**< u/s, +-maximum, not 0; a negative one turns Direction round */
-    LREAL Acceleration;     /**< u/s2, 0 ... maximum; 0: the axis's maximum */
-    LREAL Deceleration;     /**< u/s2, 0 ... maximum; 0: the axis's maximum */
-    LREAL Jerk;             /**< u/s3, 0 ... maximum; 0: the axis's maximum */
+    LREAL Velocity;         /**< u/s, +-maximum, not 0; a negative value reverses Direction */
+    LREAL Acceleration;     /**< u/s2, 0 ... maximum; 0 selects the axis maximum */
+    LREAL Deceleration;     /**< u/s2, 0 ... maximum; 0 selects the axis maximum */
+    LREAL Jerk;             /**< u/s3, 0 ... maximum; 0 selects the axis maximum */
     MC_DIRECTION Direction; /**< 0: mcPositiveDirection; not mcShortestWay */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
-    BOOL InVelocity;        /**< the set velocity is the commanded one */
+    BOOL InVelocity;        /**< the set velocity equals the commanded velocity */
     BOOL Busy, Active, CommandAborted, Error;
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_MoveVelocity_t;
 CM1E_API void MC_MoveVelocity(MC_MoveVelocity_t *fb);
 
-/** 3.11. Moves to a position, arrives there with EndVelocity and goes on with it. @rt cycle */
+/** 3.11. Moves to a position, arrives there with EndVelocity and continues at that velocity. @rt cycle */
 typedef struct MC_MoveContinuousAbsolute {
     AXIS_REF_t *Axis;
     BOOL Execute, ContinuousUpdate;
     LREAL Position;         /**< u; target */
     LREAL EndVelocity;      /**< u/s, +-maximum; signed */
-    LREAL Velocity;         /**< u/s, > 0 ... maximum; largest on the way */
-    LREAL Acceleration;     /**< u/s2, 0 ... maximum; 0: the axis's maximum */
-    LREAL Deceleration;     /**< u/s2, 0 ... maximum; 0: the axis's maximum */
-    LREAL Jerk;             /**< u/s3, 0 ... maximum; 0: the axis's maximum */
+    LREAL Velocity;         /**< u/s, > 0 ... maximum; maximum of the motion */
+    LREAL Acceleration;     /**< u/s2, 0 ... maximum; 0 selects the axis maximum */
+    LREAL Deceleration;     /**< u/s2, 0 ... maximum; 0 selects the axis maximum */
+    LREAL Jerk;             /**< u/s3, 0 ... maximum; 0 selects the axis maximum */
     MC_DIRECTION Direction; /**< modulo axes only; 0: mcShortestWay */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
@@ -207,26 +208,26 @@ typedef struct MC_MoveContinuousAbsolute {
 } MC_MoveContinuousAbsolute_t;
 CM1E_API void MC_MoveContinuousAbsolute(MC_MoveContinuousAbsolute_t *fb);
 
-/** 3.12. Moves by a distance, ends it with EndVelocity and goes on with it. @rt cycle */
+/** 3.12. Moves by a distance, ends it with EndVelocity and continues at that velocity. @rt cycle */
 typedef struct MC_MoveContinuousRelative {
     AXIS_REF_t *Axis;
     BOOL Execute, ContinuousUpdate;
     LREAL Distance;     /**< u; from the set position at the start */
     LREAL EndVelocity;  /**< u/s, +-maximum; signed */
-    LREAL Velocity;     /**< u/s, > 0 ... maximum; largest on the way */
-    LREAL Acceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
-    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
-    LREAL Jerk;         /**< u/s3, 0 ... maximum; 0: the axis's maximum */
+    LREAL Velocity;     /**< u/s, > 0 ... maximum; maximum of the motion */
+    LREAL Acceleration; /**< u/s2, 0 ... maximum; 0 selects the axis maximum */
+    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0 selects the axis maximum */
+    LREAL Jerk;         /**< u/s3, 0 ... maximum; 0 selects the axis maximum */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
-    BOOL InEndVelocity; /**< the distance was gone and the set velocity is EndVelocity */
+    BOOL InEndVelocity; /**< the distance was covered and the set velocity is EndVelocity */
     BOOL Busy, Active, CommandAborted, Error;
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_MoveContinuousRelative_t;
 CM1E_API void MC_MoveContinuousRelative(MC_MoveContinuousRelative_t *fb);
 
-/** 3.13. Exerts a torque. The CM1-E has no mode for it (0x6502 = 0x1A5): always Error,
+/** 3.13. Exerts a torque. The CM1-E has no torque mode (0x6502 = 0x1A5), so the block always shows
  *  CM1E_ERROR_AXIS_NO_TORQUE_MODE. @rt cycle */
 typedef struct MC_TorqueControl {
     AXIS_REF_t *Axis;
@@ -297,17 +298,17 @@ typedef struct MC_AccelerationProfile {
 } MC_AccelerationProfile_t;
 CM1E_API void MC_AccelerationProfile(MC_AccelerationProfile_t *fb);
 
-/** Tc2_MC2. Moves the axis by push-buttons, as TwinCAT's block of this name. @rt cycle */
+/** Tc2_MC2. Moves the axis by push-buttons, like TwinCAT's block of this name. @rt cycle */
 typedef struct MC_Jog {
     AXIS_REF_t *Axis;
     BOOL JogForward;    /**< moves in positive direction from its rising edge on; both buttons TRUE: stop */
-    BOOL JogBackwards;  /**< the same in negative direction */
+    BOOL JogBackwards;  /**< as JogForward, in negative direction */
     E_JogMode Mode;
     LREAL Position;     /**< u, > 0; step of the inching modes */
-    LREAL Velocity;     /**< u/s, > 0 ... maximum; this and the next three: not in the two standard modes */
-    LREAL Acceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
-    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0: the axis's maximum */
-    LREAL Jerk;         /**< u/s3, 0 ... maximum; 0: the axis's maximum */
+    LREAL Velocity;     /**< u/s, > 0 ... maximum; this and the next three are not used in the two standard modes */
+    LREAL Acceleration; /**< u/s2, 0 ... maximum; 0 selects the axis maximum */
+    LREAL Deceleration; /**< u/s2, 0 ... maximum; 0 selects the axis maximum */
+    LREAL Jerk;         /**< u/s3, 0 ... maximum; 0 selects the axis maximum */
     /* outputs */
     BOOL Done;          /**< the jog has ended and the axis stands */
     BOOL Busy, Active, CommandAborted, Error;

@@ -13,17 +13,17 @@
 extern "C" {
 #endif
 
-/** 4.2. Makes a cam ready for a slave. Done: CamTableID is the one to be used in MC_CamIn. @rt cycle */
+/** 4.2. Prepares a cam for a slave. When Done, CamTableID is the value for MC_CamIn. @rt cycle */
 typedef struct MC_CamTableSelect {
-    AXIS_REF_t *Master;         /**< (not needed here: may be NULL) */
-    AXIS_REF_t *Slave;          /**< whose memory takes the cam */
+    AXIS_REF_t *Master;         /**< (not needed here; it may be NULL) */
+    AXIS_REF_t *Slave;          /**< the axis whose memory takes the cam */
     const MC_CAM_REF *CamTable; /**< copied at the edge */
     BOOL Execute;
     BOOL Periodic;              /**< TRUE: the cam begins again at its end; FALSE: it is run once */
-    BOOL MasterAbsolute;        /**< TRUE: its master positions are those of the master; FALSE: they count from the
-                                     start */
-    BOOL SlaveAbsolute;         /**< TRUE: its slave positions are those of the slave; FALSE: they count from the
-                                     start */
+    BOOL MasterAbsolute;        /**< TRUE: the master positions of the cam are positions of the master; FALSE: they
+                                     count from the start */
+    BOOL SlaveAbsolute;         /**< TRUE: the slave positions of the cam are positions of the slave; FALSE: they
+                                     count from the start */
     MC_EXECUTION_MODE ExecutionMode;
     /* outputs */
     BOOL Done;                  /**< CamTableID is valid */
@@ -43,48 +43,49 @@ typedef struct MC_CamIn {
     LREAL SlaveOffset;           /**< u; added to the slave positions of the cam */
     LREAL MasterScaling;         /**< factor of the master positions; 0 acts as 1 */
     LREAL SlaveScaling;          /**< factor of the slave positions; 0 acts as 1 */
-    LREAL MasterStartDistance;   /**< u of the master; way of the master on which the slave gets in step; 0: none */
-    LREAL MasterSyncPosition;    /**< u of the master; where in the cam that way ends */
+    LREAL MasterStartDistance;   /**< u of the master; distance of the master in which the slave synchronises; 0:
+                                      none */
+    LREAL MasterSyncPosition;    /**< u of the master; position in the cam where that distance ends */
     MC_START_MODE StartMode;
     MC_SOURCE MasterValueSource; /**< mcSetValue or mcActualValue */
     MC_CAM_ID CamTableID;        /**< of MC_CamTableSelect, for this slave */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
-    BOOL InSync;                 /**< the slave is where the cam wants it */
+    BOOL InSync;                 /**< the set position is that of the cam */
     BOOL Busy, Active, CommandAborted, Error;
     WORD ErrorID;
-    BOOL EndOfProfile;           /**< TRUE in the first call after the master went over an end of the cam */
+    BOOL EndOfProfile;           /**< TRUE in the first call after the master passed an end of the cam */
     cm1e_coupling_private_t Private;
 } MC_CamIn_t;
 CM1E_API void MC_CamIn(MC_CamIn_t *fb);
 
-/** 4.4. Ends the following by a cam; the slave goes on with the velocity that it has. @rt cycle */
+/** 4.4. Ends the coupling by a cam; the slave continues at its present velocity. @rt cycle */
 typedef struct MC_CamOut {
     AXIS_REF_t *Slave;
     BOOL Execute;
     /* outputs */
-    BOOL Done; /**< the slave follows no longer */
+    BOOL Done; /**< the slave no longer follows */
     BOOL Busy, Error;
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_CamOut_t;
 CM1E_API void MC_CamOut(MC_CamOut_t *fb);
 
-/** 4.5. Lets the slave follow its master by a ratio of their velocities, and of their positions from InGear on.
+/** 4.5. Lets the slave follow its master by a ratio of their velocities; from InGear on also of their positions.
  *  @rt cycle */
 typedef struct MC_GearIn {
     AXIS_REF_t *Master;
     AXIS_REF_t *Slave;
     BOOL Execute, ContinuousUpdate;
-    DINT RatioNumerator;         /**< not 0; u of the slave */
-    UDINT RatioDenominator;      /**< not 0; ... for so many u of the master */
+    DINT RatioNumerator;         /**< not 0; u of the slave that correspond to RatioDenominator */
+    UDINT RatioDenominator;      /**< not 0; u of the master */
     MC_SOURCE MasterValueSource; /**< mcSetValue or mcActualValue */
-    LREAL Acceleration;          /**< u/s2, 0 ... maximum; of getting in step; 0: the axis's maximum */
-    LREAL Deceleration;          /**< u/s2, 0 ... maximum; in the same way */
-    LREAL Jerk;                  /**< u/s3, 0 ... maximum; in the same way */
+    LREAL Acceleration;          /**< u/s2, 0 ... maximum; of the approach; 0 selects the axis maximum */
+    LREAL Deceleration;          /**< u/s2, 0 ... maximum; as Acceleration */
+    LREAL Jerk;                  /**< u/s3, 0 ... maximum; as Acceleration */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
-    BOOL InGear;                 /**< the set velocity is that of the ratio */
+    BOOL InGear;                 /**< the set velocity follows the ratio */
     BOOL Busy, Active, CommandAborted, Error;
     WORD ErrorID;
     cm1e_coupling_private_t Private;
@@ -93,39 +94,40 @@ typedef struct MC_GearIn {
 #define MC_GEARIN_DEFAULTS .RatioNumerator = 1, .RatioDenominator = 1
 CM1E_API void MC_GearIn(MC_GearIn_t *fb);
 
-/** 4.6. Ends the following by a ratio; the slave goes on with the velocity that it has. @rt cycle */
+/** 4.6. Ends the coupling by a ratio; the slave continues at its present velocity. @rt cycle */
 typedef struct MC_GearOut {
     AXIS_REF_t *Slave;
     BOOL Execute;
     /* outputs */
-    BOOL Done; /**< the slave follows no longer */
+    BOOL Done; /**< the slave no longer follows */
     BOOL Busy, Error;
     WORD ErrorID;
     cm1e_fb_private_t Private;
 } MC_GearOut_t;
 CM1E_API void MC_GearOut(MC_GearOut_t *fb);
 
-/** 4.7. Lets the slave follow its master by a ratio of their positions from a point on at which both have given
+/** 4.7. Lets the slave follow its master by a ratio of their positions, from a point at which both have given
  *  positions. @rt cycle */
 typedef struct MC_GearInPos {
     AXIS_REF_t *Master;
     AXIS_REF_t *Slave;
     BOOL Execute;
-    DINT RatioNumerator;         /**< not 0; u of the slave */
-    UDINT RatioDenominator;      /**< not 0; ... for so many u of the master */
+    DINT RatioNumerator;         /**< not 0; u of the slave that correspond to RatioDenominator */
+    UDINT RatioDenominator;      /**< not 0; u of the master */
     MC_SOURCE MasterValueSource; /**< mcSetValue or mcActualValue */
-    LREAL MasterSyncPosition;    /**< u of the master; from here on they are in step ... */
-    LREAL SlaveSyncPosition;     /**< u; ... while the slave is here */
+    LREAL MasterSyncPosition;    /**< u of the master; position of the master from which on both are in synchronism */
+    LREAL SlaveSyncPosition;     /**< u; position of the slave at MasterSyncPosition */
     MC_SYNC_MODE SyncMode;
-    LREAL MasterStartDistance;   /**< u of the master; so far before MasterSyncPosition the slave begins; 0: at once */
-    LREAL Velocity;              /**< u/s, > 0 ... maximum; largest on the way into step */
-    LREAL Acceleration;          /**< u/s2, 0 ... maximum; on the way into step; 0: the axis's maximum */
-    LREAL Deceleration;          /**< u/s2, 0 ... maximum; in the same way */
-    LREAL Jerk;                  /**< u/s3, 0 ... maximum; in the same way */
+    LREAL MasterStartDistance;   /**< u of the master; distance before MasterSyncPosition at which the approach
+                                      begins; 0: at once */
+    LREAL Velocity;              /**< u/s, > 0 ... maximum; maximum of the approach */
+    LREAL Acceleration;          /**< u/s2, 0 ... maximum; of the approach; 0 selects the axis maximum */
+    LREAL Deceleration;          /**< u/s2, 0 ... maximum; as Acceleration */
+    LREAL Jerk;                  /**< u/s3, 0 ... maximum; as Acceleration */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
-    BOOL StartSync;              /**< the slave is on its way into step */
-    BOOL InSync;                 /**< the set position is that of the ratio */
+    BOOL StartSync;              /**< the approach has begun */
+    BOOL InSync;                 /**< the set position follows the ratio */
     BOOL Busy, Active, CommandAborted, Error;
     WORD ErrorID;
     cm1e_coupling_private_t Private;
@@ -134,19 +136,19 @@ typedef struct MC_GearInPos {
 #define MC_GEARINPOS_DEFAULTS .RatioNumerator = 1, .RatioDenominator = 1
 CM1E_API void MC_GearInPos(MC_GearInPos_t *fb);
 
-/** 4.8. Shifts the master's position as the slave sees it, to a phase shift. @rt cycle */
+/** 4.8. Shifts the master's position for this slave to a phase shift. @rt cycle */
 typedef struct MC_PhasingAbsolute {
     AXIS_REF_t *Master;
     AXIS_REF_t *Slave;
     BOOL Execute;
-    LREAL PhaseShift;         /**< u of the master; what the slave sees is the master's position and this */
-    LREAL Velocity;           /**< u/s of the master, > 0; largest of the shift */
-    LREAL Acceleration;       /**< u/s2 of the master, 0 ... maximum; 0: half of what the slave can follow */
-    LREAL Deceleration;       /**< u/s2 of the master, 0 ... maximum; in the same way */
-    LREAL Jerk;               /**< u/s3 of the master, 0 ... maximum; in the same way */
+    LREAL PhaseShift;         /**< u of the master; added to the master's position for this slave */
+    LREAL Velocity;           /**< u/s of the master, > 0; maximum of the shift */
+    LREAL Acceleration;       /**< u/s2 of the master, 0 ... maximum; 0 selects half of what the slave can follow */
+    LREAL Deceleration;       /**< u/s2 of the master, 0 ... maximum; as Acceleration */
+    LREAL Jerk;               /**< u/s3 of the master, 0 ... maximum; as Acceleration */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
-    BOOL Done;                /**< the phase shift is reached; it stays */
+    BOOL Done;                /**< the phase shift is reached; it is kept */
     BOOL Busy, Active, CommandAborted, Error;
     WORD ErrorID;
     LREAL AbsolutePhaseShift; /**< u of the master; the phase shift, while Busy */
@@ -154,19 +156,19 @@ typedef struct MC_PhasingAbsolute {
 } MC_PhasingAbsolute_t;
 CM1E_API void MC_PhasingAbsolute(MC_PhasingAbsolute_t *fb);
 
-/** 4.9. Shifts the master's position as the slave sees it, by so much more. @rt cycle */
+/** 4.9. Shifts the master's position for this slave by a further phase shift. @rt cycle */
 typedef struct MC_PhasingRelative {
     AXIS_REF_t *Master;
     AXIS_REF_t *Slave;
     BOOL Execute;
-    LREAL PhaseShift;        /**< u of the master; added to the phase shift that there is */
-    LREAL Velocity;          /**< u/s of the master, > 0; largest of the shift */
-    LREAL Acceleration;      /**< u/s2 of the master, 0 ... maximum; 0: half of what the slave can follow */
-    LREAL Deceleration;      /**< u/s2 of the master, 0 ... maximum; in the same way */
-    LREAL Jerk;              /**< u/s3 of the master, 0 ... maximum; in the same way */
+    LREAL PhaseShift;        /**< u of the master; added to the present phase shift */
+    LREAL Velocity;          /**< u/s of the master, > 0; maximum of the shift */
+    LREAL Acceleration;      /**< u/s2 of the master, 0 ... maximum; 0 selects half of what the slave can follow */
+    LREAL Deceleration;      /**< u/s2 of the master, 0 ... maximum; as Acceleration */
+    LREAL Jerk;              /**< u/s3 of the master, 0 ... maximum; as Acceleration */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
-    BOOL Done;               /**< it is added; it stays */
+    BOOL Done;               /**< the phase shift is added; it is kept */
     BOOL Busy, Active, CommandAborted, Error;
     WORD ErrorID;
     LREAL CoveredPhaseShift; /**< u of the master; added by this block since its start */
@@ -181,15 +183,15 @@ typedef struct MC_CombineAxes {
     AXIS_REF_t *Slave;
     BOOL Execute, ContinuousUpdate;
     MC_COMBINE_MODE CombineMode;
-    DINT GearRatioNumeratorM1;     /**< not 0; u of the slave */
-    DINT GearRatioDenominatorM1;   /**< not 0; ... for so many u of Master1 */
-    DINT GearRatioNumeratorM2;     /**< not 0; u of the slave */
-    DINT GearRatioDenominatorM2;   /**< not 0; ... for so many u of Master2 */
+    DINT GearRatioNumeratorM1;     /**< not 0; u of the slave that correspond to the denominator */
+    DINT GearRatioDenominatorM1;   /**< not 0; u of Master1 */
+    DINT GearRatioNumeratorM2;     /**< not 0; u of the slave that correspond to the denominator */
+    DINT GearRatioDenominatorM2;   /**< not 0; u of Master2 */
     MC_SOURCE MasterValueSourceM1; /**< mcSetValue or mcActualValue */
     MC_SOURCE MasterValueSourceM2; /**< mcSetValue or mcActualValue */
     MC_BUFFER_MODE BufferMode;
     /* outputs */
-    BOOL InSync;                   /**< the set velocity is that of both masters by their ratios */
+    BOOL InSync;                   /**< the set velocity follows both masters by their ratios */
     BOOL Busy, Active, CommandAborted, Error;
     WORD ErrorID;
     cm1e_coupling_private_t Private;

@@ -1,8 +1,8 @@
 /**
  * @file tc2_mc2.h
- * Names of TwinCAT's library Tc2_MC2 where they differ from PLCopen's, for programs that are carried over. Only what
- * means the same here has its name here; docs/TWINCAT.md says what becomes of the rest. Include it instead of
- * plcopen.h, after all other headers: the names are macros. Everything is as in plcopen.h (@rt cycle).
+ * Names of TwinCAT's library Tc2_MC2 that differ from PLCopen's, for programs that are ported. A name is here only if
+ * its meaning is the same; docs/TWINCAT.md describes the rest. Include this header instead of plcopen.h, after all
+ * other headers, because the names are macros. All rules are those of plcopen.h (@rt cycle).
  */
 #ifndef CM1E_TC2_MC2_H
 #define CM1E_TC2_MC2_H
@@ -24,7 +24,7 @@ typedef MC_BUFFER_MODE MC_BufferMode;
 #define MC_BlendingNext mcBlendingNext
 #define MC_BlendingHigh mcBlendingHigh
 
-/* By name, never by number. TwinCAT's MC_Undefined_Direction: leave Direction 0. */
+/* Use the names, not the numbers. For TwinCAT's MC_Undefined_Direction leave Direction at 0. */
 typedef MC_DIRECTION MC_Direction;
 #define MC_Positive_Direction mcPositiveDirection
 #define MC_Shortest_Way mcShortestWay
@@ -35,11 +35,11 @@ typedef MC_DIRECTION MC_Direction;
 typedef MC_MoveSuperimposed_t MC_MoveSuperImposed_t;
 #define MC_MoveSuperImposed MC_MoveSuperimposed
 
-/* Deceleration and Jerk are not inputs of TwinCAT's block: left 0 they are the axis's maximum. */
+/* Deceleration and Jerk are not inputs of TwinCAT's block; leave them at 0, which selects the axis maximum. */
 typedef MC_HaltSuperimposed_t MC_AbortSuperposition_t;
 #define MC_AbortSuperposition MC_HaltSuperimposed
 
-/* TF5050 (cams). Its modes that are absolute for one of the two axes alone: mcRampIn, with MasterAbsolute and
+/* TF5050 (cams). For its modes that are absolute for only one of the two axes use mcRampIn, with MasterAbsolute and
  * SlaveAbsolute of MC_CamTableSelect. */
 typedef MC_START_MODE MC_StartMode;
 #define MC_STARTMODE_ABSOLUTE mcAbsolute

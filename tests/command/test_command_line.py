@@ -115,7 +115,7 @@ def check_in_position(folder):
     with open(bus, "w", encoding="utf-8") as file:
         file.write("bus: {virtual_time: true}\naxes: [{name: a, in_position: {timeout_s: 0.4}}]\n")
     stopped = run("cm1e", "move", "-i", "sim", "-b", bus, "--by", "5.4")
-    for words in ("did not get to its set-point in time", "stood at 5.4 u", "at 5 u", "0.4 u below", "mechanical stop"):
+    for words in ("did not reach its set-point in time", "stood at 5.4 u", "at 5 u", "0.4 u below", "mechanical stop"):
         expect(stopped.returncode == FAILED and not stopped.stdout and words in stopped.stderr, words, stopped)
     text = run("cm1e", "move", "-b", bus, "--by", "0.5")
     expect("to 0.5, deviation 0\n" in text.stdout, "as text", text)

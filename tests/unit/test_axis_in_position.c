@@ -216,7 +216,7 @@ static void test_a_stop_ends_in_an_error_in_words(void)
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_NOT_IN_POSITION, cm1e_axis_command_status(axis, id).error);
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_NOT_IN_POSITION, bench_info().error);
-    static const char *const words[] = {"did not get to its set-point in time, which is 2 s",
+    static const char *const words[] = {"did not reach its set-point in time, which is 2 s",
                                         "stood at 5.4 u", "at 5 u", "0.4 u below", "150 %", "window is 0.0002 u", "mechanical stop", "MC_Reset"};
     bench_cycles(50);
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
@@ -509,7 +509,7 @@ static void test_homing_waits_for_the_motor_too(void)
             TEST_ASSERT_EQUAL_INT(waits && !there ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE, bench_state_of(id));
             TEST_ASSERT_INT_WITHIN(25, waits && !there ? 2000 : 0, cycles);
             if (waits && !there)
-                bench_told("did not get to its set-point");
+                bench_told("did not reach its set-point");
             else
                 TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
             TEST_ASSERT_TRUE(bench_info().homed);
