@@ -133,7 +133,8 @@ def errors_text(block, tables):
 
 
 def notes_text(block, notes):
-    parts = [text for names, text in notes if block.name in names]
+    own = "\n".join(wrap(text, "- ", "  ") for text in block.tags.get("note", []))
+    parts = [own] * bool(own) + [text for names, text in notes if block.name in names]
     return "## Notes\n\n" + "\n\n".join(parts) + "\n\n" if parts else ""
 
 
