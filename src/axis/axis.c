@@ -223,32 +223,3 @@ void cm1e_axis_outputs(cm1e_axis_t *axis)
     cm1e_axis_write_set_point(axis);
     cm1e_drive_write(&axis->drive);
 }
-
-void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info)
-{
-    const cm1e_drive_feedback_t *f = &axis->drive.feedback;
-    *info = (cm1e_axis_info_t){
-        .state = axis->state,
-        .set_velocity = axis->set_velocity,
-        .set_acceleration = axis->set_acceleration,
-        .actual_velocity = (f->velocity - cm1e_axis_backlash_velocity(axis)) / axis->scale,
-        .actual_torque = f->torque * (axis->scale < 0.0 ? -0.1 : 0.1),
-        .position_lag = cm1e_position_minus(axis->set, axis_actual(axis)) / axis->scale,
-        .powered = cm1e_axis_powered(axis),
-        .homed = axis->homed,
-        .in_position = cm1e_axis_in_position(axis),
-        .online = f->online,
-        .torque_known = axis->drive.in_torque.bytes > 0,
-        .digital_known = f->digital_known,
-        .temperature_known = axis->drive.in_temperature.bytes > 0,
-        .dc_link_known = axis->drive.in_dc.bytes > 0,
-        .error = axis->error,
-        .device_error = axis->device_error,
-        .digital_inputs = f->digital_inputs,
-        .statusword = f->statusword,
-        .mode = f->mode,
-        .temperature = f->temperature,
-        .dc_link_voltage = f->dc_link_decivolt * 0.1,
-    };
-    cm1e_axis_shown(axis, &info->set_position, &info->actual_position);
-}

@@ -1,11 +1,6 @@
-/* Digital inputs and the output of the motor, the switches among them, and what goes off when it is not renewed. */
-#include <math.h>
-
+/* Digital inputs and the output of the motor, and the switches among them. */
 #include "axis/axis_private.h"
 #include "axis/axis_signals.h"
-#include "config/interface.h"
-
-int64_t cm1e_axis_time(const cm1e_axis_t *axis) { return axis->now_ns; }
 
 /* ---- behind a bridge --------------------------------------------------------------------------------------------- */
 
@@ -215,74 +210,7 @@ cm1e_error_t cm1e_axis_read_torque(const cm1e_axis_t *axis, double *percent)
     return axis->drive.feedback.online ? CM1E_OK : CM1E_ERROR_AXIS_OFFLINE;
 }
 
-/* ---- condition --------------------------------------------------------------------------------------------------- */
-
-/* UG 7.3.1: what a drive says that is just not enabled, and otherwise would be worth a look. */
-static bool tells_only_that_it_is_off(const cm1e_drive_feedback_t *f)
-{
-    const uint16_t code = f->error_code;
-    return f->state != OPERATION_ENABLED && (code == 0x4502 || code == 0x8611 || code == 0xFF01);
-}
-
-cm1e_axis_condition_t cm1e_axis_condition(const cm1e_axis_t *axis)
-{
-    const cm1e_drive_feedback_t *f = &axis->drive.feedback;
-    const char *name = cm1e_bus_configuration(axis->drive.bus)->interface_name;
-    /* Behind a bridge bit 7 never warns (BR 6.1.3), but is an input in CPIO; and this is where CML leaves it. */
-    const bool bridged = cm1e_drive_bridged(&axis->drive), rests = bridged && f->state == SWITCH_ON_DISABLED;
-    return (cm1e_axis_condition_t){
-        .simulation = cm1e_interface_is_simulated(name),
-        .communication = f->online,
-        .ready_for_power_on = axis->state == CM1E_AXIS_DISABLED && f->online && f->voltage && !f->fault &&
-                              (f->state == READY_TO_SWITCH_ON || f->state == SWITCHED_ON || rests),
-        .warning = !f->fault && !bridged && (f->statusword & STATUSWORD_WARNING ||
-                                             (f->error_code != 0 && !tells_only_that_it_is_off(f))),
-    };
-}
-
-cm1e_axis_measures_t cm1e_axis_measures(const cm1e_axis_t *axis)
-{
-    const cm1e_axis_config_t *config = axis->config;
-    const double most = axis->maximum.velocity;
-    return (cm1e_axis_measures_t){
-        .resolution = 1.0 / fabs(axis->scale),
-        .modulo_range = axis->modulo_range,
-        .max_velocity = most,
-        .lower = axis->modulo_range > 0.0 ? -INFINITY : axis->lower,
-        .upper = axis->modulo_range > 0.0 ? INFINITY : axis->upper,
-        .jog_slow = fmin(config->jog_slow > 0.0 ? config->jog_slow : 0.05 * most, most),
-        .jog_fast = fmin(config->jog_fast > 0.0 ? config->jog_fast : 0.25 * most, most),
-    };
-}
-
-/* ---- what has to be renewed -------------------------------------------------------------------------------------- */
-
-void cm1e_axis_keep(cm1e_axis_t *axis, cm1e_command_id_t id, int64_t keep_ns, double deceleration, double jerk)
-{
-    axis->kept = id;
-    axis->kept_until_ns = axis->now_ns + keep_ns;
-    axis->kept_deceleration = deceleration;
-    axis->kept_jerk = jerk;
-}
-
-void cm1e_axis_signals_step(cm1e_axis_t *axis)
-{
-    /* A slave that left Operational may have been without power: nothing comes on again by itself when it is back. */
-    if (!cm1e_drive_operational(&axis->drive) || axis->now_ns >= axis->output_until_ns)
-        axis->drive.command.digital_outputs = 0;
-    if (axis->kept == 0 || axis->now_ns < axis->kept_until_ns)
-        return;
-    cm1e_command_id_t halt;
-    const bool moves = axis->kept == axis->active;
-    axis->kept = 0;
-    if (!moves)
-        return;
-    /* Values that a person typed in and that the axis refuses are no reason to go on. */
-    const cm1e_axis_command_t kept = {.kind = CM1E_COMMAND_HALT, .deceleration = axis->kept_deceleration,
-                                      .jerk = axis->kept_jerk};
-    if (cm1e_axis_start(axis, &kept, &halt))
-        cm1e_axis_start(axis, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT}, &halt);
-}
+/* ---- off --------------------------------------------------------------------------------------------------------- */
 
 void cm1e_axis_outputs_off(cm1e_axis_t *axis) { axis->drive.command.digital_outputs = 0; }
 

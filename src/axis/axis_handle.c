@@ -25,15 +25,6 @@ cm1e_axis_t *cm1e_axis_from_reference(const AXIS_REF_t *reference)
     return reference ? cm1e_axis_from_handle(reference->Handle) : NULL;
 }
 
-cm1e_error_t cm1e_axis_read(AXIS_REF_t reference, cm1e_axis_info_t *info)
-{
-    const cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
-    if (!axis)
-        return CM1E_ERROR_FB_AXIS_REF;
-    cm1e_axis_get(axis, info);
-    return CM1E_OK;
-}
-
 cm1e_error_t cm1e_axis_write_encoder(AXIS_REF_t reference, uint32_t counts, bool valid)
 {
     cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);

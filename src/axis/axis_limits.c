@@ -249,7 +249,7 @@ bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, const from_t *from
     return cm1e_axis_limits_contain_way(axis, from, fmin(way, 0.0), fmax(way, 0.0));
 }
 
-static bool inside(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
+bool cm1e_axis_limits_keep_within(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
     if (!axis->software_limits)
         return true;
@@ -262,29 +262,7 @@ static bool inside(const cm1e_axis_t *axis, const from_t *from, const cm1e_profi
 bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
     const bool meaningless = axis->state == CM1E_AXIS_HOMING && !axis->stepping.finishing;
-    return meaningless || inside(axis, from, profile);
-}
-
-/* A disabled direction allows what the braking needs that is going on anyway, nothing more. */
-static bool directions_allow(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
-{
-    if (axis->enable_positive && axis->enable_negative)
-        return true;
-    double lowest, highest, brake_lowest, brake_highest;
-    cm1e_profile_extent(profile, &lowest, &highest);
-    cm1e_profile_t brake;
-    if (cm1e_axis_plan_stop(axis, from, &axis->maximum, &brake))
-        return false;
-    cm1e_profile_extent(&brake, &brake_lowest, &brake_highest);
-    return (axis->enable_positive || highest <= fmax(brake_highest, 0.0) + axis->tolerance) &&
-           (axis->enable_negative || lowest >= fmin(brake_lowest, 0.0) - axis->tolerance);
-}
-
-cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
-{
-    if (!inside(axis, from, profile))
-        return CM1E_ERROR_AXIS_POSITION_RANGE;
-    return directions_allow(axis, from, profile) ? CM1E_OK : CM1E_ERROR_AXIS_DIRECTION_DISABLED;
+    return meaningless || cm1e_axis_limits_keep_within(axis, from, profile);
 }
 
 /* What runs is judged as a whole, from where it began, so that a limit may be refused that lies behind the axis. */

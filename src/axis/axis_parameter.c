@@ -198,15 +198,6 @@ static cm1e_error_t write(cm1e_axis_t *axis, int number, double value)
     return CM1E_ERROR_AXIS_PARAMETER_READ_ONLY;
 }
 
-void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what)
-{
-    if (!what.error && axis->not_set.what != what.what)
-        return;
-    axis->not_set = what;
-    if (what.error)
-        axis->refusal = CM1E_OK;
-}
-
 cm1e_error_t cm1e_axis_write_parameter(cm1e_axis_t *axis, int number, double value)
 {
     const cm1e_error_t error = write(axis, number, value);
@@ -248,38 +239,12 @@ static void range_text(const cm1e_axis_t *axis, const parameter_t *parameter, ch
     }
 }
 
-static void override_text(const cm1e_axis_t *axis, char *text, size_t size)
-{
-    const override_t *asked = &axis->override_refused;
-    snprintf(text, size,
-             "Axis \"%s\": MC_SetOverride to VelFactor %.6g, AccFactor %.6g, JerkFactor %.6g: %s; VelFactor 0 ... 1, "
-             "AccFactor and JerkFactor above 0, up to 1 are right.", axis->config->name, asked->velocity,
-             asked->acceleration, asked->jerk, cm1e_strerror(axis->not_set.error));
-}
-
-void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size)
+void cm1e_axis_parameter_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const not_set_t *refused = &axis->not_set;
     const char *name = axis->config->name;
     int length;
-    if (refused->what == NOT_FINISHED) {
-        cm1e_axis_not_finished_text(axis, text, size);
-    } else if (refused->what == NOT_SET_OVERRIDE) {
-        override_text(axis, text, size);
-    } else if (refused->what == NOT_SET_POSITION) {
-        snprintf(text, size, "Axis \"%s\": MC_SetPosition to %.6g u: %s.", name, refused->value,
-                 cm1e_strerror(refused->error));
-    } else if (refused->what == NOT_SET_OUTPUT) {
-        snprintf(text, size, "Axis \"%s\": digital output %d was not written: %s.%s", name, refused->number,
-                 cm1e_strerror(refused->error), cm1e_axis_signals_advice(axis, refused->error));
-    } else if (refused->what == NOT_SET_PROBE) {
-        snprintf(text, size, "Axis \"%s\": no touch probe at input %d: %s.%s", name, refused->number,
-                 cm1e_strerror(refused->error), cm1e_axis_signals_advice(axis, refused->error));
-    } else if (refused->what == NOT_SET_CAM) {
-        axis->coupling_hooks->cam_text(axis, text, size);
-    } else if (cm1e_axis_parameter_is_object(refused->number)) {
-        cm1e_axis_object_text(axis, text, size);
-    } else if (!row(refused->number)) {
+    if (!row(refused->number)) {
         snprintf(text, size, "Axis \"%s\": parameter %d: %s.", name, refused->number, cm1e_strerror(refused->error));
     } else if (refused->error == CM1E_ERROR_AXIS_PARAMETER_RANGE) {
         length = snprintf(text, size, "Axis \"%s\": parameter %d, %s: ", name, refused->number,

@@ -331,3 +331,25 @@ position_t cm1e_axis_profile_end(const cm1e_axis_t *axis, const from_t *from, co
         return move->target;
     return cm1e_position_plus(from->position, profile->end.position * axis->scale);
 }
+
+/* A disabled direction allows what the braking needs that is going on anyway, nothing more. */
+static bool directions_allow(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
+{
+    if (axis->enable_positive && axis->enable_negative)
+        return true;
+    double lowest, highest, brake_lowest, brake_highest;
+    cm1e_profile_extent(profile, &lowest, &highest);
+    cm1e_profile_t brake;
+    if (cm1e_axis_plan_stop(axis, from, &axis->maximum, &brake))
+        return false;
+    cm1e_profile_extent(&brake, &brake_lowest, &brake_highest);
+    return (axis->enable_positive || highest <= fmax(brake_highest, 0.0) + axis->tolerance) &&
+           (axis->enable_negative || lowest >= fmin(brake_lowest, 0.0) - axis->tolerance);
+}
+
+cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
+{
+    if (!cm1e_axis_limits_keep_within(axis, from, profile))
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    return directions_allow(axis, from, profile) ? CM1E_OK : CM1E_ERROR_AXIS_DIRECTION_DISABLED;
+}

@@ -222,21 +222,7 @@ cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, 
 
 /* ---- the origin -------------------------------------------------------------------------------------------------- */
 
-void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units)
-{
-    if (axis->modulo_range > 0.0) {
-        axis->origin = at;
-        axis->origin = in_turn(axis, 0, -to_counts(axis, units));
-    } else {
-        axis->origin = at;
-        axis->origin_units = units;
-    }
-    axis->base_line = cm1e_axis_line(axis, axis->base);
-    cm1e_axis_apply_limits(axis);
-}
-
-/* What the actual position becomes; FALSE: out of range. */
-static bool new_position(const cm1e_axis_t *axis, double now, double position, bool relative, double *value)
+bool cm1e_axis_new_position(const cm1e_axis_t *axis, double now, double position, bool relative, double *value)
 {
     if (!isfinite(position))
         return false;
@@ -250,46 +236,17 @@ static bool new_position(const cm1e_axis_t *axis, double now, double position, b
     return fabs(to_counts(axis, *value)) < (double)CM1E_FARTHEST_COUNTS;
 }
 
-static cm1e_error_t set_position(cm1e_axis_t *axis, double position, bool relative)
+void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units)
 {
-    if (axis_led(axis))
-        return CM1E_ERROR_AXIS_IN_GROUP;
-    if (axis->state == CM1E_AXIS_HOMING || axis->activity == ACTIVITY_HOMING)
-        return CM1E_ERROR_AXIS_HOMING;
-    if (!axis->position_known || !axis->drive.feedback.online)
-        return CM1E_ERROR_AXIS_OFFLINE;
-    const position_t actual = axis_actual(axis);
-    const double now = cm1e_axis_units(axis, actual);
-    double value;
-    if (!new_position(axis, now, position, relative, &value))
-        return CM1E_ERROR_AXIS_POSITION_RANGE;
-    /* The written limits; those of the motor's counts stay where they are. */
-    const double lower = axis->limit_negative_enabled ? axis->limit_negative : -INFINITY;
-    const double upper = axis->limit_positive_enabled ? axis->limit_positive : INFINITY;
-    const bool limited = axis->limit_negative_enabled || axis->limit_positive_enabled;
-    if (limited && axis->activity == ACTIVITY_DRIVE)
-        return CM1E_ERROR_AXIS_STATE; /* of the drive's way only the end is known */
-    const double shift = value - now;
-    if (limited) {
-        const double set = cm1e_axis_units(axis, axis->set) + shift;
-        if (!(set >= lower && set <= upper) || !cm1e_axis_limits_hold(axis, lower - shift, upper - shift) ||
-            !cm1e_axis_waiting_hold(axis, lower - shift, upper - shift))
-            return CM1E_ERROR_AXIS_POSITION_RANGE;
+    if (axis->modulo_range > 0.0) {
+        axis->origin = at;
+        axis->origin = in_turn(axis, 0, -to_counts(axis, units));
+    } else {
+        axis->origin = at;
+        axis->origin_units = units;
     }
-    const position_t origin = axis->origin;
-    const double origin_units = axis->origin_units;
-    cm1e_axis_set_origin(axis, actual, value);
-    if (cm1e_axis_shift_waiting(axis, shift))
-        return CM1E_OK;
-    cm1e_axis_set_origin(axis, origin, origin_units); /* of a linear axis: no other has software limits */
-    return CM1E_ERROR_AXIS_POSITION_RANGE;
-}
-
-cm1e_error_t cm1e_axis_set_position(cm1e_axis_t *axis, double position, bool relative)
-{
-    const cm1e_error_t error = set_position(axis, position, relative);
-    cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_SET_POSITION, .value = position});
-    return error;
+    axis->base_line = cm1e_axis_line(axis, axis->base);
+    cm1e_axis_apply_limits(axis);
 }
 
 /* ---- the drive's counts ------------------------------------------------------------------------------------------ */

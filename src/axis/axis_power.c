@@ -15,12 +15,6 @@
 static const int64_t gone_after_ns = 100 * MS_IN_NS;
 static const int64_t brake_ns = 20 * MS_IN_NS;
 
-bool cm1e_axis_wants_enable(const cm1e_axis_t *axis)
-{
-    return axis->power_enable && !axis->shutting_down && axis->state != CM1E_AXIS_ERROR_STOP &&
-           (!axis->motor_hooks || axis->motor_hooks->is_home(axis));
-}
-
 void cm1e_axis_become_free(cm1e_axis_t *axis)
 {
     cm1e_axis_lead_end(axis, CM1E_ERROR_AXIS_ERROR_STOP);

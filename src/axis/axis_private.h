@@ -235,6 +235,8 @@ bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, positi
  *  `stop` (u, signed) after `from`. The shortest way is judged at `from`. */
 cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, MC_DIRECTION direction,
                                       position_t from, double velocity, double stop, position_t *target);
+/** MC_SetPosition: what the actual position `now` becomes; FALSE: out of range. */
+bool cm1e_axis_new_position(const cm1e_axis_t *axis, double now, double position, bool relative, double *value);
 /** From now on the axis is at `units` when it is at `at`; on a modulo axis `units` is less than a turn. */
 void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units);
 /** Whether a way of so many u can be counted; what is not a number cannot. */
@@ -294,8 +296,8 @@ bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, const from_t *from
 bool cm1e_axis_limits_contain_way(const cm1e_axis_t *axis, const from_t *from, double lowest, double highest);
 /** Whether a profile that begins there stays inside the software limits. */
 bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
-/** The same, and no disabled direction in it. */
-cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
+/** The same, also while a homing in steps makes positions mean nothing. */
+bool cm1e_axis_limits_keep_within(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
 /** Whether the emergency ramp from `next` (its position counted from `base`, u) would end inside the software
  *  limits. */
 static inline bool cm1e_axis_limits_can_stop(const cm1e_axis_t *axis, double base, cm1e_motion_state_t next)
@@ -318,10 +320,11 @@ void cm1e_axis_steps_init(cm1e_axis_t *axis);
 /* axis_limits.c: when limits are written, and when positions get another meaning */
 void cm1e_axis_apply_limits(cm1e_axis_t *axis);
 
-/* axis_parameter.c */
+/* axis_record.c */
 /** For the text: what was refused last is told. A success takes back only what was told of the same. */
 void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what);
-void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size);
+void cm1e_axis_parameter_text(const cm1e_axis_t *axis, char *text, size_t size);
+void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size);      /* axis_text_not_set.c */
 void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size); /* axis_text.c */
 
 /* axis_plan.c */
@@ -362,6 +365,8 @@ bool cm1e_axis_strays(const cm1e_axis_t *axis, const cm1e_motion_state_t *start,
 /** The same of a command's. */
 bool cm1e_axis_profile_strays(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                               const cm1e_profile_t *profile);
+/** Whether a profile that begins there stays inside the software limits, with no disabled direction in it. */
+cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
 /** A stop; one that would run over a software limit brakes as an error does instead. */
 cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *limits,
                                  cm1e_profile_t *profile);
@@ -373,7 +378,11 @@ static inline move_t *waiting_move(cm1e_axis_t *axis, int index)
 }
 
 /* axis_power.c */
-bool cm1e_axis_wants_enable(const cm1e_axis_t *axis);
+static inline bool cm1e_axis_wants_enable(const cm1e_axis_t *axis)
+{
+    return axis->power_enable && !axis->shutting_down && axis->state != CM1E_AXIS_ERROR_STOP &&
+           (!axis->motor_hooks || axis->motor_hooks->is_home(axis));
+}
 /** Set-points of ours reach the motor. */
 static inline bool axis_acts(const cm1e_axis_t *axis)
 {

@@ -1,0 +1,84 @@
+/* What an axis tells of itself. */
+#include <math.h>
+
+#include "axis/axis_handle.h"
+#include "axis/axis_signals.h"
+#include "config/interface.h"
+
+void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info)
+{
+    const cm1e_drive_feedback_t *f = &axis->drive.feedback;
+    *info = (cm1e_axis_info_t){
+        .state = axis->state,
+        .set_velocity = axis->set_velocity,
+        .set_acceleration = axis->set_acceleration,
+        .actual_velocity = (f->velocity - cm1e_axis_backlash_velocity(axis)) / axis->scale,
+        .actual_torque = f->torque * (axis->scale < 0.0 ? -0.1 : 0.1),
+        .position_lag = cm1e_position_minus(axis->set, axis_actual(axis)) / axis->scale,
+        .powered = cm1e_axis_powered(axis),
+        .homed = axis->homed,
+        .in_position = cm1e_axis_in_position(axis),
+        .online = f->online,
+        .torque_known = axis->drive.in_torque.bytes > 0,
+        .digital_known = f->digital_known,
+        .temperature_known = axis->drive.in_temperature.bytes > 0,
+        .dc_link_known = axis->drive.in_dc.bytes > 0,
+        .error = axis->error,
+        .device_error = axis->device_error,
+        .digital_inputs = f->digital_inputs,
+        .statusword = f->statusword,
+        .mode = f->mode,
+        .temperature = f->temperature,
+        .dc_link_voltage = f->dc_link_decivolt * 0.1,
+    };
+    cm1e_axis_shown(axis, &info->set_position, &info->actual_position);
+}
+
+cm1e_error_t cm1e_axis_read(AXIS_REF_t reference, cm1e_axis_info_t *info)
+{
+    const cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
+    if (!axis)
+        return CM1E_ERROR_FB_AXIS_REF;
+    cm1e_axis_get(axis, info);
+    return CM1E_OK;
+}
+
+int64_t cm1e_axis_time(const cm1e_axis_t *axis) { return axis->now_ns; }
+
+/* UG 7.3.1: what a drive says that is just not enabled, and otherwise would be worth a look. */
+static bool tells_only_that_it_is_off(const cm1e_drive_feedback_t *f)
+{
+    const uint16_t code = f->error_code;
+    return f->state != OPERATION_ENABLED && (code == 0x4502 || code == 0x8611 || code == 0xFF01);
+}
+
+cm1e_axis_condition_t cm1e_axis_condition(const cm1e_axis_t *axis)
+{
+    const cm1e_drive_feedback_t *f = &axis->drive.feedback;
+    const char *name = cm1e_bus_configuration(axis->drive.bus)->interface_name;
+    /* Behind a bridge bit 7 never warns (BR 6.1.3), but is an input in CPIO; and this is where CML leaves it. */
+    const bool bridged = cm1e_drive_bridged(&axis->drive), rests = bridged && f->state == SWITCH_ON_DISABLED;
+    return (cm1e_axis_condition_t){
+        .simulation = cm1e_interface_is_simulated(name),
+        .communication = f->online,
+        .ready_for_power_on = axis->state == CM1E_AXIS_DISABLED && f->online && f->voltage && !f->fault &&
+                              (f->state == READY_TO_SWITCH_ON || f->state == SWITCHED_ON || rests),
+        .warning = !f->fault && !bridged && (f->statusword & STATUSWORD_WARNING ||
+                                             (f->error_code != 0 && !tells_only_that_it_is_off(f))),
+    };
+}
+
+cm1e_axis_measures_t cm1e_axis_measures(const cm1e_axis_t *axis)
+{
+    const cm1e_axis_config_t *config = axis->config;
+    const double most = axis->maximum.velocity;
+    return (cm1e_axis_measures_t){
+        .resolution = 1.0 / fabs(axis->scale),
+        .modulo_range = axis->modulo_range,
+        .max_velocity = most,
+        .lower = axis->modulo_range > 0.0 ? -INFINITY : axis->lower,
+        .upper = axis->modulo_range > 0.0 ? INFINITY : axis->upper,
+        .jog_slow = fmin(config->jog_slow > 0.0 ? config->jog_slow : 0.05 * most, most),
+        .jog_fast = fmin(config->jog_fast > 0.0 ? config->jog_fast : 0.25 * most, most),
+    };
+}
