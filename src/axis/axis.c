@@ -83,7 +83,8 @@ static void watch_lag(cm1e_axis_t *axis)
     axis->blind = own && !axis->drive.feedback.fresh;
     if (axis->blind)
         return;
-    const double lag = own ? cm1e_position_minus(axis->set, axis_actual(axis)) : 0.0; /* counts */
+    /* counts */
+    const double lag = own ? cm1e_position_minus(axis->set, axis_actual(axis)) + cm1e_axis_ran_on(axis) : 0.0;
     const bool lost = fabs(lag) > axis->max_lag * fabs(axis->scale);
     if (axis->state == CM1E_AXIS_ERROR_STOP && blind_before && axis->mode == CM1E_MODE_CSV && was_deaf(axis, lag)) {
         cm1e_axis_brake_from_actual(axis);

@@ -203,6 +203,8 @@ void cm1e_axis_superimposed_give_way(cm1e_axis_t *axis, from_t *from);
 void cm1e_axis_superimposed_after(cm1e_axis_t *axis);
 /** What is superimposed becomes part of the one motion that is then planned from the set-point. */
 void cm1e_axis_superimposed_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
+/** Aborted: the base goes on alone, and ends so much beyond as has been covered. */
+void cm1e_axis_superimposed_abandon(cm1e_axis_t *axis);
 void cm1e_axis_superimposed_replan(cm1e_axis_t *axis);
 /** Whether it goes that way, now or later. */
 bool cm1e_axis_superimposed_goes(const cm1e_axis_t *axis, double sign);

@@ -4,8 +4,9 @@
  * Silence: frames were sent and did not come back, or not with every slave's part. Nobody knows which of them the drive
  * has heard, so the time of all set-points stands still, and the drive room repeats its last target (CSP). With the first
  * answer the target that the drive holds is known again, and its actual velocity tells whether the motor has stood
- * meanwhile: what moves goes on as it was, or begins anew from there with the velocity that is left. Bus-wide silence
- * stops the time of all axes alike, so that followers stay in step and groups on their path.
+ * meanwhile: what moves goes on as it was, or begins anew from there with the velocity that is left. In CSV the motor has
+ * gone on with its last velocity: after more than a few cycles what moves begins anew from where it must be. Bus-wide
+ * silence stops the time of all axes alike, so that followers stay in step and groups on their path.
  *
  * A pause: frames were never sent, because the work of a cycle or a wake-up took whole cycles too long. In CSP the motor
  * stands at its last target by then, in CSV it has gone on with its last velocity. What moves begins anew from rest, or
@@ -81,9 +82,7 @@ static void begin_anew(cm1e_axis_t *axis, double velocity)
         cm1e_axis_lead_after_pause(axis);
         return;
     }
-    if (axis_follows(axis))
-        axis->coupling_hooks->shift(axis, axis->superimposed.now.position);
-    cm1e_axis_superimposed_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK); /* what is left of it belongs to the base now */
+    cm1e_axis_superimposed_abandon(axis);
     if (axis_follows(axis)) {
         axis->coupling_hooks->after_pause(axis);
         return;
@@ -134,13 +133,26 @@ static bool is_composite(const cm1e_axis_t *axis)
     return axis_led(axis) || axis->superimposed.id || axis->along_table;
 }
 
+double cm1e_axis_ran_on(const cm1e_axis_t *axis)
+{
+    if (axis->mode != CM1E_MODE_CSV || axis->silent_before <= CM1E_AXIS_RIDDEN_OUT_CYCLES || !set_points_move(axis) ||
+        axis->state == CM1E_AXIS_ERROR_STOP) /* its ramp has gone on */
+        return 0.0;
+    return axis->set_velocity * axis->scale * axis->cycle_s * (double)axis->silent_before;
+}
+
 static void go_on_or_begin_anew(cm1e_axis_t *axis)
 {
     const bool follows_on = axis_follows(axis) && axis->coupling_hooks->begins_anew(axis);
-    if (is_composite(axis) && !follows_on && axis->shaken <= CM1E_AXIS_RIDDEN_OUT_CYCLES * CM1E_SHAKEN_BY_SILENCE)
+    const bool in_place = axis->mode == CM1E_MODE_CSV; /* nearly, and as fast as before */
+    const bool shaken = !in_place && axis->shaken > CM1E_AXIS_RIDDEN_OUT_CYCLES * CM1E_SHAKEN_BY_SILENCE;
+    const double ran_on = cm1e_axis_ran_on(axis);
+    if (is_composite(axis) && !follows_on && !shaken && ran_on == 0.0)
         return;
-    const double left = axis_led(axis) ? 0.0 : velocity_left(axis);
-    if (left != axis->set_velocity || follows_on || axis_led(axis)) /* the path stands for an axis at rest too */
+    axis->set = cm1e_position_plus(axis->set, ran_on);
+    const bool led = axis_led(axis); /* the path stands for an axis at rest too */
+    const double left = led && !in_place ? 0.0 : velocity_left(axis);
+    if (left != axis->set_velocity || follows_on || led || ran_on != 0.0)
         begin_anew(axis, left);
 }
 

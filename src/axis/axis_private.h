@@ -442,6 +442,8 @@ void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size);
 /* axis_pause.c */
 /** Before the set-point of the first cycle in which a frame has come back again. */
 void cm1e_axis_after_silence(cm1e_axis_t *axis);
+/** Counts by which a motor has gone on in a silence that ended just now (CSV). */
+double cm1e_axis_ran_on(const cm1e_axis_t *axis);
 
 /* axis_lead.c */
 static inline bool axis_led(const cm1e_axis_t *axis) { return axis->leader.next != NULL; }

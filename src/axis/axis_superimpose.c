@@ -165,6 +165,16 @@ void cm1e_axis_superimposed_end(cm1e_axis_t *axis, cm1e_command_state_t state, c
     axis->stands = false;
 }
 
+void cm1e_axis_superimposed_abandon(cm1e_axis_t *axis)
+{
+    if (!axis->superimposed.id)
+        return;
+    record(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
+    give_to_base(axis);
+    axis->superimposed.moving = axis->stands = false;
+    axis->superimposed.now = (cm1e_motion_state_t){0};
+}
+
 static void finish(cm1e_axis_t *axis)
 {
     superimposed_t *on_top = &axis->superimposed;

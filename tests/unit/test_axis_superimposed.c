@@ -209,6 +209,23 @@ static void test_halt_superimposed_ends_it_and_leaves_the_base(void)
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
 }
 
+static void test_after_a_pause_the_base_ends_beyond_by_what_was_covered(void)
+{
+    for (int wait = 10; wait < 300; wait += 20) {
+        setUp();
+        const cm1e_command_id_t base = bench_move_to(20.0, 10.0);
+        watch_cycles(200);
+        const cm1e_command_id_t id = superimpose(2.0, 5.0);
+        watch_cycles(wait);
+        cm1e_axis_after_pause(axis, 5000000);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ABORTED, bench_state_of(id));
+        for (int i = 0; i < 10000 && bench_state_of(base) == CM1E_COMMAND_ACTIVE; i++)
+            bench_cycles(1);
+        TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(base));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 20.0 + covered(id), bench_info().set_position);
+    }
+}
+
 static void test_an_aborting_command_ends_both_without_a_step(void)
 {
     static const cm1e_command_kind_t kinds[] = {CM1E_COMMAND_MOVE_ABSOLUTE, CM1E_COMMAND_MOVE_VELOCITY,
@@ -439,6 +456,7 @@ int main(void)
     RUN_TEST(test_on_a_halt_before_a_limit);
     RUN_TEST(test_another_one_replaces_the_first_only);
     RUN_TEST(test_halt_superimposed_ends_it_and_leaves_the_base);
+    RUN_TEST(test_after_a_pause_the_base_ends_beyond_by_what_was_covered);
     RUN_TEST(test_an_aborting_command_ends_both_without_a_step);
     RUN_TEST(test_errors_and_power_end_it);
     RUN_TEST(test_a_disabled_direction_ends_what_goes_there);
