@@ -503,7 +503,7 @@ static void bench_start(bench_t *bench)
 }
 
 /** What the shaft does, whatever anybody is told. */
-static cm1e_sim_probe_t bench_probe(const bench_t *bench, uint32_t n)
+static inline cm1e_sim_probe_t bench_probe(const bench_t *bench, uint32_t n)
 {
     cm1e_sim_probe_t probe;
     cm1e_sim_probe_channel(bench->segment, bench_position(bench, n), bench->config.axes[n].channel, &probe);
@@ -515,7 +515,7 @@ static inline void bench_probe_reset(const bench_t *bench, uint32_t n)
     cm1e_sim_probe_reset_channel(bench->segment, bench_position(bench, n), bench->config.axes[n].channel);
 }
 
-static cm1e_axis_info_t bench_info(const bench_t *bench, uint32_t n)
+static inline cm1e_axis_info_t bench_info(const bench_t *bench, uint32_t n)
 {
     cm1e_axis_info_t info = {0};
     cm1e_axis_read(bench->axis[n], &info);
