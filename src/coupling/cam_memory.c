@@ -111,22 +111,22 @@ void cm1e_cam_table_text(const cm1e_axis_t *axis, char *text, size_t size)
     }
     switch (cams->fault) {
     case CM1E_CAM_TOO_FEW:
-        snprintf(text, size, "Axis \"%s\": a cam has no points, or only one; 2 ... %d are right.", name, cams->points);
+        snprintf(text, size, "Axis \"%s\": a cam has no points, or only one; expected 2 ... %d.", name, cams->points);
         break;
     case CM1E_CAM_TOO_MANY:
-        snprintf(text, size, "Axis \"%s\": a cam has too many points; 2 ... %d are right, as `cam_points` of the bus "
+        snprintf(text, size, "Axis \"%s\": a cam has too many points; expected 2 ... %d, as `cam_points` of the bus "
                  "file says.", name, cams->points);
         break;
     case CM1E_CAM_NOT_FINITE:
         snprintf(text, size, "Axis \"%s\": a number of point %d of a cam is not finite.", name, point);
         break;
     case CM1E_CAM_NOT_RISING:
-        snprintf(text, size, "Axis \"%s\": Master of point %d of a cam is not above that of point %d; it has to rise "
+        snprintf(text, size, "Axis \"%s\": Master of point %d of a cam is not above that of point %d; it must rise "
                  "from one to the next.", name, point, point - 1);
         break;
     case CM1E_CAM_CURVE:
-        snprintf(text, size, "Axis \"%s\": the Curve of a cam is none; mcCamPolynomial5, mcCamCubicSpline and "
-                 "mcCamLinear are.", name);
+        snprintf(text, size, "Axis \"%s\": the Curve of a cam is unknown; expected mcCamPolynomial5, mcCamCubicSpline "
+                 "or mcCamLinear.", name);
         break;
     case CM1E_CAM_STEEP:
         snprintf(text, size, "Axis \"%s\": points %d and %d of a cam are so close together, or so far apart, that the "
@@ -152,7 +152,7 @@ void cm1e_cam_id_text(const cm1e_axis_t *axis, char *text, size_t size)
 void cm1e_cam_start_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const cam_refused_t *r = &axis->coupling->cams->refused;
-    snprintf(text, size, "Axis \"%s\" is at %.6g u with %.6g u/s, where the cam would have it at %.6g u with %.6g u/s. "
-             "Bring it there first, or let it get there: mcRampIn, or a MasterStartDistance.", axis->config->name,
+    snprintf(text, size, "Axis \"%s\" is at %.6g u with %.6g u/s, but the cam is at %.6g u with %.6g u/s. Move it "
+             "there first, or use mcRampIn or a MasterStartDistance.", axis->config->name,
              r->position, r->velocity, r->wanted_position, r->wanted_velocity);
 }

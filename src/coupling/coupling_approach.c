@@ -281,10 +281,10 @@ void cm1e_coupling_approach_text(const cm1e_axis_t *axis, char *text, size_t siz
 {
     const approach_refused_t *r = &axis->coupling->cams->approach_refused;
     if (r->what)
-        snprintf(text, size, "Axis \"%s\": the way into step needs a %s of %.6g %s at the master's present velocity; "
-                 "up to %.6g is allowed. Give it more way (MasterStartDistance), or let the master go slower.",
+        snprintf(text, size, "Axis \"%s\": the approach needs a %s of %.6g %s at the master's present velocity; up to "
+                 "%.6g is allowed. Use a larger MasterStartDistance, or a slower master.",
                  axis->config->name, r->what, r->asked, r->unit, r->allowed);
     else
-        snprintf(text, size, "Axis \"%s\": no way leads into step, because the master stands while the slave moves, or "
-                 "goes over all of the way within a cycle.", axis->config->name);
+        snprintf(text, size, "Axis \"%s\": no approach is possible, because the master stands while the slave moves, "
+                 "or the master passes the whole distance within a cycle.", axis->config->name);
 }

@@ -10,7 +10,7 @@ static const char *const troubles[] = {
     [MASTER_STOPPING] = "is in ErrorStop: look up its own error, and reset it with MC_Reset",
     [MASTER_FREE] = "has no torque, and so no set value: enable it with MC_Power before, or follow its actual value "
                     "(mcActualValue)",
-    [MASTER_HOMING] = "is homed by its drive, which then counts from another place: wait for its end",
+    [MASTER_HOMING] = "is homed by its drive, which changes its positions: wait for the end of the homing",
     [MASTER_UNSEEN] = "does not say where it is: its inputs are missing",
     [MASTER_JUMPED] = "jumped: its position was set to where its motor is, which no slave can follow",
 };
@@ -24,14 +24,14 @@ static void master_lost_text(const cm1e_axis_t *axis, bool refused, char *text, 
         used += snprintf(text + used, size - (size_t)used, " (%s)", cm1e_strerror(c->master_error));
     if (used > 0 && (size_t)used < size)
         snprintf(text + used, size - (size_t)used, "%s",
-                 refused ? "." : ". Then reset this axis with MC_Reset, and begin to follow again.");
+                 refused ? "." : ". Then reset this axis with MC_Reset, and start the coupling again.");
 }
 
 static void not_coupled_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const cm1e_command_kind_t kind = axis->refused.kind;
-    snprintf(text, size, "Axis \"%s\", %s: %s was asked for, which is for an axis that follows a master by %s; this "
-             "one follows %s.", axis->config->name, cm1e_axis_state_name(axis->state), kind_row(kind)->name,
+    snprintf(text, size, "Axis \"%s\", %s: %s needs an axis that follows a master by %s; this one follows %s.",
+             axis->config->name, cm1e_axis_state_name(axis->state), kind_row(kind)->name,
              kind == CM1E_COMMAND_CAM_OUT    ? "MC_CamIn"
              : kind == CM1E_COMMAND_GEAR_OUT ? "MC_GearIn, MC_GearInPos or MC_CombineAxes"
                                              : "MC_GearIn, MC_GearInPos, MC_CamIn or MC_CombineAxes",
@@ -44,8 +44,8 @@ static void ratio_text(const cm1e_axis_t *axis, char *text, size_t size)
         snprintf(text, size, "Axis \"%s\": MasterScaling or SlaveScaling is not a number of 1e-9 ... 1e9, of either "
                  "sign, nor 0, which acts as 1.", axis->config->name);
     else
-        snprintf(text, size, "Axis \"%s\": the ratio %ld / %lu was asked for; neither may be 0, and the way back is a "
-                 "negative numerator.", axis->config->name, (long)axis->coupling->numerator,
+        snprintf(text, size, "Axis \"%s\": the ratio %ld / %lu was asked for; neither may be 0; for the opposite "
+                 "direction use a negative numerator.", axis->config->name, (long)axis->coupling->numerator,
                  (unsigned long)axis->coupling->denominator);
 }
 
@@ -61,8 +61,8 @@ static bool mode_text(const cm1e_axis_t *axis, char *text, size_t size)
     const unsigned kind = axis->refused.kind;
     const char *mode = kind < CM1E_COMMAND_KIND_COUNT ? modes[kind] : NULL;
     if (mode)
-        snprintf(text, size, "Axis \"%s\": %s was asked for in a mode that there is not. MasterValueSource is "
-                 "mcSetValue or mcActualValue%s.", axis->config->name, kind_row(axis->refused.kind)->name, mode);
+        snprintf(text, size, "Axis \"%s\": %s was given an unknown mode. MasterValueSource is mcSetValue or "
+                 "mcActualValue%s.", axis->config->name, kind_row(axis->refused.kind)->name, mode);
     return mode != NULL;
 }
 
@@ -96,11 +96,11 @@ bool cm1e_coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool refuse
     const char *name = axis->config->name, *other = axis->coupling->other_name;
     switch (error) {
     case CM1E_ERROR_AXIS_MASTER:
-        snprintf(text, size, "Axis \"%s\": Master names no axis of the scheduler of this one: right is the AXIS_REF of "
-                 "another axis in the same bus file.", name);
+        snprintf(text, size, "Axis \"%s\": Master names no axis of its scheduler; expected the AXIS_REF of another "
+                 "axis in the same bus file.", name);
         return true;
     case CM1E_ERROR_AXIS_COUPLING_CYCLE:
-        snprintf(text, size, "Axis \"%s\" cannot follow \"%s\", which is this axis or follows it, perhaps by way of "
+        snprintf(text, size, "Axis \"%s\" cannot follow \"%s\", which is this axis or follows it, perhaps through "
                  "others: end that coupling first, or choose another master.", name, other);
         return true;
     case CM1E_ERROR_AXIS_MASTER_LOST:

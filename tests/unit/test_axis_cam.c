@@ -69,7 +69,7 @@ static void test_a_bad_cam_costs_no_good_one_and_is_told(void)
     for (int i = 0; i < CM1E_AXIS_CAMS; i++)
         ids[i] = selected(0, &table, false, false);
     const MC_CAM_REF none = {NULL, 5, mcCamLinear};
-    refused(&none, CM1E_ERROR_AXIS_CAM_TABLE, "2 ... 20 are right");
+    refused(&none, CM1E_ERROR_AXIS_CAM_TABLE, "expected 2 ... 20");
     table.NumberOfPoints = 1;
     refused(&table, CM1E_ERROR_AXIS_CAM_TABLE, "only one");
     table = table_of(21);
@@ -245,7 +245,7 @@ static void test_where_the_slave_is_not_on_the_cam_it_is_refused(void)
     cm1e_axis_coupling_t coupling = by_cam(id, mcAbsolute);
     axes_wait(SLAVE, axes_move_to(SLAVE, 0.01, 10), 5000);
     cam_refused(&coupling, CM1E_ERROR_AXIS_CAM_START);
-    axes_told(SLAVE, "is at 0.01 u with 0 u/s, where the cam would have it at 0 u");
+    axes_told(SLAVE, "is at 0.01 u with 0 u/s, but the cam is at 0 u");
     axes_must_be(SLAVE, CM1E_AXIS_STANDSTILL);
     axes_wait(SLAVE, axes_move_to(SLAVE, 0, 10), 5000);
     axes_move_velocity(MASTER, 4);
