@@ -34,7 +34,8 @@ typedef struct cm1e_fsa_row {
 extern const cm1e_fsa_row_t cm1e_fsa_table[CM1E_FSA_STATE_COUNT];
 /** Motor behind a Cool MUSCLE Bridge: BR 6.1.3. */
 extern const cm1e_fsa_row_t cm1e_fsa_bridge_table[CM1E_FSA_STATE_COUNT];
-/** The same in CPIO, where the statusword has its lower four bits alone, and 1100b in front: BR 7.1.3. */
+/** Motor behind a Cool MUSCLE Bridge in CPIO, where the statusword has only its lower four bits, and 1100b in front:
+ *  BR 7.1.3. */
 extern const cm1e_fsa_row_t cm1e_fsa_cpio_table[CM1E_FSA_STATE_COUNT];
 cm1e_fsa_state_t cm1e_fsa_decode_by(const cm1e_fsa_row_t *table, uint16_t statusword);
 /** By the table of the CM1-E. */

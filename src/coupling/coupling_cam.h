@@ -70,8 +70,8 @@ typedef struct cams {
     cam_slot_t slots[CAM_SLOTS];
     MC_CAM_ID last;
     int points;
-    cm1e_cam_fault_t fault;        /**< of the last cam that was refused, for the text ... */
-    int wrong;                     /**< ... at which point, from 0 */
+    cm1e_cam_fault_t fault;        /**< fault of the last cam that was refused, for the text */
+    int wrong;                     /**< point of that fault, from 0 */
     cam_refused_t refused;
     approach_refused_t approach_refused;
     cm1e_cam_knot_t knots[];
@@ -85,10 +85,10 @@ typedef struct cam_place {
     double master_offset, master_scaling, slave_offset, slave_scaling;
     double finer;                  /**< 1 / master_scaling */
     cm1e_cam_place_t place;
-    cm1e_cam_sample_t before;      /**< of the last cycle, without its point ... */
-    bool sampled;                  /**< ... if there was one */
+    cm1e_cam_sample_t before;      /**< sample of the last cycle, without its point */
+    bool sampled;                  /**< there was a last cycle */
     double entered;                /**< turn from which the master came onto a single-shot cam; 0: it began on it */
-    double left;                   /**< ... and to which it left it, having gone through it; 0: not yet */
+    double left;                   /**< turn to which it left the cam at its other end; 0: not yet */
 } cam_place_t;
 
 cm1e_error_t cm1e_cam_memory_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */

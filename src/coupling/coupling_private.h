@@ -78,11 +78,11 @@ typedef struct coupling_function {
     double (*steepest)(const cm1e_axis_t *axis, const follow_t *follow, int link);
 } coupling_function_t;
 
-/** What is not in step yet, in the frame that moves with the coupling function; u. */
+/** The catch-up: difference to the coupling function, in the frame that moves with it; u. */
 typedef struct catch_up {
     bool on;
-    bool made_up;                  /**< its position is brought to 0 too: distance is made up ... */
-    bool to_place;                 /**< ... and the profile does so, while the velocity of the function is constant */
+    bool made_up;                  /**< its position is brought to 0 too: lost distance is made up */
+    bool to_place;                 /**< the profile makes up distance, while the velocity of the function is constant */
     bool held_back;                /**< the function needs more of the limits than was thought when it was planned */
     cm1e_motion_limits_t asked;    /**< of the command */
     cm1e_profile_t profile;
@@ -138,22 +138,22 @@ typedef struct coupling {
     link_t *slaves;                /**< who follows this axis */
     cams_t *cams;                  /**< that it may follow */
     catch_up_t catch_up;
-    cm1e_motion_state_t phase;     /**< u of the master: shift of links[0], as long as that one is followed ... */
-    phasing_t phasing;             /**< ... and what changes it */
+    cm1e_motion_state_t phase;     /**< u of the master: shift of links[0], while that one is followed */
+    phasing_t phasing;             /**< the motion that changes the phase */
     observed_t own;
     double f_velocity, f_acceleration; /**< u/s, u/s2; of the coupling function, in the last cycle */
-    bool due;                      /**< it is now that the awaited one takes its place ... */
-    cm1e_error_t due_error;        /**< ... or fails so */
+    bool due;                      /**< the awaited command begins in this cycle */
+    cm1e_error_t due_error;        /**< error with which it fails instead */
     bool end_of_profile;           /**< CAM_IN: the cam came over it in this cycle */
-    uint32_t ends;                 /**< ... so often since the command began */
+    uint32_t ends;                 /**< number of these since the command began */
     bool at_end;                   /**< what is being prepared waited for that */
     uint64_t mark;                 /**< of the last search that came here */
     uint32_t searches;
     cm1e_axis_coupling_t inputs;   /**< of the active command, for ContinuousUpdate */
     waiting_coupling_t waiting[COUPLINGS_WAITING];
-    master_trouble_t trouble;      /**< what a master was lost for ... */
-    cm1e_error_t master_error;     /**< ... and by which error of it ... */
-    char other_name[CM1E_NAME_LENGTH]; /**< ... which one; or because of whom this one stops */
+    master_trouble_t trouble;      /**< why a master was lost */
+    cm1e_error_t master_error;     /**< error of that master */
+    char other_name[CM1E_NAME_LENGTH]; /**< name of that master, or of the axis because of which this one stops */
     int32_t numerator;             /**< a ratio that was refused */
     uint32_t denominator;
     bool stopping;                 /**< in ErrorStop, but the coupling goes on until the masters stand (keep_ratio) */

@@ -20,7 +20,7 @@ struct cm1e_axis {
     cm1e_command_id_t updated;      /**< whose inputs */
     cm1e_error_t update_error;      /**< answer to cm1e_axis_update() */
     cm1e_axis_command_t command;    /**< the last one */
-    cm1e_axis_coupling_t coupling;  /**< ... and its coupling */
+    cm1e_axis_coupling_t coupling;  /**< the coupling of that command */
     cm1e_command_id_t id;           /**< of the last one */
     cm1e_command_status_t status[FAKE_COMMANDS]; /**< by id % FAKE_COMMANDS */
     cm1e_command_state_t reset_state;

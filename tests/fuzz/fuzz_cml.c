@@ -5,7 +5,7 @@
 #include "cm1e/cml.h"
 #include "fuzz.h"
 
-/* The same bytes as a string that a user would send: it must not be called harmless and yet be refused a form. */
+/* The bytes as a string of a user: a string that is classified as harmless must have a valid form. */
 static void send(const uint8_t *bytes, size_t size)
 {
     char *text = malloc(size + 1);

@@ -224,7 +224,7 @@ static inline void axes_inputs(void)
         (void)cm1e_axis_power(axes_bench.axes[n], &axes_bench.owners[n], axes_bench.on[n], axes_bench.positive[n],
                               axes_bench.negative[n]);
 }
-/** ... and after them. */
+/** The part of a cycle after the programs. */
 static inline void axes_outputs(void)
 {
     for (int i = 0; i < axes_bench.count; i++)
@@ -383,7 +383,7 @@ static inline int axes_wait(int n, cm1e_command_id_t id, int at_most)
     return waited;
 }
 
-/** The same until it has reached what it is to reach (InGear, InSync, InVelocity). */
+/** Waits until a command has reached its goal (InGear, InSync, InVelocity). */
 static inline void axes_wait_reached(int n, cm1e_command_id_t id, int at_most)
 {
     while (!axes_status(n, id).reached && at_most-- > 0)

@@ -56,7 +56,7 @@ static inline void bench_inputs(void)
     fake_bus_cycle(&bus, cycle_ns);
     cm1e_axis_inputs(axis, received, health, bus.clock.virtual_now_ns);
 }
-/** ... and after them. */
+/** The part of a cycle after the programs. */
 static inline void bench_outputs(void)
 {
     cm1e_axis_outputs(axis);

@@ -54,7 +54,7 @@ static void turn_shaft(void)
                                          (double)judged.axis->drive.velocity_unit * (double)judged.cycle_ns * 1e-9);
 }
 
-/** The same for the master as for the axis. */
+/** Inputs of the master, like those of the axis. */
 static void master_begins(void)
 {
     cm1e_axis_inputs(bench.master, bench.received, bench.health, bench.bus.clock.virtual_now_ns);

@@ -57,7 +57,7 @@ static struct judged_axis {
     int64_t cycle_ns;
     char scene[200];                /**< which run this is, for messages */
 } judged_axes[JUDGED_MOST];
-/** ... one of them at a time: call() turns to the one of its block. Most tests have but the first one. */
+/** The present one: call() selects the one of its block. Most tests have only the first one. */
 static int judged_at;
 #define judged judged_axes[judged_at]
 

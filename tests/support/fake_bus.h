@@ -61,8 +61,8 @@ struct cm1e_bus {
     fake_sdo_entry_t sdo_log[FAKE_SDO_LOG];
     unsigned sdo_count, sdo_delay, sdo_wait;
     bool sdo_full;
-    int64_t sdo_read_value;      /**< what other objects hold ... */
-    unsigned sdo_read_bytes;     /**< ... and how long they are; 0: reads leave the buffer alone */
+    int64_t sdo_read_value;      /**< value of other objects */
+    unsigned sdo_read_bytes;     /**< size of that value; 0: reads do not change the buffer */
     uint16_t sdo_abort_index;    /**< transfers of this object are aborted */
     cm1e_sdo_t *sdo, *sdo_waiting[FAKE_SDO_WAITING];
 

@@ -130,7 +130,7 @@ static inline double group_off_line(double ax, double ay, double bx, double by)
     return fabs(dx * y - dy * x) / hypot(dx, dy);
 }
 
-/** ... from a circle. */
+/** Distance of the axes from a circle. */
 static inline double group_off_circle(double cx, double cy, double radius)
 {
     return fabs(hypot(group_at(0) - cx, group_at(1) - cy) - radius);

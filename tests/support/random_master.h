@@ -12,8 +12,8 @@
 typedef struct random_master {
     int axis;
     cm1e_motion_limits_t most;
-    double middle;      /**< u, along the line; it drives about there: where `far` is finite ... */
-    double far;         /**< ... and not farther than that from it */
+    double middle;      /**< u, along the line; it drives around this place, if `far` is finite */
+    double far;         /**< u, maximum distance from `middle` */
     unsigned seldom;    /**< cycles from one command to the next, about */
 } random_master_t;
 

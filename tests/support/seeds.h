@@ -21,7 +21,7 @@ static inline int seeds_of(int all)
     return count ? atoi(count) : getenv("CM1E_TEST_SEED") ? 1 : all;
 }
 
-/** The same for a long test: of its own seeds as many as the effort allows (effort.h). */
+/** Number of seeds of a long test: as many of its own seeds as the effort allows (effort.h). */
 static inline int seed_count(int count)
 {
     const int some = count / slowness();

@@ -26,13 +26,13 @@ extern bench_t bench;
 /** A scenario is a function; this is where its diagram begins. The axis is in Standstill; inputs of the motor can be
  *  switched with simulate(). `about` stands above the diagram. */
 void trace_begin(const char *block, const char *about);
-/** The same with the axis in Disabled, and MC_Power left to the scenario. */
+/** trace_begin() with the axis in Disabled; the scenario calls MC_Power. */
 void trace_begin_disabled(const char *block, const char *about);
 /** As trace_begin(), with so many masters. */
 void trace_begin_with_masters(const char *block, const char *about, int masters);
-/** The same with an axes group of two axes, X, which is bench.axis, and Y, in GroupStandby. */
+/** trace_begin() with an axes group of two axes, X, which is bench.axis, and Y, in GroupStandby. */
 void trace_begin_with_group(const char *block, const char *about);
-/** The same without an axis, for blocks that need none. */
+/** trace_begin() without an axis, for blocks that need none. */
 void trace_begin_without_axis(const char *block, const char *about);
 /** Changes the configuration of the axis of the next scenario, before it begins. */
 void trace_configure(void (*configure)(cm1e_axis_config_t *config));
@@ -45,7 +45,7 @@ void trace_value(const char *type, const void *fb, const char *member, const cha
 void trace_signal(const char *name, const BOOL *signal);
 /** Which curves of the axis are drawn; velocity if nothing is said. */
 void trace_curves(bool position, bool velocity);
-/** The same of a master, before those of the axis. */
+/** trace_curves() of a master, drawn before those of the axis. */
 void trace_master_curves(int master, bool position, bool velocity);
 /** The scan is over: axis, bus and recording go on by 1 ms. */
 void trace_scan(void);

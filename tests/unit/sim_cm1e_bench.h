@@ -173,7 +173,7 @@ static inline cm1e_axis_config_t bench_firmware(const char *version)
     return config;
 }
 
-/* ... on an axis without stops and sensors. */
+/* Opens the bench on an axis without stops and sensors. */
 static inline void bench_open_endless(bench_t *b, const char *firmware)
 {
     cm1e_axis_config_t config = bench_firmware(firmware);

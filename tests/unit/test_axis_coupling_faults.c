@@ -26,7 +26,7 @@ static struct run {
     cm1e_coupling_stop_t mode;
     cm1e_command_id_t slave, beside, other;
     bool coupled;               /**< the slave's command was taken */
-    bool followed;              /**< ... and in force when the fault came; MC_GearInPos may wait for its StartSync */
+    bool followed;              /**< it was in force when the fault came; MC_GearInPos may wait for its StartSync */
     int struck;                 /**< cycle of the run, or -1 */
     bool known;                 /**< it was in gear; and where both were then */
     position_t master_at, slave_at;

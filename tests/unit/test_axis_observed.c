@@ -17,7 +17,7 @@ static struct encoder {
     double noise;                  /* counts, to either side */
     uint64_t seed;
     int silent;                    /* cycles left in which nothing is read of it */
-    bool invalid;                  /* ... because that is what the program says */
+    bool invalid;                  /* the program says that the counts are not valid */
 } encoder;
 
 static double time_s(void) { return (double)axes_bench.cycle * 1e-3; }

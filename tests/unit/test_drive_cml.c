@@ -31,7 +31,7 @@ static struct mailbox {
     struct {
         const char *text;
         unsigned behind;          /* strings that must be sent before */
-        int64_t after_ns;         /* ... so long ago */
+        int64_t after_ns;         /* time since then */
     } answers[ANSWERS];
     unsigned answer_count, answer_next;
 } box;

@@ -247,7 +247,7 @@ static void test_real_two_axis_esi_has_no_finding(void)
     assert_nothing_found(load_two_axes());
 }
 
-/* ... and not because it was not looked at: of its second axis, an alternative that nobody chooses by default. */
+/* The second axis, an alternative that is not the default, was checked too: a mistake in it is found. */
 static void test_mistake_in_the_real_two_axis_esi_is_found(void)
 {
     static const broken_text_t broken = {
