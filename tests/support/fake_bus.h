@@ -198,7 +198,8 @@ static void fake_serve_sdo(cm1e_bus_t *bus)
     memmove(bus->sdo_waiting, bus->sdo_waiting + 1, sizeof bus->sdo_waiting - sizeof bus->sdo_waiting[0]);
     bus->sdo_waiting[FAKE_SDO_WAITING - 1] = NULL;
     bus->sdo_wait = bus->sdo_delay;
-    if (sdo->index == bus->sdo_abort_index) {
+    const bool wrong_size = sdo->write && sdo->index == OBJ_6060_MODES_OF_OPERATION && sdo->size != 1;
+    if (sdo->index == bus->sdo_abort_index || wrong_size) {
         sdo->error = CM1E_ERROR_SDO_ABORT;
         sdo->abort_code = 0x06090030;
         sdo->state = CM1E_SDO_ERROR;

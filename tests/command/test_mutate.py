@@ -1,0 +1,45 @@
+#!/usr/bin/env python3
+"""scripts/mutate: which defects it can plant in a source, and that it leaves comments, texts and the lines alone.
+
+    test_mutate.py <source folder>
+"""
+import importlib.machinery
+import importlib.util
+import sys
+from pathlib import Path
+
+SOURCE = '''#define MOST 7
+/* 1 < 2 && true; */
+static bool far(const axis_t *axis, double way)
+{
+    const char *text = "3 + 4";
+    if (way > 2.5 && axis->count == 1)
+        return false;
+    axis->now = stop(axis);
+    write(text);
+    return way < -turn / 2.0;
+}
+'''
+WANTED = {
+    (" > ", " >= "), (" && ", " || "), (" == ", " != "), (" < ", " <= "), (" / ", " * "), ("false;", "true;"),
+    ("2.5", "(2.5 * 4.0)"), ("2.0", "(2.0 * 4.0)"), ("1", "2"), ("axis->now = stop(axis);", ";"), ("write(text);", ";"),
+    ("way > 2.5 && axis->count == 1", "!(way > 2.5 && axis->count == 1)"),
+}
+
+
+def main():
+    path = str(Path(sys.argv[1]) / "scripts/mutate")
+    loader = importlib.machinery.SourceFileLoader("mutate", path)
+    sys.dont_write_bytecode = True
+    mutate = importlib.util.module_from_spec(importlib.util.spec_from_loader("mutate", loader))
+    loader.exec_module(mutate)
+    found = list(mutate.defects("a.c", SOURCE))
+    assert {(SOURCE[begin:end], new) for _, begin, end, new in found} == WANTED, found
+    assert found == list(mutate.defects("a.c", SOURCE))
+    for _, begin, end, new in found:
+        assert "\n" not in SOURCE[begin:end] + new
+    print(f"{len(found)} defects in {SOURCE.count(chr(10))} lines")
+
+
+if __name__ == "__main__":
+    main()
