@@ -5,6 +5,8 @@
 #ifndef DRIVE_BRIDGE_BENCH_H
 #define DRIVE_BRIDGE_BENCH_H
 
+#include <string.h>
+
 #include "device/bridge_status.h"
 #include "drive/drive_bridge.h"
 #include "drive/drive_kind.h"

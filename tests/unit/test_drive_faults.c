@@ -1,5 +1,6 @@
 /* Latching of faults, what the drive writes then, fault reset, and the words for it. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "cm1e/axis.h"
 #include "drive/drive.h"

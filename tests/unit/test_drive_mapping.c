@@ -1,4 +1,6 @@
 /* Where the objects lie, units on the wire, and the mode where 0x6060 is not in the process data. */
+#include <string.h>
+
 #include "drive/drive.h"
 #include "unity.h"
 
