@@ -12,6 +12,7 @@ cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t inde
     cm1e_axis_t *axis = calloc(1, sizeof *axis);
     if (!axis)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for axis %u.", (unsigned)index);
+    axis->source = &cm1e_source_free;
     cm1e_error_t error = cm1e_drive_init(&axis->drive, bus, index, diag);
     if (!error) {
         axis->config = axis->drive.config;
@@ -78,7 +79,7 @@ static bool was_deaf(const cm1e_axis_t *axis, double lag)
  * on while nothing is heard: a ramp of ErrorStop then begins anew where it has come to. */
 static void watch_lag(cm1e_axis_t *axis)
 {
-    const bool own = axis->activity == ACTIVITY_HOLD || set_points_move(axis);
+    const bool own = axis_holds(axis) || set_points_move(axis);
     const bool blind_before = axis->blind;
     axis->blind = own && !axis->drive.feedback.fresh;
     if (axis->blind)

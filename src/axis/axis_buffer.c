@@ -306,7 +306,7 @@ cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *as)
 
 static bool can_replan(const cm1e_axis_t *axis)
 {
-    return axis->active && axis->activity == ACTIVITY_PROFILE && axis->kind != CM1E_COMMAND_STOP &&
+    return axis->active && axis_on_profile(axis) && axis->kind != CM1E_COMMAND_STOP &&
            is_planned(axis->kind);
 }
 

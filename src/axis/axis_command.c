@@ -96,7 +96,7 @@ void cm1e_axis_take(cm1e_axis_t *axis, const move_t *move, const from_t *from, c
  * continuous one has none. */
 static position_t commanded_position(const cm1e_axis_t *axis)
 {
-    if (axis->activity != ACTIVITY_PROFILE || axis->state != CM1E_AXIS_DISCRETE_MOTION)
+    if (!axis_on_profile(axis) || axis->state != CM1E_AXIS_DISCRETE_MOTION)
         return axis->set;
     const position_t base = axis->active && kind_row(axis->kind)->plan == PLAN_TO_TARGET ? axis->move.target
                                                                                             : axis->target;
@@ -153,7 +153,7 @@ static cm1e_error_t stop_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *co
     *id = axis->active = cm1e_axis_next_id(axis);
     axis->kind = command->kind;
     hold_stop(axis, *id);
-    cm1e_axis_home_abort(axis, HOME_GOAL_HOLD);
+    axis->source->stop(axis, &axis->maximum, HOME_GOAL_HOLD);
     return CM1E_OK;
 }
 
@@ -175,8 +175,8 @@ cm1e_error_t cm1e_axis_start_step(cm1e_axis_t *axis, const cm1e_axis_command_t *
     const move_t move = cm1e_axis_move_of(command);
     stepping_t next;
     cm1e_profile_t profile;
-    cm1e_error_t error = axis->activity == ACTIVITY_HOMING ? CM1E_ERROR_AXIS_HOMING
-                                                           : cm1e_axis_step_check(axis, command->step, &move);
+    cm1e_error_t error = drive_homes(axis) ? CM1E_ERROR_AXIS_HOMING
+                                           : cm1e_axis_step_check(axis, command->step, &move);
     if (!error)
         error = cm1e_axis_step_prepare(axis, command->step, &move, &next, &profile);
     if (error)
@@ -196,7 +196,7 @@ static cm1e_error_t start_drive(cm1e_axis_t *axis, const cm1e_axis_command_t *co
     const bool stopping = kind_row(command->kind)->is_stop;
     cm1e_motion_limits_t unused;
     driving_t driving;
-    if (axis->activity == ACTIVITY_DRIVE && !stopping)
+    if (drive_moves(axis) && !stopping)
         return CM1E_ERROR_AXIS_STATE;
     move.origin = from.position;
     const cm1e_error_t error = stopping ? cm1e_axis_limits_of(axis, &from, &move, &unused)
@@ -210,7 +210,7 @@ static cm1e_error_t start_drive(cm1e_axis_t *axis, const cm1e_axis_command_t *co
     if (command->kind == CM1E_COMMAND_STOP)
         hold_stop(axis, *id);
     if (stopping)
-        cm1e_axis_drive_abort(axis, HOME_GOAL_HOLD);
+        axis->source->stop(axis, &axis->maximum, HOME_GOAL_HOLD);
     else
         cm1e_axis_drive_begin(axis, &driving);
     return CM1E_OK;
@@ -219,15 +219,14 @@ static cm1e_error_t start_drive(cm1e_axis_t *axis, const cm1e_axis_command_t *co
 /* A stop at standstill needs no drive. */
 static bool by_drive(const cm1e_axis_t *axis, cm1e_command_kind_t kind)
 {
-    return axis->activity == ACTIVITY_DRIVE ||
-           (drive_profiles(axis) && axis->activity == ACTIVITY_HOLD && !kind_row(kind)->is_stop);
+    return drive_moves(axis) || (drive_profiles(axis) && axis_holds(axis) && !kind_row(kind)->is_stop);
 }
 
 cm1e_error_t cm1e_axis_start_move(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
-    if (by_drive(axis, command->kind))
-        return start_drive(axis, command, id);
-    return axis->activity == ACTIVITY_HOMING ? stop_homing(axis, command, id) : start_profile(axis, command, id);
+    if (drive_homes(axis))
+        return stop_homing(axis, command, id);
+    return by_drive(axis, command->kind) ? start_drive(axis, command, id) : start_profile(axis, command, id);
 }
 
 /* ---- buffered ---------------------------------------------------------------------------------------------------- */
@@ -257,7 +256,7 @@ static cm1e_error_t keep_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *co
     for (int i = 0; i < axis->waiting.count; i++)
         if (waiting_move(axis, i)->kind == CM1E_COMMAND_HOME)
             return CM1E_ERROR_BUSY;
-    if (axis->activity != ACTIVITY_HOMING) {
+    if (!drive_homes(axis)) {
         const cm1e_error_t error = cm1e_axis_home_prepare(axis, command);
         if (error)
             return error;

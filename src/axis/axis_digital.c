@@ -16,7 +16,7 @@ static cm1e_error_t reachable(const cm1e_axis_t *axis)
 {
     if (in_process_data(axis) || axis_acts(axis))
         return CM1E_OK;
-    return axis->activity == ACTIVITY_HOMING ? CM1E_ERROR_AXIS_HOMING : CM1E_ERROR_AXIS_NOT_POWERED;
+    return drive_homes(axis) ? CM1E_ERROR_AXIS_HOMING : CM1E_ERROR_AXIS_NOT_POWERED;
 }
 
 const char *cm1e_axis_signals_advice(const cm1e_axis_t *axis, cm1e_error_t error)

@@ -113,14 +113,14 @@ void cm1e_axis_drive_begin(cm1e_axis_t *axis, const driving_t *d)
 {
     axis->driving = *d;
     axis->reached = false;
-    axis->activity = ACTIVITY_DRIVE;
+    cm1e_axis_set_source(axis, &cm1e_source_drive);
     enter(axis, DRIVE_WRITE);
 }
 
 /* The motion is over, in the axis's own mode. */
 static void leave(cm1e_axis_t *axis)
 {
-    axis->activity = ACTIVITY_HOLD;
+    cm1e_axis_set_source(axis, &cm1e_source_hold);
     if (cm1e_axis_settle(axis))
         return;
     if (axis->active)
@@ -331,7 +331,7 @@ static void step_return(cm1e_axis_t *axis)
     leave(axis);
 }
 
-void cm1e_axis_drive_step(cm1e_axis_t *axis)
+static bool step(cm1e_axis_t *axis)
 {
     static void (*const steps[])(cm1e_axis_t *) = {
         [DRIVE_WRITE] = step_write, [DRIVE_SWITCH] = step_switch, [DRIVE_GO] = step_go,
@@ -339,13 +339,15 @@ void cm1e_axis_drive_step(cm1e_axis_t *axis)
     };
     if (!axis->drive.feedback.enabled && axis->driving.goal == HOME_GOAL_OFF && axis->drive.fault.error) {
         (void)off(axis);
-        return;
+        return true;
     }
     steps[axis->driving.step](axis);
+    return true;
 }
 
-void cm1e_axis_drive_abort(cm1e_axis_t *axis, home_goal_t goal)
+static void stop(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal)
 {
+    (void)ramp; /* the drive has its own */
     axis->driving.goal = goal;
     switch (axis->driving.step) {
     case DRIVE_WRITE: /* still in the axis's own mode, holding */
@@ -363,18 +365,20 @@ void cm1e_axis_drive_abort(cm1e_axis_t *axis, home_goal_t goal)
     }
 }
 
-void cm1e_axis_drive_direction_disabled(cm1e_axis_t *axis, double sign)
+static bool goes(cm1e_axis_t *axis, double sign)
 {
-    const bool going = axis->driving.goal == HOME_GOAL_DONE && axis->driving.way * sign > 0.0;
-    if (!going || !axis->active)
-        return;
-    cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
-    cm1e_axis_go(axis, ON_BROKEN_OFF);
-    cm1e_axis_drive_abort(axis, HOME_GOAL_HOLD);
+    return axis->driving.goal == HOME_GOAL_DONE && axis->driving.way * sign > 0.0;
+}
+
+/* Only the end of its way is known. */
+static bool keeps(const cm1e_axis_t *axis, double lower, double upper)
+{
+    (void)axis;
+    return isinf(lower) && isinf(upper);
 }
 
 /* What the motor is to do while it moves by itself; in the other steps the axis's own targets hold. */
-void cm1e_axis_drive_write(cm1e_axis_t *axis)
+static void write(cm1e_axis_t *axis)
 {
     const driving_t *d = &axis->driving;
     const bool under_way = d->step == DRIVE_GO || d->step == DRIVE_MOVE || d->step == DRIVE_HALT;
@@ -382,3 +386,12 @@ void cm1e_axis_drive_write(cm1e_axis_t *axis)
         axis->drive.command.target_position = d->target;
     axis->drive.command.target_velocity = under_way && d->velocity_mode ? d->target_velocity : 0;
 }
+
+const source_t cm1e_source_drive = {
+    .step = step,
+    .stop = stop,
+    .goes = goes,
+    .keeps = keeps,
+    .write = write,
+    .by_drive = true,
+};

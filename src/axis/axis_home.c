@@ -284,14 +284,14 @@ void cm1e_axis_home_begin(cm1e_axis_t *axis)
     home->refused = CM1E_OK;
     home->goal = HOME_GOAL_DONE;
     home->deadline_ns = axis->now_ns + home->timeout_ns;
-    axis->activity = ACTIVITY_HOMING;
+    cm1e_axis_set_source(axis, &cm1e_source_homing);
     enter(axis, kind_of(axis)->steps[0]);
 }
 
 /* Homing is over in the axis's own mode. */
 static void leave(cm1e_axis_t *axis)
 {
-    axis->activity = ACTIVITY_HOLD;
+    cm1e_axis_set_source(axis, &cm1e_source_hold);
     axis->home.away = false;
     if (cm1e_axis_settle(axis))
         return;
@@ -565,7 +565,7 @@ static void step_return(cm1e_axis_t *axis)
     leave(axis);
 }
 
-void cm1e_axis_home_step(cm1e_axis_t *axis)
+static bool step(cm1e_axis_t *axis)
 {
     static void (*const steps[])(cm1e_axis_t *) = {
         [HOME_READ] = step_read,   [HOME_REST] = step_rest,   [HOME_WRITE] = step_write, [HOME_SWITCH] = step_switch,
@@ -574,13 +574,15 @@ void cm1e_axis_home_step(cm1e_axis_t *axis)
     };
     if (!axis->drive.feedback.enabled && axis->home.goal == HOME_GOAL_OFF && axis->drive.fault.error) {
         (void)off(axis);
-        return;
+        return true;
     }
     steps[axis->home.step](axis);
+    return true;
 }
 
-void cm1e_axis_home_abort(cm1e_axis_t *axis, home_goal_t goal)
+static void stop(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal)
 {
+    (void)ramp; /* the drive has its own */
     homing_t *home = &axis->home;
     home->goal = goal;
     switch (home->step) {
@@ -611,3 +613,5 @@ void cm1e_axis_home_abort(cm1e_axis_t *axis, home_goal_t goal)
         break;
     }
 }
+
+const source_t cm1e_source_homing = {.step = step, .stop = stop, .by_drive = true, .homes = true};

@@ -7,6 +7,8 @@
 
 #include "axis/axis_move.h"
 
+extern const source_t cm1e_source_homing; /**< the drive's own; axis_home.c */
+
 enum { HOMING_PARAMETERS = 5 };
 
 /** Drives that home in different ways (axis_home.c). */
@@ -24,9 +26,6 @@ typedef enum home_step {
     HOME_HALT,      /**< halt bit set, or start bit taken away, until the motor stands */
     HOME_RETURN,    /**< back to the axis's own mode */
 } home_step_t;
-
-/** What comes after the drive has stopped homing. */
-typedef enum home_goal { HOME_GOAL_DONE = 0, HOME_GOAL_HOLD, HOME_GOAL_OFF } home_goal_t;
 
 typedef struct homing {
     home_step_t step;
@@ -118,8 +117,6 @@ cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t
 /** In words: what cm1e_axis_home_prepare() refused for its method or another parameter. */
 void cm1e_axis_home_wrong_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_axis_home_begin(cm1e_axis_t *axis);
-void cm1e_axis_home_abort(cm1e_axis_t *axis, home_goal_t goal);
-void cm1e_axis_home_step(cm1e_axis_t *axis);
 
 /* axis_homing_steps.c */
 /** What is wrong with a step whatever the state of the axis. */
@@ -137,9 +134,5 @@ bool cm1e_axis_step_profile_ended(cm1e_axis_t *axis);
 /** Checks a command that begins at standstill; nothing has changed then. */
 cm1e_error_t cm1e_axis_drive_prepare(cm1e_axis_t *axis, const from_t *from, move_t *move, driving_t *d);
 void cm1e_axis_drive_begin(cm1e_axis_t *axis, const driving_t *d);
-void cm1e_axis_drive_abort(cm1e_axis_t *axis, home_goal_t goal);
-void cm1e_axis_drive_direction_disabled(cm1e_axis_t *axis, double sign);
-void cm1e_axis_drive_step(cm1e_axis_t *axis);
-void cm1e_axis_drive_write(cm1e_axis_t *axis);
 
 #endif

@@ -25,7 +25,7 @@ typedef struct motor_hooks {
     bool (*text)(const cm1e_axis_t *axis, cm1e_error_t error, char *text, size_t size);
 } motor_hooks_t;
 
-/** Couplings (src/coupling): what the axis follows, and who follows it. Those from `step` on are called only while
+/** Couplings (src/coupling): what the axis follows, and who follows it. Those from `first_set_point` on are called only while
  *  the axis follows (axis_follows()). */
 typedef struct coupling_hooks {
     const command_method_t *methods; /**< by command_plan_t; without `start`: not theirs */
@@ -52,9 +52,7 @@ typedef struct coupling_hooks {
     /** What is wrong with the cam that was refused last. */
     void (*cam_text)(const cm1e_axis_t *axis, char *text, size_t size);
 
-    /** The set-point of the cycle. FALSE: it does not come from the masters any more, but from the axis's profile. */
-    bool (*step)(cm1e_axis_t *axis);
-    /** That of the cycle in which the coupling has begun, without going on. */
+    /** The set-point of the cycle in which the coupling has begun, without going on. */
     void (*first_set_point)(cm1e_axis_t *axis);
     /** Commands that wait may begin now that the command has reached what it was to reach. */
     bool (*hands_over)(const cm1e_axis_t *axis);
@@ -62,12 +60,8 @@ typedef struct coupling_hooks {
     void (*shift)(cm1e_axis_t *axis, double way);
     /** What is followed is an actual value. */
     bool (*by_actual)(const cm1e_axis_t *axis);
-    /** After a pause or silence: whether it has to begin anew with its masters; and it does. */
+    /** After a pause or silence: whether it has to begin anew with its masters. */
     bool (*begins_anew)(const cm1e_axis_t *axis);
-    void (*after_pause)(cm1e_axis_t *axis);
-    /** The axis leaves its masters; and: because the bus is lost. */
-    void (*left)(cm1e_axis_t *axis);
-    void (*held)(cm1e_axis_t *axis);
     /** In ErrorStop it follows its masters to their standstill. */
     bool (*stops_with_masters)(const cm1e_axis_t *axis);
     /** It has failed: what else stops. */

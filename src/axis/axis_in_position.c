@@ -50,7 +50,7 @@ static double deviation(const cm1e_axis_t *axis)
 bool cm1e_axis_in_position(const cm1e_axis_t *axis)
 {
     const in_position_t *p = &axis->in_position;
-    return axis->activity == ACTIVITY_HOLD && p->inside && p->there;
+    return axis_holds(axis) && p->inside && p->there;
 }
 
 static bool passed(const cm1e_axis_t *axis, int64_t since_ns, uint32_t time_us)

@@ -10,11 +10,11 @@ cm1e_error_t cm1e_axis_lead(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader)
 {
     if (drive_profiles(axis))
         return CM1E_ERROR_UNSUPPORTED;
-    if (axis->state != CM1E_AXIS_STANDSTILL || axis->activity != ACTIVITY_HOLD || axis->active ||
+    if (axis->state != CM1E_AXIS_STANDSTILL || !axis_holds(axis) || axis->active ||
         axis->waiting.count > 0 || axis->superimposed.id || !axis_acts(axis))
         return CM1E_ERROR_AXIS_STATE;
     axis->leader = *leader;
-    axis->activity = ACTIVITY_LED;
+    cm1e_axis_set_source(axis, &cm1e_source_leader);
     cm1e_axis_guard_renew(axis);
     cm1e_axis_go(axis, ON_LED);
     return CM1E_OK;
@@ -35,7 +35,7 @@ void cm1e_axis_release(cm1e_axis_t *axis)
         return;
     axis->leader = (cm1e_axis_leader_t){0};
     if (at_rest(axis)) {
-        axis->activity = ACTIVITY_HOLD;
+        cm1e_axis_set_source(axis, &cm1e_source_hold);
         cm1e_axis_go(axis, ON_LET_GO);
     } else {
         cm1e_axis_go(axis, ON_BROKEN_OFF);
@@ -62,7 +62,7 @@ bool cm1e_axis_led_by(const cm1e_axis_t *axis, const void *context)
     return axis_led(axis) && axis->leader.context == context;
 }
 
-bool cm1e_axis_lead_step(cm1e_axis_t *axis)
+static bool step(cm1e_axis_t *axis)
 {
     const cm1e_axis_leader_t leader = axis->leader;
     double line = 0.0;
@@ -91,7 +91,7 @@ bool cm1e_axis_lead_step(cm1e_axis_t *axis)
     return true;
 }
 
-void cm1e_axis_lead_after_pause(cm1e_axis_t *axis)
+static void begin_anew(cm1e_axis_t *axis)
 {
     const cm1e_axis_leader_t leader = axis->leader;
     if (axis->set_velocity == 0.0)
@@ -99,6 +99,22 @@ void cm1e_axis_lead_after_pause(cm1e_axis_t *axis)
     else
         cm1e_axis_guard_fail(axis, (guard_t){.limit = GUARD_PAUSE, .asked = axis->set_velocity});
 }
+
+/* Only the leader knows its way. */
+static bool keeps(const cm1e_axis_t *axis, double lower, double upper)
+{
+    (void)axis;
+    return isinf(lower) && isinf(upper);
+}
+
+const source_t cm1e_source_leader = {
+    .step = step,
+    .stop = cm1e_axis_stop_by_ramp,
+    .begin_anew = begin_anew,
+    .keeps = keeps,
+    .moves = true,
+    .is_composite = true,
+};
 
 void cm1e_axis_lead_fail(cm1e_axis_t *axis, cm1e_error_t error)
 {

@@ -266,16 +266,8 @@ bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const
 }
 
 /* What runs is judged as a whole, from where it began, so that a limit may be refused that lies behind the axis. */
-bool cm1e_axis_limits_hold(const cm1e_axis_t *axis, double lower, double upper)
+bool cm1e_axis_profile_keeps(const cm1e_axis_t *axis, double lower, double upper)
 {
-    if (axis->activity == ACTIVITY_DRIVE || axis_led(axis)) /* of its way only the end is known, or nothing */
-        return isinf(lower) && isinf(upper);
-    if (axis_follows(axis)) { /* nobody knows where to */
-        const double v = axis->set_velocity, stop = cm1e_axis_line(axis, axis->set) + v * fabs(v) * axis->emergency_way;
-        return stop <= upper + axis->tolerance && stop >= lower - axis->tolerance;
-    }
-    if (axis->activity != ACTIVITY_PROFILE)
-        return true;
     const double base = axis->base_line, now = cm1e_axis_line(axis, axis->set), v = axis->set_velocity;
     const double end = axis->profile.end.velocity, brake = axis->emergency_way;
     double lowest, highest;

@@ -16,7 +16,8 @@ static const double farthest_from_base = 0x1p32;
 
 static const cm1e_profile_stretch_t no_stretch = {.from_s = INFINITY};
 
-static void begin_run(cm1e_axis_t *axis, const from_t *from, position_t target, double offset_s)
+static void begin_run(cm1e_axis_t *axis, const source_t *source, const from_t *from, position_t target,
+                      double offset_s)
 {
     axis->stretch = no_stretch;
     axis->base = from->position;
@@ -28,17 +29,14 @@ static void begin_run(cm1e_axis_t *axis, const from_t *from, position_t target, 
     axis->reached = false;
     axis->paused = false;
     axis->stands = false;
-    if (axis_follows(axis))
-        axis->coupling_hooks->left(axis);
-    axis->activity = ACTIVITY_PROFILE;
+    cm1e_axis_set_source(axis, source);
 }
 
 void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile, position_t target,
                    double offset_s)
 {
     axis->profile = *profile;
-    axis->along_table = false;
-    begin_run(axis, from, target, offset_s);
+    begin_run(axis, &cm1e_source_profile, from, target, offset_s);
 }
 
 void cm1e_axis_run_table(cm1e_axis_t *axis, const from_t *from, const cm1e_table_profile_t *table, position_t target,
@@ -48,8 +46,7 @@ void cm1e_axis_run_table(cm1e_axis_t *axis, const from_t *from, const cm1e_table
     axis->profile.duration_s = table->duration_s;
     axis->profile.end = table->end;
     axis->profile.segment_count = 0;
-    axis->along_table = true;
-    begin_run(axis, from, target, offset_s);
+    begin_run(axis, &cm1e_source_table, from, target, offset_s);
 }
 
 static void ramp_down_from(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *limits, double offset_s)
@@ -59,14 +56,19 @@ static void ramp_down_from(cm1e_axis_t *axis, const from_t *from, const cm1e_mot
         cm1e_axis_run(axis, from, &profile, cm1e_position_plus(from->position, profile.end.position * axis->scale),
                       offset_s);
     else
-        axis->activity = ACTIVITY_HOLD;
+        cm1e_axis_set_source(axis, &cm1e_source_hold);
 }
 
-/* Down to standstill without a command. */
 void cm1e_axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits)
 {
     const from_t from = from_set(axis);
     ramp_down_from(axis, &from, limits, 0.0);
+}
+
+void cm1e_axis_stop_by_ramp(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal)
+{
+    (void)goal; /* what comes after a ramp of ours is decided when it has ended */
+    cm1e_axis_ramp_down(axis, ramp);
 }
 
 static bool commanded_motion(const cm1e_axis_t *axis)
@@ -77,15 +79,13 @@ static bool commanded_motion(const cm1e_axis_t *axis)
 
 /* Whether the running profile still goes that way: now, at its end, or in between, where each stretch of one direction
  * that begins and ends at rest has a border of two segments in it. */
-static bool goes(cm1e_axis_t *axis, double sign)
+bool cm1e_axis_profile_goes(cm1e_axis_t *axis, double sign)
 {
     const cm1e_profile_t *profile = &axis->profile;
     const double velocity = axis->set_velocity - axis->superimposed.now.velocity;
     const double now_s = (double)axis->profile_cycles * axis->cycle_s + axis->profile_offset_s;
     if (velocity * sign > 0.0 || profile->end.velocity * sign > 0.0)
         return true;
-    if (axis->along_table)
-        return cm1e_axis_table_goes(axis, now_s, sign);
     for (int i = 0; i < profile->segment_count; i++)
         if (profile->segments[i].start_s > now_s && profile->segments[i].start.velocity * sign > 0.0)
             return true;
@@ -94,13 +94,10 @@ static bool goes(cm1e_axis_t *axis, double sign)
 
 void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign)
 {
-    if (axis->activity == ACTIVITY_DRIVE) {
-        cm1e_axis_drive_direction_disabled(axis, sign);
-        return;
-    }
     const cm1e_error_t error = CM1E_ERROR_AXIS_DIRECTION_DISABLED;
     const bool halts = axis->stands || (axis->active && axis->kind == CM1E_COMMAND_HALT);
-    const bool on_top_goes = cm1e_axis_superimposed_goes(axis, sign), base_goes = !halts && goes(axis, sign);
+    const bool on_top_goes = cm1e_axis_superimposed_goes(axis, sign);
+    const bool base_goes = !halts && axis->source->goes && axis->source->goes(axis, sign);
     if (!commanded_motion(axis) || !(base_goes || on_top_goes))
         return;
     cm1e_axis_superimposed_end(axis, on_top_goes ? CM1E_COMMAND_ERROR : CM1E_COMMAND_ABORTED,
@@ -112,7 +109,7 @@ void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign)
     cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, error);
     cm1e_axis_go(axis, ON_BROKEN_OFF);
     if (!cm1e_axis_begin_waiting(axis, &from, 0.0)) /* 2.2.2, case 2 */
-        cm1e_axis_ramp_down(axis, &axis->maximum);
+        axis->source->stop(axis, &axis->maximum, HOME_GOAL_HOLD);
 }
 
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
@@ -122,7 +119,7 @@ static void hold_target(cm1e_axis_t *axis)
     axis->set = axis->target;
     axis->set_velocity = 0.0;
     axis->set_acceleration = 0.0;
-    axis->activity = ACTIVITY_HOLD;
+    cm1e_axis_set_source(axis, &cm1e_source_hold);
     axis->stands = false;
 }
 
@@ -159,11 +156,11 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
     const from_t end = {axis->target, axis->profile.end.velocity, 0.0, shared};
     const bool goes_on = end.velocity != 0.0;
     if (cm1e_axis_step_profile_ended(axis))
-        return axis->activity == ACTIVITY_PROFILE;
+        return axis_on_profile(axis);
     if (axis->active && kind_row(axis->kind)->is_endless) {
         /* What begins where nothing can stop any more would go beyond the limit. */
         if (may_go_on(axis, axis->profile.end) && cm1e_axis_begin_waiting(axis, &end, late_s))
-            return axis->activity == ACTIVITY_PROFILE; /* not what follows a master */
+            return axis_on_profile(axis); /* not what follows a master */
         axis->reached = true;
         axis->move.passing = true; /* the position lies behind now, whatever else changes */
         return true;
@@ -180,11 +177,11 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
         cm1e_axis_stand(axis);
     if (axis->state == CM1E_AXIS_STANDSTILL || axis->state == CM1E_AXIS_DISCRETE_MOTION) {
         if (cm1e_axis_begin_waiting(axis, &end, late_s))
-            return axis->activity == ACTIVITY_PROFILE;
+            return axis_on_profile(axis);
         if (goes_on) /* for a command that could not begin after all */
             brake_after(axis, &end, late_s);
     }
-    return axis->activity == ACTIVITY_PROFILE;
+    return axis_on_profile(axis);
 }
 
 /* Reckoned a cycle ahead, since the set-point of a cycle waits for it. */
@@ -198,10 +195,7 @@ static double next_time(cm1e_axis_t *axis)
 
 CM1E_RARE static void find_stretch(cm1e_axis_t *axis, double time_s)
 {
-    if (axis->along_table)
-        cm1e_table_profile_stretch_at(&axis->tables->running, time_s, &axis->stretch);
-    else
-        cm1e_profile_stretch_at(&axis->profile, time_s, &axis->stretch);
+    cm1e_profile_stretch_at(&axis->profile, time_s, &axis->stretch);
 }
 
 /* A velocity that goes on for weeks: from here on a profile that has ended already. At most once in 20 minutes; in long
@@ -217,7 +211,7 @@ CM1E_RARE static void count_anew(cm1e_axis_t *axis)
     axis->base.counts += whole;
     axis->base = axis->set = cm1e_position_plus(axis->base, (double)(counts - (long double)whole));
     axis->base_line = cm1e_axis_line(axis, axis->base);
-    axis->along_table = false;
+    axis->source = &cm1e_source_profile;
     axis->profile.segment_count = 0;
     axis->profile.duration_s = 0.0;
     axis->profile.end.position = 0.0;
@@ -233,7 +227,7 @@ CM1E_RARE static void meet_limit(cm1e_axis_t *axis, double velocity);
 static inline void follow(cm1e_axis_t *axis, double time_s)
 {
     if (!(time_s >= axis->stretch.from_s && time_s < axis->stretch.until_s))
-        find_stretch(axis, time_s);
+        axis->source->find_stretch(axis, time_s);
     cm1e_motion_state_t next = cm1e_profile_stretch_state(&axis->stretch, time_s);
     const bool on_top = axis->superimposed.id != 0;
     if (on_top) {
@@ -265,7 +259,7 @@ static void meet_limit(cm1e_axis_t *axis, double velocity)
 {
     cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->set),
                    velocity > 0.0 ? axis->upper : axis->lower);
-    if (axis->activity == ACTIVITY_PROFILE)
+    if (axis_on_profile(axis))
         follow(axis, next_time(axis));
 }
 
@@ -290,20 +284,38 @@ CM1E_RARE static void follow_over_end(cm1e_axis_t *axis, double time_s)
     follow(axis, time_s);
 }
 
-static void profile_step(cm1e_axis_t *axis)
+bool cm1e_axis_profile_step(cm1e_axis_t *axis)
 {
     const double time_s = next_time(axis);
     if (at_end(axis, time_s))
         follow_over_end(axis, time_s);
     else
         follow(axis, time_s);
+    return true;
 }
+
+const source_t cm1e_source_profile = {
+    .step = cm1e_axis_profile_step,
+    .stop = cm1e_axis_stop_by_ramp,
+    .goes = cm1e_axis_profile_goes,
+    .keeps = cm1e_axis_profile_keeps,
+    .find_stretch = find_stretch,
+    .moves = true,
+};
+
+static bool step_hold(cm1e_axis_t *axis)
+{
+    cm1e_axis_in_position_step(axis);
+    return true;
+}
+
+const source_t cm1e_source_hold = {.step = step_hold, .stop = cm1e_axis_stop_by_ramp, .holds = true};
 
 /* Such a ramp ends with a step of its acceleration. */
 static bool on_hard_ramp(const cm1e_axis_t *axis)
 {
     const cm1e_profile_t *profile = &axis->profile;
-    if (axis->activity != ACTIVITY_PROFILE || axis->along_table || profile->segment_count == 0)
+    if (axis->source != &cm1e_source_profile || profile->segment_count == 0)
         return false;
     const cm1e_profile_segment_t *last = &profile->segments[profile->segment_count - 1];
     return profile->end.velocity == 0.0 && last->jerk == 0.0 && last->start.acceleration != 0.0;
@@ -313,39 +325,18 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
 {
     if (axis_stepping(axis) || (axis->state == CM1E_AXIS_STOPPING && axis->stepping.after_stop))
         cm1e_axis_step_cycle(axis);
-    if (axis->activity != ACTIVITY_HOLD)
+    if (!axis_holds(axis))
         axis->in_position.inside = false;
-    switch (axis->activity) {
-    case ACTIVITY_FREE:
-        cm1e_axis_set_to_actual(axis);
-        break;
-    case ACTIVITY_HOLD:
-        cm1e_axis_in_position_step(axis);
-        break;
-    case ACTIVITY_PROFILE:
-        profile_step(axis);
-        break;
-    case ACTIVITY_LED:
-        if (!cm1e_axis_lead_step(axis) && axis->activity == ACTIVITY_PROFILE)
-            profile_step(axis);
-        break;
-    case ACTIVITY_COUPLED:
-        if (!axis->coupling_hooks->step(axis) && axis->activity == ACTIVITY_PROFILE)
-            profile_step(axis);
-        break;
-    case ACTIVITY_HOMING:
-        cm1e_axis_home_step(axis);
-        break;
-    case ACTIVITY_DRIVE:
-        cm1e_axis_drive_step(axis);
-        break;
-    }
+    if (axis->source == &cm1e_source_profile) /* most motions are, and a call by pointer costs a nanosecond */
+        cm1e_axis_profile_step(axis);
+    else if (!axis->source->step(axis) && axis_on_profile(axis))
+        cm1e_axis_profile_step(axis);
     axis->brakes_hard = on_hard_ramp(axis);
     /* Note 6: MC_Stop done and its Execute FALSE. */
-    if (axis->state == CM1E_AXIS_STOPPING && axis->activity == ACTIVITY_HOLD && !axis->stop_held &&
+    if (axis->state == CM1E_AXIS_STOPPING && axis_holds(axis) && !axis->stop_held &&
         !axis->stepping.after_stop)
         cm1e_axis_go(axis, ON_STOP_RELEASED);
-    if (axis->activity == ACTIVITY_HOLD && !axis->active && axis->waiting.count > 0) { /* behind a homing */
+    if (axis_holds(axis) && !axis->active && axis->waiting.count > 0) { /* behind a homing */
         const from_t from = from_set(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
     }
@@ -379,6 +370,6 @@ void cm1e_axis_write_set_point(cm1e_axis_t *axis)
         command->target_velocity = target_velocity(axis);
     else if (cm1e_drive_is_virtual(&axis->drive)) /* shown as the actual one: positions of whole counts tell it badly */
         command->target_velocity = (int32_t)round(axis->set_velocity * axis->scale);
-    else if (axis->activity == ACTIVITY_DRIVE)
-        cm1e_axis_drive_write(axis);
+    else if (axis->source->write)
+        axis->source->write(axis);
 }

@@ -7,19 +7,9 @@
 
 #include "axis/axis_kind.h"
 #include "axis/axis_place.h"
+#include "axis/axis_source.h"
 #include "motion/profile.h"
 #include "motion/table_profile.h"
-
-/** Where the set-point comes from. */
-typedef enum activity {
-    ACTIVITY_FREE = 0, /**< nowhere: no torque, the set-point is the actual position */
-    ACTIVITY_HOLD,     /**< it stands */
-    ACTIVITY_PROFILE,  /**< a profile, of a command or of a stopping ramp */
-    ACTIVITY_COUPLED,  /**< other axes, its masters (src/coupling) */
-    ACTIVITY_HOMING,   /**< the drive's own homing (axis_home.c) */
-    ACTIVITY_DRIVE,    /**< the drive's own profile (axis_drive_profile.c) */
-    ACTIVITY_LED,      /**< somebody above (axis_lead.c) */
-} activity_t;
 
 enum { COMMANDS_REMEMBERED = 32 };
 
@@ -129,7 +119,13 @@ void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *
                    double offset_s);
 void cm1e_axis_run_table(cm1e_axis_t *axis, const from_t *from, const cm1e_table_profile_t *table, position_t target,
                          double offset_s);
+/** Down to standstill without a command. */
 void cm1e_axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits);
+/** The same, as sources have it whose set-points are ours. */
+void cm1e_axis_stop_by_ramp(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal);
+/** The profile's functions, which a table over time shares. */
+bool cm1e_axis_profile_step(cm1e_axis_t *axis);
+bool cm1e_axis_profile_goes(cm1e_axis_t *axis, double sign);
 /** Motion in the direction of `sign` is no longer enabled (MC_Power, 3.1): a command that goes there fails, the next
  *  one begins, or the axis stops. */
 void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign);
@@ -221,7 +217,5 @@ cm1e_error_t cm1e_axis_table_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t
 cm1e_error_t cm1e_axis_table_begin(cm1e_axis_t *axis, move_t *move, const from_t *from, double offset_s);
 /** What a table that was refused would have needed, for the text. */
 void cm1e_axis_table_needs(const cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_axis_command_t *needs);
-/** Whether the running one still goes in that direction after `from_s`. */
-bool cm1e_axis_table_goes(cm1e_axis_t *axis, double from_s, double sign);
 
 #endif

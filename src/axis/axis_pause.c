@@ -71,6 +71,14 @@ static cm1e_error_t move_anew(cm1e_axis_t *axis)
     return axis->kind == CM1E_COMMAND_HOMING_STEP ? step_anew(axis) : cm1e_axis_replan_as(axis, &move);
 }
 
+static void profile_anew(cm1e_axis_t *axis)
+{
+    const cm1e_error_t error = move_anew(axis);
+    if (error)
+        cm1e_axis_fail(axis, error, cm1e_axis_units(axis, axis->set),
+                       axis->set_velocity > 0.0 ? axis->upper : axis->lower);
+}
+
 /* Everything that moves begins at the present set-point with this velocity (u/s). */
 static void begin_anew(cm1e_axis_t *axis, double velocity)
 {
@@ -78,19 +86,11 @@ static void begin_anew(cm1e_axis_t *axis, double velocity)
     cm1e_axis_keep_torque(axis, axis->set_velocity - velocity);
     axis->set_velocity = velocity;
     axis->set_acceleration = 0.0;
-    if (axis_led(axis)) {
-        cm1e_axis_lead_after_pause(axis);
-        return;
-    }
     cm1e_axis_superimposed_abandon(axis);
-    if (axis_follows(axis)) {
-        axis->coupling_hooks->after_pause(axis);
-        return;
-    }
-    const cm1e_error_t error = move_anew(axis);
-    if (error)
-        cm1e_axis_fail(axis, error, cm1e_axis_units(axis, axis->set),
-                       axis->set_velocity > 0.0 ? axis->upper : axis->lower);
+    if (axis->source->begin_anew)
+        axis->source->begin_anew(axis);
+    else
+        profile_anew(axis);
 }
 
 void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
@@ -130,7 +130,7 @@ static double velocity_left(const cm1e_axis_t *axis)
 /* Made of several: begun anew, a part of it would be lost. */
 static bool is_composite(const cm1e_axis_t *axis)
 {
-    return axis_led(axis) || axis->superimposed.id || axis->along_table;
+    return axis->source->is_composite || axis->superimposed.id;
 }
 
 double cm1e_axis_ran_on(const cm1e_axis_t *axis)

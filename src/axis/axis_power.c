@@ -15,12 +15,25 @@
 static const int64_t gone_after_ns = 100 * MS_IN_NS;
 static const int64_t brake_ns = 20 * MS_IN_NS;
 
+static bool step_free(cm1e_axis_t *axis)
+{
+    cm1e_axis_set_to_actual(axis);
+    return true;
+}
+
+static void stop_nothing(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal)
+{
+    (void)axis;
+    (void)ramp;
+    (void)goal;
+}
+
+const source_t cm1e_source_free = {.step = step_free, .stop = stop_nothing, .is_free = true};
+
 void cm1e_axis_become_free(cm1e_axis_t *axis)
 {
     cm1e_axis_lead_end(axis, CM1E_ERROR_AXIS_ERROR_STOP);
-    if (axis_follows(axis))
-        axis->coupling_hooks->left(axis);
-    axis->activity = ACTIVITY_FREE;
+    cm1e_axis_set_source(axis, &cm1e_source_free);
     axis->energized = false;
     axis->stepping.pushing = axis->stepping.after_stop = false;
     axis->free_ns = axis->now_ns;
@@ -32,19 +45,15 @@ static void wind_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp)
 {
     if (!axis->drive.feedback.enabled && !drive_moves(axis))
         cm1e_axis_become_free(axis);
-    else if (axis->activity == ACTIVITY_HOMING)
-        cm1e_axis_home_abort(axis, HOME_GOAL_OFF);
-    else if (axis->activity == ACTIVITY_DRIVE)
-        cm1e_axis_drive_abort(axis, HOME_GOAL_OFF);
-    else if (set_points_move(axis) || axis->activity == ACTIVITY_HOLD)
-        cm1e_axis_ramp_down(axis, ramp);
+    else
+        axis->source->stop(axis, ramp, HOME_GOAL_OFF);
 }
 
 static void fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound, const cm1e_motion_limits_t *ramp)
 {
     if (axis->state == CM1E_AXIS_ERROR_STOP)
         return; /* the first cause is the one to tell */
-    const bool homing_broke = axis->activity == ACTIVITY_HOMING &&
+    const bool homing_broke = drive_homes(axis) &&
                               (error == CM1E_ERROR_AXIS_HOMING_FAILED || error == CM1E_ERROR_AXIS_HOMING_TIMEOUT);
     const bool followed = axis_follows(axis);
     const bool coupling_broke = followed && (error == CM1E_ERROR_AXIS_COUPLING_LIMIT ||
@@ -80,7 +89,7 @@ void cm1e_axis_fail_gently(cm1e_axis_t *axis, cm1e_error_t error, double deceler
  * cycles old, and the motor may just be on its way. */
 void cm1e_axis_brake_from_actual(cm1e_axis_t *axis)
 {
-    if (axis->activity == ACTIVITY_FREE)
+    if (axis_free(axis))
         return;
     const double motor = axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis);
     const double velocity = motor / axis->scale, before = axis->set_velocity;
@@ -101,11 +110,9 @@ void cm1e_axis_hold_unheard(cm1e_axis_t *axis)
     if (axis->mode != CM1E_MODE_CSP || cm1e_drive_is_virtual(&axis->drive) || !set_points_move(axis))
         return;
     cm1e_axis_keep_torque(axis, axis->set_velocity);
-    if (axis_follows(axis))
-        axis->coupling_hooks->held(axis);
     axis->target = axis->set;
     axis->set_velocity = axis->set_acceleration = 0.0;
-    axis->activity = ACTIVITY_HOLD;
+    cm1e_axis_set_source(axis, &cm1e_source_hold);
 }
 
 static void power_off(cm1e_axis_t *axis)
@@ -140,10 +147,9 @@ cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, 
         cm1e_axis_direction_disabled(axis, 1.0);
     if (negative_fell)
         cm1e_axis_direction_disabled(axis, -1.0);
-    if ((positive_fell || negative_fell) && axis->state == CM1E_AXIS_HOMING && axis->active &&
-        axis->activity == ACTIVITY_HOMING) {
+    if ((positive_fell || negative_fell) && axis->state == CM1E_AXIS_HOMING && axis->active && drive_homes(axis)) {
         cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
-        cm1e_axis_home_abort(axis, HOME_GOAL_HOLD); /* every method moves both ways */
+        axis->source->stop(axis, &axis->maximum, HOME_GOAL_HOLD); /* every method moves both ways */
     }
     return enable && axis->motor_hooks ? axis->motor_hooks->refuses_power(axis) : CM1E_OK;
 }
@@ -165,10 +171,10 @@ bool cm1e_axis_powered(const cm1e_axis_t *axis)
  * where power came back within the ramp of a step that pushed: the set-point has ended where the motor cannot go. */
 static void take_over(cm1e_axis_t *axis)
 {
-    if (axis->activity == ACTIVITY_FREE || axis->stepping.pushing)
+    if (axis_free(axis) || axis->stepping.pushing)
         cm1e_axis_set_to_actual(axis);
     axis->stepping.pushing = false;
-    axis->activity = ACTIVITY_HOLD;
+    cm1e_axis_set_source(axis, &cm1e_source_hold);
     axis->energized = true;
     cm1e_axis_apply_limits(axis); /* without torque it may have been turned over the end of the drive's counts */
     cm1e_axis_go(axis, ON_POWER_ON);
@@ -178,20 +184,20 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
 {
     const bool acting = axis_acts(axis);
     const bool wanted = cm1e_axis_wants_enable(axis);
-    const bool still = axis->activity == ACTIVITY_FREE || axis->activity == ACTIVITY_HOLD;
+    const bool still = axis_free(axis) || axis_holds(axis);
     if (axis->state == CM1E_AXIS_DISABLED && wanted && acting && still)
         take_over(axis);
-    else if (axis->activity == ACTIVITY_HOLD && !wanted && axis->now_ns >= axis->brake_until_ns &&
+    else if (axis_holds(axis) && !wanted && axis->now_ns >= axis->brake_until_ns &&
              cm1e_axis_backlash_at_rest(axis) && (!axis->shutting_down || cm1e_axis_outputs_off_first(axis)))
         cm1e_axis_become_free(axis); /* a ramp has ended, and its last set-point is out */
-    else if (axis->activity != ACTIVITY_FREE && !drive_moves(axis) && !acting)
+    else if (!axis_free(axis) && !drive_moves(axis) && !acting)
         cm1e_axis_become_free(axis); /* the torque went in the middle of a ramp */
 }
 
 void cm1e_axis_enable_step(cm1e_axis_t *axis)
 {
-    axis->drive.command.enable = axis->activity != ACTIVITY_FREE || cm1e_axis_wants_enable(axis);
-    if (!axis->drive.command.enable && axis->activity == ACTIVITY_FREE)
+    axis->drive.command.enable = !axis_free(axis) || cm1e_axis_wants_enable(axis);
+    if (!axis->drive.command.enable && axis_free(axis))
         axis->energized = false;
 }
 
@@ -231,7 +237,7 @@ static void reset_finished(cm1e_axis_t *axis)
 /* After the ramp of ErrorStop has ended: the drive's reset, which also brings back a slave that was away. */
 void cm1e_axis_reset_step(cm1e_axis_t *axis)
 {
-    if (axis->activity != ACTIVITY_FREE)
+    if (!axis_free(axis))
         return;
     if (!axis->reset_sent) {
         axis->drive.command.reset = true;
@@ -245,7 +251,7 @@ bool cm1e_axis_shut_down(cm1e_axis_t *axis)
 {
     axis->shutting_down = true;
     power_off(axis);
-    if (axis->activity != ACTIVITY_FREE || axis->drive.torque ||
+    if (!axis_free(axis) || axis->drive.torque ||
         (axis->motor_hooks && !axis->motor_hooks->released(axis)))
         return false;
     cm1e_axis_outputs_off(axis); /* not before: a brake on it must not fall on a moving load */

@@ -95,7 +95,7 @@ enum { CM1E_SHAKEN_BY_SILENCE = 8 };
 struct cm1e_axis {
     /* what every cycle of a motion looks at */
     cm1e_drive_t drive;
-    activity_t activity;
+    const source_t *source;         /**< of the set-point; cm1e_axis_set_source() */
     cm1e_axis_state_t state;
     cm1e_command_id_t active;       /**< 0: none */
     cm1e_command_kind_t kind;       /**< of the active one */
@@ -107,7 +107,6 @@ struct cm1e_axis {
     bool reached, positive_before;
     bool paused;                    /**< its end is not that of its command, which waits (MC_SetOverride) */
     bool stands;                    /**< the base has come to its end, only a superimposed motion goes on */
-    bool along_table;               /**< tables->running is what moves it */
     bool brakes_hard;               /**< the set-point is one of a ramp without limit of jerk */
     bool software_limits;           /**< one of them at least; those in force are ... */
     bool lag_monitoring;
@@ -125,7 +124,7 @@ struct cm1e_axis {
     bool reset_sent;
     bool awaits;                    /**< the first waiting command begins at a place of its master (StartSync), until
                                          when what runs goes on */
-    cm1e_error_t reset_error;
+    uint16_t device_error;
     const void *power_owner;
     double cycle_s;
     int64_t profile_cycles;         /**< since it began ... */
@@ -169,8 +168,7 @@ struct cm1e_axis {
     int32_t counts_limit;           /**< of the motor's own counts in either direction, by its K37; 0: none */
     double counts_lower, counts_upper; /**< u, as cm1e_axis_line() counts; where that is; infinite: none */
 
-    cm1e_error_t error;
-    uint16_t device_error;
+    cm1e_error_t error, reset_error;
     double error_value, error_bound; /**< numbers for the text */
     guard_t guard;                  /**< with CM1E_ERROR_AXIS_COUPLING_LIMIT */
     cm1e_axis_leader_t leader;      /**< next is NULL: none */
@@ -212,6 +210,26 @@ struct cm1e_axis {
     const coupling_hooks_t *coupling_hooks; /**< NULL: it cannot follow, nor be followed */
     struct coupling *coupling;      /**< theirs */
 };
+
+/* Where the set-point comes from. */
+static inline void cm1e_axis_set_source(cm1e_axis_t *axis, const source_t *source)
+{
+    if (axis->source != source && axis->source->leave)
+        axis->source->leave(axis);
+    axis->source = source;
+}
+static inline bool axis_free(const cm1e_axis_t *axis) { return axis->source->is_free; }
+static inline bool axis_holds(const cm1e_axis_t *axis) { return axis->source->holds; }
+/** A profile, or a table over time, which is one too. */
+static inline bool axis_on_profile(const cm1e_axis_t *axis) { return axis->source->find_stretch != NULL; }
+/** F of a coupling is what moves the axis. */
+static inline bool axis_follows(const cm1e_axis_t *axis) { return axis->source->follows; }
+/** Set-points of ours change from cycle to cycle. */
+static inline bool set_points_move(const cm1e_axis_t *axis) { return axis->source->moves; }
+/** The drive moves, or is about to, by itself. */
+static inline bool drive_moves(const cm1e_axis_t *axis) { return axis->source->by_drive; }
+/** ... in its homing. */
+static inline bool drive_homes(const cm1e_axis_t *axis) { return axis->source->homes; }
 
 /** Counts of this motor that are as far as so many of a CM1-E; two at least, as one is rounding. */
 static inline double cm1e_axis_few(const cm1e_axis_t *axis, double counts) { return fmax(counts * axis->count, 2.0); }
@@ -312,7 +330,12 @@ static inline bool cm1e_axis_limits_can_stop(const cm1e_axis_t *axis, double bas
 bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity);
 
 /** Whether the motion under way, and a stop from it, would keep these software limits (u). */
-bool cm1e_axis_limits_hold(const cm1e_axis_t *axis, double lower, double upper);
+static inline bool cm1e_axis_limits_hold(const cm1e_axis_t *axis, double lower, double upper)
+{
+    return !axis->source->keeps || axis->source->keeps(axis, lower, upper);
+}
+/** The same of a profile. */
+bool cm1e_axis_profile_keeps(const cm1e_axis_t *axis, double lower, double upper);
 
 /** What the drive may be given in a cycle: cm1e_drive_command_t. @rt init; after the limits */
 void cm1e_axis_steps_init(cm1e_axis_t *axis);
@@ -345,8 +368,6 @@ static inline from_t from_base(const cm1e_axis_t *axis)
                     axis->brakes_hard ? 0.0 : axis->set_acceleration - on_top->acceleration,
                     axis->superimposed.moving && !axis->superimposed.alone};
 }
-/** Its masters move the axis. */
-static inline bool axis_follows(const cm1e_axis_t *axis) { return axis->activity == ACTIVITY_COUPLED; }
 /** Fills `target` and `origin` of a command that begins there. */
 cm1e_error_t cm1e_axis_resolve(const cm1e_axis_t *axis, const from_t *from, move_t *move);
 /** u/s; MC_MoveVelocity: with its direction. */
@@ -449,9 +470,6 @@ double cm1e_axis_ran_on(const cm1e_axis_t *axis);
 static inline bool axis_led(const cm1e_axis_t *axis) { return axis->leader.next != NULL; }
 /** What leads the axis is told that it does so no longer. */
 void cm1e_axis_lead_end(cm1e_axis_t *axis, cm1e_error_t error);
-/** The set-point of the cycle; FALSE: the leader has none that the axis may follow, and a ramp has begun. */
-bool cm1e_axis_lead_step(cm1e_axis_t *axis);
-void cm1e_axis_lead_after_pause(cm1e_axis_t *axis);
 /** ErrorStop by a lost bus: in CSV all that are led together brake in the same time, which keeps them on a line. */
 void cm1e_axis_lead_fail(cm1e_axis_t *axis, cm1e_error_t error);
 
@@ -467,7 +485,7 @@ bool cm1e_axis_settle(cm1e_axis_t *axis);
 /** A command stays active for the motor alone. */
 static inline bool axis_settling(const cm1e_axis_t *axis)
 {
-    return axis->active != 0 && axis->active == axis->in_position.settling && axis->activity == ACTIVITY_HOLD;
+    return axis->active != 0 && axis->active == axis->in_position.settling && axis_holds(axis);
 }
 /** Such a command is Done now, also where the motor is not there yet: another one goes on from its end. */
 void cm1e_axis_settled(cm1e_axis_t *axis);
@@ -485,15 +503,5 @@ static inline bool axis_stepping(const cm1e_axis_t *axis)
 
 /** The axis's motions are the drive's: `motion: drive`. */
 static inline bool drive_profiles(const cm1e_axis_t *axis) { return axis->config->motion == CM1E_MOTION_DRIVE; }
-/** Set-points of ours change from cycle to cycle. */
-static inline bool set_points_move(const cm1e_axis_t *axis)
-{
-    return axis->activity == ACTIVITY_PROFILE || axis->activity == ACTIVITY_COUPLED || axis->activity == ACTIVITY_LED;
-}
-/** The drive moves, or is about to, by itself. */
-static inline bool drive_moves(const cm1e_axis_t *axis)
-{
-    return axis->activity == ACTIVITY_HOMING || axis->activity == ACTIVITY_DRIVE;
-}
 
 #endif

@@ -7,7 +7,7 @@ static cm1e_error_t set_position(cm1e_axis_t *axis, double position, bool relati
 {
     if (axis_led(axis))
         return CM1E_ERROR_AXIS_IN_GROUP;
-    if (axis->state == CM1E_AXIS_HOMING || axis->activity == ACTIVITY_HOMING)
+    if (axis->state == CM1E_AXIS_HOMING || drive_homes(axis))
         return CM1E_ERROR_AXIS_HOMING;
     if (!axis->position_known || !axis->drive.feedback.online)
         return CM1E_ERROR_AXIS_OFFLINE;
@@ -20,7 +20,7 @@ static cm1e_error_t set_position(cm1e_axis_t *axis, double position, bool relati
     const double lower = axis->limit_negative_enabled ? axis->limit_negative : -INFINITY;
     const double upper = axis->limit_positive_enabled ? axis->limit_positive : INFINITY;
     const bool limited = axis->limit_negative_enabled || axis->limit_positive_enabled;
-    if (limited && axis->activity == ACTIVITY_DRIVE)
+    if (limited && drive_moves(axis))
         return CM1E_ERROR_AXIS_STATE; /* of the drive's way only the end is known */
     const double shift = value - now;
     if (limited) {

@@ -199,7 +199,7 @@ static void finish(cm1e_axis_t *axis)
 static bool inside(cm1e_axis_t *axis, double distance)
 {
     const position_t base = from_base(axis).position;
-    const bool rests = axis->stands || axis->activity == ACTIVITY_HOLD;
+    const bool rests = axis->stands || axis_holds(axis);
     const command_kind_t *kind = kind_row(axis->kind);
     position_t ends[CM1E_AXIS_BUFFER_DEPTH + 2] = {base, rests ? base : axis->target};
     int count = axis->active && (kind->is_endless || kind->plan == PLAN_COUPLING) ? 1 : 2;
@@ -255,8 +255,7 @@ static bool can_go_on_as(const cm1e_axis_t *axis, const move_t *move, bool alone
 static cm1e_error_t superimpose(cm1e_axis_t *axis, const move_t *move, cm1e_command_id_t *id)
 {
     superimposed_t *on_top = &axis->superimposed;
-    const bool replaces = on_top->id && on_top->moving, alone = axis->activity == ACTIVITY_HOLD ||
-                                                                (replaces && on_top->alone);
+    const bool replaces = on_top->id && on_top->moving, alone = axis_holds(axis) || (replaces && on_top->alone);
     cm1e_motion_limits_t limits;
     const cm1e_error_t error = check(axis, move, alone, &limits);
     if (error)
@@ -265,7 +264,7 @@ static cm1e_error_t superimpose(cm1e_axis_t *axis, const move_t *move, cm1e_comm
     const cm1e_motion_limits_t share = replaces ? on_top->share : alone ? axis->maximum : share_of(axis, &limits);
     if (!can_go_on_as(axis, move, alone, &share))
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE; /* next to nothing, perhaps by factors of MC_SetOverride */
-    if (axis->activity == ACTIVITY_HOLD)
+    if (axis_holds(axis))
         stand_as_base(axis);
     if (on_top->id)
         record(axis, CM1E_COMMAND_ABORTED, CM1E_OK);

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 
 #include "axis/axis_private.h"
+#include "core/rare.h"
 
 static const double relative_tolerance = 1e-9;
 
@@ -88,10 +89,26 @@ static bool goes_after(cm1e_table_profile_t *table, double from_s, double sign)
     return table->end.velocity * sign > rounding;
 }
 
-bool cm1e_axis_table_goes(cm1e_axis_t *axis, double from_s, double sign)
+static bool goes(cm1e_axis_t *axis, double sign)
 {
-    return goes_after(&axis->tables->running, from_s, sign);
+    const double now_s = (double)axis->profile_cycles * axis->cycle_s + axis->profile_offset_s;
+    return cm1e_axis_profile_goes(axis, sign) || goes_after(&axis->tables->running, now_s, sign);
 }
+
+CM1E_RARE static void find_stretch(cm1e_axis_t *axis, double time_s)
+{
+    cm1e_table_profile_stretch_at(&axis->tables->running, time_s, &axis->stretch);
+}
+
+const source_t cm1e_source_table = {
+    .step = cm1e_axis_profile_step,
+    .stop = cm1e_axis_stop_by_ramp,
+    .goes = goes,
+    .keeps = cm1e_axis_profile_keeps,
+    .find_stretch = find_stretch,
+    .moves = true,
+    .is_composite = true,
+};
 
 static bool above(double needed, double allowed) { return !(needed <= allowed * (1.0 + relative_tolerance)); }
 

@@ -164,7 +164,7 @@ static void refused_small_text(const cm1e_axis_t *axis, char *text, size_t size)
 static void refused_on_top_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const from_t base = from_base(axis);
-    const bool goes = axis->activity == ACTIVITY_PROFILE && !axis->stands && axis->active && !kind_row(axis->kind)->is_endless;
+    const bool goes = axis_on_profile(axis) && !axis->stands && axis->active && !kind_row(axis->kind)->is_endless;
     snprintf(text, size,
              "Axis \"%s\": a distance of %.6g on top of a motion that is at %.6g and ends at %.6g%s would leave the "
              "software limits %.6g ... %.6g u.",

@@ -47,7 +47,7 @@ static cm1e_error_t update_active(cm1e_axis_t *axis, const move_t *inputs)
 {
     if (drive_profiles(axis))
         return cm1e_axis_same_inputs(&axis->move, inputs) ? CM1E_OK : CM1E_ERROR_UNSUPPORTED;
-    if ((axis->activity != ACTIVITY_PROFILE && !axis_settling(axis)) || inputs->kind != axis->kind)
+    if ((!axis_on_profile(axis) && !axis_settling(axis)) || inputs->kind != axis->kind)
         return CM1E_ERROR_INVALID_ARGUMENT;
     if (cm1e_axis_same_inputs(&axis->move, inputs))
         return CM1E_OK;

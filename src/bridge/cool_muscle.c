@@ -76,7 +76,7 @@ static cm1e_error_t refuse(cm1e_axis_t *axis, cm1e_error_t error, const char *wh
 
 static bool is_quiet(const cm1e_axis_t *axis)
 {
-    return axis->state == CM1E_AXIS_DISABLED && axis->activity == ACTIVITY_FREE && !axis->power_enable &&
+    return axis->state == CM1E_AXIS_DISABLED && axis_free(axis) && !axis->power_enable &&
            !axis->drive.torque && !axis->shutting_down;
 }
 
@@ -86,7 +86,7 @@ static cm1e_error_t check(const cm1e_axis_t *axis, bool string)
     if (!axis->muscle)
         return cm1e_drive_is_virtual(&axis->drive) ? CM1E_ERROR_AXIS_VIRTUAL : CM1E_ERROR_CM_NO_BRIDGE;
     const bool shown = axis->drive.feedback.mode == CM1E_BRIDGE_MODE_CML && axis->muscle->mode == axis->muscle->next;
-    if (axis->state == CM1E_AXIS_ERROR_STOP && !(string && shown && axis->activity == ACTIVITY_FREE))
+    if (axis->state == CM1E_AXIS_ERROR_STOP && !(string && shown && axis_free(axis)))
         return CM1E_ERROR_AXIS_ERROR_STOP;
     if (axis->state != CM1E_AXIS_ERROR_STOP && !is_quiet(axis))
         return CM1E_ERROR_CM_NOT_DISABLED;
@@ -379,7 +379,7 @@ static void step(cm1e_axis_t *axis)
     if (muscle->mode != cml || (!muscle->must_free && cm1e_drive_cml_idle(cml_of(axis))))
         muscle->mode = muscle->next;
     follow_switch(axis);
-    if (axis->activity == ACTIVITY_FREE && !drive_moves(axis)) {
+    if (axis_free(axis) && !drive_moves(axis)) {
         axis->drive.command.mode = muscle->away ? CM1E_MODE_NONE : (cm1e_mode_t)muscle->mode;
         axis->drive.command.mode_insist = muscle->insist;
     }

@@ -257,8 +257,7 @@ static void stand_with_masters(cm1e_axis_t *axis, const from_t *f)
 {
     if (!axis->coupling->stopping || axis->coupling->catch_up.on || f->velocity != 0.0 || f->acceleration != 0.0)
         return;
-    axis->coupling->stopping = false;
-    axis->activity = ACTIVITY_HOLD;
+    cm1e_axis_set_source(axis, &cm1e_source_hold);
 }
 
 /* Seldom there is something beside the coupling function, or a set-point that has to be looked at twice. */
@@ -275,7 +274,7 @@ CM1E_RARE static guard_t judge(cm1e_axis_t *axis, const from_t *f, from_t *next)
     return verdict.guard;
 }
 
-bool cm1e_coupling_step(cm1e_axis_t *axis)
+static bool step(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
     from_t f, sum;
@@ -304,6 +303,33 @@ bool cm1e_coupling_step(cm1e_axis_t *axis)
     }
     return true;
 }
+
+/* ---- the source of set-points ------------------------------------------------------------------------------------ */
+
+static void begin_anew(cm1e_axis_t *axis);
+
+static void leave(cm1e_axis_t *axis)
+{
+    cm1e_phasing_forget(axis); /* the shift goes with the masters (4.8) */
+    axis->coupling->stopping = false;
+}
+
+/* Nobody knows where the masters go. */
+static bool keeps(const cm1e_axis_t *axis, double lower, double upper)
+{
+    const double v = axis->set_velocity, stop = cm1e_axis_line(axis, axis->set) + v * fabs(v) * axis->emergency_way;
+    return stop <= upper + axis->tolerance && stop >= lower - axis->tolerance;
+}
+
+const source_t cm1e_source_coupling = {
+    .step = step,
+    .stop = cm1e_axis_stop_by_ramp,
+    .begin_anew = begin_anew,
+    .leave = leave,
+    .keeps = keeps,
+    .moves = true,
+    .follows = true,
+};
 
 /* ---- beginnings -------------------------------------------------------------------------------------------------- */
 
@@ -351,13 +377,13 @@ void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *fro
     c->now = follow;
     c->end_of_profile = c->stopping = c->due = false;
     begin_catch_up(axis, from, asked, c->now->to_position);
-    axis->activity = ACTIVITY_COUPLED;
+    cm1e_axis_set_source(axis, &cm1e_source_coupling);
     cm1e_axis_guard_renew(axis);
-    axis->reached = axis->paused = axis->stands = axis->along_table = false;
+    axis->reached = axis->paused = axis->stands = false;
 }
 
 /* Where all stand at their last targets, they are in step as before: the catch-up is what it was. */
-void cm1e_coupling_after_pause(cm1e_axis_t *axis)
+static void begin_anew(cm1e_axis_t *axis)
 {
     coupling_t *c = axis->coupling;
     const from_t from = from_set(axis);

@@ -187,8 +187,7 @@ void cm1e_coupling_await(cm1e_axis_t *axis, follow_t *follow);
 void cm1e_coupling_await_nothing(cm1e_axis_t *axis);
 
 /* coupled_step.c */
-/** The set-point of the cycle. FALSE: it does not come from the masters any more, but from the axis's profile. */
-bool cm1e_coupling_step(cm1e_axis_t *axis);
+extern const source_t cm1e_source_coupling; /**< what the axis follows gives its set-points */
 /** The limit of jerk holds for it. A ramp of ErrorStop has none, nor has who follows it. */
 static inline bool coupling_keeps_jerk(const coupling_t *c)
 {
@@ -199,8 +198,6 @@ static inline bool coupling_keeps_jerk(const coupling_t *c)
 void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked);
 /** What was superimposed for so long has become part of the way; u. */
 void cm1e_coupling_shift(cm1e_axis_t *axis, double way);
-/** After a pause or silence: the axis begins anew, in the place that it had beside its masters. */
-void cm1e_coupling_after_pause(cm1e_axis_t *axis);
 /** In a cycle in which the coupling has begun: its set-point, without going on. */
 void cm1e_coupling_first_set_point(cm1e_axis_t *axis);
 

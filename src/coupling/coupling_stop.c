@@ -19,7 +19,7 @@ static bool keeps_ratio(const cm1e_axis_t *axis)
 /* For the text: because of whom it stops. */
 static void fail_with(cm1e_axis_t *axis, const cm1e_axis_t *cause, double deceleration)
 {
-    if (axis->state == CM1E_AXIS_ERROR_STOP || axis->activity == ACTIVITY_FREE)
+    if (axis->state == CM1E_AXIS_ERROR_STOP || axis_free(axis))
         return; /* without torque there is nothing to stop */
     memcpy(axis->coupling->other_name, cause->config->name, sizeof axis->coupling->other_name);
     cm1e_axis_fail_gently(axis, CM1E_ERROR_AXIS_COUPLED, deceleration);

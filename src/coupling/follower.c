@@ -11,15 +11,6 @@ static void forget(cm1e_axis_t *axis)
     free(axis->coupling);
 }
 
-/* The shift goes with the masters (4.8). */
-static void left(cm1e_axis_t *axis) { cm1e_phasing_forget(axis); }
-
-static void held(cm1e_axis_t *axis)
-{
-    cm1e_phasing_forget(axis);
-    axis->coupling->stopping = false;
-}
-
 static bool stops_with_masters(const cm1e_axis_t *axis) { return axis->coupling->stopping; }
 
 static bool by_actual(const cm1e_axis_t *axis) { return axis->coupling->now->by_actual; }
@@ -48,21 +39,17 @@ static const coupling_hooks_t hooks = {
     .free = forget,
     .observe = cm1e_coupling_observe,
     .advance_masters = cm1e_coupling_advance_masters,
-    .step = cm1e_coupling_step,
     .first_set_point = cm1e_coupling_first_set_point,
     .await_step = cm1e_coupling_await_step,
     .await_nothing = cm1e_coupling_await_nothing,
     .hands_over = hands_over,
     .shift = cm1e_coupling_shift,
-    .left = left,
-    .held = held,
     .failed = cm1e_coupling_failed,
     .stops_with_masters = stops_with_masters,
     .by_actual = by_actual,
     .resume_masters = cm1e_coupling_resume_masters,
     .resume_slaves = cm1e_coupling_resume_slaves,
     .begins_anew = cm1e_coupling_begins_anew,
-    .after_pause = cm1e_coupling_after_pause,
     .phasing_end = cm1e_phasing_end,
     .phasing_status = cm1e_phasing_status,
     .phasing_covered = cm1e_phasing_covered,

@@ -162,9 +162,9 @@ void cm1e_coupling_await_nothing(cm1e_axis_t *axis)
 static master_trouble_t trouble_of_set_value(const cm1e_axis_t *master)
 {
     const bool stopped = master->state == CM1E_AXIS_ERROR_STOP;
-    if (master->activity == ACTIVITY_HOMING)
+    if (drive_homes(master))
         return stopped ? MASTER_ERROR_STOP : MASTER_HOMING;
-    if (master->activity == ACTIVITY_FREE)
+    if (axis_free(master))
         return stopped ? MASTER_ERROR_STOP : MASTER_FREE;
     return stopped ? MASTER_STOPPING : MASTER_GOOD;
 }

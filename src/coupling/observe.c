@@ -24,7 +24,7 @@ static void look(cm1e_axis_t *axis)
 /* By set-points of ours, not by hand and not by a profile of its drive. */
 static bool goes_as_told(const cm1e_axis_t *axis)
 {
-    return axis->activity != ACTIVITY_FREE && axis->activity != ACTIVITY_DRIVE;
+    return !axis_free(axis) && axis->source != &cm1e_source_drive;
 }
 
 /* Counts/s, of what nobody has looked at before: a motor goes as it is told to, or says how. An encoder is looked at
@@ -60,7 +60,7 @@ void cm1e_coupling_observe(cm1e_axis_t *axis)
     const bool fresh = axis->drive.feedback.fresh;
     const uint32_t limit = cm1e_bus_configuration(axis->drive.bus)->lost_cycles_limit;
     /* What comes after a homing of the drive, or a long silence, is another place. */
-    const bool anew = !own->begun || axis->activity == ACTIVITY_HOMING || own->lost > limit;
+    const bool anew = !own->begun || drive_homes(axis) || own->lost > limit;
     if (anew && fresh) {
         begin(axis);
         return;
@@ -77,7 +77,7 @@ master_trouble_t cm1e_coupling_see_actual(cm1e_axis_t *master, bool of_this_cycl
     const observed_t *own = &master->coupling->own;
     if (master->state == CM1E_AXIS_ERROR_STOP)
         return MASTER_ERROR_STOP;
-    if (master->activity == ACTIVITY_HOMING)
+    if (drive_homes(master))
         return MASTER_HOMING;
     if (!own->begun && master->drive.feedback.fresh)
         begin(master);

@@ -125,7 +125,7 @@ static inline void axes_must_be(int n, cm1e_axis_state_t state)
 
 static inline bool axes_own(const cm1e_axis_t *axis)
 {
-    return axis->activity != ACTIVITY_FREE && axis->activity != ACTIVITY_HOMING && axis->activity != ACTIVITY_DRIVE;
+    return !axis_free(axis) && !drive_homes(axis) && axis->source != &cm1e_source_drive;
 }
 
 /** Of a ramp without limit of jerk, and of what has none by its nature. */

@@ -52,7 +52,7 @@ static inline void watch_bounds(double t)
 
 static inline void watch_one(void)
 {
-    const bool ours = axis->activity == ACTIVITY_HOLD || axis->activity == ACTIVITY_PROFILE;
+    const bool ours = axis_holds(axis) || axis_on_profile(axis);
     const double t = axis->cycle_s, j = axis->maximum.jerk;
     const double now = cm1e_axis_units(axis, axis->set);
     watch.cycles++;

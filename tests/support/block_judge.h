@@ -283,7 +283,7 @@ static void judge_members(const instance_t *fb, unsigned members)
              name_of(fb), n, member, cm1e_axis_state_name(before), cm1e_axis_state_name(after));
         one->reset_asked = one->reset_asked || (resets && member && !fb->now.error);
         one->state = after;
-        one->led = one->axis->activity == ACTIVITY_LED;
+        one->led = one->axis->source == &cm1e_source_leader;
     }
 }
 
@@ -359,8 +359,7 @@ static struct watched_axis {
 
 static bool set_point_is_ours(void)
 {
-    const activity_t activity = judged.axis->activity;
-    return activity != ACTIVITY_FREE && activity != ACTIVITY_HOMING && activity != ACTIVITY_DRIVE;
+    return !axis_free(judged.axis) && !drive_moves(judged.axis);
 }
 
 /** An axis that stands outside its software limits may come back but go no farther; nor farther than it brakes when the
@@ -399,7 +398,7 @@ static void watch_limits(void)
  *  slave that does. */
 static bool follows_roughly(const cm1e_axis_t *axis, int depth)
 {
-    const follow_t *follow = axis->activity == ACTIVITY_COUPLED ? axis->coupling->now : NULL;
+    const follow_t *follow = axis_follows(axis) ? axis->coupling->now : NULL;
     if (!follow || depth == 0)
         return false;
     bool rough = follow->linear || follow->by_actual;
@@ -411,7 +410,7 @@ static bool follows_roughly(const cm1e_axis_t *axis, int depth)
 /** u; by how much its set-point may be rounded: a slave's as much as its master's too, by the ratio. */
 static double rounding_of(const cm1e_axis_t *axis, int depth)
 {
-    const follow_t *follow = axis->activity == ACTIVITY_COUPLED ? axis->coupling->now : NULL;
+    const follow_t *follow = axis_follows(axis) ? axis->coupling->now : NULL;
     double rounding = 1e-3 / fabs(axis->scale);
     for (int i = 0; follow && depth > 0 && i < follow->count; i++)
         if (follow->links[i].master)
@@ -448,9 +447,9 @@ static const cm1e_motion_limits_t *limits_in_force(void)
     const cm1e_motion_limits_t *now = &judged.axis->maximum;
     if (!watched.ours || watched.resting)
         watched.most = watched.maximum;
-    watched.resting = judged.axis->activity == ACTIVITY_HOLD;
+    watched.resting = axis_holds(judged.axis);
     watched.maximum = *now;
-    if (judged.axis->activity == ACTIVITY_COUPLED) /* the bounds of commands are lowered by parameters, not these */
+    if (axis_follows(judged.axis)) /* the bounds of commands are lowered by parameters, not these */
         now = &judged.axis->system;
     watched.most.velocity = fmax(watched.most.velocity, now->velocity);
     watched.most.acceleration = fmax(watched.most.acceleration, now->acceleration);
@@ -493,7 +492,7 @@ static inline void watch_set_point(void)
     const double far = largest_number(axis);
     const cm1e_motion_limits_t *most = limits_in_force();
     const double t = (double)judged.cycle_ns * 1e-9, v = axis->set_velocity, a = axis->set_acceleration;
-    const bool stop = axis->activity != ACTIVITY_LED && (!axis->active || axis->kind == CM1E_COMMAND_HALT ||
+    const bool stop = axis->source != &cm1e_source_leader && (!axis->active || axis->kind == CM1E_COMMAND_HALT ||
                                                          axis->kind == CM1E_COMMAND_STOP || axis->paused);
     const bool ours = set_point_is_ours(), stepping = watched.searched; /* lets go of what it pushes at */
     watched.rough = follows_roughly(axis, JUDGED_MOST) || (watched.rough && ours && watched.velocity != 0.0);
@@ -549,7 +548,7 @@ static void judge_cycle(void)
     const cm1e_axis_state_t before = judged.state, after = judged.axis->state;
     bool waits = judged.waited;
     const bool led = judged.led; /* its group has come to rest, and lets it go with the last set-point */
-    judged.led = judged.axis->activity == ACTIVITY_LED;
+    judged.led = judged.axis->source == &cm1e_source_leader;
     judged.waited = judged.axis->waiting.count > 0;
     if (after == before)
         return;

@@ -252,13 +252,12 @@ static void judge_led(void)
         for (int i = 0; i < groups[g].group->axes; i++)
             leaders += (groups[g].group->led >> i & 1u) &&
                        cm1e_group_axis(groups[g].group, groups[g].group->ident[i]) == axis;
-    const bool led = axis->activity == ACTIVITY_LED, synchronised = axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION;
+    const bool led = axis->source == &cm1e_source_leader, synchronised = axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION;
     led_total += led;
     MUST(leaders == (led ? 1 : 0), "led: %d, by %d groups", led, leaders);
     MUST(!led || synchronised, "led in %s", cm1e_axis_state_name(axis->state));
     MUST(!led || !axis->active, "led, and a command of its own is active");
-    MUST(!synchronised || led || axis->activity == ACTIVITY_COUPLED, "SynchronizedMotion with nothing to follow: %d",
-         (int)axis->activity);
+    MUST(!synchronised || led || axis_follows(axis), "SynchronizedMotion with nothing to follow");
 }
 
 static bool group_stands(const cm1e_group_t *group)

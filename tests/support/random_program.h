@@ -491,7 +491,7 @@ static void judge_rest(void)
         longest_s = fmax(longest_s, most->velocity / most->deceleration + 2 * most->deceleration / most->jerk +
                                         2 * sqrt(most->velocity / most->jerk) + 0.2);
     }
-    longest_s += 10.5 * (axis->activity == ACTIVITY_HOMING);
+    longest_s += 10.5 * (drive_homes(axis));
     player.off_cycles = off ? player.off_cycles + 1 : 0;
     MUST(player.off_cycles * (double)judged.cycle_ns * 1e-9 < longest_s || !has_torque() || is_deaf(),
          "%s: torque is on for %d cycles", cm1e_axis_state_name(state), player.off_cycles);

@@ -200,7 +200,7 @@ static void test_power_taken_away_or_an_error_in_the_middle_of_it(void)
             else
                 bench_power(false);
             int32_t before = bus.position;
-            for (int n = 0; axis->activity != ACTIVITY_FREE; n++) {
+            for (int n = 0; !axis_free(axis); n++) {
                 TEST_ASSERT_TRUE(n < 500);
                 before = bus.position;
                 cycles(1);
@@ -223,7 +223,7 @@ static void test_motor_that_does_not_follow_the_compensation(void)
     cycles(200);
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_LAG, bench_info().error);
-    TEST_ASSERT_EQUAL_INT(ACTIVITY_FREE, axis->activity);
+    TEST_ASSERT_TRUE(axis_free(axis));
 }
 
 /* In CSV the velocity of the compensation is in the target, and the motor's maximum holds. */

@@ -299,7 +299,7 @@ static void test_random_chains_never_stop_and_never_overrun(void)
                   sign * (bench_info().set_position - end));
             WATCH(axis->waiting.count == 0 || n < 2 || step > 1e-9, "a stop with %d to go, exit %g", axis->waiting.count,
                   axis->move.exit_velocity);
-            if (posted == 20 && axis->activity == ACTIVITY_HOLD)
+            if (posted == 20 && axis_holds(axis))
                 break;
         }
         TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));

@@ -475,7 +475,7 @@ static void test_power_off_ends_it(void)
     axes_must_be(1, CM1E_AXIS_DISABLED);
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ABORTED, state_of(1, gear));
     axes_cycles(300);
-    TEST_ASSERT_EQUAL_INT(ACTIVITY_FREE, axes_axis(1)->activity);
+    TEST_ASSERT_TRUE(axis_free(axes_axis(1)));
     TEST_ASSERT_EQUAL_DOUBLE(8.0, axes_info(0).set_velocity);
 }
 

@@ -289,7 +289,7 @@ static bool slave_lost_master(void)
 static void judge_ratio(void)
 {
     const cm1e_axis_t *master = axes_axis(MASTER), *slave = axes_axis(SLAVE);
-    const bool follows = run.kind == A_GEAR && slave->activity == ACTIVITY_COUPLED;
+    const bool follows = run.kind == A_GEAR && axis_follows(slave);
     if (slave->frozen) /* its target stays, whatever has become of its master */
         return;
     if (follows && !run.known && axes_status(SLAVE, run.slave).reached) {
@@ -416,7 +416,7 @@ static void one_run(int kind, int fault, int fault_cycle, cm1e_coupling_stop_t m
         if (cycle >= fault_cycle && cycle >= 1) {
             if (run.struck < 0) {
                 run.struck = cycle;
-                run.followed = axes_axis(SLAVE)->activity == ACTIVITY_COUPLED;
+                run.followed = axis_follows(axes_axis(SLAVE));
             }
             strike(cycle - run.struck);
         }

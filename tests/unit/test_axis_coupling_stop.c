@@ -27,7 +27,7 @@ static void failed(int n, cm1e_error_t error, const char *words)
 static void stands_and_can_be_reset(int n)
 {
     axes_cycles(400);
-    TEST_ASSERT_EQUAL_INT(ACTIVITY_FREE, axes_axis(n)->activity);
+    TEST_ASSERT_TRUE(axis_free(axes_axis(n)));
     (void)cm1e_axis_reset(axes_axis(n));
     axes_cycles(100);
     axes_must_be(n, CM1E_AXIS_STANDSTILL);
@@ -229,7 +229,7 @@ static void keeps_ratio_before_a_limit(int32_t numerator, uint32_t denominator, 
     axes_cycles(1);
     axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 5.0,
                                                 .acceleration = 20.0, .jerk = 400.0});
-    for (int n = 0; n < 20000 && axes_axis(SLAVE)->activity != ACTIVITY_FREE; n++) {
+    for (int n = 0; n < 20000 && !axis_free(axes_axis(SLAVE)); n++) {
         axes_cycles(1);
         TEST_ASSERT_DOUBLE_WITHIN(2e-5, axes_info(MASTER).set_position * numerator / denominator,
                                   axes_info(SLAVE).set_position);
@@ -255,7 +255,7 @@ static void test_the_ratio_is_kept_where_the_master_becomes_too_fast(void)
     axes_cycles(1);
     axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = 40.0,
                                                 .acceleration = 20.0, .jerk = 200.0});
-    for (int n = 0; n < 5000 && axes_axis(SLAVE)->activity != ACTIVITY_FREE; n++) {
+    for (int n = 0; n < 5000 && !axis_free(axes_axis(SLAVE)); n++) {
         axes_cycles(1);
         TEST_ASSERT_DOUBLE_WITHIN(2e-5, axes_info(MASTER).set_position * 2.0, axes_info(SLAVE).set_position);
     }
@@ -274,7 +274,7 @@ static void test_the_ratio_is_kept_on_the_ramp_of_a_master_that_fails(void)
     axes_enable_all();
     axes_gear_in(SLAVE, MASTER, -1, 2);
     axes_move_velocity(MASTER, 8.0);
-    for (int n = 0; n < 5000 && axes_axis(SLAVE)->activity != ACTIVITY_FREE; n++) {
+    for (int n = 0; n < 5000 && !axis_free(axes_axis(SLAVE)); n++) {
         axes_cycles(1);
         TEST_ASSERT_DOUBLE_WITHIN(2e-5, axes_info(MASTER).set_position / -2.0, axes_info(SLAVE).set_position);
     }

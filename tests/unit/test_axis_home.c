@@ -92,7 +92,7 @@ static cm1e_command_id_t home(double position, const cm1e_homing_config_t *confi
 static void cycles_until_step(home_step_t step)
 {
     for (int i = 0; i < 3000; i++) {
-        if (axis->activity == ACTIVITY_HOMING && axis->home.step == step)
+        if (drive_homes(axis) && axis->home.step == step)
             return;
         bench_cycles(1);
     }

@@ -604,7 +604,7 @@ static void test_steps_are_refused_in_every_other_state(void)
             TEST_ASSERT_EQUAL_STRING(cm1e_strerror(states[i].error), cm1e_strerror(refusal(1.0, 0.0)));
         }
     axis->state = CM1E_AXIS_HOMING; /* the drive's own homing is under way */
-    axis->activity = ACTIVITY_HOMING;
+    axis->source = &cm1e_source_homing;
     step = (cm1e_homing_step_t){.kind = CM1E_STEP_DIRECT};
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_HOMING, refusal(1.0, 0.0));
 }
@@ -1000,7 +1000,7 @@ static void test_drive_fault_at_every_cycle(void)
         bench_cycles(3);
         settle(0, CM1E_AXIS_ERROR_STOP, from);
         TEST_ASSERT_FALSE(bench_info().homed);
-        TEST_ASSERT_EQUAL_INT(ACTIVITY_FREE, axis->activity);
+        TEST_ASSERT_TRUE(axis_free(axis));
     }
 }
 

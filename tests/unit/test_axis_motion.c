@@ -842,7 +842,7 @@ static void random_run(void)
         const cm1e_axis_info_t info = bench_info();
         TEST_ASSERT_TRUE(info.set_position <= 5.0 + 1e-6 && info.set_position >= -5.0 - 1e-6);
         TEST_ASSERT_TRUE(fabs(info.set_velocity) <= 50.0 + 1e-6);
-        if (axis->activity != ACTIVITY_FREE) {
+        if (!axis_free(axis)) {
             TEST_ASSERT_TRUE(fabs(info.set_acceleration) <= 100.0 + 1e-6);
             TEST_ASSERT_TRUE(fabs(info.set_velocity - velocity_before) <= 100.0 * 1e-3 + 1e-6);
         }

@@ -329,7 +329,7 @@ static void test_random_limits_are_kept_by_random_motions(void)
             const double now = bench_info().set_position;
             const double count = 1.0 / 50000; /* without torque the set-point is the motor, in whole counts */
             TEST_ASSERT_TRUE(now <= fmax(axis->upper, before) + count && now >= fmin(axis->lower, before) - count);
-            if (bench_info().state == CM1E_AXIS_ERROR_STOP && axis->activity == ACTIVITY_FREE) {
+            if (bench_info().state == CM1E_AXIS_ERROR_STOP && axis_free(axis)) {
                 TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, bench_info().error);
                 (void)cm1e_axis_reset(axis);
             }

@@ -425,7 +425,7 @@ static void test_a_shift_comes_to_rest_while_the_ratio_is_kept_to_the_end(void)
     TEST_ASSERT_EQUAL(CM1E_COMMAND_ERROR, state_of(id));
     TEST_ASSERT_EQUAL(CM1E_COMMAND_ERROR, state_of(waits));
     const double covered = axes_status(SLAVE, id).covered;
-    while (axes_axis(SLAVE)->activity == ACTIVITY_COUPLED) {
+    while (axis_follows(axes_axis(SLAVE))) {
         TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, off(axes_axis(SLAVE)->coupling->phase.position));
         TEST_ASSERT_TRUE(axes_axis(SLAVE)->coupling->phase.position >= covered - 1e-9);
         axes_cycles(1);

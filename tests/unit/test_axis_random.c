@@ -152,7 +152,7 @@ static void programs(void)
 
 /* ---- what must hold ---------------------------------------------------------------------------------------------- */
 
-static activity_t activity_before;
+static const source_t *source_before;
 static position_t set_before;
 
 static void check_commands(void)
@@ -193,20 +193,20 @@ static void check_axis(void)
     }
     if (info.state == CM1E_AXIS_STANDSTILL)
         TEST_ASSERT_EQUAL_DOUBLE(0.0, info.set_velocity);
-    const bool ours = axis->activity == ACTIVITY_HOLD || axis->activity == ACTIVITY_PROFILE;
-    const bool was_ours = activity_before == ACTIVITY_HOLD || activity_before == ACTIVITY_PROFILE;
+    const bool ours = axis_holds(axis) || axis_on_profile(axis);
+    const bool was_ours = source_before == &cm1e_source_hold || source_before->find_stretch;
     /* A ramp of ErrorStop whose set-points were not heard begins anew where the motor is. */
     const bool anew = axis->state == CM1E_AXIS_ERROR_STOP &&
                       fabs(cm1e_position_minus(axis->set, axis_actual(axis))) < 2501.0;
     if (ours && was_ours && !anew) /* peak speed: 2500 counts a cycle */
         TEST_ASSERT_TRUE(fabs(cm1e_position_minus(axis->set, set_before)) < 2501.0);
-    if (axis->activity == ACTIVITY_FREE) {
+    if (axis_free(axis)) {
         TEST_ASSERT_EQUAL_DOUBLE(0.0, cm1e_position_minus(axis->set, axis_actual(axis)));
         TEST_ASSERT_TRUE(!axis->drive.command.enable || cm1e_axis_wants_enable(axis));
     }
     TEST_ASSERT_TRUE(axis->set.fraction >= 0.0 && axis->set.fraction < 1.0);
     TEST_ASSERT_EQUAL_INT32(axis->raw, (int32_t)(uint32_t)(uint64_t)axis->actual_counts);
-    activity_before = axis->activity;
+    source_before = axis->source;
     set_before = axis->set;
 }
 
@@ -238,7 +238,7 @@ static void run(void)
     memset(ids, 0, sizeof ids);
     bench_create();
     bench_power(true);
-    activity_before = ACTIVITY_FREE;
+    source_before = &cm1e_source_free;
     char text[400];
     for (int i = 0; i < 5000; i++) {
         device();
@@ -247,7 +247,7 @@ static void run(void)
         bench_outputs();
         check_commands();
         check_axis();
-        moving_cycles += axis->activity == ACTIVITY_PROFILE || axis->activity == ACTIVITY_DRIVE;
+        moving_cycles += axis_on_profile(axis) || axis->source == &cm1e_source_drive;
         if (i % 100 == 0)
             cm1e_axis_error_text(cm1e_axis_reference(axis), text, sizeof text);
     }

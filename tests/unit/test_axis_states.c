@@ -11,7 +11,7 @@ void setUp(void)
     cm1e_diag_t diag;
     bench_start();
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_create(&master, &bus, 0, &diag));
-    master->activity = ACTIVITY_HOLD;
+    master->source = &cm1e_source_hold;
     master->advanced = true;
 }
 

@@ -439,7 +439,7 @@ static void test_random_programs_keep_all_limits(void)
             WATCH(watch.highest <= 60.0 + 1e-6 && watch.lowest >= -60.0 - 1e-6, "outside");
             if (axis->state == CM1E_AXIS_ERROR_STOP) /* a velocity met a limit */
                 break;
-            TEST_ASSERT_EQUAL_INT(axis->state == CM1E_AXIS_STANDSTILL, axis->activity == ACTIVITY_HOLD);
+            TEST_ASSERT_EQUAL_INT(axis->state == CM1E_AXIS_STANDSTILL, axis_holds(axis));
         }
     }
     TEST_ASSERT_GREATER_THAN_UINT(20000, on_top);

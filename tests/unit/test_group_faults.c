@@ -243,7 +243,7 @@ static void test_a_bus_that_is_lost_brakes_the_axes_in_step_in_csv(void)
         for (int n = 1; n < 3; n++) {
             const double way = cm1e_axis_line(axes_axis(n), axes_axis(n)->set) - before[n];
             const double first = cm1e_axis_line(axes_axis(0), axes_axis(0)->set) - before[0];
-            if (axes_axis(0)->activity == ACTIVITY_PROFILE && axes_axis(n)->activity == ACTIVITY_PROFILE)
+            if (axis_on_profile(axes_axis(0)) && axis_on_profile(axes_axis(n)))
                 TEST_ASSERT_DOUBLE_WITHIN(2.0 / 50000, first * at[n] / at[0], way);
         }
     }
