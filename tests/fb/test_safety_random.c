@@ -46,7 +46,7 @@ typedef struct player {
     bool waits_alone;               /**< a command does whose block has lost it by a new edge that was refused */
     int error_cycles, off_cycles, rest_cycles;
     unsigned enablings;
-    double step_before, set_before;
+    double step_before, set_before, speed_before; /**< counts; u; u/s */
     bool found_again;               /**< the set-point, in ErrorStop, where the motor was */
     double lowest, highest;         /**< u; where the set-point may be */
     unsigned new_beginnings;
@@ -358,8 +358,11 @@ static void judge_limits(uint32_t n, const cm1e_axis_info_t *info)
     const double tolerance = (info->set_velocity == 0 ? 50 : 0.02) / axis->counts_per_unit;
     const bool braking_anew = info->state == CM1E_AXIS_ERROR_STOP && info->error != CM1E_ERROR_AXIS_POSITION_RANGE;
     const bool not_yet = info->state == CM1E_AXIS_DISABLED && info->set_velocity == 0; /* shows the actual position */
-    const double step = axis->max_velocity * 1e-9 * (double)bench.config.cycle_time_ns;
-    p->found_again = info->state == CM1E_AXIS_ERROR_STOP && (p->found_again || fabs(set - p->set_before) > 1.5 * step);
+    const double cycle_s = 1e-9 * (double)bench.config.cycle_time_ns, count = 1.0 / axis->counts_per_unit;
+    const double step = fmax(fabs(info->set_velocity), p->speed_before) * cycle_s; /* by which it goes on as it was */
+    p->found_again = info->state == CM1E_AXIS_ERROR_STOP &&
+                     (p->found_again || fabs(set - p->set_before) > 1.01 * step + 2.0 * count);
+    p->speed_before = fabs(info->set_velocity);
     const bool homing = info->state == CM1E_AXIS_HOMING || info->mode != w->mode;
     const bool ours = w->holding && !homing && !braking_anew && !not_yet && !p->found_again;
     p->set_before = set;
@@ -564,7 +567,8 @@ static void judge_end(cm1e_error_t error, const cm1e_diag_t *diag, double took_s
     MUST(&bench, took_s < 6.0, "the stop took %.3f s", took_s);
     for (uint32_t n = 0; n < bench.config.axis_count; n++) {
         const cm1e_sim_cm1e_t *drive = bench_drive(&bench, n);
-        const bool heard = reachable(n) || drive->firmware->watchdog;
+        /* A slave that comes back after the end was not there to hear it. */
+        const bool heard = (heard_at_end[n] && reachable(n)) || drive->firmware->watchdog;
         const uint8_t state = cm1e_sim_slave_al_state(cm1e_sim_segment_slave(bench.segment, n + 1));
         MUST(&bench, !heard || !bench_probe(&bench, n).torque_on, "axis %u: torque after the end", n);
         MUST(&bench, !reachable(n) || !heard_at_end[n] || state <= CM1E_AL_INIT,
