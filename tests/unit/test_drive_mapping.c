@@ -66,14 +66,45 @@ static void test_missing_object_is_named_with_its_mapping(void)
     }
 }
 
+/* An object of so many bits in the mapping; false: it is not mapped. */
+static bool resize(cm1e_pdo_t *pdo, uint16_t index, int bits)
+{
+    for (unsigned i = 0; i < pdo->entry_count; i++)
+        if (pdo->entries[i].index == index) {
+            pdo->entries[i].bits = (uint8_t)bits;
+            return true;
+        }
+    return false;
+}
+
+/* A byte less than the shortest that can be read, and one more than the longest. */
 static void test_object_of_a_wrong_size_is_refused(void)
 {
-    fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
-    for (unsigned i = 0; i < bus.rx.entry_count; i++)
-        if (bus.rx.entries[i].index == 0x607A)
-            bus.rx.entries[i].bits = 16;
-    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_PDO_MAPPING, cm1e_drive_init(&drive, &bus, 0, &diag));
-    TEST_ASSERT_NOT_NULL(strstr(diag.text, "0x607A"));
+    static const struct {
+        uint16_t index;
+        int least, most; /* bytes */
+    } rows[] = {
+        {0x6040, 2, 2}, {0x607A, 4, 4}, {0x60FF, 4, 4}, {0x6060, 1, 1}, {0x60FE, 2, 4}, {0x6081, 4, 4}, {0x6083, 4, 4},
+        {0x6041, 2, 2}, {0x603F, 2, 2}, {0x6064, 4, 4}, {0x606C, 4, 4}, {0x6077, 2, 4}, {0x60FD, 2, 4}, {0x2301, 2, 4},
+        {0x6079, 2, 4}, {0x6061, 1, 1},
+    };
+    unsigned tried = 0;
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+        for (int mapping = 0; mapping <= CM1E_MAPPING_PROFILE; mapping++)
+            for (int bytes = rows[i].least - 1; bytes <= rows[i].most + 1; bytes++) {
+                const bool right = bytes >= rows[i].least && bytes <= rows[i].most;
+                fake_bus_init(&bus, (cm1e_mapping_t)mapping, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+                const bool out = resize(&bus.rx, rows[i].index, 8 * bytes);
+                if (bytes == 0 || (!resize(&bus.tx, rows[i].index, 8 * bytes) && !out))
+                    continue;
+                char object[8];
+                snprintf(object, sizeof object, "0x%04X", rows[i].index);
+                TEST_ASSERT_EQUAL_INT_MESSAGE(right ? CM1E_OK : CM1E_ERROR_PDO_MAPPING,
+                                              cm1e_drive_init(&drive, &bus, 0, &diag), object);
+                TEST_ASSERT_TRUE(right || strstr(diag.text, object));
+                tried += !right;
+            }
+    TEST_ASSERT_GREATER_THAN_UINT(50, tried);
 }
 
 static void test_wrong_axis_motor_or_firmware_is_an_error_in_words(void)

@@ -1,4 +1,4 @@
-/* Which actual positions the drive room believes, and when a drive contradicts itself. */
+/* Which actual positions the drive room believes, when a drive contradicts itself, and how far a target goes in a cycle. */
 #include "drive/drive.h"
 #include "unity.h"
 
@@ -148,6 +148,35 @@ static void test_standing_is_no_contradiction(void)
     TEST_ASSERT_FALSE(cm1e_drive_contradicts_itself(&drive));
 }
 
+/* ---- targets ----------------------------------------------------------------------------------------------------- */
+
+static int32_t target(void) { return (int32_t)fake_output(&bus, OBJ_607A_TARGET_POSITION, 0); }
+
+/** In CSP a target goes a step from the last one, or anywhere within a step of a motor that is seen. */
+static void test_a_target_is_within_a_step_of_the_last_one_or_of_the_motor(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        setUp();
+        enable();
+        drive.command.position_step = 100;
+        drive.command.target_position = sign * 1000;
+        for (int n = 1; n <= 3; n++) {
+            cycle();
+            TEST_ASSERT_EQUAL_INT32(sign * n * 100, target());
+        }
+        shown_position = sign * 900;
+        cycle();
+        TEST_ASSERT_EQUAL_INT32(sign * 1000, target());
+        drive.command.target_position = sign * 1101; /* as far from the last target, farther from the motor */
+        cycle();
+        TEST_ASSERT_EQUAL_INT32(sign * 1100, target());
+        drive.command.position_step = 0; /* no limit */
+        drive.command.target_position = 0;
+        cycle();
+        TEST_ASSERT_EQUAL_INT32(0, target());
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -156,5 +185,6 @@ int main(void)
     RUN_TEST(test_without_torque_a_jump_is_a_new_origin_that_needs_three_good_positions);
     RUN_TEST(test_a_drive_contradicts_itself_where_position_and_velocity_go_apart);
     RUN_TEST(test_standing_is_no_contradiction);
+    RUN_TEST(test_a_target_is_within_a_step_of_the_last_one_or_of_the_motor);
     return UNITY_END();
 }
