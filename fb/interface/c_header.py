@@ -95,7 +95,8 @@ def block(declaration, symbol):
     label = f' CM1E_SYMBOL("{symbol}{declaration.name}")' if symbol else ""
     name = declaration.name
     return (comment(f"{clause}. {declaration.doc} @rt cycle")
-            + f"typedef struct {name} {{\n{members(declaration.variables)}}} {name}_t;\n"
+            # In C++ a struct's name without _t would hide the function's.
+            + f"typedef struct {name}_t {{\n{members(declaration.variables)}}} {name}_t;\n"
             + defaults(declaration)
             + f"CM1E_API void {name}({name}_t *fb){label};\n")
 

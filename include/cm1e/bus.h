@@ -50,7 +50,7 @@ typedef struct cm1e_slave_info {
 } cm1e_slave_info_t;
 
 /** Counters of the cycle; they only grow. */
-typedef struct cm1e_bus_counters {
+typedef struct cm1e_bus_counters_t {
     uint64_t cycles, lost_frames, working_counter_errors, late_frames, mailbox_retries;
     uint64_t unsent_frames; /**< frames that the network interface did not take: it is down, or its queue is full */
 } cm1e_bus_counters_t;

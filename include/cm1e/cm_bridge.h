@@ -38,7 +38,7 @@ typedef enum CM_COMMAND {
  *  expected (a parameter, an output), with the value of every query, and at the end of a list or of an origin
  *  search. If a string that may have moved the motor fails, or if the axis leaves CML, the motor is freed.
  *  @rt cycle */
-typedef struct CM_SendCML {
+typedef struct CM_SendCML_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     STRING80 Command;  /**< 1 ... 64 bytes; "?99.1", "K53.1=100"; ".ID" is the connector of this motor, or missing */
@@ -60,7 +60,7 @@ CM1E_API void CM_SendCML(CM_SendCML_t *fb);
 
 /** BR 6.2.2. Switches the mode of operation (BR appendix 3); the motor must be at rest and without an error. From
  *  CMD and CPIO only switching the bridge off and on leads back to CSP. @rt cycle */
-typedef struct CM_SetMode {
+typedef struct CM_SetMode_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     CM_MODE Mode;
@@ -77,7 +77,7 @@ CM1E_API void CM_SetMode(CM_SetMode_t *fb);
 /** BR 7.1. Gives a command of CMD mode (BR appendix 1). An origin search moves the motor by the bridge's own
  *  parameters, without limits of the axis. It is aborted and the motor is freed when its time is over, after a loss
  *  of the bus, and at the end of the run. @rt cycle */
-typedef struct CM_Command {
+typedef struct CM_Command_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     CM_COMMAND Command;

@@ -59,7 +59,7 @@ typedef struct cm1e_cml_answer {
 CM1E_API cm1e_error_t cm1e_cml_parse(cm1e_cml_answer_t *answer, const void *bytes, size_t size);
 
 /** A string for a motor behind a bridge, and its answer. Zero the struct, then fill in the first part. */
-typedef struct cm1e_cml_exchange {
+typedef struct cm1e_cml_exchange_t {
     uint16_t position;   /**< position of the bridge, 1 = first */
     uint8_t channel;     /**< connector, 1 ... 4 */
     const char *text;

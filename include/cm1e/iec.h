@@ -28,7 +28,7 @@ typedef struct cm1e_iec_edges {
 } cm1e_iec_edges_t;
 
 /** IEC 61131-3, 2.5.2.3.4. On-delay: Q becomes TRUE when IN has been TRUE for PT, and FALSE with IN. @rt cycle */
-typedef struct TON {
+typedef struct TON_t {
     BOOL IN;
     TIME PT; /**< ns, >= 0 */
     /* outputs */
@@ -39,7 +39,7 @@ typedef struct TON {
 CM1E_API void TON(TON_t *fb) CM1E_SYMBOL("iec_TON");
 
 /** IEC 61131-3, 2.5.2.3.4. Off-delay: Q becomes TRUE with IN, and FALSE when IN has been FALSE for PT. @rt cycle */
-typedef struct TOF {
+typedef struct TOF_t {
     BOOL IN;
     TIME PT; /**< ns, >= 0 */
     /* outputs */
@@ -51,7 +51,7 @@ CM1E_API void TOF(TOF_t *fb) CM1E_SYMBOL("iec_TOF");
 
 /** IEC 61131-3, 2.5.2.3.4. Pulse: Q is TRUE for PT from the rising edge of IN, whatever IN does meanwhile.
  *  @rt cycle */
-typedef struct TP {
+typedef struct TP_t {
     BOOL IN;
     TIME PT; /**< ns, >= 0 */
     /* outputs */
@@ -63,7 +63,7 @@ CM1E_API void TP(TP_t *fb) CM1E_SYMBOL("iec_TP");
 
 /** IEC 61131-3, 2.5.2.3.2. Rising edge: Q is TRUE for the call in which CLK has become TRUE, the first call
  *  included. @rt cycle */
-typedef struct R_TRIG {
+typedef struct R_TRIG_t {
     BOOL CLK;
     /* outputs */
     BOOL Q;
@@ -73,7 +73,7 @@ CM1E_API void R_TRIG(R_TRIG_t *fb) CM1E_SYMBOL("iec_R_TRIG");
 
 /** IEC 61131-3, 2.5.2.3.2. Falling edge: Q is TRUE for the call in which CLK has become FALSE, but not for the
  *  first call. @rt cycle */
-typedef struct F_TRIG {
+typedef struct F_TRIG_t {
     BOOL CLK;
     /* outputs */
     BOOL Q;
@@ -82,7 +82,7 @@ typedef struct F_TRIG {
 CM1E_API void F_TRIG(F_TRIG_t *fb) CM1E_SYMBOL("iec_F_TRIG");
 
 /** IEC 61131-3, 2.5.2.3.1. Bistable; set takes precedence. @rt cycle */
-typedef struct SR {
+typedef struct SR_t {
     BOOL S1, R;
     /* outputs */
     BOOL Q1;
@@ -90,7 +90,7 @@ typedef struct SR {
 CM1E_API void SR(SR_t *fb) CM1E_SYMBOL("iec_SR");
 
 /** IEC 61131-3, 2.5.2.3.1. Bistable; reset takes precedence. @rt cycle */
-typedef struct RS {
+typedef struct RS_t {
     BOOL S, R1;
     /* outputs */
     BOOL Q1;
@@ -98,7 +98,7 @@ typedef struct RS {
 CM1E_API void RS(RS_t *fb) CM1E_SYMBOL("iec_RS");
 
 /** IEC 61131-3, 2.5.2.3.3. Counts up at rising edges of CU, past PV up to the largest INT. @rt cycle */
-typedef struct CTU {
+typedef struct CTU_t {
     BOOL CU;
     BOOL R; /**< TRUE: CV is 0; takes precedence over CU */
     INT PV;
@@ -110,7 +110,7 @@ typedef struct CTU {
 CM1E_API void CTU(CTU_t *fb) CM1E_SYMBOL("iec_CTU");
 
 /** IEC 61131-3, 2.5.2.3.3. Counts down at rising edges of CD, past 0 down to the smallest INT. @rt cycle */
-typedef struct CTD {
+typedef struct CTD_t {
     BOOL CD;
     BOOL LD; /**< TRUE: CV is PV; takes precedence over CD */
     INT PV;
@@ -122,7 +122,7 @@ typedef struct CTD {
 CM1E_API void CTD(CTD_t *fb) CM1E_SYMBOL("iec_CTD");
 
 /** IEC 61131-3, 2.5.2.3.3. Counts up and down; edges of both in one call change nothing. @rt cycle */
-typedef struct CTUD {
+typedef struct CTUD_t {
     BOOL CU, CD;
     BOOL R;  /**< TRUE: CV is 0; takes precedence over all */
     BOOL LD; /**< TRUE: CV is PV; takes precedence over counting */

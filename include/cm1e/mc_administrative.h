@@ -15,7 +15,7 @@ extern "C" {
 
 /** 3.17. Shifts the coordinates of the axis: set and actual position change alike, and nothing moves. It works
  *  during a motion too. @rt cycle */
-typedef struct MC_SetPosition {
+typedef struct MC_SetPosition_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     LREAL Position; /**< u; new actual position, or the distance to shift by */
@@ -31,7 +31,7 @@ CM1E_API void MC_SetPosition(MC_SetPosition_t *fb);
 
 /** 3.18. Sets factors for velocity, acceleration and jerk of all motions of the axis. They are kept when Enable
  *  falls. @rt cycle */
-typedef struct MC_SetOverride {
+typedef struct MC_SetOverride_t {
     AXIS_REF_t *Axis;
     BOOL Enable;
     LREAL VelFactor;  /**< 0 ... 1; 0: the axis is at rest, but not in Standstill */
@@ -48,7 +48,7 @@ typedef struct MC_SetOverride {
 CM1E_API void MC_SetOverride(MC_SetOverride_t *fb);
 
 /** 3.19. Reads a parameter of the axis. @rt cycle */
-typedef struct MC_ReadParameter {
+typedef struct MC_ReadParameter_t {
     AXIS_REF_t *Axis;
     BOOL Enable;
     INT ParameterNumber; /**< 1 ... 17, vendor numbers from 1000; table 5 */
@@ -61,7 +61,7 @@ typedef struct MC_ReadParameter {
 CM1E_API void MC_ReadParameter(MC_ReadParameter_t *fb);
 
 /** 3.19. Reads a parameter of the axis of type BOOL. @rt cycle */
-typedef struct MC_ReadBoolParameter {
+typedef struct MC_ReadBoolParameter_t {
     AXIS_REF_t *Axis;
     BOOL Enable;
     INT ParameterNumber; /**< 1 ... 17, vendor numbers from 1000; table 5 */
@@ -74,7 +74,7 @@ typedef struct MC_ReadBoolParameter {
 CM1E_API void MC_ReadBoolParameter(MC_ReadBoolParameter_t *fb);
 
 /** 3.20. Writes a parameter of the axis. @rt cycle */
-typedef struct MC_WriteParameter {
+typedef struct MC_WriteParameter_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     INT ParameterNumber; /**< those of table 5 that may be written, vendor numbers from 1000 */
@@ -89,7 +89,7 @@ typedef struct MC_WriteParameter {
 CM1E_API void MC_WriteParameter(MC_WriteParameter_t *fb);
 
 /** 3.20. Writes a parameter of the axis of type BOOL. @rt cycle */
-typedef struct MC_WriteBoolParameter {
+typedef struct MC_WriteBoolParameter_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     INT ParameterNumber; /**< those of table 5 that may be written, vendor numbers from 1000 */
@@ -104,7 +104,7 @@ typedef struct MC_WriteBoolParameter {
 CM1E_API void MC_WriteBoolParameter(MC_WriteBoolParameter_t *fb);
 
 /** 3.21. Reads a digital input of a motor. @rt cycle */
-typedef struct MC_ReadDigitalInput {
+typedef struct MC_ReadDigitalInput_t {
     const MC_INPUT_REF *Input;
     BOOL Enable;
     INT InputNumber; /**< 1 ... 4; IN1 ... IN4; 0: Input.Number */
@@ -117,7 +117,7 @@ typedef struct MC_ReadDigitalInput {
 CM1E_API void MC_ReadDigitalInput(MC_ReadDigitalInput_t *fb);
 
 /** 3.22. Reads back a digital output of a motor. @rt cycle */
-typedef struct MC_ReadDigitalOutput {
+typedef struct MC_ReadDigitalOutput_t {
     const MC_OUTPUT_REF *Output;
     BOOL Enable;
     INT OutputNumber; /**< 1; 0: Output.Number */
@@ -130,7 +130,7 @@ typedef struct MC_ReadDigitalOutput {
 CM1E_API void MC_ReadDigitalOutput(MC_ReadDigitalOutput_t *fb);
 
 /** 3.23. Writes a digital output of a motor, once. @rt cycle */
-typedef struct MC_WriteDigitalOutput {
+typedef struct MC_WriteDigitalOutput_t {
     const MC_OUTPUT_REF *Output;
     BOOL Execute;
     INT OutputNumber; /**< 1; 0: Output.Number */
@@ -145,7 +145,7 @@ typedef struct MC_WriteDigitalOutput {
 CM1E_API void MC_WriteDigitalOutput(MC_WriteDigitalOutput_t *fb);
 
 /** 3.24. Reads the actual position. @rt cycle */
-typedef struct MC_ReadActualPosition {
+typedef struct MC_ReadActualPosition_t {
     AXIS_REF_t *Axis;
     BOOL Enable;
     /* outputs */
@@ -157,7 +157,7 @@ typedef struct MC_ReadActualPosition {
 CM1E_API void MC_ReadActualPosition(MC_ReadActualPosition_t *fb);
 
 /** 3.25. Reads the actual velocity. @rt cycle */
-typedef struct MC_ReadActualVelocity {
+typedef struct MC_ReadActualVelocity_t {
     AXIS_REF_t *Axis;
     BOOL Enable;
     /* outputs */
@@ -169,7 +169,7 @@ typedef struct MC_ReadActualVelocity {
 CM1E_API void MC_ReadActualVelocity(MC_ReadActualVelocity_t *fb);
 
 /** 3.26. Reads the actual torque. @rt cycle */
-typedef struct MC_ReadActualTorque {
+typedef struct MC_ReadActualTorque_t {
     AXIS_REF_t *Axis;
     BOOL Enable;
     /* outputs */
@@ -182,7 +182,7 @@ CM1E_API void MC_ReadActualTorque(MC_ReadActualTorque_t *fb);
 
 /** 3.27. Reads the state of the axis. While Valid is TRUE, exactly one of the eight state outputs is TRUE.
  *  @rt cycle */
-typedef struct MC_ReadStatus {
+typedef struct MC_ReadStatus_t {
     AXIS_REF_t *Axis;
     BOOL Enable;
     /* outputs */
@@ -194,7 +194,7 @@ typedef struct MC_ReadStatus {
 CM1E_API void MC_ReadStatus(MC_ReadStatus_t *fb);
 
 /** 3.28. Reads how the axis moves. While Valid is TRUE, exactly one of the first three values is TRUE. @rt cycle */
-typedef struct MC_ReadMotionState {
+typedef struct MC_ReadMotionState_t {
     AXIS_REF_t *Axis;
     BOOL Enable;
     MC_SOURCE Source;       /**< which velocity is evaluated */
@@ -211,7 +211,7 @@ typedef struct MC_ReadMotionState {
 CM1E_API void MC_ReadMotionState(MC_ReadMotionState_t *fb);
 
 /** 3.29. Reads inputs and conditions of the axis. @rt cycle */
-typedef struct MC_ReadAxisInfo {
+typedef struct MC_ReadAxisInfo_t {
     AXIS_REF_t *Axis;
     BOOL Enable;
     /* outputs */
@@ -231,7 +231,7 @@ typedef struct MC_ReadAxisInfo {
 CM1E_API void MC_ReadAxisInfo(MC_ReadAxisInfo_t *fb);
 
 /** 3.30. Reads the error of the axis: the reason why it is in ErrorStop. @rt cycle */
-typedef struct MC_ReadAxisError {
+typedef struct MC_ReadAxisError_t {
     AXIS_REF_t *Axis;
     BOOL Enable;
     /* outputs */
@@ -244,7 +244,7 @@ typedef struct MC_ReadAxisError {
 CM1E_API void MC_ReadAxisError(MC_ReadAxisError_t *fb);
 
 /** 3.31. Takes the axis out of ErrorStop. @rt cycle */
-typedef struct MC_Reset {
+typedef struct MC_Reset_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     /* outputs */
@@ -256,7 +256,7 @@ typedef struct MC_Reset {
 CM1E_API void MC_Reset(MC_Reset_t *fb);
 
 /** 3.32. Switches outputs by the position of the axis, like cams on its shaft. @rt cycle */
-typedef struct MC_DigitalCamSwitch {
+typedef struct MC_DigitalCamSwitch_t {
     AXIS_REF_t *Axis;
     const MC_CAMSWITCH_REF *Switches;
     MC_OUTPUT_REF *Outputs;
@@ -273,7 +273,7 @@ typedef struct MC_DigitalCamSwitch {
 CM1E_API void MC_DigitalCamSwitch(MC_DigitalCamSwitch_t *fb);
 
 /** 3.33. Records the position at the first trigger event after the edge. @rt cycle */
-typedef struct MC_TouchProbe {
+typedef struct MC_TouchProbe_t {
     AXIS_REF_t *Axis;
     const MC_TRIGGER_REF *TriggerInput; /**< NULL: the rising edge of input 1 of the axis */
     BOOL Execute;
@@ -294,7 +294,7 @@ typedef struct MC_TouchProbe {
 CM1E_API void MC_TouchProbe(MC_TouchProbe_t *fb);
 
 /** 3.34. Disarms the trigger of an MC_TouchProbe. @rt cycle */
-typedef struct MC_AbortTrigger {
+typedef struct MC_AbortTrigger_t {
     AXIS_REF_t *Axis;
     const MC_TRIGGER_REF *TriggerInput; /**< as for MC_TouchProbe */
     BOOL Execute;

@@ -19,7 +19,7 @@ extern "C" {
 #endif
 
 /** Part 4 v2.0, 9.1. Makes an axis a member of a group, which then belongs to the bus of that axis. @rt cycle */
-typedef struct MC_AddAxisToGroup {
+typedef struct MC_AddAxisToGroup_t {
     AXES_GROUP_REF_t *AxesGroup;
     AXIS_REF_t *Axis;
     BOOL Execute;
@@ -32,7 +32,7 @@ typedef struct MC_AddAxisToGroup {
 CM1E_API void MC_AddAxisToGroup(MC_AddAxisToGroup_t *fb);
 
 /** Part 4 v2.0, 9.2. Takes an axis out of a group. @rt cycle */
-typedef struct MC_RemoveAxisFromGroup {
+typedef struct MC_RemoveAxisFromGroup_t {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
     MC_IDENT_IN_GROUP IdentInGroup; /**< 1 ... 8 */
@@ -44,7 +44,7 @@ typedef struct MC_RemoveAxisFromGroup {
 CM1E_API void MC_RemoveAxisFromGroup(MC_RemoveAxisFromGroup_t *fb);
 
 /** Part 4 v2.0, 9.3. Takes all axes out of a group. A moving group is stopped along its path first. @rt cycle */
-typedef struct MC_UngroupAllAxes {
+typedef struct MC_UngroupAllAxes_t {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
     /* outputs */
@@ -55,7 +55,7 @@ typedef struct MC_UngroupAllAxes {
 CM1E_API void MC_UngroupAllAxes(MC_UngroupAllAxes_t *fb);
 
 /** Part 4 v2.0, 9.4. Reads which axis has a place in a group. @rt cycle */
-typedef struct MC_GroupReadConfiguration {
+typedef struct MC_GroupReadConfiguration_t {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Enable;
     MC_IDENT_IN_GROUP IdentInGroup; /**< 1 ... 8 */
@@ -71,7 +71,7 @@ CM1E_API void MC_GroupReadConfiguration(MC_GroupReadConfiguration_t *fb);
 
 /** Part 4 v2.0, 9.6. Enables a group, which is then in GroupStandby. The block neither moves nor powers an axis.
  *  @rt cycle */
-typedef struct MC_GroupEnable {
+typedef struct MC_GroupEnable_t {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
     /* outputs */
@@ -83,7 +83,7 @@ CM1E_API void MC_GroupEnable(MC_GroupEnable_t *fb);
 
 /** Part 4 v2.0, 9.7. Disables a group. Its commands are aborted, and a moving group is stopped along its path.
  *  @rt cycle */
-typedef struct MC_GroupDisable {
+typedef struct MC_GroupDisable_t {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
     /* outputs */
@@ -95,7 +95,7 @@ CM1E_API void MC_GroupDisable(MC_GroupDisable_t *fb);
 
 /** Part 4 v2.0, 9.31. Resets a group in GroupErrorStop, and those of its axes that are in ErrorStop as MC_Reset
  *  does. @rt cycle */
-typedef struct MC_GroupReset {
+typedef struct MC_GroupReset_t {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
     /* outputs */
@@ -107,7 +107,7 @@ typedef struct MC_GroupReset {
 CM1E_API void MC_GroupReset(MC_GroupReset_t *fb);
 
 /** Part 4 v2.0, 9.29. Reads the state of a group: one of the six outputs is TRUE while Valid is. @rt cycle */
-typedef struct MC_GroupReadStatus {
+typedef struct MC_GroupReadStatus_t {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Enable;
     /* outputs */
@@ -122,7 +122,7 @@ CM1E_API void MC_GroupReadStatus(MC_GroupReadStatus_t *fb);
 
 /** Part 4 v2.0, 9.30. Reads why a group is in GroupErrorStop; cm1e_group_error_text() describes it in sentences.
  *  @rt cycle */
-typedef struct MC_GroupReadError {
+typedef struct MC_GroupReadError_t {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Enable;
     /* outputs */
@@ -135,7 +135,7 @@ CM1E_API void MC_GroupReadError(MC_GroupReadError_t *fb);
 
 /** Part 4 v2.0, 9.25. Stops a group along its path and holds it: it stays in GroupStopping while Execute is TRUE.
  *  @rt cycle */
-typedef struct MC_GroupStop {
+typedef struct MC_GroupStop_t {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
     LREAL Deceleration; /**< u/s2, >= 0; 0, or a higher value, selects as much as the axes allow */
@@ -149,7 +149,7 @@ typedef struct MC_GroupStop {
 CM1E_API void MC_GroupStop(MC_GroupStop_t *fb);
 
 /** Part 4 v2.0, 9.26. Stops a group along its path; any motion may abort it. @rt cycle */
-typedef struct MC_GroupHalt {
+typedef struct MC_GroupHalt_t {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
     LREAL Deceleration;        /**< u/s2, >= 0; 0, or a higher value, selects as much as the axes allow */
@@ -167,7 +167,7 @@ typedef struct MC_GroupHalt {
 CM1E_API void MC_GroupHalt(MC_GroupHalt_t *fb);
 
 /** Part 4 v2.0, 9.34. Moves a group along a straight line to Position. @rt cycle */
-typedef struct MC_MoveLinearAbsolute {
+typedef struct MC_MoveLinearAbsolute_t {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
     LREAL Position[8];                 /**< u; target, by IdentInGroup */
@@ -192,7 +192,7 @@ typedef struct MC_MoveLinearAbsolute {
 CM1E_API void MC_MoveLinearAbsolute(MC_MoveLinearAbsolute_t *fb);
 
 /** Part 4 v2.0, 9.35. Moves a group along a straight line by Distance. @rt cycle */
-typedef struct MC_MoveLinearRelative {
+typedef struct MC_MoveLinearRelative_t {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
     LREAL Distance[8];                 /**< u; distance, by IdentInGroup */
@@ -217,7 +217,7 @@ typedef struct MC_MoveLinearRelative {
 CM1E_API void MC_MoveLinearRelative(MC_MoveLinearRelative_t *fb);
 
 /** Part 4 v2.0, 9.36. Moves a group along an arc to EndPoint; further axes move along. @rt cycle */
-typedef struct MC_MoveCircularAbsolute {
+typedef struct MC_MoveCircularAbsolute_t {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
     MC_CIRC_MODE CircMode;             /**< what AuxPoint is */
@@ -246,7 +246,7 @@ CM1E_API void MC_MoveCircularAbsolute(MC_MoveCircularAbsolute_t *fb);
 
 /** Part 4 v2.0, 9.37. Moves a group along an arc by EndPoint; both points count from where the arc begins.
  *  @rt cycle */
-typedef struct MC_MoveCircularRelative {
+typedef struct MC_MoveCircularRelative_t {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Execute;
     MC_CIRC_MODE CircMode;             /**< what AuxPoint is */
@@ -274,7 +274,7 @@ typedef struct MC_MoveCircularRelative {
 CM1E_API void MC_MoveCircularRelative(MC_MoveCircularRelative_t *fb);
 
 /** Part 4 v2.0, 9.14. Reads the positions of the axes of a group, all taken in the same cycle. @rt cycle */
-typedef struct MC_GroupReadPosition {
+typedef struct MC_GroupReadPosition_t {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Enable;
     MC_COORD_SYSTEM CoordSystem; /**< only mcACS is supported */
@@ -288,7 +288,7 @@ typedef struct MC_GroupReadPosition {
 CM1E_API void MC_GroupReadPosition(MC_GroupReadPosition_t *fb);
 
 /** Part 4 v2.0, 9.15. Reads the velocities of the axes of a group, and the velocity along the path. @rt cycle */
-typedef struct MC_GroupReadVelocity {
+typedef struct MC_GroupReadVelocity_t {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Enable;
     MC_COORD_SYSTEM CoordSystem; /**< only mcACS is supported */
@@ -304,7 +304,7 @@ CM1E_API void MC_GroupReadVelocity(MC_GroupReadVelocity_t *fb);
 
 /** Part 4 v2.0, 9.43. Sets a factor for the velocities of all motions of a group; it is kept until it is changed.
  *  @rt cycle */
-typedef struct MC_GroupSetOverride {
+typedef struct MC_GroupSetOverride_t {
     AXES_GROUP_REF_t *AxesGroup;
     BOOL Enable;
     LREAL VelFactor;  /**< 0 ... 1 */

@@ -15,7 +15,7 @@ extern "C" {
 
 /** Part 5, 3.1. Searches an absolute switch, reverses at a limit switch, and uses the place of the switch as
  *  reference. @rt cycle */
-typedef struct MC_StepAbsoluteSwitch {
+typedef struct MC_StepAbsoluteSwitch_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_HOME_DIRECTION Direction;
@@ -36,7 +36,7 @@ typedef struct MC_StepAbsoluteSwitch {
 CM1E_API void MC_StepAbsoluteSwitch(MC_StepAbsoluteSwitch_t *fb);
 
 /** Part 5, 3.2. Searches a limit switch and uses its place as reference. @rt cycle */
-typedef struct MC_StepLimitSwitch {
+typedef struct MC_StepLimitSwitch_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_HOME_DIRECTION Direction;    /**< positive or negative */
@@ -56,7 +56,7 @@ typedef struct MC_StepLimitSwitch {
 CM1E_API void MC_StepLimitSwitch(MC_StepLimitSwitch_t *fb);
 
 /** Part 5, 3.3. Moves against a hard stop and uses its place as reference. @rt cycle */
-typedef struct MC_StepBlock {
+typedef struct MC_StepBlock_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_HOME_DIRECTION Direction;  /**< positive or negative */
@@ -79,7 +79,7 @@ typedef struct MC_StepBlock {
 CM1E_API void MC_StepBlock(MC_StepBlock_t *fb);
 
 /** Part 5, 3.4. Searches the reference pulse of an encoder. @rt cycle */
-typedef struct MC_StepReferencePulse {
+typedef struct MC_StepReferencePulse_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_HOME_DIRECTION Direction; /**< positive or negative */
@@ -99,7 +99,7 @@ typedef struct MC_StepReferencePulse {
 CM1E_API void MC_StepReferencePulse(MC_StepReferencePulse_t *fb);
 
 /** Part 5, 3.5. Searches two marks of a distance coded encoder. @rt cycle */
-typedef struct MC_StepDistanceCoded {
+typedef struct MC_StepDistanceCoded_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_HOME_DIRECTION Direction; /**< positive or negative */
@@ -117,7 +117,7 @@ typedef struct MC_StepDistanceCoded {
 CM1E_API void MC_StepDistanceCoded(MC_StepDistanceCoded_t *fb);
 
 /** Part 5, 3.6. Sets the position of the axis at standstill, and ends the homing. @rt cycle */
-typedef struct MC_HomeDirect {
+typedef struct MC_HomeDirect_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     LREAL SetPosition; /**< u; new actual position */
@@ -131,7 +131,7 @@ typedef struct MC_HomeDirect {
 CM1E_API void MC_HomeDirect(MC_HomeDirect_t *fb);
 
 /** Part 5, 3.7. Sets the position from an absolute encoder, and ends the homing. @rt cycle */
-typedef struct MC_HomeAbsolute {
+typedef struct MC_HomeAbsolute_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_BUFFER_MODE BufferMode;
@@ -144,7 +144,7 @@ typedef struct MC_HomeAbsolute {
 CM1E_API void MC_HomeAbsolute(MC_HomeAbsolute_t *fb);
 
 /** Part 5, 3.8. Ends a homing of several steps, after an optional move away from the reference. @rt cycle */
-typedef struct MC_FinishHoming {
+typedef struct MC_FinishHoming_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     LREAL Distance;     /**< u; distance to move; 0: no move */
@@ -162,7 +162,7 @@ typedef struct MC_FinishHoming {
 CM1E_API void MC_FinishHoming(MC_FinishHoming_t *fb);
 
 /** Part 5, 3.9. Uses the place of a switch as reference while another block moves the axis. @rt cycle */
-typedef struct MC_StepReferenceFlyingSwitch {
+typedef struct MC_StepReferenceFlyingSwitch_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_SWITCH_MODE SwitchMode;
@@ -180,7 +180,7 @@ typedef struct MC_StepReferenceFlyingSwitch {
 CM1E_API void MC_StepReferenceFlyingSwitch(MC_StepReferenceFlyingSwitch_t *fb);
 
 /** Part 5, 3.10. Uses the reference pulse of an encoder while another block moves the axis. @rt cycle */
-typedef struct MC_StepReferenceFlyingRefPulse {
+typedef struct MC_StepReferenceFlyingRefPulse_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     MC_REF_SIGNAL_REF ReferenceSignal;
@@ -197,7 +197,7 @@ typedef struct MC_StepReferenceFlyingRefPulse {
 CM1E_API void MC_StepReferenceFlyingRefPulse(MC_StepReferenceFlyingRefPulse_t *fb);
 
 /** Part 5, 3.11. Cancels the two flying steps; the motion goes on. @rt cycle */
-typedef struct MC_AbortPassiveHoming {
+typedef struct MC_AbortPassiveHoming_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     /* outputs */

@@ -17,7 +17,7 @@ extern "C" {
 /** 3.1. Controls the power stage; an axis has one MC_Power. Status is TRUE while the power stage is on and set-
  *  points act. Error is TRUE also while the axis is in ErrorStop and the power stage therefore stays off. The block
  *  controls the axis that was latched at Enable's edge until the power stage is off. @rt cycle */
-typedef struct MC_Power {
+typedef struct MC_Power_t {
     AXIS_REF_t *Axis;
     BOOL Enable;         /**< TRUE: power on, FALSE: off; a level */
     BOOL EnablePositive; /**< permits motion in positive direction; a level */
@@ -33,7 +33,7 @@ CM1E_API void MC_Power(MC_Power_t *fb);
 
 /** 3.2. Homes by the motor's own routine (UG 6.2.4). When Done, the axis has the position Position at the
  *  reference. @rt cycle */
-typedef struct MC_Home {
+typedef struct MC_Home_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     LREAL Position;                         /**< u; position of the axis at the reference */
@@ -49,7 +49,7 @@ CM1E_API void MC_Home(MC_Home_t *fb);
 
 /** 3.3. Stops the axis and holds it in Stopping while Execute is TRUE. Done and Active are TRUE together then.
  *  @rt cycle */
-typedef struct MC_Stop {
+typedef struct MC_Stop_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     LREAL Deceleration; /**< u/s2, >= 0; 0, or a value above the axis maximum, selects the axis maximum */
@@ -65,7 +65,7 @@ typedef struct MC_Stop {
 CM1E_API void MC_Stop(MC_Stop_t *fb);
 
 /** 3.4. Stops the axis; any motion may abort it. @rt cycle */
-typedef struct MC_Halt {
+typedef struct MC_Halt_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     LREAL Deceleration; /**< u/s2, >= 0; 0, or a value above the axis maximum, selects the axis maximum */
@@ -80,7 +80,7 @@ typedef struct MC_Halt {
 CM1E_API void MC_Halt(MC_Halt_t *fb);
 
 /** 3.5. Moves to a position and stops there. @rt cycle */
-typedef struct MC_MoveAbsolute {
+typedef struct MC_MoveAbsolute_t {
     AXIS_REF_t *Axis;
     BOOL Execute, ContinuousUpdate;
     LREAL Position;         /**< u; target */
@@ -99,7 +99,7 @@ typedef struct MC_MoveAbsolute {
 CM1E_API void MC_MoveAbsolute(MC_MoveAbsolute_t *fb);
 
 /** 3.6. Moves by a distance from the set position at the start. @rt cycle */
-typedef struct MC_MoveRelative {
+typedef struct MC_MoveRelative_t {
     AXIS_REF_t *Axis;
     BOOL Execute, ContinuousUpdate;
     LREAL Distance;     /**< u */
@@ -118,7 +118,7 @@ CM1E_API void MC_MoveRelative(MC_MoveRelative_t *fb);
 
 /** 3.7. Moves by a distance from the most recent commanded position, which may be that of an aborted move. In
  *  ContinuousMotion it counts from the set position. @rt cycle */
-typedef struct MC_MoveAdditive {
+typedef struct MC_MoveAdditive_t {
     AXIS_REF_t *Axis;
     BOOL Execute, ContinuousUpdate;
     LREAL Distance;     /**< u */
@@ -136,7 +136,7 @@ typedef struct MC_MoveAdditive {
 CM1E_API void MC_MoveAdditive(MC_MoveAdditive_t *fb);
 
 /** 3.8. Adds a motion over a distance to the running motion, which is not interrupted. @rt cycle */
-typedef struct MC_MoveSuperimposed {
+typedef struct MC_MoveSuperimposed_t {
     AXIS_REF_t *Axis;
     BOOL Execute, ContinuousUpdate;
     LREAL Distance;        /**< u; distance to be added */
@@ -155,7 +155,7 @@ typedef struct MC_MoveSuperimposed {
 CM1E_API void MC_MoveSuperimposed(MC_MoveSuperimposed_t *fb);
 
 /** 3.9. Ends a superimposed motion; the base motion goes on. @rt cycle */
-typedef struct MC_HaltSuperimposed {
+typedef struct MC_HaltSuperimposed_t {
     AXIS_REF_t *Axis;
     BOOL Execute;
     LREAL Deceleration; /**< u/s2, 0 ... maximum; 0 selects what the base motion leaves */
@@ -171,7 +171,7 @@ typedef struct MC_HaltSuperimposed {
 CM1E_API void MC_HaltSuperimposed(MC_HaltSuperimposed_t *fb);
 
 /** 3.10. Moves at a velocity until another command ends it. A negative Velocity reverses Direction. @rt cycle */
-typedef struct MC_MoveVelocity {
+typedef struct MC_MoveVelocity_t {
     AXIS_REF_t *Axis;
     BOOL Execute, ContinuousUpdate;
     LREAL Velocity;         /**< u/s, +-maximum, not 0; a negative value reverses Direction */
@@ -189,7 +189,7 @@ typedef struct MC_MoveVelocity {
 CM1E_API void MC_MoveVelocity(MC_MoveVelocity_t *fb);
 
 /** 3.11. Moves to a position, arrives there with EndVelocity and continues at that velocity. @rt cycle */
-typedef struct MC_MoveContinuousAbsolute {
+typedef struct MC_MoveContinuousAbsolute_t {
     AXIS_REF_t *Axis;
     BOOL Execute, ContinuousUpdate;
     LREAL Position;         /**< u; target */
@@ -209,7 +209,7 @@ typedef struct MC_MoveContinuousAbsolute {
 CM1E_API void MC_MoveContinuousAbsolute(MC_MoveContinuousAbsolute_t *fb);
 
 /** 3.12. Moves by a distance, ends it with EndVelocity and continues at that velocity. @rt cycle */
-typedef struct MC_MoveContinuousRelative {
+typedef struct MC_MoveContinuousRelative_t {
     AXIS_REF_t *Axis;
     BOOL Execute, ContinuousUpdate;
     LREAL Distance;     /**< u; from the set position at the start */
@@ -229,7 +229,7 @@ CM1E_API void MC_MoveContinuousRelative(MC_MoveContinuousRelative_t *fb);
 
 /** 3.13. Exerts a torque. The CM1-E has no torque mode (0x6502 = 0x1A5), so the block always shows
  *  CM1E_ERROR_AXIS_NO_TORQUE_MODE. @rt cycle */
-typedef struct MC_TorqueControl {
+typedef struct MC_TorqueControl_t {
     AXIS_REF_t *Axis;
     BOOL Execute, ContinuousUpdate;
     LREAL Torque;       /**< % of rated torque; signed */
@@ -248,7 +248,7 @@ typedef struct MC_TorqueControl {
 CM1E_API void MC_TorqueControl(MC_TorqueControl_t *fb);
 
 /** 3.14. Runs through a table of positions over time. @rt cycle */
-typedef struct MC_PositionProfile {
+typedef struct MC_PositionProfile_t {
     AXIS_REF_t *Axis;
     const MC_TP_REF *TimePosition; /**< copied at the edge */
     BOOL Execute, ContinuousUpdate;
@@ -265,7 +265,7 @@ typedef struct MC_PositionProfile {
 CM1E_API void MC_PositionProfile(MC_PositionProfile_t *fb);
 
 /** 3.15. Runs through a table of velocities over time and keeps the last one. @rt cycle */
-typedef struct MC_VelocityProfile {
+typedef struct MC_VelocityProfile_t {
     AXIS_REF_t *Axis;
     const MC_TV_REF *TimeVelocity; /**< copied at the edge */
     BOOL Execute, ContinuousUpdate;
@@ -282,7 +282,7 @@ typedef struct MC_VelocityProfile {
 CM1E_API void MC_VelocityProfile(MC_VelocityProfile_t *fb);
 
 /** 3.16. Runs through a table of accelerations over time and keeps the velocity at its end. @rt cycle */
-typedef struct MC_AccelerationProfile {
+typedef struct MC_AccelerationProfile_t {
     AXIS_REF_t *Axis;
     const MC_TA_REF *TimeAcceleration; /**< copied at the edge */
     BOOL Execute, ContinuousUpdate;
@@ -299,7 +299,7 @@ typedef struct MC_AccelerationProfile {
 CM1E_API void MC_AccelerationProfile(MC_AccelerationProfile_t *fb);
 
 /** Tc2_MC2. Moves the axis by push-buttons, like TwinCAT's block of this name. @rt cycle */
-typedef struct MC_Jog {
+typedef struct MC_Jog_t {
     AXIS_REF_t *Axis;
     BOOL JogForward;    /**< moves in positive direction from its rising edge on; both buttons TRUE: stop */
     BOOL JogBackwards;  /**< as JogForward, in negative direction */

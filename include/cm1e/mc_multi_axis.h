@@ -14,7 +14,7 @@ extern "C" {
 #endif
 
 /** 4.2. Prepares a cam for a slave. When Done, CamTableID is the value for MC_CamIn. @rt cycle */
-typedef struct MC_CamTableSelect {
+typedef struct MC_CamTableSelect_t {
     AXIS_REF_t *Master;         /**< (not needed here; it may be NULL) */
     AXIS_REF_t *Slave;          /**< the axis whose memory takes the cam */
     const MC_CAM_REF *CamTable; /**< copied at the edge */
@@ -35,7 +35,7 @@ typedef struct MC_CamTableSelect {
 CM1E_API void MC_CamTableSelect(MC_CamTableSelect_t *fb);
 
 /** 4.3. Lets the slave follow its master by a cam. @rt cycle */
-typedef struct MC_CamIn {
+typedef struct MC_CamIn_t {
     AXIS_REF_t *Master;
     AXIS_REF_t *Slave;
     BOOL Execute, ContinuousUpdate;
@@ -60,7 +60,7 @@ typedef struct MC_CamIn {
 CM1E_API void MC_CamIn(MC_CamIn_t *fb);
 
 /** 4.4. Ends the coupling by a cam; the slave continues at its present velocity. @rt cycle */
-typedef struct MC_CamOut {
+typedef struct MC_CamOut_t {
     AXIS_REF_t *Slave;
     BOOL Execute;
     /* outputs */
@@ -73,7 +73,7 @@ CM1E_API void MC_CamOut(MC_CamOut_t *fb);
 
 /** 4.5. Lets the slave follow its master by a ratio of their velocities; from InGear on also of their positions.
  *  @rt cycle */
-typedef struct MC_GearIn {
+typedef struct MC_GearIn_t {
     AXIS_REF_t *Master;
     AXIS_REF_t *Slave;
     BOOL Execute, ContinuousUpdate;
@@ -95,7 +95,7 @@ typedef struct MC_GearIn {
 CM1E_API void MC_GearIn(MC_GearIn_t *fb);
 
 /** 4.6. Ends the coupling by a ratio; the slave continues at its present velocity. @rt cycle */
-typedef struct MC_GearOut {
+typedef struct MC_GearOut_t {
     AXIS_REF_t *Slave;
     BOOL Execute;
     /* outputs */
@@ -108,7 +108,7 @@ CM1E_API void MC_GearOut(MC_GearOut_t *fb);
 
 /** 4.7. Lets the slave follow its master by a ratio of their positions, from a point at which both have given
  *  positions. @rt cycle */
-typedef struct MC_GearInPos {
+typedef struct MC_GearInPos_t {
     AXIS_REF_t *Master;
     AXIS_REF_t *Slave;
     BOOL Execute;
@@ -137,7 +137,7 @@ typedef struct MC_GearInPos {
 CM1E_API void MC_GearInPos(MC_GearInPos_t *fb);
 
 /** 4.8. Shifts the master's position for this slave to a phase shift. @rt cycle */
-typedef struct MC_PhasingAbsolute {
+typedef struct MC_PhasingAbsolute_t {
     AXIS_REF_t *Master;
     AXIS_REF_t *Slave;
     BOOL Execute;
@@ -157,7 +157,7 @@ typedef struct MC_PhasingAbsolute {
 CM1E_API void MC_PhasingAbsolute(MC_PhasingAbsolute_t *fb);
 
 /** 4.9. Shifts the master's position for this slave by a further phase shift. @rt cycle */
-typedef struct MC_PhasingRelative {
+typedef struct MC_PhasingRelative_t {
     AXIS_REF_t *Master;
     AXIS_REF_t *Slave;
     BOOL Execute;
@@ -177,7 +177,7 @@ typedef struct MC_PhasingRelative {
 CM1E_API void MC_PhasingRelative(MC_PhasingRelative_t *fb);
 
 /** 4.10. Lets the slave follow the sum, or the difference, of the motions of two masters. @rt cycle */
-typedef struct MC_CombineAxes {
+typedef struct MC_CombineAxes_t {
     AXIS_REF_t *Master1;
     AXIS_REF_t *Master2;
     AXIS_REF_t *Slave;

@@ -53,7 +53,7 @@ typedef struct cm1e_distribution {
     uint64_t histogram[CM1E_HISTOGRAM_BUCKETS];
 } cm1e_distribution_t;
 
-typedef struct cm1e_scheduler_statistics {
+typedef struct cm1e_scheduler_statistics_t {
     cm1e_distribution_t cycle_time, wake_up_latency, execution_time;
     uint64_t cycles, overruns;   /**< overruns: cycles whose work ended after the start of the next one */
     cm1e_bus_counters_t bus;
