@@ -27,7 +27,7 @@ static int compare(const void *a, const void *b)
 
 static cm1e_bus_t *start_bus(uint32_t axes, int64_t cycle_ns)
 {
-    static cm1e_bus_config_t config;
+    cm1e_bus_config_t config;
     cm1e_diag_t diag = {0};
     cm1e_bus_t *bus = NULL;
     cm1e_bus_config_init(&config, "sim", axes);
@@ -39,6 +39,7 @@ static cm1e_bus_t *start_bus(uint32_t axes, int64_t cycle_ns)
         fprintf(stderr, "%s\n", diag.text);
         exit(1);
     }
+    cm1e_bus_config_free(&config);
     return bus;
 }
 

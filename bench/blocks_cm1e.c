@@ -37,7 +37,7 @@ static void fail(const char *why)
  * slave needs goes far beyond what the moves ask for. */
 static cm1e_bus_t *start_bus(void)
 {
-    static cm1e_bus_config_t config;
+    cm1e_bus_config_t config;
     cm1e_bus_config_init(&config, "sim", BUS_AXES);
     config.virtual_time = true;
     config.cycle_time_ns = CYCLE_NS;
@@ -55,6 +55,7 @@ static cm1e_bus_t *start_bus(void)
     cm1e_bus_t *bus = NULL;
     if (cm1e_bus_open(&bus, &config, &diag) || cm1e_bus_start(bus, &diag))
         fail(diag.text);
+    cm1e_bus_config_free(&config);
     return bus;
 }
 

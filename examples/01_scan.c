@@ -17,12 +17,13 @@ static void print_slave(const cm1e_slave_info_t *slave)
 
 int main(int argc, char **argv)
 {
-    static cm1e_bus_config_t config; /* large: not on the stack */
+    cm1e_bus_config_t config;
     cm1e_diag_t why = {0};
     cm1e_bus_t *bus = NULL;
 
     cm1e_bus_config_init(&config, argc > 1 ? argv[1] : "sim", 3);
     cm1e_error_t error = cm1e_bus_open(&bus, &config, &why);
+    cm1e_bus_config_free(&config); /* the bus has a copy */
     if (error == CM1E_OK)
         error = cm1e_bus_scan(bus, &why);
     if (error == CM1E_OK)

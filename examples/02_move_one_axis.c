@@ -39,12 +39,15 @@ static void program(void *context)
 
 static cm1e_error_t run(const char *interface_name, cm1e_bus_t **bus, cm1e_diag_t *why)
 {
-    static cm1e_bus_config_t config;
+    cm1e_bus_config_t config;
     const cm1e_task_config_t task = {.name = "motion", .program = program};
-    cm1e_bus_config_init(&config, interface_name, 1);
+    cm1e_error_t error = cm1e_bus_config_init(&config, interface_name, 1);
+    if (error != CM1E_OK)
+        return cm1e_diag_set(why, error, 0, "%s", cm1e_strerror(error));
     config.axes[0].in_position_done_waits = true; /* Done waits until the motor is in position, not only its
                                                    * set-point */
-    cm1e_error_t error = cm1e_bus_open(bus, &config, why);
+    error = cm1e_bus_open(bus, &config, why);
+    cm1e_bus_config_free(&config); /* the bus has a copy */
     if (error == CM1E_OK)
         error = cm1e_bus_start(*bus, why);
     if (error == CM1E_OK)

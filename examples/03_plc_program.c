@@ -323,29 +323,30 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
 }
 
 /* Without a bus file: three linear axes in mm, homed in three ways. */
-static void describe_default(cm1e_bus_config_t *config)
+static cm1e_error_t describe_default(cm1e_bus_config_t *config, cm1e_diag_t *why)
 {
     static const cm1e_homing_config_t homing[MAX_UNITS] = {
         {.method = -2, .offset = 10, .velocity = 20, .acceleration = 400}, /* hard stop, CCW */
         {.method = -6, .offset = 5, .velocity = 20, .acceleration = 400},  /* sensor at input 3, CCW */
         {.method = -3, .offset = -5, .velocity = 20, .acceleration = 400}, /* sensor at input 2, CW */
     };
-    cm1e_bus_config_init(config, "sim", MAX_UNITS);
+    const cm1e_error_t error = cm1e_bus_config_init(config, "sim", MAX_UNITS);
+    if (error != CM1E_OK)
+        return cm1e_diag_set(why, error, 0, "%s", cm1e_strerror(error));
     for (uint32_t i = 0; i < MAX_UNITS; i++) {
         snprintf(config->axes[i].name, sizeof config->axes[i].name, "%c", "XYZ"[i]);
         config->axes[i].counts_per_unit = 5000;
         config->axes[i].homing = homing[i];
     }
+    return CM1E_OK;
 }
 
 static cm1e_error_t describe(cm1e_bus_config_t *config, const options_t *options, cm1e_diag_t *why)
 {
-    describe_default(config);
-    if (options->bus_file) {
-        const cm1e_error_t error = cm1e_bus_config_load(config, options->bus_file, why);
-        if (error != CM1E_OK)
-            return error;
-    }
+    const cm1e_error_t error = options->bus_file ? cm1e_bus_config_load(config, options->bus_file, why)
+                                                 : describe_default(config, why);
+    if (error != CM1E_OK)
+        return error;
     if (options->interface_name)
         snprintf(config->interface_name, sizeof config->interface_name, "%s", options->interface_name);
     for (uint32_t i = 0; i < config->axis_count && i < MAX_UNITS; i++)
@@ -407,12 +408,13 @@ static cm1e_error_t check_files(const options_t *options, cm1e_diag_t *why)
 
 static cm1e_error_t start(const options_t *options, cm1e_diag_t *why)
 {
-    static cm1e_bus_config_t config; /* large: not on the stack */
+    cm1e_bus_config_t config = {0};
     cm1e_error_t error = check_files(options, why);
     if (error == CM1E_OK)
         error = describe(&config, options, why);
     if (error == CM1E_OK)
         error = cm1e_bus_open(&m.bus, &config, why);
+    cm1e_bus_config_free(&config); /* the bus has a copy */
     if (error == CM1E_OK)
         error = cm1e_bus_start(m.bus, why);
     if (error != CM1E_OK)
@@ -425,7 +427,7 @@ static cm1e_error_t start(const options_t *options, cm1e_diag_t *why)
     error = cm1e_scheduler_create(&m.scheduler, m.bus, &scheduler, why);
     if (error != CM1E_OK)
         return error;
-    make_machine(&config, options->seconds);
+    make_machine(cm1e_bus_configuration(m.bus), options->seconds);
     return add_tasks(why);
 }
 

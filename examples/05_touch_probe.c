@@ -100,10 +100,9 @@ static bool all_seen(void)
 
 int main(int argc, char **argv)
 {
-    static cm1e_bus_config_t config; /* large: not on the stack */
     cm1e_diag_t why = {0};
     example_options(&example, argc, argv, "Measures where a switch is, by touch probe.");
-    cm1e_error_t error = example_open(&example, &config, &why);
+    cm1e_error_t error = example_open(&example, &why);
     if (error == CM1E_OK)
         error = example_run(&example, program, &why);
     if (example_is_done(&example, error))

@@ -243,14 +243,13 @@ static void limits(cm1e_axis_config_t *axis)
 
 int main(int argc, char **argv)
 {
-    static cm1e_bus_config_t config; /* large: not on the stack */
     cm1e_diag_t why = {0};
     example.describe = limits;
     example_options(&example, argc, argv, "A jog panel in the terminal; without one, keys from a script.");
     scripted = !isatty(STDIN_FILENO);
     if (scripted && !read_script())
         return EXIT_FAILURE;
-    cm1e_error_t error = example_open(&example, &config, &why);
+    cm1e_error_t error = example_open(&example, &why);
     if (error == CM1E_OK)
         error = scripted ? example_run(&example, program, &why) : run_with_terminal(&why);
     printf("the axis is at %.3f u\n", (double)atomic_load(&shown_position) / 1000);

@@ -92,10 +92,9 @@ static void print_report(void)
 
 int main(int argc, char **argv)
 {
-    static cm1e_bus_config_t config; /* large: not on the stack */
     cm1e_diag_t why = {0};
     example_options(&example, argc, argv, "Homes an axis in steps, on a switch at input 2.");
-    cm1e_error_t error = example_open(&example, &config, &why);
+    cm1e_error_t error = example_open(&example, &why);
     if (error == CM1E_OK)
         error = example_run(&example, program, &why);
     if (example_is_done(&example, error))

@@ -44,7 +44,6 @@ static AXIS_REF_t wrong;
 
 static void describe_network(cm1e_bus_config_t *config)
 {
-    config->axis_count = AXES;
     for (int i = 0; i < AXES; i++) {
         cm1e_axis_config_t *axis = &config->axes[i];
         snprintf(axis->name, sizeof axis->name, "%s", axes[i].name);
@@ -173,11 +172,11 @@ static void print_report(void)
 
 int main(int argc, char **argv)
 {
-    static cm1e_bus_config_t config; /* large: not on the stack */
     cm1e_diag_t why = {0};
+    example.axis_count = AXES;
     example.describe_network = describe_network;
     example_options(&example, argc, argv, "Four motors behind an EtherCAT Cool MUSCLE Bridge.");
-    cm1e_error_t error = example_open(&example, &config, &why);
+    cm1e_error_t error = example_open(&example, &why);
     if (error == CM1E_OK) {
         make_units();
         error = example_run(&example, program, &why);

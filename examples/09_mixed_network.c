@@ -37,7 +37,6 @@ static AXIS_REF_t wrong;
 
 static void describe_network(cm1e_bus_config_t *config)
 {
-    config->axis_count = AXES;
     for (int i = 0; i < AXES; i++) {
         cm1e_axis_config_t *axis = &config->axes[i];
         snprintf(axis->name, sizeof axis->name, "%s", axes[i].name);
@@ -143,11 +142,11 @@ static void print_report(void)
 
 int main(int argc, char **argv)
 {
-    static cm1e_bus_config_t config; /* large: not on the stack */
     cm1e_diag_t why = {0};
+    example.axis_count = AXES;
     example.describe_network = describe_network;
     example_options(&example, argc, argv, "A CM1-E and two motors behind a bridge, by the same program.");
-    cm1e_error_t error = example_open(&example, &config, &why);
+    cm1e_error_t error = example_open(&example, &why);
     if (error == CM1E_OK) {
         for (uint32_t i = 0; i < AXES; i++)
             make_unit(&units[i], i);

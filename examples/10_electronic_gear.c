@@ -36,7 +36,6 @@ static LREAL before[AXES], after[AXES], worst[AXES]; /* degrees behind the shaft
 
 static void describe_network(cm1e_bus_config_t *config)
 {
-    config->axis_count = AXES;
     for (int i = 0; i < AXES; i++) {
         cm1e_axis_config_t *axis = &config->axes[i];
         snprintf(axis->name, sizeof axis->name, "%s", names[i]);
@@ -138,11 +137,11 @@ static void program(void *context)
 
 int main(int argc, char **argv)
 {
-    static cm1e_bus_config_t config; /* large: not on the stack */
     cm1e_diag_t why = {0};
+    example.axis_count = AXES;
     example.describe_network = describe_network;
     example_options(&example, argc, argv, "Two rollers in gear with a virtual shaft, and put in register.");
-    cm1e_error_t error = example_open(&example, &config, &why);
+    cm1e_error_t error = example_open(&example, &why);
     for (uint32_t i = 0; error == CM1E_OK && i < AXES; i++) {
         axes[i] = cm1e_scheduler_axis(example.scheduler, i);
         power[i] = (MC_Power_t){.Axis = &axes[i], .EnablePositive = TRUE, .EnableNegative = TRUE};

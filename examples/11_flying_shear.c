@@ -36,7 +36,6 @@ static int cut_count;
 
 static void describe_network(cm1e_bus_config_t *config)
 {
-    config->axis_count = AXES;
     cm1e_axis_config_t *b = &config->axes[BELT], *c = &config->axes[CARRIAGE];
     *b = (cm1e_axis_config_t){.name = "belt", .type = CM1E_AXIS_ENCODER, .counts_per_unit = COUNTS_PER_MM};
     snprintf(c->name, sizeof c->name, "carriage");
@@ -162,13 +161,13 @@ static void print_report(void)
 
 int main(int argc, char **argv)
 {
-    static cm1e_bus_config_t config; /* large: not on the stack */
     cm1e_diag_t why = {0};
+    example.axis_count = AXES;
     example.describe_network = describe_network;
     for (int i = 0; i < CAMS; i++)
         make_cam(i);
     example_options(&example, argc, argv, "A flying shear: pieces of two lengths from a belt that does not stop.");
-    cm1e_error_t error = example_open(&example, &config, &why);
+    cm1e_error_t error = example_open(&example, &why);
     if (error == CM1E_OK) {
         belt = cm1e_scheduler_axis(example.scheduler, BELT);
         carriage = cm1e_scheduler_axis(example.scheduler, CARRIAGE);

@@ -43,7 +43,6 @@ static LREAL slowest = INFINITY; /* mm/s, between the first and the last row */
 
 static void describe_network(cm1e_bus_config_t *config)
 {
-    config->axis_count = AXES;
     for (int i = 0; i < AXES; i++) {
         cm1e_axis_config_t *axis = &config->axes[i];
         snprintf(axis->name, sizeof axis->name, "%s", names[i]);
@@ -234,7 +233,6 @@ static error_t option(int key, char *argument, struct argp_state *state)
 
 int main(int argc, char **argv)
 {
-    static cm1e_bus_config_t config; /* large: not on the stack */
     static const struct argp common = {example_option_list, example_option, NULL, NULL, NULL, NULL, NULL};
     static const struct argp_child children[] = {{&common, 0, NULL, 0}, {0}};
     static const struct argp_option options[] = {
@@ -243,11 +241,12 @@ int main(int argc, char **argv)
                                      NULL, NULL};
     cm1e_diag_t why = {0};
     example.interface_name = "sim";
+    example.axis_count = AXES;
     example.describe_network = describe_network;
     argp_parse(&argp, argc, argv, 0, NULL, NULL);
     cm1e_error_t error = read_file(&why);
     if (error == CM1E_OK)
-        error = example_open(&example, &config, &why);
+        error = example_open(&example, &why);
     if (error == CM1E_OK)
         error = cm1e_group_create(&group, &(cm1e_group_config_t){.name = "table"}, &why);
     for (uint32_t i = 0; error == CM1E_OK && i < AXES; i++) {

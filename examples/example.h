@@ -19,7 +19,8 @@ typedef struct example {
     const char *interface_name, *csv_file, *svg_file;
     bool virtual_time;
     void (*describe)(cm1e_axis_config_t *axis); /**< what is special about the axis; NULL: nothing */
-    void (*describe_network)(cm1e_bus_config_t *config); /**< instead of one axis: all of them; NULL: one */
+    uint32_t axis_count;                        /**< 0: 1 */
+    void (*describe_network)(cm1e_bus_config_t *config); /**< what is special about several axes; NULL: nothing */
     cm1e_bus_t *bus;
     cm1e_scheduler_t *scheduler;
     AXIS_REF_t axis;
@@ -60,27 +61,35 @@ static inline void example_options(example_t *e, int argc, char **argv, const ch
     argp_parse(&argp, argc, argv, 0, NULL, e);
 }
 
+static inline cm1e_error_t example_open_bus(example_t *e, cm1e_diag_t *why)
+{
+    cm1e_bus_config_t config;
+    cm1e_error_t error = cm1e_bus_config_init(&config, e->interface_name, e->axis_count > 0 ? e->axis_count : 1);
+    if (error != CM1E_OK)
+        return cm1e_diag_set(why, error, 0, "%s", cm1e_strerror(error));
+    if (e->describe_network)
+        e->describe_network(&config);
+    config.virtual_time = e->virtual_time;
+    if (e->describe)
+        e->describe(&config.axes[0]);
+    error = cm1e_bus_open(&e->bus, &config, why);
+    cm1e_bus_config_free(&config); /* the bus has a copy */
+    return error == CM1E_OK ? cm1e_bus_start(e->bus, why) : error;
+}
+
 /** Bus and scheduler stand afterwards, and e->axis is the first axis, or the only one. */
-static inline cm1e_error_t example_open(example_t *e, cm1e_bus_config_t *config, cm1e_diag_t *why)
+static inline cm1e_error_t example_open(example_t *e, cm1e_diag_t *why)
 {
     const cm1e_scheduler_config_t scheduler = {
         .trace_capacity = e->csv_file || e->svg_file ? EXAMPLE_TRACE_SAMPLES : 0,
     };
-    cm1e_bus_config_init(config, e->interface_name, 1);
-    if (e->describe_network)
-        e->describe_network(config);
-    config->virtual_time = e->virtual_time;
-    if (e->describe)
-        e->describe(&config->axes[0]);
     cm1e_error_t error = CM1E_OK; /* files that cannot be written are told before anything moves */
     if (e->csv_file)
         error = cm1e_scheduler_check_path(e->csv_file, why);
     if (error == CM1E_OK && e->svg_file)
         error = cm1e_scheduler_check_path(e->svg_file, why);
     if (error == CM1E_OK)
-        error = cm1e_bus_open(&e->bus, config, why);
-    if (error == CM1E_OK)
-        error = cm1e_bus_start(e->bus, why);
+        error = example_open_bus(e, why);
     if (error == CM1E_OK)
         error = cm1e_scheduler_create(&e->scheduler, e->bus, &scheduler, why);
     if (error == CM1E_OK)

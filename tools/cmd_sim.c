@@ -90,8 +90,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 static bool describe(const sim_options_t *options, cm1e_bus_config_t *config)
 {
     cm1e_diag_t diag = {0};
-    cm1e_bus_config_init(config, "sim", options->has_bridges ? 0 : options->sii_count > 0 ? options->sii_count : 1);
-    if (options->bus_file && cm1e_bus_config_load(config, options->bus_file, &diag) != CM1E_OK) {
+    const uint32_t axes = options->has_bridges ? 0 : options->sii_count > 0 ? options->sii_count : 1;
+    const cm1e_error_t error = options->bus_file ? cm1e_bus_config_load(config, options->bus_file, &diag)
+                                                 : cm1e_bus_config_init(config, "sim", axes);
+    if (error != CM1E_OK) {
         fail(&diag);
         return false;
     }

@@ -146,8 +146,11 @@ bool load_axes(const common_options_t *options, cm1e_bus_config_t *config)
         return false;
     }
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++)
-        if (cm1e_bus_slave(bus, position)->is_cm1e && config->axis_count < CM1E_MAX_AXES)
-            config->axes[config->axis_count++].address = (uint16_t)position;
+        if (cm1e_bus_slave(bus, position)->is_cm1e) {
+            cm1e_axis_config_t *axis = cm1e_bus_config_add_axis(config, NULL);
+            if (axis)
+                *axis = (cm1e_axis_config_t){.address = (uint16_t)position};
+        }
     const bool known = refuse_bridge(bus, config->interface_name);
     cm1e_bus_close(bus);
     if (!known)
@@ -183,7 +186,7 @@ int find_axis(const cm1e_bus_config_t *config, const char *word)
         return -1;
     }
     complain("there is no axis \"%s\"; there are 1 ... %u%s", word, config->axis_count,
-             config->axes[0].name[0] ? ", or their names in the bus file" : "");
+             config->axis_count > 0 && config->axes[0].name[0] ? ", or their names in the bus file" : "");
     return -1;
 }
 

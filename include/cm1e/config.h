@@ -8,6 +8,7 @@
 #define CM1E_CONFIG_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "cm1e/api.h"
@@ -179,8 +180,14 @@ typedef struct cm1e_axis_config {
     cm1e_sim_axis_config_t sim;
 } cm1e_axis_config_t;
 
-/** The whole bus. */
+/** The whole bus. The configuration owns its axes: make it with cm1e_bus_config_init() or cm1e_bus_config_load(), add
+ *  axes with cm1e_bus_config_add_axis(), and free it with cm1e_bus_config_free() when the bus is open, because the bus
+ *  has a copy. Later versions add members at the end of this struct and of cm1e_axis_config_t only. The two sizes tell
+ *  the library which members the program was compiled with. */
 typedef struct cm1e_bus_config {
+    size_t size, axis_size;          /**< bytes of this struct and of an axis; 0: the sizes that the library has */
+    uint32_t axis_count;             /**< at most CM1E_MAX_AXES */
+    cm1e_axis_config_t *axes;        /**< axes[0] ... axes[axis_count - 1] */
     char interface_name[64];         /**< "eth1", "sim", "sim:<bus file>"; "" selects "sim" */
     char second_interface[64];       /**< second network interface of a redundant ring; "": none */
     int64_t cycle_time_ns;           /**< 200,000, 250,000, 500,000 or 1,000,000; 0 selects 1,000,000 */
@@ -191,17 +198,38 @@ typedef struct cm1e_bus_config {
     bool virtual_time;               /**< simulated segment only: time passes only in the cycle and in waits */
     cm1e_pdo_order_t sim_pdo_order;  /**< simulated segment only */
     cm1e_sim_io_t sim_gaps;          /**< simulated segment only: the device at each place without a motor */
-    uint32_t axis_count;
-    cm1e_axis_config_t axes[CM1E_MAX_AXES];
 } cm1e_bus_config_t;
 
+/** Does the work of cm1e_bus_config_init(), for a program with these sizes of the structs. @rt init */
+CM1E_API cm1e_error_t cm1e_bus_config_init_sized(cm1e_bus_config_t *config, size_t size, size_t axis_size,
+                                                 const char *interface_name, uint32_t axis_count);
 /** Initialises a configuration with `axis_count` default axes, at positions 1 ... n, on `interface_name` (NULL selects
- *  "sim"). @rt init */
-CM1E_API void cm1e_bus_config_init(cm1e_bus_config_t *config, const char *interface_name, uint32_t axis_count);
+ *  "sim"). The content of `config` is overwritten: free an earlier configuration first. Returns CM1E_ERROR_NO_MEMORY,
+ *  or CM1E_ERROR_CONFIG for more than CM1E_MAX_AXES; cm1e_bus_open() refuses the configuration then. @rt init */
+static inline cm1e_error_t cm1e_bus_config_init(cm1e_bus_config_t *config, const char *interface_name,
+                                                uint32_t axis_count)
+{
+    return cm1e_bus_config_init_sized(config, sizeof(cm1e_bus_config_t), sizeof(cm1e_axis_config_t), interface_name,
+                                      axis_count);
+}
 
-/** Reads a bus file (YAML; docs/BUS-FILE.md describes it). After a failure `config` is unchanged, and `diag` names
- *  file, line, column, what was found and what was expected. @rt init */
-CM1E_API cm1e_error_t cm1e_bus_config_load(cm1e_bus_config_t *config, const char *path, cm1e_diag_t *diag);
+/** Adds an axis with defaults and returns it; `name` NULL or "" selects "axis<n>". The pointer is valid until the next
+ *  axis is added. Returns NULL if there are CM1E_MAX_AXES axes already, or no memory. @rt init */
+CM1E_API cm1e_axis_config_t *cm1e_bus_config_add_axis(cm1e_bus_config_t *config, const char *name);
+
+/** Frees the axes; the configuration has no axes then. NULL is allowed. @rt init */
+CM1E_API void cm1e_bus_config_free(cm1e_bus_config_t *config);
+
+/** Does the work of cm1e_bus_config_load(), for a program with these sizes of the structs. @rt init */
+CM1E_API cm1e_error_t cm1e_bus_config_load_sized(cm1e_bus_config_t *config, size_t size, size_t axis_size,
+                                                 const char *path, cm1e_diag_t *diag);
+/** Makes a configuration from a bus file (YAML; docs/BUS-FILE.md describes it), instead of cm1e_bus_config_init(): free
+ *  an earlier configuration first. After a failure `config` is unchanged, and `diag` names file, line, column, what was
+ *  found and what was expected. @rt init */
+static inline cm1e_error_t cm1e_bus_config_load(cm1e_bus_config_t *config, const char *path, cm1e_diag_t *diag)
+{
+    return cm1e_bus_config_load_sized(config, sizeof(cm1e_bus_config_t), sizeof(cm1e_axis_config_t), path, diag);
+}
 
 /** Checks a configuration made by hand for ranges and contradictions; a bus file is checked when it is loaded. Returns
  *  CM1E_ERROR_CONFIG with the reason in `diag`. @rt init */

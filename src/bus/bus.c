@@ -3,15 +3,18 @@
 #include <string.h>
 
 #include "bus/bus_internal.h"
+#include "config/copy.h"
 #include "config/interface.h"
 #include "core/in_task.h"
 #include "device/place.h"
 
 enum { DEFAULT_CYCLE_NS = 1000000, DEFAULT_LOST_CYCLES = 3 };
 
-static void copy_config(cm1e_bus_config_t *to, const cm1e_bus_config_t *from)
+static cm1e_error_t copy_config(cm1e_bus_config_t *to, const cm1e_bus_config_t *from)
 {
-    *to = *from;
+    const cm1e_error_t error = cm1e_config_copy(to, from);
+    if (error != CM1E_OK)
+        return error;
     if (!to->interface_name[0])
         strcpy(to->interface_name, CM1E_SIM_INTERFACE);
     if (to->cycle_time_ns == 0)
@@ -26,13 +29,13 @@ static void copy_config(cm1e_bus_config_t *to, const cm1e_bus_config_t *from)
             snprintf(axis->name, sizeof axis->name, "axis%u", i + 1);
         axis->address = cm1e_axis_address(to, i);
     }
+    return CM1E_OK;
 }
 
 static cm1e_error_t open_parts(cm1e_bus_t *bus, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
 {
-    copy_config(&bus->config, config);
     bus->slaves = calloc(CM1E_MAX_SLAVES, sizeof *bus->slaves);
-    if (!bus->slaves)
+    if (!bus->slaves || copy_config(&bus->config, config) != CM1E_OK)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory when opening the bus.");
     const cm1e_error_t error = cm1e_nic_open(&bus->nic, &bus->config, diag);
     if (error != CM1E_OK)
@@ -89,6 +92,7 @@ cm1e_error_t cm1e_bus_close(cm1e_bus_t *bus)
     const cm1e_error_t error = cm1e_nic_close(bus->nic);
     cm1e_bus_free_image(bus);
     free(bus->slaves);
+    cm1e_bus_config_free(&bus->config);
     free(bus);
     cm1e_clock_make_current(NULL); /* the clock of the nic is gone */
     return error;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "busfile/busfile.h"
+#include "config/copy.h"
 #include "config/interface.h"
 #include "core/in_task.h"
 #include "device/place.h"
@@ -90,7 +91,11 @@ static bool convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from, cm1e_
         snprintf(config->interface_name, sizeof config->interface_name, CM1E_SIM_INTERFACE);
     config->cycle_time_ns = (int64_t)from->cycle_time_us * 1000;
     config->frame_timeout_ns = (int64_t)from->frame_timeout_us * 1000;
-    config->axis_count = from->axis_count;
+    for (uint32_t i = 0; i < from->axis_count; i++)
+        if (!cm1e_bus_config_add_axis(config, NULL)) {
+            snprintf(problem->text, sizeof problem->text, "out of memory");
+            return false;
+        }
     for (uint32_t i = 0; i < from->axis_count; i++)
         if (!convert_axis(&config->axes[i], &from->axes[i], i, problem))
             return false;
@@ -163,7 +168,8 @@ static cm1e_error_t report(cm1e_diag_t *diag, cm1e_error_t error, const char *pa
                          problem->text);
 }
 
-cm1e_error_t cm1e_bus_config_load(cm1e_bus_config_t *config, const char *path, cm1e_diag_t *diag)
+cm1e_error_t cm1e_bus_config_load_sized(cm1e_bus_config_t *config, size_t size, size_t axis_size, const char *path,
+                                        cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_bus_config_load()", "", diag);
@@ -171,18 +177,17 @@ cm1e_error_t cm1e_bus_config_load(cm1e_bus_config_t *config, const char *path, c
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "no configuration or no path given");
     cm1e_config_problem_t problem = {0};
     uint8_t *bytes = NULL;
-    size_t size = 0;
-    cm1e_error_t error = cm1e_busfile_read(path, &bytes, &size, &problem);
-    cm1e_bus_config_t *loaded = error ? NULL : malloc(sizeof *loaded);
-    if (!error && !loaded) {
-        snprintf(problem.text, sizeof problem.text, "out of memory");
-        error = CM1E_ERROR_NO_MEMORY;
+    size_t length = 0;
+    cm1e_error_t error = cm1e_busfile_read(path, &bytes, &length, &problem);
+    cm1e_bus_config_t loaded = {0};
+    if (!error)
+        error = load_in_c_locale(&loaded, bytes, length, &problem);
+    if (!error) {
+        error = cm1e_config_copy_sized(config, size, axis_size, &loaded);
+        if (error)
+            snprintf(problem.text, sizeof problem.text, "out of memory");
     }
-    if (!error)
-        error = load_in_c_locale(loaded, bytes, size, &problem);
-    if (!error)
-        *config = *loaded;
-    free(loaded);
+    cm1e_bus_config_free(&loaded);
     free(bytes);
     return error ? report(diag, error, path, &problem) : cm1e_diag_set(diag, CM1E_OK, 0, "%s", "");
 }

@@ -633,6 +633,12 @@ bool cm1e_config_find_problem(const cm1e_bus_config_t *config, cm1e_config_probl
                  CM1E_MAX_AXES);
         return false;
     }
+    if (config->axis_count > 0 && !config->axes) {
+        snprintf(problem->path, sizeof problem->path, "axes");
+        snprintf(problem->text, sizeof problem->text, "axis_count is %u, but there is no memory for axes; expected are "
+                 "axes made with cm1e_bus_config_init() or cm1e_bus_config_add_axis()", config->axis_count);
+        return false;
+    }
     if (!check_bus(&check))
         return false;
     for (check.index = 0; check.index < config->axis_count; check.index++) {

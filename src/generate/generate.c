@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cm1e/generate.h"
+#include "config/copy.h"
 #include "description/describe.h"
 #include "description/expand.h"
 #include "description/sii.h"
@@ -245,12 +246,9 @@ static cm1e_error_t describe_nodes(cm1e_eni_slave_t *slaves, cm1e_description_fi
     return error;
 }
 
-static cm1e_error_t generate_eni(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag)
+static cm1e_error_t eni_of_network(cm1e_file_t *file, const cm1e_bus_config_t *network,
+                                   const cm1e_generate_options_t *options, cm1e_diag_t *diag)
 {
-    const cm1e_bus_config_t *network = options->network;
-    if (!network || cm1e_motors_before(network, network->axis_count) == 0)
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                             "an ENI describes a network, but no axis with a motor is configured");
     cm1e_error_t error = cm1e_bus_config_check(network, diag);
     cm1e_eni_slave_t *slaves = calloc(network->axis_count, sizeof *slaves);
     node_t *nodes = calloc(network->axis_count, sizeof *nodes);
@@ -268,6 +266,23 @@ static cm1e_error_t generate_eni(cm1e_file_t *file, const cm1e_generate_options_
     cm1e_description_file_free(&described);
     free(slaves);
     free(nodes);
+    return error;
+}
+
+static cm1e_error_t generate_eni(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag)
+{
+    cm1e_bus_config_t network = {0};
+    cm1e_error_t error = options->network ? cm1e_config_copy(&network, options->network) : CM1E_OK;
+    if (error == CM1E_ERROR_NO_MEMORY)
+        return cm1e_diag_set(diag, error, 0, "out of memory");
+    if (error != CM1E_OK)
+        return cm1e_bus_config_check(options->network, diag);
+    if (cm1e_motors_before(&network, network.axis_count) == 0)
+        error = cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
+                              "an ENI describes a network, but no axis with a motor is configured");
+    else
+        error = eni_of_network(file, &network, options, diag);
+    cm1e_bus_config_free(&network);
     return error;
 }
 

@@ -22,25 +22,21 @@ static bool sim_matches(const char *name) { return strcmp(name, "sim") == 0 || s
 
 static cm1e_error_t make_segment(cm1e_nic_t *nic, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
 {
-    /* A whole configuration is too large for a stack. */
-    cm1e_bus_config_t *described = malloc(sizeof *described);
-    if (!described)
-        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the simulated segment.");
+    cm1e_bus_config_t other = {0}; /* the segment where it is described elsewhere, or not at all */
     cm1e_error_t error = CM1E_OK;
-    if (strncmp(nic->interface_name, "sim:", 4) == 0)
-        error = cm1e_bus_config_load(described, nic->interface_name + 4, diag);
-    else if (config->axis_count > 0)
-        *described = *config;
-    else
-        cm1e_bus_config_init(described, "sim", 1);
+    const bool by_file = strncmp(nic->interface_name, "sim:", 4) == 0, by_config = !by_file && config->axis_count > 0;
+    if (by_file)
+        error = cm1e_bus_config_load(&other, nic->interface_name + 4, diag);
+    else if (!by_config)
+        error = cm1e_bus_config_init(&other, "sim", 1);
     if (!error) {
         cm1e_diag_t why = {.error = CM1E_ERROR_NO_MEMORY};
-        nic->segment = cm1e_sim_segment_create(described, &why);
+        nic->segment = cm1e_sim_segment_create(by_config ? config : &other, &why);
         if (!nic->segment)
             error = cm1e_diag_set(diag, why.error ? why.error : CM1E_ERROR_NO_MEMORY, why.foreign_code, "%s",
                                   why.text[0] ? why.text : "No memory for the simulated segment.");
     }
-    free(described);
+    cm1e_bus_config_free(&other);
     return error;
 }
 

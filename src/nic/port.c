@@ -32,14 +32,10 @@ void ec_setupheader(void *p)
 
 static bool open_nic(ecx_portt *port, const char *first, const char *second)
 {
-    /* A whole configuration is too large for a stack. */
-    cm1e_bus_config_t *config = calloc(1, sizeof *config);
-    if (!config)
-        return false;
-    memcpy(config->interface_name, first, strnlen(first, sizeof config->interface_name - 1));
-    memcpy(config->second_interface, second, strnlen(second, sizeof config->second_interface - 1));
-    cm1e_nic_open(&port->nic, config, NULL);
-    free(config);
+    cm1e_bus_config_t config = {0};
+    memcpy(config.interface_name, first, strnlen(first, sizeof config.interface_name - 1));
+    memcpy(config.second_interface, second, strnlen(second, sizeof config.second_interface - 1));
+    cm1e_nic_open(&port->nic, &config, NULL);
     port->nic_is_ours = port->nic != NULL;
     return port->nic_is_ours;
 }

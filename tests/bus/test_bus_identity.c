@@ -77,7 +77,9 @@ static cm1e_bus_t *bus_of_case(const identity_case_t *c)
     }
     /* The segment that the nic makes of the configuration is replaced, so it must not depend on it. */
     static cm1e_bus_config_t kept;
+    cm1e_bus_config_free(&kept);
     kept = config;
+    config.axes = NULL; /* they are of the other one now */
     sim_config(1);
     cm1e_sim_segment_t *segment = cm1e_sim_segment_create_empty();
     for (const device_t *device = c->devices; device->kind != END; device++) {
@@ -89,7 +91,9 @@ static cm1e_bus_t *bus_of_case(const identity_case_t *c)
                                : cm1e_sim_cm1e_create(&motor, tested_order(), device->alias, device->switches);
         ck_assert_int_eq(cm1e_sim_segment_add(segment, slave), CM1E_OK);
     }
+    cm1e_bus_config_free(&config);
     config = kept;
+    kept.axes = NULL;
     cm1e_bus_t *bus = open_bus();
     cm1e_nic_replace_segment(cm1e_bus_nic(bus), segment);
     return bus;

@@ -14,6 +14,7 @@ enum { AXES = CM1E_BRIDGE_AXES, CM1 = 0, CM2 = 2 }; /* an axis with each kind of
 
 static void describe_bridge(void)
 {
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", AXES);
     config.virtual_time = true;
     config.cycle_time_ns = CM1E_BRIDGE_CYCLE_TIME_NS;

@@ -7,7 +7,7 @@ static int owners[AXES];
 static void start(void)
 {
     describe("1.3.5", CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, 1000000);
-    config.axis_count = AXES;
+    describe_up_to(AXES);
     for (int i = 0; i < AXES; i++)
         config.axes[i].mapping = (cm1e_mapping_t)(i % 2);
     open_segment();

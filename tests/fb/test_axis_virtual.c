@@ -13,7 +13,7 @@ static int owners[AXES];
 static void start(void)
 {
     describe("1.3.5", CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, 1000000);
-    config.axis_count = AXES;
+    describe_up_to(AXES);
     snprintf(config.axes[LINE].name, sizeof config.axes[LINE].name, "line");
     config.axes[LINE].type = CM1E_AXIS_VIRTUAL;
     config.axes[LINE].firmware[0] = '\0';
@@ -113,7 +113,7 @@ END_TEST
 START_TEST(test_virtual_axis_fails_at_its_limits_and_is_reset)
 {
     describe("1.3.5", CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, 1000000);
-    config.axis_count = 2;
+    describe_up_to(2);
     config.axes[LINE].type = CM1E_AXIS_VIRTUAL;
     config.axes[LINE].firmware[0] = '\0';
     config.axes[LINE].software_limit_negative = -1.0;
@@ -214,6 +214,7 @@ END_TEST
 /* Frames need somebody to pass: an I/O module stands in the segment. */
 START_TEST(test_a_segment_of_virtual_axes_only_runs)
 {
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", 2);
     config.virtual_time = true;
     config.cycle_time_ns = 1000000;
@@ -233,6 +234,7 @@ END_TEST
 
 START_TEST(test_fast_virtual_axis_passes_the_end_of_32_bits)
 {
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", 1);
     config.virtual_time = true;
     config.cycle_time_ns = 1000000;

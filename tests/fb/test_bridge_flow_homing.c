@@ -43,6 +43,7 @@ static cm1e_sim_bridge_axis_t *motor(int n)
 static void open_axes(void)
 {
     static const char *const motors[DRIVES] = {"CM1", "CM1", "CM2", "CM2"};
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", DRIVES);
     config.virtual_time = true;
     config.cycle_time_ns = 1000000;

@@ -13,6 +13,7 @@ static AXIS_REF_t references[MOTORS];
 
 static void open_axes(void)
 {
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", MOTORS);
     config.virtual_time = true;
     config.cycle_time_ns = 1000000;

@@ -34,7 +34,7 @@ static void scan(int count)
 static void start(void)
 {
     describe("", CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, 1000000);
-    config.axis_count = AXES;
+    describe_up_to(AXES);
     for (int i = 0; i < AXES; i++) {
         config.axes[i] = (cm1e_axis_config_t){.address = 1, .channel = (uint8_t)(i + 1), .k37 = 10, .k37_stated = true};
         snprintf(config.axes[i].motor, sizeof config.axes[i].motor, "%s", i < 2 ? "CM1" : "CM2");

@@ -11,7 +11,7 @@ static cm1e_cml_exchange_t exchange;
 static void start(void)
 {
     describe("1.3.5", CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, 1000000);
-    config.axis_count = 3;
+    describe_up_to(3);
     config.axes[0].address = 1;
     for (uint8_t i = 1; i < 3; i++) {
         config.axes[i] = (cm1e_axis_config_t){.address = 2, .channel = i, .k37 = 10, .k37_stated = true};

@@ -180,6 +180,7 @@ static void program(void *context)
 
 static void describe(cm1e_bus_config_t *config)
 {
+    cm1e_bus_config_free(config);
     cm1e_bus_config_init(config, "sim", 1);
     config->virtual_time = true;
     config->cycle_time_ns = CYCLE_NS;

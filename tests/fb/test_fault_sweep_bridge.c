@@ -303,6 +303,7 @@ static void describe_axes(void)
 
 static void start(void)
 {
+    cm1e_bus_config_free(&bench.config);
     memset(&bench, 0, sizeof bench);
     describe_axes();
     bench.program = program;

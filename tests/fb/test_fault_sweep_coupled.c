@@ -309,6 +309,7 @@ static void describe_axes(void)
 static void start(void)
 {
     static const char *const modes[] = {"this_axis", "coupled_axes", "keep_ratio"};
+    cm1e_bus_config_free(&bench.config);
     memset(&bench, 0, sizeof bench);
     describe_axes();
     bench.program = program;

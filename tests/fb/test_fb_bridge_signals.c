@@ -35,6 +35,7 @@ static void scan(int count)
 
 static void begin(void)
 {
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", AXES);
     config.virtual_time = true;
     config.cycle_time_ns = CM1E_BRIDGE_CYCLE_TIME_NS;

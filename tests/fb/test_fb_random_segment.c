@@ -289,6 +289,7 @@ static cm1e_bus_config_t config;
 
 static void choose_alone(void)
 {
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", 1);
     config.sim_pdo_order = (cm1e_pdo_order_t)pick(2);
     config.cycle_time_ns = one_in(3) ? cm1e_device_cycle_times_ns[pick(4)] : 1000000;
@@ -316,6 +317,7 @@ static void choose_bridge(void)
     const cm1e_device_model_t model = (cm1e_device_model_t)(CM1E_DEVICE_EB01 + pick(3));
     const unsigned first = 1 + (unsigned)pick(4), motors = 1 + (unsigned)pick(4);
     const bool cm1e = one_in(2);
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", motors + cm1e);
     config.cycle_time_ns = 1000000;
     bench.position = cm1e && one_in(2) ? 2 : 1;

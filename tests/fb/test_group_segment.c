@@ -17,6 +17,7 @@ static cm1e_group_t *group;
 static void open_mixed(void)
 {
     cm1e_diag_t said = {0};
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", AXES);
     config.virtual_time = true;
     config.cycle_time_ns = CM1E_BRIDGE_CYCLE_TIME_NS;

@@ -16,6 +16,7 @@ static MC_MoveRelative_t move;
 
 static void prepare(cm1e_mapping_t mapping, cm1e_pdo_order_t order, const char *firmware)
 {
+    cm1e_bus_config_free(&bench.config);
     memset(&bench, 0, sizeof bench);
     bench_describe(&bench, 1);
     bench.config.sim_pdo_order = order;

@@ -534,6 +534,7 @@ static void program(bench_t *b)
 
 static void prepare(unsigned seed)
 {
+    cm1e_bus_config_free(&bench.config);
     memset(&bench, 0, sizeof bench);
     memset(players, 0, sizeof players);
     memset(unplugged, 0, sizeof unplugged);

@@ -51,6 +51,7 @@ static void program(bench_t *b)
 
 static void prepare(const variant_t *variant, int cycle, void (*what)(void))
 {
+    cm1e_bus_config_free(&bench.config);
     memset(&bench, 0, sizeof bench);
     bench_describe(&bench, 1);
     cm1e_axis_config_t *axis = &bench.config.axes[AXIS];

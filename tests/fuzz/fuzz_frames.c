@@ -495,6 +495,7 @@ bool fuzz_rewrite(cm1e_file_t *written, const uint8_t *bytes, size_t size, bool 
     use_bus(run);
     use_it_honestly(run);
     cm1e_bus_close(run->bus);
+    cm1e_bus_config_free(&run->config);
     free(run);
     return false;
 }

@@ -51,7 +51,7 @@ static void program(void *context)
 
 int main(void)
 {
-    static cm1e_bus_config_t config;
+    cm1e_bus_config_t config;
     const cm1e_task_config_t task = {.program = program};
     cm1e_scheduler_config_t traced = {.trace_capacity = 100};
     cm1e_diag_t why = {0};
@@ -65,6 +65,7 @@ int main(void)
     const bool powered = power.Status;
     cm1e_scheduler_destroy(scheduler);
     cm1e_bus_close(bus);
+    cm1e_bus_config_free(&config);
     if (calls || strcmp(estring, "mine") != 0)
         fprintf(stderr, "the library called %u functions of the program\n", calls);
     printf("own names: %s\n", powered && !calls ? "no collision" : "FAILED");

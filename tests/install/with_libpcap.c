@@ -10,7 +10,7 @@
 int main(void)
 {
     static const char path[] = "with_libpcap.pcap";
-    static cm1e_bus_config_t config;
+    cm1e_bus_config_t config;
     cm1e_diag_t why = {0};
     cm1e_bus_t *bus = NULL;
     cm1e_bus_config_init(&config, "sim", 1);
@@ -19,6 +19,7 @@ int main(void)
         fprintf(stderr, "%s\n", why.text);
     const uint32_t slaves = cm1e_bus_slave_count(bus);
     cm1e_bus_close(bus);
+    cm1e_bus_config_free(&config);
 
     char fault[PCAP_ERRBUF_SIZE] = "";
     pcap_t *file = pcap_open_offline(path, fault);

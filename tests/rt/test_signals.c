@@ -76,6 +76,7 @@ static void start(turning_t *t)
     static cm1e_bus_config_t config;
     const cm1e_scheduler_config_t settings = {.trace_capacity = 20000};
     const cm1e_task_config_t task = {.program = program, .context = t};
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", 1);
     config.axes[0].max_deceleration = deceleration;
     config.axes[0].sim.no_stops = true;

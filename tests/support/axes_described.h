@@ -10,6 +10,7 @@
 /** Axes of 1000 counts a unit, hard stops 10 u to either side, homing on the negative one. */
 static void describe_axes(cm1e_bus_config_t *config, uint32_t axis_count)
 {
+    cm1e_bus_config_free(config);
     cm1e_bus_config_init(config, "sim", axis_count);
     config->virtual_time = true;
     for (uint32_t i = 0; i < axis_count; i++) {

@@ -26,12 +26,20 @@ static int owner;
 
 static inline void describe(const char *firmware, cm1e_mapping_t mapping, cm1e_pdo_order_t order, int64_t cycle_ns)
 {
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", 1);
     config.virtual_time = true;
     config.cycle_time_ns = cycle_ns;
     config.sim_pdo_order = order;
     config.axes[0].mapping = mapping;
     snprintf(config.axes[0].firmware, sizeof config.axes[0].firmware, "%s", firmware);
+}
+
+/** Adds axes with defaults until there are `count`. */
+static inline void describe_up_to(uint32_t count)
+{
+    while (config.axis_count < count)
+        *cm1e_bus_config_add_axis(&config, NULL) = (cm1e_axis_config_t){0};
 }
 
 static inline void open_segment(void)

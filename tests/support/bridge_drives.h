@@ -30,6 +30,7 @@ static inline void open_drives(void)
 {
     static const char *const motors[DRIVES] = {"CM1", "CM1", "CM2", "CM2"};
     cm1e_diag_t diag = {0};
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", DRIVES);
     config.virtual_time = true;
     config.cycle_time_ns = DRIVES_CYCLE_NS;

@@ -35,6 +35,7 @@ static inline cm1e_pdo_order_t tested_order(void)
 
 static inline cm1e_bus_config_t *sim_config(uint32_t axes)
 {
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", axes);
     config.virtual_time = true;
     config.sim_pdo_order = tested_order();

@@ -9,6 +9,7 @@ void fake_bus_init(cm1e_bus_t *bus, cm1e_mapping_t mapping, cm1e_pdo_order_t ord
     memset(bus, 0, sizeof *bus);
     cm1e_clock_init_virtual(&bus->clock, 0);
     bus->config.axis_count = 1;
+    bus->config.axes = bus->axes;
     bus->config.axes[0].mapping = mapping;
     snprintf(bus->config.axes[0].name, sizeof bus->config.axes[0].name, "slide");
     bus->firmware = firmware;

@@ -25,6 +25,7 @@ typedef struct fake_sdo_entry {
 
 struct cm1e_bus {
     cm1e_bus_config_t config;
+    cm1e_axis_config_t axes[CM1E_MAX_AXES]; /**< of the configuration */
     cm1e_clock_t clock;
     cm1e_firmware_t firmware;
     bool firmware_unreadable;

@@ -460,6 +460,7 @@ static inline void bench_random_axis(cm1e_axis_config_t *axis, cm1e_firmware_t o
 /** Axes of 1000 counts a unit with the library's default limits; the caller changes what it wants in bench->config. */
 static void bench_describe(bench_t *bench, uint32_t axes)
 {
+    cm1e_bus_config_free(&bench->config);
     cm1e_bus_config_init(&bench->config, "sim", axes);
     bench->config.virtual_time = true;
     bench->config.cycle_time_ns = 1000000;

@@ -12,6 +12,7 @@
 /** Axes without end stops that nobody homes, with this mapping and firmware. */
 static inline void bench_free_axes(bench_t *bench, uint32_t axes, cm1e_mapping_t mapping, const char *firmware)
 {
+    cm1e_bus_config_free(&bench->config);
     memset(bench, 0, sizeof *bench);
     bench_describe(bench, axes);
     for (uint32_t n = 0; n < axes; n++) {

@@ -14,6 +14,7 @@ static cm1e_diag_t diag;
 /* Four axes behind one bridge, in revolutions of 50,000 counts. */
 void setUp(void)
 {
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", CM1E_BRIDGE_AXES);
     for (uint8_t i = 0; i < CM1E_BRIDGE_AXES; i++) {
         config.axes[i].address = 1;

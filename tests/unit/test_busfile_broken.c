@@ -13,6 +13,7 @@ void tearDown(void) {}
 
 static const char temporary[] = CM1E_TEST_OUTPUT "/busfile_broken.yaml";
 static cm1e_bus_config_t config, untouched;
+static bool loaded; /* the configuration has axes that are to be freed */
 static cm1e_diag_t diag;
 
 static void write_file(const char *text, size_t size)
@@ -26,9 +27,12 @@ static void write_file(const char *text, size_t size)
 /* Loads what is in the file; whatever comes out, a failure says something and leaves the configuration alone. */
 static cm1e_error_t load(void)
 {
+    if (loaded)
+        cm1e_bus_config_free(&config);
     memset(&config, 0x5A, sizeof config);
     memset(&diag, 0x5A, sizeof diag);
     const cm1e_error_t error = cm1e_bus_config_load(&config, temporary, &diag);
+    loaded = error == CM1E_OK;
     TEST_ASSERT_EQUAL(error, diag.error);
     TEST_ASSERT_NOT_NULL(memchr(diag.text, '\0', sizeof diag.text));
     if (error) {
@@ -435,6 +439,7 @@ static void test_file_that_is_none_is_told(void)
         {"/dev/null", CM1E_ERROR_IO},
     };
     for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++) {
+        loaded = false;
         memset(&config, 0x5A, sizeof config);
         TEST_ASSERT_EQUAL_MESSAGE(paths[i].error, cm1e_bus_config_load(&config, paths[i].path, &diag), paths[i].path);
         TEST_ASSERT_EQUAL_MEMORY(&untouched, &config, sizeof config);

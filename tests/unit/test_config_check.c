@@ -1,4 +1,5 @@
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -11,6 +12,7 @@ static cm1e_diag_t diag;
 /* Two axes in units of 5,000 counts. */
 void setUp(void)
 {
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", 2);
     for (int i = 0; i < 2; i++)
         config.axes[i].counts_per_unit = 5000;
@@ -38,9 +40,11 @@ static void expect_wrong(const char *part)
 
 static void test_all_zero_configuration_is_good(void)
 {
+    cm1e_bus_config_free(&config);
     memset(&config, 0, sizeof config);
     expect_good();
-    config.axis_count = CM1E_MAX_AXES;
+    while (config.axis_count < CM1E_MAX_AXES)
+        *cm1e_bus_config_add_axis(&config, NULL) = (cm1e_axis_config_t){0};
     expect_good();
 }
 
@@ -210,9 +214,9 @@ static void test_names_are_single_defaults_included(void)
     expect_good();
 }
 
-#define NUMBER(member, part) {&config.axes[1].member, part}
+#define NUMBER(member, part) {offsetof(cm1e_axis_config_t, member), part}
 static const struct {
-    double *value;
+    size_t offset;
     const char *part;
 } numbers[] = {
     NUMBER(counts_per_unit, "unit.counts_per_unit"),
@@ -246,6 +250,9 @@ static const struct {
 };
 enum { NUMBERS = sizeof numbers / sizeof numbers[0] };
 
+/* Of the second axis. */
+static double *number(int i) { return (double *)(void *)((char *)&config.axes[1] + numbers[i].offset); }
+
 static void test_numbers_that_are_none_or_absurd_are_refused(void)
 {
     static const double absurd[] = {NAN, -NAN, INFINITY, -INFINITY, 1e300, -1e300};
@@ -255,7 +262,7 @@ static void test_numbers_that_are_none_or_absurd_are_refused(void)
                 (absurd[k] == -INFINITY && strstr(numbers[i].part, "_limits.negative")))
                 continue; /* none on this side */
             setUp();
-            *numbers[i].value = absurd[k];
+            *number(i) = absurd[k];
             expect_wrong(numbers[i].part);
         }
 }
@@ -266,7 +273,7 @@ static void test_only_positions_may_be_negative(void)
         setUp();
         const bool position = strstr(numbers[i].part, "offset") || strstr(numbers[i].part, "sensor") ||
                               strstr(numbers[i].part, "_limits.negative") || strstr(numbers[i].part, "stop_negative");
-        *numbers[i].value = -20;
+        *number(i) = -20;
         if (position)
             expect_good();
         else
@@ -290,9 +297,9 @@ static void test_bounds_are_the_devices_in_counts(void)
     };
     for (size_t i = 0; i < sizeof bounds / sizeof bounds[0]; i++) {
         setUp();
-        *numbers[bounds[i].number].value = bounds[i].good;
+        *number(bounds[i].number) = bounds[i].good;
         expect_good();
-        *numbers[bounds[i].number].value = bounds[i].wrong;
+        *number(bounds[i].number) = bounds[i].wrong;
         expect_wrong(numbers[bounds[i].number].part);
     }
 }
@@ -327,7 +334,7 @@ static void test_switches_are_on_inputs_of_the_motor_and_the_limit_switches_on_t
     *inputs = (cm1e_input_config_t){.limit_positive = 4, .limit_negative = 1, .home = 4};
     expect_good(); /* a limit switch may be the home switch */
     inputs->limit_negative = 4;
-    expect_wrong("inputs.limit_negative is 4, the input of the other");
+    expect_wrong("inputs.limit_negative is 4, which is the input of the other");
     *inputs = (cm1e_input_config_t){.limit_positive = 5};
     expect_wrong("inputs.limit_positive is 5");
     *inputs = (cm1e_input_config_t){.limit_negative = 255};
@@ -444,7 +451,8 @@ static void test_virtual_time_needs_the_simulated_segment(void)
 
 static void test_only_listed_axes_are_checked(void)
 {
-    config.axes[2].max_velocity = NAN;
+    cm1e_bus_config_add_axis(&config, NULL)->max_velocity = NAN;
+    config.axis_count = 2;
     expect_good();
     config.axis_count = 3;
     expect_wrong("axis axis3: limits.velocity");

@@ -70,6 +70,7 @@ static cm1e_bus_config_t configured;
 /* Axes by place: 0 a CM1-E, else the channel of a bridge. */
 static void set_network(size_t count, const uint16_t (*axes)[2])
 {
+    cm1e_bus_config_free(&configured);
     cm1e_bus_config_init(&configured, "sim", (uint32_t)count);
     for (size_t i = 0; i < count; i++) {
         snprintf(configured.axes[i].name, sizeof configured.axes[i].name, "A%zu", i + 1);

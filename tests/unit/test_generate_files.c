@@ -13,6 +13,7 @@ static cm1e_bus_config_t network;
 void setUp(void)
 {
     diag = (cm1e_diag_t){0};
+    cm1e_bus_config_free(&network);
     cm1e_bus_config_init(&network, NULL, 3);
 }
 

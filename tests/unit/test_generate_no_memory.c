@@ -24,6 +24,7 @@ void tearDown(void) { countdown = 0; }
 static cm1e_bus_config_t *network(void)
 {
     static cm1e_bus_config_t config;
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", 2);
     return &config;
 }

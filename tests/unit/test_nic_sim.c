@@ -21,6 +21,7 @@ static ecx_redportt red;
 
 void setUp(void)
 {
+    cm1e_bus_config_free(&config);
     memset(&config, 0, sizeof config);
     memset(&diag, 0, sizeof diag);
     memset(&port, 0, sizeof port);
@@ -87,6 +88,7 @@ static void test_no_name_and_no_axes_is_one_cm1e(void)
 static void test_the_axes_of_the_configuration_are_the_slaves(void)
 {
     for (uint32_t axes = 1; axes <= 16; axes *= 4) {
+        cm1e_bus_config_free(&config);
         cm1e_bus_config_init(&config, "sim", axes);
         config.virtual_time = true;
         TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, cm1e_nic_open(&nic, &config, &diag), diag.text);

@@ -18,6 +18,7 @@ static cm1e_diag_t diag;
 /* A CM1-E of firmware 1.3.0, with an I/O module before it. */
 void setUp(void)
 {
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", 1);
     config.axes[0].address = 2;
     strcpy(config.axes[0].firmware, "1.3.0");

@@ -22,6 +22,7 @@ void tearDown(void)
 
 static void open_axes(uint32_t count)
 {
+    cm1e_bus_config_free(&config);
     cm1e_bus_config_init(&config, "sim", count);
     for (uint32_t i = 0; i < count; i++)
         config.axes[i].address = 0;

@@ -205,6 +205,7 @@ static void test_nothing_that_arrives_does_harm_to_a_drive(void)
     cm1e_sim_segment_t *const doubles = b.segment;
     cm1e_bus_config_init(&config, "sim", SLAVES);
     b.segment = cm1e_sim_segment_create(&config, NULL);
+    cm1e_bus_config_free(&config);
     TEST_ASSERT_NOT_NULL(b.segment);
     attack();
     cm1e_sim_segment_destroy(b.segment);
