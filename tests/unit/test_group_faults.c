@@ -236,6 +236,9 @@ static void test_a_bus_that_is_lost_brakes_the_axes_in_step_in_csv(void)
         before[n] = cm1e_axis_line(axes_axis(n), axes_axis(n)->set);
     }
     TEST_ASSERT_TRUE(fabs(at[0]) > 0.5 && fabs(at[1]) > 0.3);
+    int longest_ms = 0; /* docs/SAFETY.md: length of the longest ramp */
+    for (int n = 0; n < 3; n++)
+        longest_ms = (int)fmax(longest_ms, ceil(fabs(at[n]) / axes_axis(n)->maximum.deceleration * 1e3));
     axes_bench.received = CM1E_ERROR_BUS_LOST;
     axes_bench.health = CM1E_ERROR_BUS_LOST;
     for (int i = 0; i < 200; i++) {
@@ -246,6 +249,8 @@ static void test_a_bus_that_is_lost_brakes_the_axes_in_step_in_csv(void)
             if (axis_on_profile(axes_axis(0)) && axis_on_profile(axes_axis(n)))
                 TEST_ASSERT_DOUBLE_WITHIN(2.0 / 50000, first * at[n] / at[0], way);
         }
+        for (int n = 0; n < 3 && i > longest_ms; n++)
+            TEST_ASSERT_EQUAL_DOUBLE(0.0, axes_axis(n)->set_velocity);
     }
     for (int n = 0; n < 3; n++)
         axes_must_be(n, CM1E_AXIS_ERROR_STOP);

@@ -427,6 +427,18 @@ static void test_a_fault_in_standby_is_the_groups(void)
     group_told("torque overload");
 }
 
+/** An axis that the group does not move is looked at when somebody asks: a reset asks too. */
+static void test_reset_sees_a_fault_that_nobody_has_read(void)
+{
+    fake_bus_fault(axes_motor(2), 0x2310);
+    axes_cycles(3);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_group_reset(group));
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, cm1e_group_reset_state(group, NULL));
+    axes_cycles(200);
+    TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, cm1e_group_reset_state(group, NULL));
+    axes_must_be(2, CM1E_AXIS_STANDSTILL);
+}
+
 static void test_reset_brings_back_group_and_axes(void)
 {
     into(CM1E_GROUP_ERROR_STOP);
@@ -532,6 +544,7 @@ int main(void)
     RUN_TEST(test_disable_stops_along_the_path);
     RUN_TEST(test_ungrouped_in_motion_the_axes_are_members_until_they_stand);
     RUN_TEST(test_a_fault_in_standby_is_the_groups);
+    RUN_TEST(test_reset_sees_a_fault_that_nobody_has_read);
     RUN_TEST(test_reset_brings_back_group_and_axes);
     RUN_TEST(test_a_reset_that_fails_says_so);
     RUN_TEST(test_a_reset_that_is_overtaken_by_disable_is_cancelled);
