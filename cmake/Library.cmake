@@ -46,7 +46,10 @@ foreach(room ${rooms})
   endforeach()
 endforeach()
 
-target_link_options(cm1e_shared PRIVATE LINKER:-Bsymbolic-functions $<$<NOT:$<BOOL:${CM1E_SANITIZE}>>:LINKER:-z,defs>)
+target_link_options(cm1e_shared PRIVATE LINKER:-Bsymbolic-functions)
+if(NOT CM1E_SANITIZE) # whose symbols only the program brings
+  target_link_options(cm1e_shared PRIVATE LINKER:-z,defs)
+endif()
 # Below 1.0 a new minor version may be another interface, so the soname has it too.
 set(soversion ${PROJECT_VERSION_MAJOR})
 if(soversion EQUAL 0)

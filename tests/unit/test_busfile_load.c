@@ -170,6 +170,7 @@ static void test_documented_example_fills_the_other_addresses_and_units(void)
 
 static void test_three_axes_example_loads(void)
 {
+    cm1e_bus_config_free(&config);
     TEST_ASSERT_EQUAL_MESSAGE(
         CM1E_OK, cm1e_bus_config_load(&config, CM1E_SOURCE_DIR "/examples/three_axes.yaml", &diag), diag.text);
     static const char *const names[3] = {"X", "Y", "Z"};
