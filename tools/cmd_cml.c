@@ -9,6 +9,7 @@
 #include "cm1e/cml.h"
 #include "command.h"
 #include "device/bridge_status.h"
+#include "device/devices.h"
 #include "device/cml.h"
 
 enum { KEY_SLAVE = 0x400, KEY_CHANNEL, KEY_TIMEOUT, KEY_ALLOW, KEY_STAY, MAX_STRINGS = 64 };
@@ -105,6 +106,8 @@ static bool choose_axis(session_t *session, const cm1e_bus_config_t *config, cm1
     return true;
 }
 
+static bool takes_cml(const cm1e_slave_info_t *slave) { return slave->device && slave->device->channels > 0; }
+
 /* The only bridge, if none is named. */
 static bool choose_slave(session_t *session)
 {
@@ -114,7 +117,7 @@ static bool choose_slave(session_t *session)
     if (session->slave)
         return true;
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(session->bus); position++)
-        if (cm1e_bus_slave(session->bus, position)->is_bridge && bridges++ == 0)
+        if (takes_cml(cm1e_bus_slave(session->bus, position)) && bridges++ == 0)
             session->slave = (uint16_t)position;
     if (bridges == 1)
         return true;

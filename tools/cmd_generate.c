@@ -7,7 +7,7 @@
 #include "command.h"
 #include "core/bytes.h"
 #include "description/sii.h"
-#include "device/device.h"
+#include "device/devices.h"
 #include "files.h"
 
 enum {
@@ -223,9 +223,10 @@ static void check_config_data(const generate_options_t *options, struct argp_sta
 {
     for (size_t i = 0; i < options->what.device_count; i++) {
         const cm1e_device_options_t *device = &options->devices[i];
-        const bool is_motor = device->model == CM1E_DEVICE_CM1E;
-        const uint32_t vendor = is_motor ? CM1E_VENDOR_ID : device->vendor_id;
-        const uint32_t product = is_motor ? CM1E_PRODUCT_CODE : device->product_code;
+        const cm1e_device_t *tables = cm1e_device_of_model(device->model);
+        const bool has_identity = tables->recognised == CM1E_BY_IDENTITY;
+        const uint32_t vendor = has_identity ? tables->vendor_id : device->vendor_id;
+        const uint32_t product = has_identity ? tables->product_code : device->product_code;
         if (options->config_of[i].path &&
             (options->config_of[i].vendor_id != vendor || options->config_of[i].product_code != product))
             argp_error(state, "%s is an image of vendor 0x%08X, product 0x%08X; the file describes vendor 0x%08X, "
@@ -257,7 +258,8 @@ static void check_words(const generate_options_t *options, struct argp_state *st
     if (format == CM1E_FILE_ENI && options->mapping_given && !options->common.interface_name)
         argp_error(state, "the bus file states the mapping of a configured axis: leave out --mapping");
     for (size_t i = 0; format == CM1E_FILE_ENI && options->what.devices && i < options->what.device_count; i++)
-        if (options->devices[i].model == CM1E_DEVICE_CM1E || options->common.interface_name)
+        if (cm1e_device_of_model(options->devices[i].model)->recognised == CM1E_BY_IDENTITY ||
+            options->common.interface_name)
             argp_error(state, "the devices of an ENI come from the network; with a bus file alone, --device eb01 "
                        "(eb02, eb12) states the identity of its bridges");
 }

@@ -4,7 +4,7 @@
 
 #include "command.h"
 #include "core/text.h"
-#include "device/bridge.h"
+#include "device/devices.h"
 
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
@@ -42,8 +42,9 @@ static json_t *slave_as_json(const cm1e_slave_info_t *slave)
                      "name", slave->name, "vendor_id", (json_int_t)slave->vendor_id, "product_code",
                      (json_int_t)slave->product_code, "revision", (json_int_t)slave->revision, "serial_number",
                      (json_int_t)slave->serial_number, "alias", slave->alias, "explicit_id", slave->explicit_id,
-                     "al_state", al_state_name(slave->al_state, state, sizeof state), "is_cm1e", slave->is_cm1e,
-                     "bridge", slave->is_bridge ? bridge_as_json(slave) : json_null(), "software_version",
+                     "al_state", al_state_name(slave->al_state, state, sizeof state), "is_cm1e",
+                     slave->device == &cm1e_device_cm1e, "bridge",
+                     slave->device && slave->device->channels ? bridge_as_json(slave) : json_null(), "software_version",
                      slave->software_version);
 }
 
@@ -74,7 +75,7 @@ static void print_table(const cm1e_bus_t *bus)
                in_bytes(name_width, slave->name), slave->name, slave->vendor_id, slave->product_code, slave->revision,
                slave->alias, slave->explicit_id, state_width, al_state_name(slave->al_state, state, sizeof state),
                slave->software_version[0] ? slave->software_version : "-");
-        if (slave->is_bridge)
+        if (slave->device && slave->device->channels)
             printf("     bridge %s, motors %s, %s, %s, %s\n", model_name(slave), motor_name(slave->motors[0]),
                    motor_name(slave->motors[1]), motor_name(slave->motors[2]), motor_name(slave->motors[3]));
     }

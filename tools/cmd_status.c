@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "command.h"
+#include "device/devices.h"
 #include "status_bridge.h"
 #include "status_drive.h"
 
@@ -93,9 +94,9 @@ int command_status(int argc, char **argv)
     bool readable = true;
     for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++) {
         const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, i);
-        if (slave->is_cm1e)
+        if (slave->device && slave->device->channels == 0)
             readable = show_drive(bus, slave, all, &diag) && readable;
-        else if (slave->is_bridge)
+        else if (slave->device)
             readable = show_bridge(bus, &config, slave, all, &diag) && readable;
         else
             show_other(slave, all);

@@ -9,6 +9,7 @@
 
 #include "cm1e/bridge.h"
 #include "core/text.h"
+#include "device/devices.h"
 #include "device/place.h"
 
 enum { KEY_PCAP = 0x100, KEY_JSON };
@@ -86,10 +87,18 @@ bool load_configuration(const common_options_t *options, cm1e_bus_config_t *conf
            || copy_word(config->pcap_file, sizeof config->pcap_file, options->pcap_file, "the name of the pcap file");
 }
 
+/** Axes behind a slave that have a channel; 0: there are none, or it is one axis. */
+static int channels_of(const cm1e_slave_info_t *slave) { return slave->device ? slave->device->channels : 0; }
+
+static bool is_one_axis(const cm1e_slave_info_t *slave)
+{
+    return slave->device && slave->device->channels == 0 && slave->device->extra_is_error;
+}
+
 static const cm1e_slave_info_t *first_bridge(const cm1e_bus_t *bus)
 {
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++)
-        if (cm1e_bus_slave(bus, position)->is_bridge)
+        if (channels_of(cm1e_bus_slave(bus, position)) > 0)
             return cm1e_bus_slave(bus, position);
     return NULL;
 }
@@ -98,7 +107,7 @@ static const cm1e_slave_info_t *first_bridge(const cm1e_bus_t *bus)
 static void print_questions(const cm1e_bus_t *bus, const char *interface_name)
 {
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++)
-        for (int id = 1; cm1e_bus_slave(bus, position)->is_bridge && id <= CM1E_BRIDGE_AXES; id++)
+        for (int id = 1; id <= channels_of(cm1e_bus_slave(bus, position)); id++)
             fprintf(stderr, "  cm1e cml -i %s --slave %u \"K37.%d\"\n", interface_name, (unsigned)position, id);
 }
 
@@ -109,9 +118,9 @@ static void print_bus_file(const cm1e_bus_t *bus, const char *interface_name)
     fprintf(stderr, "bus:\n  interface: %s\naxes:\n", interface_name);
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++) {
         const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, position);
-        if (slave->is_cm1e)
+        if (is_one_axis(slave))
             fprintf(stderr, "  - {name: axis%u, position: %u}\n", ++axis, (unsigned)position);
-        for (int id = 1; slave->is_bridge && id <= CM1E_BRIDGE_AXES; id++)
+        for (int id = 1; id <= channels_of(slave); id++)
             fprintf(stderr, "  - {name: axis%u, position: %u, channel: %d, k37: ANSWER-TO-K37.%d}\n", ++axis,
                     (unsigned)position, id, id);
     }
@@ -146,7 +155,7 @@ bool load_axes(const common_options_t *options, cm1e_bus_config_t *config)
         return false;
     }
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++)
-        if (cm1e_bus_slave(bus, position)->is_cm1e) {
+        if (is_one_axis(cm1e_bus_slave(bus, position))) {
             cm1e_axis_config_t *axis = cm1e_bus_config_add_axis(config, NULL);
             if (axis)
                 *axis = (cm1e_axis_config_t){.address = (uint16_t)position};

@@ -9,7 +9,7 @@
 #include "core/bytes.h"
 #include "core/text.h"
 #include "description/description.h"
-#include "device/bridge.h"
+#include "device/devices.h"
 
 enum { OBJECTS_MAX = 0x10000, VALUE_BYTES = 256, VALUE_TEXT = 300 };
 
@@ -27,9 +27,7 @@ typedef struct list {
 
 const cm1e_entry_t *find_entry(const cm1e_slave_info_t *slave, uint16_t index, uint8_t subindex)
 {
-    return slave->is_cm1e     ? cm1e_device_entry(index, subindex)
-           : slave->is_bridge ? cm1e_bridge_entry(slave->model, index, subindex)
-                              : NULL;
+    return slave->device ? slave->device->entry(slave->device, index, subindex) : NULL;
 }
 
 const char *availability_mark(const cm1e_entry_t *entry)

@@ -4,7 +4,6 @@
 
 #include "cia402/cia402.h"
 #include "core/bytes.h"
-#include "device/device.h"
 
 /** The objects to read, in the order of the printed lines, with the values of the device. */
 static const struct {
@@ -52,6 +51,8 @@ bool read_drive(cm1e_bus_t *bus, uint16_t position, drive_status_t *drive, cm1e_
 {
     cm1e_diag_t other;
     *drive = (drive_status_t){0};
+    const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, position);
+    drive->device = slave && slave->device ? slave->device->drives[0] : NULL;
     for (int i = 0; i < DRIVE_READINGS; i++)
         read_object(bus, position, i, &drive->readings[i], i == STATUSWORD ? diag : &other);
     return drive->readings[STATUSWORD].valid;
@@ -59,10 +60,15 @@ bool read_drive(cm1e_bus_t *bus, uint16_t position, drive_status_t *drive, cm1e_
 
 /* ---- in words --------------------------------------------------------------------------------------------------- */
 
+static const cm1e_device_error_t *error_of(const drive_status_t *drive)
+{
+    return drive->device ? drive->device->error((uint16_t)drive->readings[ERROR_CODE].value) : NULL;
+}
+
 /** 0x603F has codes that are not errors too: no mode selected, disabled by command ... (UG 7.3.1). */
 static bool is_error(const drive_status_t *drive)
 {
-    const cm1e_device_error_t *row = cm1e_device_error((uint16_t)drive->readings[ERROR_CODE].value);
+    const cm1e_device_error_t *row = error_of(drive);
     return drive->readings[ERROR_CODE].valid && (!row || row->fault);
 }
 
@@ -80,7 +86,8 @@ static const char *mode_name(const drive_status_t *drive)
 
 static const char *state_name(const drive_status_t *drive)
 {
-    return cm1e_fsa_name(cm1e_fsa_decode((uint16_t)drive->readings[STATUSWORD].value));
+    const cm1e_fsa_row_t *states = drive->device ? drive->device->modes[0].words->states : cm1e_fsa_table;
+    return cm1e_fsa_name(cm1e_fsa_decode_by(states, (uint16_t)drive->readings[STATUSWORD].value));
 }
 
 static const char *error_name(const cm1e_device_error_t *error)
@@ -106,7 +113,7 @@ static int value_text(const drive_status_t *drive, int i, char *text, size_t siz
         return snprintf(text, size, "%s (0x%04X), motor power %s", state_name(drive), (unsigned)value & 0xFFFF,
                         value & STATUSWORD_VOLTAGE_ENABLED ? "on" : "off");
     if (i == ERROR_CODE) {
-        const cm1e_device_error_t *error = cm1e_device_error((uint16_t)value);
+        const cm1e_device_error_t *error = error_of(drive);
         const char *cure = is_error(drive) && error && error->cure ? error->cure : "";
         return snprintf(text, size, "0x%04X %s%s%s", (unsigned)value & 0xFFFF, error_name(error), cure[0] ? ": " : "",
                         cure);
@@ -143,7 +150,7 @@ static json_t *reading_as_json(const reading_t *reading, bool is_whole)
 
 json_t *drive_status_as_json(const cm1e_slave_info_t *slave, const drive_status_t *drive)
 {
-    const char *code = error_name(cm1e_device_error((uint16_t)drive->readings[ERROR_CODE].value));
+    const char *code = error_name(error_of(drive));
     const struct {
         int reading;
         const char *key, *word;

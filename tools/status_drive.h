@@ -1,6 +1,6 @@
 /**
  * @file status_drive.h
- * Reads a CM1-E for `cm1e status`.
+ * Reads a device that is one axis, for `cm1e status`.
  */
 #ifndef CM1E_TOOLS_STATUS_DRIVE_H
 #define CM1E_TOOLS_STATUS_DRIVE_H
@@ -9,6 +9,7 @@
 #include <stdbool.h>
 
 #include "cm1e/bus.h"
+#include "device/devices.h"
 
 enum { DRIVE_READINGS = 8, DRIVE_TEXT_BYTES = 320 };
 
@@ -22,6 +23,7 @@ typedef struct reading {
 } reading_t;
 
 typedef struct drive_status {
+    const cm1e_device_drive_t *device; /**< NULL: the slave is not known */
     reading_t readings[DRIVE_READINGS];
 } drive_status_t;
 

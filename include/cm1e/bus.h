@@ -40,8 +40,9 @@ typedef struct cm1e_slave_info {
     uint16_t alias;       /**< register 0x0012 */
     uint16_t explicit_id; /**< value of the rotary switches; 0: none or not supported */
     uint16_t al_state, al_status_code;
-    bool is_cm1e;
-    bool is_bridge;             /**< an EtherCAT Cool MUSCLE Bridge, by its modular objects (0xF000, 0xF010, 0xF050) */
+    const struct cm1e_device *device; /**< what the library knows of it; NULL: it is none of its devices */
+    const char *kind;           /**< "cm1-e", "bridge" (by its modular objects 0xF000, 0xF010, 0xF050) ...: the name of
+                                     its kind in a bus file; NULL: it is none of the library's devices */
     cm1e_device_model_t model;  /**< model of a bridge, by its motors; CM1E_DEVICE_CM1E: no bridge, or an unknown
                                      model */
     uint8_t motors[4];          /**< motors of a bridge by connector (0xF511:1 ... 0xF514:1): 1 CM1, 2 CM2, 0 another */

@@ -22,22 +22,11 @@ static cm1e_error_t reachable(const cm1e_axis_t *axis)
 const char *cm1e_axis_signals_advice(const cm1e_axis_t *axis, cm1e_error_t error)
 {
     const cm1e_drive_t *drive = &axis->drive;
-    if (!cm1e_drive_bridged(drive))
-        return "";
-    switch (error) {
-    case CM1E_ERROR_AXIS_SIGNAL:
-        return cm1e_drive_bridge_motor(drive) == CM1E_BRIDGE_CM1
-                   ? " Of a CM1 behind a bridge these can be reached: inputs 2 ... 4, output 2."
-                   : " Of a CM2 behind a bridge these can be reached: inputs 1 ... 6 (in CPIO 1 ... 4), "
-                     "outputs 1 ... 4.";
-    case CM1E_ERROR_PDO_MAPPING:
-        return " Behind a bridge torque is not known, and digital signals go by SDO, too late for what follows a "
-               "position: only in CPIO mode they are in the process data.";
-    case CM1E_ERROR_AXIS_NOT_POWERED:
-        return " Behind a bridge digital signals are reached while the motor is enabled in csp.";
-    default:
-        return "";
-    }
+    const char *const *advice = drive->kind->signals.advice;
+    const char *text = error == CM1E_ERROR_AXIS_SIGNAL        ? advice[CM1E_ADVICE_SIGNAL]
+                       : error == CM1E_ERROR_PDO_MAPPING      ? advice[CM1E_ADVICE_MAPPING]
+                       : error == CM1E_ERROR_AXIS_NOT_POWERED ? advice[CM1E_ADVICE_POWER] : NULL;
+    return text ? text : "";
 }
 
 /* ---- inputs ------------------------------------------------------------------------------------------------------ */
@@ -57,10 +46,11 @@ static cm1e_error_t check_signal(int number, int most, unsigned there, unsigned 
 
 cm1e_error_t cm1e_axis_check_input(const cm1e_axis_t *axis, int number)
 {
+    const cm1e_device_signals_t *signals = &axis->drive.kind->signals;
     const unsigned mask = cm1e_drive_input_mask(&axis->drive);
     if (cm1e_drive_is_virtual(&axis->drive))
         return CM1E_ERROR_AXIS_VIRTUAL;
-    return check_signal(number, CM1E_AXIS_INPUTS, cm1e_drive_bridged(&axis->drive) ? mask : 0x0F, mask);
+    return check_signal(number, CM1E_AXIS_INPUTS, signals->by_sdo ? mask : signals->inputs, mask);
 }
 
 bool cm1e_axis_sees_inputs(const cm1e_axis_t *axis)
@@ -134,10 +124,11 @@ bool cm1e_axis_switch_active(const cm1e_axis_t *axis, cm1e_axis_switch_t which)
 
 static cm1e_error_t check_output(const cm1e_axis_t *axis, int number)
 {
+    const cm1e_device_signals_t *signals = &axis->drive.kind->signals;
     const unsigned mask = cm1e_drive_output_mask(&axis->drive);
     if (cm1e_drive_is_virtual(&axis->drive))
         return CM1E_ERROR_AXIS_VIRTUAL;
-    return check_signal(number, CM1E_AXIS_OUTPUTS, cm1e_drive_bridged(&axis->drive) ? mask : 0x01, mask);
+    return check_signal(number, CM1E_AXIS_OUTPUTS, signals->by_sdo ? mask : signals->outputs, mask);
 }
 
 static cm1e_error_t set_output(cm1e_axis_t *axis, int number, bool value, int64_t until_ns)

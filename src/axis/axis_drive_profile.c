@@ -34,7 +34,7 @@ static cm1e_mode_t mode_of(const driving_t *d) { return d->velocity_mode ? CM1E_
 /* As the device keeps it, or FALSE: out of its range. */
 static bool parameter(const cm1e_axis_t *axis, uint16_t index, double counts, uint32_t *raw)
 {
-    const cm1e_entry_t *entry = cm1e_device_entry(index, 0);
+    const cm1e_entry_t *entry = cm1e_drive_entry(&axis->drive, index, 0);
     const int64_t rounded = cm1e_entry_round(entry, llround(counts));
     if (rounded < entry->minimum || rounded > entry->maximum)
         return false;

@@ -23,83 +23,26 @@ static const int64_t interrupted_ns = 100 * MS_IN_NS;
 static const int64_t taken_ns = 100 * MS_IN_NS; /* BR appendix 4.1: "until setting is done" */
 static const double standing_counts = 10.0;
 
-typedef struct homing_object {
-    uint16_t index;
-    uint8_t subindex;
-    double unit; /* counts, or what it is, in one of the object's */
-} homing_object_t;
-
-enum { OFFSET = 0, METHOD, SPEED, ACCELERATION, TORQUE, TIMEOUT };
-enum { MOST_STEPS = 10 };
+enum { OFFSET = CM1E_HOMING_OFFSET, METHOD = CM1E_HOMING_METHOD, SPEED = CM1E_HOMING_SPEED,
+       ACCELERATION = CM1E_HOMING_ACCELERATION, TORQUE = CM1E_HOMING_TORQUE, TIMEOUT };
 static const double longest_timeout_s = 1e6;
 
-typedef struct homing_kind {
-    int8_t first_method, last_method;
-    int8_t first_by_switch, last_by_switch; /* those that look for a switch and not for a stop */
-    bool halts;                /* it has a halt bit */
-    bool attained_is_enough;   /* bit 12 alone and a motor that stands (BR appendix 4.2) */
-    homing_object_t objects[HOMING_PARAMETERS];
-    uint8_t subindex_by_stop;  /* of SPEED, for the methods without a switch; 0: the same */
-    home_step_t steps[MOST_STEPS]; /* up to HOME_RETURN */
-} homing_kind_t;
-
-#define METHODS_BEHIND_BRIDGE .first_method = 1, .last_method = 4, .first_by_switch = 3, .last_by_switch = 4
-#define STEPS_BEHIND_BRIDGE                                                                                         \
-    HOME_REST, HOME_SWITCH, HOME_WRITE, HOME_TAKEN, HOME_START, HOME_RUN, HOME_SETTLE, HOME_RETURN
-#define OBJECTS_BEHIND_BRIDGE                                                                                       \
-    {                                                                                                               \
-        [OFFSET] = {OBJ_607C_HOME_OFFSET, 0, CM1E_BRIDGE_OFFSET_UNIT},                                              \
-        [METHOD] = {OBJ_6098_HOMING_METHOD, 0, 1.0},                                                                \
-        [SPEED] = {OBJ_6099_HOMING_SPEEDS, 1, CM1E_BRIDGE_SPEED_UNIT},                                              \
-        [ACCELERATION] = {OBJ_609A_HOMING_ACCELERATION, 0, CM1E_BRIDGE_ACCELERATION_UNIT},                          \
-        [TORQUE] = {OBJ_60F6_K_PARAMETERS, CM1E_K_PARAMETER_HOMING_TORQUE, 1.0},                                    \
-    }
-
-static const homing_kind_t homing_kinds[] = {
-    [HOMING_CM1E] = {
-        .first_method = -6, .last_method = -1, .first_by_switch = -6, .last_by_switch = -3, .halts = true,
-        .objects = {
-            [OFFSET] = {OBJ_607C_HOME_OFFSET, 0, 1.0},
-            [METHOD] = {OBJ_6098_HOMING_METHOD, 0, 1.0},
-            [SPEED] = {OBJ_6099_HOMING_SPEEDS, 1, 1.0},
-            [ACCELERATION] = {OBJ_609A_HOMING_ACCELERATION, 0, 1.0},
-            [TORQUE] = {OBJ_60F6_K_PARAMETERS, CM1E_K_PARAMETER_HOMING_TORQUE, 1.0},
-        },
-        .steps = {HOME_WRITE, HOME_SWITCH, HOME_START, HOME_RUN, HOME_RETURN},
-    },
-    [HOMING_CM1] = {
-        METHODS_BEHIND_BRIDGE, .attained_is_enough = true, .subindex_by_stop = 2,
-        .objects = OBJECTS_BEHIND_BRIDGE, .steps = {STEPS_BEHIND_BRIDGE},
-    },
-    [HOMING_CM2] = { /* its K45 says what K48 counts in (BR 6.4.1, note 3) */
-        METHODS_BEHIND_BRIDGE, .attained_is_enough = true, .subindex_by_stop = 2,
-        .objects = OBJECTS_BEHIND_BRIDGE, .steps = {HOME_READ, STEPS_BEHIND_BRIDGE},
-    },
-};
-
-static homing_kind_id_t kind_id(const cm1e_axis_t *axis)
-{
-    if (!cm1e_drive_bridged(&axis->drive))
-        return HOMING_CM1E;
-    return cm1e_drive_bridge_motor(&axis->drive) == CM1E_BRIDGE_CM2 ? HOMING_CM2 : HOMING_CM1;
-}
-
-static const homing_kind_t *kind_of(const cm1e_axis_t *axis) { return &homing_kinds[kind_id(axis)]; }
+/* What differs between the drives is their device's table. */
+static const cm1e_device_homing_t *kind_of(const cm1e_axis_t *axis) { return axis->drive.kind->homing; }
 
 bool cm1e_axis_homes_by_switch(const cm1e_axis_t *axis, int method)
 {
-    const homing_kind_t *kind = kind_of(axis);
+    const cm1e_device_homing_t *kind = kind_of(axis);
     return method >= kind->first_by_switch && method <= kind->last_by_switch;
 }
 
 static bool k45_is_known(const homing_t *home) { return cm1e_bridge_offset_unit(home->k45) != 0; }
 
-/* The object of a parameter for a method, and what its range is: of K47 behind a bridge that of a CM1-E, as the guide
- * has none. */
-static homing_object_t object_of(const cm1e_axis_t *axis, int which, int method)
+/* The object of a parameter for a method, and what its range is. */
+static cm1e_homing_object_t object_of(const cm1e_axis_t *axis, int which, int method)
 {
-    const homing_kind_t *kind = kind_of(axis);
-    homing_object_t object = kind->objects[which];
+    const cm1e_device_homing_t *kind = kind_of(axis);
+    cm1e_homing_object_t object = kind->objects[which];
     if (which == SPEED && kind->subindex_by_stop && !cm1e_axis_homes_by_switch(axis, method))
         object.subindex = kind->subindex_by_stop;
     if (which == OFFSET && axis->home.k45 >= 0 && k45_is_known(&axis->home))
@@ -107,10 +50,9 @@ static homing_object_t object_of(const cm1e_axis_t *axis, int which, int method)
     return object;
 }
 
-static const cm1e_entry_t *range_of(const cm1e_axis_t *axis, int which, homing_object_t object)
+static const cm1e_entry_t *range_of(const cm1e_axis_t *axis, cm1e_homing_object_t object)
 {
-    return which == TORQUE ? cm1e_device_entry(object.index, object.subindex)
-                           : cm1e_drive_entry(&axis->drive, object.index, object.subindex);
+    return object.range ? object.range : cm1e_drive_entry(&axis->drive, object.index, object.subindex);
 }
 
 /* UG 6.2.4, "Bit Sequence", and BR 6.4.2, by bit 13 * 4 + bit 12 * 2 + bit 10. 110 is not in the table; with the error
@@ -128,7 +70,8 @@ static uint8_t bits(const cm1e_axis_t *axis)
 
 /* The motor's; but a speed is a revolution a second at most. K42 counts pulses, of which a CM1 has 200 in a revolution
  * with K37 = 0: its default would be 50 revolutions a second, into a hard stop. */
-static double default_of(const cm1e_axis_t *axis, int which, const homing_object_t *object, const cm1e_entry_t *entry)
+static double default_of(const cm1e_axis_t *axis, int which, const cm1e_homing_object_t *object,
+                         const cm1e_entry_t *entry)
 {
     const double most = CM1E_COUNTS_PER_REVOLUTION * axis->count / object->unit;
     return which == SPEED ? fmin((double)entry->default_value, most) : (double)entry->default_value;
@@ -138,8 +81,8 @@ static double default_of(const cm1e_axis_t *axis, int which, const homing_object
  * default of those that have one. */
 static bool parameter(cm1e_axis_t *axis, int which, int method, double value)
 {
-    const homing_object_t object = object_of(axis, which, method);
-    const cm1e_entry_t *entry = range_of(axis, which, object);
+    const cm1e_homing_object_t object = object_of(axis, which, method);
+    const cm1e_entry_t *entry = range_of(axis, object);
     if (!entry || !isfinite(value) || fabs(value / object.unit) > INT32_MAX)
         return false;
     const bool by_default = value == 0.0 && which != OFFSET && which != METHOD;
@@ -174,8 +117,8 @@ void cm1e_axis_home_wrong_text(const cm1e_axis_t *axis, char *text, size_t size)
         least = 0.0;
         most = longest_timeout_s;
     } else if (which != METHOD) {
-        const homing_object_t object = object_of(axis, which, axis->home.raw[METHOD]);
-        const cm1e_entry_t *entry = range_of(axis, which, object);
+        const cm1e_homing_object_t object = object_of(axis, which, axis->home.raw[METHOD]);
+        const cm1e_entry_t *entry = range_of(axis, object);
         const double counts = which == TORQUE ? 1.0 : fabs(axis->scale);
         least = (double)entry->minimum * object.unit / counts;
         most = (double)entry->maximum * object.unit / counts;
@@ -209,7 +152,7 @@ static cm1e_error_t take_parameters(cm1e_axis_t *axis, const cm1e_homing_config_
 cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *command)
 {
     const cm1e_homing_config_t *c = command->homing ? command->homing : &axis->config->homing;
-    const homing_kind_t *kind = kind_of(axis);
+    const cm1e_device_homing_t *kind = kind_of(axis);
     homing_t *home = &axis->home;
     position_t position;
     if (cm1e_drive_is_virtual(&axis->drive))
@@ -220,7 +163,7 @@ cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t
         return CM1E_ERROR_CM_MODE;
     if (!(axis->enable_positive && axis->enable_negative))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED; /* every method moves both ways */
-    if (c->method > kind->last_method || c->method < kind->first_method) /* 0 is "no home routine selected" */
+    if (c->method > kind->last_method || c->method < kind->first_method || c->method == 0) /* 0: none is selected */
         return wrong(home, METHOD, c->method);
     if (home->submitted && cm1e_sdo_state(&home->sdo) == CM1E_SDO_BUSY)
         return CM1E_ERROR_BUSY; /* a transfer of a homing that was stopped */
@@ -237,7 +180,7 @@ cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t
 /* ---- from step to step ------------------------------------------------------------------------------------------- */
 
 /* What a step begins with. */
-static void enter(cm1e_axis_t *axis, home_step_t step)
+static void enter(cm1e_axis_t *axis, cm1e_home_step_t step)
 {
     homing_t *home = &axis->home;
     cm1e_drive_command_t *command = &axis->drive.command;
@@ -270,7 +213,7 @@ static void take_reference(cm1e_axis_t *axis)
 
 static void next_step(cm1e_axis_t *axis)
 {
-    const home_step_t step = kind_of(axis)->steps[++axis->home.place];
+    const cm1e_home_step_t step = kind_of(axis)->steps[++axis->home.place];
     if (step == HOME_RETURN)
         take_reference(axis);
     enter(axis, step);
@@ -343,7 +286,7 @@ static bool transferred(cm1e_axis_t *axis)
 static void submit_parameter(cm1e_axis_t *axis)
 {
     homing_t *home = &axis->home;
-    const homing_object_t object = object_of(axis, home->next, home->raw[METHOD]);
+    const cm1e_homing_object_t object = object_of(axis, home->next, home->raw[METHOD]);
     const unsigned bits = cm1e_drive_entry(&axis->drive, object.index, object.subindex)->bits;
     const unsigned bytes = bits <= 8 * sizeof home->data ? bits / 8 : (unsigned)sizeof home->data;
     cm1e_put_uint(home->data, bytes, (uint32_t)home->raw[home->next]);
@@ -525,7 +468,7 @@ static void step_settle(cm1e_axis_t *axis)
  * one that nobody sees, because the bus is gone. */
 static int64_t halt_bound_ns(const cm1e_axis_t *axis)
 {
-    const homing_kind_t *kind = kind_of(axis);
+    const cm1e_device_homing_t *kind = kind_of(axis);
     const double speed = axis->home.raw[SPEED] * kind->objects[SPEED].unit;
     const double acceleration = axis->home.raw[ACCELERATION] * kind->objects[ACCELERATION].unit;
     const double braking_s = fmin(speed / acceleration, 1e-9 * (double)longest_halt_ns);

@@ -9,26 +9,10 @@
 
 extern const source_t cm1e_source_homing; /**< the drive's own; axis_home.c */
 
-enum { HOMING_PARAMETERS = 5 };
-
-/** Drives that home in different ways (axis_home.c). */
-typedef enum homing_kind_id { HOMING_CM1E = 0, HOMING_CM1, HOMING_CM2 } homing_kind_id_t;
-
-typedef enum home_step {
-    HOME_READ = 0,  /**< the unit of the offset over SDO; the axis holds its position */
-    HOME_REST,      /**< it holds its position until the motor stands */
-    HOME_WRITE,     /**< parameters over SDO; the axis holds its position, or stands in homing mode */
-    HOME_SWITCH,    /**< to homing mode */
-    HOME_TAKEN,     /**< the drive takes the parameters over */
-    HOME_START,     /**< start bit set; the status bits are still those of before */
-    HOME_RUN,
-    HOME_SETTLE,    /**< the drive has ended: until the motor stands */
-    HOME_HALT,      /**< halt bit set, or start bit taken away, until the motor stands */
-    HOME_RETURN,    /**< back to the axis's own mode */
-} home_step_t;
+enum { HOMING_PARAMETERS = CM1E_HOMING_PARAMETERS };
 
 typedef struct homing {
-    home_step_t step;
+    cm1e_home_step_t step;
     home_goal_t goal;
     double position;       /**< u, at the reference */
     double offset;         /**< counts, as asked for */

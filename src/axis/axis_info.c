@@ -45,26 +45,26 @@ cm1e_error_t cm1e_axis_read(AXIS_REF_t reference, cm1e_axis_info_t *info)
 
 int64_t cm1e_axis_time(const cm1e_axis_t *axis) { return axis->now_ns; }
 
-/* UG 7.3.1: what a drive says that is just not enabled, and otherwise would be worth a look. */
-static bool tells_only_that_it_is_off(const cm1e_drive_feedback_t *f)
+/* Whether a code says only that the drive is not enabled: that is no warning. */
+static bool tells_only_that_it_is_off(const cm1e_drive_t *drive)
 {
-    const uint16_t code = f->error_code;
-    return f->state != OPERATION_ENABLED && (code == 0x4502 || code == 0x8611 || code == 0xFF01);
+    const cm1e_device_error_t *error = drive->kind->error(drive->feedback.error_code);
+    return drive->feedback.state != OPERATION_ENABLED && error && error->only_off;
 }
 
 cm1e_axis_condition_t cm1e_axis_condition(const cm1e_axis_t *axis)
 {
     const cm1e_drive_feedback_t *f = &axis->drive.feedback;
     const char *name = cm1e_bus_configuration(axis->drive.bus)->interface_name;
-    /* Behind a bridge bit 7 never warns (BR 6.1.3), but is an input in CPIO; and this is where CML leaves it. */
-    const bool bridged = cm1e_drive_bridged(&axis->drive), rests = bridged && f->state == SWITCH_ON_DISABLED;
+    const cm1e_device_words_t *words = axis->drive.words;
+    const bool rests = words->rests_disabled && f->state == SWITCH_ON_DISABLED;
     return (cm1e_axis_condition_t){
         .simulation = cm1e_interface_is_simulated(name),
         .communication = f->online,
         .ready_for_power_on = axis->state == CM1E_AXIS_DISABLED && f->online && f->voltage && !f->fault &&
                               (f->state == READY_TO_SWITCH_ON || f->state == SWITCHED_ON || rests),
-        .warning = !f->fault && !bridged && (f->statusword & STATUSWORD_WARNING ||
-                                             (f->error_code != 0 && !tells_only_that_it_is_off(f))),
+        .warning = !f->fault && (f->statusword & words->warning ||
+                                 (f->error_code != 0 && !tells_only_that_it_is_off(&axis->drive))),
     };
 }
 

@@ -73,7 +73,7 @@ cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
     const cm1e_error_t error = check_configuration(axis, diag);
     if (error)
         return error;
-    axis->counts_limit = cm1e_drive_bridged(&axis->drive) ? axis->drive.position_most : 0;
+    axis->counts_limit = axis->drive.kind->position_limited ? axis->drive.position_most : 0;
     const double counts = cm1e_unit_scale(c), count = cm1e_unit_count(c);
     const double backlash_velocity = c->backlash == 0.0 ? 0.0
                                      : or_default(c->backlash_velocity, cm1e_unit_backlash_velocity(c) / counts);

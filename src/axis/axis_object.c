@@ -9,47 +9,47 @@
 
 /* docs/DEVICE.md has the same table in words. No commands: what moves the motor goes through the blocks for it. */
 static const cm1e_axis_objects_t table[] = {
-    {1021, 1101, OBJ_60F6_K_PARAMETERS, 1, 0}, /* K21 ... K101 */
-    {1200, 1208, OBJ_60FB_H_PARAMETERS, 1, 0}, /* H0 ... H8 */
-    {1301, 1304, OBJ_2201_USER_VARIABLES, 1, 0},
-    {1400, 1400, OBJ_607C_HOME_OFFSET, 0, 0},
-    {1401, 1401, OBJ_6098_HOMING_METHOD, 0, 0},
-    {1402, 1402, OBJ_6099_HOMING_SPEEDS, 1, 0},
-    {1403, 1403, OBJ_609A_HOMING_ACCELERATION, 0, 0},
-    {1404, 1404, OBJ_6099_HOMING_SPEEDS, 2, 0},
-    {1410, 1410, OBJ_6081_PROFILE_VELOCITY, 0, 0},
-    {1411, 1411, OBJ_6083_PROFILE_ACCELERATION, 0, 0},
-    {1412, 1412, OBJ_6084_PROFILE_DECELERATION, 0, 0},
-    {1420, 1420, 0x605A, 0, 0},
-    {1421, 1421, 0x605B, 0, 0},
-    {1422, 1422, 0x605C, 0, 0},
-    {1423, 1423, 0x605E, 0, 0},
-    {1500, 1500, OBJ_2301_TEMPERATURE, 0, 0},
-    {1501, 1501, OBJ_6079_DC_LINK_VOLTAGE, 0, 0},
-    {1502, 1502, OBJ_6077_TORQUE_ACTUAL_VALUE, 0, 0},
-    {1503, 1503, OBJ_6064_POSITION_ACTUAL_VALUE, 0, 0},
-    {1504, 1504, OBJ_606C_VELOCITY_ACTUAL_VALUE, 0, 0},
-    {1505, 1505, OBJ_6041_STATUSWORD, 0, 0},
-    {1506, 1506, OBJ_603F_ERROR_CODE, 0, 0},
-    {1507, 1507, OBJ_1001_ERROR_REGISTER, 0, 0},
-    {1508, 1508, OBJ_6061_MODES_OF_OPERATION_DISPLAY, 0, 0},
-    {1509, 1509, OBJ_60FD_DIGITAL_INPUTS, 0, 0},
-    {1510, 1510, OBJ_60FE_DIGITAL_OUTPUTS, 0, 1},
-    {1520, 1520, 0x6072, 0, 0},
-    {1521, 1521, 0x6073, 0, 0},
-    {1522, 1522, 0x6075, 0, 0},
-    {1523, 1523, 0x6076, 0, 0},
-    {1524, 1524, OBJ_6502_SUPPORTED_DRIVE_MODES, 0, 0},
-    {1530, 1530, OBJ_F530_SYSTEM_INFO, CM1E_BRIDGE_STATUS_SUBINDEX(1), 0},
-    {1531, 1531, OBJ_F530_SYSTEM_INFO, 1, 0},
-    {1532, 1532, OBJ_F530_SYSTEM_INFO, 9, 0},
-    {1533, 1533, OBJ_F530_SYSTEM_INFO, 13, 0},
-    {1534, 1537, OBJ_F530_SYSTEM_INFO, 17, 0},
-    {1600, 1600, OBJ_FF00_LED_BRIGHTNESS, 0, 0},
-    {1601, 1601, OBJ_FF01_LED_OVERRIDE, 0, 0},
-    {1610, 1610, OBJ_FE00_PDO_TIMING, 1, 0},
-    {1700, 1700, OBJ_1000_DEVICE_TYPE, 0, 0},
-    {1701, 1704, OBJ_1018_IDENTITY, 1, 0},
+    {1021, 1101, OBJ_60F6_K_PARAMETERS, 1}, /* K21 ... K101 */
+    {1200, 1208, OBJ_60FB_H_PARAMETERS, 1}, /* H0 ... H8 */
+    {1301, 1304, OBJ_2201_USER_VARIABLES, 1},
+    {1400, 1400, OBJ_607C_HOME_OFFSET, 0},
+    {1401, 1401, OBJ_6098_HOMING_METHOD, 0},
+    {1402, 1402, OBJ_6099_HOMING_SPEEDS, 1},
+    {1403, 1403, OBJ_609A_HOMING_ACCELERATION, 0},
+    {1404, 1404, OBJ_6099_HOMING_SPEEDS, 2},
+    {1410, 1410, OBJ_6081_PROFILE_VELOCITY, 0},
+    {1411, 1411, OBJ_6083_PROFILE_ACCELERATION, 0},
+    {1412, 1412, OBJ_6084_PROFILE_DECELERATION, 0},
+    {1420, 1420, 0x605A, 0},
+    {1421, 1421, 0x605B, 0},
+    {1422, 1422, 0x605C, 0},
+    {1423, 1423, 0x605E, 0},
+    {1500, 1500, OBJ_2301_TEMPERATURE, 0},
+    {1501, 1501, OBJ_6079_DC_LINK_VOLTAGE, 0},
+    {1502, 1502, OBJ_6077_TORQUE_ACTUAL_VALUE, 0},
+    {1503, 1503, OBJ_6064_POSITION_ACTUAL_VALUE, 0},
+    {1504, 1504, OBJ_606C_VELOCITY_ACTUAL_VALUE, 0},
+    {1505, 1505, OBJ_6041_STATUSWORD, 0},
+    {1506, 1506, OBJ_603F_ERROR_CODE, 0},
+    {1507, 1507, OBJ_1001_ERROR_REGISTER, 0},
+    {1508, 1508, OBJ_6061_MODES_OF_OPERATION_DISPLAY, 0},
+    {1509, 1509, OBJ_60FD_DIGITAL_INPUTS, 0},
+    {1510, 1510, OBJ_60FE_DIGITAL_OUTPUTS, 0},
+    {1520, 1520, 0x6072, 0},
+    {1521, 1521, 0x6073, 0},
+    {1522, 1522, 0x6075, 0},
+    {1523, 1523, 0x6076, 0},
+    {1524, 1524, OBJ_6502_SUPPORTED_DRIVE_MODES, 0},
+    {1530, 1530, OBJ_F530_SYSTEM_INFO, CM1E_BRIDGE_STATUS_SUBINDEX(1)},
+    {1531, 1531, OBJ_F530_SYSTEM_INFO, 1},
+    {1532, 1532, OBJ_F530_SYSTEM_INFO, 9},
+    {1533, 1533, OBJ_F530_SYSTEM_INFO, 13},
+    {1534, 1537, OBJ_F530_SYSTEM_INFO, 17},
+    {1600, 1600, OBJ_FF00_LED_BRIGHTNESS, 0},
+    {1601, 1601, OBJ_FF01_LED_OVERRIDE, 0},
+    {1610, 1610, OBJ_FE00_PDO_TIMING, 1},
+    {1700, 1700, OBJ_1000_DEVICE_TYPE, 0},
+    {1701, 1704, OBJ_1018_IDENTITY, 1},
 };
 
 const cm1e_axis_objects_t *cm1e_axis_object_table(size_t *count)
@@ -75,7 +75,9 @@ static const cm1e_entry_t *entry_of(const cm1e_axis_t *axis, int number)
     if (!row)
         return NULL;
     const unsigned channel = axis->config->channel;
-    unsigned first = channel && row->bridged ? row->bridged : row->subindex;
+    unsigned first = row->subindex;
+    if (row->index == OBJ_60FE_DIGITAL_OUTPUTS && !cm1e_drive_is_virtual(&axis->drive))
+        first = axis->drive.kind->signals.output_subindex;
     if (channel && row->index == OBJ_F530_SYSTEM_INFO && row->subindex < F530_OF_DEVICE)
         first += channel - 1;
     return cm1e_drive_entry(&axis->drive, row->index, (uint8_t)(first + (unsigned)(number - row->first)));
@@ -98,9 +100,9 @@ static object_request_t *request_of(cm1e_axis_t *axis, uint16_t sequence)
 
 static cm1e_error_t check_write(const cm1e_axis_t *axis, const cm1e_entry_t *entry, double value)
 {
-    /* Behind a bridge the outputs are written as objects too, but by who keeps them. */
+    /* Outputs that are reached by SDO are written as objects too, but by who keeps them. */
     const bool outputs = entry->index == cm1e_drive_index(&axis->drive, OBJ_60FE_DIGITAL_OUTPUTS);
-    if (!(entry->access & CM1E_ACCESS_WRITE) || (outputs && cm1e_drive_bridged(&axis->drive)))
+    if (!(entry->access & CM1E_ACCESS_WRITE) || (outputs && axis->drive.kind->signals.by_sdo))
         return CM1E_ERROR_AXIS_PARAMETER_READ_ONLY;
     /* The next cycle would write something else. */
     if (cm1e_bus_find_output(axis->drive.bus, axis->drive.position, entry->index, entry->subindex).bytes)
@@ -223,15 +225,12 @@ static void lacking_text(const cm1e_axis_t *axis, const cm1e_axis_objects_t *row
 {
     const int number = axis->not_set.number;
     const cm1e_drive_t *drive = &axis->drive;
-    const bool bridged = cm1e_drive_bridged(drive);
-    const char *motor = bridged ? cm1e_bridge_motor_name(cm1e_drive_bridge_motor(drive))
-                                : "CM1-E";
     if (row->index == OBJ_60F6_K_PARAMETERS)
         snprintf(text, size, "Axis \"%s\": parameter %d: %sa %s has no K%d.", axis->config->name, number,
-                 bridged ? "behind the bridge " : "", motor, number - CM1E_PARAMETER_VENDOR);
+                 drive->kind->place, drive->kind->short_name, number - CM1E_PARAMETER_VENDOR);
     else
         snprintf(text, size, "Axis \"%s\": parameter %d: %sa %s has no object 0x%04X:%02X.", axis->config->name, number,
-                 bridged ? "behind the bridge " : "", motor, row->index,
+                 drive->kind->place, drive->kind->short_name, row->index,
                  (unsigned)(row->subindex + number - row->first));
 }
 

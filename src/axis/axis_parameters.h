@@ -59,7 +59,6 @@ typedef struct cm1e_axis_objects {
     int first, last;
     uint16_t index;
     uint8_t subindex; /**< of the first */
-    uint8_t bridged;  /**< the same behind a bridge; 0: no other one */
 } cm1e_axis_objects_t;
 /** The table; `*count` rows in order of their numbers. @rt any */
 const cm1e_axis_objects_t *cm1e_axis_object_table(size_t *count);

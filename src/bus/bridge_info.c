@@ -3,7 +3,7 @@
 #include "cm1e/bridge.h"
 #include "core/bytes.h"
 #include "core/in_task.h"
-#include "device/bridge.h"
+#include "device/devices.h"
 
 /* Where a value comes from; of a channel the first one's, and what is added for each next. */
 typedef struct source {
@@ -88,7 +88,7 @@ cm1e_error_t cm1e_bridge_read(cm1e_bus_t *bus, uint16_t position, cm1e_bridge_in
     if (!slave)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "There is no slave %u; %u were found.", position,
                              cm1e_bus_slave_count(bus));
-    if (!slave->is_bridge)
+    if (!slave->device || slave->device->recognised != CM1E_BY_OBJECTS)
         return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0,
                              "Slave %u (%s) is no Cool MUSCLE Bridge; `cm1e scan` shows which slaves are.", position,
                              slave->name);

@@ -133,9 +133,9 @@ const cm1e_firmware_info_t *cm1e_bus_slave_firmware(const cm1e_bus_t *bus, uint1
 
 const char *cm1e_bus_kind(const cm1e_bus_slave_t *slave, char kind[CM1E_KIND_LENGTH])
 {
-    const char *model = cm1e_bridge_name(slave->info.model);
-    if (slave->info.is_bridge)
-        snprintf(kind, CM1E_KIND_LENGTH, "bridge %s", model ? model : "of an unknown model");
+    const cm1e_device_t *device = slave->info.device;
+    if (device && device->family)
+        snprintf(kind, CM1E_KIND_LENGTH, "%s %s", device->family, device->name ? device->name : "of an unknown model");
     else
         snprintf(kind, CM1E_KIND_LENGTH, "%s", slave->info.name[0] ? slave->info.name : "no name");
     return kind;

@@ -128,10 +128,18 @@ static inline const cm1e_axis_config_t *cm1e_bus_axis_of(const cm1e_bus_t *bus, 
 {
     return slave->axes[channel] ? &bus->config.axes[slave->axes[channel] - 1] : NULL;
 }
+/** An axis is configured there. */
+static inline bool cm1e_bus_is_used(const cm1e_bus_slave_t *slave)
+{
+    for (unsigned channel = 0; channel < CM1E_CHANNELS; channel++)
+        if (slave->axes[channel])
+            return true;
+    return false;
+}
 /** It moves something: it is started and brought back with the care that this needs. */
 static inline bool cm1e_bus_has_motors(const cm1e_bus_slave_t *slave)
 {
-    return slave->info.is_cm1e || slave->info.is_bridge;
+    return slave->info.device && (slave->info.device->extra_is_error || cm1e_bus_is_used(slave));
 }
 
 /** Ordered with the ring of transfers: see cm1e_sdo_submit(). */

@@ -1,3 +1,4 @@
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,41 +13,38 @@
  *  CM1E_DATAGRAMS_PER_CYCLE mailboxes of a CM1-E and the supervision take beside the process data. */
 enum { NS_PER_BYTE = 80, FRAME_OVERHEAD_BYTES = 52, NS_PER_SLAVE = 1000, BESIDE_PROCESS_DATA_NS = 65000 };
 
-/** Of a CM1-E those of the configured mapping; of a bridge those of all its axes, configured or not: whether it accepts
- *  fewer is not in its guide. */
-static cm1e_pdo_choice_t pdos_of(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave)
+/** "200, 250, 500 and 1000" */
+static const char *cycle_times(const cm1e_device_t *device, char text[64])
 {
-    const cm1e_axis_config_t *axis = cm1e_bus_axis_of(bus, slave, 0);
-    const unsigned mapping = axis ? axis->mapping : CM1E_MAPPING_DYNAMIC;
-    if (!slave->info.is_bridge)
-        return (cm1e_pdo_choice_t){1, {{(uint16_t)(0x1600 + mapping)}, {(uint16_t)(0x1A00 + mapping)}}};
-    cm1e_pdo_choice_t choice = {.count = CM1E_BRIDGE_AXES};
-    for (unsigned i = 0; i < 2 * CM1E_BRIDGE_AXES; i++) {
-        const bool transmit = i >= CM1E_BRIDGE_AXES;
-        cm1e_pdo_t pdo;
-        cm1e_bridge_pdo(&pdo, i % CM1E_BRIDGE_AXES, transmit);
-        choice.pdos[transmit][i % CM1E_BRIDGE_AXES] = pdo.index;
-    }
-    return choice;
+    size_t used = 0;
+    text[0] = 0;
+    for (size_t i = 0; i < device->cycle_time_count; i++)
+        used += (size_t)snprintf(text + used, 64 - used, "%s%lld",
+                                 i == 0 ? "" : i + 1 == device->cycle_time_count ? " and " : ", ",
+                                 (long long)(device->cycle_times_ns[i] / 1000));
+    return text;
 }
 
 /** UG 4.3: four cycle times; before V1.3.2 only 1 ms (UG 10.1). An unreadable version is given the benefit. Behind a
  *  bridge 1 ms (BR 6.3). */
 static cm1e_error_t check_cycle_time(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
 {
-    char label[CM1E_LABEL_LENGTH];
+    char label[CM1E_LABEL_LENGTH], list[64];
+    const cm1e_device_t *device = slave->info.device;
     const int64_t cycle_ns = bus->config.cycle_time_ns;
-    if (slave->info.is_bridge && cycle_ns != CM1E_BRIDGE_CYCLE_TIME_NS)
+    bool known = device->cycle_time_count == 0;
+    for (size_t i = 0; i < device->cycle_time_count; i++)
+        known = known || device->cycle_times_ns[i] == cycle_ns;
+    if (!known && device->cycle_time_count == 1)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_CYCLE_TIME, 0,
-                             "%s runs with a cycle time of 1000 us only; configured are %lld us, for all slaves.",
-                             cm1e_bus_label_first(bus, slave, label), (long long)(cycle_ns / 1000));
-    bool known = false;
-    for (unsigned i = 0; i < 4; i++)
-        known = known || cm1e_device_cycle_times_ns[i] == cycle_ns;
+                             "%s runs with a cycle time of %s us only; configured are %lld us, for all slaves.",
+                             cm1e_bus_label_first(bus, slave, label), cycle_times(device, list),
+                             (long long)(cycle_ns / 1000));
     if (!known)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_CYCLE_TIME, 0,
-                             "The cycle time of %lld us is not one of 200, 250, 500 and 1000 us, which %s accepts.",
-                             (long long)(cycle_ns / 1000), cm1e_bus_label(bus, slave, label));
+                             "The cycle time of %lld us is not one of %s us, which %s accepts.",
+                             (long long)(cycle_ns / 1000), cycle_times(device, list),
+                             cm1e_bus_label(bus, slave, label));
     if (slave->firmware && !slave->firmware->all_cycle_times && cycle_ns != 1000000)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_CYCLE_TIME, 0,
                              "%s has firmware %s, which accepts a cycle time of 1000 us only (V1.3.2 and later: also "
@@ -60,9 +58,10 @@ static cm1e_error_t read_mappings(cm1e_bus_t *bus, cm1e_diag_t *diag)
     const int64_t deadline_ns = cm1e_clock_now(bus->clock) + MAPPING_TIMEOUT_NS;
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
-        const cm1e_pdo_choice_t choice = pdos_of(bus, slave);
-        if (cm1e_bus_has_motors(slave))
-            cm1e_mapping_begin(&slave->mapping, slave->info.position, &choice);
+        if (!cm1e_bus_has_motors(slave))
+            continue;
+        const cm1e_pdo_choice_t choice = slave->info.device->pdos(cm1e_bus_axis_of(bus, slave, 0));
+        cm1e_mapping_begin(&slave->mapping, slave->info.position, &choice);
     }
     const bool ended = cm1e_bus_pump_until_idle(bus, deadline_ns);
     for (uint32_t i = 0; i < bus->slave_count; i++) {

@@ -49,8 +49,8 @@ static cm1e_error_t identity_error(const cm1e_bus_t *bus, cm1e_diag_t *diag, con
                          bus->slave_count == 1 ? "" : "s", found_text(bus, found, sizeof found));
 }
 
-/** Why a slave is no bridge: in the course of a sentence, behind "found slave 2 of another kind". */
-static const char *no_bridge_text(const cm1e_bus_slave_t *slave, char text[112])
+/** Why a slave is not what its objects would have to say: behind "found slave 2 of another kind". */
+static const char *other_kind_text(const cm1e_bus_slave_t *slave, const cm1e_device_t *expected, char text[112])
 {
     const cm1e_recognition_t *job = &slave->recognition;
     if (!slave->facts.coe)
@@ -59,8 +59,8 @@ static const char *no_bridge_text(const cm1e_bus_slave_t *slave, char text[112])
         snprintf(text, 112, "its object 0x%04X:%02X cannot be read: %s", job->sdo.index, job->sdo.subindex,
                  cm1e_strerror(job->sdo.error));
     else
-        snprintf(text, 112, "its object 0x%04X:%02X is 0x%08X, that of a bridge 0x%08X", job->sdo.index,
-                 job->sdo.subindex, job->shown, job->wanted);
+        snprintf(text, 112, "its object 0x%04X:%02X is 0x%08X, that of a %s 0x%08X", job->sdo.index,
+                 job->sdo.subindex, job->shown, expected->family, job->wanted);
     return text;
 }
 
@@ -70,20 +70,21 @@ static void wrong_kind(const cm1e_axis_config_t *axis, const cm1e_bus_slave_t *s
     char why[112], kind[CM1E_KIND_LENGTH];
     const unsigned position = slave->info.position;
     text[0] = 0;
-    if (axis->channel ? slave->info.is_bridge : slave->info.is_cm1e)
+    const cm1e_device_t *expected = cm1e_device_configured(axis), *found = slave->info.device;
+    if (cm1e_device_same_kind(expected, found))
         return;
-    if (axis->channel && slave->info.is_cm1e)
-        snprintf(text, size, "expected a Cool MUSCLE Bridge, found slave %u, a CM1-E, which is one axis: leave its "
-                 "channel out.", position);
-    else if (axis->channel)
-        snprintf(text, size, "expected a Cool MUSCLE Bridge, found slave %u of another kind: %s.", position,
-                 no_bridge_text(slave, why));
-    else if (slave->info.is_bridge)
-        snprintf(text, size, "expected a CM1-E, found slave %u, the %s: an axis behind it has a channel, 1 ... %d.",
-                 position, cm1e_bus_kind(slave, kind), CM1E_BRIDGE_AXES);
+    if (found && expected->channels && !found->channels && found->recognised == CM1E_BY_IDENTITY)
+        snprintf(text, size, "expected a %s, found slave %u, a %s, which is one axis: leave its channel out.",
+                 expected->label, position, found->label);
+    else if (found && found->channels && !expected->channels)
+        snprintf(text, size, "expected a %s, found slave %u, the %s: an axis behind it has a channel, 1 ... %d.",
+                 expected->label, position, cm1e_bus_kind(slave, kind), found->channels);
+    else if (expected->recognised == CM1E_BY_IDENTITY)
+        snprintf(text, size, "expected a %s (vendor 0x%08X, product 0x%08X), found slave %u of another kind.",
+                 expected->label, expected->vendor_id, expected->product_code, position);
     else
-        snprintf(text, size, "expected a CM1-E (vendor 0x%08X, product 0x%08X), found slave %u of another kind.",
-                 CM1E_VENDOR_ID, CM1E_PRODUCT_CODE, position);
+        snprintf(text, size, "expected a %s, found slave %u of another kind: %s.", expected->label, position,
+                 other_kind_text(slave, expected, why));
 }
 
 static cm1e_error_t check_kind(const cm1e_bus_t *bus, const cm1e_axis_config_t *axis, const cm1e_bus_slave_t *slave,
@@ -102,7 +103,7 @@ static cm1e_error_t check_model(const cm1e_bus_t *bus, const cm1e_bus_slave_t *s
 {
     char problem[320];
     const uint32_t *motors = slave->bridge.motors;
-    if (!slave->info.is_bridge || cm1e_bridge_name(slave->info.model))
+    if (slave->info.device->name)
         return CM1E_OK;
     snprintf(problem, sizeof problem,
              "Slave %u is a bridge that reports the motors %u, %u, %u, %u (objects 0xF511:01 ... 0xF514:01), which no "
@@ -117,7 +118,7 @@ static cm1e_error_t check_motor(const cm1e_bus_t *bus, const cm1e_axis_config_t 
     char problem[320];
     if (!axis->channel || !axis->motor[0])
         return CM1E_OK;
-    const char *motor = cm1e_bridge_motor_name(cm1e_bridge_motor(slave->info.model, axis->channel - 1u));
+    const char *motor = cm1e_device_drive(slave->info.device, axis->channel)->short_name;
     if (strcmp(motor, axis->motor) == 0)
         return CM1E_OK;
     snprintf(problem, sizeof problem,
@@ -162,7 +163,7 @@ static cm1e_bus_slave_t *find_slave(cm1e_bus_t *bus, const cm1e_axis_config_t *a
     }
     if (!match) {
         snprintf(problem, sizeof problem, "Axis \"%s\": expected a %s at %s, which is missing.", axis->name,
-                 axis->channel ? "Cool MUSCLE Bridge" : "CM1-E", address_text(axis, where));
+                 cm1e_device_configured(axis)->label, address_text(axis, where));
         identity_error(bus, diag, problem);
     }
     return match;
@@ -203,14 +204,6 @@ static cm1e_error_t match_axis(cm1e_bus_t *bus, uint32_t axis_index, cm1e_diag_t
     return error;
 }
 
-static bool is_used(const cm1e_bus_slave_t *slave)
-{
-    for (unsigned channel = 0; channel < CM1E_CHANNELS; channel++)
-        if (slave->axes[channel])
-            return true;
-    return false;
-}
-
 /** A motor that nobody configured could move unexpectedly; a device of another kind may stand between the axes. Beside
  *  the axes of a bridge its other motors stay as they are from power-on: their controlword is 0. */
 static cm1e_error_t check_extra(const cm1e_bus_t *bus, cm1e_diag_t *diag)
@@ -218,13 +211,13 @@ static cm1e_error_t check_extra(const cm1e_bus_t *bus, cm1e_diag_t *diag)
     for (uint32_t i = 0; i < bus->slave_count && bus->config.axis_count > 0; i++) {
         char problem[256];
         const cm1e_bus_slave_t *slave = &bus->slaves[i];
-        if (!cm1e_bus_has_motors(slave) || is_used(slave))
+        if (!cm1e_bus_has_motors(slave) || cm1e_bus_is_used(slave))
             continue;
         snprintf(problem, sizeof problem,
                  "Slave %u is a %s that is extra: %u axes with a motor are configured and none is %sit.",
-                 slave->info.position, slave->info.is_cm1e ? "CM1-E" : "Cool MUSCLE Bridge",
+                 slave->info.position, slave->info.device->label,
                  cm1e_motors_before(&bus->config, bus->config.axis_count),
-                 slave->info.is_cm1e ? "" : "behind ");
+                 slave->info.device->channels ? "behind " : "");
         return identity_error(bus, diag, problem);
     }
     return CM1E_OK;

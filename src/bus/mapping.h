@@ -10,15 +10,9 @@
 #define CM1E_BUS_MAPPING_H
 
 #include "cm1e/bus.h"
-#include "device/bridge.h"
+#include "device/devices.h"
 
-enum { CM1E_MAPPED_ENTRIES = 64, CM1E_MAPPED_PDOS = CM1E_BRIDGE_AXES };
-
-/** The PDOs to assign, in order; as many in each direction. */
-typedef struct cm1e_pdo_choice {
-    uint8_t count;
-    uint16_t pdos[2][CM1E_MAPPED_PDOS]; /**< outputs, inputs */
-} cm1e_pdo_choice_t;
+enum { CM1E_MAPPED_ENTRIES = 64 };
 
 typedef struct cm1e_mapped_entry {
     uint16_t index, bit_offset; /**< index 0: a gap */

@@ -5,31 +5,7 @@
 /** For one answer (ETG.1020: 200 ms ... 10 s by device). */
 #define ANSWER_NS INT64_C(1000000000)
 
-typedef struct question {
-    uint16_t index;
-    uint8_t subindex;
-    uint32_t wanted; /**< the answer of a bridge; 0: whatever it is, it is kept */
-} question_t;
-
-/** BR appendix 6. */
-static const question_t questions[] = {
-    {OBJ_1000_DEVICE_TYPE, 0, CM1E_BRIDGE_DEVICE_TYPE},
-    {OBJ_F000_MODULAR_DEVICE_PROFILE, 1, CM1E_BRIDGE_INDEX_INCREMENT},
-    {OBJ_F010_MODULE_PROFILE_LIST, 1, CM1E_BRIDGE_DEVICE_TYPE},
-    {OBJ_F010_MODULE_PROFILE_LIST, 2, CM1E_BRIDGE_DEVICE_TYPE},
-    {OBJ_F010_MODULE_PROFILE_LIST, 3, CM1E_BRIDGE_DEVICE_TYPE},
-    {OBJ_F010_MODULE_PROFILE_LIST, 4, CM1E_BRIDGE_DEVICE_TYPE},
-    {OBJ_F050_DETECTED_MODULE_IDENT_LIST, 1, CM1E_BRIDGE_MODULE_IDENT},
-    {OBJ_F050_DETECTED_MODULE_IDENT_LIST, 2, CM1E_BRIDGE_MODULE_IDENT},
-    {OBJ_F050_DETECTED_MODULE_IDENT_LIST, 3, CM1E_BRIDGE_MODULE_IDENT},
-    {OBJ_F050_DETECTED_MODULE_IDENT_LIST, 4, CM1E_BRIDGE_MODULE_IDENT},
-    {OBJ_F511_CONFIG_AXIS_1 + 0, 1, 0},
-    {OBJ_F511_CONFIG_AXIS_1 + 1, 1, 0},
-    {OBJ_F511_CONFIG_AXIS_1 + 2, 1, 0},
-    {OBJ_F511_CONFIG_AXIS_1 + 3, 1, 0},
-    {OBJ_1018_IDENTITY, 3, 0},
-};
-enum { QUESTIONS = sizeof questions / sizeof questions[0] };
+static const cm1e_device_t *device(void) { return cm1e_device_recognised(CM1E_BY_OBJECTS); }
 
 void cm1e_recognise_begin(cm1e_recognition_t *job, uint16_t position, int64_t deadline_ns)
 {
@@ -41,7 +17,7 @@ void cm1e_recognise_cancel(cm1e_recognition_t *job) { job->busy = false; }
 /** FALSE: no bridge answers so. */
 static bool took(cm1e_recognition_t *job)
 {
-    const question_t *question = &questions[job->question];
+    const cm1e_question_t *question = &device()->questions[job->question];
     const bool failed = cm1e_sdo_state(&job->sdo) == CM1E_SDO_ERROR;
     const uint32_t value = failed ? 0 : (uint32_t)cm1e_get_uint(job->data, (unsigned)job->sdo.size);
     job->shown = value;
@@ -64,13 +40,13 @@ cm1e_sdo_t *cm1e_recognise_next(cm1e_recognition_t *job, int64_t now_ns)
         return NULL;
     }
     job->question = (uint8_t)(job->question + job->started);
-    job->is_bridge = job->question == QUESTIONS;
+    job->recognised = job->question == device()->question_count;
     const int64_t left_ns = job->deadline_ns - now_ns;
-    if (job->is_bridge || left_ns <= 0) {
+    if (job->recognised || left_ns <= 0) {
         job->busy = false;
         return NULL;
     }
-    const question_t *question = &questions[job->question];
+    const cm1e_question_t *question = &device()->questions[job->question];
     job->started = true;
     job->sdo = (cm1e_sdo_t){.position = job->sdo.position, .index = question->index, .subindex = question->subindex,
                             .data = job->data, .size = sizeof job->data, .state = CM1E_SDO_BUSY,

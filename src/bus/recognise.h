@@ -9,7 +9,7 @@
 #define CM1E_BUS_RECOGNISE_H
 
 #include "cm1e/bus.h"
-#include "device/bridge.h"
+#include "device/devices.h"
 
 /** What is kept of the answers of a bridge. */
 typedef struct cm1e_bridge_facts {
@@ -24,7 +24,7 @@ typedef struct cm1e_recognition {
     int64_t deadline_ns;
     cm1e_sdo_t sdo;          /**< the last transfer: where it is no bridge, the one that showed it */
     uint8_t data[4];
-    bool is_bridge;          /**< result, valid when idle */
+    bool recognised;         /**< result, valid when idle */
     uint32_t shown, wanted;  /**< where it is no bridge: what it answered, and what a bridge does */
     cm1e_bridge_facts_t facts;
 } cm1e_recognition_t;

@@ -10,7 +10,7 @@
 /** For one datagram step. */
 #define STEP_NS INT64_C(100000000)
 #define SDO_STEP_NS INT64_C(1000000000)
-#define BRIDGE_STEP_NS INT64_C(3000000000)
+#define OBJECTS_STEP_NS INT64_C(3000000000)
 #define MAPPING_STEP_NS INT64_C(10000000000)
 /** Short: a device that is away has no address to give back. */
 #define RELEASE_NS INT64_C(10000000)
@@ -55,7 +55,7 @@ static void advance(cm1e_bus_slave_t *slave, int64_t now_ns)
  *  would answer at the same address. */
 static bool must_release(const cm1e_recovery_t *recovery)
 {
-    return recovery->address_given && recovery->step >= RECOVERY_ADDRESS && recovery->step <= RECOVERY_BRIDGE;
+    return recovery->address_given && recovery->step >= RECOVERY_ADDRESS && recovery->step <= RECOVERY_OBJECTS;
 }
 
 static void cancel_jobs(cm1e_bus_slave_t *slave)
@@ -317,10 +317,10 @@ static bool next_serial(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now
 }
 
 /** The identity of a bridge does not tell its motors. */
-static bool next_bridge(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+static bool next_objects(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
     cm1e_recognition_t *job = &slave->recognition;
-    if (!slave->info.is_bridge) {
+    if (!slave->info.device || slave->info.device->recognised != CM1E_BY_OBJECTS) {
         advance(slave, now_ns);
         return false;
     }
@@ -331,7 +331,7 @@ static bool next_bridge(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now
     if (cm1e_coe_idle(&slave->coe)) {
         cm1e_sdo_t *sdo = cm1e_recognise_next(job, now_ns);
         if (!sdo) {
-            if (job->is_bridge && memcmp(&job->facts, &slave->bridge, sizeof job->facts) == 0)
+            if (job->recognised && memcmp(&job->facts, &slave->bridge, sizeof job->facts) == 0)
                 advance(slave, now_ns);
             else
                 fail(slave, now_ns);
@@ -391,7 +391,7 @@ static const cm1e_recovery_action_t actions[RECOVERY_STEPS] = {
     [RECOVERY_VENDOR] = {SDO_STEP_NS, next_vendor, result_coe},
     [RECOVERY_PRODUCT] = {SDO_STEP_NS, next_product, result_coe},
     [RECOVERY_SERIAL] = {SDO_STEP_NS, next_serial, result_coe},
-    [RECOVERY_BRIDGE] = {BRIDGE_STEP_NS, next_bridge, result_coe},
+    [RECOVERY_OBJECTS] = {OBJECTS_STEP_NS, next_objects, result_coe},
     [RECOVERY_MAPPING] = {MAPPING_STEP_NS, next_mapping, result_coe},
     [RECOVERY_PROCESS_DATA] = {STEP_NS, next_process_data, result_next_step},
     [RECOVERY_FMMUS] = {STEP_NS, next_fmmus, result_next_step},

@@ -26,7 +26,7 @@ typedef enum cm1e_recovery_step {
     RECOVERY_VENDOR,
     RECOVERY_PRODUCT,
     RECOVERY_SERIAL,
-    RECOVERY_BRIDGE,         /**< still a bridge, of the same revision, with the same motors */
+    RECOVERY_OBJECTS,         /**< still a bridge, of the same revision, with the same motors */
     RECOVERY_MAPPING,
     RECOVERY_PROCESS_DATA,   /**< SM2, SM3 */
     RECOVERY_FMMUS,

@@ -10,6 +10,12 @@
 /** The explicit device ID comes at once or never (ETG.1020: a device without it ignores the request). */
 #define ID_TIMEOUT_NS INT64_C(100000000)
 
+static void set_device(cm1e_bus_slave_t *slave, const cm1e_device_t *device)
+{
+    slave->info.device = device;
+    slave->info.kind = device ? device->kind : NULL;
+}
+
 static void set_up_slave(cm1e_bus_t *bus, uint16_t position)
 {
     cm1e_bus_slave_t *slave = &bus->slaves[position - 1];
@@ -23,8 +29,8 @@ static void set_up_slave(cm1e_bus_t *bus, uint16_t position)
         .revision = facts->revision,
         .serial_number = facts->serial_number,
         .alias = facts->alias,
-        .is_cm1e = facts->vendor_id == CM1E_VENDOR_ID && facts->product_code == CM1E_PRODUCT_CODE,
     };
+    set_device(slave, cm1e_device_of_identity(facts->vendor_id, facts->product_code));
     memcpy(slave->info.name, facts->name, sizeof slave->info.name);
     cm1e_text_clean(slave->info.name);
     slave->al.station = facts->station;
@@ -41,7 +47,7 @@ static void read_explicit_ids(cm1e_bus_t *bus)
 {
     const int64_t deadline_ns = cm1e_clock_now(bus->clock) + ID_TIMEOUT_NS;
     for (uint32_t i = 0; i < bus->slave_count; i++) {
-        if (bus->slaves[i].info.is_cm1e)
+        if (bus->slaves[i].info.device && bus->slaves[i].info.device->explicit_id)
             cm1e_al_read_id(&bus->slaves[i].al, deadline_ns);
     }
     cm1e_bus_pump_until_idle(bus, deadline_ns + CM1E_STATE_TIMEOUT_NS);
@@ -70,32 +76,36 @@ static void read_software_versions(cm1e_bus_t *bus)
         for (char *c = slave->version; *c; c++)
             *c = *c >= ' ' && *c <= '~' ? *c : '?';
         snprintf(slave->info.software_version, sizeof slave->info.software_version, "%.15s", slave->version);
-        if (slave->info.is_cm1e)
-            slave->firmware = cm1e_firmware_from_version(slave->info.software_version);
+        if (slave->info.device && slave->info.device->firmware)
+            slave->firmware = slave->info.device->firmware(slave->info.software_version);
     }
 }
 
-/** Asks every slave with a mailbox that is not a CM1-E. */
-static void recognise_bridges(cm1e_bus_t *bus)
+static void take_bridge(cm1e_bus_slave_t *slave)
+{
+    slave->bridge = slave->recognition.facts;
+    const bool known = cm1e_recognise_model(&slave->bridge, &slave->info.model);
+    set_device(slave, known ? cm1e_device_of_model(slave->info.model) : &cm1e_device_unknown_bridge);
+    for (unsigned axis = 0; axis < CM1E_BRIDGE_AXES; axis++) {
+        const uint32_t motor = slave->bridge.motors[axis];
+        slave->info.motors[axis] = motor == CM1E_BRIDGE_CM1 || motor == CM1E_BRIDGE_CM2 ? (uint8_t)motor : 0;
+    }
+}
+
+/** Asks every slave with a mailbox that was not recognised by its identity. */
+static void recognise_by_objects(cm1e_bus_t *bus)
 {
     const int64_t deadline_ns = cm1e_clock_now(bus->clock) + RECOGNITION_NS;
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
-        if (slave->facts.coe && !slave->info.is_cm1e)
+        if (slave->facts.coe && !slave->info.device)
             cm1e_recognise_begin(&slave->recognition, slave->info.position, deadline_ns);
     }
     cm1e_bus_pump_until_idle(bus, deadline_ns + CM1E_START_SDO_TIMEOUT_NS);
     for (uint32_t i = 0; i < bus->slave_count; i++) {
         cm1e_bus_slave_t *slave = &bus->slaves[i];
-        slave->info.is_bridge = slave->recognition.is_bridge;
-        if (!slave->info.is_bridge)
-            continue;
-        slave->bridge = slave->recognition.facts;
-        cm1e_recognise_model(&slave->bridge, &slave->info.model);
-        for (unsigned axis = 0; axis < CM1E_BRIDGE_AXES; axis++) {
-            const uint32_t motor = slave->bridge.motors[axis];
-            slave->info.motors[axis] = motor == CM1E_BRIDGE_CM1 || motor == CM1E_BRIDGE_CM2 ? (uint8_t)motor : 0;
-        }
+        if (slave->recognition.recognised)
+            take_bridge(slave);
     }
 }
 
@@ -150,7 +160,7 @@ cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)
         return error;
     read_explicit_ids(bus);
     read_software_versions(bus);
-    recognise_bridges(bus);
+    recognise_by_objects(bus);
     cm1e_bus_set_phase(bus, BUS_SCANNED);
     return CM1E_OK;
 }

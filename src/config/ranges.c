@@ -5,7 +5,7 @@
 
 #include "config/ranges.h"
 #include "config/interface.h"
-#include "device/bridge.h"
+#include "device/devices.h"
 #include "device/place.h"
 #include "device/unit.h"
 
@@ -105,58 +105,65 @@ typedef struct number {
     scale_t scale;
     const char *unit; /* of the range */
     double minimum, maximum;
-    uint16_t index;
-    uint8_t subindex;
-    double behind_bridge; /* meaning of 1 in the object of the bridge; 0: the range of the CM1-E applies there too */
+    int homing;           /* ... of a homing of the drive: which of them; NO_HOMING: none */
 } number_t;
+enum { NO_HOMING = -1 };
 
 #define FIELD(member) offsetof(cm1e_axis_config_t, member)
 /* Bounds without an object keep the profile computable: below them a stop would take minutes, above them an axis would
  * reach its peak speed within one cycle. */
 static const number_t numbers[] = {
     {"limits.acceleration", FIELD(max_acceleration), BY_REVOLUTION, "counts/s2", CM1E_LEAST_ACCELERATION_COUNTS, 1e11,
-     0, 0, 0},
+     NO_HOMING},
     {"limits.deceleration", FIELD(max_deceleration), BY_REVOLUTION, "counts/s2", CM1E_LEAST_ACCELERATION_COUNTS, 1e11,
-     0, 0, 0},
-    {"limits.jerk", FIELD(max_jerk), BY_REVOLUTION, "counts/s3", CM1E_LEAST_JERK_COUNTS, 1e15, 0, 0, 0},
+     NO_HOMING},
+    {"limits.jerk", FIELD(max_jerk), BY_REVOLUTION, "counts/s3", CM1E_LEAST_JERK_COUNTS, 1e15, NO_HOMING},
     {"limits.position_lag", FIELD(max_position_lag), IN_COUNTS, "counts", CM1E_LEAST_LAG_COUNTS,
-     CM1E_LARGEST_LAG_COUNTS, 0, 0, 0},
+     CM1E_LARGEST_LAG_COUNTS, NO_HOMING},
     {"in_position.window", FIELD(in_position_window), IN_COUNTS, "counts", CM1E_LEAST_LAG_COUNTS,
-     CM1E_LARGEST_LAG_COUNTS, 0, 0, 0},
+     CM1E_LARGEST_LAG_COUNTS, NO_HOMING},
     {"in_position.time_s", FIELD(in_position_time_s), AS_IS, "s", CM1E_LEAST_IN_POSITION_TIME_S,
-     CM1E_LARGEST_IN_POSITION_TIME_S, 0, 0, 0},
+     CM1E_LARGEST_IN_POSITION_TIME_S, NO_HOMING},
     {"in_position.timeout_s", FIELD(in_position_timeout_s), AS_IS, "s", CM1E_LEAST_IN_POSITION_TIMEOUT_S,
-     CM1E_LARGEST_IN_POSITION_TIMEOUT_S, 0, 0, 0},
-    {"backlash.gap", FIELD(backlash), IN_COUNTS, "counts", 1, 500000, 0, 0, 0},
-    {"homing.offset", FIELD(homing.offset), IN_COUNTS, "counts", 0, 0, OBJ_607C_HOME_OFFSET, 0,
-     CM1E_BRIDGE_OFFSET_UNIT},
-    {"homing.velocity", FIELD(homing.velocity), IN_COUNTS, "counts/s", 0, 0, OBJ_6099_HOMING_SPEEDS, 1,
-     CM1E_BRIDGE_SPEED_UNIT},
-    {"homing.acceleration", FIELD(homing.acceleration), IN_COUNTS, "counts/s2", 0, 0, OBJ_609A_HOMING_ACCELERATION, 0,
-     CM1E_BRIDGE_ACCELERATION_UNIT},
-    {"homing.torque", FIELD(homing.torque), AS_IS, "%", 0, 0, OBJ_60F6_K_PARAMETERS, CM1E_K_PARAMETER_HOMING_TORQUE,
-     0},
-    {"homing.timeout_s", FIELD(homing.timeout_s), AS_IS, "s", 0.1, 3600, 0, 0, 0},
-    {"encoder_filter_s", FIELD(encoder_filter_s), AS_IS, "s", 1e-4, 10, 0, 0, 0},
-    {"sim.load_inertia_kgm2", FIELD(sim.load_inertia), AS_IS, "kg m2", 1e-9, 1, 0, 0, 0},
-    {"sim.friction_nm", FIELD(sim.friction), AS_IS, "Nm", 1e-9, 10, 0, 0, 0},
-    {"sim.viscous_friction_nms", FIELD(sim.viscous_friction), AS_IS, "Nm s/rad", 1e-9, 1, 0, 0, 0},
-    {"sim.stop_negative_counts", FIELD(sim.stop_negative), AS_IS, "counts", -1e12, -1, 0, 0, 0},
-    {"sim.stop_positive_counts", FIELD(sim.stop_positive), AS_IS, "counts", 1, 1e12, 0, 0, 0},
-    {"sim.sensor_input2_counts", FIELD(sim.sensor_input2), AS_IS, "counts", -1e12, 1e12, 0, 0, 0},
-    {"sim.sensor_input3_counts", FIELD(sim.sensor_input3), AS_IS, "counts", -1e12, 1e12, 0, 0, 0},
+     CM1E_LARGEST_IN_POSITION_TIMEOUT_S, NO_HOMING},
+    {"backlash.gap", FIELD(backlash), IN_COUNTS, "counts", 1, 500000, NO_HOMING},
+    {"homing.offset", FIELD(homing.offset), IN_COUNTS, "counts", 0, 0, CM1E_HOMING_OFFSET},
+    {"homing.velocity", FIELD(homing.velocity), IN_COUNTS, "counts/s", 0, 0, CM1E_HOMING_SPEED},
+    {"homing.acceleration", FIELD(homing.acceleration), IN_COUNTS, "counts/s2", 0, 0, CM1E_HOMING_ACCELERATION},
+    {"homing.torque", FIELD(homing.torque), AS_IS, "%", 0, 0, CM1E_HOMING_TORQUE},
+    {"homing.timeout_s", FIELD(homing.timeout_s), AS_IS, "s", 0.1, 3600, NO_HOMING},
+    {"encoder_filter_s", FIELD(encoder_filter_s), AS_IS, "s", 1e-4, 10, NO_HOMING},
+    {"sim.load_inertia_kgm2", FIELD(sim.load_inertia), AS_IS, "kg m2", 1e-9, 1, NO_HOMING},
+    {"sim.friction_nm", FIELD(sim.friction), AS_IS, "Nm", 1e-9, 10, NO_HOMING},
+    {"sim.viscous_friction_nms", FIELD(sim.viscous_friction), AS_IS, "Nm s/rad", 1e-9, 1, NO_HOMING},
+    {"sim.stop_negative_counts", FIELD(sim.stop_negative), AS_IS, "counts", -1e12, -1, NO_HOMING},
+    {"sim.stop_positive_counts", FIELD(sim.stop_positive), AS_IS, "counts", 1, 1e12, NO_HOMING},
+    {"sim.sensor_input2_counts", FIELD(sim.sensor_input2), AS_IS, "counts", -1e12, 1e12, NO_HOMING},
+    {"sim.sensor_input3_counts", FIELD(sim.sensor_input3), AS_IS, "counts", -1e12, 1e12, NO_HOMING},
 };
 
-/* The motor behind the bridge; if it is not stated, the one with the larger range. */
-static cm1e_bridge_motor_t motor_of(const cm1e_axis_config_t *axis)
+static const cm1e_device_t *device_of(const check_t *check) { return cm1e_device_configured(check->axis); }
+
+static const cm1e_device_drive_t *drive_of(const check_t *check) { return cm1e_device_drive_configured(check->axis); }
+
+/* The range of a parameter of the drive's homing, in counts; false: the drive has no such parameter. */
+static bool homing_range(const check_t *check, int parameter, double *minimum, double *maximum)
 {
-    return strcmp(axis->motor, cm1e_bridge_motor_name(CM1E_BRIDGE_CM1)) == 0 ? CM1E_BRIDGE_CM1 : CM1E_BRIDGE_CM2;
+    const cm1e_homing_object_t *object = &drive_of(check)->homing->objects[parameter];
+    const cm1e_device_t *device = device_of(check);
+    const cm1e_entry_t *entry = object->range ? object->range
+                                : object->index ? device->entry(device, object->index, object->subindex) : NULL;
+    if (!entry)
+        return false;
+    *minimum = (double)entry->minimum * object->unit;
+    *maximum = (double)entry->maximum * object->unit;
+    return true;
 }
 
-static const cm1e_entry_t *bridge_entry(const check_t *check, uint16_t index, uint8_t subindex)
+/* The motor behind the bridge; if it is not stated, the one with the larger range. */
+static cm1e_bridge_motor_t motor_of(const check_t *check)
 {
-    const bool cm1 = motor_of(check->axis) == CM1E_BRIDGE_CM1;
-    return cm1e_bridge_entry(cm1 ? CM1E_DEVICE_EB01 : CM1E_DEVICE_EB02, index, subindex);
+    return cm1e_bridge_motor(device_of(check)->model, check->axis->channel - 1u);
 }
 
 static bool check_range(const check_t *check, const char *key, double value, scale_t scale, double minimum,
@@ -188,13 +195,9 @@ static bool check_number(const check_t *check, const number_t *number)
     memcpy(&value, (const char *)check->axis + number->offset, sizeof value);
     if (value == 0)
         return true;
-    if (number->index) {
-        const double factor = check->axis->channel ? number->behind_bridge : 0;
-        const cm1e_entry_t *entry = factor != 0 ? bridge_entry(check, number->index, number->subindex)
-                                                : cm1e_device_entry(number->index, number->subindex);
-        minimum = (double)entry->minimum * (factor != 0 ? factor : 1);
-        maximum = (double)entry->maximum * (factor != 0 ? factor : 1);
-    }
+    if (number->homing != NO_HOMING && !homing_range(check, number->homing, &minimum, &maximum))
+        return axis_wrong(check, number->key, "is given, and a %s has no such parameter; expected no such key",
+                          drive_of(check)->short_name);
     return check_range(check, number->key, value, number->scale, minimum, maximum, number->unit);
 }
 
@@ -294,21 +297,29 @@ static bool check_velocity(check_t *check)
                        floor(peak - kept), kept != 0 ? "counts/s beside the compensation of backlash" : "counts/s");
 }
 
+/* "A, B or C" */
+static void list_motors(const cm1e_device_t *device, char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (size_t i = 0; device->motor(i) && used < size; i++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s",
+                                 i == 0 ? "" : device->motor(i + 1) ? ", " : " or ", device->motor(i));
+}
+
 static bool check_motor(const check_t *check)
 {
     const cm1e_axis_config_t *axis = check->axis;
+    const cm1e_device_t *device = device_of(check);
     const char *name = IS_TEXT(axis->motor) ? axis->motor : "?";
-    if (axis->channel) {
-        const char *cm1 = cm1e_bridge_motor_name(CM1E_BRIDGE_CM1), *cm2 = cm1e_bridge_motor_name(CM1E_BRIDGE_CM2);
-        if (name[0] == '\0' || strcmp(name, cm1) == 0 || strcmp(name, cm2) == 0)
-            return true;
-        return axis_wrong(check, "motor", "is '%s'; expected %s or %s, which stand behind a bridge", name, cm1, cm2);
-    }
-    if (cm1e_device_motor(name))
+    char list[120];
+    if (name[0] == '\0')
         return true;
-    return axis_wrong(check, "motor", "is '%s'; expected %s, %s, %s or %s (CM1 and CM2 have a channel of a bridge)",
-                      name, cm1e_device_motors[0].name, cm1e_device_motors[1].name, cm1e_device_motors[2].name,
-                      cm1e_device_motors[3].name);
+    for (size_t i = 0; device->motor(i); i++)
+        if (strcmp(device->motor(i), name) == 0)
+            return true;
+    list_motors(device, list, sizeof list);
+    return axis_wrong(check, "motor", "is '%s'; expected %s%s", name, list, device->motors_note);
 }
 
 static bool check_firmware(const check_t *check)
@@ -413,7 +424,7 @@ static bool check_software_limits(const check_t *check)
     const double negative = axis->software_limit_negative, positive = axis->software_limit_positive;
     /* The axis keeps positions as doubles: whole counts are exact up to 2^53. Behind a bridge K37 limits the counts of
      * the motor. Infinite: no limit on this side. */
-    const double most = axis->channel ? cm1e_bridge_position_limit(motor_of(axis), axis->k37) : 9e15;
+    const double most = axis->channel ? cm1e_bridge_position_limit(motor_of(check), axis->k37) : 9e15;
     if ((negative != -INFINITY &&
          !check_range(check, "software_limits.negative", negative, IN_COUNTS, -most, most, "counts")) ||
         (positive != INFINITY &&
@@ -429,16 +440,16 @@ static bool check_software_limits(const check_t *check)
 static bool check_homing(const check_t *check)
 {
     const cm1e_homing_config_t *homing = &check->axis->homing;
-    const bool bridge = check->axis->channel != 0;
-    const cm1e_entry_t *method = bridge ? bridge_entry(check, OBJ_6098_HOMING_METHOD, 0)
-                                        : cm1e_device_entry(OBJ_6098_HOMING_METHOD, 0);
-    if (homing->method != 0 && (homing->method < method->minimum || homing->method > method->maximum))
-        return axis_wrong(check, "homing.method", bridge ? "is %d; expected 0 (none) or %lld ... %lld behind a bridge"
-                                                         : "is %d; expected %lld ... %lld",
-                          homing->method, (long long)method->minimum, (long long)method->maximum);
+    const cm1e_device_homing_t *kind = drive_of(check)->homing;
+    const int least = kind->first_method, most = kind->last_method < 0 ? 0 : kind->last_method;
+    if (homing->method != 0 && (homing->method < least || homing->method > most))
+        return axis_wrong(check, "homing.method", kind->place[0] ? "is %d; expected 0 (none) or %d ... %d%s"
+                                                                 : "is %d; expected %d ... %d%s",
+                          homing->method, least, most, kind->place);
     const double offset = check->axis->invert ? -homing->offset : homing->offset;
-    const int clockwise = bridge ? 1 : -1, counterclockwise = bridge ? 2 : -2;
-    if ((homing->method == clockwise && offset > 0) || (homing->method == counterclockwise && offset < 0))
+    const bool positive = homing->method != 0 && homing->method == kind->positive_stop;
+    const bool negative = homing->method != 0 && homing->method == kind->negative_stop;
+    if ((positive && offset > 0) || (negative && offset < 0))
         return axis_wrong(check, "homing.offset", "is %.10g, beyond the hard stop that method %d runs against; "
                           "expected an offset of the other sign", homing->offset, homing->method);
     return true;
@@ -455,7 +466,7 @@ static bool check_inputs(const check_t *check)
     for (int i = 0; i < 3; i++)
         if (switches[i].number > 4)
             return axis_wrong(check, switches[i].key, "is %u; expected 1 ... 4", switches[i].number);
-        else if (switches[i].number == 1 && check->axis->channel && motor_of(check->axis) == CM1E_BRIDGE_CM1)
+        else if (switches[i].number == 1 && !(drive_of(check)->signals.inputs & 1))
             return axis_wrong(check, switches[i].key, "is 1, through which a CM1 talks to the bridge; expected 2 ... "
                               "4");
     if (inputs->limit_negative && inputs->limit_negative == inputs->limit_positive)
@@ -536,7 +547,7 @@ static bool check_model(const check_t *check)
 static bool check_k37(const check_t *check)
 {
     const cm1e_axis_config_t *axis = check->axis;
-    const cm1e_bridge_motor_t motor = motor_of(axis);
+    const cm1e_bridge_motor_t motor = motor_of(check);
     if (!axis->k37_stated)
         return axis_wrong(check, "k37", "is missing; expected the K37 of the motor, which defines counts and speeds: "
                           "send it \"K37.%u\" with cm1e cml", axis->channel);
@@ -546,37 +557,36 @@ static bool check_k37(const check_t *check)
                       motor == CM1E_BRIDGE_CM2 ? ", or 80 ... 88 or 90" : "");
 }
 
-/* Keys that only a CM1-E has. */
+/* What means nothing for the device. */
 static bool check_absent(const check_t *check)
 {
     const cm1e_axis_config_t *axis = check->axis;
     const struct {
         const char *key;
         bool given;
-        const char *reason;
     } keys[] = {
-        {"explicit_id", axis->address_kind == CM1E_ADDRESS_EXPLICIT_ID, "it has no rotary switches"},
-        {"firmware", axis->firmware[0] != '\0', "its firmware makes no difference"},
-        {"mapping", axis->mapping != CM1E_MAPPING_DYNAMIC, "it has one mapping only"},
-        {"motion", axis->motion != CM1E_MOTION_HOST, "it makes no moves of its own"},
-        {"wire.velocity_unit", axis->velocity_unit_stated, "no velocities go over the wire"},
-        {"wire.acceleration_unit", axis->acceleration_in_kpulses, "no accelerations of a profile go over the wire"},
+        {"explicit_id", axis->address_kind == CM1E_ADDRESS_EXPLICIT_ID},
+        {"k37", axis->k37_stated},
+        {"firmware", axis->firmware[0] != '\0'},
+        {"mapping", axis->mapping != CM1E_MAPPING_DYNAMIC},
+        {"motion", axis->motion != CM1E_MOTION_HOST},
+        {"wire.velocity_unit", axis->velocity_unit_stated},
+        {"wire.acceleration_unit", axis->acceleration_in_kpulses},
     };
-    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
-        if (keys[i].given)
-            return axis_wrong(check, keys[i].key, "is given, but the axis has a channel of a bridge: %s; expected no "
-                              "such key", keys[i].reason);
+    for (const cm1e_absent_key_t *absent = device_of(check)->absent; absent->key; absent++)
+        for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
+            if (keys[i].given && strcmp(keys[i].key, absent->key) == 0)
+                return axis_wrong(check, keys[i].key, "%s", absent->text);
     return true;
 }
 
 static bool check_bridge(const check_t *check)
 {
-    const cm1e_axis_config_t *axis = check->axis;
+    const cm1e_device_t *device = device_of(check);
     const int64_t cycle_time_ns = check->config->cycle_time_ns;
-    if (axis->channel == 0)
-        return !axis->k37_stated || axis_wrong(check, "k37", "is given without a channel; expected only behind a "
-                                               "bridge: a CM1-E has 50000 counts in a revolution");
-    if (cycle_time_ns != 0 && cycle_time_ns != CM1E_BRIDGE_CYCLE_TIME_NS)
+    if (!device->channels)
+        return check_absent(check);
+    if (cycle_time_ns != 0 && cycle_time_ns != device->cycle_times_ns[0])
         return axis_wrong(check, "channel", "is given, and a bridge runs at 1000 us only; the cycle time is %g us",
                           (double)cycle_time_ns / 1000);
     return check_absent(check) && check_model(check) && check_k37(check);

@@ -209,6 +209,9 @@ typedef struct cm1e_device_error {
     bool fault_only_when_enabled;/**< ... from Operation enabled only (0xFF05) */
     const char *text;            /**< UG 7.3.1 */
     const char *cure;            /**< what the user does about it */
+    bool motor_power;            /**< it says that motor power is missing */
+    bool only_off;               /**< while the drive is not enabled it says no more than that */
+    bool restarts;               /**< clearing it may restart the device (UG 10.1, V1.3.5) */
 } cm1e_device_error_t;
 extern const cm1e_device_error_t cm1e_device_errors[];
 extern const size_t cm1e_device_error_count;

@@ -1,28 +1,31 @@
-#include "device/device.h"
+#include "device/device_rows.h"
 
 /* UG 7.3.1, in the manual's order. The cures are ours. */
 const cm1e_device_error_t cm1e_device_errors[] = {
-    {0x0000, 0x00, false, false, "No error", "nothing to do"},
-    {0x2310, 0x03, true, false, "Continuous over current error (torque overload)",
-     "reduce load, friction or acceleration, or use a larger motor; then reset the fault"},
-    {0x4310, 0x09, true, false, "Drive over temperature",
-     "let the motor cool down, improve the cooling or reduce the load; then reset the fault"},
-    {0x4502, 0x00, false, false, "No mode selected (0x6060=0)", "write a mode of operation to 0x6060"},
-    {0x7310, 0x81, true, false, "Over speed error",
-     "command less than the motor's peak speed and check for a load that drives the motor; then reset the fault"},
-    {0x7320, 0x81, true, false, "Position Error overflow",
-     "look for a blocked axis, reduce load or acceleration, or retune the motor; then reset the fault"},
-    {0x7500, 0x11, true, false, "Motor communication error",
-     "reset the fault; if it comes back, switch the motor's control power off and on"},
-    {0x7510, 0x11, true, false, "Motor drive to EtherCAT slave communication error",
+    ERROR(0x0000, 0x00, false, false, "No error", "nothing to do", ),
+    ERROR(0x2310, 0x03, true, false, "Continuous over current error (torque overload)",
+     "reduce load, friction or acceleration, or use a larger motor; then reset the fault", ),
+    ERROR(0x4310, 0x09, true, false, "Drive over temperature",
+     "let the motor cool down, improve the cooling or reduce the load; then reset the fault", ),
+    ERROR(0x4502, 0x00, false, false, "No mode selected (0x6060=0)", "write a mode of operation to 0x6060",
+     .only_off = true),
+    ERROR(0x7310, 0x81, true, false, "Over speed error",
+     "command less than the motor's peak speed and check for a load that drives the motor; then reset the fault", ),
+    ERROR(0x7320, 0x81, true, false, "Position Error overflow",
+     "look for a blocked axis, reduce load or acceleration, or retune the motor; then reset the fault", ),
+    ERROR(0x7500, 0x11, true, false, "Motor communication error",
+     "reset the fault; if it comes back, switch the motor's control power off and on", ),
+    ERROR(0x7510, 0x11, true, false, "Motor drive to EtherCAT slave communication error",
      "reset the fault (after power-up the device then restarts and leaves the bus for a moment); if it comes back, "
-     "switch the motor's control power off and on"},
-    {0x8611, 0x00, false, false, "Motor not currently following commanded position",
-     "nothing to do while the drive is not in Operation enabled; otherwise look for a blocked or overloaded axis"},
-    {0xFF01, 0x00, false, false, "Motor disabled by command", "enable the drive"},
-    {0xFF04, 0x81, true, false, "Emergency stop active", "release the emergency stop; then reset the fault"},
-    {0xFF05, 0x11, true, true, "24V drive power not present",
-     "switch the 24 V motor power on and check its fuse and wiring; then reset the fault"},
+     "switch the motor's control power off and on", .restarts = true),
+    ERROR(0x8611, 0x00, false, false, "Motor not currently following commanded position",
+     "nothing to do while the drive is not in Operation enabled; otherwise look for a blocked or overloaded axis",
+     .only_off = true),
+    ERROR(0xFF01, 0x00, false, false, "Motor disabled by command", "enable the drive", .only_off = true),
+    ERROR(0xFF04, 0x81, true, false, "Emergency stop active", "release the emergency stop; then reset the fault", ),
+    ERROR(0xFF05, 0x11, true, true, "24V drive power not present",
+     "switch the 24 V motor power on and check its fuse and wiring; then reset the fault",
+     .motor_power = true),
 };
 const size_t cm1e_device_error_count = sizeof cm1e_device_errors / sizeof cm1e_device_errors[0];
 

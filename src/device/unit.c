@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "device/bridge.h"
+#include "device/devices.h"
 
 __extension__ typedef unsigned __int128 wide_t;
 
@@ -20,8 +20,8 @@ static double units_per_revolution(const cm1e_axis_config_t *config)
 
 double cm1e_unit_counts_per_revolution(const cm1e_axis_config_t *config)
 {
-    const int32_t counts = config->channel && config->k37_stated ? cm1e_bridge_counts_per_revolution(config->k37) : 0;
-    return counts > 0 ? counts : CM1E_COUNTS_PER_REVOLUTION;
+    const cm1e_device_t *device = cm1e_device_configured(config);
+    return device ? device->counts_per_revolution(config) : CM1E_COUNTS_PER_REVOLUTION;
 }
 
 double cm1e_unit_count(const cm1e_axis_config_t *config)
@@ -33,10 +33,10 @@ double cm1e_unit_peak_velocity(const cm1e_axis_config_t *config)
 {
     if (config->type != CM1E_AXIS_MOTOR && config->max_velocity > 0.0)
         return config->max_velocity * cm1e_unit_scale(config);
-    if (config->channel || config->type != CM1E_AXIS_MOTOR)
+    if (config->type != CM1E_AXIS_MOTOR)
         return 50.0 * cm1e_unit_counts_per_revolution(config);
-    const cm1e_motor_t *motor = cm1e_device_motor(config->motor);
-    return motor ? motor->max_velocity_counts_per_s : 0.0;
+    const cm1e_device_t *device = cm1e_device_configured(config);
+    return device ? device->peak_velocity(config) : 0.0;
 }
 
 double cm1e_unit_backlash_velocity(const cm1e_axis_config_t *config)

@@ -46,6 +46,22 @@ cm1e_error_t cm1e_drive_init_cm1e(cm1e_drive_t *drive, cm1e_diag_t *diag)
     return velocity_unit(drive, diag);
 }
 
+/* The slave has been matched with the axis (cm1e_bus_identify()); a bus that was made otherwise may have another. */
+static cm1e_error_t find_device(cm1e_drive_t *drive, const cm1e_drive_kind_t **kind, cm1e_diag_t *diag)
+{
+    const cm1e_slave_info_t *slave = cm1e_bus_slave(drive->bus, drive->position);
+    const cm1e_device_t *expected = cm1e_device_configured(drive->config);
+    drive->device = slave && slave->device ? slave->device : expected;
+    drive->kind = drive->device ? cm1e_device_drive(drive->device, drive->config->channel) : NULL;
+    *kind = cm1e_drive_kind(drive->device);
+    if (drive->kind && *kind && cm1e_device_same_kind(drive->device, expected) && slave)
+        return CM1E_OK;
+    return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
+                         "Axis \"%s\" (slave %u): channel %u is configured; the slave would have to be an EtherCAT "
+                         "Cool MUSCLE Bridge, which has channels 1 ... %u.", drive->config->name, drive->position,
+                         drive->config->channel, CM1E_BRIDGE_AXES);
+}
+
 cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis, cm1e_diag_t *diag)
 {
     memset(drive, 0, sizeof *drive);
@@ -62,15 +78,18 @@ cm1e_error_t cm1e_drive_init(cm1e_drive_t *drive, cm1e_bus_t *bus, uint32_t axis
     if (drive->position == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_IDENTITY, 0, "Axis \"%s\" has no slave on the bus.",
                              drive->config->name);
-    drive->kind = cm1e_drive_bridged(drive) ? &cm1e_drive_kind_bridge : &cm1e_drive_kind_cm1e;
+    const cm1e_drive_kind_t *kind;
+    cm1e_error_t error = find_device(drive, &kind, diag);
+    if (error)
+        return error;
     drive->feedback.state = CM1E_FSA_UNKNOWN;
     drive->velocity_unit = 1;
     drive->velocity_believed = (int64_t)(2.0 * cm1e_unit_peak_velocity(drive->config));
     drive->velocity_possible = (int64_t)(1.25 * cm1e_unit_peak_velocity(drive->config));
-    drive->step = drive->kind->step;
+    drive->step = kind->step;
     drive->position_least = INT32_MIN;
     drive->position_most = INT32_MAX;
-    cm1e_error_t error = drive->kind->init(drive, diag);
+    error = kind->init(drive, diag);
     if (!error)
         error = cm1e_drive_resolve(drive, diag);
     return error ? error : cm1e_drive_mode_init(drive, diag);
@@ -86,9 +105,7 @@ const cm1e_entry_t *cm1e_drive_entry(const cm1e_drive_t *drive, uint16_t index, 
 {
     if (cm1e_drive_is_virtual(drive))
         return NULL;
-    if (!cm1e_drive_bridged(drive))
-        return cm1e_device_entry(index, subindex);
-    const cm1e_entry_t *entry = cm1e_bridge_entry(drive->bridge, cm1e_drive_index(drive, index), subindex);
+    const cm1e_entry_t *entry = drive->device->entry(drive->device, cm1e_drive_index(drive, index), subindex);
     return entry && entry->availability == CM1E_AVAILABLE ? entry : NULL;
 }
 
@@ -120,8 +137,10 @@ void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
 static cm1e_error_t cause_in_inputs(const cm1e_drive_t *drive)
 {
     const cm1e_drive_feedback_t *f = &drive->feedback;
-    if (f->fault) /* 0xFF05: motor power, and a fault only from Operation enabled (UG 7.3.1) */
-        return f->error_code == 0xFF05 ? CM1E_ERROR_DRIVE_POWER : CM1E_ERROR_DRIVE_FAULT;
+    if (f->fault) {
+        const cm1e_device_error_t *error = drive->kind->error(f->error_code);
+        return error && error->motor_power ? CM1E_ERROR_DRIVE_POWER : CM1E_ERROR_DRIVE_FAULT;
+    }
     if (!drive->torque)
         return CM1E_OK;
     const bool power_stage = f->state == OPERATION_ENABLED || f->state == SWITCHED_ON;
@@ -250,7 +269,7 @@ static uint16_t mode_bits(cm1e_drive_t *drive, bool pass)
 /* Words of another coding are on their way to be understood: those of now say nothing meanwhile. */
 static uint16_t no_torque_word(const cm1e_drive_t *drive)
 {
-    const cm1e_drive_words_t *words = drive->words;
+    const cm1e_device_words_t *words = drive->words;
     if (words != drive->wanted->words)
         return 0;
     return words->commands ? cm1e_drive_cmd_word(drive) : words->no_torque;
@@ -273,15 +292,15 @@ static uint16_t controlword(cm1e_drive_t *drive, bool pass)
         return no_torque_word(drive);
     uint16_t word = cm1e_fsa_commands[command].controlword;
     if (f->state == OPERATION_ENABLED)
-        word |= mode_bits(drive, pass);
+        word |= (uint16_t)(mode_bits(drive, pass) | (drive->shown ? drive->shown->controlword : 0));
     return word;
 }
 
 static uint16_t signals(const cm1e_drive_t *drive)
 {
-    const cm1e_drive_words_t *words = drive->words;
+    const cm1e_device_words_t *words = drive->words;
     const unsigned outputs = drive->command.digital_outputs & cm1e_drive_output_mask(drive);
-    return (uint16_t)(words->mark | (outputs << CM1E_DRIVE_SIGNALS_AT & words->outputs));
+    return (uint16_t)(words->mark | (outputs << CM1E_DEVICE_SIGNALS_AT & words->outputs));
 }
 
 /* Position to write while the caller's does not pass: the actual one; but as long as the drive shows torque in a mode

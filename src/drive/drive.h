@@ -26,7 +26,7 @@
 #include "bus/bus_image.h"
 #include "cia402/cia402.h"
 #include "cm1e/bus.h"
-#include "device/bridge.h"
+#include "device/devices.h"
 #include "drive/drive_command.h"
 
 /** What the caller wants of the drive; written every cycle before cm1e_drive_write(). */
@@ -135,10 +135,11 @@ typedef struct cm1e_drive {
     uint8_t reset_phase, mode_phase;
     int8_t mode_data, mode_shown;
 
-    const struct cm1e_drive_kind *kind;
-    const struct cm1e_drive_words *words; /**< of the mode that is shown */
-    const struct cm1e_drive_mode *shown;  /**< NULL: 0x6061 is none of its modes, or not known */
-    const struct cm1e_drive_mode *wanted; /**< that of `mode` */
+    const cm1e_device_t *device;    /**< NULL: there is none */
+    const cm1e_device_drive_t *kind;
+    const cm1e_device_words_t *words; /**< of the mode that is shown */
+    const cm1e_device_mode_t *shown;  /**< NULL: 0x6061 is none of its modes, or not known */
+    const cm1e_device_mode_t *wanted; /**< that of `mode` */
     int64_t enable_deadline_ns, mode_deadline_ns, torque_from_ns;
     int64_t reset_until_ns, reset_deadline_ns, reset_settle_ns, recovery_ns, mode_retry_ns;
     cm1e_sdo_t mode_sdo;            /**< 0x6060 and 0x6061 where the mapping lacks them */
@@ -153,8 +154,7 @@ typedef struct cm1e_drive {
     const cm1e_axis_config_t *config;
     const cm1e_motor_t *motor;      /**< NULL behind a bridge */
     const cm1e_firmware_info_t *firmware;
-    cm1e_device_model_t bridge;     /**< where the motor stands behind one ... */
-    struct cm1e_drive_bridge *behind; /**< ... what there is to it; else NULL */
+    struct cm1e_drive_bridge *behind; /**< what a motor behind a bridge has beside this; else NULL */
 } cm1e_drive_t;
 
 /** Resolves the objects of the mapping. A mapping that lacks an object the configured use needs is
@@ -185,8 +185,6 @@ static inline bool cm1e_drive_operational(const cm1e_drive_t *drive)
 }
 /** There is no device: a virtual axis, or an encoder. @rt any */
 static inline bool cm1e_drive_is_virtual(const cm1e_drive_t *drive) { return drive->position == 0; }
-/** The motor stands behind a bridge. @rt any */
-static inline bool cm1e_drive_bridged(const cm1e_drive_t *drive) { return drive->config->channel != 0; }
 /** On the wire, the index of an object that the dictionary of a first axis has at `index`; what is the device's and no
  *  axis's stays where it is. @rt any */
 static inline uint16_t cm1e_drive_index(const cm1e_drive_t *drive, uint16_t index)

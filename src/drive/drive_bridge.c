@@ -19,7 +19,7 @@ static const int64_t status_holds_ns = 3 * MS_IN_NS;
 
 cm1e_bridge_motor_t cm1e_drive_bridge_motor(const cm1e_drive_t *drive)
 {
-    return cm1e_bridge_motor(drive->bridge, drive->config->channel - 1u);
+    return cm1e_bridge_motor(drive->device->model, drive->config->channel - 1u);
 }
 
 static cm1e_error_t submit_cml(void *bus, cm1e_sdo_t *sdo) { return cm1e_sdo_submit(bus, sdo); }
@@ -34,13 +34,6 @@ static void set_rest(cm1e_drive_bridge_t *behind, int32_t counts_per_revolution)
 cm1e_error_t cm1e_drive_init_bridge(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
     const cm1e_axis_config_t *config = drive->config;
-    const cm1e_slave_info_t *slave = cm1e_bus_slave(drive->bus, drive->position);
-    if (config->channel > CM1E_BRIDGE_AXES || !slave || !slave->is_bridge)
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
-                             "Axis \"%s\" (slave %u): channel %u is configured; the slave would have to be an EtherCAT "
-                             "Cool MUSCLE Bridge, which has channels 1 ... %u.", config->name, drive->position,
-                             config->channel, CM1E_BRIDGE_AXES);
-    drive->bridge = slave->model;
     if (!config->k37_stated)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
                              "Axis \"%s\" (slave %u, channel %u): K37 of the motor, its resolution, is not stated, and "

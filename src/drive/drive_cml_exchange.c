@@ -8,6 +8,7 @@
 #include "core/clock.h"
 #include "core/in_task.h"
 #include "device/bridge_status.h"
+#include "device/devices.h"
 #include "drive/drive_cml.h"
 
 #define MS_IN_NS INT64_C(1000000)
@@ -49,7 +50,7 @@ static cm1e_error_t check_place(const place_t *at)
     if (!slave)
         return cm1e_diag_set(at->diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "There is no slave %u; %u were found.",
                              at->position, (unsigned)cm1e_bus_slave_count(at->bus));
-    if (!slave->is_bridge)
+    if (!slave->device || slave->device->channels == 0)
         return cm1e_diag_set(at->diag, CM1E_ERROR_CM_NO_BRIDGE, 0,
                              "Slave %u, \"%s\", is no EtherCAT Cool MUSCLE Bridge: CML goes to motors behind one only.",
                              at->position, slave->name);

@@ -68,7 +68,7 @@ static const char *mode_name(const cm1e_drive_t *drive, int8_t mode)
 static void say_words(writer_t *w, const cm1e_drive_t *drive)
 {
     const cm1e_drive_fault_t *fault = &drive->fault;
-    const cm1e_drive_mode_t *row = cm1e_drive_mode_row(drive->kind, fault->mode_shown);
+    const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, fault->mode_shown);
     const cm1e_fsa_row_t *states = (row ? row : drive->wanted)->words->states;
     say(w, " Statusword 0x%04X", fault->statusword);
     if (states)
@@ -95,7 +95,7 @@ static void say_status(writer_t *w, const cm1e_drive_t *drive)
 /* What the user can do about it, where another answer is better than the common one. */
 static const char *further(const cm1e_drive_t *drive)
 {
-    const cm1e_drive_mode_t *row = cm1e_drive_mode_row(drive->kind, drive->fault.mode_shown);
+    const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, drive->fault.mode_shown);
     const cm1e_error_t error = drive->fault.error;
     if (error == CM1E_ERROR_DRIVE_MODE_TIMEOUT)
         return drive->kind->refusal;
@@ -114,7 +114,7 @@ void cm1e_drive_fault_text(const cm1e_drive_t *drive, char *text, size_t size)
     writer_t w = {.text = text, .size = size};
     say(&w, "Axis \"%s\" (slave %u): %s.", drive->config->name, drive->position, cm1e_strerror(fault->error));
     if (fault->device_code) {
-        const cm1e_device_error_t *device = cm1e_device_error(fault->device_code);
+        const cm1e_device_error_t *device = drive->kind->error(fault->device_code);
         say(&w, " Device error 0x%04X: %s.", fault->device_code, device ? device->text : "not a code of the manual");
         if (device)
             say(&w, " Cure: %s.", device->cure);

@@ -5,9 +5,34 @@
 #include "drive/drive_kind.h"
 #include "drive/drive_private.h"
 
-static cm1e_image_slot_t *slot_of(cm1e_drive_t *drive, const cm1e_drive_object_t *object)
+#define SLOT(member) offsetof(cm1e_drive_t, member)
+static const size_t slots[CM1E_ROLE_COUNT] = {
+    [CM1E_OUT_CONTROLWORD] = SLOT(out_controlword),
+    [CM1E_OUT_POSITION] = SLOT(out_position),
+    [CM1E_OUT_VELOCITY] = SLOT(out_velocity),
+    [CM1E_OUT_MODE] = SLOT(out_mode),
+    [CM1E_OUT_DIGITAL] = SLOT(out_digital),
+    [CM1E_OUT_PROFILE_VELOCITY] = SLOT(out_profile_velocity),
+    [CM1E_OUT_PROFILE_ACCELERATION] = SLOT(out_profile_acceleration),
+    [CM1E_IN_STATUSWORD] = SLOT(in_statusword),
+    [CM1E_IN_ERROR] = SLOT(in_error),
+    [CM1E_IN_POSITION] = SLOT(in_position),
+    [CM1E_IN_VELOCITY] = SLOT(in_velocity),
+    [CM1E_IN_TORQUE] = SLOT(in_torque),
+    [CM1E_IN_DIGITAL] = SLOT(in_digital),
+    [CM1E_IN_TEMPERATURE] = SLOT(in_temperature),
+    [CM1E_IN_DC_LINK] = SLOT(in_dc),
+    [CM1E_IN_MODE] = SLOT(in_mode),
+};
+
+static cm1e_image_slot_t *slot_of(cm1e_drive_t *drive, const cm1e_device_object_t *object)
 {
-    return (cm1e_image_slot_t *)(void *)((char *)drive + object->slot);
+    return (cm1e_image_slot_t *)(void *)((char *)drive + slots[object->role]);
+}
+
+const cm1e_image_slot_t *cm1e_drive_slot(const cm1e_drive_t *drive, cm1e_role_t role)
+{
+    return (const cm1e_image_slot_t *)(const void *)((const char *)drive + slots[role]);
 }
 
 static const char *mapping_name(const cm1e_drive_t *drive)
@@ -15,12 +40,13 @@ static const char *mapping_name(const cm1e_drive_t *drive)
     return drive->kind->mappings[drive->config->mapping].name;
 }
 
-static cm1e_error_t resolve_object(cm1e_drive_t *drive, const cm1e_drive_object_t *object, cm1e_diag_t *diag)
+static cm1e_error_t resolve_object(cm1e_drive_t *drive, const cm1e_device_object_t *object, cm1e_diag_t *diag)
 {
     cm1e_image_slot_t *slot = slot_of(drive, object);
     const uint16_t index = cm1e_drive_index(drive, object->index);
-    *slot = object->output ? cm1e_bus_find_output(drive->bus, drive->position, index, 0)
-                           : cm1e_bus_find_input(drive->bus, drive->position, index, 0);
+    *slot = object->role < CM1E_FIRST_INPUT
+                ? cm1e_bus_find_output(drive->bus, drive->position, index, object->subindex)
+                : cm1e_bus_find_input(drive->bus, drive->position, index, object->subindex);
     if (slot->bytes == 0) {
         if (!(object->needed_in & 1 << drive->config->mapping))
             return CM1E_OK;
@@ -150,7 +176,7 @@ static void derive(cm1e_drive_t *drive)
     drive->may_hold = drive->holds || drive->feedback.mode == CM1E_MODE_NONE;
 }
 
-void cm1e_drive_want_mode(cm1e_drive_t *drive, const cm1e_drive_mode_t *row)
+void cm1e_drive_want_mode(cm1e_drive_t *drive, const cm1e_device_mode_t *row)
 {
     drive->mode = (cm1e_mode_t)row->mode;
     drive->wanted = row;
@@ -164,7 +190,7 @@ void cm1e_drive_want_mode(cm1e_drive_t *drive, const cm1e_drive_mode_t *row)
 static void take_mode(cm1e_drive_t *drive, int8_t mode)
 {
     drive->feedback.mode = mode;
-    drive->shown = cm1e_drive_mode_row(drive->kind, mode);
+    drive->shown = cm1e_device_mode(drive->kind, mode);
     if (drive->shown)
         drive->words = drive->shown->words;
     else if (drive->words != drive->wanted->words || drive->words->own_coding)
@@ -175,7 +201,7 @@ static void take_mode(cm1e_drive_t *drive, int8_t mode)
 static void take_statusword(cm1e_drive_t *drive, uint16_t statusword)
 {
     cm1e_drive_feedback_t *f = &drive->feedback;
-    const cm1e_drive_words_t *words = drive->words;
+    const cm1e_device_words_t *words = drive->words;
     f->statusword = statusword;
     f->state = words->states ? cm1e_fsa_decode_by(words->states, statusword) : CM1E_FSA_UNKNOWN;
     f->voltage = !words->voltage || (statusword & words->voltage);

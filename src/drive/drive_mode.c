@@ -20,33 +20,31 @@ static const char abnormal[] = "Since power-on the motor was in CMD or CPIO: by 
 
 bool cm1e_drive_supports(const cm1e_drive_t *drive, cm1e_mode_t mode)
 {
-    const cm1e_drive_mode_t *row = cm1e_drive_mode_row(drive->kind, (int8_t)mode);
-    if (!row || row->target == CM1E_DRIVE_NO_TARGET)
-        return row != NULL;
-    return ((const cm1e_image_slot_t *)(const void *)((const char *)drive + row->target))->bytes > 0;
+    const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, (int8_t)mode);
+    return row && (row->target == CM1E_NO_ROLE || cm1e_drive_slot(drive, row->target)->bytes > 0);
 }
 
 const char *cm1e_drive_mode_name(const cm1e_drive_t *drive, int8_t mode)
 {
-    const cm1e_drive_mode_t *row = cm1e_drive_mode_row(drive->kind, mode);
+    const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, mode);
     return row ? row->abbreviation : NULL;
 }
 
 /* Where the device is, as far as is known. */
-static const cm1e_drive_mode_t *place(const cm1e_drive_t *drive)
+static const cm1e_device_mode_t *place(const cm1e_drive_t *drive)
 {
-    const cm1e_drive_mode_t *row = cm1e_drive_mode_row(drive->kind, drive->mode_read);
+    const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, drive->mode_read);
     return row && drive->kind->asks_mode_first ? row : drive->wanted;
 }
 
-static bool leads(const cm1e_drive_t *drive, const cm1e_drive_mode_t *from, const cm1e_drive_mode_t *to)
+static bool leads(const cm1e_drive_t *drive, const cm1e_device_mode_t *from, const cm1e_device_mode_t *to)
 {
     return from == to || to->ways >> (from - drive->kind->modes) & 1;
 }
 
 cm1e_error_t cm1e_drive_mode_check(const cm1e_drive_t *drive, cm1e_mode_t mode, bool insist, const char **why)
 {
-    const cm1e_drive_mode_t *to = cm1e_drive_mode_row(drive->kind, (int8_t)mode), *from = place(drive);
+    const cm1e_device_mode_t *to = cm1e_device_mode(drive->kind, (int8_t)mode), *from = place(drive);
     const char *text = NULL;
     cm1e_error_t error = CM1E_OK;
     if (!cm1e_drive_supports(drive, mode)) {
@@ -84,7 +82,7 @@ static cm1e_error_t ask_first(cm1e_drive_t *drive, cm1e_diag_t *diag)
     const cm1e_error_t error = read_first(drive, &drive->mode_read, diag);
     if (error)
         return error;
-    const cm1e_drive_mode_t *row = cm1e_drive_mode_row(drive->kind, drive->mode_read);
+    const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, drive->mode_read);
     if (!row || !leads(drive, row, drive->wanted))
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0,
                              "Axis \"%s\" (slave %u): object 0x%04X shows mode %d (%s), from which no way leads to %s. "
@@ -100,7 +98,7 @@ static cm1e_error_t ask_first(cm1e_drive_t *drive, cm1e_diag_t *diag)
 cm1e_error_t cm1e_drive_mode_init(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
     const cm1e_mode_t first = drive->kind->mappings[drive->config->mapping].first_mode;
-    cm1e_drive_want_mode(drive, cm1e_drive_mode_row(drive->kind, (int8_t)first));
+    cm1e_drive_want_mode(drive, cm1e_device_mode(drive->kind, (int8_t)first));
     drive->command.mode = first;
     if (drive->out_mode.bytes)
         return CM1E_OK;
@@ -141,9 +139,9 @@ static void submit(cm1e_drive_t *drive, bool write)
 
 static void read_done(cm1e_drive_t *drive)
 {
-    const cm1e_drive_mode_t *before = cm1e_drive_mode_row(drive->kind, drive->mode_read);
+    const cm1e_device_mode_t *before = cm1e_device_mode(drive->kind, drive->mode_read);
     drive->mode_read = drive->mode_sdo.size == 1 ? drive->mode_data : (int8_t)CM1E_MODE_NONE;
-    const cm1e_drive_mode_t *now = cm1e_drive_mode_row(drive->kind, drive->mode_read);
+    const cm1e_device_mode_t *now = cm1e_device_mode(drive->kind, drive->mode_read);
     /* No way leads there, and it is there all the same: it was switched off and on. */
     if (before && now && !drive->mode_known && !leads(drive, before, now))
         drive->abnormal = false;
@@ -266,7 +264,7 @@ static bool under_way(const cm1e_drive_t *drive)
 }
 
 /* Words of another coding come without torque only. */
-static bool needs_less(const cm1e_drive_t *drive, const cm1e_drive_mode_t *to)
+static bool needs_less(const cm1e_drive_t *drive, const cm1e_device_mode_t *to)
 {
     const cm1e_fsa_state_t state = drive->feedback.state;
     if (to->words == drive->words)
@@ -280,7 +278,7 @@ void cm1e_drive_mode_choose(cm1e_drive_t *drive)
     const cm1e_mode_t wanted = drive->command.mode;
     if (wanted == drive->mode || wanted == CM1E_MODE_NONE)
         return;
-    const cm1e_drive_mode_t *row = cm1e_drive_mode_row(drive->kind, (int8_t)wanted);
+    const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, (int8_t)wanted);
     if (!row || under_way(drive) || needs_less(drive, row))
         return;
     if (drive->kind->asks_mode_first && cm1e_drive_mode_check(drive, wanted, drive->command.mode_insist, NULL))

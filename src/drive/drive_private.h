@@ -23,10 +23,12 @@ static inline bool drive_fault_allows_ramp(cm1e_error_t error)
 cm1e_error_t cm1e_drive_init_cm1e(cm1e_drive_t *drive, cm1e_diag_t *diag);
 
 /* drive_io.c */
+/** Where the object of a role lies in the process image. */
+const cm1e_image_slot_t *cm1e_drive_slot(const cm1e_drive_t *drive, cm1e_role_t role);
 cm1e_error_t cm1e_drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag);
 void cm1e_drive_decode(cm1e_drive_t *drive);
 /** Commands a mode on the wire. What every cycle asks of the tables is kept in the drive. */
-void cm1e_drive_want_mode(cm1e_drive_t *drive, const struct cm1e_drive_mode *row);
+void cm1e_drive_want_mode(cm1e_drive_t *drive, const cm1e_device_mode_t *row);
 void cm1e_drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t position, int32_t velocity);
 
 /* drive_mode.c */

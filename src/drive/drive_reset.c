@@ -70,8 +70,9 @@ static void wait_online(cm1e_drive_t *drive)
 
 static bool device_resets(const cm1e_drive_t *drive)
 {
+    const cm1e_device_error_t *error = drive->kind->error(drive->fault.device_code);
     const bool capable = !drive->firmware || drive->firmware->communication_fault_resets;
-    return capable && drive->fault.device_code == 0x7510;
+    return capable && error && error->restarts;
 }
 
 static void edge(cm1e_drive_t *drive)

@@ -11,11 +11,22 @@ enum {
     STATUSWORD_ON = STATUSWORD_OFF | STATUSWORD_SWITCHED_ON | STATUSWORD_OPERATION_ENABLED | STATUSWORD_BIT12,
 };
 
+static const cm1e_device_words_t words = {.states = cm1e_fsa_table};
+static const cm1e_device_mode_t modes[] = {
+    {.mode = CM1E_MODE_CSP, .abbreviation = "CSP", .words = &words, .target = CM1E_NO_ROLE, .torque = true,
+     .holds_position = true, .ways = CM1E_DEVICE_WAYS_ALL},
+};
+static const cm1e_device_homing_t no_homing = {.place = ""};
+static const cm1e_device_drive_t no_device = {
+    .name = "virtual axis", .short_name = "virtual axis", .place = "", .modes = modes, .mode_count = 1,
+    .homing = &no_homing, .error = cm1e_device_error,
+};
+
 cm1e_error_t cm1e_drive_init_virtual(cm1e_drive_t *drive)
 {
-    drive->kind = &cm1e_drive_kind_virtual;
+    drive->kind = &no_device;
     drive->mode = drive->command.mode = CM1E_MODE_CSP;
-    drive->wanted = drive->shown = cm1e_drive_mode_row(drive->kind, CM1E_MODE_CSP);
+    drive->wanted = drive->shown = cm1e_device_mode(drive->kind, CM1E_MODE_CSP);
     drive->words = drive->wanted->words;
     drive->position_least = INT32_MIN;
     drive->position_most = INT32_MAX;

@@ -1,6 +1,7 @@
 #include <string.h>
 
 #include "description/describe.h"
+#include "device/devices.h"
 #include "generate/ec_extend.h"
 #include "generate/xml_write.h"
 
@@ -46,6 +47,12 @@ typedef struct plan {
     cm1e_description_file_t described;
     const cm1e_generate_options_t *options;
 } plan_t;
+
+/* The device has several mappings to choose from; those with channels have one. */
+static bool has_mappings(const cm1e_device_options_t *options)
+{
+    return cm1e_device_of_model(options->model)->channels == 0;
+}
 
 /* Device n, and the options that it comes of. */
 static const cm1e_device_options_t *device_options(const plan_t *plan, size_t n)
@@ -215,7 +222,7 @@ static void plan_slave(plan_t *plan, size_t n)
     const cm1e_description_t *device = &plan->described.devices.at[n];
     const cm1e_device_options_t *options = device_options(plan, n);
     /* The bridge has one mapping, of CSP (BR 6.3.1). */
-    const cm1e_mapping_t mapping = options->model == CM1E_DEVICE_CM1E ? options->mapping : CM1E_MAPPING_CSP;
+    const cm1e_mapping_t mapping = has_mappings(options) ? options->mapping : CM1E_MAPPING_CSP;
     cm1e_ec_slave_t slave = {.index = (uint32_t)n, .type = "SERVO", .axes = axis_count(device),
                              .startup_protocol = "COE"};
     slave.slot_pdo_increment = slave.axes > 1 ? device->slot_pdo_increment : 0;
@@ -227,7 +234,7 @@ static void plan_slave(plan_t *plan, size_t n)
     if (device->mailbox.foe)
         *(cm1e_ec_reference_t *)CM1E_APPEND(arena, &slave.protocols) = reference("FOE");
     *(cm1e_ec_slave_t *)CM1E_APPEND(arena, &plan->lists.slaves) = slave;
-    warn(plan, options->model != CM1E_DEVICE_CM1E ? bridge_warning
+    warn(plan, !has_mappings(options) ? bridge_warning
                : mapping == CM1E_MAPPING_PROFILE  ? profile_warning
                : mapping == CM1E_MAPPING_CSV      ? csv_warning
                                                   : "");
@@ -270,7 +277,7 @@ static cm1e_error_t plan_devices(plan_t *plan, cm1e_diag_t *diag)
     for (size_t i = 0; i < count && error == CM1E_OK; i++) {
         const cm1e_device_options_t *options = device_options(plan, i);
         /* By modules a device shows what belongs to one axis. */
-        const cm1e_esi_layout_t layout = options->model == CM1E_DEVICE_CM1E ? CM1E_ESI_FLAT : CM1E_ESI_MDP;
+        const cm1e_esi_layout_t layout = has_mappings(options) ? CM1E_ESI_FLAT : CM1E_ESI_MDP;
         error = cm1e_describe(&plan->described, options, layout, diag);
     }
     if (error == CM1E_OK)
@@ -372,7 +379,7 @@ static void put_slave(cm1e_xml_writer_t *writer, const plan_t *plan, size_t n)
 {
     const cm1e_ec_slave_t *slave = &plan->lists.slaves.at[n];
     const cm1e_device_options_t *options = device_options(plan, n);
-    const bool is_cm1e = options->model == CM1E_DEVICE_CM1E;
+    const bool is_motor = has_mappings(options);
     cm1e_xml_open(writer, "SlvCfg");
     put_number(writer, "Index", slave->index);
     cm1e_xml_put(writer, "SlaveType", "%s", slave->type);
@@ -381,9 +388,9 @@ static void put_slave(cm1e_xml_writer_t *writer, const plan_t *plan, size_t n)
     put_number(writer, "Dout", signals[options->model].dout);
     put_number(writer, "Ain", signals[options->model].ain);
     put_number(writer, "Aout", signals[options->model].aout);
-    if (is_cm1e && options->mapping == CM1E_MAPPING_PROFILE)
+    if (is_motor && options->mapping == CM1E_MAPPING_PROFILE)
         put_vrs(writer);
-    put_cyclic_data(writer, styles[is_cm1e ? options->mapping : CM1E_MAPPING_CSP].control);
+    put_cyclic_data(writer, styles[is_motor ? options->mapping : CM1E_MAPPING_CSP].control);
     cm1e_xml_open(writer, "Dc");
     cm1e_xml_put(writer, "Mode", "0x%04X", plan->options->dc_mode ? plan->options->dc_mode : DC_MODE);
     cm1e_xml_close(writer);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/bytes.h"
+#include "device/devices.h"
 #include "generate/eni.h"
 #include "generate/eni_registers.h"
 
@@ -292,22 +293,22 @@ static void check_cycle_time(cm1e_findings_t *findings, const cm1e_eni_t *docume
 
 void cm1e_eni_check(cm1e_findings_t *findings, const cm1e_eni_t *document)
 {
-    bool any_cm1e = false;
+    bool any_known = false;
     check_addresses(findings, document);
     check_previous_ports(findings, document);
     check_commands(findings, document);
     for (size_t i = 0; i < document->devices.count; i++) {
         const cm1e_eni_device_t *device = &document->devices.at[i];
-        const bool is_cm1e = device->vendor_id == CM1E_VENDOR_ID && device->product_code == CM1E_PRODUCT_CODE;
+        const bool known = cm1e_device_of_identity(device->vendor_id, device->product_code) != NULL;
         check_sync_managers(findings, device);
         check_range(findings, device, true);
         check_range(findings, device, false);
         check_mailbox(findings, device);
-        if (is_cm1e)
+        if (known)
             check_cm1e(findings, device);
-        any_cm1e |= is_cm1e;
+        any_known |= known;
     }
-    if (any_cm1e)
+    if (any_known)
         check_cycle_time(findings, document);
     cm1e_eni_check_frames(findings, document);
 }

@@ -7,7 +7,7 @@
 #include "description/describe.h"
 #include "description/expand.h"
 #include "description/sii.h"
-#include "device/bridge.h"
+#include "device/devices.h"
 #include "device/place.h"
 #include "generate/ec_extend.h"
 #include "generate/eni.h"
@@ -213,8 +213,13 @@ static cm1e_error_t describe_node(cm1e_description_file_t *described, const node
                                   const cm1e_generate_options_t *options, cm1e_diag_t *diag)
 {
     const cm1e_axis_config_t *config = node->axis;
-    if (config->channel)
+    const cm1e_device_t *expected = cm1e_device_configured(config);
+    if (expected->channels)
         return describe_bridge(described, node, options, diag);
+    if (!expected->described)
+        return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0,
+                             "%s: of a %s no description is made from tables; make the ENI from a scan of the network",
+                             node->name, expected->label);
     cm1e_device_options_t device = {.mapping = config->mapping, .order = options->network->sim_pdo_order};
     snprintf(device.firmware, sizeof device.firmware, "%s", config->firmware);
     return cm1e_describe(described, &device, CM1E_ESI_FLAT, diag);

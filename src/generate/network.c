@@ -3,7 +3,7 @@
 
 #include "description/describe.h"
 #include "core/in_task.h"
-#include "device/bridge.h"
+#include "device/devices.h"
 #include "device/place.h"
 #include "generate/file.h"
 #include "generate/live.h"
@@ -14,11 +14,11 @@ static cm1e_error_t describe_by_tables(cm1e_description_file_t *file, const cm1e
                                        cm1e_mapping_t mapping, cm1e_diag_t *diag)
 {
     cm1e_device_options_t options = {.mapping = mapping};
-    const cm1e_device_options_t bridge = {.model = slave->model, .vendor_id = slave->vendor_id,
-                                          .product_code = slave->product_code, .revision = slave->revision};
-    if (slave->is_bridge)
-        return cm1e_describe(file, &bridge, CM1E_ESI_FLAT, diag);
-    const cm1e_firmware_info_t *firmware = cm1e_firmware_from_version(slave->software_version);
+    const cm1e_device_options_t by_identity = {.model = slave->model, .vendor_id = slave->vendor_id,
+                                               .product_code = slave->product_code, .revision = slave->revision};
+    if (!slave->device->firmware)
+        return cm1e_describe(file, &by_identity, CM1E_ESI_FLAT, diag);
+    const cm1e_firmware_info_t *firmware = slave->device->firmware(slave->software_version);
     if (!firmware)
         return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0,
                              "slave %u (%s) does not report its firmware version (object 0x100A), on which its "
@@ -31,8 +31,10 @@ static cm1e_error_t describe_by_tables(cm1e_description_file_t *file, const cm1e
  * identity is described by its SII. */
 static bool is_in_tables(const cm1e_slave_info_t *slave)
 {
-    return slave->is_cm1e || (slave->is_bridge && cm1e_bridge_name(slave->model) && slave->vendor_id &&
-                              slave->product_code && slave->revision);
+    const cm1e_device_t *device = slave->device;
+    if (!device || !device->name || !device->described)
+        return false;
+    return device->recognised == CM1E_BY_IDENTITY || (slave->vendor_id && slave->product_code && slave->revision);
 }
 
 /* The configured axis that this slave is, or the first behind it; NULL: none. `name`: of all of them. */

@@ -1,5 +1,6 @@
 /* From the wire to Operational: scan, identify, configure, operate, stop. */
 #include "bus_support.h"
+#include "device/devices.h"
 
 static const char *const firmwares[] = {"1.2.0", "1.3.0", "1.3.2", "1.3.3", "1.3.4", "1.3.5"};
 enum { FIRMWARES = 6, MAPPINGS = 4 };
@@ -16,7 +17,7 @@ START_TEST(scan_finds_every_slave_from_1_to_16)
         ck_assert_uint_eq(info->position, position);
         ck_assert_uint_eq(info->vendor_id, CM1E_VENDOR_ID);
         ck_assert_uint_eq(info->product_code, CM1E_PRODUCT_CODE);
-        ck_assert(info->is_cm1e);
+        ck_assert(info->device == &cm1e_device_cm1e);
         ck_assert_uint_eq(info->al_state, CM1E_AL_PRE_OP);
         ck_assert_str_ne(info->name, "");
         ck_assert_msg(strstr(info->software_version, tested_firmware()) != NULL, "%s", info->software_version);
@@ -285,7 +286,7 @@ START_TEST(io_module_between_the_axes_is_mapped_by_its_sii)
     ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
     ck_assert_uint_eq(cm1e_bus_slave(bus, 2)->output_bytes, 1);
     ck_assert_uint_eq(cm1e_bus_slave(bus, 2)->input_bytes, 1);
-    ck_assert(!cm1e_bus_slave(bus, 2)->is_cm1e);
+    ck_assert(cm1e_bus_slave(bus, 2)->device != &cm1e_device_cm1e);
     ck_assert_uint_eq(cm1e_bus_find_output(bus, 1, 0x6040, 0).offset, 0);
     ck_assert_uint_eq(cm1e_bus_find_output(bus, 3, 0x6040, 0).offset, 14);
     cycles(bus, 100);

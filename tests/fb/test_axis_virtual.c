@@ -4,6 +4,7 @@
 #include "axis/axis_parameters.h"
 #include "axis/axis_signals.h"
 #include "axis_segment.h"
+#include "device/devices.h"
 #undef axis /* it is a member here */
 
 enum { LINE = 0, MOTOR, ENCODER, AXES };
@@ -222,7 +223,7 @@ START_TEST(test_a_segment_of_virtual_axes_only_runs)
         config.axes[n].type = CM1E_AXIS_VIRTUAL;
     open_segment();
     ck_assert_uint_eq(cm1e_bus_slave_count(bus), 1);
-    ck_assert(!cm1e_bus_slave(bus, 1)->is_cm1e);
+    ck_assert(cm1e_bus_slave(bus, 1)->device != &cm1e_device_cm1e);
     enable_both();
     const cm1e_command_id_t id = go(LINE, CM1E_COMMAND_MOVE_RELATIVE, -2.0, 5.0);
     cycles(1500);

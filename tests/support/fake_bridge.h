@@ -6,6 +6,7 @@
 #ifndef CM1E_TESTS_FAKE_BRIDGE_H
 #define CM1E_TESTS_FAKE_BRIDGE_H
 
+#include "device/devices.h"
 #include "fake_bus.h"
 #include "sim/bridge_app.h"
 
@@ -90,7 +91,7 @@ static inline void fake_bridge_open(cm1e_bus_t *bus, cm1e_device_model_t model, 
     bus->config.axes[0].channel = (uint8_t)channel;
     bus->config.axes[0].k37 = FAKE_BRIDGE_K37;
     bus->config.axes[0].k37_stated = true;
-    bus->info = (cm1e_slave_info_t){.position = 1, .is_bridge = true, .model = model};
+    bus->info = (cm1e_slave_info_t){.position = 1, .device = cm1e_device_of_model(model), .model = model};
     bus->rx.entry_count = bus->tx.entry_count = 0;
     for (unsigned transmit = 0; transmit < 2; transmit++)
         for (unsigned axis = 0; axis < CM1E_BRIDGE_AXES; axis++) {

@@ -89,7 +89,7 @@ static cm1e_command_id_t home(double position, const cm1e_homing_config_t *confi
                                                       .homing = config});
 }
 
-static void cycles_until_step(home_step_t step)
+static void cycles_until_step(cm1e_home_step_t step)
 {
     for (int i = 0; i < 3000; i++) {
         if (drive_homes(axis) && axis->home.step == step)

@@ -80,7 +80,7 @@ static void test_every_model_is_a_bridge_with_its_motors(void)
     for (model = CM1E_DEVICE_EB01; model <= CM1E_DEVICE_EB12; model++) {
         cm1e_device_model_t found;
         run();
-        TEST_ASSERT_TRUE(job.is_bridge);
+        TEST_ASSERT_TRUE(job.recognised);
         TEST_ASSERT_EQUAL_UINT(QUESTIONS, questions);
         for (unsigned i = 0; i < CM1E_BRIDGE_AXES; i++)
             TEST_ASSERT_EQUAL_UINT(cm1e_bridge_motor(model, i), job.facts.motors[i]);
@@ -99,7 +99,7 @@ static void test_harm_at_every_question_ends_defined(void)
             run();
             /* The facts that make a bridge must all be right; what it is made of may be anything but silence. */
             const bool still = harm_at > MUST_BE && harm != TIMEOUT;
-            TEST_ASSERT_EQUAL_MESSAGE(still, job.is_bridge, message);
+            TEST_ASSERT_EQUAL_MESSAGE(still, job.recognised, message);
             TEST_ASSERT_EQUAL_UINT_MESSAGE(still ? QUESTIONS : harm_at, questions, message);
             if (!still && (harm == OTHER_VALUE || harm == ZERO || harm == EMPTY))
                 TEST_ASSERT_NOT_EQUAL_MESSAGE(job.wanted, job.shown, message);
@@ -117,7 +117,7 @@ static void test_slow_slave_ends_at_the_deadline(void)
 {
     answer_ns = 900000000;
     run();
-    TEST_ASSERT_FALSE(job.is_bridge);
+    TEST_ASSERT_FALSE(job.recognised);
     TEST_ASSERT_EQUAL_UINT(4, questions);
 }
 
@@ -144,7 +144,7 @@ static void test_cancelled_asks_nothing_more(void)
     TEST_ASSERT_NOT_NULL(cm1e_recognise_next(&job, now_ns));
     cm1e_recognise_cancel(&job);
     TEST_ASSERT_NULL(cm1e_recognise_next(&job, now_ns));
-    TEST_ASSERT_FALSE(job.is_bridge);
+    TEST_ASSERT_FALSE(job.recognised);
 }
 
 int main(void)

@@ -33,7 +33,7 @@ static void test_what_the_configuration_has_to_state(void)
     config->channel = 5;
     assert_refused(CM1E_ERROR_CONFIG, "1 ... 4");
     config->channel = 2;
-    bus.info.is_bridge = false;
+    bus.info.device = &cm1e_device_cm1e;
     assert_refused(CM1E_ERROR_CONFIG, "Bridge");
 }
 

@@ -28,7 +28,7 @@ static bool leads(int from, int to)
 
 static void go_to(int mode)
 {
-    TEST_ASSERT_TRUE_MESSAGE(bench_mode(mode, 100), cm1e_drive_mode_row(drive.kind, (int8_t)mode)->abbreviation);
+    TEST_ASSERT_TRUE_MESSAGE(bench_mode(mode, 100), cm1e_device_mode(drive.kind, (int8_t)mode)->abbreviation);
     TEST_ASSERT_EQUAL_INT8(mode, fake_bridge_axis()->mode);
 }
 

@@ -1,0 +1,133 @@
+/* The CM1-E as a row of the device interface. Its dictionary, mappings, motors, errors and firmware have sources of
+ * their own (objects.c, pdo.c, motors.c, errors.c, firmware.c). */
+#include "device/device_rows.h"
+#include "device/objects.h"
+
+#include <stddef.h>
+
+/* Sizes: UG 4.4 and UG 7.2 disagree on 0x6077 (16 or 32 bits), and CiA 402 has digital I/O in 32 bits. */
+static const cm1e_device_object_t process_data[] = {
+    PROCESS_DATA(OUT_CONTROLWORD, OBJ_6040_CONTROLWORD, 2, 2, MAPPED_ALL, "Controlword", ),
+    PROCESS_DATA(OUT_POSITION, OBJ_607A_TARGET_POSITION, 4, 4, MAPPED_DYNAMIC | MAPPED_CSP | MAPPED_PROFILE,
+     "Target position", ),
+    PROCESS_DATA(OUT_VELOCITY, OBJ_60FF_TARGET_VELOCITY, 4, 4, MAPPED_DYNAMIC | MAPPED_CSV | MAPPED_PROFILE,
+     "Target velocity", ),
+    PROCESS_DATA(OUT_MODE, OBJ_6060_MODES_OF_OPERATION, 1, 1, MAPPED_DYNAMIC, "Modes of operation", ),
+    PROCESS_DATA(OUT_DIGITAL, OBJ_60FE_DIGITAL_OUTPUTS, 2, 4, 0, "Digital outputs", ),
+    PROCESS_DATA(OUT_PROFILE_VELOCITY, OBJ_6081_PROFILE_VELOCITY, 4, 4, 0, "Profile velocity", ),
+    PROCESS_DATA(OUT_PROFILE_ACCELERATION, OBJ_6083_PROFILE_ACCELERATION, 4, 4, 0, "Profile acceleration", ),
+    PROCESS_DATA(IN_STATUSWORD, OBJ_6041_STATUSWORD, 2, 2, MAPPED_ALL, "Statusword", ),
+    PROCESS_DATA(IN_ERROR, OBJ_603F_ERROR_CODE, 2, 2, 0, "Error code", ),
+    PROCESS_DATA(IN_POSITION, OBJ_6064_POSITION_ACTUAL_VALUE, 4, 4, MAPPED_ALL, "Position actual value", ),
+    PROCESS_DATA(IN_VELOCITY, OBJ_606C_VELOCITY_ACTUAL_VALUE, 4, 4, 0, "Velocity actual value", ),
+    PROCESS_DATA(IN_TORQUE, OBJ_6077_TORQUE_ACTUAL_VALUE, 2, 4, 0, "Torque actual value", ),
+    PROCESS_DATA(IN_DIGITAL, OBJ_60FD_DIGITAL_INPUTS, 2, 4, 0, "Digital inputs", ),
+    PROCESS_DATA(IN_TEMPERATURE, OBJ_2301_TEMPERATURE, 2, 4, 0, "Drive temperature", ),
+    PROCESS_DATA(IN_DC_LINK, OBJ_6079_DC_LINK_VOLTAGE, 2, 4, 0, "DC link voltage", ),
+    PROCESS_DATA(IN_MODE, OBJ_6061_MODES_OF_OPERATION_DISPLAY, 1, 1, MAPPED_DYNAMIC, "Modes of operation display", ),
+};
+
+/* UG 6.1.2, 6.1.3 */
+static const cm1e_device_words_t words = {
+    .states = cm1e_fsa_table, .voltage = STATUSWORD_VOLTAGE_ENABLED, .fault = STATUSWORD_FAULT,
+    .warning = STATUSWORD_WARNING, .target_reached = STATUSWORD_TARGET_REACHED, .bit12 = STATUSWORD_BIT12,
+    .bit13 = STATUSWORD_BIT13, .no_torque = 0x0006, .fault_reset = 0x0086,
+};
+
+/* UG 6.2; homing needs no special mapping (UG 6.2.4). */
+static const cm1e_device_mode_t modes[] = {
+    {.mode = CM1E_MODE_PP, .abbreviation = "PP", .words = &words, .target = CM1E_OUT_POSITION, .torque = true,
+     .holds_position = true, .halts = true, .ways = CM1E_DEVICE_WAYS_ALL},
+    {.mode = CM1E_MODE_PV, .abbreviation = "PV", .words = &words, .target = CM1E_OUT_VELOCITY, .torque = true,
+     .halts = true, .ways = CM1E_DEVICE_WAYS_ALL},
+    {.mode = CM1E_MODE_HM, .abbreviation = "HM", .words = &words, .target = CM1E_NO_ROLE, .torque = true,
+     .halts = true, .ways = CM1E_DEVICE_WAYS_ALL},
+    {.mode = CM1E_MODE_CSP, .abbreviation = "CSP", .words = &words, .target = CM1E_OUT_POSITION, .torque = true,
+     .holds_position = true, .ways = CM1E_DEVICE_WAYS_ALL},
+    {.mode = CM1E_MODE_CSV, .abbreviation = "CSV", .words = &words, .target = CM1E_OUT_VELOCITY, .torque = true,
+     .ways = CM1E_DEVICE_WAYS_ALL},
+};
+
+/* UG 6.2.4 */
+static const cm1e_device_homing_t homing = {
+    .first_method = -6, .last_method = -1, .first_by_switch = -6, .last_by_switch = -3,
+    .positive_stop = -1, .negative_stop = -2, .halts = true, .place = "",
+    .objects = {
+        [CM1E_HOMING_OFFSET] = {OBJ_607C_HOME_OFFSET, 0, 1.0, NULL},
+        [CM1E_HOMING_METHOD] = {OBJ_6098_HOMING_METHOD, 0, 1.0, NULL},
+        [CM1E_HOMING_SPEED] = {OBJ_6099_HOMING_SPEEDS, 1, 1.0, NULL},
+        [CM1E_HOMING_ACCELERATION] = {OBJ_609A_HOMING_ACCELERATION, 0, 1.0, NULL},
+        [CM1E_HOMING_TORQUE] = {OBJ_60F6_K_PARAMETERS, CM1E_K_PARAMETER_HOMING_TORQUE, 1.0, NULL},
+    },
+    .steps = {HOME_WRITE, HOME_SWITCH, HOME_START, HOME_RUN, HOME_RETURN},
+};
+
+static const cm1e_device_drive_t drive = {
+    .name = "CM1-E", .short_name = "CM1-E", .place = "",
+    .objects = process_data, .object_count = COUNT(process_data),
+    .mappings = {
+        [CM1E_MAPPING_DYNAMIC] = {"dynamic (0x1600/0x1A00)", CM1E_MODE_CSP},
+        [CM1E_MAPPING_CSP] = {"CSP (0x1601/0x1A01)", CM1E_MODE_CSP},
+        [CM1E_MAPPING_CSV] = {"CSV (0x1602/0x1A02)", CM1E_MODE_CSV},
+        [CM1E_MAPPING_PROFILE] = {"profile (0x1603/0x1A03)", CM1E_MODE_CSP},
+    },
+    .modes = modes, .mode_count = COUNT(modes),
+    .refusal = "Check the mapping and the firmware",
+    .homing = &homing,
+    .signals = {.inputs = 0x000F, .outputs = 0x0001},
+    .error = cm1e_device_error,
+};
+
+static const cm1e_object_t *object(const cm1e_device_t *device, size_t n)
+{
+    (void)device;
+    size_t count;
+    const cm1e_object_t *objects = cm1e_device_objects(&count);
+    return n < count ? &objects[n] : NULL;
+}
+
+static const cm1e_entry_t *entry(const cm1e_device_t *device, uint16_t index, uint8_t subindex)
+{
+    (void)device;
+    return cm1e_device_entry(index, subindex);
+}
+
+static cm1e_pdo_choice_t pdos(const cm1e_axis_config_t *axis)
+{
+    const unsigned mapping = axis ? axis->mapping : CM1E_MAPPING_DYNAMIC;
+    return (cm1e_pdo_choice_t){1, {{(uint16_t)(0x1600 + mapping)}, {(uint16_t)(0x1A00 + mapping)}}};
+}
+
+static double counts_per_revolution(const cm1e_axis_config_t *axis)
+{
+    (void)axis;
+    return CM1E_COUNTS_PER_REVOLUTION;
+}
+
+static double peak_velocity(const cm1e_axis_config_t *axis)
+{
+    const cm1e_motor_t *motor = cm1e_device_motor(axis->motor);
+    return motor ? motor->max_velocity_counts_per_s : 0.0;
+}
+
+static const char *motor(size_t n)
+{
+    return n < sizeof cm1e_device_motors / sizeof cm1e_device_motors[0] ? cm1e_device_motors[n].name : NULL;
+}
+
+static const cm1e_absent_key_t absent[] = {
+    {"k37", "is given without a channel; expected only behind a bridge: a CM1-E has 50000 counts in a revolution"},
+    {NULL, NULL},
+};
+
+const cm1e_device_t cm1e_device_cm1e = {
+    .kind = "cm1-e", .label = "CM1-E", .name = "CM1-E", .model = CM1E_DEVICE_CM1E,
+    .recognised = CM1E_BY_IDENTITY, .vendor_id = CM1E_VENDOR_ID, .product_code = CM1E_PRODUCT_CODE,
+    .explicit_id = true, .described = true, .extra_is_error = true,
+    .cycle_times_ns = cm1e_device_cycle_times_ns, .cycle_time_count = 4,
+    .firmware = cm1e_firmware_from_version,
+    .object = object, .entry = entry, .pdos = pdos,
+    .counts_per_revolution = counts_per_revolution, .peak_velocity = peak_velocity,
+    .motor = motor, .motors_note = " (CM1 and CM2 have a channel of a bridge)", .absent = absent,
+    .drives = {&drive},
+};

@@ -1,0 +1,28 @@
+/**
+ * @file device_rows.h
+ * What the rows of the device interface share; private to this room.
+ */
+#ifndef CM1E_DEVICE_DEVICE_ROWS_H
+#define CM1E_DEVICE_DEVICE_ROWS_H
+
+#include "device/devices.h"
+
+/** The mappings that must have an object. */
+enum { MAPPED_DYNAMIC = 1 << CM1E_MAPPING_DYNAMIC, MAPPED_CSP = 1 << CM1E_MAPPING_CSP,
+       MAPPED_CSV = 1 << CM1E_MAPPING_CSV, MAPPED_PROFILE = 1 << CM1E_MAPPING_PROFILE,
+       MAPPED_ALL = MAPPED_DYNAMIC | MAPPED_CSP | MAPPED_CSV | MAPPED_PROFILE };
+
+/** A row of the process data: role, object, sizes, mappings that need it, name; further fields at the end. */
+#define PROCESS_DATA(role_, index_, least_, most_, needed_, name_, ...)                                             \
+    {.role = CM1E_##role_, .index = (index_), .least_bytes = (least_), .most_bytes = (most_), .needed_in = (needed_), \
+     .name = (name_), __VA_ARGS__}
+
+/** A row of error codes: code, error register, fault, from Operation enabled only, text, cure; further fields at the
+ *  end. */
+#define ERROR(code_, register_, fault_, when_enabled_, text_, cure_, ...)                                            \
+    {.code = (code_), .error_register = (register_), .fault = (fault_), .fault_only_when_enabled = (when_enabled_), \
+     .text = (text_), .cure = (cure_), __VA_ARGS__}
+
+#define COUNT(table) (sizeof(table) / sizeof(table)[0])
+
+#endif

@@ -1,0 +1,87 @@
+#include "device/devices.h"
+
+#include <string.h>
+
+/* All devices; of a kind the model that can do most comes first. */
+static const cm1e_device_t *const devices[] = {
+    &cm1e_device_cm1e, &cm1e_device_eb02, &cm1e_device_eb01, &cm1e_device_eb12,
+};
+enum { DEVICES = sizeof devices / sizeof devices[0] };
+
+const cm1e_device_t *cm1e_device_number(size_t n) { return n < DEVICES ? devices[n] : NULL; }
+
+const cm1e_device_t *cm1e_device_of_model(cm1e_device_model_t model)
+{
+    for (size_t i = 0; i < DEVICES; i++)
+        if (devices[i]->model == model)
+            return devices[i];
+    return NULL;
+}
+
+const cm1e_device_t *cm1e_device_of_identity(uint32_t vendor_id, uint32_t product_code)
+{
+    for (size_t i = 0; i < DEVICES; i++)
+        if (devices[i]->recognised == CM1E_BY_IDENTITY && devices[i]->vendor_id == vendor_id &&
+            devices[i]->product_code == product_code)
+            return devices[i];
+    return NULL;
+}
+
+const cm1e_device_t *cm1e_device_recognised(cm1e_recognition_kind_t recognised)
+{
+    for (size_t i = 0; i < DEVICES; i++)
+        if (devices[i]->recognised == recognised)
+            return devices[i];
+    return NULL;
+}
+
+/* Where the configuration names no device, a channel tells a bridge from a CM1-E. */
+static const char *kind_of(const cm1e_axis_config_t *axis)
+{
+    return axis->channel ? cm1e_device_eb01.kind : cm1e_device_cm1e.kind;
+}
+
+static bool has_motor(const cm1e_device_t *device, const cm1e_axis_config_t *axis)
+{
+    const cm1e_device_drive_t *drive = cm1e_device_drive(device, axis->channel);
+    return !device->channels || axis->motor[0] == '\0' || (drive && strcmp(axis->motor, drive->short_name) == 0);
+}
+
+const cm1e_device_t *cm1e_device_configured(const cm1e_axis_config_t *axis)
+{
+    const char *kind = kind_of(axis);
+    const cm1e_device_t *found = NULL;
+    for (size_t i = 0; i < DEVICES; i++) {
+        if (strcmp(devices[i]->kind, kind) != 0)
+            continue;
+        if (has_motor(devices[i], axis))
+            return devices[i];
+        found = found ? found : devices[i];
+    }
+    return found;
+}
+
+const cm1e_device_drive_t *cm1e_device_drive_configured(const cm1e_axis_config_t *axis)
+{
+    const cm1e_device_t *device = cm1e_device_configured(axis);
+    return device ? cm1e_device_drive(device, axis->channel) : NULL;
+}
+
+bool cm1e_device_same_kind(const cm1e_device_t *a, const cm1e_device_t *b)
+{
+    return a && b && strcmp(a->kind, b->kind) == 0;
+}
+
+const cm1e_device_drive_t *cm1e_device_drive(const cm1e_device_t *device, unsigned channel)
+{
+    const unsigned place = device->channels ? channel - 1u : channel;
+    return place < (device->channels ? device->channels : 1u) ? device->drives[place] : NULL;
+}
+
+const cm1e_device_mode_t *cm1e_device_mode(const cm1e_device_drive_t *drive, int8_t mode)
+{
+    for (size_t i = 0; i < drive->mode_count; i++)
+        if (drive->modes[i].mode == mode)
+            return &drive->modes[i];
+    return NULL;
+}
