@@ -28,6 +28,7 @@ typedef enum cm1e_device_model {
     CM1E_DEVICE_EB01,     /**< EtherCAT Cool MUSCLE Bridge, four CM1 */
     CM1E_DEVICE_EB02,     /**< EtherCAT Cool MUSCLE Bridge, four CM2 */
     CM1E_DEVICE_EB12,     /**< EtherCAT Cool MUSCLE Bridge, CM1 on axes 1 and 2, CM2 on axes 3 and 4 */
+    CM1E_DEVICE_CIA402,   /**< a servo drive of another maker, by CiA 402 and ETG.6010 */
 } cm1e_device_model_t;
 
 /** How a slave is addressed (UG 4.2). */
@@ -178,6 +179,13 @@ typedef struct cm1e_axis_config {
     cm1e_input_config_t inputs;
     cm1e_homing_config_t homing;
     cm1e_sim_axis_config_t sim;
+    char device[12];                 /**< "cm1-e", "bridge" or "cia402", a servo drive of another maker; "" selects a
+                                          bridge if `channel` is stated, else a CM1-E */
+    uint32_t counts_per_revolution;  /**< of the motor; only with the device cia402, which needs it; 0: not stated */
+    double max_speed_rpm;            /**< 1/min, of the motor; only with the device cia402, which needs it; 0: not
+                                          stated */
+    uint16_t outputs_pdo, inputs_pdo; /**< PDOs to assign, as 0x1600 and 0x1A00; only with the device cia402; 0 selects
+                                          those that the drive has assigned itself */
 } cm1e_axis_config_t;
 
 /** The whole bus. The configuration owns its axes: make it with cm1e_bus_config_init() or cm1e_bus_config_load(), add

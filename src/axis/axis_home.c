@@ -82,6 +82,8 @@ static double default_of(const cm1e_axis_t *axis, int which, const cm1e_homing_o
 static bool parameter(cm1e_axis_t *axis, int which, int method, double value)
 {
     const cm1e_homing_object_t object = object_of(axis, which, method);
+    if (object.index == 0) /* the drive has no such parameter */
+        return value == 0.0;
     const cm1e_entry_t *entry = range_of(axis, object);
     if (!entry || !isfinite(value) || fabs(value / object.unit) > INT32_MAX)
         return false;
@@ -133,7 +135,7 @@ static cm1e_error_t take_parameters(cm1e_axis_t *axis, const cm1e_homing_config_
 {
     const double scale = fabs(axis->scale);
     const double values[HOMING_PARAMETERS] = {
-        [OFFSET] = c->offset * axis->scale,
+        [OFFSET] = kind_of(axis)->offset_by_axis ? 0.0 : c->offset * axis->scale,
         [METHOD] = c->method,
         [SPEED] = c->velocity * scale,
         [ACCELERATION] = c->acceleration * scale,
@@ -141,7 +143,9 @@ static cm1e_error_t take_parameters(cm1e_axis_t *axis, const cm1e_homing_config_
     };
     const double asked[HOMING_PARAMETERS] = {c->offset, c->method, c->velocity, c->acceleration, c->torque};
     axis->home.k45 = -1; /* until it is read: the largest unit */
-    axis->home.offset = values[OFFSET];
+    axis->home.offset = c->offset * axis->scale;
+    if (!isfinite(c->offset) || fabs(axis->home.offset) > INT32_MAX)
+        return wrong(&axis->home, OFFSET, c->offset);
     axis->home.raw[METHOD] = c->method;
     for (int i = 0; i < HOMING_PARAMETERS; i++)
         if (!parameter(axis, i, c->method, values[i]))
@@ -204,10 +208,12 @@ static void enter(cm1e_axis_t *axis, cm1e_home_step_t step)
     }
 }
 
-/* The drive's 0 is the reference, wherever in its last counts the motor stands just now. */
+/* The drive's 0 is the reference, wherever in its last counts the motor stands just now. A drive that has not moved to
+ * the offset has its 0 that far before it. */
 static void take_reference(cm1e_axis_t *axis)
 {
-    cm1e_axis_set_origin(axis, cm1e_axis_load(axis, axis->actual_counts - axis->raw), axis->home.position);
+    const int64_t offset = kind_of(axis)->offset_by_axis ? llround(axis->home.offset) : 0;
+    cm1e_axis_set_origin(axis, cm1e_axis_load(axis, axis->actual_counts - axis->raw + offset), axis->home.position);
     axis->homed = true;
 }
 
@@ -314,6 +320,8 @@ static void step_write(cm1e_axis_t *axis)
             return;
         home->next++;
     }
+    while (home->next < HOMING_PARAMETERS && kind_of(axis)->objects[home->next].index == 0)
+        home->next++;
     if (home->next < HOMING_PARAMETERS)
         submit_parameter(axis);
     else

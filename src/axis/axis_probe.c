@@ -10,9 +10,19 @@
 
 static uint16_t bit_of(cm1e_axis_trigger_t trigger) { return (uint16_t)(1u << (trigger.input - 1)); }
 
+/* The drive latches positions at this edge itself. */
+static bool is_latched(const cm1e_axis_t *axis, cm1e_axis_trigger_t trigger)
+{
+    return !cm1e_drive_is_virtual(&axis->drive) && cm1e_drive_has_probe(&axis->drive, trigger.input, trigger.falling);
+}
+
 static cm1e_error_t probe_of(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, probe_t **probe)
 {
     *probe = NULL;
+    if (is_latched(axis, trigger)) {
+        *probe = &axis->probes[2 * (trigger.input - 1) + trigger.falling];
+        return CM1E_OK;
+    }
     const cm1e_error_t error = cm1e_axis_check_input(axis, trigger.input);
     if (error)
         return error;
@@ -78,6 +88,8 @@ static cm1e_error_t arm(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, bool win
     axis->probe_count = axis->probe_count % (UINT32_MAX / PROBES - 1) + 1;
     *id = axis->probe_count * PROBES + (uint32_t)(probe - axis->probes);
     *probe = (probe_t){.id = *id, .state = CM1E_COMMAND_ACTIVE, .window = window, .first = first, .last = last};
+    if (is_latched(axis, trigger))
+        cm1e_drive_probe_arm(&axis->drive, trigger.input, trigger.falling);
     return CM1E_OK;
 }
 
@@ -106,6 +118,8 @@ cm1e_error_t cm1e_axis_probe_abort(cm1e_axis_t *axis, cm1e_axis_trigger_t trigge
 {
     probe_t *probe;
     const cm1e_error_t error = probe_of(axis, trigger, &probe);
+    if (!error && is_latched(axis, trigger))
+        cm1e_drive_probe_disarm(&axis->drive, trigger.input, trigger.falling);
     if (!error && probe->state == CM1E_COMMAND_ACTIVE)
         end(axis, probe, CM1E_COMMAND_ABORTED, CM1E_OK);
     return error;
@@ -136,15 +150,39 @@ static void triggered(cm1e_axis_t *axis, probe_t *probe, const probe_sample_t *b
     end(axis, probe, CM1E_COMMAND_DONE, CM1E_OK);
 }
 
+/* The latch of the drive knows the position to the count. */
+static void take_latched(cm1e_axis_t *axis, probe_t *probe, cm1e_axis_trigger_t trigger)
+{
+    int32_t raw;
+    if (!cm1e_drive_probe_taken(&axis->drive, trigger.input, trigger.falling, &raw))
+        return;
+    if (drive_moves(axis)) {
+        end(axis, probe, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_PROBE);
+        return;
+    }
+    const int64_t way = (int32_t)((uint32_t)raw - (uint32_t)axis->raw);
+    const double position = cm1e_axis_units(axis, cm1e_axis_load(axis, axis->actual_counts + way));
+    if (probe->window && !in_window(axis, probe, position)) {
+        cm1e_drive_probe_arm(&axis->drive, trigger.input, trigger.falling);
+        return;
+    }
+    probe->position = position;
+    probe->uncertainty = 0.5 / fabs(axis->scale);
+    end(axis, probe, CM1E_COMMAND_DONE, CM1E_OK);
+}
+
 void cm1e_axis_probe_step(cm1e_axis_t *axis)
 {
     const probe_sample_t before = axis->probe_sample, now = sample(axis);
     axis->probe_sample = now;
     const unsigned changed = (unsigned)(before.inputs ^ now.inputs);
-    for (int i = 0; i < PROBES && changed; i++) {
+    for (int i = 0; i < PROBES; i++) {
         const cm1e_axis_trigger_t trigger = {.input = i / 2 + 1, .falling = i % 2};
         const unsigned bit = bit_of(trigger);
-        if (axis->probes[i].state == CM1E_COMMAND_ACTIVE && changed & bit && !(now.inputs & bit) == trigger.falling)
+        if (axis->probes[i].state == CM1E_COMMAND_ACTIVE && is_latched(axis, trigger))
+            take_latched(axis, &axis->probes[i], trigger);
+        else if (axis->probes[i].state == CM1E_COMMAND_ACTIVE && changed & bit &&
+                 !(now.inputs & bit) == trigger.falling)
             triggered(axis, &axis->probes[i], &before, &now);
     }
 }

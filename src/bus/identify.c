@@ -53,7 +53,12 @@ static cm1e_error_t identity_error(const cm1e_bus_t *bus, cm1e_diag_t *diag, con
 static const char *other_kind_text(const cm1e_bus_slave_t *slave, const cm1e_device_t *expected, char text[112])
 {
     const cm1e_recognition_t *job = &slave->recognition;
-    if (!slave->facts.coe)
+    if (slave->info.device && slave->info.device->recognised == CM1E_BY_IDENTITY)
+        snprintf(text, 112, "it is a %s, whose entry names no device", slave->info.device->label);
+    else if (expected->recognised == CM1E_BY_PROFILE && slave->facts.coe)
+        snprintf(text, 112, "its object 0x1000 is 0x%08X, whose low word is not the profile %u", job->device_type,
+                 expected->profile);
+    else if (!slave->facts.coe)
         snprintf(text, 112, "it has no mailbox for CoE");
     else if (job->sdo.error != CM1E_OK)
         snprintf(text, 112, "its object 0x%04X:%02X cannot be read: %s", job->sdo.index, job->sdo.subindex,

@@ -9,7 +9,8 @@ enum { SDO_TIMEOUT_NS = 1000000000, DIRECTION_BITS_MAX = 8 * 1024 };
 
 void cm1e_mapping_begin(cm1e_mapping_job_t *job, uint16_t position, const cm1e_pdo_choice_t *choice)
 {
-    *job = (cm1e_mapping_job_t){.step = MAPPING_CLEAR, .choice = *choice, .sdo = {.position = position}};
+    *job = (cm1e_mapping_job_t){.step = choice->count ? MAPPING_CLEAR : MAPPING_READ_COUNT, .choice = *choice,
+                                .assigned = *choice, .sdo = {.position = position}};
 }
 
 static void end(cm1e_mapping_job_t *job, cm1e_error_t error, const char *reason)
@@ -32,7 +33,7 @@ static cm1e_sdo_t *prepare(cm1e_mapping_job_t *job)
 {
     if (job->step == MAPPING_IDLE)
         return NULL; /* the last transfer stays readable */
-    const uint16_t position = job->sdo.position, pdo = job->choice.pdos[job->direction][job->place];
+    const uint16_t position = job->sdo.position, pdo = job->assigned.pdos[job->direction][job->place];
     const bool write = job->step <= MAPPING_COUNT;
     job->sdo = (cm1e_sdo_t){.position = position, .index = assign_index[job->direction], .write = write,
                             .data = job->data, .size = write ? 1 : sizeof job->data, .timeout_ns = SDO_TIMEOUT_NS,
@@ -49,7 +50,7 @@ static cm1e_sdo_t *prepare(cm1e_mapping_job_t *job)
         job->sdo.size = 2;
         break;
     case MAPPING_COUNT:
-        job->data[0] = job->choice.count;
+        job->data[0] = job->assigned.count;
         break;
     case MAPPING_READ_COUNT:
         break;
@@ -71,7 +72,7 @@ static cm1e_sdo_t *prepare(cm1e_mapping_job_t *job)
 /** Repeats the step for the next PDO, or goes to `next` with the first PDO. */
 static void next_pdo(cm1e_mapping_job_t *job, cm1e_mapping_step_t next)
 {
-    if (++job->place < job->choice.count)
+    if (++job->place < job->assigned.count)
         return;
     job->place = 0;
     job->step = next;
@@ -105,13 +106,23 @@ static void took_entry(cm1e_mapping_job_t *job)
     mapped->bits = (uint16_t)(mapped->bits + bits);
     if (job->entry < job->entries) {
         job->entry++;
-    } else if (job->place + 1 < job->choice.count) {
+    } else if (job->place + 1 < job->assigned.count) {
         job->place++;
         job->step = MAPPING_READ_ENTRIES;
     } else {
         job->place = 0;
         next_direction(job);
     }
+}
+
+/** How many PDOs the device has assigned itself. */
+static void take_count(cm1e_mapping_job_t *job)
+{
+    job->assigned.count = job->data[0];
+    if (job->assigned.count == 0)
+        end(job, CM1E_ERROR_PDO_MAPPING, "it has no PDO assigned; name PDOs in the bus file");
+    else if (job->assigned.count > CM1E_ASSIGNED_PDOS)
+        end(job, CM1E_ERROR_PDO_MAPPING, "it has more PDOs assigned than are understood; name PDOs in the bus file");
 }
 
 /** What each transfer brought. */
@@ -131,11 +142,15 @@ static void took(cm1e_mapping_job_t *job)
         break;
     case MAPPING_READ_COUNT:
         job->step = MAPPING_READ_PDO;
-        if (job->data[0] != job->choice.count)
+        if (job->choice.count == 0)
+            take_count(job);
+        else if (job->data[0] != job->choice.count)
             end_wrong_assignment(job, "it assigns another number of PDOs than was written");
         break;
     case MAPPING_READ_PDO:
-        if (cm1e_get_u16(job->data) != job->choice.pdos[job->direction][job->place])
+        if (job->choice.count == 0)
+            job->assigned.pdos[job->direction][job->place] = cm1e_get_u16(job->data);
+        if (cm1e_get_u16(job->data) != job->assigned.pdos[job->direction][job->place])
             end_wrong_assignment(job, "it did not keep the assigned PDO");
         else
             next_pdo(job, MAPPING_READ_ENTRIES);

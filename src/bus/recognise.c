@@ -22,6 +22,8 @@ static bool took(cm1e_recognition_t *job)
     const uint32_t value = failed ? 0 : (uint32_t)cm1e_get_uint(job->data, (unsigned)job->sdo.size);
     job->shown = value;
     job->wanted = question->wanted;
+    if (question->index == OBJ_1000_DEVICE_TYPE)
+        job->device_type = value;
     if (question->wanted)
         return !failed && value == question->wanted;
     if (question->index == OBJ_1018_IDENTITY)

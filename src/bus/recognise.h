@@ -24,6 +24,7 @@ typedef struct cm1e_recognition {
     int64_t deadline_ns;
     cm1e_sdo_t sdo;          /**< the last transfer: where it is no bridge, the one that showed it */
     uint8_t data[4];
+    uint32_t device_type;    /**< 0x1000; 0: not read */
     bool recognised;         /**< result, valid when idle */
     uint32_t shown, wanted;  /**< where it is no bridge: what it answered, and what a bridge does */
     cm1e_bridge_facts_t facts;

@@ -92,6 +92,13 @@ static void take_bridge(cm1e_bus_slave_t *slave)
     }
 }
 
+/** The low word of 0x1000 is the profile (ETG.1000.6). */
+static const cm1e_device_t *device_of_profile(uint32_t device_type)
+{
+    const cm1e_device_t *device = cm1e_device_recognised(CM1E_BY_PROFILE);
+    return device && (device_type & 0xFFFF) == device->profile ? device : NULL;
+}
+
 /** Asks every slave with a mailbox that was not recognised by its identity. */
 static void recognise_by_objects(cm1e_bus_t *bus)
 {
@@ -106,6 +113,8 @@ static void recognise_by_objects(cm1e_bus_t *bus)
         cm1e_bus_slave_t *slave = &bus->slaves[i];
         if (slave->recognition.recognised)
             take_bridge(slave);
+        else if (!slave->info.device)
+            set_device(slave, device_of_profile(slave->recognition.device_type));
     }
 }
 

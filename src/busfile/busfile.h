@@ -38,6 +38,7 @@ typedef struct cm1e_busfile_axis {
     uint16_t position, alias, explicit_id;
     double *software_limit_negative, *software_limit_positive; /**< NULL: none on this side */
     uint8_t *k37;          /**< NULL: not stated */
+    char outputs_pdo[8], inputs_pdo[8]; /**< "": not stated */
     int velocity_unit;     /**< 0: not stated */
     int acceleration_unit; /**< 1: kcounts/s2 */
 } cm1e_busfile_axis_t;

@@ -69,6 +69,23 @@ static void convert_software_limits(cm1e_axis_config_t *axis, const cm1e_busfile
     axis->software_limit_positive = positive ? *positive : INFINITY;
 }
 
+/* Hexadecimal, as manuals have it. */
+static bool convert_pdo(uint16_t *pdo, const char *text, const char *key, unsigned first, uint32_t index,
+                        cm1e_config_problem_t *problem)
+{
+    enum { PDOS = 0x200 };
+    char *end;
+    const unsigned long value = strtoul(text, &end, 16);
+    const bool good = strncmp(text, "0x", 2) == 0 && *end == '\0' && value >= first && value < first + PDOS;
+    *pdo = (uint16_t)value;
+    if (good || text[0] == '\0')
+        return true;
+    snprintf(problem->path, sizeof problem->path, "axes[%u].drive.%s", index, key);
+    snprintf(problem->text, sizeof problem->text, "%s is '%s'; expected 0x%04X ... 0x%04X", key, text, first,
+             first + PDOS - 1);
+    return false;
+}
+
 static bool convert_axis(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *from, uint32_t index,
                          cm1e_config_problem_t *problem)
 {
@@ -81,6 +98,9 @@ static bool convert_axis(cm1e_axis_config_t *axis, const cm1e_busfile_axis_t *fr
     axis->k37_stated = from->k37 != NULL;
     axis->k37 = from->k37 ? *from->k37 : 0;
     convert_software_limits(axis, from);
+    if (!convert_pdo(&axis->outputs_pdo, from->outputs_pdo, "outputs_pdo", 0x1600, index, problem) ||
+        !convert_pdo(&axis->inputs_pdo, from->inputs_pdo, "inputs_pdo", 0x1A00, index, problem))
+        return false;
     return convert_address(axis, from, index, problem);
 }
 

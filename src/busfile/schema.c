@@ -111,6 +111,13 @@ static const cyaml_schema_field_t wire_fields[] = {
     ENUM_OF("acceleration_unit", cm1e_busfile_axis_t, acceleration_unit, acceleration_units),
     CYAML_FIELD_END,
 };
+static const cyaml_schema_field_t drive_fields[] = {
+    AXIS_UINT("counts_per_revolution", counts_per_revolution),
+    AXIS_FLOAT("max_speed_rpm", max_speed_rpm),
+    CYAML_FIELD_STRING("outputs_pdo", OPTIONAL, cm1e_busfile_axis_t, outputs_pdo, 1),
+    CYAML_FIELD_STRING("inputs_pdo", OPTIONAL, cm1e_busfile_axis_t, inputs_pdo, 1),
+    CYAML_FIELD_END,
+};
 static const cyaml_schema_field_t homing_fields[] = {
     CYAML_FIELD_INT("method", OPTIONAL, cm1e_busfile_axis_t, axis.homing.method),
     AXIS_FLOAT("offset", homing.offset),
@@ -153,6 +160,7 @@ static const cyaml_schema_field_t axis_fields[] = {
     CYAML_FIELD_UINT("alias", OPTIONAL, cm1e_busfile_axis_t, alias),
     CYAML_FIELD_UINT("explicit_id", OPTIONAL, cm1e_busfile_axis_t, explicit_id),
     AXIS_UINT("channel", channel),
+    AXIS_STRING("device", device),
     AXIS_STRING("motor", motor),
     CYAML_FIELD_UINT_PTR("k37", OPTIONAL | CYAML_FLAG_POINTER, cm1e_busfile_axis_t, k37),
     AXIS_STRING("firmware", firmware),
@@ -170,6 +178,7 @@ static const cyaml_schema_field_t axis_fields[] = {
     AXIS_GROUP("jog", jog_fields),
     AXIS_GROUP("inputs", input_fields),
     AXIS_GROUP("homing", homing_fields),
+    AXIS_GROUP("drive", drive_fields),
     AXIS_GROUP("wire", wire_fields),
     AXIS_GROUP("sim", sim_fields),
     CYAML_FIELD_END,
@@ -197,7 +206,8 @@ const cm1e_busfile_integer_range_t cm1e_busfile_integer_ranges[] = {
     {"explicit_id", 1, 254}, /* UG 4.2.3 */
     {"channel", 1, CM1E_BRIDGE_AXES},
     {"k37", 0, 99},
-    {"method", -6, 4},       /* UG 6.2.4, BR 6.4.1 */
+    {"method", -128, 37},    /* CiA 402; of a CM1-E and behind a bridge less, see its check */
+    {"counts_per_revolution", 100, 1 << 30},
     {"gear_numerator", 1, 1000000}, {"gear_denominator", 1, 1000000},
     {"cam_points", CM1E_CAM_POINTS_MINIMUM, CM1E_CAM_POINTS_MAXIMUM},
     {"limit_positive", 1, 4}, {"limit_negative", 1, 4}, {"home", 1, 4},

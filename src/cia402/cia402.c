@@ -12,6 +12,18 @@ const cm1e_fsa_row_t cm1e_fsa_table[CM1E_FSA_STATE_COUNT] = {
     {FAULT, 0x004F, 0x0008, "Fault"},
 };
 
+/* IEC 61800-7-201: bit 5 is part of the states below Fault, bit 4 of none. */
+const cm1e_fsa_row_t cm1e_fsa_cia402_table[CM1E_FSA_STATE_COUNT] = {
+    {NOT_READY_TO_SWITCH_ON, 0x004F, 0x0000, "Not ready to switch on"},
+    {SWITCH_ON_DISABLED, 0x004F, 0x0040, "Switch on disabled"},
+    {READY_TO_SWITCH_ON, 0x006F, 0x0021, "Ready to switch on"},
+    {SWITCHED_ON, 0x006F, 0x0023, "Switched on"},
+    {OPERATION_ENABLED, 0x006F, 0x0027, "Operation enabled"},
+    {QUICK_STOP_ACTIVE, 0x006F, 0x0007, "Quick stop active"},
+    {FAULT_REACTION_ACTIVE, 0x004F, 0x000F, "Fault reaction active"},
+    {FAULT, 0x004F, 0x0008, "Fault"},
+};
+
 /* A state that never shows: no word AND 0 is that. */
 #define NEVER 0x0000, 0xFFFF
 

@@ -32,6 +32,8 @@ typedef struct cm1e_fsa_row {
 
 /** CM1-E: UG 6.1.3. */
 extern const cm1e_fsa_row_t cm1e_fsa_table[CM1E_FSA_STATE_COUNT];
+/** A drive that keeps to the standard: the states of CiA 402 with quick stop. */
+extern const cm1e_fsa_row_t cm1e_fsa_cia402_table[CM1E_FSA_STATE_COUNT];
 /** Motor behind a Cool MUSCLE Bridge: BR 6.1.3. */
 extern const cm1e_fsa_row_t cm1e_fsa_bridge_table[CM1E_FSA_STATE_COUNT];
 /** Motor behind a Cool MUSCLE Bridge in CPIO, where the statusword has only its lower four bits, and 1100b in front:
@@ -45,7 +47,7 @@ const char *cm1e_fsa_name(cm1e_fsa_state_t state);
 enum {
     CONTROLWORD_SWITCH_ON = 0x0001, CONTROLWORD_ENABLE_VOLTAGE = 0x0002, CONTROLWORD_QUICK_STOP = 0x0004,
     CONTROLWORD_ENABLE_OPERATION = 0x0008, CONTROLWORD_NEW_SET_POINT = 0x0010, CONTROLWORD_HOMING_START = 0x0010,
-    CONTROLWORD_FAULT_RESET = 0x0080, CONTROLWORD_HALT = 0x0100,
+    CONTROLWORD_CHANGE_IMMEDIATELY = 0x0020, CONTROLWORD_FAULT_RESET = 0x0080, CONTROLWORD_HALT = 0x0100,
 };
 enum {
     STATUSWORD_READY_TO_SWITCH_ON = 0x0001, STATUSWORD_SWITCHED_ON = 0x0002, STATUSWORD_OPERATION_ENABLED = 0x0004,

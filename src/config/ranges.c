@@ -592,6 +592,54 @@ static bool check_bridge(const check_t *check)
     return check_absent(check) && check_model(check) && check_k37(check);
 }
 
+/* ---- which device ------------------------------------------------------------------------------------------------ */
+
+static bool check_kind(const check_t *check)
+{
+    const cm1e_axis_config_t *axis = check->axis;
+    const cm1e_device_t *device = IS_TEXT(axis->device) ? device_of(check) : NULL;
+    if (!device)
+        return axis_wrong(check, "device", "is '%.*s'; expected cm1-e, bridge or cia402", (int)sizeof axis->device - 1,
+                          IS_TEXT(axis->device) ? axis->device : "?");
+    if (device->channels && axis->channel == 0)
+        return axis_wrong(check, "channel", "is missing; expected 1 ... %u, the connector of the bridge",
+                          device->channels);
+    return device->channels || axis->channel == 0 ||
+           axis_wrong(check, "channel", "is %u, and the device %s is one axis; expected no channel", axis->channel,
+                      device->kind);
+}
+
+/* A motor that the library does not know is stated. */
+static bool check_stated_motor(const check_t *check)
+{
+    const cm1e_axis_config_t *axis = check->axis;
+    const bool needed = device_of(check)->motor_stated;
+    const struct {
+        const char *key;
+        bool given, needed;
+    } keys[] = {{"drive.counts_per_revolution", axis->counts_per_revolution != 0, true},
+                {"drive.max_speed_rpm", axis->max_speed_rpm != 0, true},
+                {"drive.outputs_pdo", axis->outputs_pdo != 0, axis->inputs_pdo != 0},
+                {"drive.inputs_pdo", axis->inputs_pdo != 0, axis->outputs_pdo != 0}};
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
+        if (keys[i].given && !needed)
+            return axis_wrong(check, keys[i].key, "is given, and the device %s is known without it; expected it with "
+                              "the device cia402 only", device_of(check)->kind);
+        else if (needed && keys[i].needed && !keys[i].given)
+            return axis_wrong(check, keys[i].key, "is missing; expected it with the device %s",
+                              device_of(check)->kind);
+    if (!needed)
+        return true;
+    if (axis->counts_per_revolution < 100 || axis->counts_per_revolution > 1 << 30)
+        return axis_wrong(check, "drive.counts_per_revolution", "is %u; expected 100 ... %d",
+                          axis->counts_per_revolution, 1 << 30);
+    if (!(axis->max_speed_rpm >= 1 && axis->max_speed_rpm <= 100000))
+        return axis_wrong(check, "drive.max_speed_rpm", "is %g; expected 1 ... 100000", axis->max_speed_rpm);
+    return cm1e_unit_peak_velocity(axis) <= INT32_MAX ||
+           axis_wrong(check, "drive.max_speed_rpm", "is %g, at which the motor makes %.0f counts/s; expected at most "
+                      "%d counts/s", axis->max_speed_rpm, cm1e_unit_peak_velocity(axis), INT32_MAX);
+}
+
 static bool check_channel(const check_t *check)
 {
     return check->axis->channel <= CM1E_BRIDGE_AXES ||
@@ -604,8 +652,8 @@ static bool check_device(const check_t *check)
 {
     if (!cm1e_axis_has_motor(check->axis))
         return cm1e_config_check_without_motor(check);
-    return check_channel(check) && check_address(check) && check_motor(check) && check_bridge(check) &&
-           check_firmware(check);
+    return check_channel(check) && check_kind(check) && check_address(check) && check_motor(check) &&
+           check_bridge(check) && check_stated_motor(check) && check_firmware(check);
 }
 
 static bool check_coupling(const check_t *check)

@@ -141,7 +141,7 @@ static describe_t *describer_of(const cm1e_device_options_t *options)
     static const struct {
         const char *device;
         describe_t *describe;
-    } rows[] = {{"cm1-e", cm1e_describe_cm1e}, {"bridge", cm1e_describe_bridge}};
+    } rows[] = {{"cm1-e", cm1e_describe_cm1e}, {"bridge", cm1e_describe_bridge}, {"cia402", cm1e_describe_cia402}};
     const char *kind = cm1e_device_of_model(options->model)->kind;
     size_t n = 0;
     while (strcmp(rows[n].device, kind) != 0) /* every device has one */

@@ -31,6 +31,9 @@ cm1e_error_t cm1e_describe_cm1e(cm1e_description_file_t *file, const cm1e_device
 cm1e_error_t cm1e_describe_bridge(cm1e_description_file_t *file, const cm1e_device_options_t *options,
                                   cm1e_esi_layout_t layout, cm1e_diag_t *diag);
 
+cm1e_error_t cm1e_describe_cia402(cm1e_description_file_t *file, const cm1e_device_options_t *options,
+                                  cm1e_esi_layout_t layout, cm1e_diag_t *diag);
+
 /** An object of the device tables as a description has it; entries that the firmware does not have are left out. */
 void cm1e_describe_object(cm1e_arena_t *arena, cm1e_object_list_t *list, const cm1e_object_t *object,
                           cm1e_firmware_t firmware);

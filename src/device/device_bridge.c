@@ -89,13 +89,13 @@ static const cm1e_device_homing_t cm2_homing = {HOMING, .steps = {HOME_READ, STE
 #define ADVICE_POWER " Behind a bridge digital signals are reached while the motor is enabled in csp."
 static const cm1e_device_drive_t cm1_drive = {
     DRIVE, .short_name = "CM1", .homing = &cm1_homing,
-    .signals = {0x0E, 0x02, true, 1,
+    .signals = {0x0E, 0x02, true, 1, 0,
                 {" Of a CM1 behind a bridge these can be reached: inputs 2 ... 4, output 2.", ADVICE_MAPPING,
                  ADVICE_POWER}},
 };
 static const cm1e_device_drive_t cm2_drive = {
     DRIVE, .short_name = "CM2", .homing = &cm2_homing,
-    .signals = {0x3F, 0x0F, true, 1,
+    .signals = {0x3F, 0x0F, true, 1, 0,
                 {" Of a CM2 behind a bridge these can be reached: inputs 1 ... 6 (in CPIO 1 ... 4), outputs 1 ... 4.",
                  ADVICE_MAPPING, ADVICE_POWER}},
 };

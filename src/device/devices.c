@@ -4,7 +4,7 @@
 
 /* All devices; of a kind the model that can do most comes first. */
 static const cm1e_device_t *const devices[] = {
-    &cm1e_device_cm1e, &cm1e_device_eb02, &cm1e_device_eb01, &cm1e_device_eb12,
+    &cm1e_device_cm1e, &cm1e_device_eb02, &cm1e_device_eb01, &cm1e_device_eb12, &cm1e_device_cia402,
 };
 enum { DEVICES = sizeof devices / sizeof devices[0] };
 
@@ -38,7 +38,7 @@ const cm1e_device_t *cm1e_device_recognised(cm1e_recognition_kind_t recognised)
 /* Where the configuration names no device, a channel tells a bridge from a CM1-E. */
 static const char *kind_of(const cm1e_axis_config_t *axis)
 {
-    return axis->channel ? cm1e_device_eb01.kind : cm1e_device_cm1e.kind;
+    return axis->device[0] ? axis->device : axis->channel ? cm1e_device_eb01.kind : cm1e_device_cm1e.kind;
 }
 
 static bool has_motor(const cm1e_device_t *device, const cm1e_axis_config_t *axis)

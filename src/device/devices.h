@@ -44,7 +44,7 @@ typedef struct cm1e_device_mapping {
 } cm1e_device_mapping_t;
 
 /** PDOs to assign to the sync managers, in order, as many in each direction. */
-enum { CM1E_ASSIGNED_PDOS = CM1E_BRIDGE_AXES };
+enum { CM1E_ASSIGNED_PDOS = 8 };
 typedef struct cm1e_pdo_choice {
     uint8_t count;                       /**< 0: those that the device has assigned itself */
     uint16_t pdos[2][CM1E_ASSIGNED_PDOS]; /**< outputs, inputs */
@@ -134,6 +134,7 @@ typedef struct cm1e_device_signals {
     uint16_t inputs, outputs;       /**< that the drive has, bit 0: input 1 */
     bool by_sdo;                    /**< reached by SDO only: others than those of the masks do not exist for anybody */
     uint8_t output_subindex;        /**< of 0x60FE */
+    uint8_t output_shift;           /**< bit of the first output in it */
     const char *advice[3];          /**< further sentences: no such signal, not in the process data, no torque; NULL */
 } cm1e_device_signals_t;
 enum { CM1E_ADVICE_SIGNAL = 0, CM1E_ADVICE_MAPPING, CM1E_ADVICE_POWER };
@@ -193,6 +194,7 @@ struct cm1e_device {
 
     cm1e_recognition_kind_t recognised;
     uint32_t vendor_id, product_code; /**< CM1E_BY_IDENTITY */
+    uint16_t profile;               /**< CM1E_BY_PROFILE: the low word of 0x1000 */
     const cm1e_question_t *questions; /**< CM1E_BY_OBJECTS */
     size_t question_count;
     uint8_t channels;               /**< 0: the slave is one axis; else axes are behind it and have a channel */
@@ -211,6 +213,7 @@ struct cm1e_device {
     cm1e_pdo_choice_t (*pdos)(const cm1e_axis_config_t *axis);
 
     /* Of the configuration of an axis, before a slave is known. */
+    bool motor_stated;              /**< the configuration has to state counts per revolution and maximum speed */
     double (*counts_per_revolution)(const cm1e_axis_config_t *axis);
     double (*peak_velocity)(const cm1e_axis_config_t *axis); /**< counts/s; 0: there is no such motor */
     const char *(*motor)(size_t n); /**< names for `motor`; NULL: no more. NULL: it takes none */
@@ -221,6 +224,8 @@ struct cm1e_device {
 };
 
 extern const cm1e_device_t cm1e_device_cm1e;
+/** A servo drive of any maker (device/cia402.h). */
+extern const cm1e_device_t cm1e_device_cia402;
 extern const cm1e_device_t cm1e_device_eb01, cm1e_device_eb02, cm1e_device_eb12;
 /** A bridge whose motors no known model has together: no axis can be behind it. */
 extern const cm1e_device_t cm1e_device_unknown_bridge;

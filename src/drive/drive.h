@@ -88,6 +88,15 @@ typedef struct cm1e_drive_encoder {
     bool valid;
 } cm1e_drive_encoder_t;
 
+/** A touch probe of the drive's own (0x60B8). Edges are bits: 1 rising, 2 falling. */
+typedef struct cm1e_drive_probe {
+    uint8_t wanted;                 /**< edges that are waited for */
+    uint8_t taken;                  /**< edges whose position nobody has fetched */
+    bool on;                        /**< the enable bit is set */
+    bool clearing;                  /**< it is off until the drive shows so: its next rise arms the probe anew */
+    int32_t positions[2];           /**< counts: rising, falling */
+} cm1e_drive_probe_t;
+
 /** In the order of use: first what every cycle looks at. */
 typedef struct cm1e_drive {
     cm1e_bus_t *bus;
@@ -154,6 +163,9 @@ typedef struct cm1e_drive {
     const cm1e_axis_config_t *config;
     const cm1e_motor_t *motor;      /**< NULL behind a bridge */
     const cm1e_firmware_info_t *firmware;
+    cm1e_image_slot_t out_probe, in_probe, in_latched[4]; /**< touch probe of the drive: edges of probe 1, of probe 2 */
+    uint16_t probe_function;        /**< 0x60B8 */
+    cm1e_drive_probe_t probe[2];
     struct cm1e_drive_bridge *behind; /**< what a motor behind a bridge has beside this; else NULL */
 } cm1e_drive_t;
 
@@ -229,6 +241,14 @@ bool cm1e_drive_signals_in_cycle(const cm1e_drive_t *drive);
  *  bridge leaves to its user (BR 6.5). 0: none. @rt cycle */
 uint16_t cm1e_drive_input_mask(const cm1e_drive_t *drive);
 uint16_t cm1e_drive_output_mask(const cm1e_drive_t *drive);
+/** The drive itself latches the position at this edge of input 1 or 2 (its touch probe 1 or 2), and the objects for it
+ *  are mapped. @rt cycle */
+bool cm1e_drive_has_probe(const cm1e_drive_t *drive, int input, bool falling);
+/** Waits for the next edge; an edge of the same input that is waited for already is armed anew too. @rt cycle */
+void cm1e_drive_probe_arm(cm1e_drive_t *drive, int input, bool falling);
+void cm1e_drive_probe_disarm(cm1e_drive_t *drive, int input, bool falling);
+/** true, once: the edge came, at `*position` counts. @rt cycle */
+bool cm1e_drive_probe_taken(cm1e_drive_t *drive, int input, bool falling, int32_t *position);
 /** The latched fault as sentences: cause, numbers, cure. @rt block */
 void cm1e_drive_fault_text(const cm1e_drive_t *drive, char *text, size_t size);
 

@@ -23,6 +23,12 @@ static const size_t slots[CM1E_ROLE_COUNT] = {
     [CM1E_IN_TEMPERATURE] = SLOT(in_temperature),
     [CM1E_IN_DC_LINK] = SLOT(in_dc),
     [CM1E_IN_MODE] = SLOT(in_mode),
+    [CM1E_OUT_PROBE] = SLOT(out_probe),
+    [CM1E_IN_PROBE] = SLOT(in_probe),
+    [CM1E_IN_PROBE_1_RISING] = SLOT(in_latched[0]),
+    [CM1E_IN_PROBE_1_FALLING] = SLOT(in_latched[1]),
+    [CM1E_IN_PROBE_2_RISING] = SLOT(in_latched[2]),
+    [CM1E_IN_PROBE_2_FALLING] = SLOT(in_latched[3]),
 };
 
 static cm1e_image_slot_t *slot_of(cm1e_drive_t *drive, const cm1e_device_object_t *object)
@@ -302,7 +308,10 @@ void cm1e_drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t positi
     if (drive->out_mode.bytes)
         out[drive->out_mode.offset] = (uint8_t)drive->mode;
     if (drive->out_digital.bytes)
-        cm1e_put_uint(out + drive->out_digital.offset, drive->out_digital.bytes, drive->command.digital_outputs);
+        cm1e_put_uint(out + drive->out_digital.offset, drive->out_digital.bytes,
+                      (uint32_t)drive->command.digital_outputs << drive->kind->signals.output_shift);
+    if (drive->out_probe.bytes)
+        cm1e_put_u16(out + drive->out_probe.offset, drive->probe_function);
     put_u32(out, drive->out_profile_velocity, drive->profile_velocity);
     put_u32(out, drive->out_profile_acceleration, drive->profile_acceleration);
     drive->target_position = position;

@@ -97,7 +97,12 @@ static cm1e_error_t ask_first(cm1e_drive_t *drive, cm1e_diag_t *diag)
 
 cm1e_error_t cm1e_drive_mode_init(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
-    const cm1e_mode_t first = drive->kind->mappings[drive->config->mapping].first_mode;
+    const cm1e_mode_t of_mapping = drive->kind->mappings[drive->config->mapping].first_mode;
+    const cm1e_mode_t first = cm1e_drive_supports(drive, of_mapping) ? of_mapping : CM1E_MODE_CSV;
+    if (!cm1e_drive_supports(drive, first))
+        return cm1e_diag_set(diag, CM1E_ERROR_PDO_MAPPING, OBJ_607A_TARGET_POSITION,
+                             "Axis \"%s\" (slave %u): the process data have neither object 0x607A, Target position, "
+                             "nor 0x60FF, Target velocity. Choose other PDOs.", drive->config->name, drive->position);
     cm1e_drive_want_mode(drive, cm1e_device_mode(drive->kind, (int8_t)first));
     drive->command.mode = first;
     if (drive->out_mode.bytes)

@@ -43,6 +43,10 @@ void cm1e_drive_mode_forget(cm1e_drive_t *drive);
 void cm1e_drive_reset_start(cm1e_drive_t *drive);
 void cm1e_drive_reset_step(cm1e_drive_t *drive);
 
+/* drive_cia402.c: a servo drive of another maker */
+cm1e_error_t cm1e_drive_init_cia402(cm1e_drive_t *drive, cm1e_diag_t *diag);
+void cm1e_drive_probe_step(cm1e_drive_t *drive);
+
 /* drive_virtual.c: without a device */
 cm1e_error_t cm1e_drive_init_virtual(cm1e_drive_t *drive);
 void cm1e_drive_virtual_read(cm1e_drive_t *drive);

@@ -291,11 +291,25 @@ static cm1e_error_t generate_eni(cm1e_file_t *file, const cm1e_generate_options_
     return error;
 }
 
+static cm1e_error_t check_described(const cm1e_generate_options_t *options, cm1e_diag_t *diag)
+{
+    for (size_t i = 0; options->devices && i < options->device_count; i++) {
+        const cm1e_device_t *device = cm1e_device_of_model(options->devices[i].model);
+        if (device && !device->described)
+            return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "a %s is described by its maker: no file of it is made "
+                                 "from the tables", device->label);
+    }
+    return CM1E_OK;
+}
+
 cm1e_error_t cm1e_generate(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag)
 {
     *file = (cm1e_file_t){0};
     if (options->devices && options->device_count == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "no device is given");
+    const cm1e_error_t error = check_described(options, diag);
+    if (error != CM1E_OK)
+        return error;
     if (options->format == CM1E_FILE_ESI && options->layout != CM1E_ESI_FLAT && options->layout != CM1E_ESI_MDP)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "there is no such layout; there are flat and modular");
     for (size_t i = 0; options->devices && i < options->device_count && options->format != CM1E_FILE_SII; i++)

@@ -11,6 +11,7 @@
 #include "cm1e/bus.h"
 #include "core/bytes.h"
 #include "sim/bridge_app.h"
+#include "sim/cia402_app.h"
 #include "sim/cm1e_app.h"
 #include "sim/esc.h"
 
@@ -25,6 +26,7 @@ typedef struct call {
     uint32_t position;       /* of the slave named, where the command takes one */
     cm1e_sim_slave_t *slave;
     cm1e_sim_cm1e_t *drive;
+    cm1e_sim_cia402_t *other; /* a drive of another maker */
     char *answer;
     size_t size, used;
     bool cut;                /* the answer was longer than its room */
@@ -32,7 +34,7 @@ typedef struct call {
 
 typedef struct command {
     const char *word;
-    enum { NO_SLAVE, ANY_SLAVE, DRIVE, DRIVE_OR_ALL, BRIDGE } subject;
+    enum { NO_SLAVE, ANY_SLAVE, DRIVE, ANY_DRIVE, DRIVE_OR_ALL, BRIDGE } subject;
     int least, most;         /* arguments behind the slave */
     cm1e_error_t (*run)(call_t *call);
     const char *usage, *help;
@@ -147,6 +149,16 @@ static void say_bridge(call_t *call, uint32_t position, const cm1e_sim_bridge_t 
     }
 }
 
+static void say_other(call_t *call, uint32_t position, cm1e_sim_cia402_t *drive)
+{
+    cm1e_sim_cia402_refresh(drive);
+    say(call, "%u: CiA 402 servo drive, ", position);
+    say_al(call, drive->slave);
+    say(call, ", %s, %s, position %d, motor power %s, error 0x%04X", cm1e_fsa_name(drive->state),
+        mode_name((int32_t)*drive->v.mode_display), (int)*drive->v.position, drive->motor_power ? "on" : "off",
+        (unsigned)*drive->v.error_code);
+}
+
 static void say_status(call_t *call, uint32_t position)
 {
     cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(call->segment, position);
@@ -154,6 +166,10 @@ static void say_status(call_t *call, uint32_t position)
     const cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(slave);
     if (bridge) {
         say_bridge(call, position, bridge);
+        return;
+    }
+    if (cm1e_sim_cia402_of(slave)) {
+        say_other(call, position, cm1e_sim_cia402_of(slave));
         return;
     }
     if (!drive) {
@@ -208,7 +224,10 @@ static cm1e_error_t run_power(call_t *call)
     const int on = choice(argument(call, 0), words);
     if (on < 0)
         return REFUSE(call, "\"%s\": expected on or off", argument(call, 0));
-    cm1e_sim_fsa_motor_power(call->drive, on == 1);
+    if (call->other)
+        cm1e_sim_cia402_motor_power(call->other, on == 1);
+    else
+        cm1e_sim_fsa_motor_power(call->drive, on == 1);
     say(call, "slave %u: motor power %s", call->position, words[on]);
     return CM1E_OK;
 }
@@ -240,7 +259,10 @@ static cm1e_error_t hold_input(call_t *call, cm1e_sim_sensors_t *sensors, int n,
     return CM1E_OK;
 }
 
-static cm1e_error_t run_sensor(call_t *call) { return hold_input(call, &call->drive->sensors, 0, 1, 4); }
+static cm1e_error_t run_sensor(call_t *call)
+{
+    return hold_input(call, call->other ? &call->other->sensors : &call->drive->sensors, 0, 1, 4);
+}
 
 static cm1e_error_t set_load(call_t *call, cm1e_mechanics_t *mechanics, int n, double peak_torque)
 {
@@ -254,6 +276,8 @@ static cm1e_error_t set_load(call_t *call, cm1e_mechanics_t *mechanics, int n, d
 
 static cm1e_error_t run_load(call_t *call)
 {
+    if (call->other)
+        return set_load(call, &call->other->mechanics, 0, call->other->servo.torque_limit);
     return set_load(call, &call->drive->mechanics, 0, call->drive->motor->peak_torque_nm);
 }
 
@@ -297,8 +321,27 @@ static cm1e_error_t refuse_code(call_t *call)
     return CM1E_ERROR_INVALID_ARGUMENT;
 }
 
+/* An error of a drive of another maker. */
+static cm1e_error_t run_error_of_other(call_t *call)
+{
+    const bool hold = strcmp(argument(call, 1), "hold") == 0, clear = strcmp(argument(call, 0), "clear") == 0;
+    long code = 0;
+    if (!clear && (!parse_whole(argument(call, 0), 16, 1, 0xFFFF, &code) || !cm1e_cia402_error((uint16_t)code)))
+        return REFUSE(call, "\"%s\": expected clear or an error code of CiA 402", argument(call, 0));
+    call->other->held_code = hold ? (uint16_t)code : 0;
+    if (!clear)
+        cm1e_sim_cia402_fault(call->other, (uint16_t)code);
+    if (clear)
+        say(call, "slave %u: no cause of an error is left", call->position);
+    else
+        say(call, "slave %u: error 0x%04lX", call->position, (unsigned long)code);
+    return CM1E_OK;
+}
+
 static cm1e_error_t run_error(call_t *call)
 {
+    if (call->other)
+        return run_error_of_other(call);
     static const char *const holds[] = {"hold", NULL};
     cm1e_sim_cm1e_t *drive = call->drive;
     const bool hold = argument(call, 1)[0] != '\0';
@@ -453,14 +496,14 @@ static const command_t commands[] = {
     {"help", NO_SLAVE, 0, 0, run_help, "", "this list"},
     {"status", DRIVE_OR_ALL, 0, 0, run_status, "[slave]", "one line a slave"},
     {"show", DRIVE, 0, 0, run_show, "<slave>", "everything about one CM1-E"},
-    {"power", DRIVE, 1, 1, run_power, "<slave> on|off", "24 V motor power"},
+    {"power", ANY_DRIVE, 1, 1, run_power, "<slave> on|off", "24 V motor power"},
     {"switches", DRIVE, 1, 1, run_switches, "<slave> <00...FF>", "rotary switches (explicit device ID)"},
-    {"sensor", DRIVE, 2, 2, run_sensor, "<slave> <1...4> on|off|auto",
+    {"sensor", ANY_DRIVE, 2, 2, run_sensor, "<slave> <1...4> on|off|auto",
      "hold a digital input, or let it follow the axis"},
-    {"load", DRIVE, 1, 1, run_load, "<slave> <Nm>", "torque on the shaft from outside, positive drives CW"},
+    {"load", ANY_DRIVE, 1, 1, run_load, "<slave> <Nm>", "torque on the shaft from outside, positive drives CW"},
     {"over-torque", DRIVE, 0, 0, run_over_torque, "<slave>", "torque overload, error 2310"},
     {"temperature", DRIVE, 1, 1, run_temperature, "<slave> <degrees C>", "of the drive; error 4310 from 85 on"},
-    {"error", DRIVE, 1, 2, run_error, "<slave> <code>|clear [hold]",
+    {"error", ANY_DRIVE, 1, 2, run_error, "<slave> <code>|clear [hold]",
      "an error code of the guide's 7.3.1; hold: its cause stays until clear"},
     {"power-up-fault", DRIVE, 1, 1, run_power_up_fault, "<slave> <times>|always", "error 7510 at the next power-ups"},
     {"motor", BRIDGE, 2, 4, run_motor,
@@ -517,7 +560,9 @@ static cm1e_error_t find_slave(call_t *call, const command_t *command)
     call->position = (uint32_t)position;
     call->slave = cm1e_sim_segment_slave(call->segment, call->position);
     call->drive = cm1e_sim_cm1e_of(call->slave);
-    if (command->subject == DRIVE && !call->drive)
+    call->other = cm1e_sim_cia402_of(call->slave);
+    if ((command->subject == DRIVE && !call->drive) ||
+        (command->subject == ANY_DRIVE && !call->drive && !call->other))
         return REFUSE(call, "slave %u is not a CM1-E", call->position);
     if (command->subject == BRIDGE && !cm1e_sim_bridge_of(call->slave))
         return REFUSE(call, "slave %u is not a bridge", call->position);

@@ -1,6 +1,7 @@
 #include <math.h>
 
 #include "sim/bridge_app.h"
+#include "sim/cia402_app.h"
 #include "sim/cm1e_app.h"
 
 static cm1e_sim_cm1e_t *drive_at(cm1e_sim_segment_t *segment, uint32_t position)
@@ -52,6 +53,25 @@ static void probe_motor(const cm1e_sim_bridge_axis_t *axis, cm1e_sim_probe_t *pr
     };
 }
 
+static void probe_other(cm1e_sim_cia402_t *drive, cm1e_sim_probe_t *probe)
+{
+    cm1e_sim_cia402_refresh(drive);
+    *probe = (cm1e_sim_probe_t){
+        .position_counts = drive->mechanics.position * drive->scale,
+        .velocity_counts_per_s = drive->mechanics.velocity * drive->scale,
+        .torque_nm = drive->servo.torque,
+        .torque_on = drive->state == OPERATION_ENABLED || drive->state == QUICK_STOP_ACTIVE,
+        .statusword = (uint16_t)*drive->v.statusword,
+        .controlword = (uint16_t)*drive->v.controlword,
+        .error_code = (uint16_t)*drive->v.error_code,
+        .mode = (int8_t)*drive->v.mode_display,
+        .digital_inputs = (uint16_t)cm1e_sim_cia402_inputs(drive),
+        .digital_outputs = (uint16_t)(*drive->v.outputs >> CM1E_CIA402_OUTPUT_SHIFT),
+        .peak_velocity_counts_per_s = drive->mechanics.peak_velocity * drive->scale,
+        .travel_counts = drive->mechanics.travel * drive->scale,
+    };
+}
+
 void cm1e_sim_probe_channel(cm1e_sim_segment_t *segment, uint32_t position, unsigned channel, cm1e_sim_probe_t *probe)
 {
     cm1e_sim_cm1e_t *drive = channel == 0 ? drive_at(segment, position) : NULL;
@@ -61,6 +81,8 @@ void cm1e_sim_probe_channel(cm1e_sim_segment_t *segment, uint32_t position, unsi
     *probe = (cm1e_sim_probe_t){0};
     if (drive)
         probe_drive(drive, probe);
+    else if (channel == 0 && segment && cm1e_sim_cia402_of(cm1e_sim_segment_slave(segment, position)))
+        probe_other(cm1e_sim_cia402_of(cm1e_sim_segment_slave(segment, position)), probe);
     else if (motor)
         probe_motor(motor, probe);
 }

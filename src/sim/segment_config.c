@@ -1,4 +1,6 @@
-#include "device/bridge.h"
+#include <string.h>
+
+#include "device/devices.h"
 #include "device/place.h"
 #include "sim/segment.h"
 #include "sim/slave.h"
@@ -100,21 +102,61 @@ static cm1e_error_t find_model(const place_t *place, cm1e_device_model_t *model,
                          motors[1], motors[2], motors[3]);
 }
 
+/* What stands at a place, made from its axes. */
+typedef struct made {
+    const cm1e_bus_config_t *config;
+    const place_t *place;
+    uint16_t alias, id;
+    cm1e_diag_t *diag;
+    cm1e_error_t error; /* why there is no slave; CM1E_OK: no memory */
+} made_t;
+
+static cm1e_sim_slave_t *make_cm1e(made_t *made)
+{
+    made->error = check_cm1e(made->place->axis, made->diag);
+    return made->error ? NULL : cm1e_sim_cm1e_create(made->place->axis, made->config->sim_pdo_order, made->alias,
+                                                     (uint8_t)made->id);
+}
+
+static cm1e_sim_slave_t *make_bridge(made_t *made)
+{
+    cm1e_device_model_t model;
+    made->error = find_model(made->place, &model, made->diag);
+    return made->error ? NULL : cm1e_sim_bridge_create(model, made->place->channels, made->alias);
+}
+
+static cm1e_sim_slave_t *make_cia402(made_t *made) { return cm1e_sim_cia402_create(made->place->axis, made->alias); }
+
+/* By the kind of the device. */
+static const struct {
+    const char *device;
+    cm1e_sim_slave_t *(*make)(made_t *made);
+} makers[] = {{"cm1-e", make_cm1e}, {"bridge", make_bridge}, {"cia402", make_cia402}};
+
+static cm1e_sim_slave_t *make(made_t *made)
+{
+    if (!made->place->axis)
+        return cm1e_sim_io_create(made->config->sim_gaps);
+    const cm1e_device_t *device = cm1e_device_configured(made->place->axis);
+    for (size_t i = 0; device && i < sizeof makers / sizeof makers[0]; i++)
+        if (strcmp(makers[i].device, device->kind) == 0)
+            return makers[i].make(made);
+    made->error = cm1e_diag_set(made->diag, CM1E_ERROR_CONFIG, 0, "device '%s' is not known",
+                                made->place->axis->device);
+    return NULL;
+}
+
 static cm1e_error_t add_place(cm1e_sim_segment_t *segment, const cm1e_bus_config_t *config, const place_t *place,
                               cm1e_diag_t *diag)
 {
     const cm1e_axis_config_t *axis = place->axis;
-    const uint16_t alias = axis && axis->address_kind == CM1E_ADDRESS_ALIAS ? axis->address : 0;
-    const uint16_t id = axis && axis->address_kind == CM1E_ADDRESS_EXPLICIT_ID ? axis->address : 0;
-    const bool bridge = axis && axis->channel;
-    cm1e_device_model_t model = CM1E_DEVICE_CM1E;
-    cm1e_error_t error = bridge ? find_model(place, &model, diag) : axis ? check_cm1e(axis, diag) : CM1E_OK;
-    if (error != CM1E_OK)
-        return error;
-    cm1e_sim_slave_t *slave = bridge ? cm1e_sim_bridge_create(model, place->channels, alias)
-                              : axis ? cm1e_sim_cm1e_create(axis, config->sim_pdo_order, alias, (uint8_t)id)
-                                     : cm1e_sim_io_create(config->sim_gaps);
-    error = cm1e_sim_segment_add(segment, slave);
+    made_t made = {.config = config, .place = place, .diag = diag,
+                   .alias = axis && axis->address_kind == CM1E_ADDRESS_ALIAS ? axis->address : 0,
+                   .id = axis && axis->address_kind == CM1E_ADDRESS_EXPLICIT_ID ? axis->address : 0};
+    cm1e_sim_slave_t *slave = make(&made);
+    if (made.error != CM1E_OK)
+        return made.error;
+    const cm1e_error_t error = cm1e_sim_segment_add(segment, slave);
     if (error != CM1E_OK) {
         cm1e_sim_slave_destroy(slave);
         return cm1e_diag_set(diag, error, 0, "the simulated slave %u cannot be made: out of memory",

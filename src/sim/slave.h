@@ -89,6 +89,8 @@ void cm1e_sim_slave_fall_back(cm1e_sim_slave_t *slave, uint8_t al_state, uint16_
 void cm1e_sim_slave_reset(cm1e_sim_slave_t *slave, int64_t until_ns);
 uint8_t cm1e_sim_slave_al_state(const cm1e_sim_slave_t *slave);
 
+/** A servo drive by CiA 402 with its mechanical axis; counts and speed are those of the configuration. */
+cm1e_sim_slave_t *cm1e_sim_cia402_create(const cm1e_axis_config_t *config, uint16_t alias);
 /** The applications: a CM1-E with its mechanical axis; simple devices without mailbox. */
 cm1e_sim_slave_t *cm1e_sim_cm1e_create(const cm1e_axis_config_t *config, cm1e_pdo_order_t order, uint16_t alias,
                                        uint8_t rotary_switches);

@@ -481,13 +481,19 @@ def check_unknown_bridge(folder, bus):
         expect(scan.returncode == status and (status == 0 or "k37" in scan.stderr), "the printed bus file", scan)
 
 
-def check_examples(folder):
-    bus = os.path.join(folder, "virtual.yaml")
-    with open(f"{SOURCE}/examples/three_axes.yaml", encoding="utf-8") as real, open(bus, "w", encoding="utf-8") as file:
+def in_virtual_time(folder, name):
+    """A bus file of examples/ that does not wait."""
+    path = os.path.join(folder, f"virtual_{name}")
+    with open(f"{SOURCE}/examples/{name}", encoding="utf-8") as real, open(path, "w", encoding="utf-8") as file:
         file.write(real.read().replace("bus:\n", "bus:\n  virtual_time: true\n", 1))
+    return path
+
+
+def check_examples(folder):
+    plc = ["03_plc_program", "--seconds", "6", "-b"]
     for words in (["01_scan"], ["02_move_one_axis"],
-                  ["03_plc_program", "-b", bus, "--seconds", "6",
-                   "--svg", os.path.join(folder, "example.svg")]):
+                  [*plc, in_virtual_time(folder, "three_axes.yaml"), "--svg", os.path.join(folder, "example.svg")],
+                  [*plc, in_virtual_time(folder, "cia402.yaml")]):
         result = run(*words)
         expect(result.returncode == 0, " ".join(words), result)
     xml.etree.ElementTree.parse(os.path.join(folder, "example.svg"))

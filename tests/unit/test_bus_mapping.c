@@ -15,7 +15,7 @@ typedef enum harm { NO_HARM = 0, ABORT, TIMEOUT, OTHER_VALUE, SHORT, EMPTY, HARM
 /** The device: the assignment, and an index + 0x100 of each PDO that its entries begin at. */
 static struct {
     uint8_t count[2];
-    uint16_t pdos[2][CM1E_ASSIGNED_PDOS];
+    uint16_t pdos[2][CM1E_BRIDGE_AXES];
     bool count_read_only, places_read_only;
     unsigned entries;            /**< of every PDO */
     uint8_t bits;                /**< of every entry */
@@ -50,7 +50,7 @@ static void write_assignment(cm1e_sdo_t *sdo)
     const uint8_t *data = sdo->data;
     TEST_ASSERT_TRUE(direction || sdo->index == OBJ_1C12_RXPDO_ASSIGN);
     TEST_ASSERT_EQUAL_UINT(sdo->subindex ? 2 : 1, sdo->size);
-    TEST_ASSERT_LESS_OR_EQUAL_UINT(CM1E_ASSIGNED_PDOS, sdo->subindex);
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(CM1E_BRIDGE_AXES, sdo->subindex);
     const bool read_only = sdo->subindex ? device.places_read_only : device.count_read_only;
     if (read_only || (sdo->subindex && device.count[direction])) {
         finish(sdo, CM1E_ERROR_SDO_ABORT, ABORT_READ_ONLY);
@@ -137,7 +137,7 @@ static void check_mapped(const cm1e_pdo_choice_t *choice)
 
 static void test_every_number_of_pdos_is_assigned_and_read_back_in_order(void)
 {
-    for (uint8_t count = 1; count <= CM1E_ASSIGNED_PDOS; count++) {
+    for (uint8_t count = 1; count <= CM1E_BRIDGE_AXES; count++) {
         for (device.entries = 1; device.entries <= 16; device.entries++) {
             cm1e_pdo_choice_t choice = bridge;
             choice.count = count;
@@ -191,16 +191,16 @@ static void test_assignment_that_cannot_be_written_is_right_if_it_is_the_chosen_
 static void test_assignment_that_cannot_be_written_and_is_another_is_the_refusal(void)
 {
     for (unsigned n = 1; n < 4; n++) {
-        for (unsigned wrong = 0; wrong <= CM1E_ASSIGNED_PDOS; wrong++) {
+        for (unsigned wrong = 0; wrong <= CM1E_BRIDGE_AXES; wrong++) {
             assign_right();
             device.count_read_only = n & 1;
             device.places_read_only = n & 2;
-            if (wrong < CM1E_ASSIGNED_PDOS)
+            if (wrong < CM1E_BRIDGE_AXES)
                 device.pdos[1][wrong] = 0x1A00;
             else
                 device.count[1] = 3;
             run(&bridge);
-            if (wrong == CM1E_ASSIGNED_PDOS && !device.count_read_only) {
+            if (wrong == CM1E_BRIDGE_AXES && !device.count_read_only) {
                 check_mapped(&bridge); /* its number was the only thing wrong */
                 continue;
             }

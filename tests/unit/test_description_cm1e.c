@@ -419,7 +419,7 @@ static void test_options_that_do_not_fit_are_refused_by_name(void)
     check_refused(&(cm1e_device_options_t){.axes = 2}, "leave them 0");
     check_refused(&(cm1e_device_options_t){.mapping = (cm1e_mapping_t)4}, "mapping or order");
     check_refused(&(cm1e_device_options_t){.order = (cm1e_pdo_order_t)2}, "mapping or order");
-    check_refused(&(cm1e_device_options_t){.model = (cm1e_device_model_t)4}, "no such device model");
+    check_refused(&(cm1e_device_options_t){.model = (cm1e_device_model_t)5}, "no such device model");
     check_refused(&(cm1e_device_options_t){.config_data_size = 13}, "14 bytes");
 }
 
