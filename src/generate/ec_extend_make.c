@@ -51,7 +51,8 @@ typedef struct plan {
 /* The device has several mappings to choose from; those with channels have one. */
 static bool has_mappings(const cm1e_device_options_t *options)
 {
-    return cm1e_device_of_model(options->model)->channels == 0;
+    const cm1e_device_t *device = cm1e_device_of_model(options->model);
+    return device && device->channels == 0;
 }
 
 /* Device n, and the options that it comes of. */

@@ -247,7 +247,9 @@ static void test_options_that_do_not_fit_are_refused_with_the_reason(void)
         refuse(CM1E_ERROR_CONFIG, "1.3.5", &(cm1e_generate_options_t){.format = format, ONE(.firmware = "1.3.1")});
         refuse(CM1E_ERROR_CONFIG, "vendor", &(cm1e_generate_options_t){.format = format, ONE(.vendor_id = 1)});
         refuse(CM1E_ERROR_CONFIG, "mapping", &(cm1e_generate_options_t){.format = format, ONE(.mapping = 4)});
-        refuse(CM1E_ERROR_CONFIG, "model", &(cm1e_generate_options_t){.format = format, ONE(.model = 4)});
+        refuse(CM1E_ERROR_CONFIG, "model", &(cm1e_generate_options_t){.format = format, ONE(.model = 5)});
+        refuse(CM1E_ERROR_CONFIG, "its maker",
+               &(cm1e_generate_options_t){.format = format, ONE(.model = CM1E_DEVICE_CIA402)});
         refuse(CM1E_ERROR_CONFIG, "14 bytes", &(cm1e_generate_options_t){.format = format, ONE(.config_data_size = 7)});
         refuse(CM1E_ERROR_CONFIG, "vendor",
                &(cm1e_generate_options_t){.format = format, ONE(.model = CM1E_DEVICE_EB01)});
