@@ -54,6 +54,8 @@ void cm1e_axis_destroy(cm1e_axis_t *axis)
         axis->motor_hooks->free(axis);
     if (axis->coupling_hooks)
         axis->coupling_hooks->free(axis);
+    if (axis->homing_hooks)
+        axis->homing_hooks->free(axis);
     free(axis);
 }
 

@@ -42,7 +42,7 @@ bool cm1e_axis_backlash_at_rest(const cm1e_axis_t *axis) { return axis->backlash
 /* The motor goes where the drive, or nobody, wants it. */
 static bool foreign(const cm1e_axis_t *axis)
 {
-    return axis_free(axis) || (drive_homes(axis) && axis->home.away);
+    return axis_free(axis) || (drive_homes(axis) && axis->homing_hooks->is_away(axis));
 }
 
 void cm1e_axis_backlash_track(cm1e_axis_t *axis, int32_t moved_counts)

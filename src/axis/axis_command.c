@@ -157,37 +157,6 @@ static cm1e_error_t stop_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *co
     return CM1E_OK;
 }
 
-cm1e_error_t cm1e_axis_start_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
-{
-    const cm1e_error_t error = cm1e_axis_home_prepare(axis, command);
-    if (error)
-        return error;
-    cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    *id = axis->active = cm1e_axis_next_id(axis);
-    axis->kind = command->kind;
-    cm1e_axis_home_begin(axis);
-    return CM1E_OK;
-}
-
-/* Part 5: from Standstill, or after another step in Homing; the drive's own homing is no such step. */
-cm1e_error_t cm1e_axis_start_step(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
-{
-    const move_t move = cm1e_axis_move_of(command);
-    stepping_t next;
-    cm1e_profile_t profile;
-    cm1e_error_t error = drive_homes(axis) ? CM1E_ERROR_AXIS_HOMING
-                                           : cm1e_axis_step_check(axis, command->step, &move);
-    if (!error)
-        error = cm1e_axis_step_prepare(axis, command->step, &move, &next, &profile);
-    if (error)
-        return error;
-    cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    *id = axis->active = cm1e_axis_next_id(axis);
-    axis->kind = command->kind;
-    cm1e_axis_step_begin(axis, &next, &profile);
-    return CM1E_OK;
-}
-
 /* The drive's own motions begin at standstill, one at a time; MC_Halt and MC_Stop end them. */
 static cm1e_error_t start_drive(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
@@ -231,87 +200,6 @@ cm1e_error_t cm1e_axis_start_move(cm1e_axis_t *axis, const cm1e_axis_command_t *
 
 /* ---- buffered ---------------------------------------------------------------------------------------------------- */
 
-cm1e_error_t cm1e_axis_begin_homing(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s)
-{
-    (void)from; /* it begins at rest */
-    (void)late_s;
-    const waiting_homing_t *waiting = &axis->waiting_homing;
-    const cm1e_axis_command_t command = {
-        .kind = (cm1e_command_kind_t)move->kind,
-        .position = move->position,
-        .homing = waiting->configured ? NULL : &waiting->config,
-    };
-    const cm1e_error_t error = cm1e_axis_home_prepare(axis, &command);
-    if (error)
-        return error;
-    axis->active = move->id;
-    axis->kind = command.kind;
-    cm1e_axis_home_begin(axis);
-    return CM1E_OK;
-}
-
-/* What a homing needs beside its command is kept once, for the one that may wait. */
-static cm1e_error_t keep_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *command)
-{
-    for (int i = 0; i < axis->waiting.count; i++)
-        if (waiting_move(axis, i)->kind == CM1E_COMMAND_HOME)
-            return CM1E_ERROR_BUSY;
-    if (!drive_homes(axis)) {
-        const cm1e_error_t error = cm1e_axis_home_prepare(axis, command);
-        if (error)
-            return error;
-    }
-    axis->waiting_homing.configured = command->homing == NULL;
-    if (command->homing)
-        axis->waiting_homing.config = *command->homing;
-    return CM1E_OK;
-}
-
-static waiting_step_t *step_of(cm1e_axis_t *axis, cm1e_command_id_t id)
-{
-    for (int i = 0; i < STEPS_WAITING; i++)
-        if (axis->waiting_steps[i].id == id)
-            return &axis->waiting_steps[i];
-    return NULL;
-}
-
-cm1e_error_t cm1e_axis_begin_step(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s)
-{
-    (void)from; /* from the present set-point */
-    (void)late_s;
-    stepping_t next;
-    cm1e_profile_t profile;
-    const waiting_step_t *waiting = step_of(axis, move->id);
-    const cm1e_error_t error = waiting ? cm1e_axis_step_prepare(axis, &waiting->step, move, &next, &profile)
-                                       : CM1E_ERROR_AXIS_STATE;
-    if (error)
-        return error;
-    axis->active = move->id;
-    axis->kind = CM1E_COMMAND_HOMING_STEP;
-    cm1e_axis_step_begin(axis, &next, &profile);
-    return CM1E_OK;
-}
-
-static waiting_step_t *free_step(cm1e_axis_t *axis)
-{
-    for (int i = 0; i < STEPS_WAITING; i++)
-        if (!cm1e_axis_find_waiting(axis, axis->waiting_steps[i].id))
-            return &axis->waiting_steps[i];
-    return NULL;
-}
-
-cm1e_error_t cm1e_axis_buffer_step(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
-{
-    move_t move = cm1e_axis_move_of(command);
-    waiting_step_t *place = free_step(axis);
-    cm1e_error_t error = cm1e_axis_step_check(axis, command->step, &move);
-    if (!error)
-        error = place ? cm1e_axis_buffer(axis, &move) : CM1E_ERROR_FULL;
-    if (!error)
-        *place = (waiting_step_t){.id = *id = move.id, .step = *command->step};
-    return error;
-}
-
 cm1e_error_t cm1e_axis_buffer_move(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     move_t move = cm1e_axis_move_of(command);
@@ -319,12 +207,6 @@ cm1e_error_t cm1e_axis_buffer_move(cm1e_axis_t *axis, const cm1e_axis_command_t 
     if (!error)
         *id = move.id;
     return error;
-}
-
-cm1e_error_t cm1e_axis_buffer_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
-{
-    const cm1e_error_t error = keep_homing(axis, command);
-    return error ? error : cm1e_axis_buffer_move(axis, command, id);
 }
 
 /* ---- taking in --------------------------------------------------------------------------------------------------- */

@@ -293,7 +293,7 @@ static void step_move(cm1e_axis_t *axis)
     }
 }
 
-/* As the halt of a homing (axis_home.c): who does not see the motor waits for the braking and takes the torque away. */
+/* As the halt of a homing (src/homing): who does not see the motor waits for the braking and takes the torque away. */
 static int64_t halt_bound_ns(const cm1e_axis_t *axis)
 {
     const int64_t braking_ns = (int64_t)(1e9 * axis->driving.speed / axis->driving.braking);

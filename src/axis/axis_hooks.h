@@ -70,4 +70,22 @@ typedef struct coupling_hooks {
     void (*tell)(const cm1e_axis_t *axis, cm1e_command_status_t *status);
 } coupling_hooks_t;
 
+/** Homings (src/homing): by the drive, which is a source of set-points, and in steps (Part 5), which move by profiles. */
+typedef struct homing_hooks {
+    const command_method_t *methods; /**< by command_plan_t; without `start`: not theirs */
+    void (*free)(cm1e_axis_t *axis); /**< @rt init */
+    /** While the drive homes: the axis's own mode is left. */
+    bool (*is_away)(const cm1e_axis_t *axis);
+    /** Before every set-point of a step, and of the MC_Stop that ended one: decides what the profile is. */
+    void (*step_cycle)(cm1e_axis_t *axis);
+    /** The profile of a step, or of that MC_Stop, has come to its end. TRUE: what comes next is decided. */
+    bool (*step_ended)(cm1e_axis_t *axis);
+    /** After a pause: the step goes on from the present set-point as it was about to. */
+    cm1e_error_t (*step_anew)(cm1e_axis_t *axis);
+    /** What has failed, was refused, or has ended with an error; FALSE: it was not a homing. */
+    bool (*failed_text)(const cm1e_axis_t *axis, char *text, size_t size);
+    bool (*refused_text)(const cm1e_axis_t *axis, char *text, size_t size);
+    bool (*not_finished_text)(const cm1e_axis_t *axis, char *text, size_t size);
+} homing_hooks_t;
+
 #endif

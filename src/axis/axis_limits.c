@@ -261,7 +261,7 @@ bool cm1e_axis_limits_keep_within(const cm1e_axis_t *axis, const from_t *from, c
 /* In a homing in steps positions mean nothing until the move that ends it. */
 bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
-    const bool meaningless = axis->state == CM1E_AXIS_HOMING && !axis->stepping.finishing;
+    const bool meaningless = axis->state == CM1E_AXIS_HOMING && !axis->finishing;
     return meaningless || cm1e_axis_limits_keep_within(axis, from, profile);
 }
 

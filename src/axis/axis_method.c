@@ -11,13 +11,12 @@ static const command_method_t methods[PLAN_COUNT] = {
     [PLAN_VELOCITY] = BY_PROFILE,
     [PLAN_STOP] = BY_PROFILE,
     [PLAN_TABLE] = {cm1e_axis_table_start, cm1e_axis_table_buffer, NULL, cm1e_axis_table_begin, NULL},
-    [PLAN_HOMING] = {cm1e_axis_start_homing, cm1e_axis_buffer_homing, NULL, cm1e_axis_begin_homing, NULL},
-    [PLAN_HOMING_STEP] = {cm1e_axis_start_step, cm1e_axis_buffer_step, NULL, cm1e_axis_begin_step, NULL},
     [PLAN_ON_TOP] = {cm1e_axis_superimpose, NULL, NULL, NULL, cm1e_axis_superimpose_update},
 };
 
 const command_method_t *cm1e_axis_method(const cm1e_axis_t *axis, command_plan_t plan)
 {
-    const command_method_t *added = axis->coupling_hooks ? &axis->coupling_hooks->methods[plan] : NULL;
-    return added && added->start ? added : &methods[plan];
+    const command_method_t *coupling = axis->coupling_hooks ? &axis->coupling_hooks->methods[plan] : NULL;
+    const command_method_t *homing = axis->homing_hooks ? &axis->homing_hooks->methods[plan] : NULL;
+    return coupling && coupling->start ? coupling : homing && homing->start ? homing : &methods[plan];
 }

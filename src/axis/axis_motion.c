@@ -155,7 +155,7 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
     const bool shared = axis->superimposed.moving && !axis->superimposed.alone;
     const from_t end = {axis->target, axis->profile.end.velocity, 0.0, shared};
     const bool goes_on = end.velocity != 0.0;
-    if (cm1e_axis_step_profile_ended(axis))
+    if (axis->homing_hooks && axis->homing_hooks->step_ended(axis))
         return axis_on_profile(axis);
     if (axis->active && kind_row(axis->kind)->is_endless) {
         /* What begins where nothing can stop any more would go beyond the limit. */
@@ -323,8 +323,8 @@ static bool on_hard_ramp(const cm1e_axis_t *axis)
 
 void cm1e_axis_motion_step(cm1e_axis_t *axis)
 {
-    if (axis_stepping(axis) || (axis->state == CM1E_AXIS_STOPPING && axis->stepping.after_stop))
-        cm1e_axis_step_cycle(axis);
+    if (axis_stepping(axis) || (axis->state == CM1E_AXIS_STOPPING && axis->after_stop))
+        axis->homing_hooks->step_cycle(axis);
     if (!axis_holds(axis))
         axis->in_position.inside = false;
     if (axis->source == &cm1e_source_profile) /* most motions are, and a call by pointer costs a nanosecond */
@@ -334,7 +334,7 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
     axis->brakes_hard = on_hard_ramp(axis);
     /* Note 6: MC_Stop done and its Execute FALSE. */
     if (axis->state == CM1E_AXIS_STOPPING && axis_holds(axis) && !axis->stop_held &&
-        !axis->stepping.after_stop)
+        !axis->after_stop)
         cm1e_axis_go(axis, ON_STOP_RELEASED);
     if (axis_holds(axis) && !axis->active && axis->waiting.count > 0) { /* behind a homing */
         const from_t from = from_set(axis);

@@ -39,12 +39,6 @@ typedef struct buffer {
     uint8_t first, count;
 } buffer_t;
 
-/** What a waiting MC_Home needs beside its command. */
-typedef struct waiting_homing {
-    cm1e_homing_config_t config;
-    bool configured;    /**< that of the axis instead */
-} waiting_homing_t;
-
 /** The points of a table profile as the axis keeps them until the motion begins. */
 typedef struct table_points {
     int count;
@@ -58,14 +52,6 @@ typedef struct tables {
     cm1e_command_id_t waiting_id;
     table_points_t waiting;
 } tables_t;
-
-enum { STEPS_WAITING = 3 };
-
-/** What a waiting step of a homing needs beside its command. */
-typedef struct waiting_step {
-    cm1e_command_id_t id;
-    cm1e_homing_step_t step;
-} waiting_step_t;
 
 /** Factors of MC_SetOverride; acceleration: also for the deceleration. */
 typedef struct override {
@@ -152,13 +138,7 @@ void cm1e_axis_take(cm1e_axis_t *axis, const move_t *move, const from_t *from, c
 /** A command has begun: the state diagram follows it. */
 void cm1e_axis_taken(cm1e_axis_t *axis, const command_kind_t *kind);
 cm1e_error_t cm1e_axis_start_move(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
-cm1e_error_t cm1e_axis_start_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
-cm1e_error_t cm1e_axis_start_step(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
 cm1e_error_t cm1e_axis_buffer_move(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
-cm1e_error_t cm1e_axis_buffer_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
-cm1e_error_t cm1e_axis_buffer_step(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
-cm1e_error_t cm1e_axis_begin_homing(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s);
-cm1e_error_t cm1e_axis_begin_step(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s);
 
 /* axis_buffer.c */
 /** The waiting command of that number; NULL: none. */

@@ -34,22 +34,6 @@ static cm1e_error_t stop_anew(cm1e_axis_t *axis)
     return error;
 }
 
-/* A step of a homing goes on as it was about to: to the velocity of its search, or to the end of MC_FinishHoming. */
-static cm1e_error_t step_anew(cm1e_axis_t *axis)
-{
-    const cm1e_motion_state_t now = {0.0, axis->set_velocity, axis->set_acceleration};
-    const double way = cm1e_position_minus(axis->target, axis->set) / axis->scale, end = axis->profile.end.velocity;
-    const from_t from = from_set(axis);
-    cm1e_profile_t profile;
-    const bool planned = axis->stepping.finishing
-                             ? cm1e_profile_to_position(&profile, &now, way, &axis->stepping.limits) == CM1E_OK
-                             : cm1e_profile_to_velocity(&profile, &now, end, &axis->stepping.limits) == CM1E_OK;
-    if (!planned)
-        return CM1E_ERROR_AXIS_POSITION_RANGE;
-    cm1e_axis_run(axis, &from, &profile, cm1e_position_plus(axis->set, profile.end.position * axis->scale), 0.0);
-    return CM1E_OK;
-}
-
 /* Its times have passed. The next command begins (2.2.2, case 2), or the axis stops. */
 static cm1e_error_t end_table(cm1e_axis_t *axis)
 {
@@ -68,7 +52,7 @@ static cm1e_error_t move_anew(cm1e_axis_t *axis)
     if (!axis->active || axis->kind == CM1E_COMMAND_STOP)
         return stop_anew(axis);
     const move_t move = axis->move;
-    return axis->kind == CM1E_COMMAND_HOMING_STEP ? step_anew(axis) : cm1e_axis_replan_as(axis, &move);
+    return axis->kind == CM1E_COMMAND_HOMING_STEP ? axis->homing_hooks->step_anew(axis) : cm1e_axis_replan_as(axis, &move);
 }
 
 static void profile_anew(cm1e_axis_t *axis)

@@ -35,7 +35,7 @@ void cm1e_axis_become_free(cm1e_axis_t *axis)
     cm1e_axis_lead_end(axis, CM1E_ERROR_AXIS_ERROR_STOP);
     cm1e_axis_set_source(axis, &cm1e_source_free);
     axis->energized = false;
-    axis->stepping.pushing = axis->stepping.after_stop = false;
+    axis->pushing = axis->after_stop = false;
     axis->free_ns = axis->now_ns;
     cm1e_axis_set_to_actual(axis);
 }
@@ -171,9 +171,9 @@ bool cm1e_axis_powered(const cm1e_axis_t *axis)
  * where power came back within the ramp of a step that pushed: the set-point has ended where the motor cannot go. */
 static void take_over(cm1e_axis_t *axis)
 {
-    if (axis_free(axis) || axis->stepping.pushing)
+    if (axis_free(axis) || axis->pushing)
         cm1e_axis_set_to_actual(axis);
-    axis->stepping.pushing = false;
+    axis->pushing = false;
     cm1e_axis_set_source(axis, &cm1e_source_hold);
     axis->energized = true;
     cm1e_axis_apply_limits(axis); /* without torque it may have been turned over the end of the drive's counts */

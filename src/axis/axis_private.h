@@ -8,7 +8,7 @@
 
 #include "axis/axis_device.h"
 #include "axis/axis_hooks.h"
-#include "axis/axis_homing.h"
+#include "axis/axis_driving.h"
 #include "axis/axis_kind.h"
 #include "axis/axis_move.h"
 #include "device/unit.h"
@@ -122,6 +122,9 @@ struct cm1e_axis {
     bool resumed;                   /**< a pause or silence before this cycle has been dealt with ... */
     bool began_anew;                /**< ... by another velocity than it had */
     bool reset_sent;
+    bool pushing;                   /**< a step of a homing: the set-point may be where the motor cannot go */
+    bool after_stop;                /**< MC_Stop ended a step, and the motor is relieved before it is Done */
+    bool finishing;                 /**< the step ends the homing: positions are valid again, software limits hold */
     bool awaits;                    /**< the first waiting command begins at a place of its master (StartSync), until
                                          when what runs goes on */
     uint16_t device_error;
@@ -183,8 +186,6 @@ struct cm1e_axis {
     command_record_t records[COMMANDS_REMEMBERED];
     move_t move;                    /**< the active one, unless it is a homing */
     buffer_t waiting;
-    waiting_homing_t waiting_homing;
-    waiting_step_t waiting_steps[STEPS_WAITING];
     tables_t *tables;               /**< NULL: none (cm1e_axis_config_t.table_profiles) */
     cm1e_axis_command_t refused;    /**< what it asked for */
     cm1e_error_t refusal;           /**< why the last command was refused, for the text; CM1E_OK: it was not */
@@ -195,7 +196,6 @@ struct cm1e_axis {
 
     driving_t driving;
     not_set_t not_set;
-    homing_t home;
 
     probe_t probes[PROBES];
     probe_sample_t probe_sample;    /**< the last one, while probes are armed */
@@ -204,7 +204,8 @@ struct cm1e_axis {
     int64_t kept_until_ns;
     double kept_deceleration, kept_jerk; /**< of that halt */
 
-    stepping_t stepping;
+    const homing_hooks_t *homing_hooks; /**< NULL: it cannot be homed */
+    struct homing *homing;          /**< theirs */
     const motor_hooks_t *motor_hooks; /**< NULL: the motor is a CM1-E, or there is none */
     struct cool_muscle *muscle;     /**< theirs */
     const coupling_hooks_t *coupling_hooks; /**< NULL: it cannot follow, nor be followed */

@@ -46,61 +46,18 @@ static void range_text(const cm1e_axis_t *axis, char *text, size_t size)
     add_counts_limit(axis, text, size);
 }
 
-static void homing_text(const cm1e_axis_t *axis, char *text, size_t size)
-{
-    const unsigned bits = (unsigned)axis->error_value;
-    const homing_t *home = &axis->home;
-    if (home->unstoppable) {
-        snprintf(text, size, "Axis \"%s\": homing was to stop, the motor did not come to rest, and has no torque now. "
-                 "Reset the axis with MC_Reset, and home it again.", axis->config->name);
-        return;
-    }
-    snprintf(text, size,
-             "Axis \"%s\": %s. Method %d; statusword bits 13 (error), 12 (attained), 10 (reached) were %u %u %u; "
-             "homing began with %u %u %u. Check that the %s is reached in this direction, speed, torque limit and "
-             "timeout; then reset the axis with MC_Reset.",
-             axis->config->name, cm1e_strerror(axis->error), (int)home->raw[1], bits >> 2 & 1u, bits >> 1 & 1u,
-             bits & 1u, home->bits_before >> 2 & 1u, home->bits_before >> 1 & 1u, home->bits_before & 1u,
-             cm1e_axis_homes_by_switch(axis, home->raw[1]) ? "sensor" : "hard stop");
-}
-
 static void other_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     snprintf(text, size, "Axis \"%s\": %s. Remove the cause, then reset the axis with MC_Reset.", axis->config->name,
              cm1e_strerror(axis->error));
 }
 
-static void refused_homing_text(const cm1e_axis_t *axis, char *text, size_t size)
-{
-    const cm1e_sdo_t *sdo = &axis->home.sdo;
-    const int value = (int)axis->home.raw[axis->home.next];
-    if (axis->home.refused == CM1E_ERROR_AXIS_HOMING_PARAMETER)
-        cm1e_axis_home_wrong_text(axis, text, size);
-    else if (axis->home.refused == CM1E_ERROR_AXIS_NOT_AT_REST)
-        snprintf(text, size, "Axis \"%s\": homing was not started: %s. Behind a bridge the mode is switched at rest: "
-                 "look for a load that moves the motor, or a servo that swings.", axis->config->name,
-                 cm1e_strerror(axis->home.refused));
-    else if (!sdo->write)
-        snprintf(text, size, "Axis \"%s\": homing was not started: object 0x%04X:%02X, which tells the unit of the "
-                 "offset, could not be read: %s.", axis->config->name, sdo->index, sdo->subindex,
-                 cm1e_strerror(axis->home.refused));
-    else if (axis->home.refused == CM1E_ERROR_SDO_ABORT)
-        snprintf(text, size,
-                 "Axis \"%s\": homing was not started: the drive refused %d for object 0x%04X:%02X with SDO abort code "
-                 "0x%08X (%s).",
-                 axis->config->name, value, sdo->index, sdo->subindex, (unsigned)sdo->abort_code,
-                 cm1e_sdo_abort_text(sdo->abort_code));
-    else
-        snprintf(text, size, "Axis \"%s\": homing was not started: object 0x%04X:%02X could not be written: %s.",
-                 axis->config->name, sdo->index, sdo->subindex, cm1e_strerror(axis->home.refused));
-}
-
 void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const not_set_t *ended = &axis->not_set;
-    if (ended->number == CM1E_COMMAND_HOME && ended->error == axis->home.refused)
-        refused_homing_text(axis, text, size);
-    else if (ended->error != CM1E_ERROR_AXIS_SYNC_WAY || !coupling_text(axis, ended->error, true, text, size))
+    if (axis->homing_hooks && axis->homing_hooks->not_finished_text(axis, text, size))
+        return;
+    if (ended->error != CM1E_ERROR_AXIS_SYNC_WAY || !coupling_text(axis, ended->error, true, text, size))
         snprintf(text, size, "Axis \"%s\": %s, running or waiting, was ended: %s.", axis->config->name,
                  kind_row((unsigned)ended->number)->name, cm1e_strerror(ended->error));
     if (ended->error == CM1E_ERROR_AXIS_POSITION_RANGE)
@@ -221,8 +178,6 @@ static const struct {
     {CM1E_ERROR_AXIS_DYNAMICS_RANGE, refused_dynamics_text},
     {CM1E_ERROR_AXIS_POSITION_RANGE, refused_position_text},
     {CM1E_ERROR_AXIS_VIRTUAL, refused_virtual_text},
-    {CM1E_ERROR_AXIS_HOMING_METHOD, cm1e_axis_home_wrong_text},
-    {CM1E_ERROR_AXIS_HOMING_PARAMETER, cm1e_axis_home_wrong_text},
 };
 
 static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
@@ -241,6 +196,8 @@ static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
             refusal_texts[i].text(axis, text, size);
             return;
         }
+    if (axis->homing_hooks && axis->homing_hooks->refused_text(axis, text, size))
+        return;
     if (axis->motor_hooks && axis->motor_hooks->text(axis, axis->refusal, text, size))
         return;
     if (axis->refusal == CM1E_ERROR_UNSUPPORTED && drive_profiles(axis)) {
@@ -259,8 +216,6 @@ static const struct {
     {CM1E_ERROR_AXIS_LAG, lag_text},
     {CM1E_ERROR_AXIS_NOT_IN_POSITION, cm1e_axis_in_position_text},
     {CM1E_ERROR_AXIS_POSITION_RANGE, range_text},
-    {CM1E_ERROR_AXIS_HOMING_FAILED, homing_text},
-    {CM1E_ERROR_AXIS_HOMING_TIMEOUT, homing_text},
     {CM1E_ERROR_AXIS_COUPLING_LIMIT, cm1e_axis_guard_text},
 };
 
@@ -290,6 +245,8 @@ void cm1e_axis_error_text(AXIS_REF_t reference, char *text, size_t size)
             texts[i].text(axis, text, size);
             return;
         }
+    if (axis->homing_hooks && axis->homing_hooks->failed_text(axis, text, size))
+        return;
     if (!coupling_text(axis, axis->error, false, text, size))
         other_text(axis, text, size);
 }

@@ -6,6 +6,7 @@
 #include "axis/axis_parameters.h"
 #include "axis/axis_private.h"
 #include "axis/axis_signals.h"
+#include "homing/homing_private.h"
 #include "sim/bridge_app.h"
 
 #include "../support/axis_segment.h" /* behind the others: it makes a macro of `axis` */
@@ -213,9 +214,9 @@ START_TEST(test_parameters_are_written_in_the_units_of_the_motor)
         describe_bridge();
         open_enabled();
         const cm1e_command_id_t id = home_of(n, 0.0, &rows[i].homing);
-        while (status_of(n, id).state == CM1E_COMMAND_ACTIVE && axes[n]->home.step != HOME_RUN)
+        while (status_of(n, id).state == CM1E_COMMAND_ACTIVE && axes[n]->homing->drive.step != HOME_RUN)
             cycles(1);
-        ck_assert_msg(axes[n]->home.step == HOME_RUN, "%s", text_of(n));
+        ck_assert_msg(axes[n]->homing->drive.step == HOME_RUN, "%s", text_of(n));
         const cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(
             cm1e_sim_segment_slave(cm1e_nic_segment(cm1e_bus_nic(bus)), 1));
         ck_assert_int_eq(*cm1e_sim_bridge_value(bridge, (unsigned)n, 0x6098, 0), rows[i].homing.method);
@@ -238,7 +239,7 @@ START_TEST(test_a_homing_speed_by_default_is_no_more_than_a_revolution_a_second)
         config.axes[CM1].k37 = rows[i].k37;
         open_enabled();
         const cm1e_command_id_t id = home_of(CM1, 0.0, &(cm1e_homing_config_t){.method = 1});
-        while (status_of(CM1, id).state == CM1E_COMMAND_ACTIVE && axes[CM1]->home.step != HOME_RUN)
+        while (status_of(CM1, id).state == CM1E_COMMAND_ACTIVE && axes[CM1]->homing->drive.step != HOME_RUN)
             cycles(1);
         const cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(
             cm1e_sim_segment_slave(cm1e_nic_segment(cm1e_bus_nic(bus)), 1));
@@ -403,7 +404,7 @@ START_TEST(test_a_homing_is_ended_at_every_moment)
         for (int i = 0; i < after && status_of(n, id).state == CM1E_COMMAND_ACTIVE; i++)
             cycles(1);
         const bool ended = status_of(n, id).state != CM1E_COMMAND_ACTIVE;
-        seen[axes[n]->home.step] = true;
+        seen[axes[n]->homing->drive.step] = true;
         end_homing(n, ending);
         ck_assert_msg(info_of(n).state == CM1E_AXIS_STANDSTILL, "after %d: %s %s", after,
                       cm1e_axis_state_name(info_of(n).state), text_of(n));

@@ -3,6 +3,7 @@
 #include "axis/axis_private.h"
 #include "cm1e/plcopen.h"
 #include "core/bytes.h"
+#include "homing/homing_private.h"
 #include "sim/bridge_app.h"
 
 #include "axis_segment.h"
@@ -169,7 +170,7 @@ START_TEST(test_inputs_while_it_homes)
     MC_WriteDigitalOutput_t write = {.Output = &output, .Value = TRUE, .Execute = TRUE};
     MC_Home_t home = {.Axis = &references[n], .Execute = TRUE};
     MC_Home(&home);
-    while (axes[n]->home.step != HOME_RUN && home.Busy) {
+    while (axes[n]->homing->drive.step != HOME_RUN && home.Busy) {
         scan(1);
         MC_Home(&home);
     }

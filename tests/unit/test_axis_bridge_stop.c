@@ -3,6 +3,7 @@
 #include "cia402/cia402.h"
 
 #include "../support/axis_bench.h"
+#include "homing/homing_private.h"
 
 /* Once bit 4 has come, the motor does not hear that it goes, nor of the words that keep the torque on. */
 static bool started;
@@ -36,7 +37,7 @@ void setUp(void)
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
     running = home();
     bench_cycles(600);
-    TEST_ASSERT_EQUAL_INT(HOME_RUN, axis->home.step);
+    TEST_ASSERT_EQUAL_INT(HOME_RUN, axis->homing->drive.step);
 }
 void tearDown(void)
 {

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "../support/axis_bench.h"
+#include "homing/homing_private.h"
 
 static const int8_t methods[] = {-1, -2, -3, -4, -5, -6};
 
@@ -92,7 +93,7 @@ static cm1e_command_id_t home(double position, const cm1e_homing_config_t *confi
 static void cycles_until_step(cm1e_home_step_t step)
 {
     for (int i = 0; i < 3000; i++) {
-        if (drive_homes(axis) && axis->home.step == step)
+        if (drive_homes(axis) && axis->homing->drive.step == step)
             return;
         bench_cycles(1);
     }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "../support/axis_bench.h"
+#include "homing/homing_private.h"
 
 enum { HOME_INPUT = 1, POSITIVE_INPUT, NEGATIVE_INPUT };
 enum { LEFT_FLANK = -5000, RIGHT_FLANK = 5000, LIMIT_SWITCH = 40000, STOP = 60000 };
@@ -919,9 +920,9 @@ static void test_power_off_while_a_stop_relieves_leaves_nothing_behind(void)
     TEST_ASSERT_GREATER_OR_EQUAL_INT(300, bus.torque);
     const cm1e_axis_command_t stop = {.kind = CM1E_COMMAND_STOP};
     cm1e_axis_hold_stop(axis, bench_start_command(&stop), false);
-    for (int i = 0; i < 200 && !axis->stepping.after_stop; i++)
+    for (int i = 0; i < 200 && !axis->after_stop; i++)
         bench_cycles(1);
-    TEST_ASSERT_TRUE(axis->stepping.after_stop);
+    TEST_ASSERT_TRUE(axis->after_stop);
     bench_power(false);
     bench_cycles(200);
     stops_there = false;

@@ -1,6 +1,7 @@
 /* The sources of set-points: what each of them has to be able to do. */
 #include "../support/axis_bench.h"
 #include "coupling/coupling_private.h"
+#include "homing/homing_private.h"
 
 void setUp(void) { bench_start(); }
 

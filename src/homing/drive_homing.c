@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "axis/axis_private.h"
+#include "homing/homing_private.h"
 #include "core/bytes.h"
 
 static const int64_t start_timeout_ns = 500 * MS_IN_NS;
@@ -30,23 +30,23 @@ static const double longest_timeout_s = 1e6;
 /* What differs between the drives is their device's table. */
 static const cm1e_device_homing_t *kind_of(const cm1e_axis_t *axis) { return axis->drive.kind->homing; }
 
-bool cm1e_axis_homes_by_switch(const cm1e_axis_t *axis, int method)
+bool cm1e_homing_by_switch(const cm1e_axis_t *axis, int method)
 {
     const cm1e_device_homing_t *kind = kind_of(axis);
     return method >= kind->first_by_switch && method <= kind->last_by_switch;
 }
 
-static bool k45_is_known(const homing_t *home) { return cm1e_bridge_offset_unit(home->k45) != 0; }
+static bool k45_is_known(const drive_homing_t *home) { return cm1e_bridge_offset_unit(home->k45) != 0; }
 
 /* The object of a parameter for a method, and what its range is. */
 static cm1e_homing_object_t object_of(const cm1e_axis_t *axis, int which, int method)
 {
     const cm1e_device_homing_t *kind = kind_of(axis);
     cm1e_homing_object_t object = kind->objects[which];
-    if (which == SPEED && kind->subindex_by_stop && !cm1e_axis_homes_by_switch(axis, method))
+    if (which == SPEED && kind->subindex_by_stop && !cm1e_homing_by_switch(axis, method))
         object.subindex = kind->subindex_by_stop;
-    if (which == OFFSET && axis->home.k45 >= 0 && k45_is_known(&axis->home))
-        object.unit = cm1e_bridge_offset_unit(axis->home.k45);
+    if (which == OFFSET && axis->homing->drive.k45 >= 0 && k45_is_known(&axis->homing->drive))
+        object.unit = cm1e_bridge_offset_unit(axis->homing->drive.k45);
     return object;
 }
 
@@ -92,34 +92,34 @@ static bool parameter(cm1e_axis_t *axis, int which, int method, double value)
     const int64_t rounded = cm1e_entry_round(entry, llround(asked));
     if (rounded < entry->minimum || rounded > entry->maximum)
         return false;
-    axis->home.raw[which] = (int32_t)rounded;
+    axis->homing->drive.raw[which] = (int32_t)rounded;
     return true;
 }
 
-static cm1e_error_t wrong(homing_t *home, int which, double value)
+static cm1e_error_t wrong(drive_homing_t *home, int which, double value)
 {
     home->wrong = (uint8_t)which;
     home->wrong_value = value;
     return which == METHOD ? CM1E_ERROR_AXIS_HOMING_METHOD : CM1E_ERROR_AXIS_HOMING_PARAMETER;
 }
 
-void cm1e_axis_home_wrong_text(const cm1e_axis_t *axis, char *text, size_t size)
+void cm1e_homing_wrong_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     static const char *const names[] = {"offset", "method", "velocity", "acceleration", "torque", "timeout_s"};
     static const char *const units[] = {" u", "", " u/s", " u/s2", " %", " s"};
-    const int which = axis->home.wrong;
+    const int which = axis->homing->drive.wrong;
     double least = kind_of(axis)->first_method, most = kind_of(axis)->last_method;
-    if (which == OFFSET && !k45_is_known(&axis->home)) {
+    if (which == OFFSET && !k45_is_known(&axis->homing->drive)) {
         snprintf(text, size, "Axis \"%s\": homing was not started: the second digit of the motor's K45 = %d says in "
                  "which unit homing.offset is; 0, 1 or 2 is right (100, 10 or 1 pulses). Set K45, parameter 1045, or "
-                 "leave the offset out.", axis->config->name, (int)axis->home.k45);
+                 "leave the offset out.", axis->config->name, (int)axis->homing->drive.k45);
         return;
     }
     if (which == TIMEOUT) {
         least = 0.0;
         most = longest_timeout_s;
     } else if (which != METHOD) {
-        const cm1e_homing_object_t object = object_of(axis, which, axis->home.raw[METHOD]);
+        const cm1e_homing_object_t object = object_of(axis, which, axis->homing->drive.raw[METHOD]);
         const cm1e_entry_t *entry = range_of(axis, object);
         const double counts = which == TORQUE ? 1.0 : fabs(axis->scale);
         least = (double)entry->minimum * object.unit / counts;
@@ -127,7 +127,7 @@ void cm1e_axis_home_wrong_text(const cm1e_axis_t *axis, char *text, size_t size)
     }
     const bool has_default = which == SPEED || which == ACCELERATION || which == TORQUE || which == TIMEOUT;
     snprintf(text, size, "Axis \"%s\": homing was not started: homing.%s is %.6g%s; %.6g ... %.6g%s is right%s.",
-             axis->config->name, names[which], axis->home.wrong_value, units[which], least, most, units[which],
+             axis->config->name, names[which], axis->homing->drive.wrong_value, units[which], least, most, units[which],
              has_default ? ", or 0 for the default" : "");
 }
 
@@ -142,22 +142,22 @@ static cm1e_error_t take_parameters(cm1e_axis_t *axis, const cm1e_homing_config_
         [TORQUE] = c->torque,
     };
     const double asked[HOMING_PARAMETERS] = {c->offset, c->method, c->velocity, c->acceleration, c->torque};
-    axis->home.k45 = -1; /* until it is read: the largest unit */
-    axis->home.offset = c->offset * axis->scale;
-    if (!isfinite(c->offset) || fabs(axis->home.offset) > INT32_MAX)
-        return wrong(&axis->home, OFFSET, c->offset);
-    axis->home.raw[METHOD] = c->method;
+    axis->homing->drive.k45 = -1; /* until it is read: the largest unit */
+    axis->homing->drive.offset = c->offset * axis->scale;
+    if (!isfinite(c->offset) || fabs(axis->homing->drive.offset) > INT32_MAX)
+        return wrong(&axis->homing->drive, OFFSET, c->offset);
+    axis->homing->drive.raw[METHOD] = c->method;
     for (int i = 0; i < HOMING_PARAMETERS; i++)
         if (!parameter(axis, i, c->method, values[i]))
-            return wrong(&axis->home, i, asked[i]);
+            return wrong(&axis->homing->drive, i, asked[i]);
     return CM1E_OK;
 }
 
-cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *command)
+cm1e_error_t cm1e_homing_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *command)
 {
     const cm1e_homing_config_t *c = command->homing ? command->homing : &axis->config->homing;
     const cm1e_device_homing_t *kind = kind_of(axis);
-    homing_t *home = &axis->home;
+    drive_homing_t *home = &axis->homing->drive;
     position_t position;
     if (cm1e_drive_is_virtual(&axis->drive))
         return CM1E_ERROR_AXIS_VIRTUAL;
@@ -186,7 +186,7 @@ cm1e_error_t cm1e_axis_home_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t
 /* What a step begins with. */
 static void enter(cm1e_axis_t *axis, cm1e_home_step_t step)
 {
-    homing_t *home = &axis->home;
+    drive_homing_t *home = &axis->homing->drive;
     cm1e_drive_command_t *command = &axis->drive.command;
     home->step = step;
     home->step_ns = home->quiet_ns = home->told_ns = axis->now_ns;
@@ -212,22 +212,23 @@ static void enter(cm1e_axis_t *axis, cm1e_home_step_t step)
  * the offset has its 0 that far before it. */
 static void take_reference(cm1e_axis_t *axis)
 {
-    const int64_t offset = kind_of(axis)->offset_by_axis ? llround(axis->home.offset) : 0;
-    cm1e_axis_set_origin(axis, cm1e_axis_load(axis, axis->actual_counts - axis->raw + offset), axis->home.position);
+    const int64_t offset = kind_of(axis)->offset_by_axis ? llround(axis->homing->drive.offset) : 0;
+    const position_t at = cm1e_axis_load(axis, axis->actual_counts - axis->raw + offset);
+    cm1e_axis_set_origin(axis, at, axis->homing->drive.position);
     axis->homed = true;
 }
 
 static void next_step(cm1e_axis_t *axis)
 {
-    const cm1e_home_step_t step = kind_of(axis)->steps[++axis->home.place];
+    const cm1e_home_step_t step = kind_of(axis)->steps[++axis->homing->drive.place];
     if (step == HOME_RETURN)
         take_reference(axis);
     enter(axis, step);
 }
 
-void cm1e_axis_home_begin(cm1e_axis_t *axis)
+void cm1e_homing_run(cm1e_axis_t *axis)
 {
-    homing_t *home = &axis->home;
+    drive_homing_t *home = &axis->homing->drive;
     home->next = home->place = 0;
     home->submitted = home->away = home->unstoppable = false;
     home->refused = CM1E_OK;
@@ -241,7 +242,7 @@ void cm1e_axis_home_begin(cm1e_axis_t *axis)
 static void leave(cm1e_axis_t *axis)
 {
     cm1e_axis_set_source(axis, &cm1e_source_hold);
-    axis->home.away = false;
+    axis->homing->drive.away = false;
     if (cm1e_axis_settle(axis))
         return;
     if (axis->active)
@@ -252,13 +253,13 @@ static void leave(cm1e_axis_t *axis)
 /* Nothing has moved: no reason for ErrorStop. */
 static void refuse(cm1e_axis_t *axis, cm1e_error_t error)
 {
-    axis->home.refused = error;
+    axis->homing->drive.refused = error;
     cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, error);
-    if (!axis->home.away) {
+    if (!axis->homing->drive.away) {
         leave(axis);
         return;
     }
-    axis->home.goal = HOME_GOAL_HOLD;
+    axis->homing->drive.goal = HOME_GOAL_HOLD;
     enter(axis, HOME_RETURN);
 }
 
@@ -266,7 +267,7 @@ static void refuse(cm1e_axis_t *axis, cm1e_error_t error)
 
 static void submit(cm1e_axis_t *axis, uint16_t index, uint8_t subindex, unsigned bytes, bool write)
 {
-    homing_t *home = &axis->home;
+    drive_homing_t *home = &axis->homing->drive;
     home->sdo = (cm1e_sdo_t){.position = axis->drive.position, .index = cm1e_drive_index(&axis->drive, index),
                              .subindex = subindex, .write = write, .data = home->data, .size = bytes};
     const cm1e_error_t error = cm1e_sdo_submit(axis->drive.bus, &home->sdo);
@@ -279,7 +280,7 @@ static void submit(cm1e_axis_t *axis, uint16_t index, uint8_t subindex, unsigned
 /* TRUE: the transfer under way has ended well. */
 static bool transferred(cm1e_axis_t *axis)
 {
-    homing_t *home = &axis->home;
+    drive_homing_t *home = &axis->homing->drive;
     const cm1e_sdo_state_t state = cm1e_sdo_state(&home->sdo);
     if (state != CM1E_SDO_ERROR && state != CM1E_SDO_DONE)
         return false;
@@ -291,7 +292,7 @@ static bool transferred(cm1e_axis_t *axis)
 
 static void submit_parameter(cm1e_axis_t *axis)
 {
-    homing_t *home = &axis->home;
+    drive_homing_t *home = &axis->homing->drive;
     const cm1e_homing_object_t object = object_of(axis, home->next, home->raw[METHOD]);
     const unsigned bits = cm1e_drive_entry(&axis->drive, object.index, object.subindex)->bits;
     const unsigned bytes = bits <= 8 * sizeof home->data ? bits / 8 : (unsigned)sizeof home->data;
@@ -302,7 +303,7 @@ static void submit_parameter(cm1e_axis_t *axis)
 /* Before the deadline of a step that transfers; a transfer under way ends by itself. */
 static bool too_late(cm1e_axis_t *axis)
 {
-    if (axis->now_ns < axis->home.deadline_ns)
+    if (axis->now_ns < axis->homing->drive.deadline_ns)
         return false;
     refuse(axis, CM1E_ERROR_TIMEOUT);
     return true;
@@ -310,7 +311,7 @@ static bool too_late(cm1e_axis_t *axis)
 
 static void step_write(cm1e_axis_t *axis)
 {
-    homing_t *home = &axis->home;
+    drive_homing_t *home = &axis->homing->drive;
     if (home->away)
         cm1e_axis_set_to_actual(axis);
     if (too_late(axis))
@@ -331,7 +332,7 @@ static void step_write(cm1e_axis_t *axis)
 /* Without an offset its unit is of no matter. */
 static void take_offset_unit(cm1e_axis_t *axis)
 {
-    homing_t *home = &axis->home;
+    drive_homing_t *home = &axis->homing->drive;
     home->k45 = (int32_t)(cm1e_get_u32(home->data) & INT32_MAX);
     if (home->offset == 0.0)
         next_step(axis);
@@ -343,7 +344,7 @@ static void take_offset_unit(cm1e_axis_t *axis)
 
 static void step_read(cm1e_axis_t *axis)
 {
-    homing_t *home = &axis->home;
+    drive_homing_t *home = &axis->homing->drive;
     if (too_late(axis))
         return;
     if (!home->submitted)
@@ -359,7 +360,7 @@ static void step_read(cm1e_axis_t *axis)
 /* Since when the motor stands is in `quiet_ns`; it stands if that is long ago. */
 static bool stands(cm1e_axis_t *axis)
 {
-    homing_t *home = &axis->home;
+    drive_homing_t *home = &axis->homing->drive;
     const int32_t moved = (int32_t)((uint32_t)axis->raw - (uint32_t)home->quiet_position);
     if (!axis->drive.feedback.online || llabs(moved) > cm1e_axis_few(axis, standing_counts)) {
         home->quiet_ns = axis->now_ns;
@@ -373,7 +374,7 @@ static void step_rest(cm1e_axis_t *axis)
 {
     if (stands(axis))
         next_step(axis);
-    else if (axis->now_ns - axis->home.step_ns >= rest_timeout_ns)
+    else if (axis->now_ns - axis->homing->drive.step_ns >= rest_timeout_ns)
         refuse(axis, CM1E_ERROR_AXIS_NOT_AT_REST);
 }
 
@@ -385,7 +386,7 @@ static bool acting_in(const cm1e_axis_t *axis, cm1e_mode_t mode)
 /* Without torque there is nothing to stop and no mode to wait for. */
 static bool off(cm1e_axis_t *axis)
 {
-    if (axis->home.goal != HOME_GOAL_OFF)
+    if (axis->homing->drive.goal != HOME_GOAL_OFF)
         return false;
     axis->drive.command.homing_start = false;
     axis->drive.command.halt = false;
@@ -399,7 +400,7 @@ static void step_switch(cm1e_axis_t *axis)
     cm1e_axis_set_to_actual(axis);
     if (!acting_in(axis, CM1E_MODE_HM)) /* the drive's mode timeout bounds this */
         return;
-    if (axis->home.goal == HOME_GOAL_DONE)
+    if (axis->homing->drive.goal == HOME_GOAL_DONE)
         next_step(axis);
     else
         enter(axis, HOME_RETURN);
@@ -408,7 +409,7 @@ static void step_switch(cm1e_axis_t *axis)
 static void step_taken(cm1e_axis_t *axis)
 {
     cm1e_axis_set_to_actual(axis);
-    if (axis->now_ns - axis->home.step_ns >= taken_ns)
+    if (axis->now_ns - axis->homing->drive.step_ns >= taken_ns)
         next_step(axis);
 }
 
@@ -416,7 +417,7 @@ static void fail(cm1e_axis_t *axis, cm1e_error_t error) { cm1e_axis_fail(axis, e
 
 static bool timed_out(cm1e_axis_t *axis)
 {
-    if (axis->now_ns < axis->home.deadline_ns)
+    if (axis->now_ns < axis->homing->drive.deadline_ns)
         return false;
     fail(axis, CM1E_ERROR_AXIS_HOMING_TIMEOUT);
     return true;
@@ -431,9 +432,9 @@ static void step_start(cm1e_axis_t *axis)
     const uint8_t now = bits(axis);
     const meaning_t meaning = meanings[now];
     const bool progress = meaning == IN_PROGRESS || (meaning == ATTAINED && !kind_of(axis)->attained_is_enough);
-    if (progress || (now != axis->home.bits_before && meaning != INTERRUPTED))
+    if (progress || (now != axis->homing->drive.bits_before && meaning != INTERRUPTED))
         next_step(axis);
-    else if (axis->now_ns - axis->home.step_ns >= start_timeout_ns)
+    else if (axis->now_ns - axis->homing->drive.step_ns >= start_timeout_ns)
         fail(axis, CM1E_ERROR_AXIS_HOMING_FAILED);
 }
 
@@ -445,7 +446,7 @@ static bool completed(cm1e_axis_t *axis, meaning_t meaning)
 
 static void step_run(cm1e_axis_t *axis)
 {
-    homing_t *home = &axis->home;
+    drive_homing_t *home = &axis->homing->drive;
     cm1e_axis_set_to_actual(axis);
     if (!axis->drive.feedback.online)
         return;
@@ -467,7 +468,7 @@ static void step_settle(cm1e_axis_t *axis)
     cm1e_axis_set_to_actual(axis);
     if (stands(axis))
         next_step(axis);
-    else if (axis->now_ns - axis->home.step_ns >= rest_timeout_ns)
+    else if (axis->now_ns - axis->homing->drive.step_ns >= rest_timeout_ns)
         fail(axis, CM1E_ERROR_AXIS_HOMING_FAILED);
 }
 
@@ -477,8 +478,8 @@ static void step_settle(cm1e_axis_t *axis)
 static int64_t halt_bound_ns(const cm1e_axis_t *axis)
 {
     const cm1e_device_homing_t *kind = kind_of(axis);
-    const double speed = axis->home.raw[SPEED] * kind->objects[SPEED].unit;
-    const double acceleration = axis->home.raw[ACCELERATION] * kind->objects[ACCELERATION].unit;
+    const double speed = axis->homing->drive.raw[SPEED] * kind->objects[SPEED].unit;
+    const double acceleration = axis->homing->drive.raw[ACCELERATION] * kind->objects[ACCELERATION].unit;
     const double braking_s = fmin(speed / acceleration, 1e-9 * (double)longest_halt_ns);
     const int64_t braking_ns = (int64_t)(1e9 * braking_s);
     const bool blind = axis->drive.fault.error != CM1E_OK;
@@ -490,7 +491,7 @@ static int64_t halt_bound_ns(const cm1e_axis_t *axis)
 /* Halt first and the mode later: before V1.3.0 a halt together with a switch of the mode did not stop (UG 10.1). */
 static void step_halt(cm1e_axis_t *axis)
 {
-    homing_t *home = &axis->home;
+    drive_homing_t *home = &axis->homing->drive;
     cm1e_axis_set_to_actual(axis);
     const bool searching = !kind_of(axis)->halts && meanings[bits(axis)] == IN_PROGRESS;
     const bool at_rest = stands(axis) && !searching;
@@ -523,18 +524,18 @@ static bool step(cm1e_axis_t *axis)
         [HOME_TAKEN] = step_taken, [HOME_START] = step_start, [HOME_RUN] = step_run,     [HOME_SETTLE] = step_settle,
         [HOME_HALT] = step_halt,   [HOME_RETURN] = step_return,
     };
-    if (!axis->drive.feedback.enabled && axis->home.goal == HOME_GOAL_OFF && axis->drive.fault.error) {
+    if (!axis->drive.feedback.enabled && axis->homing->drive.goal == HOME_GOAL_OFF && axis->drive.fault.error) {
         (void)off(axis);
         return true;
     }
-    steps[axis->home.step](axis);
+    steps[axis->homing->drive.step](axis);
     return true;
 }
 
 static void stop(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal)
 {
     (void)ramp; /* the drive has its own */
-    homing_t *home = &axis->home;
+    drive_homing_t *home = &axis->homing->drive;
     home->goal = goal;
     switch (home->step) {
     case HOME_READ:

@@ -11,7 +11,7 @@
  */
 #include <math.h>
 
-#include "axis/axis_private.h"
+#include "homing/homing_private.h"
 #include "axis/axis_signals.h"
 
 static const int64_t default_detection_ns = 50 * MS_IN_NS;
@@ -100,7 +100,7 @@ static cm1e_error_t check_signal(const cm1e_axis_t *axis, const cm1e_homing_step
     return home && !cm1e_axis_has_switch(axis, CM1E_SWITCH_HOME) ? CM1E_ERROR_AXIS_STEP_SWITCH : CM1E_OK;
 }
 
-cm1e_error_t cm1e_axis_step_check(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move)
+cm1e_error_t cm1e_homing_step_check(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move)
 {
     if (!step || (unsigned)step->kind > CM1E_STEP_FINISH)
         return CM1E_ERROR_INVALID_ARGUMENT;
@@ -147,7 +147,7 @@ static void go_within(cm1e_axis_t *axis, double velocity, const cm1e_motion_limi
         run(axis, &profile);
 }
 
-static void go(cm1e_axis_t *axis, double velocity) { go_within(axis, velocity, &axis->stepping.limits); }
+static void go(cm1e_axis_t *axis, double velocity) { go_within(axis, velocity, &axis->homing->stepping.limits); }
 
 /* While the motor stands at something the set-point needs no limit of jerk; but no more acceleration than it takes to
  * change soon, for whatever follows has to take that back by jerk alone. */
@@ -162,8 +162,8 @@ static void press_on(cm1e_axis_t *axis, double velocity)
 
 static void turn_to(cm1e_axis_t *axis, double way)
 {
-    axis->stepping.way = way;
-    go(axis, way * axis->stepping.limits.velocity);
+    axis->homing->stepping.way = way;
+    go(axis, way * axis->homing->stepping.limits.velocity);
 }
 
 static double torque_percent(const cm1e_axis_t *axis)
@@ -182,7 +182,7 @@ static double relief_velocity(const cm1e_axis_t *axis)
  * where the motor is at least, and farther while what the drive has summed up still pushes. */
 static void relieve(cm1e_axis_t *axis, double way)
 {
-    stepping_t *s = &axis->stepping;
+    stepping_t *s = &axis->homing->stepping;
     s->phase = STEPPING_RELIEVE;
     s->way = -way;
     s->travel = -fabs(lag_counts(axis) / axis->scale);
@@ -191,7 +191,7 @@ static void relieve(cm1e_axis_t *axis, double way)
 
 static void relieve_cycle(cm1e_axis_t *axis)
 {
-    stepping_t *s = &axis->stepping;
+    stepping_t *s = &axis->homing->stepping;
     s->travel += fabs(axis->set_velocity) * axis->cycle_s;
     const double push = -s->way, lag = lag_counts(axis) / axis->scale;
     /* Whole counts, whole per cent: what is less is rounding. */
@@ -205,7 +205,7 @@ static void relieve_cycle(cm1e_axis_t *axis)
 
 static bool presses_by_torque(const cm1e_axis_t *axis)
 {
-    const double limit = axis->stepping.step.torque_limit;
+    const double limit = axis->homing->stepping.step.torque_limit;
     return limit > 0.0 && fabs(torque_percent(axis)) > 0.5 * limit;
 }
 
@@ -232,15 +232,15 @@ static double pushed_way(const cm1e_axis_t *axis)
  * has summed up enough: it is waited for. One that is held up does not come, and is relieved. */
 static void settle(cm1e_axis_t *axis)
 {
-    axis->stepping.phase = STEPPING_SETTLE;
-    axis->stepping.settled_ns = axis->now_ns + settling_ns;
+    axis->homing->stepping.phase = STEPPING_SETTLE;
+    axis->homing->stepping.settled_ns = axis->now_ns + settling_ns;
     if (presses(axis))
         relieve(axis, pushed_way(axis));
 }
 
 static void settle_cycle(cm1e_axis_t *axis)
 {
-    stepping_t *s = &axis->stepping;
+    stepping_t *s = &axis->homing->stepping;
     if (!axis->drive.feedback.fresh)
         return;
     if (!held_up(axis)) {
@@ -253,13 +253,13 @@ static void settle_cycle(cm1e_axis_t *axis)
 
 static void decide(cm1e_axis_t *axis, cm1e_error_t outcome)
 {
-    axis->stepping.outcome = outcome;
-    axis->stepping.phase = STEPPING_STOP;
+    axis->homing->stepping.outcome = outcome;
+    axis->homing->stepping.phase = STEPPING_STOP;
 }
 
 static void found(cm1e_axis_t *axis, position_t reference)
 {
-    axis->stepping.reference = reference;
+    axis->homing->stepping.reference = reference;
     decide(axis, CM1E_OK);
     go(axis, 0.0);
 }
@@ -285,7 +285,7 @@ static cm1e_error_t prepare_finish(const cm1e_axis_t *axis, const move_t *move, 
     const cm1e_error_t error = cm1e_axis_limits_of(axis, &from, &dynamics, &next->limits);
     if (error)
         return error;
-    next->referenced = axis->stepping.referenced;
+    next->referenced = axis->homing->stepping.referenced;
     next->finishing = true;
     if (move->position == 0.0)
         return cm1e_profile_to_velocity(profile, &now, 0.0, &next->limits);
@@ -331,7 +331,7 @@ static cm1e_error_t prepare_search(const cm1e_axis_t *axis, const move_t *move, 
                ? CM1E_ERROR_AXIS_VELOCITY_RANGE : CM1E_OK;
 }
 
-cm1e_error_t cm1e_axis_step_prepare(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move,
+cm1e_error_t cm1e_homing_step_prepare(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move,
                                     stepping_t *next, cm1e_profile_t *profile)
 {
     *next = (stepping_t){.step = *step, .position = move->position};
@@ -345,16 +345,18 @@ cm1e_error_t cm1e_axis_step_prepare(const cm1e_axis_t *axis, const cm1e_homing_s
     return cm1e_profile_to_velocity(profile, &now, 0.0, &next->limits);
 }
 
-void cm1e_axis_step_begin(cm1e_axis_t *axis, const stepping_t *next, const cm1e_profile_t *profile)
+void cm1e_homing_step_run(cm1e_axis_t *axis, const stepping_t *next, const cm1e_profile_t *profile)
 {
-    axis->stepping = *next;
-    axis->stepping.pushing = true;
+    axis->homing->stepping = *next;
+    axis->finishing = next->finishing;
+    axis->pushing = true;
+    axis->after_stop = false;
     cm1e_axis_go(axis, ON_HOMING_STEP);
     if (searches(next->step.kind))
         axis->homed = false;
     run(axis, profile);
     if (next->step.kind == CM1E_STEP_DIRECT && profile->duration_s == 0.0)
-        (void)cm1e_axis_step_profile_ended(axis); /* it stands: done at once */
+        (void)cm1e_homing_step_ended(axis); /* it stands: done at once */
 }
 
 /* ---- search ------------------------------------------------------------------------------------------------------ */
@@ -382,14 +384,14 @@ static bool level_is_meant(const stepping_t *s, bool on)
 
 static position_t halfway(const cm1e_axis_t *axis)
 {
-    const position_t before = axis->stepping.actual_before;
+    const position_t before = axis->homing->stepping.actual_before;
     return cm1e_position_plus(before, 0.5 * cm1e_position_minus(axis_actual(axis), before));
 }
 
 /* TRUE: the event is there. */
 static bool look_at_switch(cm1e_axis_t *axis)
 {
-    stepping_t *s = &axis->stepping;
+    stepping_t *s = &axis->homing->stepping;
     const bool on = level_of(axis, s), before = s->level;
     const double moving = axis->set_velocity > 0.0 ? 1.0 : axis->set_velocity < 0.0 ? -1.0 : 0.0;
     s->level = on;
@@ -413,7 +415,7 @@ static bool time_to_turn(const stepping_t *s)
 /* Each limit switch is met once: then the search goes back over the switch (Part 5, 3.1). */
 static void look_at_limit_switch(cm1e_axis_t *axis)
 {
-    stepping_t *s = &axis->stepping;
+    stepping_t *s = &axis->homing->stepping;
     if (s->step.kind == CM1E_STEP_LIMIT_SWITCH && s->way == s->search)
         return; /* that is the one it looks for */
     if (!cm1e_axis_switch_active(axis, limit_switch(s->way)))
@@ -432,13 +434,13 @@ static double actual_velocity(const cm1e_axis_t *axis) { return axis->drive.feed
 
 static bool stands(const cm1e_axis_t *axis)
 {
-    return fabs(actual_velocity(axis)) <= axis->stepping.step.detection_velocity;
+    return fabs(actual_velocity(axis)) <= axis->homing->stepping.step.detection_velocity;
 }
 
 /* How much of what shows a stop is there: 1 is enough. */
 static double pressure(const cm1e_axis_t *axis)
 {
-    const stepping_t *s = &axis->stepping;
+    const stepping_t *s = &axis->homing->stepping;
     if (s->step.torque_limit > 0.0)
         return torque_percent(axis) * s->way / s->step.torque_limit;
     return lag_counts(axis) / axis->scale * s->way / (pressing_lag * axis->max_lag);
@@ -448,7 +450,7 @@ static double pressure(const cm1e_axis_t *axis)
  * a TorqueLimit it stands. */
 static void keep_pressed(cm1e_axis_t *axis, double now)
 {
-    stepping_t *s = &axis->stepping;
+    stepping_t *s = &axis->homing->stepping;
     const double pace = s->step.torque_limit == 0.0 ? 0.0
                         : now >= 1.0 ? -relief_velocity(axis) : creep_velocity_counts * axis->count / fabs(axis->scale);
     if (s->pressed && pace == s->pace)
@@ -460,7 +462,7 @@ static void keep_pressed(cm1e_axis_t *axis, double now)
 /* A stop is where the motor stands, pressed, for long enough. It searches on should it come free. */
 static void look_for_block(cm1e_axis_t *axis)
 {
-    stepping_t *s = &axis->stepping;
+    stepping_t *s = &axis->homing->stepping;
     const double now = pressure(axis);
     /* Faster than that at first, or a start from rest would look like a stop. */
     const bool fast = fabs(axis->set_velocity) > s->step.detection_velocity;
@@ -493,7 +495,7 @@ static bool out_of_counts(const cm1e_axis_t *axis)
 /* TRUE: one of the limits of the step is reached, or the direction is taken away. */
 static bool over_a_limit(cm1e_axis_t *axis)
 {
-    const stepping_t *s = &axis->stepping;
+    const stepping_t *s = &axis->homing->stepping;
     cm1e_error_t error = CM1E_OK;
     if (axis->counts_limit && out_of_counts(axis)) {
         decide(axis, CM1E_ERROR_AXIS_POSITION_RANGE);
@@ -516,7 +518,7 @@ static bool over_a_limit(cm1e_axis_t *axis)
 
 static void search(cm1e_axis_t *axis)
 {
-    stepping_t *s = &axis->stepping;
+    stepping_t *s = &axis->homing->stepping;
     s->travel += fabs(axis->set_velocity) * axis->cycle_s;
     const bool look = axis->drive.feedback.fresh;
     if (look && by_switch(s->step.kind) && look_at_switch(axis))
@@ -536,21 +538,21 @@ static void search(cm1e_axis_t *axis)
 /* MC_Stop has ended a step at its set-point, but the motor is still to be relieved before it is Done. */
 static bool relieving_after_stop(const cm1e_axis_t *axis)
 {
-    return axis->stepping.after_stop && axis->state == CM1E_AXIS_STOPPING;
+    return axis->after_stop && axis->state == CM1E_AXIS_STOPPING;
 }
 
-void cm1e_axis_step_cycle(cm1e_axis_t *axis)
+void cm1e_homing_step_cycle(cm1e_axis_t *axis)
 {
     const bool stepping = axis_stepping(axis);
     if (!stepping && !relieving_after_stop(axis))
         return;
-    if (axis->stepping.phase == STEPPING_RELIEVE)
+    if (axis->homing->stepping.phase == STEPPING_RELIEVE)
         relieve_cycle(axis);
-    else if (axis->stepping.phase == STEPPING_SETTLE)
+    else if (axis->homing->stepping.phase == STEPPING_SETTLE)
         settle_cycle(axis);
-    else if (stepping && axis->stepping.phase == STEPPING_SEARCH)
+    else if (stepping && axis->homing->stepping.phase == STEPPING_SEARCH)
         search(axis);
-    else if (stepping && axis->stepping.finishing && axis->stepping.outcome == CM1E_OK &&
+    else if (stepping && axis->homing->stepping.finishing && axis->homing->stepping.outcome == CM1E_OK &&
              !cm1e_axis_direction_enabled(axis, axis->set_velocity))
         give_up(axis, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
 }
@@ -559,9 +561,9 @@ void cm1e_axis_step_cycle(cm1e_axis_t *axis)
 
 static void complete(cm1e_axis_t *axis)
 {
-    stepping_t *s = &axis->stepping;
+    stepping_t *s = &axis->homing->stepping;
     const bool last = s->step.kind == CM1E_STEP_DIRECT || s->step.kind == CM1E_STEP_FINISH;
-    s->pushing = false;
+    axis->pushing = false;
     if (s->outcome) { /* what was to build on it is pointless */
         cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, s->outcome);
         cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
@@ -581,22 +583,21 @@ static void complete(cm1e_axis_t *axis)
 /* The set-point of MC_Stop stands, or has been taken back. */
 static bool stop_ended(cm1e_axis_t *axis)
 {
-    stepping_t *s = &axis->stepping;
-    s->after_stop = false;
-    if (axis->state != CM1E_AXIS_STOPPING || !s->pushing)
+    axis->after_stop = false;
+    if (axis->state != CM1E_AXIS_STOPPING || !axis->pushing)
         return false;
-    s->pushing = false;
+    axis->pushing = false;
     if (!held_up(axis))
         return false;
     cm1e_axis_stand(axis);
-    s->after_stop = true;
+    axis->after_stop = true;
     settle(axis);
     return true;
 }
 
-bool cm1e_axis_step_profile_ended(cm1e_axis_t *axis)
+bool cm1e_homing_step_ended(cm1e_axis_t *axis)
 {
-    const stepping_t *s = &axis->stepping;
+    const stepping_t *s = &axis->homing->stepping;
     const bool stepping = axis_stepping(axis);
     if (axis->profile.end.velocity != 0.0) {
         axis->reached = stepping || relieving_after_stop(axis);
@@ -612,4 +613,20 @@ bool cm1e_axis_step_profile_ended(cm1e_axis_t *axis)
     else
         complete(axis);
     return true;
+}
+
+/* A step of a homing goes on as it was about to: to the velocity of its search, or to the end of MC_FinishHoming. */
+cm1e_error_t cm1e_homing_step_anew(cm1e_axis_t *axis)
+{
+    const stepping_t *s = &axis->homing->stepping;
+    const cm1e_motion_state_t now = {0.0, axis->set_velocity, axis->set_acceleration};
+    const double way = cm1e_position_minus(axis->target, axis->set) / axis->scale, end = axis->profile.end.velocity;
+    const from_t from = from_set(axis);
+    cm1e_profile_t profile;
+    const bool planned = s->finishing ? cm1e_profile_to_position(&profile, &now, way, &s->limits) == CM1E_OK
+                                      : cm1e_profile_to_velocity(&profile, &now, end, &s->limits) == CM1E_OK;
+    if (!planned)
+        return CM1E_ERROR_AXIS_POSITION_RANGE;
+    cm1e_axis_run(axis, &from, &profile, cm1e_position_plus(axis->set, profile.end.position * axis->scale), 0.0);
+    return CM1E_OK;
 }

@@ -1,0 +1,36 @@
+/* What the axis knows of homings: a table of functions, added to it when it is made. */
+#include <stdlib.h>
+
+#include "homing/homing.h"
+#include "homing/homing_private.h"
+
+static void forget(cm1e_axis_t *axis) { free(axis->homing); }
+
+static bool is_away(const cm1e_axis_t *axis) { return axis->homing->drive.away; }
+
+static const command_method_t methods[PLAN_COUNT] = {
+    [PLAN_HOMING] = {cm1e_homing_start, cm1e_homing_buffer, NULL, cm1e_homing_begin, NULL},
+    [PLAN_HOMING_STEP] = {cm1e_homing_step_start, cm1e_homing_step_buffer, NULL, cm1e_homing_step_begin, NULL},
+};
+
+static const homing_hooks_t hooks = {
+    .methods = methods,
+    .free = forget,
+    .is_away = is_away,
+    .step_cycle = cm1e_homing_step_cycle,
+    .step_ended = cm1e_homing_step_ended,
+    .step_anew = cm1e_homing_step_anew,
+    .failed_text = cm1e_homing_failed_text,
+    .refused_text = cm1e_homing_refused_text,
+    .not_finished_text = cm1e_homing_not_finished_text,
+};
+
+cm1e_error_t cm1e_homing_add(cm1e_axis_t *axis, cm1e_diag_t *diag)
+{
+    axis->homing = calloc(1, sizeof *axis->homing);
+    if (!axis->homing)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the homing of axis \"%s\".",
+                             axis->config->name);
+    axis->homing_hooks = &hooks;
+    return CM1E_OK;
+}

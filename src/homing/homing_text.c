@@ -1,0 +1,68 @@
+/* Homings in sentences: what was refused, and why one failed. */
+#include <stdio.h>
+
+#include "cm1e/error.h"
+#include "homing/homing_private.h"
+
+bool cm1e_homing_failed_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    if (axis->error != CM1E_ERROR_AXIS_HOMING_FAILED && axis->error != CM1E_ERROR_AXIS_HOMING_TIMEOUT)
+        return false;
+    const unsigned bits = (unsigned)axis->error_value;
+    const drive_homing_t *home = &axis->homing->drive;
+    if (home->unstoppable) {
+        snprintf(text, size, "Axis \"%s\": homing was to stop, the motor did not come to rest, and has no torque now. "
+                 "Reset the axis with MC_Reset, and home it again.", axis->config->name);
+        return true;
+    }
+    snprintf(text, size,
+             "Axis \"%s\": %s. Method %d; statusword bits 13 (error), 12 (attained), 10 (reached) were %u %u %u; "
+             "homing began with %u %u %u. Check that the %s is reached in this direction, speed, torque limit and "
+             "timeout; then reset the axis with MC_Reset.",
+             axis->config->name, cm1e_strerror(axis->error), (int)home->raw[1], bits >> 2 & 1u, bits >> 1 & 1u,
+             bits & 1u, home->bits_before >> 2 & 1u, home->bits_before >> 1 & 1u, home->bits_before & 1u,
+             cm1e_homing_by_switch(axis, home->raw[1]) ? "sensor" : "hard stop");
+    return true;
+}
+
+static void refused_homing_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const cm1e_sdo_t *sdo = &axis->homing->drive.sdo;
+    const int value = (int)axis->homing->drive.raw[axis->homing->drive.next];
+    if (axis->homing->drive.refused == CM1E_ERROR_AXIS_HOMING_PARAMETER)
+        cm1e_homing_wrong_text(axis, text, size);
+    else if (axis->homing->drive.refused == CM1E_ERROR_AXIS_NOT_AT_REST)
+        snprintf(text, size, "Axis \"%s\": homing was not started: %s. Behind a bridge the mode is switched at rest: "
+                 "look for a load that moves the motor, or a servo that swings.", axis->config->name,
+                 cm1e_strerror(axis->homing->drive.refused));
+    else if (!sdo->write)
+        snprintf(text, size, "Axis \"%s\": homing was not started: object 0x%04X:%02X, which tells the unit of the "
+                 "offset, could not be read: %s.", axis->config->name, sdo->index, sdo->subindex,
+                 cm1e_strerror(axis->homing->drive.refused));
+    else if (axis->homing->drive.refused == CM1E_ERROR_SDO_ABORT)
+        snprintf(text, size,
+                 "Axis \"%s\": homing was not started: the drive refused %d for object 0x%04X:%02X with SDO abort code "
+                 "0x%08X (%s).",
+                 axis->config->name, value, sdo->index, sdo->subindex, (unsigned)sdo->abort_code,
+                 cm1e_sdo_abort_text(sdo->abort_code));
+    else
+        snprintf(text, size, "Axis \"%s\": homing was not started: object 0x%04X:%02X could not be written: %s.",
+                 axis->config->name, sdo->index, sdo->subindex, cm1e_strerror(axis->homing->drive.refused));
+}
+
+bool cm1e_homing_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    const not_set_t *ended = &axis->not_set;
+    if (ended->number != CM1E_COMMAND_HOME || ended->error != axis->homing->drive.refused)
+        return false;
+    refused_homing_text(axis, text, size);
+    return true;
+}
+
+bool cm1e_homing_refused_text(const cm1e_axis_t *axis, char *text, size_t size)
+{
+    if (axis->refusal != CM1E_ERROR_AXIS_HOMING_METHOD && axis->refusal != CM1E_ERROR_AXIS_HOMING_PARAMETER)
+        return false;
+    cm1e_homing_wrong_text(axis, text, size);
+    return true;
+}
