@@ -12,6 +12,8 @@ cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t inde
     cm1e_axis_t *axis = calloc(1, sizeof *axis);
     if (!axis)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for axis %u.", (unsigned)index);
+    static const axis_events_t events = {cm1e_axis_error_stop, cm1e_axis_begin_next, cm1e_axis_methods};
+    axis->events = &events;
     axis->source = &cm1e_source_free;
     cm1e_error_t error = cm1e_drive_init(&axis->drive, bus, index, diag);
     if (!error) {

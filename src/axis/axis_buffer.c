@@ -1,12 +1,7 @@
 /*
  * The commands that wait (2.4.2, table 4): taking them in, how fast each one's end position is passed on the way to the
  * next, and the change from one to the next at the very moment, inside a cycle, at which the first one ends.
- *
- * Velocity at a junction: what the buffer mode says, at most as much as the following commands can brake from (looking
- * ahead from the last one backwards), and as much as the present one can reach without backing up. It is zero where the
- * direction turns, where the mode is mcBuffered, and before a command that begins at rest.
  */
-#include <float.h>
 #include <math.h>
 
 #include "axis/axis_private.h"
@@ -14,149 +9,12 @@
 /* What an exit velocity may differ by when it is asked again on the way. */
 static const double same_velocity = 1e-9;
 
-move_t *cm1e_axis_find_waiting(cm1e_axis_t *axis, cm1e_command_id_t id)
-{
-    for (int i = 0; i < axis->waiting.count; i++)
-        if (waiting_move(axis, i)->id == id)
-            return waiting_move(axis, i);
-    return NULL;
-}
-
-/* ---- looking ahead ----------------------------------------------------------------------------------------------- */
-
-/* A waiting command that is passed into without a stop. */
-typedef struct leg {
-    cm1e_motion_limits_t limits;
-    double distance;       /* u; where it has no end: only the sign counts */
-    double exit_velocity;  /* u/s, in its own direction */
-    double room;           /* u; from where it begins to the software limit, where there is one */
-    const cm1e_motion_limits_t *most; /* of the axis */
-    bool open;             /* it has no end at which it would have to stop */
-    MC_BUFFER_MODE mode;
-} leg_t;
-
-static double junction_velocity(MC_BUFFER_MODE mode, double first, double second)
-{
-    switch (mode) {
-    case mcBlendingLow: return fmin(first, second);
-    case mcBlendingPrevious: return first;
-    case mcBlendingNext: return second;
-    case mcBlendingHigh: return fmax(first, second);
-    default: return 0.0;
-    }
-}
-
-static bool shared(const cm1e_axis_t *axis) { return axis->superimposed.moving && !axis->superimposed.alone; }
-
-/* A superimposed motion that ends before such a command begins will have moved it nearer. */
-static double nearer(const cm1e_axis_t *axis, const move_t *move, double distance)
-{
-    if (!axis->superimposed.id || kind_row(move->kind)->target != TARGET_ABSOLUTE)
-        return distance;
-    const double left = distance > 0.0 ? distance - fmax(axis->superimposed.highest, 0.0)
-                                       : distance - fmin(axis->superimposed.lowest, 0.0);
-    return left * distance > 0.0 ? left : 0.0;
-}
-
-/* FALSE: the command before it has to stop. `end` is where that one ends, `sign` the way it goes; both are moved on. */
-static bool make_leg(cm1e_axis_t *axis, move_t *move, position_t *end, double sign, leg_t *leg)
-{
-    const from_t from = {*end, sign * DBL_MIN, 0.0, shared(axis)}; /* only the direction is known yet */
-    move->origin = *end;
-    if (move->buffer_mode <= mcBuffered || !is_planned(move->kind) ||
-        cm1e_axis_limits_of(axis, &from, move, &leg->limits) || cm1e_axis_resolve(axis, &from, move))
-        return false;
-    leg->mode = (MC_BUFFER_MODE)move->buffer_mode;
-    leg->open = false;
-    leg->exit_velocity = 0.0;
-    leg->distance = nearer(axis, move, cm1e_position_minus(move->target, *end) / axis->scale);
-    if (move->kind == CM1E_COMMAND_MOVE_VELOCITY) {
-        leg->open = true;
-        (void)cm1e_axis_signed_velocity(axis, &from, move, &leg->distance);
-    } else if (move->kind == CM1E_COMMAND_HALT) {
-        leg->open = true;
-        leg->distance = sign;
-        leg->limits.velocity = 0.0;
-    } else if (kind_row(move->kind)->plan == PLAN_THROUGH_TARGET) {
-        const double exit_velocity = cm1e_axis_exit_velocity(axis, &from, move);
-        leg->exit_velocity = fmax(0.0, leg->distance > 0.0 ? exit_velocity : -exit_velocity);
-    }
-    const double begin = cm1e_axis_line(axis, *end);
-    leg->room = !axis->software_limits ? INFINITY : leg->distance > 0.0 ? axis->upper - begin : begin - axis->lower;
-    leg->most = &axis->maximum;
-    *end = move->target;
-    return leg->distance != 0.0;
-}
-
-/* How fast a leg may be entered when the command before it has this velocity and direction. With a limit of jerk the
- * way down to a stop can be shorter than the way down to a low velocity. To enter as if to stop costs the junction
- * behind its velocity, so only an axis that is already too fast does so: a command more in the buffer, which lets this
- * leg be left faster, must not ask it for a slower entry than it was planned for. */
-static double entry_velocity(const leg_t *leg, double velocity_before, double sign, bool as_if_to_stop)
-{
-    double velocity = junction_velocity(leg->mode, velocity_before, leg->limits.velocity);
-    if (isfinite(leg->room)) /* it may turn out not to be able to begin there: then the axis stops inside its limits */
-        velocity = cm1e_profile_entry_velocity(fmax(leg->room, 0.0), velocity, 0.0, leg->most);
-    if (leg->distance * sign <= 0.0)
-        return 0.0;
-    if (leg->open)
-        return velocity;
-    const double distance = fabs(leg->distance);
-    const double entry = cm1e_profile_entry_velocity(distance, velocity, leg->exit_velocity, &leg->limits);
-    return as_if_to_stop ? fmax(entry, cm1e_profile_entry_velocity(distance, velocity, 0.0, &leg->limits)) : entry;
-}
-
-/* From the last leg backwards: how fast the first one is to be entered by a command of this velocity. */
-static double look_ahead(leg_t *legs, int count, double velocity, bool as_if_to_stop)
-{
-    for (int i = count - 1; i > 0; i--)
-        legs[i - 1].exit_velocity = entry_velocity(&legs[i], legs[i - 1].limits.velocity,
-                                                   copysign(1.0, legs[i - 1].distance), as_if_to_stop);
-    /* From which side the command gets to its target is for the profile to know. */
-    const double sign = copysign(1.0, legs[0].distance);
-    return sign * entry_velocity(&legs[0], velocity, sign, as_if_to_stop);
-}
-
-double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t *move)
-{
-    const double factor = axis->override.velocity > 0.0 ? axis->override.velocity : 1.0;
-    if (kind_row(move->kind)->plan == PLAN_THROUGH_TARGET)
-        return factor * move->end_velocity;
-    cm1e_motion_limits_t limits;
-    if (axis->waiting.count == 0 || kind_row(move->kind)->plan != PLAN_TO_TARGET ||
-        cm1e_axis_limits_of(axis, from, move, &limits))
-        return 0.0;
-    leg_t legs[CM1E_AXIS_BUFFER_DEPTH];
-    const double distance = cm1e_position_minus(move->target, from->position) / axis->scale;
-    position_t end = move->target;
-    double sign = copysign(1.0, distance);
-    int count = 0;
-    while (count < axis->waiting.count && make_leg(axis, waiting_move(axis, count), &end, sign, &legs[count])) {
-        sign = copysign(1.0, legs[count].distance);
-        if (legs[count].open || kind_row(waiting_move(axis, count)->kind)->is_endless) {
-            count++;
-            break;
-        }
-        count++;
-    }
-    if (count == 0)
-        return 0.0;
-    const cm1e_motion_state_t start = {0.0, from->velocity, from->acceleration};
-    const double wanted = look_ahead(legs, count, limits.velocity, false);
-    if (!cm1e_axis_direction_enabled(axis, wanted)) /* braking is all that may still go that way */
-        return 0.0;
-    const double velocity = cm1e_profile_passing_velocity(&start, distance, wanted, &limits);
-    if (velocity == wanted)
-        return velocity;
-    return cm1e_profile_passing_velocity(&start, distance, look_ahead(legs, count, limits.velocity, true), &limits);
-}
-
 /* ---- taking in --------------------------------------------------------------------------------------------------- */
 
 /* What can be known beforehand. `end`: of the command before, NULL where nobody knows that. */
 static cm1e_error_t check(const cm1e_axis_t *axis, move_t *move, const position_t *end)
 {
-    const from_t from = {end ? *end : axis->set, 0.0, 0.0, shared(axis)};
+    const from_t from = {end ? *end : axis->set, 0.0, 0.0, axis_shares(axis)};
     const command_kind_t *kind = kind_row(move->kind);
     cm1e_motion_limits_t limits;
     if (!is_planned(move->kind))
@@ -260,7 +118,7 @@ cm1e_error_t cm1e_axis_begin_move(cm1e_axis_t *axis, move_t *move, const from_t 
     return error;
 }
 
-bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *at, double offset_s)
+bool cm1e_axis_begin_next(cm1e_axis_t *axis, const from_t *at, double offset_s)
 {
     from_t from = *at;
     while (axis->waiting.count > 0) {
@@ -284,64 +142,6 @@ bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *at, double offset_
         cm1e_axis_remember_end(axis, (cm1e_command_kind_t)move.kind, error);
     }
     return false;
-}
-
-static void go_on_as(cm1e_axis_t *axis, const from_t *from, const move_t *move, const cm1e_profile_t *profile)
-{
-    axis->move = *move;
-    cm1e_axis_run(axis, from, profile, cm1e_axis_profile_end(axis, from, move, profile), 0.0);
-    axis->paused = move->paused;
-}
-
-cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *as)
-{
-    move_t move = *as;
-    cm1e_profile_t profile;
-    const from_t from = from_base(axis);
-    const cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, true, &profile);
-    if (!error)
-        go_on_as(axis, &from, &move, &profile);
-    return error;
-}
-
-static bool can_replan(const cm1e_axis_t *axis)
-{
-    return axis->active && axis_on_profile(axis) && axis->kind != CM1E_COMMAND_STOP &&
-           is_planned(axis->kind);
-}
-
-/* `careful`: not when it would then run over its target, or go back. */
-static cm1e_error_t replan(cm1e_axis_t *axis, bool careful, bool *done)
-{
-    move_t move = axis->move;
-    cm1e_profile_t profile;
-    const from_t from = from_base(axis);
-    const cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, true, &profile);
-    *done = !error && !(careful && cm1e_axis_profile_strays(axis, &from, &move, &profile));
-    if (*done)
-        go_on_as(axis, &from, &move, &profile);
-    return error;
-}
-
-/* What runs does so itself: it began too late for anything else. */
-static bool runs_astray(const cm1e_axis_t *axis)
-{
-    const cm1e_motion_state_t *start = &axis->profile.segments[0].start;
-    const from_t from = {axis->base, start->velocity, start->acceleration, false};
-    return axis->profile.segment_count > 0 && cm1e_axis_profile_strays(axis, &from, &axis->move, &axis->profile);
-}
-
-/* One that keeps its target, or passes it with a velocity, cannot always be changed any more: then it stays. */
-cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis)
-{
-    bool done;
-    return can_replan(axis) ? replan(axis, !axis->paused && !runs_astray(axis), &done) : CM1E_OK;
-}
-
-bool cm1e_axis_replan_if(cm1e_axis_t *axis)
-{
-    bool done = false;
-    return can_replan(axis) && replan(axis, true, &done) == CM1E_OK && done;
 }
 
 /* ---- a shift of the coordinates ---------------------------------------------------------------------------------- */
@@ -375,7 +175,8 @@ bool cm1e_axis_shift_waiting(cm1e_axis_t *axis, double shift)
     const int count = before_homing(axis);
     for (int i = 0; i < count; i++)
         waiting_move(axis, i)->shift += shift;
-    if (count == 0 || !axis->software_limits || !can_replan(axis) || kind_row(axis->kind)->plan != PLAN_TO_TARGET)
+    if (count == 0 || !axis->software_limits || !cm1e_axis_can_replan(axis) ||
+        kind_row(axis->kind)->plan != PLAN_TO_TARGET)
         return true;
     /* What begins behind the target has less room now. */
     const from_t from = from_base(axis);

@@ -1,20 +1,8 @@
 /* Commands: posted by function blocks, known by number, one of them active. */
-#include <math.h>
-
 #include "axis/axis_handle.h"
 #include "axis/axis_private.h"
 
 /* ---- ends -------------------------------------------------------------------------------------------------------- */
-
-void cm1e_axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
-{
-    if (!axis->active)
-        return;
-    cm1e_axis_record(axis, axis->active, state, error);
-    cm1e_axis_remember_end(axis, axis->kind, error);
-    axis->active = 0;
-    axis->reached = false;
-}
 
 void cm1e_axis_waiting_end(cm1e_axis_t *axis, cm1e_command_state_t state)
 {
@@ -80,17 +68,6 @@ bool cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id, cm1e_comma
 }
 
 /* ---- start ------------------------------------------------------------------------------------------------------- */
-
-void cm1e_axis_take(cm1e_axis_t *axis, const move_t *move, const from_t *from, const cm1e_profile_t *profile,
-                    double offset_s)
-{
-    cm1e_axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    axis->active = move->id;
-    axis->kind = (cm1e_command_kind_t)move->kind;
-    axis->move = *move;
-    cm1e_axis_run(axis, from, profile, cm1e_axis_profile_end(axis, from, move, profile), offset_s);
-    axis->paused = move->paused;
-}
 
 /* 3.7: most recently commanded is the position that a discrete motion goes to, or went to until it was aborted; a
  * continuous one has none. */
@@ -234,12 +211,6 @@ static cm1e_error_t check(const cm1e_axis_t *axis, const cm1e_axis_command_t *co
     if (kind->has_buffer_mode && (unsigned)command->buffer_mode > mcBlendingHigh)
         return CM1E_ERROR_AXIS_BUFFER_MODE;
     return waits && drive_profiles(axis) ? CM1E_ERROR_AXIS_BUFFER_MODE : CM1E_OK;
-}
-
-void cm1e_axis_taken(cm1e_axis_t *axis, const command_kind_t *kind)
-{
-    if (kind->plan != PLAN_HOMING_STEP) /* it has gone there itself: MC_HomeDirect may be over already */
-        cm1e_axis_go(axis, kind->trigger);
 }
 
 static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)

@@ -25,8 +25,8 @@ typedef struct motor_hooks {
     bool (*text)(const cm1e_axis_t *axis, cm1e_error_t error, char *text, size_t size);
 } motor_hooks_t;
 
-/** Couplings (src/coupling): what the axis follows, and who follows it. Those from `first_set_point` on are called only while
- *  the axis follows (axis_follows()). */
+/** Couplings (src/coupling): what the axis follows, and who follows it. Those from `first_set_point` on are called
+ *  only while the axis follows (axis_follows()). */
 typedef struct coupling_hooks {
     const command_method_t *methods; /**< by command_plan_t; without `start`: not theirs */
     void (*free)(cm1e_axis_t *axis); /**< @rt init */
@@ -70,7 +70,7 @@ typedef struct coupling_hooks {
     void (*tell)(const cm1e_axis_t *axis, cm1e_command_status_t *status);
 } coupling_hooks_t;
 
-/** Homings (src/homing): by the drive, which is a source of set-points, and in steps (Part 5), which move by profiles. */
+/** Homings (src/homing): by the drive, a source of set-points, and in steps (Part 5), which move by profiles. */
 typedef struct homing_hooks {
     const command_method_t *methods; /**< by command_plan_t; without `start`: not theirs */
     void (*free)(cm1e_axis_t *axis); /**< @rt init */
@@ -87,5 +87,14 @@ typedef struct homing_hooks {
     bool (*refused_text)(const cm1e_axis_t *axis, char *text, size_t size);
     bool (*not_finished_text)(const cm1e_axis_t *axis, char *text, size_t size);
 } homing_hooks_t;
+
+/** What motions tell those that command them (axis.c has the one table): so a motion need not know commands. */
+typedef struct axis_events {
+    /** It cannot go on: ErrorStop, braked no harder than by this ramp. */
+    void (*failed)(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound, const cm1e_motion_limits_t *ramp);
+    /** The first waiting command that can begin there does; those before it fail. FALSE: none could. */
+    bool (*begin_waiting)(cm1e_axis_t *axis, const from_t *from, double offset_s);
+    const command_method_t *methods; /**< by command_plan_t; of the axis itself */
+} axis_events_t;
 
 #endif

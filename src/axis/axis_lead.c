@@ -20,15 +20,6 @@ cm1e_error_t cm1e_axis_lead(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader)
     return CM1E_OK;
 }
 
-void cm1e_axis_lead_end(cm1e_axis_t *axis, cm1e_error_t error)
-{
-    if (!axis_led(axis))
-        return;
-    const cm1e_axis_leader_t leader = axis->leader;
-    axis->leader = (cm1e_axis_leader_t){0};
-    leader.lost(leader.context, leader.index, error);
-}
-
 void cm1e_axis_release(cm1e_axis_t *axis)
 {
     if (!axis_led(axis))

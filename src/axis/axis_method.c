@@ -4,7 +4,7 @@
 
 #define BY_PROFILE {cm1e_axis_start_move, cm1e_axis_buffer_move, NULL, cm1e_axis_begin_move, cm1e_axis_update_move}
 
-static const command_method_t methods[PLAN_COUNT] = {
+const command_method_t cm1e_axis_methods[PLAN_COUNT] = {
     /*                     start, buffer, awaits, begin, update */
     [PLAN_TO_TARGET] = BY_PROFILE,
     [PLAN_THROUGH_TARGET] = BY_PROFILE,
@@ -13,10 +13,3 @@ static const command_method_t methods[PLAN_COUNT] = {
     [PLAN_TABLE] = {cm1e_axis_table_start, cm1e_axis_table_buffer, NULL, cm1e_axis_table_begin, NULL},
     [PLAN_ON_TOP] = {cm1e_axis_superimpose, NULL, NULL, NULL, cm1e_axis_superimpose_update},
 };
-
-const command_method_t *cm1e_axis_method(const cm1e_axis_t *axis, command_plan_t plan)
-{
-    const command_method_t *coupling = axis->coupling_hooks ? &axis->coupling_hooks->methods[plan] : NULL;
-    const command_method_t *homing = axis->homing_hooks ? &axis->homing_hooks->methods[plan] : NULL;
-    return coupling && coupling->start ? coupling : homing && homing->start ? homing : &methods[plan];
-}

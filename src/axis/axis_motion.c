@@ -16,8 +16,8 @@ static const double farthest_from_base = 0x1p32;
 
 static const cm1e_profile_stretch_t no_stretch = {.from_s = INFINITY};
 
-static void begin_run(cm1e_axis_t *axis, const source_t *source, const from_t *from, position_t target,
-                      double offset_s)
+void cm1e_axis_begin_run(cm1e_axis_t *axis, const source_t *source, const from_t *from, position_t target,
+                         double offset_s)
 {
     axis->stretch = no_stretch;
     axis->base = from->position;
@@ -36,17 +36,7 @@ void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *
                    double offset_s)
 {
     axis->profile = *profile;
-    begin_run(axis, &cm1e_source_profile, from, target, offset_s);
-}
-
-void cm1e_axis_run_table(cm1e_axis_t *axis, const from_t *from, const cm1e_table_profile_t *table, position_t target,
-                         double offset_s)
-{
-    axis->tables->running = *table;
-    axis->profile.duration_s = table->duration_s;
-    axis->profile.end = table->end;
-    axis->profile.segment_count = 0;
-    begin_run(axis, &cm1e_source_table, from, target, offset_s);
+    cm1e_axis_begin_run(axis, &cm1e_source_profile, from, target, offset_s);
 }
 
 static void ramp_down_from(cm1e_axis_t *axis, const from_t *from, const cm1e_motion_limits_t *limits, double offset_s)
@@ -71,12 +61,6 @@ void cm1e_axis_stop_by_ramp(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp,
     cm1e_axis_ramp_down(axis, ramp);
 }
 
-static bool commanded_motion(const cm1e_axis_t *axis)
-{
-    const bool moving = axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION;
-    return moving && ((axis->active && axis->kind != CM1E_COMMAND_HALT) || axis->superimposed.id);
-}
-
 /* Whether the running profile still goes that way: now, at its end, or in between, where each stretch of one direction
  * that begins and ends at rest has a border of two segments in it. */
 bool cm1e_axis_profile_goes(cm1e_axis_t *axis, double sign)
@@ -90,26 +74,6 @@ bool cm1e_axis_profile_goes(cm1e_axis_t *axis, double sign)
         if (profile->segments[i].start_s > now_s && profile->segments[i].start.velocity * sign > 0.0)
             return true;
     return false;
-}
-
-void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign)
-{
-    const cm1e_error_t error = CM1E_ERROR_AXIS_DIRECTION_DISABLED;
-    const bool halts = axis->stands || (axis->active && axis->kind == CM1E_COMMAND_HALT);
-    const bool on_top_goes = cm1e_axis_superimposed_goes(axis, sign);
-    const bool base_goes = !halts && axis->source->goes && axis->source->goes(axis, sign);
-    if (!commanded_motion(axis) || !(base_goes || on_top_goes))
-        return;
-    cm1e_axis_superimposed_end(axis, on_top_goes ? CM1E_COMMAND_ERROR : CM1E_COMMAND_ABORTED,
-                               on_top_goes ? error : CM1E_OK);
-    const move_t move = axis->move;
-    if (!base_goes && axis->active && cm1e_axis_replan_as(axis, &move) == CM1E_OK)
-        return;
-    const from_t from = from_set(axis);
-    cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, error);
-    cm1e_axis_go(axis, ON_BROKEN_OFF);
-    if (!cm1e_axis_begin_waiting(axis, &from, 0.0)) /* 2.2.2, case 2 */
-        axis->source->stop(axis, &axis->maximum, HOME_GOAL_HOLD);
 }
 
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
@@ -144,7 +108,7 @@ static void brake_after(cm1e_axis_t *axis, const from_t *end, double late_s)
  * were checked as a whole when they were planned; velocities, and what changes on the way, meet a limit here. */
 static bool may_go_on(const cm1e_axis_t *axis, cm1e_motion_state_t next)
 {
-    return !axis->software_limits || !commanded_motion(axis) ||
+    return !axis->software_limits || !axis_moves_by_command(axis) ||
            cm1e_axis_limits_can_stop(axis, axis->base_line, next);
 }
 

@@ -96,14 +96,14 @@ typedef struct command_method {
 } command_method_t;
 
 /* axis_method.c */
-/** Of a room above the axis, or its own; without `start`: the axis cannot do it. */
-const command_method_t *cm1e_axis_method(const cm1e_axis_t *axis, command_plan_t plan);
+extern const command_method_t cm1e_axis_methods[]; /**< by command_plan_t; of the axis itself */
 
-/* axis_motion.c */
+/* axis_motion.c, axis_direction.c */
 /** A profile takes over that began at `from`, `offset_s` before the present set-point. */
 void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile, position_t target,
                    double offset_s);
-void cm1e_axis_run_table(cm1e_axis_t *axis, const from_t *from, const cm1e_table_profile_t *table, position_t target,
+/** Of any source that is a profile. */
+void cm1e_axis_begin_run(cm1e_axis_t *axis, const source_t *source, const from_t *from, position_t target,
                          double offset_s);
 /** Down to standstill without a command. */
 void cm1e_axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits);
@@ -120,7 +120,7 @@ void cm1e_axis_stand(cm1e_axis_t *axis);
 void cm1e_axis_motion_step(cm1e_axis_t *axis);
 void cm1e_axis_write_set_point(cm1e_axis_t *axis);
 
-/* axis_command.c */
+/* axis_command.c, axis_record.c, axis_replan.c */
 /** Of a command or an update, for the text: what was refused last is told. CM1E_OK: it was accepted. */
 void cm1e_axis_remember_refusal(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_error_t error);
 /** The active command ends; those that wait are for cm1e_axis_begin_waiting(). */
@@ -140,7 +140,7 @@ void cm1e_axis_taken(cm1e_axis_t *axis, const command_kind_t *kind);
 cm1e_error_t cm1e_axis_start_move(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
 cm1e_error_t cm1e_axis_buffer_move(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
 
-/* axis_buffer.c */
+/* axis_buffer.c, axis_look_ahead.c, axis_replan.c */
 /** The waiting command of that number; NULL: none. */
 move_t *cm1e_axis_find_waiting(cm1e_axis_t *axis, cm1e_command_id_t id);
 /** Takes it in behind the others and gives it its number. */
@@ -155,8 +155,11 @@ bool cm1e_axis_shift_waiting(cm1e_axis_t *axis, double shift);
 /** The velocity with which a move that begins there shall pass its target, for the sake of those that wait. */
 double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move_t *move);
 cm1e_error_t cm1e_axis_begin_move(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s);
-/** The first waiting command that can begin there does; those before it fail. FALSE: none could. */
-bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offset_s);
+/** The first waiting command that can begin there does; those before it fail. FALSE: none could. Motions call
+ *  cm1e_axis_begin_waiting(). */
+bool cm1e_axis_begin_next(cm1e_axis_t *axis, const from_t *from, double offset_s);
+/** Whether the active command is one that is planned anew where something changes. */
+bool cm1e_axis_can_replan(const cm1e_axis_t *axis);
 /** Something that the active command's profile depends on has changed: it is planned anew from the present set-point.
  *  Where that is refused, it goes on as it was. */
 cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis);
@@ -185,7 +188,8 @@ void cm1e_axis_superimposed_replan(cm1e_axis_t *axis);
 /** Whether it goes that way, now or later. */
 bool cm1e_axis_superimposed_goes(const cm1e_axis_t *axis, double sign);
 
-/* axis_update.c */
+/* axis_record.c */
+bool cm1e_axis_same_way(const move_t *a, const move_t *b);
 bool cm1e_axis_same_inputs(const move_t *a, const move_t *b);
 move_t cm1e_axis_move_of(const cm1e_axis_command_t *command);
 cm1e_error_t cm1e_axis_update_move(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command);

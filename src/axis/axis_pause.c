@@ -52,7 +52,8 @@ static cm1e_error_t move_anew(cm1e_axis_t *axis)
     if (!axis->active || axis->kind == CM1E_COMMAND_STOP)
         return stop_anew(axis);
     const move_t move = axis->move;
-    return axis->kind == CM1E_COMMAND_HOMING_STEP ? axis->homing_hooks->step_anew(axis) : cm1e_axis_replan_as(axis, &move);
+    return axis->kind == CM1E_COMMAND_HOMING_STEP ? axis->homing_hooks->step_anew(axis)
+                                                  : cm1e_axis_replan_as(axis, &move);
 }
 
 static void profile_anew(cm1e_axis_t *axis)

@@ -15,31 +15,6 @@
 static const int64_t gone_after_ns = 100 * MS_IN_NS;
 static const int64_t brake_ns = 20 * MS_IN_NS;
 
-static bool step_free(cm1e_axis_t *axis)
-{
-    cm1e_axis_set_to_actual(axis);
-    return true;
-}
-
-static void stop_nothing(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal)
-{
-    (void)axis;
-    (void)ramp;
-    (void)goal;
-}
-
-const source_t cm1e_source_free = {.step = step_free, .stop = stop_nothing, .is_free = true};
-
-void cm1e_axis_become_free(cm1e_axis_t *axis)
-{
-    cm1e_axis_lead_end(axis, CM1E_ERROR_AXIS_ERROR_STOP);
-    cm1e_axis_set_source(axis, &cm1e_source_free);
-    axis->energized = false;
-    axis->pushing = axis->after_stop = false;
-    axis->free_ns = axis->now_ns;
-    cm1e_axis_set_to_actual(axis);
-}
-
 /* Whatever moves is stopped, by a ramp of ours or by the drive in its homing; without torque nothing is to stop. */
 static void wind_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp)
 {
@@ -49,7 +24,8 @@ static void wind_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp)
         axis->source->stop(axis, ramp, HOME_GOAL_OFF);
 }
 
-static void fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound, const cm1e_motion_limits_t *ramp)
+void cm1e_axis_error_stop(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound,
+                          const cm1e_motion_limits_t *ramp)
 {
     if (axis->state == CM1E_AXIS_ERROR_STOP)
         return; /* the first cause is the one to tell */
@@ -71,18 +47,6 @@ static void fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bou
         wind_down(axis, ramp);
     if (followed)
         axis->coupling_hooks->failed(axis);
-}
-
-void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound)
-{
-    fail(axis, error, value, bound, &axis->emergency);
-}
-
-void cm1e_axis_fail_gently(cm1e_axis_t *axis, cm1e_error_t error, double deceleration)
-{
-    cm1e_motion_limits_t ramp = axis->emergency;
-    ramp.deceleration = fmin(ramp.deceleration, deceleration);
-    fail(axis, error, 0.0, 0.0, &ramp);
 }
 
 /* No faster and no farther than the set-point would have gone. For a moment at least: what the feedback shows is some

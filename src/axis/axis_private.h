@@ -95,6 +95,7 @@ enum { CM1E_SHAKEN_BY_SILENCE = 8 };
 struct cm1e_axis {
     /* what every cycle of a motion looks at */
     cm1e_drive_t drive;
+    const axis_events_t *events;    /**< what a motion tells those that command it */
     const source_t *source;         /**< of the set-point; cm1e_axis_set_source() */
     cm1e_axis_state_t state;
     cm1e_command_id_t active;       /**< 0: none */
@@ -399,6 +400,30 @@ static inline move_t *waiting_move(cm1e_axis_t *axis, int index)
     return &axis->waiting.moves[(axis->waiting.first + index) % CM1E_AXIS_BUFFER_DEPTH];
 }
 
+/** A superimposed motion goes on above the base and has its share of the limits. */
+static inline bool axis_shares(const cm1e_axis_t *axis)
+{
+    return axis->superimposed.moving && !axis->superimposed.alone;
+}
+/** A command moves it: a single motion, or a continuous one. */
+static inline bool axis_moves_by_command(const cm1e_axis_t *axis)
+{
+    const bool moving = axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION;
+    return moving && ((axis->active && axis->kind != CM1E_COMMAND_HALT) || axis->superimposed.id);
+}
+/** Of a room above the axis, or its own; without `start`: the axis cannot do it. */
+static inline const command_method_t *cm1e_axis_method(const cm1e_axis_t *axis, command_plan_t plan)
+{
+    const command_method_t *coupling = axis->coupling_hooks ? &axis->coupling_hooks->methods[plan] : NULL;
+    const command_method_t *homing = axis->homing_hooks ? &axis->homing_hooks->methods[plan] : NULL;
+    return coupling && coupling->start ? coupling : homing && homing->start ? homing : &axis->events->methods[plan];
+}
+/** At the end of a motion: see cm1e_axis_begin_next(). */
+static inline bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from, double offset_s)
+{
+    return axis->events->begin_waiting(axis, from, offset_s);
+}
+
 /* axis_power.c */
 static inline bool cm1e_axis_wants_enable(const cm1e_axis_t *axis)
 {
@@ -410,10 +435,20 @@ static inline bool axis_acts(const cm1e_axis_t *axis)
 {
     return axis->drive.feedback.enabled && axis->drive.feedback.mode == (int8_t)axis->mode;
 }
-void cm1e_axis_become_free(cm1e_axis_t *axis);
-void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound);
+void cm1e_axis_become_free(cm1e_axis_t *axis); /* axis_free.c */
+void cm1e_axis_error_stop(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound,
+                          const cm1e_motion_limits_t *ramp);
+static inline void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound)
+{
+    axis->events->failed(axis, error, value, bound, &axis->emergency);
+}
 /** The same; it brakes no harder than this, u/s2. */
-void cm1e_axis_fail_gently(cm1e_axis_t *axis, cm1e_error_t error, double deceleration);
+static inline void cm1e_axis_fail_gently(cm1e_axis_t *axis, cm1e_error_t error, double deceleration)
+{
+    cm1e_motion_limits_t ramp = axis->emergency;
+    ramp.deceleration = fmin(ramp.deceleration, deceleration);
+    axis->events->failed(axis, error, 0.0, 0.0, &ramp);
+}
 /** A ramp of ErrorStop begins anew, from the motor's own position and speed. */
 void cm1e_axis_brake_from_actual(cm1e_axis_t *axis);
 /** The set velocity falls by `velocity` (u/s) at once: the torque stays until the motor has had time to follow. */
@@ -470,7 +505,7 @@ double cm1e_axis_ran_on(const cm1e_axis_t *axis);
 /* axis_lead.c */
 static inline bool axis_led(const cm1e_axis_t *axis) { return axis->leader.next != NULL; }
 /** What leads the axis is told that it does so no longer. */
-void cm1e_axis_lead_end(cm1e_axis_t *axis, cm1e_error_t error);
+void cm1e_axis_lead_end(cm1e_axis_t *axis, cm1e_error_t error); /* axis_free.c */
 /** ErrorStop by a lost bus: in CSV all that are led together brake in the same time, which keeps them on a line. */
 void cm1e_axis_lead_fail(cm1e_axis_t *axis, cm1e_error_t error);
 

@@ -1,4 +1,4 @@
-/* What is kept of commands and refusals: how a command ended, for who asks by number, and what was refused last, for the
+/* What is kept of commands and refusals: how a command ended, for who asks by number; what was refused last, for the
  * text. */
 #include "axis/axis_private.h"
 
@@ -15,6 +15,42 @@ cm1e_command_id_t cm1e_axis_next_id(cm1e_axis_t *axis)
     if (++axis->last_id == 0)
         axis->last_id = 1; /* 0 is no command */
     return axis->last_id;
+}
+
+/* ---- commands as they are kept ----------------------------------------------------------------------------------- */
+
+move_t cm1e_axis_move_of(const cm1e_axis_command_t *command)
+{
+    return (move_t){
+        .kind = (uint8_t)command->kind,
+        .buffer_mode = (uint8_t)command->buffer_mode,
+        .direction = (unsigned)command->direction <= UINT8_MAX ? (uint8_t)command->direction : UINT8_MAX,
+        .position = command->position,
+        .velocity = command->velocity,
+        .end_velocity = kind_row(command->kind)->plan == PLAN_THROUGH_TARGET ? command->end_velocity : 0.0,
+        .acceleration = command->acceleration,
+        .deceleration = command->deceleration,
+        .jerk = command->jerk,
+    };
+}
+
+bool cm1e_axis_same_way(const move_t *a, const move_t *b)
+{
+    return a->position == b->position && a->direction == b->direction;
+}
+
+bool cm1e_axis_same_inputs(const move_t *a, const move_t *b)
+{
+    return cm1e_axis_same_way(a, b) && a->velocity == b->velocity && a->end_velocity == b->end_velocity &&
+           a->acceleration == b->acceleration && a->deceleration == b->deceleration && a->jerk == b->jerk;
+}
+
+move_t *cm1e_axis_find_waiting(cm1e_axis_t *axis, cm1e_command_id_t id)
+{
+    for (int i = 0; i < axis->waiting.count; i++)
+        if (waiting_move(axis, i)->id == id)
+            return waiting_move(axis, i);
+    return NULL;
 }
 
 /* ---- refusals ---------------------------------------------------------------------------------------------------- */
@@ -41,4 +77,14 @@ void cm1e_axis_remember_end(cm1e_axis_t *axis, cm1e_command_kind_t kind, cm1e_er
 {
     if (error && error != CM1E_ERROR_AXIS_ERROR_STOP)
         cm1e_axis_remember_not_set(axis, (not_set_t){.error = error, .what = NOT_FINISHED, .number = (int)kind});
+}
+
+void cm1e_axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
+{
+    if (!axis->active)
+        return;
+    cm1e_axis_record(axis, axis->active, state, error);
+    cm1e_axis_remember_end(axis, axis->kind, error);
+    axis->active = 0;
+    axis->reached = false;
 }

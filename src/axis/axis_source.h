@@ -39,7 +39,7 @@ typedef struct source {
     bool homes;        /**< ... in its homing */
 } source_t;
 
-extern const source_t cm1e_source_free;    /**< no torque: the set-point is the actual position; axis_power.c */
+extern const source_t cm1e_source_free;    /**< no torque: the set-point is the actual position; axis_free.c */
 extern const source_t cm1e_source_hold;    /**< it stands; axis_motion.c */
 extern const source_t cm1e_source_profile; /**< of a command, or of a stopping ramp; axis_motion.c */
 extern const source_t cm1e_source_table;   /**< axis_table.c */

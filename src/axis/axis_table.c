@@ -110,6 +110,16 @@ const source_t cm1e_source_table = {
     .is_composite = true,
 };
 
+static void run_table(cm1e_axis_t *axis, const from_t *from, const cm1e_table_profile_t *table, position_t target,
+                      double offset_s)
+{
+    axis->tables->running = *table;
+    axis->profile.duration_s = table->duration_s;
+    axis->profile.end = table->end;
+    axis->profile.segment_count = 0;
+    cm1e_axis_begin_run(axis, &cm1e_source_table, from, target, offset_s);
+}
+
 static bool above(double needed, double allowed) { return !(needed <= allowed * (1.0 + relative_tolerance)); }
 
 static cm1e_error_t check(const cm1e_axis_t *axis, const from_t *from, cm1e_table_profile_t *table,
@@ -167,7 +177,7 @@ static void take(cm1e_axis_t *axis, const move_t *move, const from_t *from, cons
     axis->kind = kind;
     axis->move = *move;
     axis->move.target = end_of(axis, from, kind, points, table);
-    cm1e_axis_run_table(axis, from, table, axis->move.target, offset_s);
+    run_table(axis, from, table, axis->move.target, offset_s);
 }
 
 cm1e_error_t cm1e_axis_table_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)

@@ -4,32 +4,6 @@
  */
 #include "axis/axis_private.h"
 
-move_t cm1e_axis_move_of(const cm1e_axis_command_t *command)
-{
-    return (move_t){
-        .kind = (uint8_t)command->kind,
-        .buffer_mode = (uint8_t)command->buffer_mode,
-        .direction = (unsigned)command->direction <= UINT8_MAX ? (uint8_t)command->direction : UINT8_MAX,
-        .position = command->position,
-        .velocity = command->velocity,
-        .end_velocity = kind_row(command->kind)->plan == PLAN_THROUGH_TARGET ? command->end_velocity : 0.0,
-        .acceleration = command->acceleration,
-        .deceleration = command->deceleration,
-        .jerk = command->jerk,
-    };
-}
-
-static bool same_way(const move_t *a, const move_t *b)
-{
-    return a->position == b->position && a->direction == b->direction;
-}
-
-bool cm1e_axis_same_inputs(const move_t *a, const move_t *b)
-{
-    return same_way(a, b) && a->velocity == b->velocity && a->end_velocity == b->end_velocity &&
-           a->acceleration == b->acceleration && a->deceleration == b->deceleration && a->jerk == b->jerk;
-}
-
 /* The new inputs in an old command. */
 static move_t merged(const move_t *old, const move_t *inputs)
 {
@@ -38,8 +12,8 @@ static move_t merged(const move_t *old, const move_t *inputs)
     move.buffer_mode = old->buffer_mode; /* it has been used */
     move.origin = old->origin;
     move.target = old->target;
-    move.shift = same_way(old, inputs) ? old->shift : 0.0;
-    move.passing = old->passing && same_way(old, inputs);
+    move.shift = cm1e_axis_same_way(old, inputs) ? old->shift : 0.0;
+    move.passing = old->passing && cm1e_axis_same_way(old, inputs);
     return move;
 }
 
@@ -53,7 +27,7 @@ static cm1e_error_t update_active(cm1e_axis_t *axis, const move_t *inputs)
         return CM1E_OK;
     move_t move = merged(&axis->move, inputs);
     const from_t from = from_base(axis);
-    if (!same_way(&axis->move, inputs)) {
+    if (!cm1e_axis_same_way(&axis->move, inputs)) {
         const cm1e_error_t error = cm1e_axis_resolve(axis, &from, &move);
         if (error)
             return error;

@@ -1,0 +1,36 @@
+/* No torque: the source of set-points that is none, and what it takes from others. */
+#include "axis/axis_private.h"
+
+void cm1e_axis_lead_end(cm1e_axis_t *axis, cm1e_error_t error)
+{
+    if (!axis_led(axis))
+        return;
+    const cm1e_axis_leader_t leader = axis->leader;
+    axis->leader = (cm1e_axis_leader_t){0};
+    leader.lost(leader.context, leader.index, error);
+}
+
+static bool step_free(cm1e_axis_t *axis)
+{
+    cm1e_axis_set_to_actual(axis);
+    return true;
+}
+
+static void stop_nothing(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal)
+{
+    (void)axis;
+    (void)ramp;
+    (void)goal;
+}
+
+const source_t cm1e_source_free = {.step = step_free, .stop = stop_nothing, .is_free = true};
+
+void cm1e_axis_become_free(cm1e_axis_t *axis)
+{
+    cm1e_axis_lead_end(axis, CM1E_ERROR_AXIS_ERROR_STOP);
+    cm1e_axis_set_source(axis, &cm1e_source_free);
+    axis->energized = false;
+    axis->pushing = axis->after_stop = false;
+    axis->free_ns = axis->now_ns;
+    cm1e_axis_set_to_actual(axis);
+}
