@@ -17,6 +17,7 @@
 
 #include <cm1e/plcopen.h>
 #include <cm1e/scheduler.h>
+#include <cm1e/sim.h>
 
 enum { MAX_UNITS = 3, VICTIM = 1, MAX_RESETS = 5, GUARD_S = 30, TRACE_SAMPLES = 120000 };
 #define MS INT64_C(1000000) /* in ns */

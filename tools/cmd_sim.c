@@ -5,11 +5,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cm1e/sim.h"
 #include "command.h"
 #include "files.h"
-#include "nic/nic.h"
-#include "sim/segment.h"
-#include "sim/slave.h"
 
 static volatile int stop_requested;
 
@@ -106,15 +104,17 @@ static bool describe(const sim_options_t *options, cm1e_bus_config_t *config)
     return true;
 }
 
+static cm1e_error_t add_extra(cm1e_sim_segment_t *segment, const struct extra *extra)
+{
+    return extra->key == KEY_BRIDGE ? cm1e_sim_segment_add_bridge(segment, (cm1e_device_model_t)extra->model)
+                                    : cm1e_sim_segment_add_io(segment, (cm1e_sim_io_t)extra->model);
+}
+
 static bool add_extras(cm1e_sim_segment_t *segment, const sim_options_t *options)
 {
     for (uint32_t i = 0; i < options->extra_count; i++) {
         const struct extra *extra = options->extras[i];
-        cm1e_sim_slave_t *slave = extra->key == KEY_BRIDGE
-                                      ? cm1e_sim_bridge_create((cm1e_device_model_t)extra->model, NULL, 0)
-                                      : cm1e_sim_io_create((cm1e_sim_io_t)extra->model);
-        if (cm1e_sim_segment_add(segment, slave) != CM1E_OK) {
-            cm1e_sim_slave_destroy(slave);
+        if (add_extra(segment, extra) != CM1E_OK) {
             complain("the simulated slave \"%s\" cannot be made: out of memory, or more than %d slaves", extra->word,
                      CM1E_MAX_SLAVES);
             return false;
@@ -153,9 +153,9 @@ static void end_by_signals(void)
 
 static cm1e_error_t serve(cm1e_sim_segment_t *segment, const char *interface_name, cm1e_diag_t *diag)
 {
-    static const cm1e_nic_console_t console = {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO};
-    cm1e_nic_server_t *server;
-    const cm1e_error_t error = cm1e_nic_server_open(&server, segment, interface_name, diag);
+    static const cm1e_sim_streams_t console = {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO};
+    cm1e_sim_server_t *server;
+    const cm1e_error_t error = cm1e_sim_server_open(&server, segment, interface_name, diag);
     if (error)
         return error;
     end_by_signals();
@@ -163,8 +163,8 @@ static cm1e_error_t serve(cm1e_sim_segment_t *segment, const char *interface_nam
            cm1e_sim_segment_slave_count(segment), cm1e_sim_segment_slave_count(segment) == 1 ? "" : "s",
            interface_name);
     fflush(stdout);
-    cm1e_nic_server_run(server, &console, &stop_requested);
-    cm1e_nic_server_close(server);
+    cm1e_sim_server_run(server, &console, &stop_requested);
+    cm1e_sim_server_close(server);
     return CM1E_OK;
 }
 

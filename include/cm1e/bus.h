@@ -147,12 +147,6 @@ CM1E_API const char *cm1e_sdo_abort_text(uint32_t abort_code);
 /** Text of an AL status code; never NULL. @rt any */
 CM1E_API const char *cm1e_al_status_text(uint16_t al_status_code);
 
-/* ---- the simulated segment behind interface "sim" ---------------------------------------------------------------- */
-
-/** Executes one console command on the simulated segment, for example "power 2 off" ("help" lists all), and writes the
- *  answer to `answer`. Returns CM1E_ERROR_UNSUPPORTED on a network interface. @rt cycle */
-CM1E_API cm1e_error_t cm1e_bus_simulate(cm1e_bus_t *bus, const char *line, char *answer, size_t size);
-
 #ifdef __cplusplus
 }
 #endif

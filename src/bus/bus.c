@@ -160,12 +160,3 @@ const char *cm1e_bus_label_first(const cm1e_bus_t *bus, const cm1e_bus_slave_t *
     label[0] = 'S';
     return label;
 }
-
-cm1e_error_t cm1e_bus_simulate(cm1e_bus_t *bus, const char *line, char *answer, size_t size)
-{
-    cm1e_sim_segment_t *segment = cm1e_nic_segment(bus->nic);
-    if (segment)
-        return cm1e_sim_console(segment, line, answer, size);
-    snprintf(answer, size, "%s is a network interface, not a simulation", bus->config.interface_name);
-    return CM1E_ERROR_UNSUPPORTED;
-}

@@ -44,7 +44,7 @@ uint32_t cm1e_bus_operation(const cm1e_bus_t *bus);
 cm1e_clock_t *cm1e_bus_clock(cm1e_bus_t *bus);
 /** The firmware of a slave as object 0x100A tells; NULL: unreadable. @rt init */
 const cm1e_firmware_info_t *cm1e_bus_slave_firmware(const cm1e_bus_t *bus, uint16_t position);
-/** For tests: the nic below. */
-struct cm1e_nic *cm1e_bus_nic(cm1e_bus_t *bus);
+/** The nic below: the simulator finds its segment by it. @rt any */
+CM1E_GUEST_API struct cm1e_nic *cm1e_bus_nic(cm1e_bus_t *bus);
 
 #endif

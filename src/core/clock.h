@@ -8,6 +8,8 @@
 
 #include <stdint.h>
 
+#include "core/guest_api.h"
+
 typedef struct cm1e_clock cm1e_clock_t;
 
 typedef struct cm1e_clock_ops {
@@ -27,9 +29,9 @@ static inline void cm1e_clock_sleep_until(cm1e_clock_t *clock, int64_t time_ns)
 }
 
 /** CLOCK_MONOTONIC, with absolute sleeps. Shared, never freed. @rt any */
-cm1e_clock_t *cm1e_clock_monotonic(void);
+CM1E_GUEST_API cm1e_clock_t *cm1e_clock_monotonic(void);
 /** Makes a clock that starts at `start_ns` and is advanced only by cm1e_clock_sleep_until(). @rt any */
-void cm1e_clock_init_virtual(cm1e_clock_t *clock, int64_t start_ns);
+CM1E_GUEST_API void cm1e_clock_init_virtual(cm1e_clock_t *clock, int64_t start_ns);
 
 /** The clock of the calling thread: what SOEM's osal functions use. Default: monotonic. Thread local. @rt cycle */
 cm1e_clock_t *cm1e_clock_current(void);

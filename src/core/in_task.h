@@ -9,16 +9,17 @@
 #include <stdbool.h>
 
 #include "cm1e/error.h"
+#include "core/guest_api.h"
 
 /** Called before and after the tasks of a cycle. @rt cycle */
 void cm1e_in_task_begin(void);
 void cm1e_in_task_end(void);
 /** Whether the calling thread is between the two calls. @rt cycle */
-bool cm1e_in_task(void);
+CM1E_GUEST_API bool cm1e_in_task(void);
 
 /** CM1E_ERROR_STATE of a function that waits. The text names the function ("cm1e_bus_scan()") and what a task uses
  *  `instead`: a sentence, or "". */
-cm1e_error_t cm1e_in_task_refuse(const char *function, const char *instead, cm1e_diag_t *diag);
+CM1E_GUEST_API cm1e_error_t cm1e_in_task_refuse(const char *function, const char *instead, cm1e_diag_t *diag);
 
 /** For a function that returns no error: returns true in a task, and the scheduler is told after the tasks of this
  *  cycle. */

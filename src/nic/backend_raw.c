@@ -18,33 +18,33 @@ typedef struct raw {
 
 static bool raw_matches(const char *name) { return name[0] != 0; }
 
-static void raw_close(cm1e_nic_t *nic)
+static void raw_close(cm1e_nic_link_t *link)
 {
-    raw_t *raw = nic->state;
-    for (int i = 0; i < nic->ports; i++)
+    raw_t *raw = link->state;
+    for (int i = 0; i < link->ports; i++)
         if (raw->sockets[i].fd >= 0)
             close(raw->sockets[i].fd);
     free(raw);
 }
 
-static cm1e_error_t raw_open(cm1e_nic_t *nic, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
+static cm1e_error_t raw_open(cm1e_nic_link_t *link, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
 {
     raw_t *raw = calloc(1, sizeof *raw);
     if (!raw)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the network interface.");
-    nic->state = raw;
+    link->state = raw;
     for (int i = 0; i < CM1E_NIC_PORTS; i++)
         raw->sockets[i] = (struct pollfd){.fd = -1, .events = POLLIN};
-    const char *names[CM1E_NIC_PORTS] = {nic->interface_name, config->second_interface};
-    if (nic->ports > 1 && strcmp(names[0], names[1]) == 0) {
-        raw_close(nic);
+    const char *names[CM1E_NIC_PORTS] = {link->interface_name, config->second_interface};
+    if (link->ports > 1 && strcmp(names[0], names[1]) == 0) {
+        raw_close(link);
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
                              "Both interfaces of the ring are \"%s\": a ring needs two network interfaces.", names[0]);
     }
-    for (int i = 0; i < nic->ports; i++) {
+    for (int i = 0; i < link->ports; i++) {
         const cm1e_error_t error = cm1e_raw_socket_open(&raw->sockets[i].fd, names[i], diag);
         if (error) {
-            raw_close(nic);
+            raw_close(link);
             return error;
         }
     }
@@ -53,16 +53,16 @@ static cm1e_error_t raw_open(cm1e_nic_t *nic, const cm1e_bus_config_t *config, c
     return CM1E_OK;
 }
 
-static bool raw_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t length)
+static bool raw_send(cm1e_nic_link_t *link, int port, const uint8_t *frame, size_t length)
 {
-    const raw_t *raw = nic->state;
+    const raw_t *raw = link->state;
     return send(raw->sockets[port].fd, frame, length, MSG_DONTWAIT | MSG_NOSIGNAL) == (ssize_t)length;
 }
 
-static size_t look(cm1e_nic_t *nic, int *port, uint8_t *frame)
+static size_t look(cm1e_nic_link_t *link, int *port, uint8_t *frame)
 {
-    const raw_t *raw = nic->state;
-    for (int i = 0; i < nic->ports; i++) {
+    const raw_t *raw = link->state;
+    for (int i = 0; i < link->ports; i++) {
         const int n = cm1e_raw_socket_receive(raw->sockets[i].fd, frame, CM1E_FRAME_MAX);
         if (n > 0) {
             *port = i;
@@ -72,21 +72,21 @@ static size_t look(cm1e_nic_t *nic, int *port, uint8_t *frame)
     return 0;
 }
 
-static size_t raw_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t deadline_ns)
+static size_t raw_receive(cm1e_nic_link_t *link, int *port, uint8_t *frame, int64_t deadline_ns)
 {
-    raw_t *raw = nic->state;
+    raw_t *raw = link->state;
     for (int useless = 0;;) {
-        const size_t length = look(nic, port, frame);
+        const size_t length = look(link, port, frame);
         if (length > 0 || deadline_ns == NIC_NOW)
             return length;
-        const int64_t left_ns = deadline_ns - cm1e_clock_now(nic->clock);
+        const int64_t left_ns = deadline_ns - cm1e_clock_now(link->clock);
         if (left_ns <= 0)
             return 0;
         const struct timespec left = {.tv_sec = left_ns / NS_PER_S, .tv_nsec = left_ns % NS_PER_S};
-        const int ready = ppoll(raw->sockets, (nfds_t)nic->ports, &left, NULL);
+        const int ready = ppoll(raw->sockets, (nfds_t)link->ports, &left, NULL);
         /* An interface that went away reports errors without end, which would make this a busy loop. */
         if (ready > 0 && ++useless > USELESS_WAKE_UPS)
-            cm1e_clock_sleep_until(nic->clock, deadline_ns);
+            cm1e_clock_sleep_until(link->clock, deadline_ns);
     }
 }
 

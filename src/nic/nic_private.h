@@ -1,22 +1,17 @@
 /**
  * @file nic_private.h
- * Inside the nic room: what nic.c, tap.c and the backends share.
+ * Inside the nic room: what nic.c, tap.c, port.c and backend_raw.c share.
  */
 #ifndef CM1E_NIC_NIC_PRIVATE_H
 #define CM1E_NIC_NIC_PRIVATE_H
 
+#include "nic/backend.h"
 #include "nic/frame_queue.h"
-#include "nic/nic.h"
 #include "nic/pcap.h"
 
 struct cm1e_nic {
     const cm1e_nic_backend_t *backend;
-    void *state;                     /**< the backend's own */
-    cm1e_clock_t *clock;
-    cm1e_clock_t virtual_clock;
-    cm1e_sim_segment_t *segment;     /**< simulated segment; NULL on a network interface */
-    int ports;                       /**< 1, or 2 for a ring */
-    char interface_name[64];
+    cm1e_nic_link_t link;
 
     cm1e_tap_fn tap;
     void *tap_context;
@@ -26,13 +21,13 @@ struct cm1e_nic {
     uint8_t scratch[CM1E_FRAME_MAX]; /**< a frame to send while the tap has it */
 };
 
-extern const cm1e_nic_backend_t cm1e_backend_sim, cm1e_backend_raw;
+extern const cm1e_nic_backend_t cm1e_backend_raw;
 
 /** cm1e_nic_open() with a given backend (tests bring their own). */
 cm1e_error_t cm1e_nic_open_backend(cm1e_nic_t **nic, const cm1e_nic_backend_t *backend, const cm1e_bus_config_t *config,
                                    cm1e_diag_t *diag);
 
-/** The way of every frame: backend, tap, pcap. As in cm1e_nic_backend_t. @rt cycle */
+/** The way of every frame: backend, tap, pcap. As in backend.h. @rt cycle */
 bool cm1e_nic_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t length);
 size_t cm1e_nic_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t deadline_ns);
 

@@ -45,14 +45,14 @@ static bool set_up_second(ecx_portt *port, const char *ifname)
     if (!port->redport || !port->nic)
         return false;
     if (port->nic_is_ours) {
-        char first[sizeof port->nic->interface_name];
-        memcpy(first, port->nic->interface_name, sizeof first);
+        char first[sizeof port->nic->link.interface_name];
+        memcpy(first, port->nic->link.interface_name, sizeof first);
         cm1e_nic_close(port->nic);
         port->nic = NULL;
         if (!open_nic(port, first, ifname))
             return false;
     }
-    port->redundant = port->nic->ports > 1;
+    port->redundant = port->nic->link.ports > 1;
     return port->redundant;
 }
 
@@ -188,7 +188,7 @@ static int send_frame(ecx_portt *port, uint8 idx, bool again)
     slot->state = EC_BUF_TX;
     const bool sent = cm1e_port_send(port, 0, port->txbuf[idx], port->txbuflength[idx]);
     if (port->redundant) {
-        slot->sent_ns = cm1e_clock_now(port->nic->clock);
+        slot->sent_ns = cm1e_clock_now(port->nic->link.clock);
         send_companion(port, idx, port->transmissions);
     }
     return sent ? port->txbuflength[idx] : -1;
@@ -204,7 +204,7 @@ int ecx_outframe(ecx_portt *port, uint8 idx, int stacknumber)
     cm1e_port_slot_t *slot = &port->slots[idx];
     slot->answers = 0;
     slot->companion = interface ? RING_COPY : RING_NOTHING;
-    slot->sent_ns = cm1e_clock_now(port->nic->clock);
+    slot->sent_ns = cm1e_clock_now(port->nic->link.clock);
     cm1e_port_stamp(port, port->txbuf[idx], idx, interface, ++port->transmissions);
     slot->state = EC_BUF_TX;
     return cm1e_port_send(port, interface, port->txbuf[idx], port->txbuflength[idx]) ? port->txbuflength[idx] : -1;
@@ -314,7 +314,7 @@ static int wait_until(ecx_portt *port, uint8 idx, int64_t deadline_ns)
     if (port->redundant)
         return cm1e_ring_wait(port, idx, deadline_ns);
     for (int frames = 0; port->slots[idx].state != EC_BUF_RCVD; frames++) {
-        if (frames >= PORT_FRAME_BUDGET && cm1e_clock_now(port->nic->clock) >= deadline_ns)
+        if (frames >= PORT_FRAME_BUDGET && cm1e_clock_now(port->nic->link.clock) >= deadline_ns)
             return EC_NOFRAME;
         if (!cm1e_port_take_in(port, deadline_ns))
             return EC_NOFRAME;
@@ -326,7 +326,7 @@ static int64_t deadline_after(const ecx_portt *port, int timeout_us)
 {
     if (!port->nic || timeout_us <= 0)
         return NIC_NOW;
-    return cm1e_clock_now(port->nic->clock) + (int64_t)timeout_us * NS_PER_US;
+    return cm1e_clock_now(port->nic->link.clock) + (int64_t)timeout_us * NS_PER_US;
 }
 
 /** Takes in what is here already; EC_OTHERFRAME: a frame came, but not this one. */
@@ -349,7 +349,7 @@ int ecx_srconfirm(ecx_portt *port, uint8 idx, int timeout)
         return EC_NOFRAME;
     const int64_t end = deadline_after(port, timeout);
     int wkc;
-    int64_t now = cm1e_clock_now(port->nic->clock);
+    int64_t now = cm1e_clock_now(port->nic->link.clock);
     bool again = false;
     do {
         if (send_frame(port, idx, again) < 0 && !can_send(port, idx))
@@ -357,7 +357,7 @@ int ecx_srconfirm(ecx_portt *port, uint8 idx, int timeout)
         again = true;
         const int64_t part = now + (int64_t)EC_TIMEOUTRET * NS_PER_US;
         wkc = wait_until(port, idx, part < end ? part : end);
-        now = cm1e_clock_now(port->nic->clock);
+        now = cm1e_clock_now(port->nic->link.clock);
     } while (wkc <= EC_NOFRAME && now < end);
     return wkc;
 }

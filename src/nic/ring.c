@@ -152,7 +152,7 @@ static void send_second(ecx_portt *port, uint8 idx, action_t action)
     slot->answers &= (uint8_t)~(RING_SECOND_HALF | RING_THROUGH);
     cm1e_port_stamp(port, port->scratch, idx, 1, ++port->transmissions);
     cm1e_port_send(port, 1, port->scratch, (int)length);
-    slot->sent_ns = cm1e_clock_now(port->nic->clock);
+    slot->sent_ns = cm1e_clock_now(port->nic->link.clock);
     port->counters.resent++;
 }
 
@@ -183,7 +183,7 @@ static int64_t half_deadline(const ecx_portt *port, uint8 idx, int64_t deadline_
     const int64_t half_ns = slot->sent_ns + RING_HALF_WAIT_NS;
     if (decisions[slot->companion][halves].at_the_end != SEND_AGAIN || deadline_ns == NIC_NOW)
         return half_ns;
-    const int64_t now_ns = cm1e_clock_now(port->nic->clock), middle_ns = now_ns + (deadline_ns - now_ns) / 2;
+    const int64_t now_ns = cm1e_clock_now(port->nic->link.clock), middle_ns = now_ns + (deadline_ns - now_ns) / 2;
     return middle_ns < half_ns ? middle_ns : half_ns;
 }
 
@@ -209,12 +209,12 @@ int cm1e_ring_wait(ecx_portt *port, uint8 idx, int64_t deadline_ns)
         else if (half_ns == INT64_MAX)
             half_ns = half_deadline(port, idx, deadline_ns);
         if (cm1e_port_take_in(port, half_ns < deadline_ns ? half_ns : deadline_ns)) {
-            if (++frames >= PORT_FRAME_BUDGET && cm1e_clock_now(port->nic->clock) >= deadline_ns)
+            if (++frames >= PORT_FRAME_BUDGET && cm1e_clock_now(port->nic->link.clock) >= deadline_ns)
                 return EC_NOFRAME;
             continue;
         }
         /* A look without waiting leaves the half its time; a wait that ends takes what there is. */
-        if (half_ns == INT64_MAX || (deadline_ns == NIC_NOW && cm1e_clock_now(port->nic->clock) < half_ns))
+        if (half_ns == INT64_MAX || (deadline_ns == NIC_NOW && cm1e_clock_now(port->nic->link.clock) < half_ns))
             return EC_NOFRAME;
         ended = true;
         learn_miss(port, slot->transmission, slot->answers & RING_HALVES);

@@ -41,7 +41,7 @@ bool cm1e_nic_inject(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t len
 static bool pass_tap(cm1e_nic_t *nic, cm1e_tap_frame_t *t)
 {
     t->number = nic->frames[t->direction]++;
-    t->time_ns = cm1e_clock_now(nic->clock);
+    t->time_ns = cm1e_clock_now(nic->link.clock);
     t->copies = 1;
     if (nic->tap && nic->tap(nic->tap_context, t) == CM1E_TAP_DROP)
         return false;
@@ -52,10 +52,10 @@ static bool pass_tap(cm1e_nic_t *nic, cm1e_tap_frame_t *t)
 
 bool cm1e_nic_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t length)
 {
-    if (length == 0 || length > CM1E_FRAME_MAX || port >= nic->ports)
+    if (length == 0 || length > CM1E_FRAME_MAX || port >= nic->link.ports)
         return false;
     if (!nic->tap && !nic->pcap)
-        return nic->backend->send(nic, port, frame, length);
+        return nic->backend->send(&nic->link, port, frame, length);
 
     memcpy(nic->scratch, frame, length);
     cm1e_tap_frame_t t = {.direction = CM1E_TAP_SENT, .port = port, .bytes = nic->scratch, .length = length};
@@ -65,7 +65,7 @@ bool cm1e_nic_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t lengt
     for (unsigned i = 0; i < t.copies; i++) {
         if (nic->pcap)
             cm1e_pcap_write(nic->pcap, t.time_ns, t.bytes, t.length);
-        sent = nic->backend->send(nic, port, t.bytes, t.length);
+        sent = nic->backend->send(&nic->link, port, t.bytes, t.length);
     }
     return sent;
 }
@@ -85,13 +85,13 @@ static size_t take(cm1e_nic_t *nic, int port, uint8_t *frame, size_t length)
 size_t cm1e_nic_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t deadline_ns)
 {
     if (!nic->tap && !nic->pcap && nic->held.count == 0)
-        return nic->backend->receive(nic, port, frame, deadline_ns);
+        return nic->backend->receive(&nic->link, port, frame, deadline_ns);
 
     for (int i = 0; i < RECEIVE_BUDGET; i++) {
         size_t length;
         bool tapped = false;
         queued_frame_t *held = frame_queue_first(&nic->held);
-        if (held && held->ready_ns <= cm1e_clock_now(nic->clock)) {
+        if (held && held->ready_ns <= cm1e_clock_now(nic->link.clock)) {
             length = held->length;
             *port = held->port;
             tapped = held->tapped;
@@ -99,7 +99,7 @@ size_t cm1e_nic_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t dead
             cm1e_frame_queue_remove_first(&nic->held);
         } else {
             const int64_t until = held && held->ready_ns < deadline_ns ? held->ready_ns : deadline_ns;
-            length = nic->backend->receive(nic, port, frame, until);
+            length = nic->backend->receive(&nic->link, port, frame, until);
             if (length == 0) {
                 if (until < deadline_ns)
                     continue;
@@ -110,7 +110,7 @@ size_t cm1e_nic_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t dead
             length = take(nic, *port, frame, length);
         if (length > 0) {
             if (nic->pcap)
-                cm1e_pcap_write(nic->pcap, cm1e_clock_now(nic->clock), frame, length);
+                cm1e_pcap_write(nic->pcap, cm1e_clock_now(nic->link.clock), frame, length);
             return length;
         }
     }

@@ -146,6 +146,14 @@ static cm1e_sim_slave_t *make(made_t *made)
     return NULL;
 }
 
+static cm1e_error_t add_made(cm1e_sim_segment_t *segment, cm1e_sim_slave_t *slave)
+{
+    const cm1e_error_t error = cm1e_sim_segment_add(segment, slave);
+    if (error)
+        cm1e_sim_slave_destroy(slave);
+    return error;
+}
+
 static cm1e_error_t add_place(cm1e_sim_segment_t *segment, const cm1e_bus_config_t *config, const place_t *place,
                               cm1e_diag_t *diag)
 {
@@ -156,12 +164,10 @@ static cm1e_error_t add_place(cm1e_sim_segment_t *segment, const cm1e_bus_config
     cm1e_sim_slave_t *slave = make(&made);
     if (made.error != CM1E_OK)
         return made.error;
-    const cm1e_error_t error = cm1e_sim_segment_add(segment, slave);
-    if (error != CM1E_OK) {
-        cm1e_sim_slave_destroy(slave);
+    const cm1e_error_t error = add_made(segment, slave);
+    if (error != CM1E_OK)
         return cm1e_diag_set(diag, error, 0, "the simulated slave %u cannot be made: out of memory",
                              cm1e_sim_segment_slave_count(segment) + 1);
-    }
     return CM1E_OK;
 }
 
@@ -188,4 +194,14 @@ cm1e_sim_segment_t *cm1e_sim_segment_create(const cm1e_bus_config_t *config, cm1
             return NULL;
         }
     return segment;
+}
+
+cm1e_error_t cm1e_sim_segment_add_bridge(cm1e_sim_segment_t *segment, cm1e_device_model_t model)
+{
+    return add_made(segment, cm1e_sim_bridge_create(model, NULL, 0));
+}
+
+cm1e_error_t cm1e_sim_segment_add_io(cm1e_sim_segment_t *segment, cm1e_sim_io_t kind)
+{
+    return add_made(segment, cm1e_sim_io_create(kind));
 }

@@ -60,7 +60,7 @@ static cm1e_bus_t *scanned_bus(cm1e_sim_slave_t *slave)
     cm1e_bus_t *bus = open_bus();
     cm1e_sim_segment_t *segment = cm1e_sim_segment_create_empty();
     ck_assert_int_eq(cm1e_sim_segment_add(segment, slave), CM1E_OK);
-    cm1e_nic_replace_segment(cm1e_bus_nic(bus), segment);
+    cm1e_sim_replace_segment(cm1e_bus_nic(bus), segment);
     ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
     liar.asked = 0;
     return bus;

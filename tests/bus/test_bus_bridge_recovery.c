@@ -156,7 +156,7 @@ START_TEST(stranger_in_the_place_of_a_bridge_is_not_taken_for_it)
     cm1e_bus_t *bus = start_mixed();
     harm_t harm = strangers[_i].harm;
     cycles(bus, 20);
-    cm1e_nic_replace_segment(cm1e_bus_nic(bus), mixed_segment(strangers[_i].device)); /* all without power meanwhile */
+    cm1e_sim_replace_segment(cm1e_bus_nic(bus), mixed_segment(strangers[_i].device)); /* all without power meanwhile */
     harm.station = 0x1002;
     set_harm(bus, &harm);
     for (int n = 0; n < 20; n++)
@@ -173,7 +173,7 @@ START_TEST(stranger_in_the_place_of_a_bridge_is_not_taken_for_it)
         ck_assert_msg(without_address > 100, "%s: %u", strangers[_i].name, without_address);
     harm_t none = {.kind = NO_HARM};
     set_harm(bus, &none);
-    cm1e_nic_replace_segment(cm1e_bus_nic(bus), mixed_segment(AN_EB12));
+    cm1e_sim_replace_segment(cm1e_bus_nic(bus), mixed_segment(AN_EB12));
     for (int n = 0; n < 20; n++)
         cycle(bus);
     ck_assert_uint_gt(cycles_until_recovered(bus, 5000), 0);

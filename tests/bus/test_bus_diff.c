@@ -432,7 +432,7 @@ START_TEST(a_device_without_mailbox_is_compared_by_its_sii)
     cm1e_bus_t *bus = open_bus();
     cm1e_sim_segment_t *segment = cm1e_sim_segment_create_empty();
     ck_assert_int_eq(cm1e_sim_segment_add(segment, cm1e_sim_io_module_create()), CM1E_OK);
-    cm1e_nic_replace_segment(cm1e_bus_nic(bus), segment);
+    cm1e_sim_replace_segment(cm1e_bus_nic(bus), segment);
     ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
     static uint8_t image[4096];
     size_t size = sizeof image;

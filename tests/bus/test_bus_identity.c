@@ -95,7 +95,7 @@ static cm1e_bus_t *bus_of_case(const identity_case_t *c)
     config = kept;
     kept.axes = NULL;
     cm1e_bus_t *bus = open_bus();
-    cm1e_nic_replace_segment(cm1e_bus_nic(bus), segment);
+    cm1e_sim_replace_segment(cm1e_bus_nic(bus), segment);
     return bus;
 }
 

@@ -359,7 +359,7 @@ static cm1e_bus_t *start_bus_with_io_module(void)
     cm1e_sim_segment_add(segment, cm1e_sim_cm1e_create(&config.axes[0], tested_order(), 0, 0));
     cm1e_sim_segment_add(segment, cm1e_sim_io_module_create());
     cm1e_sim_segment_add(segment, cm1e_sim_cm1e_create(&config.axes[1], tested_order(), 0, 0));
-    cm1e_nic_replace_segment(cm1e_bus_nic(bus), segment);
+    cm1e_sim_replace_segment(cm1e_bus_nic(bus), segment);
     ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
     return bus;
 }

@@ -265,7 +265,7 @@ START_TEST(no_slaves_is_an_error_that_names_the_interface)
 {
     sim_config(1);
     cm1e_bus_t *bus = open_bus();
-    cm1e_nic_replace_segment(cm1e_bus_nic(bus), cm1e_sim_segment_create_empty());
+    cm1e_sim_replace_segment(cm1e_bus_nic(bus), cm1e_sim_segment_create_empty());
     ck_assert_int_eq(cm1e_bus_start(bus, &diag), CM1E_ERROR_BUS_NO_SLAVES);
     ck_assert_ptr_nonnull(strstr(diag.text, "sim"));
     cm1e_bus_close(bus);
@@ -282,7 +282,7 @@ START_TEST(io_module_between_the_axes_is_mapped_by_its_sii)
     cm1e_sim_segment_add(segment, cm1e_sim_cm1e_create(&config.axes[0], CM1E_PDO_ORDER_UG_4_4, 0, 0));
     cm1e_sim_segment_add(segment, cm1e_sim_io_module_create());
     cm1e_sim_segment_add(segment, cm1e_sim_cm1e_create(&config.axes[1], CM1E_PDO_ORDER_UG_4_4, 0, 0));
-    cm1e_nic_replace_segment(cm1e_bus_nic(bus), segment);
+    cm1e_sim_replace_segment(cm1e_bus_nic(bus), segment);
     ck_assert_msg(cm1e_bus_start(bus, &diag) == CM1E_OK, "%s", diag.text);
     ck_assert_uint_eq(cm1e_bus_slave(bus, 2)->output_bytes, 1);
     ck_assert_uint_eq(cm1e_bus_slave(bus, 2)->input_bytes, 1);

@@ -15,6 +15,7 @@
 #include "assembly/assembly.h"
 #include "axis/axis.h"
 #include "bus/bus_image.h"
+#include "cm1e/sim.h"
 
 /** The blocks of the Execute type, in the order of cm1e_command_kind_t, then MC_Reset. */
 typedef enum kind { ABSOLUTE = 0, RELATIVE, VELOCITY, HALT, STOP, HOME, RESET, KINDS } kind_t;

@@ -32,7 +32,7 @@ static void describe_bridge(void)
 
 static cm1e_sim_bridge_axis_t *motor(int n)
 {
-    cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(cm1e_sim_segment_slave(cm1e_nic_segment(cm1e_bus_nic(bus)), 1));
+    cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(cm1e_sim_segment_slave(cm1e_bus_segment(bus), 1));
     return &bridge->axes[n];
 }
 
@@ -218,7 +218,7 @@ START_TEST(test_parameters_are_written_in_the_units_of_the_motor)
             cycles(1);
         ck_assert_msg(axes[n]->homing->drive.step == HOME_RUN, "%s", text_of(n));
         const cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(
-            cm1e_sim_segment_slave(cm1e_nic_segment(cm1e_bus_nic(bus)), 1));
+            cm1e_sim_segment_slave(cm1e_bus_segment(bus), 1));
         ck_assert_int_eq(*cm1e_sim_bridge_value(bridge, (unsigned)n, 0x6098, 0), rows[i].homing.method);
         ck_assert_int_eq(*cm1e_sim_bridge_k(bridge, (unsigned)n, 42), rows[i].speed);
         ck_assert_int_eq(*cm1e_sim_bridge_k(bridge, (unsigned)n, 43), rows[i].acceleration);
@@ -242,7 +242,7 @@ START_TEST(test_a_homing_speed_by_default_is_no_more_than_a_revolution_a_second)
         while (status_of(CM1, id).state == CM1E_COMMAND_ACTIVE && axes[CM1]->homing->drive.step != HOME_RUN)
             cycles(1);
         const cm1e_sim_bridge_t *bridge = cm1e_sim_bridge_of(
-            cm1e_sim_segment_slave(cm1e_nic_segment(cm1e_bus_nic(bus)), 1));
+            cm1e_sim_segment_slave(cm1e_bus_segment(bus), 1));
         ck_assert_int_eq(*cm1e_sim_bridge_k(bridge, (unsigned)CM1, 42), rows[i].speed);
         close_segment();
     }

@@ -22,7 +22,7 @@ START_TEST(test_every_mapping_order_and_firmware)
     config.axes[0].homing = (cm1e_homing_config_t){.method = -3, .velocity = 2.0, .acceleration = 40.0};
     open_segment();
     cycles(20);
-    cm1e_sim_probe_reset(cm1e_nic_segment(cm1e_bus_nic(bus)), 1);
+    cm1e_sim_probe_reset(cm1e_bus_segment(bus), 1);
     enable();
     cycles(200);
     ck_assert_msg(probe().travel_counts < 20.0, "moved %.1f counts when enabled", probe().travel_counts);

@@ -37,7 +37,7 @@ static void forge_bits(unsigned n, uint8_t *inputs)
 
 static cm1e_sim_bridge_axis_t *motor(int n)
 {
-    return &cm1e_sim_bridge_of(cm1e_sim_segment_slave(cm1e_nic_segment(cm1e_bus_nic(bus)), 1))->axes[n];
+    return &cm1e_sim_bridge_of(cm1e_sim_segment_slave(cm1e_bus_segment(bus), 1))->axes[n];
 }
 
 static void open_axes(void)

@@ -54,7 +54,7 @@ static void start(void)
 
 static cm1e_sim_bridge_axis_t *motor(int n)
 {
-    cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(cm1e_nic_segment(cm1e_bus_nic(bus)), 1);
+    cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(cm1e_bus_segment(bus), 1);
     return &cm1e_sim_bridge_of(slave)->axes[n];
 }
 

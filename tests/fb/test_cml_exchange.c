@@ -31,7 +31,7 @@ static void stop(void)
 
 static const cm1e_sim_bridge_axis_t *motor(unsigned channel)
 {
-    cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(cm1e_nic_segment(cm1e_bus_nic(bus)), 2);
+    cm1e_sim_slave_t *slave = cm1e_sim_segment_slave(cm1e_bus_segment(bus), 2);
     return &cm1e_sim_bridge_of(slave)->axes[channel - 1];
 }
 

@@ -11,6 +11,7 @@
 #include "bus/bus_image.h"
 #include "cm1e/plcopen.h"
 #include "cm1e/scheduler.h"
+#include "cm1e/sim.h"
 #include "effort.h"
 #include "nic/nic.h"
 
@@ -120,7 +121,7 @@ typedef struct run {
     char text[512];
 } run_t;
 
-static cm1e_sim_segment_t *segment(const run_t *run) { return cm1e_nic_segment(cm1e_bus_nic(run->bus)); }
+static cm1e_sim_segment_t *segment(const run_t *run) { return cm1e_bus_segment(run->bus); }
 
 static void inject(run_t *run)
 {
@@ -365,7 +366,7 @@ static uint64_t start_with_fault(fault_kind_t kind, uint64_t frame)
         ck_assert_msg(error != CM1E_OK, "%s at frame %llu was not noticed", faults[kind].name,
                       (unsigned long long)frame);
     cm1e_sim_probe_t probe;
-    cm1e_sim_probe(cm1e_nic_segment(cm1e_bus_nic(fault.bus)), 1, &probe);
+    cm1e_sim_probe(cm1e_bus_segment(fault.bus), 1, &probe);
     ck_assert(!probe.torque_on && probe.travel_counts < 1);
     cm1e_nic_set_tap(cm1e_bus_nic(fault.bus), NULL, NULL);
     cm1e_bus_close(fault.bus);

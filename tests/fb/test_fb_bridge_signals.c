@@ -17,7 +17,7 @@ static MC_Power_t power_of[AXES];
 
 static cm1e_sim_bridge_t *bridge(void)
 {
-    return cm1e_sim_bridge_of(cm1e_sim_segment_slave(cm1e_nic_segment(cm1e_bus_nic(bus)), 1));
+    return cm1e_sim_bridge_of(cm1e_sim_segment_slave(cm1e_bus_segment(bus), 1));
 }
 
 static cm1e_sim_bridge_axis_t *motor(int n) { return &bridge()->axes[n]; }

@@ -237,7 +237,7 @@ static bool one_fault(int device, int fault, int cycle)
             return false;
         }
     simulate(faults[fault]);
-    cm1e_sim_probe_reset(cm1e_nic_segment(cm1e_bus_nic(bus)), 1);
+    cm1e_sim_probe_reset(cm1e_bus_segment(bus), 1);
     bool through = false;
     for (int n = 0; n < 9000 && !through && info().state != CM1E_AXIS_ERROR_STOP; n++)
         through = program_cycle();

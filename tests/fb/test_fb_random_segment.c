@@ -356,7 +356,7 @@ static void prepare(unsigned seed, bool bridge)
     MUST(cm1e_axis_create(&judged.axis, bench.bus, 0, &diag) == CM1E_OK, "%s", diag.text);
     for (uint32_t i = 1; i < config.axis_count; i++)
         make_other(i);
-    bench.segment = cm1e_nic_segment(cm1e_bus_nic(bench.bus));
+    bench.segment = cm1e_bus_segment(bench.bus);
     judged.reference = cm1e_axis_reference(judged.axis);
     judged.state = CM1E_AXIS_DISABLED;
     judged.reset_asked = false;

@@ -15,6 +15,7 @@
 #include "bus/bus_image.h"
 #include "cm1e/sdo_info.h"
 #include "cm1e/sii.h"
+#include "cm1e/sim.h"
 #include "core/bytes.h"
 #include "device/place.h"
 #include "fuzz.h"

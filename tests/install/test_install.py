@@ -2,7 +2,9 @@
 """Installs the library into fresh prefixes, once as static and once as shared library, takes the C program out of
 README.md, builds it as a stranger's project with find_package(cm1e), and by hand with pkg-config, and runs it on the
 simulated segment. Beside it, programs that define names which the library's sources might use (own_names.c), or that
-link libpcap before and after the library (with_libpcap.c).
+link libpcap before and after the library (with_libpcap.c); and a program for network interfaces only, which holds no
+simulator, also where pkg-config finds neither libcyaml nor libxml2. A program that is linked by hand registers the
+simulator itself.
 
 test_install.py BUILD-DIRECTORY SOURCE-DIRECTORY
 """
@@ -12,8 +14,12 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../wire_only"))
+from test_wire_only import guests
+
 INSTALLED = ("bin/cm1e", "include/cm1e/plcopen.h", "share/doc/cm1e/LICENSE", "share/doc/cm1e/THIRD-PARTY.md",
              "share/doc/cm1e/licenses/SOEM.txt")
+APART = ("busfile", "generate", "sim")
 PROGRAMS = ("consumer", "own_names", "before_libpcap", "after_libpcap")
 
 
@@ -56,27 +62,64 @@ def install(build, kind, prefix):
     so = "libcm1e.so"
     version = run(os.path.join(prefix, "bin/cm1e"), "--version").split()[1]
     soname = so + "." + ".".join(version.split(".")[:2 if version.startswith("0.") else 1])
-    if libraries != (["libcm1e.a", "libcm1e_generate.a"] if kind == "static" else [so, soname, f"{so}.{version}"]):
+    names = ["libcm1e"] + [f"libcm1e_{room}" for room in APART]
+    endings = [".a"] if kind == "static" else [".so", soname.removeprefix("libcm1e"), f".so.{version}"]
+    if libraries != sorted(name + ending for name in names for ending in endings):
         sys.exit(f"FAILED: the {kind} library is installed as {libraries}")
     return folder, soname
 
 
-def check_with_cmake(source, prefix, project, program):
+def build_consumer(source, prefix, project, program, components, *settings, **options):
     run("cmake", "-G", "Ninja", "-S", os.path.join(source, "tests/install"), "-B", project,
-        f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCM1E_PROGRAM={program}", "-DCMAKE_C_FLAGS=-Wall -Wextra -Werror")
+        f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCM1E_PROGRAM={program}", f"-DCM1E_COMPONENTS={components}",
+        "-DCMAKE_C_FLAGS=-Wall -Wextra -Werror", "-DCMAKE_EXE_LINKER_FLAGS=-Wl,--as-needed", *settings, **options)
     run("cmake", "--build", project)
+    return os.path.join(project, "consumer")
+
+
+def check_with_cmake(source, prefix, project, program):
+    build_consumer(source, prefix, project, program, "fb;scheduler;sim", "-DCM1E_BESIDE_OTHERS=ON")
     for name in PROGRAMS:
         print(run(os.path.join(project, name), cwd=project), end="")
 
 
+def check_wire_only(source, prefix, folder, kind):
+    """A machine without the libraries for bus files and XML: the package is found, the program holds no guest."""
+    project, program = os.path.join(folder, "wire"), os.path.join(source, "tests/wire_only/wire_only.c")
+    bare = dict(os.environ, PKG_CONFIG_LIBDIR=folder)
+    consumer = build_consumer(source, prefix, project, program, "fb;scheduler", env=bare)
+    found = set().union(*guests(consumer, os.path.join(project, "consumer.map")))
+    if found:
+        sys.exit(f"FAILED: a program that links cm1e::fb and cm1e::scheduler holds {sorted(found)[:10]}")
+    refused = subprocess.run(["cmake", "-S", os.path.join(source, "tests/install"), "-B", os.path.join(folder, "no"),
+                              f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCM1E_PROGRAM={program}", "-DCM1E_COMPONENTS=sim"],
+                             env=bare, capture_output=True, text=True)
+    if kind == "static" and (refused.returncode == 0 or "sim needs libcyaml" not in refused.stderr):
+        sys.exit(f"FAILED: the component sim was found without libcyaml:\n{refused.stdout}{refused.stderr}")
+
+
 def check_with_pkg_config(libraries, program, soname):
     environment = {**os.environ, "PKG_CONFIG_PATH": os.path.join(libraries, "pkgconfig"), "LD_LIBRARY_PATH": libraries}
-    flags = run("pkg-config", "--cflags", "--libs", "cm1e", env=environment).split()
+    flags = run("pkg-config", "--cflags", "--libs", "cm1e-sim", "cm1e", env=environment).split()
     built = os.path.join(libraries, "by_hand")
-    run("cc", "-Wall", "-Wextra", "-Werror", "-o", built, program, *flags, env=environment)
+    run("cc", "-Wall", "-Wextra", "-Werror", "-o", built, program, "-Wl,--as-needed", *flags, env=environment)
     print(run(built, env=environment), end="")
     if (soname in run("ldd", built, env=environment)) != os.path.exists(os.path.join(libraries, soname)):
         sys.exit(f"FAILED: {soname} is not what the program needs")
+
+
+def check_registered_by_hand(source, libraries):
+    """Nobody tells the linker about the registration here: the program calls it, or has no simulator."""
+    environment = {**os.environ, "PKG_CONFIG_PATH": os.path.join(libraries, "pkgconfig"), "LD_LIBRARY_PATH": libraries}
+    flags = run("pkg-config", "--cflags", "--libs", "cm1e-sim", "cm1e", env=environment).split()
+    flags = [flag for flag in flags if not flag.startswith("-Wl,")]
+    for define, expected in (("-DREGISTER_SIM", 0), ("-DPLAIN", 1)):
+        program = os.path.join(libraries, "registered")
+        run("cc", define, os.path.join(source, "tests/wire_only/wire_only.c"), "-o", program, "-Wl,--as-needed", *flags,
+            env=environment)
+        result = subprocess.run([program, "sim"], capture_output=True, text=True, env=environment)
+        if result.returncode != expected:
+            sys.exit(f"FAILED: linked by hand with {define}, exit status {result.returncode}: {result.stderr}")
 
 
 def main(build, source):
@@ -88,6 +131,8 @@ def main(build, source):
             libraries, soname = install(build, kind, prefix)
             check_with_cmake(source, prefix, os.path.join(folder, "project"), program)
             check_with_pkg_config(libraries, program, soname)
+            check_wire_only(source, prefix, folder, kind)
+            check_registered_by_hand(source, libraries)
 
 
 if __name__ == "__main__":

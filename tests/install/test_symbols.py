@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Every external symbol of the static libraries begins with cm1e_, MC_, CM_ or iec_, so that the library can be linked
-into any program. SOEM's symbols carry the prefix cm1e_ too (src/nic/port/soem_names.h). The shared library exports the
-functions of the public headers and nothing else.
+into any program. SOEM's symbols carry the prefix cm1e_ too (src/nic/port/soem_names.h). The shared libraries together
+export the functions of the public headers, each once, and libcm1e.so what it shares with its guests (CM1E_GUEST_API).
 
-test_symbols.py NM SOURCE-DIRECTORY SHARED-LIBRARY STATIC-LIBRARY...
+test_symbols.py NM SOURCE-DIRECTORY LIBRARY...
 """
 import glob
 import os
@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 OURS = re.compile(r"(cm1e|MC|CM|iec)_")
-EXPORTED = re.compile(r'^CM1E_API [^;(]*?(\w+)\([^;]*?\)\s*(?:CM1E_SYMBOL\("(\w+)"\)|CM1E_PRINTF\([\d, ]+\))?;', re.MULTILINE)
+EXPORTED = re.compile(r'^CM1E_(?:GUEST_)?API [^;(]*?(\w+)\([^;]*?\)\s*(?:CM1E_SYMBOL\("(\w+)"\)|CM1E_PRINTF\([\d, ]+\))?;', re.MULTILINE)
 
 
 def symbols(nm, *arguments):
@@ -24,30 +24,32 @@ def symbols(nm, *arguments):
         yield symbol, where.rpartition(":")[0]
 
 
-def public_functions(source):
-    """As the linker knows them."""
+def marked_functions(source, headers):
+    """Those with CM1E_API or CM1E_GUEST_API, as the linker knows them."""
     names = set()
-    for path in glob.glob(os.path.join(source, "include/cm1e/*.h")):
+    for path in glob.glob(os.path.join(source, headers)):
         with open(path, encoding="utf-8") as file:
             names.update(label or name for name, label in EXPORTED.findall(file.read()))
     return names
 
 
-def main(nm, source, shared, *libraries):
+def main(nm, source, *libraries):
     count, faults = 0, []
-    for library in libraries:
+    static = [library for library in libraries if library.endswith(".a")]
+    shared = [library for library in libraries if not library.endswith(".a")]
+    for library in static:
         for symbol, where in symbols(nm, library):
             count += 1
             if not OURS.match(symbol):
                 faults.append(f"{where}: {symbol} has none of the prefixes cm1e_, MC_, CM_, iec_")
-    exported = {symbol for symbol, _ in symbols(nm, "--dynamic", shared)}
-    public = public_functions(source)
-    faults += [f"{shared} exports {name}, which no public header declares with CM1E_API"
-               for name in sorted(exported - public)]
-    faults += [f"{shared} does not export {name}, which a public header declares" for name in sorted(public - exported)]
-    print("\n".join(faults) or f"all {count} external symbols of {len(libraries)} static libraries have our prefixes; "
-          f"the shared one exports the {len(public)} public functions")
-    return 1 if faults or count < 500 or len(public) < 100 else 0
+    exported = [symbol for library in shared for symbol, _ in symbols(nm, "--dynamic", library)]
+    public, for_guests = marked_functions(source, "include/cm1e/*.h"), marked_functions(source, "src/*/*.h")
+    faults += [f"{name} is exported, which no header marks" for name in sorted(set(exported) - public - for_guests)]
+    faults += [f"{name} is not exported, which a header marks" for name in sorted((public | for_guests) - set(exported))]
+    faults += [f"{name} is exported by two libraries" for name in sorted({x for x in exported if exported.count(x) > 1})]
+    print("\n".join(faults) or f"all {count} external symbols of {len(static)} static libraries have our prefixes; "
+          f"{len(shared)} shared ones export {len(public)} public functions and {len(for_guests)} for guests")
+    return 1 if faults or count < 500 or len(public) < 100 or len(shared) < 2 else 0
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "cm1e/iec.h"
+#include "cm1e/sim.h"
 #include "machine.h"
 
 #define MS INT64_C(1000000)

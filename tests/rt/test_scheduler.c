@@ -7,6 +7,7 @@
 
 #include "cm1e/iec.h"
 #include "cm1e/scan_time.h"
+#include "cm1e/sim.h"
 #include "machine.h"
 
 #define MS INT64_C(1000000)

@@ -15,6 +15,7 @@
 #include "assembly/assembly.h"
 #include "axis/axis.h"
 #include "bus/bus_image.h"
+#include "cm1e/sim.h"
 #include "nic/nic.h"
 
 static cm1e_bus_config_t config;
@@ -83,7 +84,7 @@ static inline const char *text(void) { return text_of(0); }
 static inline cm1e_sim_probe_t probe_of(int n)
 {
     cm1e_sim_probe_t p;
-    cm1e_sim_probe(cm1e_nic_segment(cm1e_bus_nic(bus)), (uint32_t)n + 1, &p);
+    cm1e_sim_probe(cm1e_bus_segment(bus), (uint32_t)n + 1, &p);
     return p;
 }
 

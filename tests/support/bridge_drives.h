@@ -21,7 +21,7 @@ static void (*each_cycle)(void);  /**< after the inputs; NULL: nothing */
 static inline cm1e_sim_bridge_axis_t *motor(int n)
 {
     cm1e_sim_bridge_t *bridge =
-        cm1e_sim_bridge_of(cm1e_sim_segment_slave(cm1e_nic_segment(cm1e_bus_nic(bus)), 1));
+        cm1e_sim_bridge_of(cm1e_sim_segment_slave(cm1e_bus_segment(bus), 1));
     ck_assert_ptr_nonnull(bridge);
     return &bridge->axes[n];
 }

@@ -39,7 +39,7 @@ static inline cm1e_sim_segment_t *make_segment(const device_kind_t *devices, siz
 static inline cm1e_bus_t *open_bus_on_devices(const device_kind_t *devices, size_t count)
 {
     cm1e_bus_t *bus = open_bus();
-    cm1e_nic_replace_segment(cm1e_bus_nic(bus), make_segment(devices, count));
+    cm1e_sim_replace_segment(cm1e_bus_nic(bus), make_segment(devices, count));
     return bus;
 }
 

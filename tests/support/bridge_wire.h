@@ -15,6 +15,7 @@
 #include "bus/bus_image.h"
 #include "core/bytes.h"
 #include "nic/nic.h"
+#include "sim/backend.h"
 #include "sim/bridge_app.h"
 
 /* ---- branches ---------------------------------------------------------------------------------------------------- */

@@ -14,6 +14,7 @@
 #include "bus/bus_image.h"
 #include "core/bytes.h"
 #include "nic/nic.h"
+#include "sim/backend.h"
 #include "sim/slave.h"
 
 /** One configuration at a time is enough for a test; it is too large for a stack. */
@@ -53,7 +54,7 @@ static inline cm1e_bus_t *open_bus(void)
 }
 
 /** The segment of an open bus. */
-static inline cm1e_sim_segment_t *segment_of(cm1e_bus_t *bus) { return cm1e_nic_segment(cm1e_bus_nic(bus)); }
+static inline cm1e_sim_segment_t *segment_of(cm1e_bus_t *bus) { return cm1e_bus_segment(bus); }
 
 /** A bus whose segment was made from `segment_config`, while the bus expects `config`. */
 static inline cm1e_bus_t *open_bus_on(const cm1e_bus_config_t *segment_config)
@@ -61,7 +62,7 @@ static inline cm1e_bus_t *open_bus_on(const cm1e_bus_config_t *segment_config)
     cm1e_bus_t *bus = open_bus();
     cm1e_sim_segment_t *segment = cm1e_sim_segment_create(segment_config, &diag);
     ck_assert_msg(segment != NULL, "%s", diag.text);
-    cm1e_nic_replace_segment(cm1e_bus_nic(bus), segment);
+    cm1e_sim_replace_segment(cm1e_bus_nic(bus), segment);
     return bus;
 }
 

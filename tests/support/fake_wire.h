@@ -28,6 +28,7 @@ typedef struct fake_wire {
     bool mute;                            /**< answers are lost */
     bool refuse;                          /**< send fails */
     int sent[2];
+    cm1e_clock_t clock;
     frame_queue_t queue;
 } fake_wire_t;
 
@@ -146,18 +147,18 @@ static int wire_path(int port, uint8_t *frame, size_t length, int *passed)
 
 static bool wire_matches(const char *name) { return name != NULL; }
 
-static cm1e_error_t wire_open(cm1e_nic_t *nic, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
+static cm1e_error_t wire_open(cm1e_nic_link_t *link, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
 {
     (void)config;
     (void)diag;
-    cm1e_clock_init_virtual(&nic->virtual_clock, 1000000);
-    nic->clock = &nic->virtual_clock;
+    cm1e_clock_init_virtual(&wire.clock, 1000000);
+    link->clock = &wire.clock;
     return CM1E_OK;
 }
 
-static void wire_close(cm1e_nic_t *nic) { (void)nic; }
+static void wire_close(cm1e_nic_link_t *link) { (void)link; }
 
-static bool wire_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t length)
+static bool wire_send(cm1e_nic_link_t *link, int port, const uint8_t *frame, size_t length)
 {
     if (wire.refuse)
         return false;
@@ -171,19 +172,19 @@ static bool wire_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t le
     f->port = wire_path(port, f->bytes, length, &passed);
     if (f->port < 0 || wire.mute)
         return true;
-    cm1e_frame_queue_insert(&wire.queue, f, cm1e_clock_now(nic->clock) + WIRE_BASE_NS + passed * WIRE_SLAVE_NS);
+    cm1e_frame_queue_insert(&wire.queue, f, cm1e_clock_now(link->clock) + WIRE_BASE_NS + passed * WIRE_SLAVE_NS);
     return true;
 }
 
-static size_t wire_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t deadline_ns)
+static size_t wire_receive(cm1e_nic_link_t *link, int *port, uint8_t *frame, int64_t deadline_ns)
 {
     queued_frame_t *f = frame_queue_first(&wire.queue);
-    if (!f || (f->ready_ns > deadline_ns && f->ready_ns > cm1e_clock_now(nic->clock))) {
+    if (!f || (f->ready_ns > deadline_ns && f->ready_ns > cm1e_clock_now(link->clock))) {
         if (deadline_ns > 0)
-            cm1e_clock_sleep_until(nic->clock, deadline_ns);
+            cm1e_clock_sleep_until(link->clock, deadline_ns);
         return 0;
     }
-    cm1e_clock_sleep_until(nic->clock, f->ready_ns);
+    cm1e_clock_sleep_until(link->clock, f->ready_ns);
     const size_t length = f->length;
     *port = f->port;
     memcpy(frame, f->bytes, length);

@@ -21,6 +21,7 @@
 #include "cm1e/scheduler.h"
 #include "device/unit.h"
 #include "nic/nic.h"
+#include "sim/backend.h"
 #include "sim/bridge_app.h"
 #include "sim/cm1e_app.h"
 #include "sim/esc.h"
@@ -486,7 +487,7 @@ static void bench_open(bench_t *bench)
     witness_layout(bench);
     if (cm1e_bus_open(&bench->bus, &bench->config, &diag) != CM1E_OK)
         bench_fail(bench, "%s", diag.text);
-    bench->segment = cm1e_nic_segment(cm1e_bus_nic(bench->bus));
+    bench->segment = cm1e_bus_segment(bench->bus);
     cm1e_nic_set_tap(cm1e_bus_nic(bench->bus), bench_tap, bench);
 }
 

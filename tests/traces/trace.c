@@ -9,6 +9,7 @@
 #include "axes_described.h"
 #include "bus/bus_image.h"
 #include "cm1e/scan_time.h"
+#include "cm1e/sim.h"
 #include "core/clock.h"
 
 bench_t bench;

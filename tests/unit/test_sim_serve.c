@@ -10,6 +10,7 @@
 
 #include "../support/veth.h"
 #include "nic/nic.h"
+#include "sim/segment.h"
 #include "sim/slave.h"
 
 enum { N = 3, PATIENCE_US = 500000 };
@@ -25,12 +26,12 @@ static ecx_portt port;
 static void *run_server(void *unused)
 {
     (void)unused;
-    const cm1e_nic_console_t console = {console_in[0], console_out[1], console_out[1]};
-    cm1e_nic_server_t *s;
-    served = cm1e_nic_server_open(&s, segment, "wire1", NULL);
+    const cm1e_sim_streams_t console = {console_in[0], console_out[1], console_out[1]};
+    cm1e_sim_server_t *s;
+    served = cm1e_sim_server_open(&s, segment, "wire1", NULL);
     if (!served)
-        cm1e_nic_server_run(s, &console, &stop);
-    cm1e_nic_server_close(s);
+        cm1e_sim_server_run(s, &console, &stop);
+    cm1e_sim_server_close(s);
     return NULL;
 }
 
@@ -208,8 +209,8 @@ static void test_stop_ends_it_within_a_few_ticks(void)
 static void test_an_interface_that_is_missing_is_named(void)
 {
     cm1e_diag_t diag = {0};
-    cm1e_nic_server_t *s;
-    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_NOT_FOUND, cm1e_nic_server_open(&s, segment, "eth77", &diag));
+    cm1e_sim_server_t *s;
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_NOT_FOUND, cm1e_sim_server_open(&s, segment, "eth77", &diag));
     TEST_ASSERT_NULL(s);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "eth77"), diag.text);
 }

@@ -1,4 +1,4 @@
-#include "nic/serve_lock.h"
+#include "sim/serve_lock.h"
 
 #include <errno.h>
 #include <net/if.h>

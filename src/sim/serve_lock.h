@@ -2,8 +2,8 @@
  * @file serve_lock.h
  * Who serves a simulated segment on a network interface: one process at a time. Two would answer every frame twice.
  */
-#ifndef CM1E_NIC_SERVE_LOCK_H
-#define CM1E_NIC_SERVE_LOCK_H
+#ifndef CM1E_SIM_SERVE_LOCK_H
+#define CM1E_SIM_SERVE_LOCK_H
 
 #include "cm1e/error.h"
 

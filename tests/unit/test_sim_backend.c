@@ -8,6 +8,7 @@
 
 #include "core/bytes.h"
 #include "nic/nic.h"
+#include "sim/backend.h"
 #include "sim/slave.h"
 
 enum { N = 4, NS_PER_SLAVE = 1200, SHORT_FRAME_NS = (60 + 24) * 80, STATION = 0x1001, REGISTER_STATION = 0x0010,
@@ -48,7 +49,7 @@ static void open_io_modules(int slaves, int ports)
         TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_sim_segment_add(segment, cm1e_sim_io_module_create()));
     if (ports == RING)
         cm1e_sim_segment_close_ring(segment);
-    cm1e_nic_replace_segment(nic, segment);
+    cm1e_sim_replace_segment(nic, segment);
     port.nic = nic;
     if (ports == RING) {
         ecx_contextt context = {.port = &port};
@@ -72,7 +73,7 @@ static void set_stations(void)
 static void console(const char *line)
 {
     char answer[256];
-    const cm1e_error_t error = cm1e_sim_console(cm1e_nic_segment(nic), line, answer, sizeof answer);
+    const cm1e_error_t error = cm1e_sim_console(cm1e_sim_segment_of(nic), line, answer, sizeof answer);
     TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, error, answer);
 }
 
@@ -81,7 +82,7 @@ static void console(const char *line)
 static void test_no_name_and_no_axes_is_one_cm1e(void)
 {
     TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, cm1e_nic_open(&nic, &config, &diag), diag.text);
-    TEST_ASSERT_EQUAL_UINT32(1, cm1e_sim_segment_slave_count(cm1e_nic_segment(nic)));
+    TEST_ASSERT_EQUAL_UINT32(1, cm1e_sim_segment_slave_count(cm1e_sim_segment_of(nic)));
     TEST_ASSERT_EQUAL_INT64(0, now());
 }
 
@@ -92,7 +93,7 @@ static void test_the_axes_of_the_configuration_are_the_slaves(void)
         cm1e_bus_config_init(&config, "sim", axes);
         config.virtual_time = true;
         TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, cm1e_nic_open(&nic, &config, &diag), diag.text);
-        TEST_ASSERT_EQUAL_UINT32(axes, cm1e_sim_segment_slave_count(cm1e_nic_segment(nic)));
+        TEST_ASSERT_EQUAL_UINT32(axes, cm1e_sim_segment_slave_count(cm1e_sim_segment_of(nic)));
         tearDown();
     }
 }
@@ -108,7 +109,7 @@ static void test_a_bus_file_describes_the_segment(void)
         TEST_IGNORE_MESSAGE("the build folder's name is too long for an interface name");
     snprintf(config.interface_name, sizeof config.interface_name, "sim:%s", path);
     TEST_ASSERT_EQUAL_INT_MESSAGE(CM1E_OK, cm1e_nic_open(&nic, &config, &diag), diag.text);
-    TEST_ASSERT_EQUAL_UINT32(3, cm1e_sim_segment_slave_count(cm1e_nic_segment(nic)));
+    TEST_ASSERT_EQUAL_UINT32(3, cm1e_sim_segment_slave_count(cm1e_sim_segment_of(nic)));
 }
 
 static void test_a_bus_file_that_is_missing_is_named(void)
@@ -243,9 +244,9 @@ static void test_the_ring_works_with_any_cable_cut_and_after_mending(void)
     for (uint32_t place = 1; place <= N + 1; place++) {
         char message[40];
         snprintf(message, sizeof message, "cut before slave %u", place);
-        cm1e_sim_segment_cut(cm1e_nic_segment(nic), place, true);
+        cm1e_sim_segment_cut(cm1e_sim_segment_of(nic), place, true);
         check_ring(message);
-        cm1e_sim_segment_cut(cm1e_nic_segment(nic), place, false);
+        cm1e_sim_segment_cut(cm1e_sim_segment_of(nic), place, false);
         snprintf(message, sizeof message, "mended before slave %u", place);
         check_ring(message);
     }

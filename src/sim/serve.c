@@ -12,11 +12,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "cm1e/sim.h"
 #include "nic/frame.h"
 #include "nic/frame_queue.h"
-#include "nic/nic.h"
 #include "nic/raw_socket.h"
-#include "nic/serve_lock.h"
+#include "sim/serve_lock.h"
 
 enum {
     NS_PER_S = 1000000000, PRIORITY = 60, FRAMES_AT_ONCE = 64, LINE_LENGTH = 256,
@@ -27,12 +27,12 @@ enum {
 };
 enum { SOURCE_MAC = 6, LOCALLY_ADMINISTERED = 0x02 };
 
-struct cm1e_nic_server {
+struct cm1e_sim_server {
     cm1e_sim_segment_t *segment;
     cm1e_clock_t *clock;
     char interface_name[64];
     int socket_fd, lock_fd;
-    cm1e_nic_console_t console;
+    cm1e_sim_streams_t console;
     int64_t advanced_ns;                /**< the segment's time */
     int64_t retry_ns;                   /**< without a socket: when the interface is looked for again */
     cm1e_error_t told;                  /**< why there is none, as last said */
@@ -43,7 +43,7 @@ struct cm1e_nic_server {
     size_t line_length;
     bool line_too_long;
 };
-typedef cm1e_nic_server_t server_t;
+typedef cm1e_sim_server_t server_t;
 
 /* ---- low latency, where the system allows it --------------------------------------------------------------------- */
 
@@ -148,7 +148,7 @@ static void reply(const server_t *server, const uint8_t *frame, size_t length)
     (void)sent;
 }
 
-/* cm1e_nic_server_run() says why. */
+/* cm1e_sim_server_run() says why. */
 static bool goes_round(server_t *server, size_t length)
 {
     if (!(server->frame[SOURCE_MAC] & LOCALLY_ADMINISTERED) || !cm1e_frame_has_circulated(server->frame, length))
@@ -194,7 +194,7 @@ static void answer_frame(server_t *server, size_t length, int64_t now_ns)
     reply(server, server->frame, length);
 }
 
-/* FALSE: the socket is of no use any more. */
+/* false: the socket is of no use any more. */
 static bool answer_frames(server_t *server)
 {
     for (int i = 0; i < FRAMES_AT_ONCE; i++) {
@@ -266,7 +266,7 @@ static void tell_news(server_t *server)
         notice(server, "%s", text);
 }
 
-void cm1e_nic_server_run(cm1e_nic_server_t *server, const cm1e_nic_console_t *console, const volatile int *stop)
+void cm1e_sim_server_run(cm1e_sim_server_t *server, const cm1e_sim_streams_t *console, const volatile int *stop)
 {
     struct pollfd fds[2] = {{.events = POLLIN}, {.fd = console->lines, .events = POLLIN}};
     const scheduling_t before = ask_for_realtime();
@@ -294,7 +294,7 @@ void cm1e_nic_server_run(cm1e_nic_server_t *server, const cm1e_nic_console_t *co
 
 /* ---- life -------------------------------------------------------------------------------------------------------- */
 
-void cm1e_nic_server_close(cm1e_nic_server_t *server)
+void cm1e_sim_server_close(cm1e_sim_server_t *server)
 {
     if (server && server->socket_fd >= 0)
         close(server->socket_fd);
@@ -303,10 +303,10 @@ void cm1e_nic_server_close(cm1e_nic_server_t *server)
     free(server);
 }
 
-cm1e_error_t cm1e_nic_server_open(cm1e_nic_server_t **server, cm1e_sim_segment_t *segment, const char *interface_name,
+cm1e_error_t cm1e_sim_server_open(cm1e_sim_server_t **server, cm1e_sim_segment_t *segment, const char *interface_name,
                                   cm1e_diag_t *diag)
 {
-    cm1e_nic_server_t *made = calloc(1, sizeof *made);
+    cm1e_sim_server_t *made = calloc(1, sizeof *made);
     *server = NULL;
     if (!made)
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the simulated segment's server.");
@@ -318,7 +318,7 @@ cm1e_error_t cm1e_nic_server_open(cm1e_nic_server_t **server, cm1e_sim_segment_t
     if (!error)
         error = cm1e_serve_lock_take(&made->lock_fd, interface_name, diag);
     if (error)
-        cm1e_nic_server_close(made);
+        cm1e_sim_server_close(made);
     else
         *server = made;
     return error;
