@@ -6,7 +6,8 @@
  */
 #include "safety_run.h"
 
-enum { ENABLED = 260, LAST_PHASE = 480, END = 1500, LOST_LIMIT = 10, MOST_ROWS = END + 100 };
+enum { ENABLED = 260, END = 1500, LOST_LIMIT = 10, MOST_ROWS = END + 100 };
+enum { FIRST = ENABLED + 60, LAST = ENABLED + 360 }; /* cycles in which silence begins; the motion takes longer */
 static const double unit = 50000, limit_u = 20, acceleration_u = 200, cycle_s = 1e-3;
 static const double digits = 1e-6; /* of the numbers in the file */
 static const double SERVO_OVERSHOOT = 0.003;
@@ -100,13 +101,13 @@ START_TEST(test_silence_shows_as_a_set_position_that_stands)
 {
     paused = false;
     length = 3 + _i;
-    for (begin = ENABLED + 60; begin < ENABLED + 360; begin += sweep_stride(23, 151)) {
+    for (begin = FIRST; begin < LAST; begin += sweep_stride(23, 151)) {
         run();
         int standing = 0, most = 0;
         for (int i = 1; i < row_count; i++) {
             judge_row(&rows[i]);
             MUST(&bench, missing(&rows[i]) == 0, "%.4f s: a time is missing before", rows[i].time_s);
-            const bool moves = i > ENABLED && i < ENABLED + 360;
+            const bool moves = i > ENABLED && i < LAST + length;
             standing = moves && rows[i].set == rows[i - 1].set ? standing + 1 : 0;
             most = standing > most ? standing : most;
         }
@@ -119,7 +120,7 @@ START_TEST(test_a_pause_shows_as_missing_times_and_a_velocity_from_0)
 {
     paused = true;
     length = 3 + _i;
-    for (begin = ENABLED + 60; begin < ENABLED + 360; begin += sweep_stride(23, 151)) {
+    for (begin = FIRST; begin < LAST; begin += sweep_stride(23, 151)) {
         run();
         int gaps = 0;
         for (int i = 1; i < row_count; i++) {
