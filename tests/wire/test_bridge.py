@@ -217,6 +217,11 @@ def check_homing(bus):
     for axis in AXES:
         bus.refuses(axis, CML, "from hm only csp is reached (BR 6)")
         bus.switch(axis, CSP)
+    # A reference found by a switch is its flank, where a count decides: a little further on the switch is closed.
+    for _ in range(20):
+        bus.targets = [target + (-5 if axis % 2 else 5) for axis, target in enumerate(bus.targets)]
+        bus.cycles(1)
+    bus.cycles(50)
 
 
 def check_signals(bus):
@@ -230,7 +235,7 @@ def check_signals(bus):
         bus.write(axis, 0x60FE, 1, "<I", 0)
         # Methods 1 and 3 end on the CW side, where input 2 is; 2 and 4 on the CCW side, where input 3 is.
         inputs = bus.read(axis, 0x60FD)
-        wire.check(inputs == (0x02, 0x04)[axis % 2], f"axis {axis}: inputs {inputs:#x} at its reference")
+        wire.check(inputs == (0x02, 0x04)[axis % 2], f"axis {axis}: inputs {inputs:#x} beyond its reference")
 
 
 def check_cml(bus):
