@@ -14,7 +14,7 @@ cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t inde
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for axis %u.", (unsigned)index);
     static const axis_events_t events = {cm1e_axis_error_stop, cm1e_axis_begin_next, cm1e_axis_methods};
     axis->events = &events;
-    axis->source = &cm1e_source_free;
+    axis->setpoint.source = &cm1e_source_free;
     cm1e_error_t error = cm1e_drive_init(&axis->drive, bus, index, diag);
     if (!error) {
         axis->config = axis->drive.config;
@@ -38,8 +38,8 @@ cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t inde
     cm1e_axis_in_position_init(axis);
     cm1e_axis_steps_init(axis);
     axis->drive.command.mode = axis->mode;
-    axis->positive_before = true;
-    axis->reset_state = CM1E_COMMAND_DONE;
+    axis->setpoint.positive_before = true;
+    axis->power.reset_state = CM1E_COMMAND_DONE;
     *result = axis;
     return CM1E_OK;
 }
@@ -76,7 +76,8 @@ static bool powered_state(cm1e_axis_state_t state)
 static bool was_deaf(const cm1e_axis_t *axis, double lag)
 {
     const double few_counts = 50.0;
-    return fabs(lag) > 2.0 * fabs(axis->set_velocity * axis->scale) * axis->cycle_s + cm1e_axis_few(axis, few_counts);
+    return fabs(lag) > 2.0 * fabs(axis->setpoint.velocity * axis->position.scale) * axis->cycle_s +
+           cm1e_axis_few(axis, few_counts);
 }
 
 /* A set-point that the motor has lost is a jump to come: braking begins anew where the motor is. In CSV the motor goes
@@ -84,19 +85,20 @@ static bool was_deaf(const cm1e_axis_t *axis, double lag)
 static void watch_lag(cm1e_axis_t *axis)
 {
     const bool own = axis_holds(axis) || set_points_move(axis);
-    const bool blind_before = axis->blind;
-    axis->blind = own && !axis->drive.feedback.fresh;
-    if (axis->blind)
+    const bool blind_before = axis->silence.blind;
+    axis->silence.blind = own && !axis->drive.feedback.fresh;
+    if (axis->silence.blind)
         return;
     /* counts */
-    const double lag = own ? cm1e_position_minus(axis->set, axis_actual(axis)) + cm1e_axis_ran_on(axis) : 0.0;
-    const bool lost = fabs(lag) > axis->max_lag * fabs(axis->scale);
+    const double lag = own ? cm1e_position_minus(axis->setpoint.position, axis_actual(axis)) + cm1e_axis_ran_on(axis)
+                       : 0.0;
+    const bool lost = fabs(lag) > axis->limits.max_lag * fabs(axis->position.scale);
     if (axis->state == CM1E_AXIS_ERROR_STOP && blind_before && axis->mode == CM1E_MODE_CSV && was_deaf(axis, lag)) {
         cm1e_axis_brake_from_actual(axis);
     } else if (lost && axis->state != CM1E_AXIS_ERROR_STOP) { /* in Disabled: the ramp before the torque goes */
-        if (!axis->lag_monitoring)
+        if (!axis->limits.lag_monitoring)
             return;
-        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, lag / axis->scale, axis->max_lag);
+        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, lag / axis->position.scale, axis->limits.max_lag);
         if (!cm1e_drive_contradicts_itself(&axis->drive)) /* else it may have followed all the same: the ramp goes on */
             cm1e_axis_brake_from_actual(axis);
     } else if (lost && cm1e_drive_contradicts_itself(&axis->drive)) {
@@ -113,20 +115,20 @@ static uint16_t add_up(uint16_t to, int64_t more)
 
 static void note_silence(cm1e_axis_t *axis, int64_t cycles)
 {
-    axis->silent = add_up(axis->silent, cycles);
-    axis->shaken = add_up(axis->shaken, cycles * CM1E_SHAKEN_BY_SILENCE);
+    axis->silence.silent = add_up(axis->silence.silent, cycles);
+    axis->silence.shaken = add_up(axis->silence.shaken, cycles * CM1E_SHAKEN_BY_SILENCE);
 }
 
 /* While no answer comes it is not known which target the drive holds. */
 static void note_answer(cm1e_axis_t *axis, bool answered, bool lost)
 {
-    axis->silent_before = answered ? axis->silent : 0;
+    axis->silence.silent_before = answered ? axis->silence.silent : 0;
     /* A velocity may be reduced all the same: a ramp of ErrorStop goes on. */
     const bool brakes_on = axis->mode == CM1E_MODE_CSV && axis->state == CM1E_AXIS_ERROR_STOP;
-    axis->frozen = !answered && !lost && !brakes_on;
+    axis->silence.frozen = !answered && !lost && !brakes_on;
     if (answered) {
-        axis->silent = 0;
-        axis->shaken -= axis->shaken > 0;
+        axis->silence.silent = 0;
+        axis->silence.shaken -= axis->silence.shaken > 0;
     } else {
         note_silence(axis, 1);
     }
@@ -135,11 +137,11 @@ static void note_answer(cm1e_axis_t *axis, bool answered, bool lost)
 void cm1e_axis_hold_cycle(cm1e_axis_t *axis, int64_t missed)
 {
     note_silence(axis, missed);
-    axis->frozen = true;
+    axis->silence.frozen = true;
     cm1e_drive_slew(&axis->drive);
 }
 
-static bool asks_for_torque(const cm1e_axis_t *axis) { return axis->power_enable && !axis->shutting_down; }
+static bool asks_for_torque(const cm1e_axis_t *axis) { return axis->power.enable && !axis->power.shutting_down; }
 
 /* An axis that is neither under torque nor to be so has nothing to lose while the bus is away; one without a device
  * never has. */
@@ -154,19 +156,19 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
 {
     cm1e_drive_t *drive = &axis->drive;
     axis->now_ns = now_ns;
-    axis->advanced = axis->resumed = axis->began_anew = false;
+    axis->advanced = axis->silence.resumed = axis->silence.began_anew = false;
     note_answer(axis, received == CM1E_OK, health != CM1E_OK);
     cm1e_drive_read(drive, received == CM1E_OK, now_ns);
     if (drive->feedback.fresh)
         cm1e_axis_track(axis);
     if (axis->observed)
         axis->coupling_hooks->observe(axis);
-    if (axis->probes_armed > 0 && drive->feedback.fresh)
+    if (axis->signals.probes_armed > 0 && drive->feedback.fresh)
         cm1e_axis_probe_step(axis);
     if (drive->watch.lost || (drive->watch.al_state & 0x0F) == CM1E_AL_INIT)
-        axis->homed = false; /* it may have been without power, and count from somewhere else now */
-    if (axis->reset_state == CM1E_COMMAND_ACTIVE) /* here, so that no program sees an axis in error whose drive has
-                                                     forgotten why */
+        axis->position.homed = false; /* it may have been without power, and count from somewhere else now */
+    /* Here, so that no program sees an axis in error whose drive has forgotten why. */
+    if (axis->power.reset_state == CM1E_COMMAND_ACTIVE)
         cm1e_axis_reset_step(axis);
     if (cm1e_drive_resetting(drive))
         return;
@@ -181,8 +183,8 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
             cm1e_axis_lead_fail(axis, drive->fault.error);
         else
             cm1e_axis_fail(axis, drive->fault.error, 0.0, 0.0);
-        if (axis->error == drive->fault.error)
-            axis->device_error = drive->fault.device_code; /* it may come a cycle later */
+        if (axis->fault.error == drive->fault.error)
+            axis->fault.device_error = drive->fault.device_code; /* it may come a cycle later */
     }
     if (health)
         cm1e_axis_hold_unheard(axis);
@@ -198,11 +200,11 @@ static bool moves_on(const cm1e_axis_t *axis)
 void cm1e_axis_advance(cm1e_axis_t *axis)
 {
     axis->advanced = true;
-    if (axis->silent_before > 0)
+    if (axis->silence.silent_before > 0)
         cm1e_axis_after_silence(axis);
-    if (axis_follows(axis) || axis->awaits)
+    if (axis_follows(axis) || axis->commands.awaits)
         axis->coupling_hooks->advance_masters(axis);
-    if (axis->kept != 0 || axis->drive.command.digital_outputs != 0)
+    if (axis->commands.kept != 0 || axis->drive.command.digital_outputs != 0)
         cm1e_axis_signals_step(axis);
     const bool undisturbed = moves_on(axis);
     if (!undisturbed) {
@@ -210,11 +212,11 @@ void cm1e_axis_advance(cm1e_axis_t *axis)
             axis->motor_hooks->step(axis);
         cm1e_axis_power_step(axis);
     }
-    if (!axis->frozen || !set_points_move(axis))
+    if (!axis->silence.frozen || !set_points_move(axis))
         cm1e_axis_motion_step(axis);
-    if (axis->awaits && !axis->frozen)
+    if (axis->commands.awaits && !axis->silence.frozen)
         axis->coupling_hooks->await_step(axis);
-    if (axis->backlash.gap > 0.0 && !axis->frozen)
+    if (axis->backlash.gap > 0.0 && !axis->silence.frozen)
         cm1e_axis_backlash_step(axis);
     if (axis->objects.head != axis->objects.next)
         cm1e_axis_objects_step(axis);

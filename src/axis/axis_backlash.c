@@ -23,15 +23,16 @@ void cm1e_axis_backlash_init(cm1e_axis_t *axis)
 {
     const cm1e_axis_config_t *c = axis->config;
     backlash_t *b = &axis->backlash;
-    const double scale = fabs(axis->scale);
+    const double scale = fabs(axis->position.scale);
     b->gap = c->backlash * scale;
     if (b->gap == 0.0)
         return;
     b->velocity = c->backlash_velocity > 0.0 ? c->backlash_velocity * scale : cm1e_unit_backlash_velocity(c);
-    b->acceleration = fmin(b->velocity / ramp_s, fmin(axis->maximum.acceleration, axis->maximum.deceleration) * scale);
+    const cm1e_motion_limits_t *most = &axis->limits.maximum;
+    b->acceleration = fmin(b->velocity / ramp_s, fmin(most->acceleration, most->deceleration) * scale);
 }
 
-static double sign(const cm1e_axis_t *axis) { return axis->scale < 0.0 ? -1.0 : 1.0; }
+static double sign(const cm1e_axis_t *axis) { return axis->position.scale < 0.0 ? -1.0 : 1.0; }
 
 double cm1e_axis_backlash_offset(const cm1e_axis_t *axis) { return sign(axis) * axis->backlash.offset; }
 
@@ -79,7 +80,7 @@ void cm1e_axis_backlash_step(cm1e_axis_t *axis)
         b->offset_velocity = 0.0;
         return;
     }
-    const double velocity = axis->set_velocity * fabs(axis->scale);
+    const double velocity = axis->setpoint.velocity * fabs(axis->position.scale);
     if (!cm1e_axis_wants_enable(axis)) /* about to lose its torque: no more than braking */
         b->target = b->offset + b->offset_velocity * fabs(b->offset_velocity) / (2.0 * b->acceleration);
     else if (velocity > least_velocity)

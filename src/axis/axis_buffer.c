@@ -14,7 +14,7 @@ static const double same_velocity = 1e-9;
 /* What can be known beforehand. `end`: of the command before, NULL where nobody knows that. */
 static cm1e_error_t check(const cm1e_axis_t *axis, move_t *move, const position_t *end)
 {
-    const from_t from = {end ? *end : axis->set, 0.0, 0.0, axis_shares(axis)};
+    const from_t from = {end ? *end : axis->setpoint.position, 0.0, 0.0, axis_shares(axis)};
     const command_kind_t *kind = kind_row(move->kind);
     cm1e_motion_limits_t limits;
     if (!is_planned(move->kind))
@@ -23,7 +23,7 @@ static cm1e_error_t check(const cm1e_axis_t *axis, move_t *move, const position_
     move->origin = from.position;
     if (!error)
         error = cm1e_axis_resolve(axis, &from, move);
-    double way = cm1e_position_minus(move->target, from.position) / axis->scale;
+    double way = cm1e_position_minus(move->target, from.position) / axis->position.scale;
     if (!error && kind->plan == PLAN_VELOCITY)
         error = cm1e_axis_signed_velocity(axis, &from, move, &way);
     if (error || kind->plan == PLAN_STOP)
@@ -39,8 +39,8 @@ static cm1e_error_t check(const cm1e_axis_t *axis, move_t *move, const position_
 /* The command that is before the waiting one of that index. */
 static const move_t *before(cm1e_axis_t *axis, int index, const command_kind_t **kind)
 {
-    const move_t *move = index > 0 ? waiting_move(axis, index - 1) : &axis->move;
-    *kind = kind_row(index > 0 ? move->kind : axis->kind); /* a homing that is active has no move */
+    const move_t *move = index > 0 ? waiting_move(axis, index - 1) : &axis->commands.move;
+    *kind = kind_row(index > 0 ? move->kind : axis->commands.kind); /* a homing that is active has no move */
     return move;
 }
 
@@ -56,24 +56,24 @@ static cm1e_error_t check_behind(cm1e_axis_t *axis, int index, move_t *move)
 /* What goes on when it has reached what it was to reach, and then lets the next command take its place. */
 static bool hands_over(const cm1e_axis_t *axis)
 {
-    if (kind_row(axis->kind)->plan == PLAN_COUPLING)
+    if (kind_row(axis->commands.kind)->plan == PLAN_COUPLING)
         return axis->coupling_hooks->hands_over(axis);
-    return kind_row(axis->kind)->is_endless;
+    return kind_row(axis->commands.kind)->is_endless;
 }
 
 cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move)
 {
-    if (axis->waiting.count == CM1E_AXIS_BUFFER_DEPTH)
+    if (axis->commands.waiting.count == CM1E_AXIS_BUFFER_DEPTH)
         return CM1E_ERROR_FULL;
-    const cm1e_error_t error = check_behind(axis, axis->waiting.count, move);
+    const cm1e_error_t error = check_behind(axis, axis->commands.waiting.count, move);
     if (error)
         return error;
     move->id = cm1e_axis_next_id(axis);
-    *waiting_move(axis, axis->waiting.count++) = *move;
-    if (axis->reached && hands_over(axis)) { /* the signal that it waits for is there already (table 4) */
+    *waiting_move(axis, axis->commands.waiting.count++) = *move;
+    if (axis->setpoint.reached && hands_over(axis)) { /* the signal that it waits for is there already (table 4) */
         const from_t from = from_base(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
-    } else if (kind_row(axis->kind)->plan == PLAN_TO_TARGET) {
+    } else if (kind_row(axis->commands.kind)->plan == PLAN_TO_TARGET) {
         (void)cm1e_axis_replan(axis);
     }
     return CM1E_OK;
@@ -81,7 +81,7 @@ cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move)
 
 cm1e_error_t cm1e_axis_update_waiting(cm1e_axis_t *axis, const move_t *move)
 {
-    for (int i = 0; i < axis->waiting.count; i++) {
+    for (int i = 0; i < axis->commands.waiting.count; i++) {
         if (waiting_move(axis, i)->id != move->id)
             continue;
         move_t checked = *move;
@@ -89,7 +89,7 @@ cm1e_error_t cm1e_axis_update_waiting(cm1e_axis_t *axis, const move_t *move)
         if (error)
             return error;
         *waiting_move(axis, i) = checked;
-        if (kind_row(axis->kind)->plan == PLAN_TO_TARGET)
+        if (kind_row(axis->commands.kind)->plan == PLAN_TO_TARGET)
             (void)cm1e_axis_replan(axis);
     }
     return CM1E_OK;
@@ -100,8 +100,8 @@ cm1e_error_t cm1e_axis_update_waiting(cm1e_axis_t *axis, const move_t *move)
 static move_t take_first(cm1e_axis_t *axis)
 {
     const move_t move = *waiting_move(axis, 0);
-    axis->waiting.first = (uint8_t)((axis->waiting.first + 1) % CM1E_AXIS_BUFFER_DEPTH);
-    axis->waiting.count--;
+    axis->commands.waiting.first = (uint8_t)((axis->commands.waiting.first + 1) % CM1E_AXIS_BUFFER_DEPTH);
+    axis->commands.waiting.count--;
     return move;
 }
 
@@ -121,7 +121,7 @@ cm1e_error_t cm1e_axis_begin_move(cm1e_axis_t *axis, move_t *move, const from_t 
 bool cm1e_axis_begin_next(cm1e_axis_t *axis, const from_t *at, double offset_s)
 {
     from_t from = *at;
-    while (axis->waiting.count > 0) {
+    while (axis->commands.waiting.count > 0) {
         const command_kind_t *kind = kind_row(waiting_move(axis, 0)->kind);
         const command_method_t *method = cm1e_axis_method(axis, kind->plan);
         if (axis->superimposed.id && (axis->superimposed.alone || !kind->carries_superimposed))
@@ -150,7 +150,7 @@ bool cm1e_axis_begin_next(cm1e_axis_t *axis, const from_t *at, double offset_s)
 static int before_homing(cm1e_axis_t *axis)
 {
     int count = 0;
-    while (count < axis->waiting.count && !is_homing(waiting_move(axis, count)->kind))
+    while (count < axis->commands.waiting.count && !is_homing(waiting_move(axis, count)->kind))
         count++;
     return count;
 }
@@ -158,13 +158,13 @@ static int before_homing(cm1e_axis_t *axis)
 bool cm1e_axis_waiting_hold(cm1e_axis_t *axis, double lower, double upper)
 {
     const int count = before_homing(axis);
-    bool known = axis->active && kind_row(axis->kind)->target != TARGET_NONE;
+    bool known = axis->commands.active && kind_row(axis->commands.kind)->target != TARGET_NONE;
     for (int i = 0; i < count; i++) {
         const move_t *move = waiting_move(axis, i);
         const command_target_t has = kind_row(move->kind)->target;
         const double target = cm1e_axis_line(axis, move->target);
         known = has == TARGET_ABSOLUTE || (known && has == TARGET_RELATIVE);
-        if (known && !(target <= upper + axis->tolerance && target >= lower - axis->tolerance))
+        if (known && !(target <= upper + axis->limits.tolerance && target >= lower - axis->limits.tolerance))
             return false;
     }
     return true;
@@ -175,12 +175,13 @@ bool cm1e_axis_shift_waiting(cm1e_axis_t *axis, double shift)
     const int count = before_homing(axis);
     for (int i = 0; i < count; i++)
         waiting_move(axis, i)->shift += shift;
-    if (count == 0 || !axis->software_limits || !cm1e_axis_can_replan(axis) ||
-        kind_row(axis->kind)->plan != PLAN_TO_TARGET)
+    if (count == 0 || !axis->limits.software_limits || !cm1e_axis_can_replan(axis) ||
+        kind_row(axis->commands.kind)->plan != PLAN_TO_TARGET)
         return true;
     /* What begins behind the target has less room now. */
     const from_t from = from_base(axis);
-    const double planned = axis->move.exit_velocity, now = cm1e_axis_exit_velocity(axis, &from, &axis->move);
+    const double planned = axis->commands.move.exit_velocity;
+    const double now = cm1e_axis_exit_velocity(axis, &from, &axis->commands.move);
     if (fabs(now) >= fabs(planned) * (1.0 - same_velocity) || cm1e_axis_replan_if(axis))
         return true;
     for (int i = 0; i < count; i++)

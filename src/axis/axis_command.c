@@ -6,12 +6,12 @@
 
 void cm1e_axis_waiting_end(cm1e_axis_t *axis, cm1e_command_state_t state)
 {
-    if (axis->awaits)
+    if (axis->commands.awaits)
         axis->coupling_hooks->await_nothing(axis);
-    for (int i = 0; i < axis->waiting.count; i++)
+    for (int i = 0; i < axis->commands.waiting.count; i++)
         cm1e_axis_record(axis, waiting_move(axis, i)->id, state,
                          state == CM1E_COMMAND_ERROR ? CM1E_ERROR_AXIS_ERROR_STOP : CM1E_OK);
-    axis->waiting.count = 0;
+    axis->commands.waiting.count = 0;
 }
 
 void cm1e_axis_commands_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
@@ -27,14 +27,14 @@ void cm1e_axis_commands_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_
 
 cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_command_id_t id)
 {
-    cm1e_command_status_t status = {.state = CM1E_COMMAND_ACTIVE, .reached = axis->reached};
-    if (id != 0 && id == axis->active) {
+    cm1e_command_status_t status = {.state = CM1E_COMMAND_ACTIVE, .reached = axis->setpoint.reached};
+    if (id != 0 && id == axis->commands.active) {
         if (axis_follows(axis))
             axis->coupling_hooks->tell(axis, &status);
         return status;
     }
-    for (int i = 0; i < axis->waiting.count; i++)
-        if (axis->waiting.moves[(axis->waiting.first + i) % CM1E_AXIS_BUFFER_DEPTH].id == id)
+    for (int i = 0; i < axis->commands.waiting.count; i++)
+        if (axis->commands.waiting.moves[(axis->commands.waiting.first + i) % CM1E_AXIS_BUFFER_DEPTH].id == id)
             return (cm1e_command_status_t){.state = CM1E_COMMAND_BUFFERED};
     const superimposed_t *on_top = &axis->superimposed;
     if (id != 0 && id == on_top->id)
@@ -42,7 +42,7 @@ cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_com
     const coupling_hooks_t *hooks = axis->coupling_hooks;
     if (hooks && hooks->phasing_status(axis, id, &status))
         return status;
-    const command_record_t *record = &axis->records[id % COMMANDS_REMEMBERED];
+    const command_record_t *record = &axis->commands.records[id % COMMANDS_REMEMBERED];
     if (id == 0 || record->id != id)
         return (cm1e_command_status_t){.state = CM1E_COMMAND_UNKNOWN};
     return (cm1e_command_status_t){.state = (cm1e_command_state_t)record->state,
@@ -54,15 +54,15 @@ cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_com
 bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id)
 {
     const cm1e_axis_t *axis = cm1e_axis_from_handle(reference.Handle);
-    return axis && id != 0 && axis->active == id;
+    return axis && id != 0 && axis->commands.active == id;
 }
 
 bool cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id, cm1e_command_status_t *status)
 {
     const cm1e_axis_t *axis = cm1e_axis_from_handle(reference.Handle);
-    if (!axis || id == 0 || axis->active != id || !axis_follows(axis))
+    if (!axis || id == 0 || axis->commands.active != id || !axis_follows(axis))
         return false;
-    status->reached = axis->reached;
+    status->reached = axis->setpoint.reached;
     axis->coupling_hooks->tell(axis, status);
     return true;
 }
@@ -74,17 +74,18 @@ bool cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id, cm1e_comma
 static position_t commanded_position(const cm1e_axis_t *axis)
 {
     if (!axis_on_profile(axis) || axis->state != CM1E_AXIS_DISCRETE_MOTION)
-        return axis->set;
-    const position_t base = axis->active && kind_row(axis->kind)->plan == PLAN_TO_TARGET ? axis->move.target
-                                                                                            : axis->target;
+        return axis->setpoint.position;
+    const commands_t *commands = &axis->commands;
+    const bool has_target = commands->active && kind_row(commands->kind)->plan == PLAN_TO_TARGET;
+    const position_t base = has_target ? commands->move.target : axis->setpoint.target;
     const double on_top = axis->superimposed.id ? axis->superimposed.profile.end.position : 0.0;
-    return cm1e_position_plus(base, on_top * axis->scale);
+    return cm1e_position_plus(base, on_top * axis->position.scale);
 }
 
 static void hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id)
 {
-    axis->stop = id;
-    axis->stop_held = true;
+    axis->commands.stop = id;
+    axis->commands.stop_held = true;
 }
 
 static cm1e_error_t plan_move(cm1e_axis_t *axis, const from_t *from, const cm1e_axis_command_t *command, move_t *move,
@@ -103,8 +104,8 @@ static cm1e_error_t start_profile(cm1e_axis_t *axis, const cm1e_axis_command_t *
     move_t move;
     cm1e_profile_t profile;
     cm1e_error_t error = plan_move(axis, &from, command, &move, &profile);
-    if (error && axis->brakes_hard) { /* a way back from a limit may need all the braking */
-        from.acceleration = axis->set_acceleration;
+    if (error && axis->setpoint.brakes_hard) { /* a way back from a limit may need all the braking */
+        from.acceleration = axis->setpoint.acceleration;
         error = plan_move(axis, &from, command, &move, &profile);
     }
     if (error)
@@ -127,10 +128,10 @@ static cm1e_error_t stop_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *co
     if (error)
         return error;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    *id = axis->active = cm1e_axis_next_id(axis);
-    axis->kind = command->kind;
+    *id = axis->commands.active = cm1e_axis_next_id(axis);
+    axis->commands.kind = command->kind;
     hold_stop(axis, *id);
-    axis->source->stop(axis, &axis->maximum, HOME_GOAL_HOLD);
+    axis->setpoint.source->stop(axis, &axis->limits.maximum, HOME_GOAL_HOLD);
     return CM1E_OK;
 }
 
@@ -150,13 +151,13 @@ static cm1e_error_t start_drive(cm1e_axis_t *axis, const cm1e_axis_command_t *co
     if (error)
         return error;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    *id = axis->active = move.id = cm1e_axis_next_id(axis);
-    axis->kind = command->kind;
-    axis->move = move;
+    *id = axis->commands.active = move.id = cm1e_axis_next_id(axis);
+    axis->commands.kind = command->kind;
+    axis->commands.move = move;
     if (command->kind == CM1E_COMMAND_STOP)
         hold_stop(axis, *id);
     if (stopping)
-        axis->source->stop(axis, &axis->maximum, HOME_GOAL_HOLD);
+        axis->setpoint.source->stop(axis, &axis->limits.maximum, HOME_GOAL_HOLD);
     else
         cm1e_axis_drive_begin(axis, &driving);
     return CM1E_OK;
@@ -192,7 +193,8 @@ cm1e_error_t cm1e_axis_buffer_move(cm1e_axis_t *axis, const cm1e_axis_command_t 
 static bool has_to_wait(const cm1e_axis_t *axis, const cm1e_axis_command_t *command)
 {
     return command->buffer_mode != mcAborting && kind_row(command->kind)->has_buffer_mode &&
-           !is_beside(command->kind) && (axis->active || axis->awaits) && axis->state != CM1E_AXIS_STOPPING;
+           !is_beside(command->kind) && (axis->commands.active || axis->commands.awaits) &&
+           axis->state != CM1E_AXIS_STOPPING;
 }
 
 /* What can be said without a look at the numbers. */
@@ -206,7 +208,7 @@ static cm1e_error_t check(const cm1e_axis_t *axis, const cm1e_axis_command_t *co
         return CM1E_ERROR_UNSUPPORTED;
     if (state_refusal && !waits)
         return state_refusal;
-    if (axis->state == CM1E_AXIS_STOPPING && axis->stop_held)
+    if (axis->state == CM1E_AXIS_STOPPING && axis->commands.stop_held)
         return CM1E_ERROR_AXIS_STOPPING;
     if (kind->has_buffer_mode && (unsigned)command->buffer_mode > mcBlendingHigh)
         return CM1E_ERROR_AXIS_BUFFER_MODE;
@@ -240,14 +242,14 @@ cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *comma
     if (axis->not_set.what == NOT_FINISHED) /* one that is taken now may end at once, and be told */
         axis->not_set.error = CM1E_OK;
     cm1e_axis_remember_refusal(axis, command, start(axis, command, id));
-    if (axis->refusal && (unsigned)command->kind < CM1E_COMMAND_KIND_COUNT &&
+    if (axis->commands.refusal && (unsigned)command->kind < CM1E_COMMAND_KIND_COUNT &&
         kind_row(command->kind)->plan == PLAN_TABLE)
-        cm1e_axis_table_needs(axis, command, &axis->refused);
-    return axis->refusal;
+        cm1e_axis_table_needs(axis, command, &axis->commands.refused);
+    return axis->commands.refusal;
 }
 
 void cm1e_axis_hold_stop(cm1e_axis_t *axis, cm1e_command_id_t id, bool hold)
 {
-    if (id != 0 && id == axis->stop)
-        axis->stop_held = hold;
+    if (id != 0 && id == axis->commands.stop)
+        axis->commands.stop_held = hold;
 }

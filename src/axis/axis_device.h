@@ -28,6 +28,15 @@ typedef struct probe_sample {
     uint16_t inputs;
 } probe_sample_t;
 
+/** Digital signals and touch probes. */
+typedef struct signals {
+    uint32_t probes_armed, probe_count;
+    probe_t probes[PROBES];
+    probe_sample_t probe_sample;    /**< the last one, while probes are armed */
+    int64_t output_until_ns;        /**< the digital output goes off then unless it is written again */
+    int64_t inputs_asked_ns, inputs_since_ns; /**< where SDOs bring them: last, and without an answer since */
+} signals_t;
+
 enum { OBJECT_REQUESTS = 8 };
 
 /** A vendor parameter that is asked for (axis_object.c). */

@@ -61,19 +61,19 @@ bool cm1e_axis_sees_inputs(const cm1e_axis_t *axis)
 /* An input that SDOs bring has been asked for, now and without a pause since inputs_since_ns. */
 static cm1e_error_t ask(cm1e_axis_t *axis)
 {
-    const int64_t before_ns = axis->inputs_asked_ns;
+    const int64_t before_ns = axis->signals.inputs_asked_ns;
     cm1e_drive_want_inputs(&axis->drive);
-    axis->inputs_asked_ns = axis->now_ns;
+    axis->signals.inputs_asked_ns = axis->now_ns;
     if (axis->drive.feedback.digital_known || axis->now_ns - before_ns >= input_timeout_ns)
-        axis->inputs_since_ns = axis->now_ns;
+        axis->signals.inputs_since_ns = axis->now_ns;
     if (axis->drive.feedback.digital_known)
         return CM1E_OK;
     const cm1e_error_t error = reachable(axis);
     if (error) {
-        axis->inputs_since_ns = axis->now_ns;
+        axis->signals.inputs_since_ns = axis->now_ns;
         return error;
     }
-    return axis->now_ns - axis->inputs_since_ns >= input_timeout_ns ? CM1E_ERROR_TIMEOUT : CM1E_ERROR_BUSY;
+    return axis->now_ns - axis->signals.inputs_since_ns >= input_timeout_ns ? CM1E_ERROR_TIMEOUT : CM1E_ERROR_BUSY;
 }
 
 cm1e_error_t cm1e_axis_read_input(cm1e_axis_t *axis, int number, bool *value)
@@ -144,7 +144,7 @@ static cm1e_error_t set_output(cm1e_axis_t *axis, int number, bool value, int64_
     const uint16_t bit = (uint16_t)(1u << (number - 1));
     uint16_t *outputs = &axis->drive.command.digital_outputs;
     *outputs = (uint16_t)(value ? *outputs | bit : *outputs & ~bit);
-    axis->output_until_ns = until_ns;
+    axis->signals.output_until_ns = until_ns;
     return CM1E_OK;
 }
 
@@ -193,7 +193,7 @@ cm1e_error_t cm1e_axis_read_output(const cm1e_axis_t *axis, int number, bool *va
 
 cm1e_error_t cm1e_axis_read_torque(const cm1e_axis_t *axis, double *percent)
 {
-    *percent = axis->drive.feedback.torque * (axis->scale < 0.0 ? -0.1 : 0.1);
+    *percent = axis->drive.feedback.torque * (axis->position.scale < 0.0 ? -0.1 : 0.1);
     if (cm1e_drive_is_virtual(&axis->drive))
         return CM1E_ERROR_AXIS_VIRTUAL;
     if (axis->drive.in_torque.bytes == 0)
@@ -209,8 +209,8 @@ bool cm1e_axis_outputs_off_first(cm1e_axis_t *axis)
 {
     if (in_process_data(axis))
         return true;
-    if (axis->drive.command.digital_outputs != 0 || axis->output_until_ns == INT64_MAX)
-        axis->output_until_ns = axis->now_ns + output_timeout_ns;
+    if (axis->drive.command.digital_outputs != 0 || axis->signals.output_until_ns == INT64_MAX)
+        axis->signals.output_until_ns = axis->now_ns + output_timeout_ns;
     axis->drive.command.digital_outputs = 0;
-    return cm1e_drive_outputs(&axis->drive) == CM1E_DRIVE_OUTPUTS_SET || axis->now_ns >= axis->output_until_ns;
+    return cm1e_drive_outputs(&axis->drive) == CM1E_DRIVE_OUTPUTS_SET || axis->now_ns >= axis->signals.output_until_ns;
 }

@@ -47,13 +47,14 @@ static bool parameter(const cm1e_axis_t *axis, uint16_t index, double counts, ui
 static cm1e_error_t aim_position(const cm1e_axis_t *axis, const move_t *move, driving_t *d)
 {
     const position_t target = move->target;
-    const int64_t counts = target.counts + (target.fraction >= 0.5), raw = axis->raw + counts - axis->actual_counts;
+    const int64_t counts = target.counts + (target.fraction >= 0.5);
+    const int64_t raw = axis->position.raw + counts - axis->position.actual_counts;
     const from_t from = from_set(axis);
     if (raw > INT32_MAX || raw < INT32_MIN || !cm1e_axis_limits_contain_target(axis, &from, target))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     d->target = (int32_t)raw;
-    d->way = raw > axis->raw ? 1.0 : raw < axis->raw ? -1.0 : 0.0;
-    if (axis->scale < 0.0)
+    d->way = raw > axis->position.raw ? 1.0 : raw < axis->position.raw ? -1.0 : 0.0;
+    if (axis->position.scale < 0.0)
         d->way = -d->way;
     return CM1E_OK;
 }
@@ -62,12 +63,12 @@ static cm1e_error_t aim_velocity(const cm1e_axis_t *axis, const from_t *from, co
 {
     double velocity;
     const cm1e_error_t error = cm1e_axis_signed_velocity(axis, from, move, &velocity);
-    const double now = cm1e_axis_units(axis, axis->set);
+    const double now = cm1e_axis_units(axis, axis->setpoint.position);
     if (error)
         return error;
-    if (velocity > 0.0 ? now >= axis->upper : now <= axis->lower)
+    if (velocity > 0.0 ? now >= axis->limits.upper : now <= axis->limits.lower)
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    d->target_velocity = (int32_t)round(velocity * axis->scale);
+    d->target_velocity = (int32_t)round(velocity * axis->position.scale);
     d->way = velocity > 0.0 ? 1.0 : -1.0;
     return CM1E_OK;
 }
@@ -89,7 +90,7 @@ cm1e_error_t cm1e_axis_drive_prepare(cm1e_axis_t *axis, const from_t *from, move
         return error;
     if (!cm1e_axis_direction_enabled(axis, d->way))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
-    const double scale = fabs(axis->scale), acceleration = limits.acceleration * scale;
+    const double scale = fabs(axis->position.scale), acceleration = limits.acceleration * scale;
     const double braking = fmin(limits.deceleration * scale, d->velocity_mode ? INFINITY : acceleration);
     if (axis->driving.submitted && cm1e_sdo_state(&axis->driving.sdo) == CM1E_SDO_BUSY)
         return CM1E_ERROR_BUSY; /* of a motion that was stopped */
@@ -106,13 +107,13 @@ static void enter(cm1e_axis_t *axis, drive_step_t step)
 {
     axis->driving.step = step;
     axis->driving.step_ns = axis->driving.quiet_ns = axis->now_ns;
-    axis->driving.quiet_position = axis->raw;
+    axis->driving.quiet_position = axis->position.raw;
 }
 
 void cm1e_axis_drive_begin(cm1e_axis_t *axis, const driving_t *d)
 {
     axis->driving = *d;
-    axis->reached = false;
+    axis->setpoint.reached = false;
     cm1e_axis_set_source(axis, &cm1e_source_drive);
     enter(axis, DRIVE_WRITE);
 }
@@ -123,7 +124,7 @@ static void leave(cm1e_axis_t *axis)
     cm1e_axis_set_source(axis, &cm1e_source_hold);
     if (cm1e_axis_settle(axis))
         return;
-    if (axis->active)
+    if (axis->commands.active)
         cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK); /* of the move, or of what ended it */
     cm1e_axis_go(axis, ON_AT_REST);
 }
@@ -212,7 +213,7 @@ static void step_write(cm1e_axis_t *axis)
             submit(axis);
         return;
     }
-    if (!d->velocity_mode && d->target == axis->raw) {
+    if (!d->velocity_mode && d->target == axis->position.raw) {
         leave(axis); /* it is there, and no set-point would be acknowledged */
         return;
     }
@@ -240,12 +241,12 @@ static void step_switch(cm1e_axis_t *axis)
 
 static bool there(const cm1e_axis_t *axis)
 {
-    return llabs((int64_t)axis->raw - axis->driving.target) <= there_counts;
+    return llabs((int64_t)axis->position.raw - axis->driving.target) <= there_counts;
 }
 
 static void arrived(cm1e_axis_t *axis)
 {
-    axis->set = axis->move.target;
+    axis->setpoint.position = axis->commands.move.target;
     back(axis);
 }
 
@@ -267,11 +268,13 @@ static void step_go(cm1e_axis_t *axis)
 /* Whether the halt, given now, would end inside the software limits. */
 static bool can_halt(const cm1e_axis_t *axis)
 {
-    if (!axis->software_limits)
+    if (!axis->limits.software_limits)
         return true;
-    const double v = axis->drive.feedback.velocity / axis->scale, now = cm1e_axis_units(axis, axis->set);
-    const double end = now + v * halt_latency_s + v * fabs(v) * fabs(axis->scale) / (2.0 * axis->driving.braking);
-    return v > 0.0 ? end <= axis->upper : v < 0.0 ? end >= axis->lower : true;
+    const double v = axis->drive.feedback.velocity / axis->position.scale;
+    const double now = cm1e_axis_units(axis, axis->setpoint.position);
+    const double way = v * fabs(v) * fabs(axis->position.scale) / (2.0 * axis->driving.braking);
+    const double end = now + v * halt_latency_s + way;
+    return v > 0.0 ? end <= axis->limits.upper : v < 0.0 ? end >= axis->limits.lower : true;
 }
 
 static void step_move(cm1e_axis_t *axis)
@@ -282,12 +285,12 @@ static void step_move(cm1e_axis_t *axis)
     if (!f->online)
         return;
     if (d->velocity_mode) {
-        axis->reached = f->target_reached && axis->now_ns - d->step_ns >= stale_ns;
+        axis->setpoint.reached = f->target_reached && axis->now_ns - d->step_ns >= stale_ns;
         if (!can_halt(axis))
-            cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->set),
-                           f->velocity / axis->scale > 0.0 ? axis->upper : axis->lower);
+            cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->setpoint.position),
+                           f->velocity / axis->position.scale > 0.0 ? axis->limits.upper : axis->limits.lower);
     } else if (f->bit13) {
-        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, ((double)d->target - axis->raw) / axis->scale, 0.0);
+        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_LAG, ((double)d->target - axis->position.raw) / axis->position.scale, 0.0);
     } else if (f->target_reached && there(axis)) {
         arrived(axis);
     }
@@ -306,10 +309,10 @@ static void step_halt(cm1e_axis_t *axis)
 {
     driving_t *d = &axis->driving;
     cm1e_axis_set_to_actual(axis);
-    const int32_t moved = (int32_t)((uint32_t)axis->raw - (uint32_t)d->quiet_position);
+    const int32_t moved = (int32_t)((uint32_t)axis->position.raw - (uint32_t)d->quiet_position);
     if (!axis->drive.feedback.online || abs(moved) > standing_counts) {
         d->quiet_ns = axis->now_ns;
-        d->quiet_position = axis->raw;
+        d->quiet_position = axis->position.raw;
     }
     const bool expired = axis->now_ns - d->step_ns >= halt_bound_ns(axis);
     if (!expired && axis->now_ns - d->quiet_ns < standing_ns)

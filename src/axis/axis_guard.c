@@ -19,19 +19,19 @@ static guard_t broken(guard_limit_t limit, double asked, double allowed)
  * by what was allowed when it began. */
 static const cm1e_motion_limits_t *limits_of(const cm1e_axis_t *axis)
 {
-    return axis_led(axis) ? &axis->system : &axis->maximum;
+    return axis_led(axis) ? &axis->limits.system : &axis->limits.maximum;
 }
 
 /* From velocity to velocity within one cycle: through zero both limits are used. */
 static guard_t guard_acceleration(const cm1e_axis_t *axis, const from_t *next)
 {
     const cm1e_motion_limits_t *most = limits_of(axis);
-    const double v0 = axis->set_velocity, v1 = next->velocity, a = next->acceleration, t = axis->cycle_s;
+    const double v0 = axis->setpoint.velocity, v1 = next->velocity, a = next->acceleration, t = axis->cycle_s;
     const bool turns = v0 * v1 < 0.0, grows = fabs(v1) >= fabs(v0);
     const double bound = turns ? fmax(most->acceleration, most->deceleration)
                          : grows ? most->acceleration : most->deceleration;
     const double change = fabs(v1 - v0) / t, either = fmax(most->acceleration, most->deceleration);
-    const double noise = slack_counts / fabs(axis->scale) / t;
+    const double noise = slack_counts / fabs(axis->position.scale) / t;
     const guard_limit_t limit = !turns && !grows ? GUARD_DECELERATION : GUARD_ACCELERATION;
     if (change > bound * (1.0 + slack) + noise)
         return broken(limit, change, bound);
@@ -43,12 +43,13 @@ static guard_t guard_acceleration(const cm1e_axis_t *axis, const from_t *next)
 /* What a position may do in a cycle while its velocity changes within these limits. */
 static guard_t guard_step(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
 {
-    const double t = axis->cycle_s, step = cm1e_position_minus(next->position, axis->set) / axis->scale;
-    const double mean = (axis->set_velocity + next->velocity) * 0.5 * t;
+    const double t = axis->cycle_s;
+    const double step = cm1e_position_minus(next->position, axis->setpoint.position) / axis->position.scale;
+    const double mean = (axis->setpoint.velocity + next->velocity) * 0.5 * t;
     const double most = fmax(limits_of(axis)->acceleration, limits_of(axis)->deceleration) * t * t /
                         (kept_jerk ? 4.0 : 1.0); /* without, it may change at any moment of the cycle, and be noise */
     /* A double of the whole way has this much noise. */
-    const double far = 1e-15 * fabs(cm1e_axis_line(axis, next->position)) + slack_counts / fabs(axis->scale);
+    const double far = 1e-15 * fabs(cm1e_axis_line(axis, next->position)) + slack_counts / fabs(axis->position.scale);
     if (!(fabs(step - mean) <= most * (1.0 + slack) + slack * fabs(mean) + far))
         return broken(GUARD_STEP, step, mean);
     return broken(GUARD_KEPT, 0.0, 0.0);
@@ -58,9 +59,9 @@ static guard_t guard_step(const cm1e_axis_t *axis, const from_t *next, bool kept
  * outside may come back. */
 static bool leaves_limits(const cm1e_axis_t *axis, double line)
 {
-    const double before = cm1e_axis_line(axis, axis->set);
-    return axis->software_limits && ((line > axis->upper + axis->tolerance && line > before) ||
-                                     (line < axis->lower - axis->tolerance && line < before));
+    const double before = cm1e_axis_line(axis, axis->setpoint.position);
+    return axis->limits.software_limits && ((line > axis->limits.upper + axis->limits.tolerance && line > before) ||
+                                            (line < axis->limits.lower - axis->limits.tolerance && line < before));
 }
 
 CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
@@ -70,15 +71,15 @@ CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *
     if (!isfinite(v) || !isfinite(a))
         return broken(GUARD_FINITE, 0.0, 0.0);
     /* What goes on accelerating so close below the maximum velocity can no longer be kept below it. */
-    const double peak = fabs(v) + (kept_jerk && a * v > 0.0 ? a * a * axis->guarding.ease : 0.0);
+    const double peak = fabs(v) + (kept_jerk && a * v > 0.0 ? a * a * axis->limits.guarding.ease : 0.0);
     if (peak > most->velocity * (1.0 + slack))
         return broken(GUARD_VELOCITY, peak, most->velocity);
-    if (fabs(v) > axis->tolerance && !cm1e_axis_direction_enabled(axis, v))
+    if (fabs(v) > axis->limits.tolerance && !cm1e_axis_direction_enabled(axis, v))
         return broken(GUARD_DIRECTION, v, 0.0);
     guard_t guard = guard_acceleration(axis, next);
     if (guard.limit)
         return guard;
-    const double jerk = fabs(a - axis->set_acceleration) / axis->cycle_s;
+    const double jerk = fabs(a - axis->setpoint.acceleration) / axis->cycle_s;
     const double jerk_noise = 1e-9 * fmax(most->acceleration, most->deceleration) / axis->cycle_s;
     if (kept_jerk && jerk > most->jerk * (1.0 + slack) + jerk_noise)
         return broken(GUARD_JERK, jerk, most->jerk);
@@ -86,9 +87,9 @@ CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *
     if (guard.limit)
         return guard;
     if (!cm1e_axis_limits_can_stop(axis, line, (cm1e_motion_state_t){0.0, v, a}))
-        return broken(GUARD_SOFTWARE_LIMIT, line, v > 0.0 ? axis->upper : axis->lower);
+        return broken(GUARD_SOFTWARE_LIMIT, line, v > 0.0 ? axis->limits.upper : axis->limits.lower);
     if (leaves_limits(axis, line))
-        return broken(GUARD_SOFTWARE_LIMIT, line, line > axis->upper ? axis->upper : axis->lower);
+        return broken(GUARD_SOFTWARE_LIMIT, line, line > axis->limits.upper ? axis->limits.upper : axis->limits.lower);
     return guard;
 }
 
@@ -120,7 +121,7 @@ static bool keeps_second_difference(double early, double late, double up, double
 CM1E_RARE bool cm1e_axis_guard_smooth(const cm1e_axis_t *axis, const from_t *next)
 {
     const cm1e_motion_limits_t *most = limits_of(axis);
-    const double t = axis->cycle_s, jerk = most->jerk, v0 = axis->set_velocity, a0 = axis->set_acceleration;
+    const double t = axis->cycle_s, jerk = most->jerk, v0 = axis->setpoint.velocity, a0 = axis->setpoint.acceleration;
     const double v = next->velocity, a = next->acceleration, either = fmax(most->acceleration, most->deceleration);
     const double up = v0 < 0.0 && v < 0.0 ? most->deceleration : v0 > 0.0 && v > 0.0 ? most->acceleration : either;
     const double down = v0 < 0.0 && v < 0.0 ? most->acceleration : v0 > 0.0 && v > 0.0 ? most->deceleration : either;
@@ -128,10 +129,10 @@ CM1E_RARE bool cm1e_axis_guard_smooth(const cm1e_axis_t *axis, const from_t *nex
     if (gain > largest_gain(a0, a, t, jerk, fmax(up, fmax(a0, a))) + noise ||
         -gain > largest_gain(-a0, -a, t, jerk, fmax(down, fmax(-a0, -a))) + noise)
         return false;
-    const double step = cm1e_position_minus(next->position, axis->set) / axis->scale;
+    const double step = cm1e_position_minus(next->position, axis->setpoint.position) / axis->position.scale;
     const double x = (a - a0) / (jerk * t), y = (gain - a0 * t) / (jerk * t * t);
     const double z = (step - t * (v0 + t * a0 / 2.0)) / (jerk * t * t * t);
-    const double step_noise = 1e-9 / fabs(axis->scale) + 1e-13 * fabs(step);
+    const double step_noise = 1e-9 / fabs(axis->position.scale) + 1e-13 * fabs(step);
     const double few = slack + step_noise / (jerk * t * t * t);
     return z <= farthest(x, y) + few && -z <= farthest(-x, -y) + few &&
            keeps_second_difference((step - v0 * t) / (t * t), (v * t - step) / (t * t), up, down, step_noise / (t * t));
@@ -141,16 +142,16 @@ void cm1e_axis_guard_renew(cm1e_axis_t *axis)
 {
     const cm1e_motion_limits_t *most = limits_of(axis);
     const double t = axis->cycle_s, either = fmax(most->acceleration, most->deceleration);
-    axis->guarding = (guarding_t){
+    axis->limits.guarding = (guarding_t){
         .velocity = most->velocity,
         .up = most->acceleration * t,
         .down = most->deceleration * t,
         .acceleration = either,
         .jerk = most->jerk * t,
         .ease = axis_led(axis) ? 0.0 : 0.5 / most->jerk, /* the path of a group has been planned as a whole */
-        .half_cycle = axis->scale * t / 2.0,
-        .step = either * t * t / 4.0 * fabs(axis->scale) + slack_counts,
-        .per_count = 1.0 / axis->scale,
+        .half_cycle = axis->position.scale * t / 2.0,
+        .step = either * t * t / 4.0 * fabs(axis->position.scale) + slack_counts,
+        .per_count = 1.0 / axis->position.scale,
     };
 }
 
@@ -158,7 +159,7 @@ void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t guard)
 {
     guard.by_actual = axis_follows(axis) && axis->coupling_hooks->by_actual(axis);
     if (axis->state != CM1E_AXIS_ERROR_STOP)
-        axis->guard = guard;
+        axis->fault.guard = guard;
     cm1e_axis_fail(axis, CM1E_ERROR_AXIS_COUPLING_LIMIT, guard.asked, guard.allowed);
 }
 
@@ -179,12 +180,13 @@ static const char *const said[GUARD_COUNT] = {
 void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     char asked[160];
-    snprintf(asked, sizeof asked, said[axis->guard.limit], axis->guard.asked, axis->guard.allowed);
+    snprintf(asked, sizeof asked, said[axis->fault.guard.limit], axis->fault.guard.asked, axis->fault.guard.allowed);
     snprintf(text, size,
              "Axis \"%s\": what it was coupled with, or its axes group, asked it for %s. That set-point was not given "
              "to the motor, which was braked. Reduce the dynamics of what leads it, or raise the limits of this "
              "axis%s; then reset the axis with MC_Reset.",
              axis->config->name, asked,
-             axis->guard.by_actual ? ", or smooth the actual value of its master more (encoder_filter_s of the master)"
-                                   : "");
+             axis->fault.guard.by_actual ? ", or smooth the actual value of its master more (encoder_filter_s of the "
+                                           "master)"
+                                         : "");
 }

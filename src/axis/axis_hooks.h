@@ -88,6 +88,13 @@ typedef struct homing_hooks {
     bool (*not_finished_text)(const cm1e_axis_t *axis, char *text, size_t size);
 } homing_hooks_t;
 
+/** What a homing in steps tells the axis of the step that runs. */
+typedef struct homing_step {
+    bool pushing;    /**< the set-point may be where the motor cannot go */
+    bool after_stop; /**< MC_Stop ended a step, and the motor is relieved before it is Done */
+    bool finishing;  /**< the step ends the homing: positions are valid again, software limits hold */
+} homing_step_t;
+
 /** What motions tell those that command them (axis.c has the one table): so a motion need not know commands. */
 typedef struct axis_events {
     /** It cannot go on: ErrorStop, braked no harder than by this ramp. */

@@ -35,7 +35,7 @@ void cm1e_axis_in_position_init(cm1e_axis_t *axis)
     in_position_t *p = &axis->in_position;
     const bool coarse = axis->mode == CM1E_MODE_CSV && axis->drive.velocity_unit > 1;
     const double window = cm1e_axis_few(axis, coarse ? coarse_window_counts : default_window_counts);
-    p->window = c->in_position_window > 0.0 ? c->in_position_window : window / fabs(axis->scale);
+    p->window = c->in_position_window > 0.0 ? c->in_position_window : window / fabs(axis->position.scale);
     p->time_us = in_us(c->in_position_time_s, CM1E_IN_POSITION_TIME_S);
     p->timeout_us = in_us(c->in_position_timeout_s, CM1E_IN_POSITION_TIMEOUT_S);
     p->done_waits = c->in_position_done_waits;
@@ -44,7 +44,7 @@ void cm1e_axis_in_position_init(cm1e_axis_t *axis)
 /* u; how far the motor is beyond its set-point. */
 static double deviation(const cm1e_axis_t *axis)
 {
-    return cm1e_position_minus(axis_actual(axis), axis->set) / axis->scale;
+    return cm1e_position_minus(axis_actual(axis), axis->setpoint.position) / axis->position.scale;
 }
 
 bool cm1e_axis_in_position(const cm1e_axis_t *axis)
@@ -69,10 +69,10 @@ static bool ends_at_position(cm1e_command_kind_t kind)
 bool cm1e_axis_settle(cm1e_axis_t *axis)
 {
     in_position_t *p = &axis->in_position;
-    if (!p->done_waits || !axis->active || !ends_at_position(axis->kind) || axis->waiting.count > 0 ||
-        axis->superimposed.id || cm1e_drive_is_virtual(&axis->drive))
+    if (!p->done_waits || !axis->commands.active || !ends_at_position(axis->commands.kind) ||
+        axis->commands.waiting.count > 0 || axis->superimposed.id || cm1e_drive_is_virtual(&axis->drive))
         return false;
-    p->settling = axis->active;
+    p->settling = axis->commands.active;
     p->arrived_ns = axis->now_ns;
     p->torque = NAN;
     return true;
@@ -113,8 +113,8 @@ void cm1e_axis_in_position_step(cm1e_axis_t *axis)
     in_position_t *p = &axis->in_position;
     if (!axis->drive.feedback.fresh)
         return;
-    const double counts = cm1e_position_minus(axis_actual(axis), axis->set);
-    const bool inside = fabs(counts) <= fabs(p->window * axis->scale) && cm1e_axis_backlash_at_rest(axis);
+    const double counts = cm1e_position_minus(axis_actual(axis), axis->setpoint.position);
+    const bool inside = fabs(counts) <= fabs(p->window * axis->position.scale) && cm1e_axis_backlash_at_rest(axis);
     if (inside && !p->inside)
         p->inside_ns = axis->now_ns;
     p->inside = inside;
@@ -122,7 +122,7 @@ void cm1e_axis_in_position_step(cm1e_axis_t *axis)
     if (!axis_settling(axis))
         return;
     p->torque = axis->drive.in_torque.bytes > 0 ? 0.1f * (float)abs(axis->drive.feedback.torque) : NAN;
-    if (axis->waiting.count > 0 || p->there || !p->done_waits)
+    if (axis->commands.waiting.count > 0 || p->there || !p->done_waits)
         cm1e_axis_settled(axis);
     else if (passed(axis, p->arrived_ns, p->timeout_us))
         fail(axis);
@@ -144,7 +144,7 @@ static const char *probable_cause(float torque)
 static void where(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const in_position_t *p = &axis->in_position;
-    const double turn = axis->modulo_range, line = p->missed_actual - p->missed_by;
+    const double turn = axis->position.modulo_range, line = p->missed_actual - p->missed_by;
     const double set = turn > 0.0 ? line - turn * floor(line / turn) : line;
     char torque[48] = "";
     if (!isnan(p->torque))
@@ -159,7 +159,7 @@ void cm1e_axis_in_position_text(const cm1e_axis_t *axis, char *text, size_t size
     char place[400];
     where(axis, place, sizeof place);
     snprintf(text, size, "Axis \"%s\": %s, which is %.6g s. %s; then reset the axis with MC_Reset.", axis->config->name,
-             cm1e_strerror(axis->error), axis->in_position.timeout_us * 1e-6, place);
+             cm1e_strerror(axis->fault.error), axis->in_position.timeout_us * 1e-6, place);
 }
 
 void cm1e_axis_in_position_add(const cm1e_axis_t *axis, char *text, size_t size)

@@ -10,21 +10,21 @@ void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info)
     const cm1e_drive_feedback_t *f = &axis->drive.feedback;
     *info = (cm1e_axis_info_t){
         .state = axis->state,
-        .set_velocity = axis->set_velocity,
-        .set_acceleration = axis->set_acceleration,
-        .actual_velocity = (f->velocity - cm1e_axis_backlash_velocity(axis)) / axis->scale,
-        .actual_torque = f->torque * (axis->scale < 0.0 ? -0.1 : 0.1),
-        .position_lag = cm1e_position_minus(axis->set, axis_actual(axis)) / axis->scale,
+        .set_velocity = axis->setpoint.velocity,
+        .set_acceleration = axis->setpoint.acceleration,
+        .actual_velocity = (f->velocity - cm1e_axis_backlash_velocity(axis)) / axis->position.scale,
+        .actual_torque = f->torque * (axis->position.scale < 0.0 ? -0.1 : 0.1),
+        .position_lag = cm1e_position_minus(axis->setpoint.position, axis_actual(axis)) / axis->position.scale,
         .powered = cm1e_axis_powered(axis),
-        .homed = axis->homed,
+        .homed = axis->position.homed,
         .in_position = cm1e_axis_in_position(axis),
         .online = f->online,
         .torque_known = axis->drive.in_torque.bytes > 0,
         .digital_known = f->digital_known,
         .temperature_known = axis->drive.in_temperature.bytes > 0,
         .dc_link_known = axis->drive.in_dc.bytes > 0,
-        .error = axis->error,
-        .device_error = axis->device_error,
+        .error = axis->fault.error,
+        .device_error = axis->fault.device_error,
         .digital_inputs = f->digital_inputs,
         .statusword = f->statusword,
         .mode = f->mode,
@@ -71,13 +71,13 @@ cm1e_axis_condition_t cm1e_axis_condition(const cm1e_axis_t *axis)
 cm1e_axis_measures_t cm1e_axis_measures(const cm1e_axis_t *axis)
 {
     const cm1e_axis_config_t *config = axis->config;
-    const double most = axis->maximum.velocity;
+    const double most = axis->limits.maximum.velocity;
     return (cm1e_axis_measures_t){
-        .resolution = 1.0 / fabs(axis->scale),
-        .modulo_range = axis->modulo_range,
+        .resolution = 1.0 / fabs(axis->position.scale),
+        .modulo_range = axis->position.modulo_range,
         .max_velocity = most,
-        .lower = axis->modulo_range > 0.0 ? -INFINITY : axis->lower,
-        .upper = axis->modulo_range > 0.0 ? INFINITY : axis->upper,
+        .lower = axis->position.modulo_range > 0.0 ? -INFINITY : axis->limits.lower,
+        .upper = axis->position.modulo_range > 0.0 ? INFINITY : axis->limits.upper,
         .jog_slow = fmin(config->jog_slow > 0.0 ? config->jog_slow : 0.05 * most, most),
         .jog_fast = fmin(config->jog_fast > 0.0 ? config->jog_fast : 0.25 * most, most),
     };

@@ -4,27 +4,27 @@
 
 void cm1e_axis_keep(cm1e_axis_t *axis, cm1e_command_id_t id, int64_t keep_ns, double deceleration, double jerk)
 {
-    axis->kept = id;
-    axis->kept_until_ns = axis->now_ns + keep_ns;
-    axis->kept_deceleration = deceleration;
-    axis->kept_jerk = jerk;
+    axis->commands.kept = id;
+    axis->commands.kept_until_ns = axis->now_ns + keep_ns;
+    axis->commands.kept_deceleration = deceleration;
+    axis->commands.kept_jerk = jerk;
 }
 
 void cm1e_axis_signals_step(cm1e_axis_t *axis)
 {
     /* A slave that left Operational may have been without power: nothing comes on again by itself when it is back. */
-    if (!cm1e_drive_operational(&axis->drive) || axis->now_ns >= axis->output_until_ns)
+    if (!cm1e_drive_operational(&axis->drive) || axis->now_ns >= axis->signals.output_until_ns)
         axis->drive.command.digital_outputs = 0;
-    if (axis->kept == 0 || axis->now_ns < axis->kept_until_ns)
+    if (axis->commands.kept == 0 || axis->now_ns < axis->commands.kept_until_ns)
         return;
     cm1e_command_id_t halt;
-    const bool moves = axis->kept == axis->active;
-    axis->kept = 0;
+    const bool moves = axis->commands.kept == axis->commands.active;
+    axis->commands.kept = 0;
     if (!moves)
         return;
     /* Values that a person typed in and that the axis refuses are no reason to go on. */
-    const cm1e_axis_command_t kept = {.kind = CM1E_COMMAND_HALT, .deceleration = axis->kept_deceleration,
-                                      .jerk = axis->kept_jerk};
+    const cm1e_axis_command_t kept = {.kind = CM1E_COMMAND_HALT, .deceleration = axis->commands.kept_deceleration,
+                                      .jerk = axis->commands.kept_jerk};
     if (cm1e_axis_start(axis, &kept, &halt))
         cm1e_axis_start(axis, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HALT}, &halt);
 }

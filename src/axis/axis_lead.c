@@ -4,14 +4,17 @@
  */
 #include "axis/axis_private.h"
 
-static bool at_rest(const cm1e_axis_t *axis) { return axis->set_velocity == 0.0 && axis->set_acceleration == 0.0; }
+static bool at_rest(const cm1e_axis_t *axis)
+{
+    return axis->setpoint.velocity == 0.0 && axis->setpoint.acceleration == 0.0;
+}
 
 cm1e_error_t cm1e_axis_lead(cm1e_axis_t *axis, const cm1e_axis_leader_t *leader)
 {
     if (drive_profiles(axis))
         return CM1E_ERROR_UNSUPPORTED;
-    if (axis->state != CM1E_AXIS_STANDSTILL || !axis_holds(axis) || axis->active ||
-        axis->waiting.count > 0 || axis->superimposed.id || !axis_acts(axis))
+    if (axis->state != CM1E_AXIS_STANDSTILL || !axis_holds(axis) || axis->commands.active ||
+        axis->commands.waiting.count > 0 || axis->superimposed.id || !axis_acts(axis))
         return CM1E_ERROR_AXIS_STATE;
     axis->leader = *leader;
     cm1e_axis_set_source(axis, &cm1e_source_leader);
@@ -30,7 +33,7 @@ void cm1e_axis_release(cm1e_axis_t *axis)
         cm1e_axis_go(axis, ON_LET_GO);
     } else {
         cm1e_axis_go(axis, ON_BROKEN_OFF);
-        cm1e_axis_ramp_down(axis, &axis->maximum);
+        cm1e_axis_ramp_down(axis, &axis->limits.maximum);
     }
 }
 
@@ -72,11 +75,11 @@ static bool step(cm1e_axis_t *axis)
         cm1e_axis_guard_fail(axis, guard);
         return false;
     }
-    axis->set = next.position;
-    axis->set_velocity = next.velocity;
-    axis->set_acceleration = next.acceleration;
+    axis->setpoint.position = next.position;
+    axis->setpoint.velocity = next.velocity;
+    axis->setpoint.acceleration = next.acceleration;
     if (next.velocity != 0.0)
-        axis->positive_before = next.velocity > 0.0;
+        axis->setpoint.positive_before = next.velocity > 0.0;
     if (lead == CM1E_LEAD_LAST)
         cm1e_axis_release(axis);
     return true;
@@ -85,10 +88,10 @@ static bool step(cm1e_axis_t *axis)
 static void begin_anew(cm1e_axis_t *axis)
 {
     const cm1e_axis_leader_t leader = axis->leader;
-    if (axis->set_velocity == 0.0)
+    if (axis->setpoint.velocity == 0.0)
         leader.paused(leader.context, leader.index);
     else
-        cm1e_axis_guard_fail(axis, (guard_t){.limit = GUARD_PAUSE, .asked = axis->set_velocity});
+        cm1e_axis_guard_fail(axis, (guard_t){.limit = GUARD_PAUSE, .asked = axis->setpoint.velocity});
 }
 
 /* Only the leader knows its way. */
@@ -110,24 +113,24 @@ const source_t cm1e_source_leader = {
 void cm1e_axis_lead_fail(cm1e_axis_t *axis, cm1e_error_t error)
 {
     const double time_s = axis->leader.stop_time ? axis->leader.stop_time(axis->leader.context) : 0.0;
-    cm1e_axis_fail_gently(axis, error, time_s > 0.0 ? fabs(axis->set_velocity) / time_s : INFINITY);
+    cm1e_axis_fail_gently(axis, error, time_s > 0.0 ? fabs(axis->setpoint.velocity) / time_s : INFINITY);
 }
 
 void cm1e_axis_bounds(const cm1e_axis_t *axis, cm1e_motion_limits_t *limits, double *lower, double *upper)
 {
-    *limits = axis->maximum;
-    *lower = axis->lower;
-    *upper = axis->upper;
+    *limits = axis->limits.maximum;
+    *lower = axis->limits.lower;
+    *upper = axis->limits.upper;
 }
 
 double cm1e_axis_cycle(const cm1e_axis_t *axis) { return axis->cycle_s; }
 
 bool cm1e_axis_may_go(const cm1e_axis_t *axis, bool positive)
 {
-    return positive ? axis->enable_positive : axis->enable_negative;
+    return positive ? axis->power.enable_positive : axis->power.enable_negative;
 }
 
 double cm1e_axis_place(const cm1e_axis_t *axis, bool actual)
 {
-    return cm1e_axis_line(axis, actual ? axis_actual(axis) : axis->set);
+    return cm1e_axis_line(axis, actual ? axis_actual(axis) : axis->setpoint.position);
 }

@@ -40,30 +40,33 @@ static cm1e_error_t check_configuration(const cm1e_axis_t *axis, cm1e_diag_t *di
  * and ours lie whole turns of 2^32, and the gap of a backlash. */
 static void find_counts_limits(cm1e_axis_t *axis)
 {
-    const double reach = (double)axis->counts_limit - axis->backlash.gap;
-    const position_t zero = {axis->actual_counts - axis->raw, 0.0};
+    const double reach = (double)axis->limits.counts_limit - axis->backlash.gap;
+    const position_t zero = {axis->position.actual_counts - axis->position.raw, 0.0};
     const double a = cm1e_axis_line(axis, cm1e_position_plus(zero, -reach));
     const double b = cm1e_axis_line(axis, cm1e_position_plus(zero, reach));
-    axis->counts_lower = axis->counts_limit ? fmin(a, b) : -INFINITY;
-    axis->counts_upper = axis->counts_limit ? fmax(a, b) : INFINITY;
+    axis->limits.counts_lower = axis->limits.counts_limit ? fmin(a, b) : -INFINITY;
+    axis->limits.counts_upper = axis->limits.counts_limit ? fmax(a, b) : INFINITY;
 }
 
 void cm1e_axis_apply_limits(cm1e_axis_t *axis)
 {
     find_counts_limits(axis);
-    axis->upper = fmin(axis->limit_positive_enabled ? axis->limit_positive : INFINITY, axis->counts_upper);
-    axis->lower = fmax(axis->limit_negative_enabled ? axis->limit_negative : -INFINITY, axis->counts_lower);
-    axis->software_limits = axis->limit_positive_enabled || axis->limit_negative_enabled || axis->counts_limit;
+    axis->limits.upper = fmin(axis->limits.positive_enabled ? axis->limits.positive : INFINITY,
+                              axis->limits.counts_upper);
+    axis->limits.lower = fmax(axis->limits.negative_enabled ? axis->limits.negative : -INFINITY,
+                              axis->limits.counts_lower);
+    axis->limits.software_limits = axis->limits.positive_enabled || axis->limits.negative_enabled ||
+                                   axis->limits.counts_limit;
 }
 
 static void take_software_limits(cm1e_axis_t *axis)
 {
     const double negative = axis->config->software_limit_negative, positive = axis->config->software_limit_positive;
     const bool limited = negative != 0.0 || positive != 0.0;
-    axis->limit_positive_enabled = limited && isfinite(positive);
-    axis->limit_negative_enabled = limited && isfinite(negative);
-    axis->limit_positive = axis->limit_positive_enabled ? positive : 0.0;
-    axis->limit_negative = axis->limit_negative_enabled ? negative : 0.0;
+    axis->limits.positive_enabled = limited && isfinite(positive);
+    axis->limits.negative_enabled = limited && isfinite(negative);
+    axis->limits.positive = axis->limits.positive_enabled ? positive : 0.0;
+    axis->limits.negative = axis->limits.negative_enabled ? negative : 0.0;
     cm1e_axis_apply_limits(axis);
 }
 
@@ -73,30 +76,30 @@ cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
     const cm1e_error_t error = check_configuration(axis, diag);
     if (error)
         return error;
-    axis->counts_limit = axis->drive.kind->position_limited ? axis->drive.position_most : 0;
+    axis->limits.counts_limit = axis->drive.kind->position_limited ? axis->drive.position_most : 0;
     const double counts = cm1e_unit_scale(c), count = cm1e_unit_count(c);
     const double backlash_velocity = c->backlash == 0.0 ? 0.0
                                      : or_default(c->backlash_velocity, cm1e_unit_backlash_velocity(c) / counts);
     const double peak = cm1e_unit_peak_velocity(axis->config) / counts - backlash_velocity;
-    axis->unit = cm1e_unit_of(c);
-    axis->count = count;
-    axis->scale = c->invert ? -counts : counts;
-    axis->modulo_range = c->modulo_range;
-    if (!(peak > 0.0) || (c->modulo_range > 0.0 && !cm1e_unit_modulo(c, &axis->turn)))
+    axis->position.unit = cm1e_unit_of(c);
+    axis->position.count = count;
+    axis->position.scale = c->invert ? -counts : counts;
+    axis->position.modulo_range = c->modulo_range;
+    if (!(peak > 0.0) || (c->modulo_range > 0.0 && !cm1e_unit_modulo(c, &axis->position.turn)))
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": backlash velocity, unit or a turn of %.17g u "
                              "are numbers that the axis cannot compute with.", c->name, c->modulo_range);
-    axis->maximum.velocity = fmin(or_default(c->max_velocity, peak), peak);
-    axis->maximum.acceleration = or_default(c->max_acceleration, default_acceleration_counts * count / counts);
-    axis->maximum.deceleration = or_default(c->max_deceleration, axis->maximum.acceleration);
-    axis->maximum.jerk = or_default(c->max_jerk, default_jerk_counts * count / counts);
-    axis->system = axis->maximum;
-    axis->emergency = axis->system;
+    axis->limits.maximum.velocity = fmin(or_default(c->max_velocity, peak), peak);
+    axis->limits.maximum.acceleration = or_default(c->max_acceleration, default_acceleration_counts * count / counts);
+    axis->limits.maximum.deceleration = or_default(c->max_deceleration, axis->limits.maximum.acceleration);
+    axis->limits.maximum.jerk = or_default(c->max_jerk, default_jerk_counts * count / counts);
+    axis->limits.system = axis->limits.maximum;
+    axis->limits.emergency = axis->limits.system;
     axis->override = axis->override_refused = (override_t){1.0, 1.0, 1.0};
-    axis->emergency.jerk = INFINITY;
-    axis->emergency_way = 0.5 / axis->emergency.deceleration;
-    axis->tolerance = tolerance_counts / fabs(axis->scale);
-    axis->max_lag = or_default(c->max_position_lag, default_lag_counts * count / counts);
-    axis->lag_monitoring = true;
+    axis->limits.emergency.jerk = INFINITY;
+    axis->limits.emergency_way = 0.5 / axis->limits.emergency.deceleration;
+    axis->limits.tolerance = tolerance_counts / fabs(axis->position.scale);
+    axis->limits.max_lag = or_default(c->max_position_lag, default_lag_counts * count / counts);
+    axis->limits.lag_monitoring = true;
     cm1e_axis_backlash_init(axis);
     take_software_limits(axis);
     return CM1E_OK;
@@ -106,9 +109,11 @@ static int32_t whole_counts(double counts) { return (int32_t)fmin(ceil(counts), 
 
 void cm1e_axis_steps_init(cm1e_axis_t *axis)
 {
-    const double scale = fabs(axis->scale), acceleration = fmax(axis->system.acceleration, axis->system.deceleration);
+    const double scale = fabs(axis->position.scale);
+    const double acceleration = fmax(axis->limits.system.acceleration, axis->limits.system.deceleration);
     cm1e_drive_command_t *command = &axis->drive.command;
-    command->position_step = whole_counts((axis->system.velocity * scale + axis->backlash.velocity) * axis->cycle_s);
+    command->position_step = whole_counts((axis->limits.system.velocity * scale + axis->backlash.velocity) *
+                                          axis->cycle_s);
     command->velocity_step = whole_counts((acceleration * scale + axis->backlash.acceleration) * axis->cycle_s);
 }
 
@@ -144,13 +149,14 @@ static void keep_below_maximum_velocity(const from_t *from, double most, double 
 
 void cm1e_axis_keep_below_maximum(const cm1e_axis_t *axis, const from_t *from, cm1e_motion_limits_t *limits)
 {
-    keep_below_maximum_velocity(from, axis->maximum.velocity, axis->system.velocity, axis->maximum.jerk, limits);
+    keep_below_maximum_velocity(from, axis->limits.maximum.velocity, axis->limits.system.velocity,
+                                axis->limits.maximum.jerk, limits);
 }
 
 /* What a command asks for, checked against the axis's maxima. */
 static cm1e_error_t asked_limits(const cm1e_axis_t *axis, const move_t *move, cm1e_motion_limits_t *limits)
 {
-    const cm1e_motion_limits_t *most = &axis->maximum;
+    const cm1e_motion_limits_t *most = &axis->limits.maximum;
     const command_kind_t *kind = kind_row(move->kind);
     const bool stopping = kind->is_stop;
     const double acceleration = stopping ? 0.0 : move->acceleration;
@@ -174,7 +180,7 @@ static cm1e_error_t asked_limits(const cm1e_axis_t *axis, const move_t *move, cm
  * acceleration above the rest comes down as fast as that of the other can come up. */
 static void share_with_superimposed(const cm1e_axis_t *axis, const from_t *from, cm1e_motion_limits_t *limits)
 {
-    const cm1e_motion_limits_t *most = &axis->maximum, *share = &axis->superimposed.share;
+    const cm1e_motion_limits_t *most = &axis->limits.maximum, *share = &axis->superimposed.share;
     const double rest = fmin(most->acceleration, most->deceleration) - share->acceleration;
     limits->velocity = fmin(limits->velocity, most->velocity - share->velocity);
     limits->acceleration = fmin(limits->acceleration, rest);
@@ -199,8 +205,9 @@ cm1e_error_t cm1e_axis_limits_with(const cm1e_axis_t *axis, const from_t *from, 
     if (from->shared)
         share_with_superimposed(axis, from, limits);
     const cm1e_motion_limits_t nothing = {0}, *share = from->shared ? &axis->superimposed.share : &nothing;
-    keep_below_maximum_velocity(from, axis->maximum.velocity - share->velocity, axis->system.velocity - share->velocity,
-                                axis->maximum.jerk - share->jerk, limits);
+    keep_below_maximum_velocity(from, axis->limits.maximum.velocity - share->velocity,
+                                axis->limits.system.velocity - share->velocity,
+                                axis->limits.maximum.jerk - share->jerk, limits);
     return CM1E_OK;
 }
 
@@ -213,8 +220,8 @@ cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const from_t *from, co
 cm1e_error_t cm1e_axis_limits_on_top(const cm1e_axis_t *axis, const superimposed_t *on_top,
                                      const override_t *override, cm1e_motion_limits_t *limits)
 {
-    const from_t rest = {axis->set, 0.0, 0.0, false};
-    const from_t from = {axis->set, on_top->now.velocity, on_top->now.acceleration, false};
+    const from_t rest = {axis->setpoint.position, 0.0, 0.0, false};
+    const from_t from = {axis->setpoint.position, on_top->now.velocity, on_top->now.acceleration, false};
     const cm1e_motion_limits_t *share = &on_top->share;
     const cm1e_error_t error = cm1e_axis_limits_with(axis, &rest, &on_top->move, override, limits);
     limits->velocity = fmin(limits->velocity, share->velocity);
@@ -227,31 +234,32 @@ cm1e_error_t cm1e_axis_limits_on_top(const cm1e_axis_t *axis, const superimposed
 
 bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity)
 {
-    return velocity > 0.0 ? axis->enable_positive : velocity < 0.0 ? axis->enable_negative : true;
+    return velocity > 0.0 ? axis->power.enable_positive : velocity < 0.0 ? axis->power.enable_negative : true;
 }
 
 /* An axis that stands outside, pushed there without torque, may come back but go no farther. */
 bool cm1e_axis_limits_contain_way(const cm1e_axis_t *axis, const from_t *from, double lowest, double highest)
 {
-    if (!axis->software_limits)
+    if (!axis->limits.software_limits)
         return true;
-    const double tolerance = axis->tolerance, now = cm1e_axis_line(axis, from->position);
+    const double tolerance = axis->limits.tolerance, now = cm1e_axis_line(axis, from->position);
     if (from->shared) {
         lowest += axis->superimposed.lowest;
         highest += axis->superimposed.highest;
     }
-    return now + highest <= fmax(axis->upper, now) + tolerance && now + lowest >= fmin(axis->lower, now) - tolerance;
+    return now + highest <= fmax(axis->limits.upper, now) + tolerance &&
+           now + lowest >= fmin(axis->limits.lower, now) - tolerance;
 }
 
 bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, const from_t *from, position_t target)
 {
-    const double way = cm1e_position_minus(target, from->position) / axis->scale;
+    const double way = cm1e_position_minus(target, from->position) / axis->position.scale;
     return cm1e_axis_limits_contain_way(axis, from, fmin(way, 0.0), fmax(way, 0.0));
 }
 
 bool cm1e_axis_limits_keep_within(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
-    if (!axis->software_limits)
+    if (!axis->limits.software_limits)
         return true;
     double lowest, highest;
     cm1e_profile_extent(profile, &lowest, &highest);
@@ -261,24 +269,25 @@ bool cm1e_axis_limits_keep_within(const cm1e_axis_t *axis, const from_t *from, c
 /* In a homing in steps positions mean nothing until the move that ends it. */
 bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
-    const bool meaningless = axis->state == CM1E_AXIS_HOMING && !axis->finishing;
+    const bool meaningless = axis->state == CM1E_AXIS_HOMING && !axis->homing_step.finishing;
     return meaningless || cm1e_axis_limits_keep_within(axis, from, profile);
 }
 
 /* What runs is judged as a whole, from where it began, so that a limit may be refused that lies behind the axis. */
 bool cm1e_axis_profile_keeps(const cm1e_axis_t *axis, double lower, double upper)
 {
-    const double base = axis->base_line, now = cm1e_axis_line(axis, axis->set), v = axis->set_velocity;
-    const double end = axis->profile.end.velocity, brake = axis->emergency_way;
+    const double base = axis->setpoint.base_line, now = cm1e_axis_line(axis, axis->setpoint.position);
+    const double v = axis->setpoint.velocity;
+    const double end = axis->setpoint.profile.end.velocity, brake = axis->limits.emergency_way;
     double lowest, highest;
-    cm1e_profile_extent(&axis->profile, &lowest, &highest);
+    cm1e_profile_extent(&axis->setpoint.profile, &lowest, &highest);
     const superimposed_t *on_top = &axis->superimposed;
     const double below = on_top->id ? fmin(on_top->lowest, 0.0) : 0.0;
     const double above = on_top->id ? fmax(on_top->highest, 0.0) : 0.0;
     const double stops[] = {base + lowest + below, base + highest + above, now + v * fabs(v) * brake,
-                            base + axis->profile.end.position + end * fabs(end) * brake};
+                            base + axis->setpoint.profile.end.position + end * fabs(end) * brake};
     for (int i = 0; i < 4; i++)
-        if (stops[i] > upper + axis->tolerance || stops[i] < lower - axis->tolerance)
+        if (stops[i] > upper + axis->limits.tolerance || stops[i] < lower - axis->limits.tolerance)
             return false;
     return true;
 }

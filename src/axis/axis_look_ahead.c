@@ -53,7 +53,7 @@ static bool make_leg(cm1e_axis_t *axis, move_t *move, position_t *end, double si
     leg->mode = (MC_BUFFER_MODE)move->buffer_mode;
     leg->open = false;
     leg->exit_velocity = 0.0;
-    leg->distance = nearer(axis, move, cm1e_position_minus(move->target, *end) / axis->scale);
+    leg->distance = nearer(axis, move, cm1e_position_minus(move->target, *end) / axis->position.scale);
     if (move->kind == CM1E_COMMAND_MOVE_VELOCITY) {
         leg->open = true;
         (void)cm1e_axis_signed_velocity(axis, &from, move, &leg->distance);
@@ -66,8 +66,9 @@ static bool make_leg(cm1e_axis_t *axis, move_t *move, position_t *end, double si
         leg->exit_velocity = fmax(0.0, leg->distance > 0.0 ? exit_velocity : -exit_velocity);
     }
     const double begin = cm1e_axis_line(axis, *end);
-    leg->room = !axis->software_limits ? INFINITY : leg->distance > 0.0 ? axis->upper - begin : begin - axis->lower;
-    leg->most = &axis->maximum;
+    leg->room = !axis->limits.software_limits ? INFINITY
+                : leg->distance > 0.0 ? axis->limits.upper - begin : begin - axis->limits.lower;
+    leg->most = &axis->limits.maximum;
     *end = move->target;
     return leg->distance != 0.0;
 }
@@ -107,15 +108,16 @@ double cm1e_axis_exit_velocity(cm1e_axis_t *axis, const from_t *from, const move
     if (kind_row(move->kind)->plan == PLAN_THROUGH_TARGET)
         return factor * move->end_velocity;
     cm1e_motion_limits_t limits;
-    if (axis->waiting.count == 0 || kind_row(move->kind)->plan != PLAN_TO_TARGET ||
+    if (axis->commands.waiting.count == 0 || kind_row(move->kind)->plan != PLAN_TO_TARGET ||
         cm1e_axis_limits_of(axis, from, move, &limits))
         return 0.0;
     leg_t legs[CM1E_AXIS_BUFFER_DEPTH];
-    const double distance = cm1e_position_minus(move->target, from->position) / axis->scale;
+    const double distance = cm1e_position_minus(move->target, from->position) / axis->position.scale;
     position_t end = move->target;
     double sign = copysign(1.0, distance);
     int count = 0;
-    while (count < axis->waiting.count && make_leg(axis, waiting_move(axis, count), &end, sign, &legs[count])) {
+    while (count < axis->commands.waiting.count &&
+           make_leg(axis, waiting_move(axis, count), &end, sign, &legs[count])) {
         sign = copysign(1.0, legs[count].distance);
         if (legs[count].open || kind_row(waiting_move(axis, count)->kind)->is_endless) {
             count++;

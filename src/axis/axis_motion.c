@@ -19,23 +19,23 @@ static const cm1e_profile_stretch_t no_stretch = {.from_s = INFINITY};
 void cm1e_axis_begin_run(cm1e_axis_t *axis, const source_t *source, const from_t *from, position_t target,
                          double offset_s)
 {
-    axis->stretch = no_stretch;
-    axis->base = from->position;
-    axis->base_line = cm1e_axis_line(axis, axis->base);
-    axis->target = target;
-    axis->profile_cycles = 0;
-    axis->profile_offset_s = offset_s;
-    axis->profile_next_s = offset_s + axis->cycle_s;
-    axis->reached = false;
-    axis->paused = false;
-    axis->stands = false;
+    axis->setpoint.stretch = no_stretch;
+    axis->setpoint.base = from->position;
+    axis->setpoint.base_line = cm1e_axis_line(axis, axis->setpoint.base);
+    axis->setpoint.target = target;
+    axis->setpoint.profile_cycles = 0;
+    axis->setpoint.profile_offset_s = offset_s;
+    axis->setpoint.profile_next_s = offset_s + axis->cycle_s;
+    axis->setpoint.reached = false;
+    axis->setpoint.paused = false;
+    axis->setpoint.stands = false;
     cm1e_axis_set_source(axis, source);
 }
 
 void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile, position_t target,
                    double offset_s)
 {
-    axis->profile = *profile;
+    axis->setpoint.profile = *profile;
     cm1e_axis_begin_run(axis, &cm1e_source_profile, from, target, offset_s);
 }
 
@@ -43,8 +43,8 @@ static void ramp_down_from(cm1e_axis_t *axis, const from_t *from, const cm1e_mot
 {
     cm1e_profile_t profile;
     if (cm1e_axis_plan_stop(axis, from, limits, &profile) == CM1E_OK)
-        cm1e_axis_run(axis, from, &profile, cm1e_position_plus(from->position, profile.end.position * axis->scale),
-                      offset_s);
+        cm1e_axis_run(axis, from, &profile,
+                      cm1e_position_plus(from->position, profile.end.position * axis->position.scale), offset_s);
     else
         cm1e_axis_set_source(axis, &cm1e_source_hold);
 }
@@ -65,9 +65,9 @@ void cm1e_axis_stop_by_ramp(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp,
  * that begins and ends at rest has a border of two segments in it. */
 bool cm1e_axis_profile_goes(cm1e_axis_t *axis, double sign)
 {
-    const cm1e_profile_t *profile = &axis->profile;
-    const double velocity = axis->set_velocity - axis->superimposed.now.velocity;
-    const double now_s = (double)axis->profile_cycles * axis->cycle_s + axis->profile_offset_s;
+    const cm1e_profile_t *profile = &axis->setpoint.profile;
+    const double velocity = axis->setpoint.velocity - axis->superimposed.now.velocity;
+    const double now_s = (double)axis->setpoint.profile_cycles * axis->cycle_s + axis->setpoint.profile_offset_s;
     if (velocity * sign > 0.0 || profile->end.velocity * sign > 0.0)
         return true;
     for (int i = 0; i < profile->segment_count; i++)
@@ -80,11 +80,11 @@ bool cm1e_axis_profile_goes(cm1e_axis_t *axis, double sign)
 
 static void hold_target(cm1e_axis_t *axis)
 {
-    axis->set = axis->target;
-    axis->set_velocity = 0.0;
-    axis->set_acceleration = 0.0;
+    axis->setpoint.position = axis->setpoint.target;
+    axis->setpoint.velocity = 0.0;
+    axis->setpoint.acceleration = 0.0;
     cm1e_axis_set_source(axis, &cm1e_source_hold);
-    axis->stands = false;
+    axis->setpoint.stands = false;
 }
 
 void cm1e_axis_stand(cm1e_axis_t *axis)
@@ -99,17 +99,17 @@ static void brake_after(cm1e_axis_t *axis, const from_t *end, double late_s)
     const bool on_top = axis->superimposed.id != 0;
     cm1e_axis_superimposed_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     if (on_top) /* from the last set-point, which has both in it */
-        ramp_down_from(axis, &from, &axis->maximum, axis->cycle_s);
+        ramp_down_from(axis, &from, &axis->limits.maximum, axis->cycle_s);
     else
-        ramp_down_from(axis, end, &axis->maximum, late_s);
+        ramp_down_from(axis, end, &axis->limits.maximum, late_s);
 }
 
 /* The motion of a command goes on only while it could still be stopped before a software limit. Moves to a position
  * were checked as a whole when they were planned; velocities, and what changes on the way, meet a limit here. */
 static bool may_go_on(const cm1e_axis_t *axis, cm1e_motion_state_t next)
 {
-    return !axis->software_limits || !axis_moves_by_command(axis) ||
-           cm1e_axis_limits_can_stop(axis, axis->base_line, next);
+    return !axis->limits.software_limits || !axis_moves_by_command(axis) ||
+           cm1e_axis_limits_can_stop(axis, axis->setpoint.base_line, next);
 }
 
 /* The profile ended `late_s` ago, inside the present cycle. Where its command ends with it, the next one has begun at
@@ -117,26 +117,26 @@ static bool may_go_on(const cm1e_axis_t *axis, cm1e_motion_state_t next)
 static bool profile_ended(cm1e_axis_t *axis, double late_s)
 {
     const bool shared = axis->superimposed.moving && !axis->superimposed.alone;
-    const from_t end = {axis->target, axis->profile.end.velocity, 0.0, shared};
+    const from_t end = {axis->setpoint.target, axis->setpoint.profile.end.velocity, 0.0, shared};
     const bool goes_on = end.velocity != 0.0;
     if (axis->homing_hooks && axis->homing_hooks->step_ended(axis))
         return axis_on_profile(axis);
-    if (axis->active && kind_row(axis->kind)->is_endless) {
+    if (axis->commands.active && kind_row(axis->commands.kind)->is_endless) {
         /* What begins where nothing can stop any more would go beyond the limit. */
-        if (may_go_on(axis, axis->profile.end) && cm1e_axis_begin_waiting(axis, &end, late_s))
+        if (may_go_on(axis, axis->setpoint.profile.end) && cm1e_axis_begin_waiting(axis, &end, late_s))
             return axis_on_profile(axis); /* not what follows a master */
-        axis->reached = true;
-        axis->move.passing = true; /* the position lies behind now, whatever else changes */
+        axis->setpoint.reached = true;
+        axis->commands.move.passing = true; /* the position lies behind now, whatever else changes */
         return true;
     }
-    if (axis->active && !goes_on && cm1e_axis_settle(axis)) {
+    if (axis->commands.active && !goes_on && cm1e_axis_settle(axis)) {
         hold_target(axis); /* in its state of the diagram */
         return false;
     }
-    if (axis->active)
+    if (axis->commands.active)
         cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
     if (!goes_on && axis->superimposed.id)
-        axis->stands = true; /* 3.8, figure 23: what is superimposed goes on */
+        axis->setpoint.stands = true; /* 3.8, figure 23: what is superimposed goes on */
     else if (!goes_on)
         cm1e_axis_stand(axis);
     if (axis->state == CM1E_AXIS_STANDSTILL || axis->state == CM1E_AXIS_DISCRETE_MOTION) {
@@ -151,38 +151,40 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
 /* Reckoned a cycle ahead, since the set-point of a cycle waits for it. */
 static double next_time(cm1e_axis_t *axis)
 {
-    const double time_s = axis->profile_next_s;
-    axis->profile_cycles++;
-    axis->profile_next_s = axis->profile_offset_s + (double)(axis->profile_cycles + 1) * axis->cycle_s;
+    const double time_s = axis->setpoint.profile_next_s;
+    axis->setpoint.profile_cycles++;
+    axis->setpoint.profile_next_s = axis->setpoint.profile_offset_s +
+                                    (double)(axis->setpoint.profile_cycles + 1) * axis->cycle_s;
     return time_s;
 }
 
 CM1E_RARE static void find_stretch(cm1e_axis_t *axis, double time_s)
 {
-    cm1e_profile_stretch_at(&axis->profile, time_s, &axis->stretch);
+    cm1e_profile_stretch_at(&axis->setpoint.profile, time_s, &axis->setpoint.stretch);
 }
 
 /* A velocity that goes on for weeks: from here on a profile that has ended already. At most once in 20 minutes; in long
  * double, as what is lost here would add up. */
 CM1E_RARE static void count_anew(cm1e_axis_t *axis)
 {
-    const cm1e_motion_state_t end = axis->profile.end;
-    const long double time_s = (long double)axis->profile_offset_s +
-                               (long double)axis->profile_cycles * (long double)axis->cycle_s;
-    const long double after_s = time_s - (long double)axis->profile.duration_s;
-    const long double counts = (end.position + end.velocity * after_s) * (long double)axis->scale;
+    const cm1e_motion_state_t end = axis->setpoint.profile.end;
+    const long double time_s = (long double)axis->setpoint.profile_offset_s +
+                               (long double)axis->setpoint.profile_cycles * (long double)axis->cycle_s;
+    const long double after_s = time_s - (long double)axis->setpoint.profile.duration_s;
+    const long double counts = (end.position + end.velocity * after_s) * (long double)axis->position.scale;
     const int64_t whole = (int64_t)counts;
-    axis->base.counts += whole;
-    axis->base = axis->set = cm1e_position_plus(axis->base, (double)(counts - (long double)whole));
-    axis->base_line = cm1e_axis_line(axis, axis->base);
-    axis->source = &cm1e_source_profile;
-    axis->profile.segment_count = 0;
-    axis->profile.duration_s = 0.0;
-    axis->profile.end.position = 0.0;
-    axis->profile_cycles = 0;
-    axis->profile_offset_s = 0.0;
-    axis->profile_next_s = axis->cycle_s;
-    axis->stretch = no_stretch;
+    axis->setpoint.base.counts += whole;
+    axis->setpoint.base = axis->setpoint.position = cm1e_position_plus(axis->setpoint.base,
+                                                                       (double)(counts - (long double)whole));
+    axis->setpoint.base_line = cm1e_axis_line(axis, axis->setpoint.base);
+    axis->setpoint.source = &cm1e_source_profile;
+    axis->setpoint.profile.segment_count = 0;
+    axis->setpoint.profile.duration_s = 0.0;
+    axis->setpoint.profile.end.position = 0.0;
+    axis->setpoint.profile_cycles = 0;
+    axis->setpoint.profile_offset_s = 0.0;
+    axis->setpoint.profile_next_s = axis->cycle_s;
+    axis->setpoint.stretch = no_stretch;
 }
 
 CM1E_RARE static void meet_limit(cm1e_axis_t *axis, double velocity);
@@ -190,9 +192,9 @@ CM1E_RARE static void meet_limit(cm1e_axis_t *axis, double velocity);
 /* The set-point at a time of the profile. */
 static inline void follow(cm1e_axis_t *axis, double time_s)
 {
-    if (!(time_s >= axis->stretch.from_s && time_s < axis->stretch.until_s))
-        axis->source->find_stretch(axis, time_s);
-    cm1e_motion_state_t next = cm1e_profile_stretch_state(&axis->stretch, time_s);
+    if (!(time_s >= axis->setpoint.stretch.from_s && time_s < axis->setpoint.stretch.until_s))
+        axis->setpoint.source->find_stretch(axis, time_s);
+    cm1e_motion_state_t next = cm1e_profile_stretch_state(&axis->setpoint.stretch, time_s);
     const bool on_top = axis->superimposed.id != 0;
     if (on_top) {
         cm1e_motion_state_t sum = next; /* `next` keeps out of memory where there is none */
@@ -203,47 +205,47 @@ static inline void follow(cm1e_axis_t *axis, double time_s)
         meet_limit(axis, next.velocity);
         return;
     }
-    const double counts = next.position * axis->scale;
-    axis->set = cm1e_position_plus(axis->base, counts);
-    if (axis->reached && !on_top && fabs(counts) > farthest_from_base)
+    const double counts = next.position * axis->position.scale;
+    axis->setpoint.position = cm1e_position_plus(axis->setpoint.base, counts);
+    if (axis->setpoint.reached && !on_top && fabs(counts) > farthest_from_base)
         count_anew(axis);
-    axis->set_velocity = next.velocity;
-    axis->set_acceleration = next.acceleration;
+    axis->setpoint.velocity = next.velocity;
+    axis->setpoint.acceleration = next.acceleration;
     if (next.velocity != 0.0)
-        axis->positive_before = next.velocity > 0.0;
+        axis->setpoint.positive_before = next.velocity > 0.0;
     if (on_top && axis->superimposed.id)
         cm1e_axis_superimposed_after(axis);
-    if (!cm1e_position_in_range(axis->set))
-        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->set),
+    if (!cm1e_position_in_range(axis->setpoint.position))
+        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->setpoint.position),
                        cm1e_axis_farthest(axis));
 }
 
 /* A ramp, which is no command's, replaces the profile. */
 static void meet_limit(cm1e_axis_t *axis, double velocity)
 {
-    cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->set),
-                   velocity > 0.0 ? axis->upper : axis->lower);
+    cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->setpoint.position),
+                   velocity > 0.0 ? axis->limits.upper : axis->limits.lower);
     if (axis_on_profile(axis))
         follow(axis, next_time(axis));
 }
 
 static bool at_end(const cm1e_axis_t *axis, double time_s)
 {
-    return time_s >= axis->profile.duration_s - same_moment * axis->cycle_s && !axis->reached && !axis->paused &&
-           !axis->stands;
+    return time_s >= axis->setpoint.profile.duration_s - same_moment * axis->cycle_s && !axis->setpoint.reached &&
+           !axis->setpoint.paused && !axis->setpoint.stands;
 }
 
 /* Over the end of the profile, and of as many as end within this cycle. */
 CM1E_RARE static void follow_over_end(cm1e_axis_t *axis, double time_s)
 {
     while (at_end(axis, time_s)) {
-        if (!profile_ended(axis, fmax(time_s - axis->profile.duration_s, 0.0))) {
+        if (!profile_ended(axis, fmax(time_s - axis->setpoint.profile.duration_s, 0.0))) {
             if (axis_follows(axis))
                 axis->coupling_hooks->first_set_point(axis);
             return;
         }
-        if (!axis->reached && !axis->stands)
-            time_s = axis->profile_offset_s;
+        if (!axis->setpoint.reached && !axis->setpoint.stands)
+            time_s = axis->setpoint.profile_offset_s;
     }
     follow(axis, time_s);
 }
@@ -278,8 +280,8 @@ const source_t cm1e_source_hold = {.step = step_hold, .stop = cm1e_axis_stop_by_
 /* Such a ramp ends with a step of its acceleration. */
 static bool on_hard_ramp(const cm1e_axis_t *axis)
 {
-    const cm1e_profile_t *profile = &axis->profile;
-    if (axis->source != &cm1e_source_profile || profile->segment_count == 0)
+    const cm1e_profile_t *profile = &axis->setpoint.profile;
+    if (axis->setpoint.source != &cm1e_source_profile || profile->segment_count == 0)
         return false;
     const cm1e_profile_segment_t *last = &profile->segments[profile->segment_count - 1];
     return profile->end.velocity == 0.0 && last->jerk == 0.0 && last->start.acceleration != 0.0;
@@ -287,20 +289,20 @@ static bool on_hard_ramp(const cm1e_axis_t *axis)
 
 void cm1e_axis_motion_step(cm1e_axis_t *axis)
 {
-    if (axis_stepping(axis) || (axis->state == CM1E_AXIS_STOPPING && axis->after_stop))
+    if (axis_stepping(axis) || (axis->state == CM1E_AXIS_STOPPING && axis->homing_step.after_stop))
         axis->homing_hooks->step_cycle(axis);
     if (!axis_holds(axis))
         axis->in_position.inside = false;
-    if (axis->source == &cm1e_source_profile) /* most motions are, and a call by pointer costs a nanosecond */
+    if (axis->setpoint.source == &cm1e_source_profile) /* most motions are, and a call by pointer costs a nanosecond */
         cm1e_axis_profile_step(axis);
-    else if (!axis->source->step(axis) && axis_on_profile(axis))
+    else if (!axis->setpoint.source->step(axis) && axis_on_profile(axis))
         cm1e_axis_profile_step(axis);
-    axis->brakes_hard = on_hard_ramp(axis);
+    axis->setpoint.brakes_hard = on_hard_ramp(axis);
     /* Note 6: MC_Stop done and its Execute FALSE. */
-    if (axis->state == CM1E_AXIS_STOPPING && axis_holds(axis) && !axis->stop_held &&
-        !axis->after_stop)
+    if (axis->state == CM1E_AXIS_STOPPING && axis_holds(axis) && !axis->commands.stop_held &&
+        !axis->homing_step.after_stop)
         cm1e_axis_go(axis, ON_STOP_RELEASED);
-    if (axis_holds(axis) && !axis->active && axis->waiting.count > 0) { /* behind a homing */
+    if (axis_holds(axis) && !axis->commands.active && axis->commands.waiting.count > 0) { /* behind a homing */
         const from_t from = from_set(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
     }
@@ -311,17 +313,19 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
 static double loop_velocity(cm1e_axis_t *axis)
 {
     if (axis->drive.feedback.fresh)
-        axis->loop_velocity = csv_position_gain * cm1e_position_minus(axis->set, axis_actual(axis));
+        axis->setpoint.loop_velocity = csv_position_gain * cm1e_position_minus(axis->setpoint.position,
+                                                                               axis_actual(axis));
     else if (axis->state == CM1E_AXIS_ERROR_STOP)
-        axis->loop_velocity = 0.0;
-    return axis->loop_velocity;
+        axis->setpoint.loop_velocity = 0.0;
+    return axis->setpoint.loop_velocity;
 }
 
 /* The loop catches up, but not beyond what the axis may do. Motors stay far below 2^31 counts/s. */
 static int32_t target_velocity(cm1e_axis_t *axis)
 {
-    const double most = axis->system.velocity * fabs(axis->scale) + axis->backlash.velocity;
-    const double velocity = axis->set_velocity * axis->scale + cm1e_axis_backlash_velocity(axis) + loop_velocity(axis);
+    const double most = axis->limits.system.velocity * fabs(axis->position.scale) + axis->backlash.velocity;
+    const double velocity = axis->setpoint.velocity * axis->position.scale + cm1e_axis_backlash_velocity(axis) +
+                            loop_velocity(axis);
     return (int32_t)round(fmax(-most, fmin(velocity, most)));
 }
 
@@ -333,7 +337,7 @@ void cm1e_axis_write_set_point(cm1e_axis_t *axis)
     if (axis->mode == CM1E_MODE_CSV)
         command->target_velocity = target_velocity(axis);
     else if (cm1e_drive_is_virtual(&axis->drive)) /* shown as the actual one: positions of whole counts tell it badly */
-        command->target_velocity = (int32_t)round(axis->set_velocity * axis->scale);
-    else if (axis->source->write)
-        axis->source->write(axis);
+        command->target_velocity = (int32_t)round(axis->setpoint.velocity * axis->position.scale);
+    else if (axis->setpoint.source->write)
+        axis->setpoint.source->write(axis);
 }

@@ -81,6 +81,25 @@ typedef struct superimposed {
     move_t move;
 } superimposed_t;
 
+/** The commands of an axis. */
+typedef struct commands {
+    cm1e_command_id_t active;       /**< 0: none */
+    cm1e_command_kind_t kind;       /**< of the active one */
+    cm1e_command_id_t last_id;      /**< of the last command that was taken */
+    cm1e_command_id_t kept;         /**< a command that halts unless it is renewed; 0: none */
+    cm1e_command_id_t stop;         /**< whose MC_Stop holds the axis in Stopping */
+    bool stop_held;
+    bool awaits;                    /**< the first waiting command begins at a place of its master (StartSync), until
+                                         when what runs goes on */
+    move_t move;                    /**< the active one, unless it is a homing */
+    buffer_t waiting;
+    command_record_t records[COMMANDS_REMEMBERED];
+    int64_t kept_until_ns;
+    double kept_deceleration, kept_jerk; /**< of that halt */
+    cm1e_axis_command_t refused;    /**< what it asked for */
+    cm1e_error_t refusal;           /**< why the last command was refused, for the text; CM1E_OK: it was not */
+} commands_t;
+
 /** What is done with a command, by how it is planned (command_plan_t). A NULL is never called. */
 typedef struct command_method {
     /** Begins at once, or refuses: then nothing has changed. */
@@ -97,28 +116,6 @@ typedef struct command_method {
 
 /* axis_method.c */
 extern const command_method_t cm1e_axis_methods[]; /**< by command_plan_t; of the axis itself */
-
-/* axis_motion.c, axis_direction.c */
-/** A profile takes over that began at `from`, `offset_s` before the present set-point. */
-void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile, position_t target,
-                   double offset_s);
-/** Of any source that is a profile. */
-void cm1e_axis_begin_run(cm1e_axis_t *axis, const source_t *source, const from_t *from, position_t target,
-                         double offset_s);
-/** Down to standstill without a command. */
-void cm1e_axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits);
-/** The same, as sources have it whose set-points are ours. */
-void cm1e_axis_stop_by_ramp(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal);
-/** The profile's functions, which a table over time shares. */
-bool cm1e_axis_profile_step(cm1e_axis_t *axis);
-bool cm1e_axis_profile_goes(cm1e_axis_t *axis, double sign);
-/** Motion in the direction of `sign` is no longer enabled (MC_Power, 3.1): a command that goes there fails, the next
- *  one begins, or the axis stops. */
-void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign);
-/** The set-point stands at the end of its profile. */
-void cm1e_axis_stand(cm1e_axis_t *axis);
-void cm1e_axis_motion_step(cm1e_axis_t *axis);
-void cm1e_axis_write_set_point(cm1e_axis_t *axis);
 
 /* axis_command.c, axis_record.c, axis_replan.c */
 /** Of a command or an update, for the text: what was refused last is told. CM1E_OK: it was accepted. */

@@ -16,7 +16,7 @@ static void resume_failed(cm1e_axis_t *axis, cm1e_error_t error)
     cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, error);
     cm1e_axis_go(axis, ON_BROKEN_OFF);
     if (!cm1e_axis_begin_waiting(axis, &from, 0.0))
-        cm1e_axis_ramp_down(axis, &axis->maximum);
+        cm1e_axis_ramp_down(axis, &axis->limits.maximum);
 }
 
 static cm1e_error_t set_override(cm1e_axis_t *axis, const override_t *asked)
@@ -30,7 +30,7 @@ static cm1e_error_t set_override(cm1e_axis_t *axis, const override_t *asked)
     if (drive_profiles(axis)) /* they would have to be written to the drive, and it take them in motion */
         return CM1E_ERROR_UNSUPPORTED;
     axis->override = *asked;
-    const bool paused = axis->paused;
+    const bool paused = axis->setpoint.paused;
     cm1e_axis_superimposed_replan(axis);
     const cm1e_error_t error = cm1e_axis_replan(axis);
     if (error && paused && velocity > 0.0)

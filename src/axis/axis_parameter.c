@@ -27,25 +27,27 @@ enum { OURS = CM1E_PARAMETER_END, ROWS = OURS + CM1E_PARAMETER_IN_POSITION_END -
 #define OUR(number) [OURS + CM1E_PARAMETER_IN_POSITION##number - CM1E_PARAMETER_IN_POSITION]
 static const parameter_t parameters[ROWS] = {
     [CM1E_PARAMETER_COMMANDED_POSITION] = {"CommandedPosition", READ_ONLY, 0, 0, 0},
-    [CM1E_PARAMETER_SW_LIMIT_POS] = {"SWLimitPos", LIMIT, AT(limit_positive), 0, 0},
-    [CM1E_PARAMETER_SW_LIMIT_NEG] = {"SWLimitNeg", LIMIT, AT(limit_negative), 0, 0},
-    [CM1E_PARAMETER_ENABLE_LIMIT_POS] = {"EnableLimitPos", SWITCH, AT(limit_positive_enabled), 0, 0},
-    [CM1E_PARAMETER_ENABLE_LIMIT_NEG] = {"EnableLimitNeg", SWITCH, AT(limit_negative_enabled), 0, 0},
-    [CM1E_PARAMETER_ENABLE_POS_LAG_MONITORING] = {"EnablePosLagMonitoring", SWITCH, AT(lag_monitoring), 0, 0},
-    [CM1E_PARAMETER_MAX_POSITION_LAG] = {"MaxPositionLag", LAG, AT(max_lag), 0, 0},
-    [CM1E_PARAMETER_MAX_VELOCITY_SYSTEM] = {"MaxVelocitySystem", READ_ONLY, AT(system.velocity), 0, 0},
-    [CM1E_PARAMETER_MAX_VELOCITY_APPL] = {"MaxVelocityAppl", APPLICATION, AT(maximum.velocity), AT(system.velocity),
-                                          CM1E_LEAST_VELOCITY_COUNTS},
+    [CM1E_PARAMETER_SW_LIMIT_POS] = {"SWLimitPos", LIMIT, AT(limits.positive), 0, 0},
+    [CM1E_PARAMETER_SW_LIMIT_NEG] = {"SWLimitNeg", LIMIT, AT(limits.negative), 0, 0},
+    [CM1E_PARAMETER_ENABLE_LIMIT_POS] = {"EnableLimitPos", SWITCH, AT(limits.positive_enabled), 0, 0},
+    [CM1E_PARAMETER_ENABLE_LIMIT_NEG] = {"EnableLimitNeg", SWITCH, AT(limits.negative_enabled), 0, 0},
+    [CM1E_PARAMETER_ENABLE_POS_LAG_MONITORING] = {"EnablePosLagMonitoring", SWITCH, AT(limits.lag_monitoring), 0, 0},
+    [CM1E_PARAMETER_MAX_POSITION_LAG] = {"MaxPositionLag", LAG, AT(limits.max_lag), 0, 0},
+    [CM1E_PARAMETER_MAX_VELOCITY_SYSTEM] = {"MaxVelocitySystem", READ_ONLY, AT(limits.system.velocity), 0, 0},
+    [CM1E_PARAMETER_MAX_VELOCITY_APPL] = {"MaxVelocityAppl", APPLICATION, AT(limits.maximum.velocity),
+                                          AT(limits.system.velocity), CM1E_LEAST_VELOCITY_COUNTS},
     [CM1E_PARAMETER_ACTUAL_VELOCITY] = {"ActualVelocity", READ_ONLY, 0, 0, 0},
-    [CM1E_PARAMETER_COMMANDED_VELOCITY] = {"CommandedVelocity", READ_ONLY, AT(set_velocity), 0, 0},
-    [CM1E_PARAMETER_MAX_ACCELERATION_SYSTEM] = {"MaxAccelerationSystem", READ_ONLY, AT(system.acceleration), 0, 0},
-    [CM1E_PARAMETER_MAX_ACCELERATION_APPL] = {"MaxAccelerationAppl", APPLICATION, AT(maximum.acceleration),
-                                              AT(system.acceleration), CM1E_LEAST_ACCELERATION_COUNTS},
-    [CM1E_PARAMETER_MAX_DECELERATION_SYSTEM] = {"MaxDecelerationSystem", READ_ONLY, AT(system.deceleration), 0, 0},
-    [CM1E_PARAMETER_MAX_DECELERATION_APPL] = {"MaxDecelerationAppl", APPLICATION, AT(maximum.deceleration),
-                                              AT(system.deceleration), CM1E_LEAST_ACCELERATION_COUNTS},
-    [CM1E_PARAMETER_MAX_JERK_SYSTEM] = {"MaxJerkSystem", READ_ONLY, AT(system.jerk), 0, 0},
-    [CM1E_PARAMETER_MAX_JERK_APPL] = {"MaxJerkAppl", APPLICATION, AT(maximum.jerk), AT(system.jerk),
+    [CM1E_PARAMETER_COMMANDED_VELOCITY] = {"CommandedVelocity", READ_ONLY, AT(setpoint.velocity), 0, 0},
+    [CM1E_PARAMETER_MAX_ACCELERATION_SYSTEM] = {"MaxAccelerationSystem", READ_ONLY,
+                                                AT(limits.system.acceleration), 0, 0},
+    [CM1E_PARAMETER_MAX_ACCELERATION_APPL] = {"MaxAccelerationAppl", APPLICATION, AT(limits.maximum.acceleration),
+                                              AT(limits.system.acceleration), CM1E_LEAST_ACCELERATION_COUNTS},
+    [CM1E_PARAMETER_MAX_DECELERATION_SYSTEM] = {"MaxDecelerationSystem", READ_ONLY,
+                                                AT(limits.system.deceleration), 0, 0},
+    [CM1E_PARAMETER_MAX_DECELERATION_APPL] = {"MaxDecelerationAppl", APPLICATION, AT(limits.maximum.deceleration),
+                                              AT(limits.system.deceleration), CM1E_LEAST_ACCELERATION_COUNTS},
+    [CM1E_PARAMETER_MAX_JERK_SYSTEM] = {"MaxJerkSystem", READ_ONLY, AT(limits.system.jerk), 0, 0},
+    [CM1E_PARAMETER_MAX_JERK_APPL] = {"MaxJerkAppl", APPLICATION, AT(limits.maximum.jerk), AT(limits.system.jerk),
                                       CM1E_LEAST_JERK_COUNTS},
     OUR() = {"InPosition", READ_ONLY, 0, 0, 0},
     OUR(_WINDOW) = {"InPositionWindow", LAG, AT(in_position.window), 0, 0},
@@ -108,27 +110,27 @@ static cm1e_error_t change_limits(cm1e_axis_t *axis, double positive, double neg
                                   bool negative_enabled)
 {
     const bool enabled = positive_enabled || negative_enabled;
-    if (enabled && axis->modulo_range > 0.0)
+    if (enabled && axis->position.modulo_range > 0.0)
         return CM1E_ERROR_UNSUPPORTED;
     if (positive_enabled && negative_enabled && !(negative < positive))
         return CM1E_ERROR_AXIS_PARAMETER_RANGE;
     if (!cm1e_axis_limits_hold(axis, negative_enabled ? negative : -INFINITY, positive_enabled ? positive : INFINITY))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    axis->limit_positive = positive;
-    axis->limit_negative = negative;
-    axis->limit_positive_enabled = positive_enabled;
-    axis->limit_negative_enabled = negative_enabled;
+    axis->limits.positive = positive;
+    axis->limits.negative = negative;
+    axis->limits.positive_enabled = positive_enabled;
+    axis->limits.negative_enabled = negative_enabled;
     cm1e_axis_apply_limits(axis);
     return CM1E_OK;
 }
 
 static cm1e_error_t write_limit(cm1e_axis_t *axis, int number, double value)
 {
-    if (!(fabs(value * axis->scale) <= farthest_limit_counts))
+    if (!(fabs(value * axis->position.scale) <= farthest_limit_counts))
         return CM1E_ERROR_AXIS_PARAMETER_RANGE;
     const bool positive = number == CM1E_PARAMETER_SW_LIMIT_POS;
-    return change_limits(axis, positive ? value : axis->limit_positive, positive ? axis->limit_negative : value,
-                         axis->limit_positive_enabled, axis->limit_negative_enabled);
+    return change_limits(axis, positive ? value : axis->limits.positive, positive ? axis->limits.negative : value,
+                         axis->limits.positive_enabled, axis->limits.negative_enabled);
 }
 
 static cm1e_error_t write_switch(cm1e_axis_t *axis, int number, double value)
@@ -137,7 +139,7 @@ static cm1e_error_t write_switch(cm1e_axis_t *axis, int number, double value)
         return CM1E_ERROR_AXIS_PARAMETER_RANGE;
     const bool on = value != 0.0;
     if (number == CM1E_PARAMETER_ENABLE_POS_LAG_MONITORING) {
-        axis->lag_monitoring = on;
+        axis->limits.lag_monitoring = on;
         return CM1E_OK;
     }
     if (number == CM1E_PARAMETER_IN_POSITION_DONE_WAITS) {
@@ -145,14 +147,14 @@ static cm1e_error_t write_switch(cm1e_axis_t *axis, int number, double value)
         return CM1E_OK;
     }
     const bool positive = number == CM1E_PARAMETER_ENABLE_LIMIT_POS;
-    return change_limits(axis, axis->limit_positive, axis->limit_negative, positive ? on : axis->limit_positive_enabled,
-                         positive ? axis->limit_negative_enabled : on);
+    return change_limits(axis, axis->limits.positive, axis->limits.negative,
+                         positive ? on : axis->limits.positive_enabled, positive ? axis->limits.negative_enabled : on);
 }
 
 static cm1e_error_t write_number(cm1e_axis_t *axis, const parameter_t *parameter, double value, double least_counts,
                                  double largest)
 {
-    if (!(value * fabs(axis->scale) >= least_counts * (1.0 - 1e-9)) || !(value <= largest))
+    if (!(value * fabs(axis->position.scale) >= least_counts * (1.0 - 1e-9)) || !(value <= largest))
         return CM1E_ERROR_AXIS_PARAMETER_RANGE;
     *(double *)((char *)axis + parameter->value) = value;
     cm1e_axis_guard_renew(axis);
@@ -188,9 +190,10 @@ static cm1e_error_t write(cm1e_axis_t *axis, int number, double value)
     case LIMIT: return write_limit(axis, number, value);
     case SWITCH: return write_switch(axis, number, value);
     case LAG:
-        return write_number(axis, parameter, value, CM1E_LEAST_LAG_COUNTS, CM1E_LARGEST_LAG_COUNTS / fabs(axis->scale));
+        return write_number(axis, parameter, value, CM1E_LEAST_LAG_COUNTS,
+                            CM1E_LARGEST_LAG_COUNTS / fabs(axis->position.scale));
     case APPLICATION:
-        return write_number(axis, parameter, value, parameter->least_counts * axis->count,
+        return write_number(axis, parameter, value, parameter->least_counts * axis->position.count,
                             double_at(axis, parameter->system));
     case IN_POSITION: return write_time(axis, parameter, number, value);
     case READ_ONLY: break;
@@ -209,12 +212,12 @@ cm1e_error_t cm1e_axis_write_parameter(cm1e_axis_t *axis, int number, double val
 
 static void range_text(const cm1e_axis_t *axis, const parameter_t *parameter, char *text, size_t size)
 {
-    const double scale = fabs(axis->scale), value = axis->not_set.value;
+    const double scale = fabs(axis->position.scale), value = axis->not_set.value;
     double least, largest;
     switch (parameter->rule) {
     case APPLICATION:
         snprintf(text, size, "%.6g was to be written; %.6g ... %.6g is right, which is %s.", value,
-                 parameter->least_counts * axis->count / scale, double_at(axis, parameter->system),
+                 parameter->least_counts * axis->position.count / scale, double_at(axis, parameter->system),
                  (parameter - 1)->name);
         break;
     case LAG:
@@ -230,11 +233,11 @@ static void range_text(const cm1e_axis_t *axis, const parameter_t *parameter, ch
             snprintf(text, size, "%.6g was to be written; 0 or 1 is right.", value);
         else
             snprintf(text, size, "%.6g was to be written; SWLimitNeg, %.6g u, has to be below SWLimitPos, %.6g u.",
-                     value, axis->limit_negative, axis->limit_positive);
+                     value, axis->limits.negative, axis->limits.positive);
         break;
     default:
         snprintf(text, size, "%.6g was to be written; a finite value is right, SWLimitNeg (%.6g u) below SWLimitPos "
-                 "(%.6g u).", value, axis->limit_negative, axis->limit_positive);
+                 "(%.6g u).", value, axis->limits.negative, axis->limits.positive);
         break;
     }
 }

@@ -23,14 +23,15 @@ static const double reserve = 0.05;
 static cm1e_error_t stop_anew(cm1e_axis_t *axis)
 {
     const from_t from = from_set(axis);
-    cm1e_motion_limits_t limits = axis->state == CM1E_AXIS_ERROR_STOP ? axis->emergency : axis->maximum;
+    cm1e_motion_limits_t limits = axis->state == CM1E_AXIS_ERROR_STOP ? axis->limits.emergency : axis->limits.maximum;
     cm1e_profile_t profile;
-    cm1e_error_t error = axis->active ? cm1e_axis_limits_of(axis, &from, &axis->move, &limits) : CM1E_OK;
+    cm1e_error_t error = axis->commands.active ? cm1e_axis_limits_of(axis, &from, &axis->commands.move, &limits)
+                         : CM1E_OK;
     if (!error)
         error = cm1e_axis_plan_stop(axis, &from, &limits, &profile);
     if (!error)
-        cm1e_axis_run(axis, &from, &profile, cm1e_position_plus(from.position, profile.end.position * axis->scale),
-                      0.0);
+        cm1e_axis_run(axis, &from, &profile,
+                      cm1e_position_plus(from.position, profile.end.position * axis->position.scale), 0.0);
     return error;
 }
 
@@ -41,39 +42,39 @@ static cm1e_error_t end_table(cm1e_axis_t *axis)
     cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_TABLE_LATE);
     cm1e_axis_go(axis, ON_BROKEN_OFF);
     if (!cm1e_axis_begin_waiting(axis, &from, 0.0))
-        cm1e_axis_ramp_down(axis, &axis->maximum);
+        cm1e_axis_ramp_down(axis, &axis->limits.maximum);
     return CM1E_OK;
 }
 
 static cm1e_error_t move_anew(cm1e_axis_t *axis)
 {
-    if (axis->active && kind_row(axis->kind)->plan == PLAN_TABLE)
+    if (axis->commands.active && kind_row(axis->commands.kind)->plan == PLAN_TABLE)
         return end_table(axis);
-    if (!axis->active || axis->kind == CM1E_COMMAND_STOP)
+    if (!axis->commands.active || axis->commands.kind == CM1E_COMMAND_STOP)
         return stop_anew(axis);
-    const move_t move = axis->move;
-    return axis->kind == CM1E_COMMAND_HOMING_STEP ? axis->homing_hooks->step_anew(axis)
-                                                  : cm1e_axis_replan_as(axis, &move);
+    const move_t move = axis->commands.move;
+    return axis->commands.kind == CM1E_COMMAND_HOMING_STEP ? axis->homing_hooks->step_anew(axis)
+                                                           : cm1e_axis_replan_as(axis, &move);
 }
 
 static void profile_anew(cm1e_axis_t *axis)
 {
     const cm1e_error_t error = move_anew(axis);
     if (error)
-        cm1e_axis_fail(axis, error, cm1e_axis_units(axis, axis->set),
-                       axis->set_velocity > 0.0 ? axis->upper : axis->lower);
+        cm1e_axis_fail(axis, error, cm1e_axis_units(axis, axis->setpoint.position),
+                       axis->setpoint.velocity > 0.0 ? axis->limits.upper : axis->limits.lower);
 }
 
 /* Everything that moves begins at the present set-point with this velocity (u/s). */
 static void begin_anew(cm1e_axis_t *axis, double velocity)
 {
-    axis->began_anew = true;
-    cm1e_axis_keep_torque(axis, axis->set_velocity - velocity);
-    axis->set_velocity = velocity;
-    axis->set_acceleration = 0.0;
+    axis->silence.began_anew = true;
+    cm1e_axis_keep_torque(axis, axis->setpoint.velocity - velocity);
+    axis->setpoint.velocity = velocity;
+    axis->setpoint.acceleration = 0.0;
     cm1e_axis_superimposed_abandon(axis);
-    if (axis->source->begin_anew)
-        axis->source->begin_anew(axis);
+    if (axis->setpoint.source->begin_anew)
+        axis->setpoint.source->begin_anew(axis);
     else
         profile_anew(axis);
 }
@@ -81,9 +82,9 @@ static void begin_anew(cm1e_axis_t *axis, double velocity)
 void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
 {
     const bool goes_on = axis->mode == CM1E_MODE_CSV;
-    if (axis->resumed) /* a follower has asked for that */
+    if (axis->silence.resumed) /* a follower has asked for that */
         return;
-    axis->resumed = true;
+    axis->silence.resumed = true;
     if (axis_follows(axis))
         axis->coupling_hooks->resume_masters(axis, pause_ns);
     if (!goes_on)
@@ -91,8 +92,9 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
     if (!set_points_move(axis))
         return;
     if (goes_on)
-        axis->set = cm1e_position_plus(axis->set, axis->set_velocity * axis->scale * (double)pause_ns * 1e-9);
-    begin_anew(axis, goes_on ? axis->set_velocity : 0.0);
+        axis->setpoint.position = cm1e_position_plus(axis->setpoint.position, axis->setpoint.velocity *
+                                                     axis->position.scale * (double)pause_ns * 1e-9);
+    begin_anew(axis, goes_on ? axis->setpoint.velocity : 0.0);
 }
 
 /* ---- silence ----------------------------------------------------------------------------------------------------- */
@@ -100,53 +102,53 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
 /* u/s; what the motor still has of the set velocity. In CSV it has gone on by itself. */
 static double velocity_left(const cm1e_axis_t *axis)
 {
-    const double set = axis->set_velocity;
+    const double set = axis->setpoint.velocity;
     if (axis->mode == CM1E_MODE_CSV || cm1e_drive_is_virtual(&axis->drive))
         return set;
-    const double motor = (axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis)) / axis->scale;
+    const double motor = (axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis)) / axis->position.scale;
     const double left = set > 0.0 ? fmax(0.0, fmin(motor, set)) : fmin(0.0, fmax(motor, set));
-    const double most = axis->system.velocity * fmax(0.0, 1.0 - reserve * (double)axis->silent_before);
-    const double change = fmax(axis->system.acceleration, axis->system.deceleration) * axis->cycle_s *
-                          (double)(axis->silent_before + 1);
-    const double kept = fabs(set - left) <= change + velocity_noise / fabs(axis->scale) ? set : left;
+    const double most = axis->limits.system.velocity * fmax(0.0, 1.0 - reserve * (double)axis->silence.silent_before);
+    const double change = fmax(axis->limits.system.acceleration, axis->limits.system.deceleration) * axis->cycle_s *
+                          (double)(axis->silence.silent_before + 1);
+    const double kept = fabs(set - left) <= change + velocity_noise / fabs(axis->position.scale) ? set : left;
     return fmax(-most, fmin(kept, most));
 }
 
 /* Made of several: begun anew, a part of it would be lost. */
 static bool is_composite(const cm1e_axis_t *axis)
 {
-    return axis->source->is_composite || axis->superimposed.id;
+    return axis->setpoint.source->is_composite || axis->superimposed.id;
 }
 
 double cm1e_axis_ran_on(const cm1e_axis_t *axis)
 {
-    if (axis->mode != CM1E_MODE_CSV || axis->silent_before <= CM1E_AXIS_RIDDEN_OUT_CYCLES || !set_points_move(axis) ||
-        axis->state == CM1E_AXIS_ERROR_STOP) /* its ramp has gone on */
+    if (axis->mode != CM1E_MODE_CSV || axis->silence.silent_before <= CM1E_AXIS_RIDDEN_OUT_CYCLES ||
+        !set_points_move(axis) || axis->state == CM1E_AXIS_ERROR_STOP) /* its ramp has gone on */
         return 0.0;
-    return axis->set_velocity * axis->scale * axis->cycle_s * (double)axis->silent_before;
+    return axis->setpoint.velocity * axis->position.scale * axis->cycle_s * (double)axis->silence.silent_before;
 }
 
 static void go_on_or_begin_anew(cm1e_axis_t *axis)
 {
     const bool follows_on = axis_follows(axis) && axis->coupling_hooks->begins_anew(axis);
     const bool in_place = axis->mode == CM1E_MODE_CSV; /* nearly, and as fast as before */
-    const bool shaken = !in_place && axis->shaken > CM1E_AXIS_RIDDEN_OUT_CYCLES * CM1E_SHAKEN_BY_SILENCE;
+    const bool shaken = !in_place && axis->silence.shaken > CM1E_AXIS_RIDDEN_OUT_CYCLES * CM1E_SHAKEN_BY_SILENCE;
     const double ran_on = cm1e_axis_ran_on(axis);
     if (is_composite(axis) && !follows_on && !shaken && ran_on == 0.0)
         return;
-    axis->set = cm1e_position_plus(axis->set, ran_on);
+    axis->setpoint.position = cm1e_position_plus(axis->setpoint.position, ran_on);
     const bool led = axis_led(axis); /* the path stands for an axis at rest too */
     const double left = led && !in_place ? 0.0 : velocity_left(axis);
-    if (left != axis->set_velocity || follows_on || led || ran_on != 0.0)
+    if (left != axis->setpoint.velocity || follows_on || led || ran_on != 0.0)
         begin_anew(axis, left);
 }
 
 /* Slaves after their masters, and before any of them advances: they have to see the same place. */
 void cm1e_axis_after_silence(cm1e_axis_t *axis)
 {
-    if (axis->resumed || axis->silent_before == 0)
+    if (axis->silence.resumed || axis->silence.silent_before == 0)
         return;
-    axis->resumed = true;
+    axis->silence.resumed = true;
     if (axis_follows(axis))
         axis->coupling_hooks->resume_masters(axis, 0);
     if (set_points_move(axis))

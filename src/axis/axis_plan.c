@@ -27,7 +27,7 @@ static cm1e_error_t stopping_way(const cm1e_axis_t *axis, const from_t *from, co
  * */
 static double shifted(const cm1e_axis_t *axis, const move_t *move)
 {
-    const double range = axis->modulo_range, position = move->position + move->shift;
+    const double range = axis->position.modulo_range, position = move->position + move->shift;
     if (move->shift == 0.0 || !(range > 0.0))
         return position;
     const double turned = position - range * floor(position / range);
@@ -37,7 +37,7 @@ static double shifted(const cm1e_axis_t *axis, const move_t *move)
 static cm1e_error_t resolve_absolute(const cm1e_axis_t *axis, const from_t *from, move_t *move)
 {
     double way = 0.0;
-    const cm1e_error_t error = axis->modulo_range > 0.0 ? stopping_way(axis, from, move, &way) : CM1E_OK;
+    const cm1e_error_t error = axis->position.modulo_range > 0.0 ? stopping_way(axis, from, move, &way) : CM1E_OK;
     return error ? error : cm1e_axis_resolve_target(axis, shifted(axis, move), (MC_DIRECTION)move->direction,
                                                     from->position, from->velocity, way, &move->target);
 }
@@ -45,7 +45,7 @@ static cm1e_error_t resolve_absolute(const cm1e_axis_t *axis, const from_t *from
 static cm1e_error_t resolve_relative(const cm1e_axis_t *axis, const from_t *from, move_t *move)
 {
     (void)from;
-    const double counts = move->position * axis->scale;
+    const double counts = move->position * axis->position.scale;
     if (!cm1e_position_reaches(move->origin, counts))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     move->target = cm1e_position_plus(move->origin, counts);
@@ -66,7 +66,7 @@ static bool passes(const cm1e_axis_t *axis, const cm1e_profile_t *profile, doubl
 {
     double lowest, highest;
     cm1e_profile_extent(profile, &lowest, &highest);
-    return target > start ? highest > target + axis->tolerance : lowest < target - axis->tolerance;
+    return target > start ? highest > target + axis->limits.tolerance : lowest < target - axis->limits.tolerance;
 }
 
 /* Whether a motion that goes on in its direction turns round on the way to its end. What is left of an acceleration may
@@ -75,7 +75,7 @@ static bool turns_back(const cm1e_axis_t *axis, double velocity, const cm1e_prof
 {
     static const double rounding = 0.01; /* a way back within the tolerance would become a larger one when replanned */
     return velocity != 0.0 && profile->end.velocity * velocity >= 0.0 &&
-           cm1e_profile_way_back(profile, velocity) > rounding * axis->tolerance;
+           cm1e_profile_way_back(profile, velocity) > rounding * axis->limits.tolerance;
 }
 
 bool cm1e_axis_strays(const cm1e_axis_t *axis, const cm1e_motion_state_t *start, const double *target,
@@ -92,7 +92,7 @@ bool cm1e_axis_profile_strays(const cm1e_axis_t *axis, const from_t *from, const
 {
     const command_plan_t plan = kind_row(move->kind)->plan;
     const cm1e_motion_state_t start = start_of(from);
-    const double target = cm1e_position_minus(move->target, from->position) / axis->scale;
+    const double target = cm1e_position_minus(move->target, from->position) / axis->position.scale;
     if (plan == PLAN_THROUGH_TARGET && !move->passing) /* its run-up may lead anywhere, unless the position is ahead */
         return from->velocity * target > 0.0 && cm1e_axis_strays(axis, &start, NULL, profile);
     return cm1e_axis_strays(axis, &start, plan == PLAN_TO_TARGET && !move->paused ? &target : NULL, profile);
@@ -105,7 +105,7 @@ static bool slowed(const cm1e_axis_t *axis)
 
 static cm1e_error_t plan_to_target(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
 {
-    const double distance = cm1e_position_minus(move->target, from->position) / axis->scale;
+    const double distance = cm1e_position_minus(move->target, from->position) / axis->position.scale;
     cm1e_motion_limits_t limits;
     const cm1e_error_t error = cm1e_axis_limits_of(axis, from, move, &limits);
     if (error)
@@ -129,7 +129,7 @@ cm1e_error_t cm1e_axis_signed_velocity(const cm1e_axis_t *axis, const from_t *fr
         positive = false;
         break;
     case mcCurrentDirection:
-        positive = from->velocity != 0.0 ? from->velocity > 0.0 : axis->positive_before;
+        positive = from->velocity != 0.0 ? from->velocity > 0.0 : axis->setpoint.positive_before;
         break;
     default: /* the shortest way to a velocity is none */
         return CM1E_ERROR_AXIS_DIRECTION;
@@ -144,7 +144,8 @@ static cm1e_error_t check_endless(const cm1e_axis_t *axis, const from_t *from, c
     const double velocity = profile->end.velocity, now = cm1e_axis_line(axis, from->position);
     if (!cm1e_axis_direction_enabled(axis, velocity))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
-    if (axis->software_limits && (velocity > 0.0 ? now >= axis->upper : velocity < 0.0 && now <= axis->lower))
+    const limits_t *most = &axis->limits;
+    if (most->software_limits && (velocity > 0.0 ? now >= most->upper : velocity < 0.0 && now <= most->lower))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     cm1e_motion_state_t next;
     cm1e_profile_sample(profile, axis->cycle_s, &next);
@@ -177,7 +178,7 @@ static cm1e_error_t plan_through_target(const cm1e_axis_t *axis, const from_t *f
     if (error)
         return error;
     const cm1e_motion_state_t start = start_of(from);
-    const double distance = cm1e_position_minus(move->target, from->position) / axis->scale;
+    const double distance = cm1e_position_minus(move->target, from->position) / axis->position.scale;
     const double end = move->exit_velocity, cruise = limits.velocity;
     limits.velocity = fmax(cruise, fabs(end));
     if (cm1e_profile_to_velocity(profile, &start, end, &limits))
@@ -204,7 +205,7 @@ cm1e_error_t cm1e_axis_plan_stop(const cm1e_axis_t *axis, const from_t *from, co
     const cm1e_error_t error = cm1e_profile_to_velocity(profile, &start, 0.0, &enough);
     if (error || cm1e_axis_limits_contain(axis, from, profile))
         return error;
-    return cm1e_profile_to_velocity(profile, &start, 0.0, &axis->emergency);
+    return cm1e_profile_to_velocity(profile, &start, 0.0, &axis->limits.emergency);
 }
 
 static const override_t no_override = {1.0, 1.0, 1.0};
@@ -267,7 +268,7 @@ cm1e_error_t cm1e_axis_resolve(const cm1e_axis_t *axis, const from_t *from, move
 static bool plan_pause(const cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
 {
     const bool has_target = kind_row(move->kind)->plan == PLAN_TO_TARGET;
-    const double distance = cm1e_position_minus(move->target, from->position) / axis->scale;
+    const double distance = cm1e_position_minus(move->target, from->position) / axis->position.scale;
     cm1e_motion_limits_t limits;
     cm1e_profile_t stop;
     if (plan_stop(axis, from, move, &stop))
@@ -329,22 +330,22 @@ position_t cm1e_axis_profile_end(const cm1e_axis_t *axis, const from_t *from, co
     const command_plan_t plan = kind_row(move->kind)->plan;
     if (!move->paused && (plan == PLAN_TO_TARGET || (plan == PLAN_THROUGH_TARGET && !move->passing)))
         return move->target;
-    return cm1e_position_plus(from->position, profile->end.position * axis->scale);
+    return cm1e_position_plus(from->position, profile->end.position * axis->position.scale);
 }
 
 /* A disabled direction allows what the braking needs that is going on anyway, nothing more. */
 static bool directions_allow(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)
 {
-    if (axis->enable_positive && axis->enable_negative)
+    if (axis->power.enable_positive && axis->power.enable_negative)
         return true;
     double lowest, highest, brake_lowest, brake_highest;
     cm1e_profile_extent(profile, &lowest, &highest);
     cm1e_profile_t brake;
-    if (cm1e_axis_plan_stop(axis, from, &axis->maximum, &brake))
+    if (cm1e_axis_plan_stop(axis, from, &axis->limits.maximum, &brake))
         return false;
     cm1e_profile_extent(&brake, &brake_lowest, &brake_highest);
-    return (axis->enable_positive || highest <= fmax(brake_highest, 0.0) + axis->tolerance) &&
-           (axis->enable_negative || lowest >= fmin(brake_lowest, 0.0) - axis->tolerance);
+    return (axis->power.enable_positive || highest <= fmax(brake_highest, 0.0) + axis->limits.tolerance) &&
+           (axis->power.enable_negative || lowest >= fmin(brake_lowest, 0.0) - axis->limits.tolerance);
 }
 
 cm1e_error_t cm1e_axis_limits_check(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile)

@@ -37,21 +37,27 @@ static position_t sum(position_t a, position_t b) { return normal(a.counts + b.c
 /* Seen from the origin, counted in the direction in which u grows. */
 static position_t from_origin(const cm1e_axis_t *axis, position_t position)
 {
-    const position_t o = axis->origin;
-    return axis->scale > 0.0 ? normal(position.counts - o.counts, position.fraction - o.fraction)
-                             : normal(o.counts - position.counts, o.fraction - position.fraction);
+    const position_t o = axis->position.origin;
+    return axis->position.scale > 0.0 ? normal(position.counts - o.counts, position.fraction - o.fraction)
+                                      : normal(o.counts - position.counts, o.fraction - position.fraction);
 }
 
-double cm1e_axis_farthest(const cm1e_axis_t *axis) { return (double)CM1E_FARTHEST_COUNTS / fabs(axis->scale); }
+double cm1e_axis_farthest(const cm1e_axis_t *axis) { return (double)CM1E_FARTHEST_COUNTS / fabs(axis->position.scale); }
 
-static double to_units(const cm1e_axis_t *axis, double counts) { return counts * axis->unit.units / axis->unit.counts; }
-static double to_counts(const cm1e_axis_t *axis, double units) { return units * axis->unit.counts / axis->unit.units; }
+static double to_units(const cm1e_axis_t *axis, double counts)
+{
+    return counts * axis->position.unit.units / axis->position.unit.counts;
+}
+static double to_counts(const cm1e_axis_t *axis, double units)
+{
+    return units * axis->position.unit.counts / axis->position.unit.units;
+}
 
 /* ---- modulo ------------------------------------------------------------------------------------------------------ */
 
 static double turn_counts(const cm1e_axis_t *axis)
 {
-    return (double)axis->turn.numerator / (double)axis->turn.denominator;
+    return (double)axis->position.turn.numerator / (double)axis->position.turn.denominator;
 }
 
 /* n / d with n >= 0, as a double, without losing the fraction of a large quotient. */
@@ -65,7 +71,7 @@ static double turn_rounding(double turn) { return rounding_counts + 4.0 * DBL_EP
  * same. */
 static int64_t turn_of(const cm1e_axis_t *axis, position_t position, double *phase)
 {
-    const int64_t numerator = axis->turn.numerator, denominator = axis->turn.denominator;
+    const int64_t numerator = axis->position.turn.numerator, denominator = axis->position.turn.denominator;
     int64_t turn, short_product;
     wide_t rest;
     if (!__builtin_mul_overflow(position.counts, denominator, &short_product)) { /* nearly always, and much faster */
@@ -92,28 +98,29 @@ static int64_t turn_of(const cm1e_axis_t *axis, position_t position, double *pha
 /* Position `phase` counts into a turn. */
 static position_t in_turn(const cm1e_axis_t *axis, int64_t turn, double phase)
 {
-    const wide_t product = (wide_t)turn * axis->turn.numerator;
-    const int64_t whole = (int64_t)(product / axis->turn.denominator);
-    const double part = (double)(int64_t)(product % axis->turn.denominator) / (double)axis->turn.denominator;
+    const wide_t product = (wide_t)turn * axis->position.turn.numerator;
+    const int64_t whole = (int64_t)(product / axis->position.turn.denominator);
+    const double part = (double)(int64_t)(product % axis->position.turn.denominator) /
+                        (double)axis->position.turn.denominator;
     const position_t begin = normal(whole, part);
     const position_t way = cm1e_position_plus(begin, phase);
-    return sum(axis->origin, axis->scale > 0.0 ? way : normal(-way.counts, -way.fraction));
+    return sum(axis->position.origin, axis->position.scale > 0.0 ? way : normal(-way.counts, -way.fraction));
 }
 
 static bool in_modulo_range(const cm1e_axis_t *axis, double units)
 {
-    return units >= 0.0 && units < axis->modulo_range;
+    return units >= 0.0 && units < axis->position.modulo_range;
 }
 
 /* ---- units ------------------------------------------------------------------------------------------------------- */
 
 double cm1e_axis_units(const cm1e_axis_t *axis, position_t position)
 {
-    if (axis->modulo_range > 0.0) {
+    if (axis->position.modulo_range > 0.0) {
         double phase;
         turn_of(axis, from_origin(axis, position), &phase);
         const double units = to_units(axis, phase);
-        return units < axis->modulo_range ? units : 0.0; /* the last 1e-16 of a turn */
+        return units < axis->position.modulo_range ? units : 0.0; /* the last 1e-16 of a turn */
     }
     return cm1e_axis_line(axis, position);
 }
@@ -124,45 +131,47 @@ double cm1e_axis_units(const cm1e_axis_t *axis, position_t position)
 void cm1e_axis_shown(const cm1e_axis_t *axis, double *set, double *actual)
 {
     const position_t at = axis_actual(axis);
-    const bool rests = axis->set_velocity == 0.0 && axis->set_acceleration == 0.0;
-    *set = cm1e_axis_units(axis, axis->set);
+    const bool rests = axis->setpoint.velocity == 0.0 && axis->setpoint.acceleration == 0.0;
+    *set = cm1e_axis_units(axis, axis->setpoint.position);
     *actual = cm1e_axis_units(axis, at);
-    if (!(axis->modulo_range > 0.0) || !rests)
+    if (!(axis->position.modulo_range > 0.0) || !rests)
         return;
     double phase;
     const int64_t turn = turn_of(axis, from_origin(axis, at), &phase);
-    int64_t set_turn = turn_of(axis, from_origin(axis, axis->set), &phase);
-    if (turn_counts(axis) - phase < axis->tolerance * fabs(axis->scale)) {
+    int64_t set_turn = turn_of(axis, from_origin(axis, axis->setpoint.position), &phase);
+    if (turn_counts(axis) - phase < axis->limits.tolerance * fabs(axis->position.scale)) {
         *set = 0.0;
         set_turn++;
     }
-    if (set_turn != turn && fabs(cm1e_position_minus(axis->set, at)) <= same_counts)
+    if (set_turn != turn && fabs(cm1e_position_minus(axis->setpoint.position, at)) <= same_counts)
         *(set_turn < turn ? set : actual) = 0.0;
 }
 
 double cm1e_axis_line(const cm1e_axis_t *axis, position_t position)
 {
     const position_t way = from_origin(axis, position);
-    const double origin = axis->modulo_range > 0.0 ? 0.0 : axis->origin_units;
+    const double origin = axis->position.modulo_range > 0.0 ? 0.0 : axis->position.origin_units;
     return origin + to_units(axis, (double)way.counts + way.fraction);
 }
 
 bool cm1e_axis_position_from_line(const cm1e_axis_t *axis, double line, position_t *position)
 {
-    const double counts = to_counts(axis, axis->modulo_range > 0.0 ? line : line - axis->origin_units);
+    const double from_origin = axis->position.modulo_range > 0.0 ? line : line - axis->position.origin_units;
+    const double counts = to_counts(axis, from_origin);
     if (!(fabs(counts) < (double)CM1E_FARTHEST_COUNTS))
         return false;
-    *position = cm1e_position_plus(axis->origin, axis->scale > 0.0 ? counts : -counts);
+    *position = cm1e_position_plus(axis->position.origin, axis->position.scale > 0.0 ? counts : -counts);
     return cm1e_position_in_range(*position);
 }
 
 bool cm1e_axis_position_from_units(const cm1e_axis_t *axis, double units, position_t *position)
 {
-    if (axis->modulo_range > 0.0) {
+    if (axis->position.modulo_range > 0.0) {
         double phase;
         if (!in_modulo_range(axis, units))
             return false;
-        *position = in_turn(axis, turn_of(axis, from_origin(axis, axis->set), &phase), to_counts(axis, units));
+        *position = in_turn(axis, turn_of(axis, from_origin(axis, axis->setpoint.position), &phase),
+                            to_counts(axis, units));
         return cm1e_position_in_range(*position);
     }
     return cm1e_axis_position_from_line(axis, units, position);
@@ -187,7 +196,7 @@ static bool shortest_is_positive(double way, double turn, double velocity)
 cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, MC_DIRECTION direction,
                                       position_t from, double velocity, double stop, position_t *target)
 {
-    if (!(axis->modulo_range > 0.0))
+    if (!(axis->position.modulo_range > 0.0))
         return cm1e_axis_position_from_units(axis, position, target) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
     if (!in_modulo_range(axis, position))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
@@ -204,7 +213,7 @@ cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, 
         positive = false;
         break;
     case mcCurrentDirection:
-        positive = velocity != 0.0 ? velocity > 0.0 : axis->positive_before;
+        positive = velocity != 0.0 ? velocity > 0.0 : axis->setpoint.positive_before;
         break;
     case 0: /* not given */
     case mcShortestWay:
@@ -213,7 +222,7 @@ cm1e_error_t cm1e_axis_resolve_target(const cm1e_axis_t *axis, double position, 
     default:
         return CM1E_ERROR_AXIS_DIRECTION;
     }
-    const double more = repetitions(way, turn, stop * fabs(axis->scale), positive);
+    const double more = repetitions(way, turn, stop * fabs(axis->position.scale), positive);
     if (!(fabs(more) * turn < (double)CM1E_FARTHEST_COUNTS))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     *target = in_turn(axis, number + (int64_t)more, phase);
@@ -226,9 +235,9 @@ bool cm1e_axis_new_position(const cm1e_axis_t *axis, double now, double position
 {
     if (!isfinite(position))
         return false;
-    if (axis->modulo_range > 0.0) {
-        double turned = now + fmod(position, axis->modulo_range);
-        turned = fmod(turned + axis->modulo_range, axis->modulo_range);
+    if (axis->position.modulo_range > 0.0) {
+        double turned = now + fmod(position, axis->position.modulo_range);
+        turned = fmod(turned + axis->position.modulo_range, axis->position.modulo_range);
         *value = relative ? turned : position;
         return in_modulo_range(axis, *value);
     }
@@ -238,14 +247,14 @@ bool cm1e_axis_new_position(const cm1e_axis_t *axis, double now, double position
 
 void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units)
 {
-    if (axis->modulo_range > 0.0) {
-        axis->origin = at;
-        axis->origin = in_turn(axis, 0, -to_counts(axis, units));
+    if (axis->position.modulo_range > 0.0) {
+        axis->position.origin = at;
+        axis->position.origin = in_turn(axis, 0, -to_counts(axis, units));
     } else {
-        axis->origin = at;
-        axis->origin_units = units;
+        axis->position.origin = at;
+        axis->position.origin_units = units;
     }
-    axis->base_line = cm1e_axis_line(axis, axis->base);
+    axis->setpoint.base_line = cm1e_axis_line(axis, axis->setpoint.base);
     cm1e_axis_apply_limits(axis);
 }
 
@@ -255,21 +264,21 @@ void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units)
 void cm1e_axis_track(cm1e_axis_t *axis)
 {
     const int32_t raw = axis->drive.feedback.position;
-    if (axis->position_known) {
-        const int32_t moved = (int32_t)((uint32_t)raw - (uint32_t)axis->raw);
-        axis->actual_counts += moved;
+    if (axis->position.known) {
+        const int32_t moved = (int32_t)((uint32_t)raw - (uint32_t)axis->position.raw);
+        axis->position.actual_counts += moved;
         if (axis->backlash.gap > 0.0)
             cm1e_axis_backlash_track(axis, moved);
     } else {
-        axis->actual_counts = raw;
-        axis->position_known = true;
+        axis->position.actual_counts = raw;
+        axis->position.known = true;
     }
-    axis->raw = raw;
+    axis->position.raw = raw;
 }
 
 void cm1e_axis_set_to_actual(cm1e_axis_t *axis)
 {
-    axis->set = axis_actual(axis);
-    axis->set_velocity = 0.0;
-    axis->set_acceleration = 0.0;
+    axis->setpoint.position = axis_actual(axis);
+    axis->setpoint.velocity = 0.0;
+    axis->setpoint.acceleration = 0.0;
 }

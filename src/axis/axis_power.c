@@ -21,7 +21,7 @@ static void wind_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp)
     if (!axis->drive.feedback.enabled && !drive_moves(axis))
         cm1e_axis_become_free(axis);
     else
-        axis->source->stop(axis, ramp, HOME_GOAL_OFF);
+        axis->setpoint.source->stop(axis, ramp, HOME_GOAL_OFF);
 }
 
 void cm1e_axis_error_stop(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound,
@@ -37,11 +37,11 @@ void cm1e_axis_error_stop(cm1e_axis_t *axis, cm1e_error_t error, double value, d
     /* 2.2.2: the blocks that lose the axis show an error, not CommandAborted. */
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ERROR,
                            homing_broke || coupling_broke ? error : CM1E_ERROR_AXIS_ERROR_STOP);
-    axis->refusal = axis->not_set.error = CM1E_OK; /* old by the time of the reset */
-    axis->error = error;
-    axis->device_error = axis->drive.fault.device_code;
-    axis->error_value = value;
-    axis->error_bound = bound;
+    axis->commands.refusal = axis->not_set.error = CM1E_OK; /* old by the time of the reset */
+    axis->fault.error = error;
+    axis->fault.device_error = axis->drive.fault.device_code;
+    axis->fault.value = value;
+    axis->fault.bound = bound;
     cm1e_axis_go(axis, ON_ERROR);
     if (!followed || !axis->coupling_hooks->stops_with_masters(axis))
         wind_down(axis, ramp);
@@ -56,26 +56,26 @@ void cm1e_axis_brake_from_actual(cm1e_axis_t *axis)
     if (axis_free(axis))
         return;
     const double motor = axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis);
-    const double velocity = motor / axis->scale, before = axis->set_velocity;
+    const double velocity = motor / axis->position.scale, before = axis->setpoint.velocity;
     cm1e_axis_set_to_actual(axis);
-    axis->set_velocity = before > 0.0 ? fmax(0.0, fmin(velocity, before)) : fmin(0.0, fmax(velocity, before));
-    cm1e_axis_ramp_down(axis, &axis->emergency);
-    axis->brake_until_ns = axis->now_ns + brake_ns;
+    axis->setpoint.velocity = before > 0.0 ? fmax(0.0, fmin(velocity, before)) : fmin(0.0, fmax(velocity, before));
+    cm1e_axis_ramp_down(axis, &axis->limits.emergency);
+    axis->power.brake_until_ns = axis->now_ns + brake_ns;
 }
 
 void cm1e_axis_keep_torque(cm1e_axis_t *axis, double velocity)
 {
-    const double ramp_s = fabs(velocity) / axis->emergency.deceleration;
-    axis->brake_until_ns = axis->now_ns + brake_ns + (int64_t)(ramp_s * 1e9);
+    const double ramp_s = fabs(velocity) / axis->limits.emergency.deceleration;
+    axis->power.brake_until_ns = axis->now_ns + brake_ns + (int64_t)(ramp_s * 1e9);
 }
 
 void cm1e_axis_hold_unheard(cm1e_axis_t *axis)
 {
     if (axis->mode != CM1E_MODE_CSP || cm1e_drive_is_virtual(&axis->drive) || !set_points_move(axis))
         return;
-    cm1e_axis_keep_torque(axis, axis->set_velocity);
-    axis->target = axis->set;
-    axis->set_velocity = axis->set_acceleration = 0.0;
+    cm1e_axis_keep_torque(axis, axis->setpoint.velocity);
+    axis->setpoint.target = axis->setpoint.position;
+    axis->setpoint.velocity = axis->setpoint.acceleration = 0.0;
     cm1e_axis_set_source(axis, &cm1e_source_hold);
 }
 
@@ -85,35 +85,36 @@ static void power_off(cm1e_axis_t *axis)
         return;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     cm1e_axis_go(axis, ON_POWER_OFF);
-    wind_down(axis, &axis->maximum);
+    wind_down(axis, &axis->limits.maximum);
 }
 
 cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, bool enable_positive,
                              bool enable_negative)
 {
     if (enable && axis->config->type == CM1E_AXIS_ENCODER)
-        return axis->refusal = CM1E_ERROR_AXIS_VIRTUAL;
-    if (axis->power_owner != owner) {
+        return axis->commands.refusal = CM1E_ERROR_AXIS_VIRTUAL;
+    if (axis->power.owner != owner) {
         /* A block that does not enable may be replaced, one that does may not. */
-        if (axis->power_owner && (axis->power_enable || axis->energized))
+        if (axis->power.owner && (axis->power.enable || axis->power.energized))
             return CM1E_ERROR_FB_SECOND_POWER;
-        axis->power_owner = owner;
+        axis->power.owner = owner;
     }
-    const bool positive_fell = axis->enable_positive && !enable_positive;
-    const bool negative_fell = axis->enable_negative && !enable_negative;
-    axis->shutting_down = false;
-    axis->power_enable = enable;
-    axis->enable_positive = enable_positive;
-    axis->enable_negative = enable_negative;
+    const bool positive_fell = axis->power.enable_positive && !enable_positive;
+    const bool negative_fell = axis->power.enable_negative && !enable_negative;
+    axis->power.shutting_down = false;
+    axis->power.enable = enable;
+    axis->power.enable_positive = enable_positive;
+    axis->power.enable_negative = enable_negative;
     if (!enable)
         power_off(axis);
     if (positive_fell)
         cm1e_axis_direction_disabled(axis, 1.0);
     if (negative_fell)
         cm1e_axis_direction_disabled(axis, -1.0);
-    if ((positive_fell || negative_fell) && axis->state == CM1E_AXIS_HOMING && axis->active && drive_homes(axis)) {
+    if ((positive_fell || negative_fell) && axis->state == CM1E_AXIS_HOMING && axis->commands.active &&
+        drive_homes(axis)) {
         cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
-        axis->source->stop(axis, &axis->maximum, HOME_GOAL_HOLD); /* every method moves both ways */
+        axis->setpoint.source->stop(axis, &axis->limits.maximum, HOME_GOAL_HOLD); /* every method moves both ways */
     }
     return enable && axis->motor_hooks ? axis->motor_hooks->refuses_power(axis) : CM1E_OK;
 }
@@ -121,25 +122,25 @@ cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, 
 bool cm1e_axis_power_stands(AXIS_REF_t reference, const void *owner, bool enable_positive, bool enable_negative)
 {
     const cm1e_axis_t *axis = cm1e_axis_from_handle(reference.Handle);
-    return axis && axis->power_owner == owner && axis->power_enable && !axis->shutting_down &&
-           axis->enable_positive == enable_positive && axis->enable_negative == enable_negative &&
+    return axis && axis->power.owner == owner && axis->power.enable && !axis->power.shutting_down &&
+           axis->power.enable_positive == enable_positive && axis->power.enable_negative == enable_negative &&
            cm1e_axis_powered(axis);
 }
 
 bool cm1e_axis_powered(const cm1e_axis_t *axis)
 {
-    return axis->energized && axis->drive.feedback.state == OPERATION_ENABLED;
+    return axis->power.energized && axis->drive.feedback.state == OPERATION_ENABLED;
 }
 
 /* The enabled drive is taken over (note 5); the set-point begins where the motor is in this very cycle. It does so too
  * where power came back within the ramp of a step that pushed: the set-point has ended where the motor cannot go. */
 static void take_over(cm1e_axis_t *axis)
 {
-    if (axis_free(axis) || axis->pushing)
+    if (axis_free(axis) || axis->homing_step.pushing)
         cm1e_axis_set_to_actual(axis);
-    axis->pushing = false;
+    axis->homing_step.pushing = false;
     cm1e_axis_set_source(axis, &cm1e_source_hold);
-    axis->energized = true;
+    axis->power.energized = true;
     cm1e_axis_apply_limits(axis); /* without torque it may have been turned over the end of the drive's counts */
     cm1e_axis_go(axis, ON_POWER_ON);
 }
@@ -151,8 +152,8 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
     const bool still = axis_free(axis) || axis_holds(axis);
     if (axis->state == CM1E_AXIS_DISABLED && wanted && acting && still)
         take_over(axis);
-    else if (axis_holds(axis) && !wanted && axis->now_ns >= axis->brake_until_ns &&
-             cm1e_axis_backlash_at_rest(axis) && (!axis->shutting_down || cm1e_axis_outputs_off_first(axis)))
+    else if (axis_holds(axis) && !wanted && axis->now_ns >= axis->power.brake_until_ns &&
+             cm1e_axis_backlash_at_rest(axis) && (!axis->power.shutting_down || cm1e_axis_outputs_off_first(axis)))
         cm1e_axis_become_free(axis); /* a ramp has ended, and its last set-point is out */
     else if (!axis_free(axis) && !drive_moves(axis) && !acting)
         cm1e_axis_become_free(axis); /* the torque went in the middle of a ramp */
@@ -162,19 +163,19 @@ void cm1e_axis_enable_step(cm1e_axis_t *axis)
 {
     axis->drive.command.enable = !axis_free(axis) || cm1e_axis_wants_enable(axis);
     if (!axis->drive.command.enable && axis_free(axis))
-        axis->energized = false;
+        axis->power.energized = false;
 }
 
 /* ---- reset ------------------------------------------------------------------------------------------------------- */
 
 cm1e_error_t cm1e_axis_reset(cm1e_axis_t *axis)
 {
-    axis->reset_error = CM1E_OK;
+    axis->power.reset_error = CM1E_OK;
     if (axis->state != CM1E_AXIS_ERROR_STOP) {
-        axis->reset_state = CM1E_COMMAND_DONE; /* nothing to reset, and nothing happens */
-    } else if (axis->reset_state != CM1E_COMMAND_ACTIVE) {
-        axis->reset_state = CM1E_COMMAND_ACTIVE;
-        axis->reset_sent = false;
+        axis->power.reset_state = CM1E_COMMAND_DONE; /* nothing to reset, and nothing happens */
+    } else if (axis->power.reset_state != CM1E_COMMAND_ACTIVE) {
+        axis->power.reset_state = CM1E_COMMAND_ACTIVE;
+        axis->power.reset_sent = false;
     }
     return CM1E_OK;
 }
@@ -182,18 +183,18 @@ cm1e_error_t cm1e_axis_reset(cm1e_axis_t *axis)
 cm1e_command_state_t cm1e_axis_reset_state(const cm1e_axis_t *axis, cm1e_error_t *error)
 {
     if (error)
-        *error = axis->reset_error;
-    return axis->reset_state;
+        *error = axis->power.reset_error;
+    return axis->power.reset_state;
 }
 
 static void reset_finished(cm1e_axis_t *axis)
 {
     const cm1e_error_t error = axis->drive.fault.error;
     axis->drive.command.reset = false;
-    axis->reset_error = error;
-    axis->reset_state = error ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE;
-    axis->error = error;
-    axis->device_error = axis->drive.fault.device_code;
+    axis->power.reset_error = error;
+    axis->power.reset_state = error ? CM1E_COMMAND_ERROR : CM1E_COMMAND_DONE;
+    axis->fault.error = error;
+    axis->fault.device_error = axis->drive.fault.device_code;
     if (!error)
         cm1e_axis_go(axis, ON_RESET);
 }
@@ -203,9 +204,9 @@ void cm1e_axis_reset_step(cm1e_axis_t *axis)
 {
     if (!axis_free(axis))
         return;
-    if (!axis->reset_sent) {
+    if (!axis->power.reset_sent) {
         axis->drive.command.reset = true;
-        axis->reset_sent = true;
+        axis->power.reset_sent = true;
     } else if (!cm1e_drive_resetting(&axis->drive)) {
         reset_finished(axis);
     }
@@ -213,12 +214,12 @@ void cm1e_axis_reset_step(cm1e_axis_t *axis)
 
 bool cm1e_axis_shut_down(cm1e_axis_t *axis)
 {
-    axis->shutting_down = true;
+    axis->power.shutting_down = true;
     power_off(axis);
     if (!axis_free(axis) || axis->drive.torque ||
         (axis->motor_hooks && !axis->motor_hooks->released(axis)))
         return false;
     cm1e_axis_outputs_off(axis); /* not before: a brake on it must not fall on a moving load */
-    const bool gone = axis->now_ns - axis->free_ns >= gone_after_ns;
+    const bool gone = axis->now_ns - axis->power.free_ns >= gone_after_ns;
     return axis->drive.feedback.state != OPERATION_ENABLED || (gone && !axis->drive.feedback.online);
 }

@@ -20,7 +20,7 @@ static cm1e_error_t probe_of(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, pro
 {
     *probe = NULL;
     if (is_latched(axis, trigger)) {
-        *probe = &axis->probes[2 * (trigger.input - 1) + trigger.falling];
+        *probe = &axis->signals.probes[2 * (trigger.input - 1) + trigger.falling];
         return CM1E_OK;
     }
     const cm1e_error_t error = cm1e_axis_check_input(axis, trigger.input);
@@ -28,7 +28,7 @@ static cm1e_error_t probe_of(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, pro
         return error;
     if (!cm1e_axis_sees_inputs(axis)) /* SDOs are much later than half the way between two samples */
         return CM1E_ERROR_PDO_MAPPING;
-    *probe = &axis->probes[2 * (trigger.input - 1) + trigger.falling];
+    *probe = &axis->signals.probes[2 * (trigger.input - 1) + trigger.falling];
     return CM1E_OK;
 }
 
@@ -45,7 +45,7 @@ static void end(cm1e_axis_t *axis, probe_t *probe, cm1e_command_state_t state, c
 {
     probe->state = (uint8_t)state;
     probe->error = (int16_t)error;
-    axis->probes_armed--;
+    axis->signals.probes_armed--;
 }
 
 /* ---- windows ----------------------------------------------------------------------------------------------------- */
@@ -55,13 +55,13 @@ static cm1e_error_t check_window(const cm1e_axis_t *axis, double first, double l
     position_t unused;
     if (!cm1e_axis_position_from_units(axis, first, &unused) || !cm1e_axis_position_from_units(axis, last, &unused))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    return first <= last || axis->modulo_range > 0.0 ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
+    return first <= last || axis->position.modulo_range > 0.0 ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
 }
 
 /* Both ends included, and what the counts of the motor cannot tell from them. */
 static bool in_window(const cm1e_axis_t *axis, const probe_t *probe, double position)
 {
-    const double few = 0.01 / fabs(axis->scale);
+    const double few = 0.01 / fabs(axis->position.scale);
     const bool above = position >= probe->first - few, below = position <= probe->last + few;
     return probe->first <= probe->last ? above && below : above || below;
 }
@@ -78,15 +78,15 @@ static cm1e_error_t arm(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, bool win
         error = check_window(axis, first, last);
     if (error)
         return error;
-    if (!axis->drive.seen || !axis->position_known)
+    if (!axis->drive.seen || !axis->position.known)
         return CM1E_ERROR_AXIS_OFFLINE;
-    if (axis->probes_armed == 0)
-        axis->probe_sample = sample(axis);
+    if (axis->signals.probes_armed == 0)
+        axis->signals.probe_sample = sample(axis);
     if (probe->state != CM1E_COMMAND_ACTIVE)
-        axis->probes_armed++;
+        axis->signals.probes_armed++;
     /* The number tells the probe, so that it is found again; a PROBES-th part of all numbers never comes back. */
-    axis->probe_count = axis->probe_count % (UINT32_MAX / PROBES - 1) + 1;
-    *id = axis->probe_count * PROBES + (uint32_t)(probe - axis->probes);
+    axis->signals.probe_count = axis->signals.probe_count % (UINT32_MAX / PROBES - 1) + 1;
+    *id = axis->signals.probe_count * PROBES + (uint32_t)(probe - axis->signals.probes);
     *probe = (probe_t){.id = *id, .state = CM1E_COMMAND_ACTIVE, .window = window, .first = first, .last = last};
     if (is_latched(axis, trigger))
         cm1e_drive_probe_arm(&axis->drive, trigger.input, trigger.falling);
@@ -103,7 +103,7 @@ cm1e_error_t cm1e_axis_probe(cm1e_axis_t *axis, cm1e_axis_trigger_t trigger, boo
 
 cm1e_probe_status_t cm1e_axis_probe_status(const cm1e_axis_t *axis, uint32_t id)
 {
-    const probe_t *probe = &axis->probes[id % PROBES];
+    const probe_t *probe = &axis->signals.probes[id % PROBES];
     if (id == 0 || probe->id != id)
         return (cm1e_probe_status_t){.state = CM1E_COMMAND_UNKNOWN};
     cm1e_probe_status_t status = {.state = (cm1e_command_state_t)probe->state, .error = (cm1e_error_t)probe->error};
@@ -146,7 +146,7 @@ static void triggered(cm1e_axis_t *axis, probe_t *probe, const probe_sample_t *b
     if (probe->window && !in_window(axis, probe, position))
         return;
     probe->position = position;
-    probe->uncertainty = fabs(way / 2.0 / axis->scale);
+    probe->uncertainty = fabs(way / 2.0 / axis->position.scale);
     end(axis, probe, CM1E_COMMAND_DONE, CM1E_OK);
 }
 
@@ -160,29 +160,29 @@ static void take_latched(cm1e_axis_t *axis, probe_t *probe, cm1e_axis_trigger_t 
         end(axis, probe, CM1E_COMMAND_ERROR, CM1E_ERROR_AXIS_PROBE);
         return;
     }
-    const int64_t way = (int32_t)((uint32_t)raw - (uint32_t)axis->raw);
-    const double position = cm1e_axis_units(axis, cm1e_axis_load(axis, axis->actual_counts + way));
+    const int64_t way = (int32_t)((uint32_t)raw - (uint32_t)axis->position.raw);
+    const double position = cm1e_axis_units(axis, cm1e_axis_load(axis, axis->position.actual_counts + way));
     if (probe->window && !in_window(axis, probe, position)) {
         cm1e_drive_probe_arm(&axis->drive, trigger.input, trigger.falling);
         return;
     }
     probe->position = position;
-    probe->uncertainty = 0.5 / fabs(axis->scale);
+    probe->uncertainty = 0.5 / fabs(axis->position.scale);
     end(axis, probe, CM1E_COMMAND_DONE, CM1E_OK);
 }
 
 void cm1e_axis_probe_step(cm1e_axis_t *axis)
 {
-    const probe_sample_t before = axis->probe_sample, now = sample(axis);
-    axis->probe_sample = now;
+    const probe_sample_t before = axis->signals.probe_sample, now = sample(axis);
+    axis->signals.probe_sample = now;
     const unsigned changed = (unsigned)(before.inputs ^ now.inputs);
     for (int i = 0; i < PROBES; i++) {
         const cm1e_axis_trigger_t trigger = {.input = i / 2 + 1, .falling = i % 2};
         const unsigned bit = bit_of(trigger);
-        if (axis->probes[i].state == CM1E_COMMAND_ACTIVE && is_latched(axis, trigger))
-            take_latched(axis, &axis->probes[i], trigger);
-        else if (axis->probes[i].state == CM1E_COMMAND_ACTIVE && changed & bit &&
+        if (axis->signals.probes[i].state == CM1E_COMMAND_ACTIVE && is_latched(axis, trigger))
+            take_latched(axis, &axis->signals.probes[i], trigger);
+        else if (axis->signals.probes[i].state == CM1E_COMMAND_ACTIVE && changed & bit &&
                  !(now.inputs & bit) == trigger.falling)
-            triggered(axis, &axis->probes[i], &before, &now);
+            triggered(axis, &axis->signals.probes[i], &before, &now);
     }
 }

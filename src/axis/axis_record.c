@@ -6,15 +6,15 @@
 
 void cm1e_axis_record(cm1e_axis_t *axis, cm1e_command_id_t id, cm1e_command_state_t state, cm1e_error_t error)
 {
-    axis->records[id % COMMANDS_REMEMBERED] =
+    axis->commands.records[id % COMMANDS_REMEMBERED] =
         (command_record_t){.id = id, .error = (int16_t)error, .state = (uint8_t)state};
 }
 
 cm1e_command_id_t cm1e_axis_next_id(cm1e_axis_t *axis)
 {
-    if (++axis->last_id == 0)
-        axis->last_id = 1; /* 0 is no command */
-    return axis->last_id;
+    if (++axis->commands.last_id == 0)
+        axis->commands.last_id = 1; /* 0 is no command */
+    return axis->commands.last_id;
 }
 
 /* ---- commands as they are kept ----------------------------------------------------------------------------------- */
@@ -47,7 +47,7 @@ bool cm1e_axis_same_inputs(const move_t *a, const move_t *b)
 
 move_t *cm1e_axis_find_waiting(cm1e_axis_t *axis, cm1e_command_id_t id)
 {
-    for (int i = 0; i < axis->waiting.count; i++)
+    for (int i = 0; i < axis->commands.waiting.count; i++)
         if (waiting_move(axis, i)->id == id)
             return waiting_move(axis, i);
     return NULL;
@@ -57,10 +57,10 @@ move_t *cm1e_axis_find_waiting(cm1e_axis_t *axis, cm1e_command_id_t id)
 
 void cm1e_axis_remember_refusal(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_error_t error)
 {
-    axis->refusal = error;
+    axis->commands.refusal = error;
     if (!error)
         return;
-    axis->refused = *command;
+    axis->commands.refused = *command;
     axis->not_set.error = CM1E_OK;
 }
 
@@ -70,7 +70,7 @@ void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what)
         return;
     axis->not_set = what;
     if (what.error)
-        axis->refusal = CM1E_OK;
+        axis->commands.refusal = CM1E_OK;
 }
 
 void cm1e_axis_remember_end(cm1e_axis_t *axis, cm1e_command_kind_t kind, cm1e_error_t error)
@@ -81,10 +81,10 @@ void cm1e_axis_remember_end(cm1e_axis_t *axis, cm1e_command_kind_t kind, cm1e_er
 
 void cm1e_axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error)
 {
-    if (!axis->active)
+    if (!axis->commands.active)
         return;
-    cm1e_axis_record(axis, axis->active, state, error);
-    cm1e_axis_remember_end(axis, axis->kind, error);
-    axis->active = 0;
-    axis->reached = false;
+    cm1e_axis_record(axis, axis->commands.active, state, error);
+    cm1e_axis_remember_end(axis, axis->commands.kind, error);
+    axis->commands.active = 0;
+    axis->setpoint.reached = false;
 }

@@ -5,11 +5,11 @@ void cm1e_axis_take(cm1e_axis_t *axis, const move_t *move, const from_t *from, c
                     double offset_s)
 {
     cm1e_axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    axis->active = move->id;
-    axis->kind = (cm1e_command_kind_t)move->kind;
-    axis->move = *move;
+    axis->commands.active = move->id;
+    axis->commands.kind = (cm1e_command_kind_t)move->kind;
+    axis->commands.move = *move;
     cm1e_axis_run(axis, from, profile, cm1e_axis_profile_end(axis, from, move, profile), offset_s);
-    axis->paused = move->paused;
+    axis->setpoint.paused = move->paused;
 }
 
 void cm1e_axis_taken(cm1e_axis_t *axis, const command_kind_t *kind)
@@ -20,9 +20,9 @@ void cm1e_axis_taken(cm1e_axis_t *axis, const command_kind_t *kind)
 
 static void go_on_as(cm1e_axis_t *axis, const from_t *from, const move_t *move, const cm1e_profile_t *profile)
 {
-    axis->move = *move;
+    axis->commands.move = *move;
     cm1e_axis_run(axis, from, profile, cm1e_axis_profile_end(axis, from, move, profile), 0.0);
-    axis->paused = move->paused;
+    axis->setpoint.paused = move->paused;
 }
 
 cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *as)
@@ -38,14 +38,14 @@ cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *as)
 
 bool cm1e_axis_can_replan(const cm1e_axis_t *axis)
 {
-    return axis->active && axis_on_profile(axis) && axis->kind != CM1E_COMMAND_STOP &&
-           is_planned(axis->kind);
+    return axis->commands.active && axis_on_profile(axis) && axis->commands.kind != CM1E_COMMAND_STOP &&
+           is_planned(axis->commands.kind);
 }
 
 /* `careful`: not when it would then run over its target, or go back. */
 static cm1e_error_t replan(cm1e_axis_t *axis, bool careful, bool *done)
 {
-    move_t move = axis->move;
+    move_t move = axis->commands.move;
     cm1e_profile_t profile;
     const from_t from = from_base(axis);
     const cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, true, &profile);
@@ -58,16 +58,17 @@ static cm1e_error_t replan(cm1e_axis_t *axis, bool careful, bool *done)
 /* What runs does so itself: it began too late for anything else. */
 static bool runs_astray(const cm1e_axis_t *axis)
 {
-    const cm1e_motion_state_t *start = &axis->profile.segments[0].start;
-    const from_t from = {axis->base, start->velocity, start->acceleration, false};
-    return axis->profile.segment_count > 0 && cm1e_axis_profile_strays(axis, &from, &axis->move, &axis->profile);
+    const cm1e_motion_state_t *start = &axis->setpoint.profile.segments[0].start;
+    const from_t from = {axis->setpoint.base, start->velocity, start->acceleration, false};
+    return axis->setpoint.profile.segment_count > 0 &&
+           cm1e_axis_profile_strays(axis, &from, &axis->commands.move, &axis->setpoint.profile);
 }
 
 /* One that keeps its target, or passes it with a velocity, cannot always be changed any more: then it stays. */
 cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis)
 {
     bool done;
-    return cm1e_axis_can_replan(axis) ? replan(axis, !axis->paused && !runs_astray(axis), &done) : CM1E_OK;
+    return cm1e_axis_can_replan(axis) ? replan(axis, !axis->setpoint.paused && !runs_astray(axis), &done) : CM1E_OK;
 }
 
 bool cm1e_axis_replan_if(cm1e_axis_t *axis)

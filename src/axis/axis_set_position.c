@@ -9,7 +9,7 @@ static cm1e_error_t set_position(cm1e_axis_t *axis, double position, bool relati
         return CM1E_ERROR_AXIS_IN_GROUP;
     if (axis->state == CM1E_AXIS_HOMING || drive_homes(axis))
         return CM1E_ERROR_AXIS_HOMING;
-    if (!axis->position_known || !axis->drive.feedback.online)
+    if (!axis->position.known || !axis->drive.feedback.online)
         return CM1E_ERROR_AXIS_OFFLINE;
     const position_t actual = axis_actual(axis);
     const double now = cm1e_axis_units(axis, actual);
@@ -17,20 +17,20 @@ static cm1e_error_t set_position(cm1e_axis_t *axis, double position, bool relati
     if (!cm1e_axis_new_position(axis, now, position, relative, &value))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     /* The written limits; those of the motor's counts stay where they are. */
-    const double lower = axis->limit_negative_enabled ? axis->limit_negative : -INFINITY;
-    const double upper = axis->limit_positive_enabled ? axis->limit_positive : INFINITY;
-    const bool limited = axis->limit_negative_enabled || axis->limit_positive_enabled;
+    const double lower = axis->limits.negative_enabled ? axis->limits.negative : -INFINITY;
+    const double upper = axis->limits.positive_enabled ? axis->limits.positive : INFINITY;
+    const bool limited = axis->limits.negative_enabled || axis->limits.positive_enabled;
     if (limited && drive_moves(axis))
         return CM1E_ERROR_AXIS_STATE; /* of the drive's way only the end is known */
     const double shift = value - now;
     if (limited) {
-        const double set = cm1e_axis_units(axis, axis->set) + shift;
+        const double set = cm1e_axis_units(axis, axis->setpoint.position) + shift;
         if (!(set >= lower && set <= upper) || !cm1e_axis_limits_hold(axis, lower - shift, upper - shift) ||
             !cm1e_axis_waiting_hold(axis, lower - shift, upper - shift))
             return CM1E_ERROR_AXIS_POSITION_RANGE;
     }
-    const position_t origin = axis->origin;
-    const double origin_units = axis->origin_units;
+    const position_t origin = axis->position.origin;
+    const double origin_units = axis->position.origin_units;
     cm1e_axis_set_origin(axis, actual, value);
     if (cm1e_axis_shift_waiting(axis, shift))
         return CM1E_OK;

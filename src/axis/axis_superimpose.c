@@ -55,9 +55,9 @@ static double base_velocity(cm1e_axis_t *axis)
 {
     const from_t from = from_base(axis);
     double fastest = fabs(from.velocity);
-    if (axis->active)
-        fastest = fmax(fastest, fmax(fabs(axis->move.velocity), fabs(axis->move.end_velocity)));
-    for (int i = 0; i < axis->waiting.count; i++) {
+    if (axis->commands.active)
+        fastest = fmax(fastest, fmax(fabs(axis->commands.move.velocity), fabs(axis->commands.move.end_velocity)));
+    for (int i = 0; i < axis->commands.waiting.count; i++) {
         const move_t *move = waiting_move(axis, i);
         fastest = fmax(fastest, fmax(fabs(move->velocity), fabs(move->end_velocity)));
     }
@@ -73,7 +73,7 @@ static double peak_of(const from_t *from, double jerk)
 
 static cm1e_motion_limits_t share_of(const cm1e_axis_t *axis, const cm1e_motion_limits_t *asked)
 {
-    const cm1e_motion_limits_t *most = &axis->maximum;
+    const cm1e_motion_limits_t *most = &axis->limits.maximum;
     const double half = fmin(most->acceleration, most->deceleration) / 2.0;
     const double acceleration = fmin(fmax(asked->acceleration, asked->deceleration), half);
     return (cm1e_motion_limits_t){asked->velocity, acceleration, acceleration, fmin(asked->jerk, most->jerk / 2.0)};
@@ -86,23 +86,23 @@ static bool needs_all_to_halt(const cm1e_axis_t *axis)
     const cm1e_motion_state_t start = {0.0, from.velocity, from.acceleration};
     cm1e_motion_limits_t limits;
     cm1e_profile_t stop;
-    return axis->kind == CM1E_COMMAND_HALT && axis->software_limits &&
-           (cm1e_axis_limits_of(axis, &from, &axis->move, &limits) ||
+    return axis->commands.kind == CM1E_COMMAND_HALT && axis->limits.software_limits &&
+           (cm1e_axis_limits_of(axis, &from, &axis->commands.move, &limits) ||
             cm1e_profile_to_velocity(&stop, &start, 0.0, &limits) || !cm1e_axis_limits_contain(axis, &from, &stop));
 }
 
 /* The base makes room; FALSE: it cannot now. */
 static bool base_gives_way(cm1e_axis_t *axis)
 {
-    if (axis->stands)
+    if (axis->setpoint.stands)
         return true;
-    if (axis->active && needs_all_to_halt(axis))
+    if (axis->commands.active && needs_all_to_halt(axis))
         return false;
     const from_t from = from_base(axis);
-    const double peak = peak_of(&from, axis->maximum.jerk / 2.0);
-    if (!axis->active || peak + axis->superimposed.share.velocity > axis->maximum.velocity)
+    const double peak = peak_of(&from, axis->limits.maximum.jerk / 2.0);
+    if (!axis->commands.active || peak + axis->superimposed.share.velocity > axis->limits.maximum.velocity)
         return false;
-    return axis->reached || cm1e_axis_replan_if(axis); /* a constant velocity stays, and InVelocity (3.10) */
+    return axis->setpoint.reached || cm1e_axis_replan_if(axis); /* a constant velocity stays, and InVelocity (3.10) */
 }
 
 static bool begin(cm1e_axis_t *axis)
@@ -119,8 +119,8 @@ void cm1e_axis_superimposed_give_way(cm1e_axis_t *axis, from_t *from)
 {
     static const double rounding = 1.0 + 1e-9;
     superimposed_t *on_top = &axis->superimposed;
-    const double peak = peak_of(from, axis->maximum.jerk - on_top->share.jerk);
-    if (!from->shared || peak + on_top->share.velocity <= axis->maximum.velocity * rounding)
+    const double peak = peak_of(from, axis->limits.maximum.jerk - on_top->share.jerk);
+    if (!from->shared || peak + on_top->share.velocity <= axis->limits.maximum.velocity * rounding)
         return;
     on_top->moving = false;
     on_top->now.velocity = on_top->now.acceleration = 0.0;
@@ -132,15 +132,15 @@ void cm1e_axis_superimposed_give_way(cm1e_axis_t *axis, from_t *from)
 /* What it has covered so far becomes the base's. */
 static void give_to_base(cm1e_axis_t *axis)
 {
-    const double covered = axis->superimposed.now.position, counts = covered * axis->scale;
-    axis->base = cm1e_position_plus(axis->base, counts);
-    axis->base_line = cm1e_axis_line(axis, axis->base);
-    axis->target = cm1e_position_plus(axis->target, counts);
+    const double covered = axis->superimposed.now.position, counts = covered * axis->position.scale;
+    axis->setpoint.base = cm1e_position_plus(axis->setpoint.base, counts);
+    axis->setpoint.base_line = cm1e_axis_line(axis, axis->setpoint.base);
+    axis->setpoint.target = cm1e_position_plus(axis->setpoint.target, counts);
     if (axis_follows(axis))
         axis->coupling_hooks->shift(axis, covered);
-    if (axis->active) {
-        axis->move.origin = cm1e_position_plus(axis->move.origin, counts);
-        axis->move.target = cm1e_position_plus(axis->move.target, counts);
+    if (axis->commands.active) {
+        axis->commands.move.origin = cm1e_position_plus(axis->commands.move.origin, counts);
+        axis->commands.move.target = cm1e_position_plus(axis->commands.move.target, counts);
     }
     axis->superimposed.now.position = 0.0;
 }
@@ -162,7 +162,7 @@ void cm1e_axis_superimposed_end(cm1e_axis_t *axis, cm1e_command_state_t state, c
     record(axis, state, error);
     axis->superimposed.moving = false;
     axis->superimposed.now = (cm1e_motion_state_t){0};
-    axis->stands = false;
+    axis->setpoint.stands = false;
 }
 
 void cm1e_axis_superimposed_abandon(cm1e_axis_t *axis)
@@ -171,7 +171,7 @@ void cm1e_axis_superimposed_abandon(cm1e_axis_t *axis)
         return;
     record(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     give_to_base(axis);
-    axis->superimposed.moving = axis->stands = false;
+    axis->superimposed.moving = axis->setpoint.stands = false;
     axis->superimposed.now = (cm1e_motion_state_t){0};
 }
 
@@ -183,11 +183,11 @@ static void finish(cm1e_axis_t *axis)
     give_to_base(axis);
     on_top->now = (cm1e_motion_state_t){0};
     on_top->moving = false;
-    if (axis->stands)
+    if (axis->setpoint.stands)
         cm1e_axis_stand(axis);
-    else if (!axis->reached)
+    else if (!axis->setpoint.reached)
         (void)cm1e_axis_replan(axis);
-    if (axis->reached && axis->waiting.count > 0) { /* for this */
+    if (axis->setpoint.reached && axis->commands.waiting.count > 0) { /* for this */
         const from_t from = from_set(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
     }
@@ -199,16 +199,16 @@ static void finish(cm1e_axis_t *axis)
 static bool inside(cm1e_axis_t *axis, double distance)
 {
     const position_t base = from_base(axis).position;
-    const bool rests = axis->stands || axis_holds(axis);
-    const command_kind_t *kind = kind_row(axis->kind);
-    position_t ends[CM1E_AXIS_BUFFER_DEPTH + 2] = {base, rests ? base : axis->target};
-    int count = axis->active && (kind->is_endless || kind->plan == PLAN_COUPLING) ? 1 : 2;
-    for (int i = 0; i < axis->waiting.count; i++)
+    const bool rests = axis->setpoint.stands || axis_holds(axis);
+    const command_kind_t *kind = kind_row(axis->commands.kind);
+    position_t ends[CM1E_AXIS_BUFFER_DEPTH + 2] = {base, rests ? base : axis->setpoint.target};
+    int count = axis->commands.active && (kind->is_endless || kind->plan == PLAN_COUPLING) ? 1 : 2;
+    for (int i = 0; i < axis->commands.waiting.count; i++)
         if (kind_row(waiting_move(axis, i)->kind)->plan == PLAN_TO_TARGET)
             ends[count++] = waiting_move(axis, i)->target;
     for (int i = 0; i < count; i++) {
         const from_t from = {ends[i], 0.0, 0.0, false};
-        if (!cm1e_axis_limits_contain_target(axis, &from, cm1e_position_plus(ends[i], distance * axis->scale)))
+        if (!cm1e_axis_limits_contain_target(axis, &from, cm1e_position_plus(ends[i], distance * axis->position.scale)))
             return false;
     }
     return true;
@@ -217,18 +217,18 @@ static bool inside(cm1e_axis_t *axis, double distance)
 static cm1e_error_t check(cm1e_axis_t *axis, const move_t *move, bool alone, cm1e_motion_limits_t *limits)
 {
     static const override_t none = {1.0, 1.0, 1.0};
-    const from_t rest = {axis->set, 0.0, 0.0, false};
-    const cm1e_error_t error = axis->active && !kind_row(axis->kind)->carries_superimposed
+    const from_t rest = {axis->setpoint.position, 0.0, 0.0, false};
+    const cm1e_error_t error = axis->commands.active && !kind_row(axis->commands.kind)->carries_superimposed
                                    ? CM1E_ERROR_AXIS_STATE /* its times and limits are its own */
                                    : cm1e_axis_limits_with(axis, &rest, move, &none, limits);
-    const double counts = move->position * axis->scale;
+    const double counts = move->position * axis->position.scale;
     if (error)
         return error;
     if (!isfinite(counts) || fabs(counts) > 4.5e15 || !inside(axis, move->position))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     if (!cm1e_axis_direction_enabled(axis, move->position))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
-    const double most = axis->maximum.velocity * (1.0 + 1e-9);
+    const double most = axis->limits.maximum.velocity * (1.0 + 1e-9);
     return !alone && move->velocity + base_velocity(axis) > most ? CM1E_ERROR_AXIS_VELOCITY_RANGE : CM1E_OK;
 }
 
@@ -239,9 +239,9 @@ static void stand_as_base(cm1e_axis_t *axis)
     const cm1e_motion_state_t rest = {0};
     cm1e_profile_t profile;
     cm1e_axis_settled(axis);
-    (void)cm1e_profile_to_velocity(&profile, &rest, 0.0, &axis->maximum);
-    cm1e_axis_run(axis, &from, &profile, axis->set, 0.0);
-    axis->stands = true;
+    (void)cm1e_profile_to_velocity(&profile, &rest, 0.0, &axis->limits.maximum);
+    cm1e_axis_run(axis, &from, &profile, axis->setpoint.position, 0.0);
+    axis->setpoint.stands = true;
 }
 
 /* From how it goes now; asked before anything is changed, as what goes cannot end on the spot. */
@@ -261,7 +261,8 @@ static cm1e_error_t superimpose(cm1e_axis_t *axis, const move_t *move, cm1e_comm
     if (error)
         return error;
     /* One that replaces another keeps to what the base has left for that. */
-    const cm1e_motion_limits_t share = replaces ? on_top->share : alone ? axis->maximum : share_of(axis, &limits);
+    const cm1e_motion_limits_t share = replaces ? on_top->share : alone ? axis->limits.maximum
+                                       : share_of(axis, &limits);
     if (!can_go_on_as(axis, move, alone, &share))
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE; /* next to nothing, perhaps by factors of MC_SetOverride */
     if (axis_holds(axis))
@@ -282,7 +283,7 @@ static cm1e_error_t superimpose(cm1e_axis_t *axis, const move_t *move, cm1e_comm
 static cm1e_error_t halt(cm1e_axis_t *axis, const move_t *move, cm1e_command_id_t *id)
 {
     superimposed_t *on_top = &axis->superimposed;
-    const from_t rest = {axis->set, 0.0, 0.0, false};
+    const from_t rest = {axis->setpoint.position, 0.0, 0.0, false};
     cm1e_motion_limits_t limits;
     const cm1e_error_t error = cm1e_axis_limits_of(axis, &rest, move, &limits);
     if (error)
@@ -347,7 +348,7 @@ bool cm1e_axis_superimposed_goes(const cm1e_axis_t *axis, double sign)
 {
     const superimposed_t *on_top = &axis->superimposed;
     return on_top->id && (on_top->now.velocity * sign > 0.0 ||
-                          (on_top->move.position - on_top->now.position) * sign > axis->tolerance);
+                          (on_top->move.position - on_top->now.position) * sign > axis->limits.tolerance);
 }
 
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */

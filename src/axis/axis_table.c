@@ -91,13 +91,13 @@ static bool goes_after(cm1e_table_profile_t *table, double from_s, double sign)
 
 static bool goes(cm1e_axis_t *axis, double sign)
 {
-    const double now_s = (double)axis->profile_cycles * axis->cycle_s + axis->profile_offset_s;
+    const double now_s = (double)axis->setpoint.profile_cycles * axis->cycle_s + axis->setpoint.profile_offset_s;
     return cm1e_axis_profile_goes(axis, sign) || goes_after(&axis->tables->running, now_s, sign);
 }
 
 CM1E_RARE static void find_stretch(cm1e_axis_t *axis, double time_s)
 {
-    cm1e_table_profile_stretch_at(&axis->tables->running, time_s, &axis->stretch);
+    cm1e_table_profile_stretch_at(&axis->tables->running, time_s, &axis->setpoint.stretch);
 }
 
 const source_t cm1e_source_table = {
@@ -114,9 +114,9 @@ static void run_table(cm1e_axis_t *axis, const from_t *from, const cm1e_table_pr
                       double offset_s)
 {
     axis->tables->running = *table;
-    axis->profile.duration_s = table->duration_s;
-    axis->profile.end = table->end;
-    axis->profile.segment_count = 0;
+    axis->setpoint.profile.duration_s = table->duration_s;
+    axis->setpoint.profile.end = table->end;
+    axis->setpoint.profile.segment_count = 0;
     cm1e_axis_begin_run(axis, &cm1e_source_table, from, target, offset_s);
 }
 
@@ -125,18 +125,18 @@ static bool above(double needed, double allowed) { return !(needed <= allowed * 
 static cm1e_error_t check(const cm1e_axis_t *axis, const from_t *from, cm1e_table_profile_t *table,
                           const cm1e_table_extremes_t *needed)
 {
-    const cm1e_motion_limits_t *most = &axis->maximum;
+    const cm1e_motion_limits_t *most = &axis->limits.maximum;
     if (above(needed->velocity, most->velocity))
         return CM1E_ERROR_AXIS_VELOCITY_RANGE;
     if (above(needed->acceleration, most->acceleration) || above(needed->deceleration, most->deceleration) ||
         above(needed->jerk, most->jerk))
         return CM1E_ERROR_AXIS_DYNAMICS_RANGE;
-    if (!cm1e_position_reaches(from->position, needed->lowest * axis->scale) ||
-        !cm1e_position_reaches(from->position, needed->highest * axis->scale) ||
+    if (!cm1e_position_reaches(from->position, needed->lowest * axis->position.scale) ||
+        !cm1e_position_reaches(from->position, needed->highest * axis->position.scale) ||
         !cm1e_axis_limits_contain_way(axis, from, needed->lowest, needed->highest))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    if ((!axis->enable_positive && goes_after(table, 0.0, 1.0)) ||
-        (!axis->enable_negative && goes_after(table, 0.0, -1.0)))
+    if ((!axis->power.enable_positive && goes_after(table, 0.0, 1.0)) ||
+        (!axis->power.enable_negative && goes_after(table, 0.0, -1.0)))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED;
     return cm1e_axis_limits_can_stop(axis, cm1e_axis_line(axis, from->position), table->end)
                ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
@@ -150,7 +150,7 @@ static cm1e_error_t prepare(const cm1e_axis_t *axis, const from_t *from, cm1e_co
     cm1e_table_point_t shifted[CM1E_TABLE_POINTS_MAX];
     for (int i = 0; i < points->count; i++)
         shifted[i] = (cm1e_table_point_t){points->points[i].time_s, points->points[i].value + more};
-    if (cm1e_table_profile(table, table_kind(kind), &start, shifted, points->count, axis->maximum.jerk, needed))
+    if (cm1e_table_profile(table, table_kind(kind), &start, shifted, points->count, axis->limits.maximum.jerk, needed))
         return CM1E_ERROR_AXIS_TABLE;
     return check(axis, from, table, needed);
 }
@@ -162,10 +162,10 @@ static position_t end_of(const cm1e_axis_t *axis, const from_t *from, cm1e_comma
                          const table_points_t *points, const cm1e_table_profile_t *table)
 {
     position_t end;
-    if (kind == CM1E_COMMAND_POSITION_PROFILE && points->absolute && !(axis->modulo_range > 0.0) &&
+    if (kind == CM1E_COMMAND_POSITION_PROFILE && points->absolute && !(axis->position.modulo_range > 0.0) &&
         cm1e_axis_position_from_units(axis, points->points[points->count - 1].value, &end))
         return end;
-    return cm1e_position_plus(from->position, table->end.position * axis->scale);
+    return cm1e_position_plus(from->position, table->end.position * axis->position.scale);
 }
 
 static void take(cm1e_axis_t *axis, const move_t *move, const from_t *from, const table_points_t *points,
@@ -173,11 +173,11 @@ static void take(cm1e_axis_t *axis, const move_t *move, const from_t *from, cons
 {
     const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
     cm1e_axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    axis->active = move->id;
-    axis->kind = kind;
-    axis->move = *move;
-    axis->move.target = end_of(axis, from, kind, points, table);
-    run_table(axis, from, table, axis->move.target, offset_s);
+    axis->commands.active = move->id;
+    axis->commands.kind = kind;
+    axis->commands.move = *move;
+    axis->commands.move.target = end_of(axis, from, kind, points, table);
+    run_table(axis, from, table, axis->commands.move.target, offset_s);
 }
 
 cm1e_error_t cm1e_axis_table_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
@@ -212,7 +212,7 @@ cm1e_error_t cm1e_axis_table_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t
     if (error)
         return error;
     /* Before it waits: what it waits for may be there already, and it begins at once. */
-    axis->tables->waiting_id = axis->last_id + 1 ? axis->last_id + 1 : 1;
+    axis->tables->waiting_id = axis->commands.last_id + 1 ? axis->commands.last_id + 1 : 1;
     axis->tables->waiting = points;
     error = cm1e_axis_buffer(axis, &move);
     axis->tables->waiting_id = *id = error ? 0 : move.id;

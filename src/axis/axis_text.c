@@ -13,28 +13,29 @@ static bool coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool refu
 /* Without a bound it is the drive that says so, in a motion of its own. */
 static void lag_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    if (axis->error_bound == 0.0) {
+    if (axis->fault.bound == 0.0) {
         snprintf(text, size,
                  "Axis \"%s\": the drive reports a following error, with the motor %.6g u away from its target. Look for "
                  "a mechanical stop or a blocked axis, reduce load, velocity or acceleration; then reset the axis with "
-                 "MC_Reset.", axis->config->name, fabs(axis->error_value));
+                 "MC_Reset.", axis->config->name, fabs(axis->fault.value));
         return;
     }
     snprintf(text, size,
              "Axis \"%s\": %s: %.6g u, allowed are %.6g u. The motor did not follow the set-point: look for a blocked "
              "axis, reduce load, velocity or acceleration, or raise limits.position_lag; then reset the axis with "
              "MC_Reset.",
-             axis->config->name, cm1e_strerror(axis->error), axis->error_value, axis->error_bound);
+             axis->config->name, cm1e_strerror(axis->fault.error), axis->fault.value, axis->fault.bound);
 }
 
 /* Behind what has been said: where the counts of a motor behind a bridge end (BR appendix 5). */
 static void add_counts_limit(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const size_t used = strlen(text);
-    if (axis->counts_limit && used < size)
+    if (axis->limits.counts_limit && used < size)
         snprintf(text + used, size - used, " Behind the bridge the motor's own counts end at +-%d, by its K37 = %u: "
-                 "that is %.6g ... %.6g u%s.", (int)axis->counts_limit, axis->config->k37, axis->counts_lower,
-                 axis->counts_upper, axis->modulo_range > 0.0 ? " of this modulo axis, turns counted" : "");
+                 "that is %.6g ... %.6g u%s.", (int)axis->limits.counts_limit, axis->config->k37,
+                 axis->limits.counts_lower, axis->limits.counts_upper,
+                 axis->position.modulo_range > 0.0 ? " of this modulo axis, turns counted" : "");
 }
 
 static void range_text(const cm1e_axis_t *axis, char *text, size_t size)
@@ -42,14 +43,14 @@ static void range_text(const cm1e_axis_t *axis, char *text, size_t size)
     snprintf(text, size,
              "Axis \"%s\": the motion was braked at %.6g u because it would have run over the limit at %.6g u. Reset "
              "the axis with MC_Reset and move away from the limit.",
-             axis->config->name, axis->error_value, axis->error_bound);
+             axis->config->name, axis->fault.value, axis->fault.bound);
     add_counts_limit(axis, text, size);
 }
 
 static void other_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     snprintf(text, size, "Axis \"%s\": %s. Remove the cause, then reset the axis with MC_Reset.", axis->config->name,
-             cm1e_strerror(axis->error));
+             cm1e_strerror(axis->fault.error));
 }
 
 void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size)
@@ -66,8 +67,8 @@ void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t siz
 
 static void refused_velocity_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    const cm1e_axis_command_t *refused = &axis->refused;
-    const double most = axis->maximum.velocity;
+    const cm1e_axis_command_t *refused = &axis->commands.refused;
+    const double most = axis->limits.maximum.velocity;
     const char *name = axis->config->name;
     const bool fits = refused->velocity > 0.0 && refused->velocity <= most;
     if (refused->kind == CM1E_COMMAND_MOVE_VELOCITY)
@@ -89,8 +90,9 @@ static void refused_dynamics_text(const cm1e_axis_t *axis, char *text, size_t si
     snprintf(text, size,
              "Axis \"%s\": acceleration %.6g, deceleration %.6g, jerk %.6g were asked for; right is 0 (the maximum), "
              "or up to %.6g u/s2, %.6g u/s2 and %.6g u/s3.",
-             axis->config->name, axis->refused.acceleration, axis->refused.deceleration, axis->refused.jerk,
-             axis->maximum.acceleration, axis->maximum.deceleration, axis->maximum.jerk);
+             axis->config->name, axis->commands.refused.acceleration, axis->commands.refused.deceleration,
+             axis->commands.refused.jerk, axis->limits.maximum.acceleration, axis->limits.maximum.deceleration,
+             axis->limits.maximum.jerk);
 }
 
 /* Nobody means so slow a motion; such numbers are what profiles cannot be computed with. */
@@ -99,17 +101,17 @@ static bool too_small(const cm1e_axis_t *axis, const cm1e_axis_command_t *comman
     static const double least_counts = 1e-6;
     const double factor = axis->override.acceleration, jerk_factor = axis->override.jerk;
     const double numbers[] = {command->velocity, factor * command->acceleration, factor * command->deceleration,
-                              jerk_factor * command->jerk, factor * axis->maximum.acceleration,
-                              jerk_factor * axis->maximum.jerk};
+                              jerk_factor * command->jerk, factor * axis->limits.maximum.acceleration,
+                              jerk_factor * axis->limits.maximum.jerk};
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
-        if (numbers[i] != 0.0 && fabs(numbers[i] * axis->scale) < least_counts)
+        if (numbers[i] != 0.0 && fabs(numbers[i] * axis->position.scale) < least_counts)
             return true;
     return false;
 }
 
 static void refused_small_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    const cm1e_axis_command_t *refused = &axis->refused;
+    const cm1e_axis_command_t *refused = &axis->commands.refused;
     snprintf(text, size,
              "Axis \"%s\": velocity %.6g, acceleration %.6g, deceleration %.6g, jerk %.6g were asked for; one of them "
              "is too small to compute with, after the factors %.6g (acceleration) and %.6g (jerk) of MC_SetOverride.",
@@ -121,33 +123,36 @@ static void refused_small_text(const cm1e_axis_t *axis, char *text, size_t size)
 static void refused_on_top_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     const from_t base = from_base(axis);
-    const bool goes = axis_on_profile(axis) && !axis->stands && axis->active && !kind_row(axis->kind)->is_endless;
+    const bool goes = axis_on_profile(axis) && !axis->setpoint.stands && axis->commands.active &&
+                      !kind_row(axis->commands.kind)->is_endless;
     snprintf(text, size,
              "Axis \"%s\": a distance of %.6g on top of a motion that is at %.6g and ends at %.6g%s would leave the "
              "software limits %.6g ... %.6g u.",
-             axis->config->name, axis->refused.position, cm1e_axis_units(axis, base.position),
-             cm1e_axis_units(axis, goes ? axis->target : base.position),
-             axis->waiting.count > 0 ? ", and of those that wait," : "", axis->lower, axis->upper);
+             axis->config->name, axis->commands.refused.position, cm1e_axis_units(axis, base.position),
+             cm1e_axis_units(axis, goes ? axis->setpoint.target : base.position),
+             axis->commands.waiting.count > 0 ? ", and of those that wait," : "", axis->limits.lower,
+             axis->limits.upper);
 }
 
 static void refused_position_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    const bool limited = axis->limit_negative_enabled || axis->limit_positive_enabled;
-    const double position = cm1e_axis_units(axis, axis->set);
-    if (axis->modulo_range > 0.0)
+    const bool limited = axis->limits.negative_enabled || axis->limits.positive_enabled;
+    const double position = cm1e_axis_units(axis, axis->setpoint.position);
+    if (axis->position.modulo_range > 0.0)
         snprintf(text, size, "Axis \"%s\": position or distance %.6g was asked for; positions of this modulo axis are "
-                 "0 ... below %.6g u.", axis->config->name, axis->refused.position, axis->modulo_range);
-    else if (axis->software_limits && axis->refused.kind == CM1E_COMMAND_MOVE_SUPERIMPOSED)
+                 "0 ... below %.6g u.", axis->config->name, axis->commands.refused.position,
+                 axis->position.modulo_range);
+    else if (axis->limits.software_limits && axis->commands.refused.kind == CM1E_COMMAND_MOVE_SUPERIMPOSED)
         refused_on_top_text(axis, text, size);
-    else if (axis->software_limits)
+    else if (axis->limits.software_limits)
         snprintf(text, size,
                  "Axis \"%s\": a motion from %.6g with target, distance or stopping way %.6g would leave the %slimits "
                  "%.6g ... %.6g u.",
-                 axis->config->name, position, axis->refused.position, limited ? "software " : "", axis->lower,
-                 axis->upper);
+                 axis->config->name, position, axis->commands.refused.position, limited ? "software " : "",
+                 axis->limits.lower, axis->limits.upper);
     else
         snprintf(text, size, "Axis \"%s\": target or distance %.6g is not a finite number within +-%.6g u.",
-                 axis->config->name, axis->refused.position, cm1e_axis_farthest(axis));
+                 axis->config->name, axis->commands.refused.position, cm1e_axis_farthest(axis));
     add_counts_limit(axis, text, size);
 }
 
@@ -182,31 +187,33 @@ static const struct {
 
 static void refused_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    const bool by_numbers = axis->refusal == CM1E_ERROR_AXIS_VELOCITY_RANGE ||
-                            axis->refusal == CM1E_ERROR_AXIS_DYNAMICS_RANGE ||
-                            axis->refusal == CM1E_ERROR_AXIS_POSITION_RANGE;
-    if (coupling_text(axis, axis->refusal, true, text, size))
+    const bool by_numbers = axis->commands.refusal == CM1E_ERROR_AXIS_VELOCITY_RANGE ||
+                            axis->commands.refusal == CM1E_ERROR_AXIS_DYNAMICS_RANGE ||
+                            axis->commands.refusal == CM1E_ERROR_AXIS_POSITION_RANGE;
+    if (coupling_text(axis, axis->commands.refusal, true, text, size))
         return;
-    if (by_numbers && kind_row(axis->refused.kind)->plan != PLAN_TABLE && too_small(axis, &axis->refused)) {
+    if (by_numbers && kind_row(axis->commands.refused.kind)->plan != PLAN_TABLE &&
+        too_small(axis, &axis->commands.refused)) {
         refused_small_text(axis, text, size);
         return;
     }
     for (size_t i = 0; i < sizeof refusal_texts / sizeof refusal_texts[0]; i++)
-        if (refusal_texts[i].error == axis->refusal) {
+        if (refusal_texts[i].error == axis->commands.refusal) {
             refusal_texts[i].text(axis, text, size);
             return;
         }
     if (axis->homing_hooks && axis->homing_hooks->refused_text(axis, text, size))
         return;
-    if (axis->motor_hooks && axis->motor_hooks->text(axis, axis->refusal, text, size))
+    if (axis->motor_hooks && axis->motor_hooks->text(axis, axis->commands.refusal, text, size))
         return;
-    if (axis->refusal == CM1E_ERROR_UNSUPPORTED && drive_profiles(axis)) {
+    if (axis->commands.refusal == CM1E_ERROR_UNSUPPORTED && drive_profiles(axis)) {
         refused_by_drive_text(axis, text, size);
         return;
     }
     snprintf(text, size, "Axis \"%s\", %s: %s.%s", axis->config->name, cm1e_axis_state_name(axis->state),
-             cm1e_strerror(axis->refusal),
-             axis->refusal == CM1E_ERROR_PDO_MAPPING ? cm1e_axis_signals_advice(axis, axis->refusal) : "");
+             cm1e_strerror(axis->commands.refusal),
+             axis->commands.refusal == CM1E_ERROR_PDO_MAPPING ? cm1e_axis_signals_advice(axis, axis->commands.refusal)
+                                                              : "");
 }
 
 static const struct {
@@ -227,26 +234,26 @@ void cm1e_axis_error_text(AXIS_REF_t reference, char *text, size_t size)
     const cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
     if (!axis)
         return;
-    if (axis->error == CM1E_OK) {
-        if (axis->refusal)
+    if (axis->fault.error == CM1E_OK) {
+        if (axis->commands.refusal)
             refused_text(axis, text, size);
         else if (axis->not_set.error)
             cm1e_axis_not_set_text(axis, text, size);
         return;
     }
-    if (axis->error == axis->drive.fault.error) {
+    if (axis->fault.error == axis->drive.fault.error) {
         cm1e_drive_fault_text(&axis->drive, text, size);
-        if (axis->error == CM1E_ERROR_DRIVE_FAULT)
+        if (axis->fault.error == CM1E_ERROR_DRIVE_FAULT)
             cm1e_axis_in_position_add(axis, text, size);
         return;
     }
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
-        if (texts[i].error == axis->error) {
+        if (texts[i].error == axis->fault.error) {
             texts[i].text(axis, text, size);
             return;
         }
     if (axis->homing_hooks && axis->homing_hooks->failed_text(axis, text, size))
         return;
-    if (!coupling_text(axis, axis->error, false, text, size))
+    if (!coupling_text(axis, axis->fault.error, false, text, size))
         other_text(axis, text, size);
 }

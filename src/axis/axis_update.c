@@ -20,14 +20,14 @@ static move_t merged(const move_t *old, const move_t *inputs)
 static cm1e_error_t update_active(cm1e_axis_t *axis, const move_t *inputs)
 {
     if (drive_profiles(axis))
-        return cm1e_axis_same_inputs(&axis->move, inputs) ? CM1E_OK : CM1E_ERROR_UNSUPPORTED;
-    if ((!axis_on_profile(axis) && !axis_settling(axis)) || inputs->kind != axis->kind)
+        return cm1e_axis_same_inputs(&axis->commands.move, inputs) ? CM1E_OK : CM1E_ERROR_UNSUPPORTED;
+    if ((!axis_on_profile(axis) && !axis_settling(axis)) || inputs->kind != axis->commands.kind)
         return CM1E_ERROR_INVALID_ARGUMENT;
-    if (cm1e_axis_same_inputs(&axis->move, inputs))
+    if (cm1e_axis_same_inputs(&axis->commands.move, inputs))
         return CM1E_OK;
-    move_t move = merged(&axis->move, inputs);
+    move_t move = merged(&axis->commands.move, inputs);
     const from_t from = from_base(axis);
-    if (!cm1e_axis_same_way(&axis->move, inputs)) {
+    if (!cm1e_axis_same_way(&axis->commands.move, inputs)) {
         const cm1e_error_t error = cm1e_axis_resolve(axis, &from, &move);
         if (error)
             return error;
@@ -41,7 +41,7 @@ static cm1e_error_t update_active(cm1e_axis_t *axis, const move_t *inputs)
 cm1e_error_t cm1e_axis_update_move(cm1e_axis_t *axis, cm1e_command_id_t id, const cm1e_axis_command_t *command)
 {
     const move_t inputs = cm1e_axis_move_of(command);
-    if (id == axis->active)
+    if (id == axis->commands.active)
         return update_active(axis, &inputs);
     const move_t *waiting = cm1e_axis_find_waiting(axis, id);
     if (waiting && waiting->kind != inputs.kind)

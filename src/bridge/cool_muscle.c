@@ -63,7 +63,7 @@ static cm1e_drive_cml_t *cml_of(const cm1e_axis_t *axis)
 
 static cm1e_error_t refuse(cm1e_axis_t *axis, cm1e_error_t error, const char *why, const char *text)
 {
-    axis->refusal = error;
+    axis->commands.refusal = error;
     if (axis->muscle) {
         axis->muscle->why = why;
         const size_t size = text ? strnlen(text, sizeof axis->muscle->text - 1) : 0;
@@ -76,8 +76,8 @@ static cm1e_error_t refuse(cm1e_axis_t *axis, cm1e_error_t error, const char *wh
 
 static bool is_quiet(const cm1e_axis_t *axis)
 {
-    return axis->state == CM1E_AXIS_DISABLED && axis_free(axis) && !axis->power_enable &&
-           !axis->drive.torque && !axis->shutting_down;
+    return axis->state == CM1E_AXIS_DISABLED && axis_free(axis) && !axis->power.enable &&
+           !axis->drive.torque && !axis->power.shutting_down;
 }
 
 /* In ErrorStop nothing is switched; but a motor that is in CML already can be asked what is the matter. */
@@ -150,14 +150,14 @@ cm1e_error_t cm1e_axis_cml_send(cm1e_axis_t *axis, const char *text, size_t size
     if (error)
         return refuse(axis, error, why, copy);
     cool_muscle_t *muscle = axis->muscle;
-    axis->refusal = CM1E_OK;
+    axis->commands.refusal = CM1E_OK;
     muscle->last = *ticket;
     if (muscle->next != CM1E_BRIDGE_MODE_CML)
         end_switching(muscle, CM1E_COMMAND_ABORTED, CM1E_OK);
     muscle->next = CM1E_BRIDGE_MODE_CML;
     if (cm1e_cml_kind(copy) == CM1E_CML_MOTION) {
         muscle->moved = true;
-        axis->homed = false;
+        axis->position.homed = false;
     }
     return CM1E_OK;
 }
@@ -197,7 +197,7 @@ cm1e_error_t cm1e_axis_set_mode(cm1e_axis_t *axis, cm1e_bridge_mode_t mode, bool
     if (error)
         return refuse(axis, error, why, NULL);
     cool_muscle_t *muscle = axis->muscle;
-    axis->refusal = CM1E_OK;
+    axis->commands.refusal = CM1E_OK;
     muscle->next = (int8_t)mode;
     muscle->insist = insist;
     *ticket = ++muscle->switching.ticket;
@@ -230,7 +230,7 @@ static void follow_switch(cm1e_axis_t *axis)
     cool_muscle_t *muscle = axis->muscle;
     const int8_t shown = axis->drive.feedback.mode;
     if (axis->state == CM1E_AXIS_ERROR_STOP && muscle->switching.state == CM1E_COMMAND_ACTIVE)
-        end_switching(muscle, CM1E_COMMAND_ERROR, axis->error);
+        end_switching(muscle, CM1E_COMMAND_ERROR, axis->fault.error);
     if (axis->state == CM1E_AXIS_ERROR_STOP && is_mode(shown))
         muscle->next = muscle->mode = shown;
     if (shown != muscle->next || muscle->mode != muscle->next)
@@ -270,8 +270,9 @@ cm1e_error_t cm1e_axis_motor_command(cm1e_axis_t *axis, cm1e_drive_cmd_t command
         error = CM1E_ERROR_CM_MODE;
     if (error)
         return refuse(axis, error, error == CM1E_ERROR_CM_MODE ? not_in_cmd : NULL, NULL);
-    axis->refusal = CM1E_OK;
-    axis->homed = axis->homed && command != CM1E_DRIVE_CMD_ORIGIN_SEARCH && command != CM1E_DRIVE_CMD_RESET_COUNTER;
+    axis->commands.refusal = CM1E_OK;
+    axis->position.homed = axis->position.homed && command != CM1E_DRIVE_CMD_ORIGIN_SEARCH &&
+                           command != CM1E_DRIVE_CMD_RESET_COUNTER;
     *ticket = ++axis->muscle->command.ticket;
     axis->muscle->command.state = CM1E_COMMAND_ACTIVE;
     return CM1E_OK;
@@ -365,15 +366,15 @@ static void step(cm1e_axis_t *axis)
     follow_command(axis);
     follow_string(axis);
     follow_return(axis);
-    muscle->release_ns = axis->shutting_down ? muscle->release_ns : 0;
-    if ((axis->power_enable || axis->shutting_down) && !failed && muscle->next == cml && leads_home(axis)) {
+    muscle->release_ns = axis->power.shutting_down ? muscle->release_ns : 0;
+    if ((axis->power.enable || axis->power.shutting_down) && !failed && muscle->next == cml && leads_home(axis)) {
         end_switching(muscle, CM1E_COMMAND_ABORTED, CM1E_OK);
         muscle->next = (int8_t)axis->mode;
     }
     const bool away = muscle->moved && !muscle->must_free && !cm1e_drive_operational(&axis->drive);
     const bool leaves = muscle->next != cml && !muscle->must_free; /* before it was there, too */
     if ((failed && !muscle->failed) || away || (leaves && (muscle->moved || !cm1e_drive_cml_idle(cml_of(axis)))))
-        end_strings(axis, failed ? axis->error : away ? CM1E_ERROR_BUS_LOST : CM1E_ERROR_CANCELLED);
+        end_strings(axis, failed ? axis->fault.error : away ? CM1E_ERROR_BUS_LOST : CM1E_ERROR_CANCELLED);
     muscle->failed = failed;
     free_step(axis);
     if (muscle->mode != cml || (!muscle->must_free && cm1e_drive_cml_idle(cml_of(axis))))

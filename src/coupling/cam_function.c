@@ -14,7 +14,7 @@ static const double largest_scaling = 1e9;
 /* Divided, so that a master at an end of the cam is exactly there. */
 static double place_in_cam(const cam_place_t *cam, const link_t *link, double counts)
 {
-    const double way = (counts + cam->away) / link->master->scale - cam->master_offset;
+    const double way = (counts + cam->away) / link->master->position.scale - cam->master_offset;
     return cam->master_scaling == 1.0 ? way : way / cam->master_scaling;
 }
 
@@ -92,7 +92,7 @@ static void sample_point(const cm1e_axis_t *axis, const follow_t *follow, const 
     const cm1e_curve_point_t here = {.slope = steeper * sample->point.slope,
                                      .curvature = steeper * sample->point.curvature * cam->finer};
     const cm1e_motion_state_t motion = cm1e_curve_motion(&here, seen->velocity, seen->acceleration);
-    *point = (from_t){.position = cm1e_position_towards(cam->slave_zero, height(cam, sample) * axis->scale),
+    *point = (from_t){.position = cm1e_position_towards(cam->slave_zero, height(cam, sample) * axis->position.scale),
                       .velocity = motion.velocity, .acceleration = motion.acceleration};
 }
 
@@ -132,7 +132,7 @@ void cm1e_cam_in_point(const cm1e_axis_t *axis, const follow_t *follow, double c
     if (!table->periodic && place >= table->start - within && place <= table->start + table->length + within)
         place = fmax(table->start + within, fmin(place, table->start + table->length - within));
     cm1e_cam_sample(table, &unused, place, &sample);
-    *position = cm1e_position_towards(cam->slave_zero, height(cam, &sample) * axis->scale);
+    *position = cm1e_position_towards(cam->slave_zero, height(cam, &sample) * axis->position.scale);
     *point = (cm1e_curve_point_t){.slope = cam->slave_scaling * once * sample.point.slope,
                                   .curvature = cam->slave_scaling * once * once * sample.point.curvature};
 }
@@ -161,7 +161,7 @@ static double part_of(double asked, double most, double needed)
 cm1e_motion_limits_t cm1e_cam_leaves(const cm1e_axis_t *axis, const follow_t *follow,
                                           const cm1e_motion_limits_t *asked)
 {
-    const cm1e_motion_limits_t nothing = {0}, *most = &axis->maximum;
+    const cm1e_motion_limits_t nothing = {0}, *most = &axis->limits.maximum;
     const cm1e_motion_limits_t needed = follow->cam.slot ? cam_demand(follow) : nothing;
     /* What slows down beside a cam may speed up the axis. */
     const double change = part_of(fmin(asked->acceleration, asked->deceleration),
@@ -216,16 +216,16 @@ static void begins_at_end(const cm1e_axis_t *axis, const follow_t *follow, doubl
     const double turns = !table->periodic ? 0.0 : cam->before.turn + (upper ? 1.0 : 0.0);
     const double end = table->start + (table->periodic ? turns * table->length : upper ? table->length : 0.0);
     const double place = table->periodic || !upper ? first->slave : last->slave;
-    *beyond = (place_now(before) - end) * cam->master_scaling * before->links[0].master->scale;
+    *beyond = (place_now(before) - end) * cam->master_scaling * before->links[0].master->position.scale;
     *slave = cm1e_position_plus(cam->slave_zero, (cam->slave_offset + cam->slave_scaling *
-                                                  (turns * table->advance + place)) * axis->scale);
+                                                  (turns * table->advance + place)) * axis->position.scale);
 }
 
 static void find_master_zero(const follow_t *follow, cam_place_t *cam, double beyond)
 {
     const link_t *link = &follow->links[0];
     const double units = cm1e_axis_units(link->master, link->origin);
-    cam->away = cam->slot->master_absolute ? units * link->master->scale : beyond - link->seen.counts;
+    cam->away = cam->slot->master_absolute ? units * link->master->position.scale : beyond - link->seen.counts;
 }
 
 /* Of the places of a modulo slave, the cam's that is nearest to it. */
@@ -233,20 +233,20 @@ static cm1e_error_t find_slave_zero(const cm1e_axis_t *axis, const cm1e_axis_cou
                                     cam_place_t *cam, double here)
 {
     if (coupling->start_mode == mcRelative || !cam->slot->slave_absolute) {
-        const double way = (cam->slave_offset - here) * axis->scale;
+        const double way = (cam->slave_offset - here) * axis->position.scale;
         if (!cm1e_position_reaches(from->position, way))
             return CM1E_ERROR_AXIS_POSITION_RANGE;
         cam->slave_zero = cm1e_position_plus(from->position, way);
         return CM1E_OK;
     }
-    if (axis->modulo_range == 0.0)
+    if (axis->position.modulo_range == 0.0)
         return cm1e_axis_position_from_units(axis, 0.0, &cam->slave_zero) ? CM1E_OK : CM1E_ERROR_AXIS_POSITION_RANGE;
     const double way = here - cm1e_axis_units(axis, from->position);
-    const double turns = round(way / axis->modulo_range);
-    if (!cm1e_position_reaches(from->position, fabs(way * axis->scale) + fabs(here * axis->scale)))
+    const double turns = round(way / axis->position.modulo_range);
+    if (!cm1e_position_reaches(from->position, fabs(way * axis->position.scale) + fabs(here * axis->position.scale)))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     cam->slave_zero = cm1e_position_plus(from->position,
-                                         (way - turns * axis->modulo_range - here) * axis->scale);
+                                         (way - turns * axis->position.modulo_range - here) * axis->position.scale);
     return CM1E_OK;
 }
 
@@ -256,7 +256,7 @@ static bool contained(const cm1e_axis_t *axis, const from_t *from, const cam_pla
     const cm1e_cam_t *table = &cam->slot->cam;
     if (table->periodic && table->advance != 0.0)
         return true;
-    const double zero = cm1e_position_minus(cam->slave_zero, from->position) / axis->scale + cam->slave_offset;
+    const double zero = cm1e_position_minus(cam->slave_zero, from->position) / axis->position.scale + cam->slave_offset;
     const double a = zero + cam->slave_scaling * table->extremes.lowest;
     const double b = zero + cam->slave_scaling * table->extremes.highest;
     return cm1e_axis_limits_contain_way(axis, from, fmin(a, b), fmax(a, b));
@@ -270,8 +270,8 @@ static bool on_it(cm1e_axis_t *axis, const from_t *from, const from_t *wanted)
     *refused = (cam_refused_t){cm1e_axis_units(axis, from->position), cm1e_axis_units(axis, wanted->position),
                                from->velocity, wanted->velocity};
     return fabs(way) <= cm1e_axis_few(axis, same_place_counts) &&
-           fabs(velocity) <= same_motion_cycles * axis->cycle_s * fmin(axis->maximum.acceleration,
-                                                                       axis->maximum.deceleration);
+           fabs(velocity) <= same_motion_cycles * axis->cycle_s * fmin(axis->limits.maximum.acceleration,
+                                                                       axis->limits.maximum.deceleration);
 }
 
 /* MasterSyncPosition is a place in the cam; of a periodic one it comes again. */
@@ -281,11 +281,11 @@ static cm1e_error_t by_way(cm1e_axis_t *axis, follow_t *follow, const move_t *mo
     const cam_place_t *cam = &follow->cam;
     const cm1e_cam_t *table = &cam->slot->cam;
     const bool absolute = cam->slot->slave_absolute && coupling->start_mode != mcRelative;
-    const double scale = follow->links[0].master->scale;
+    const double scale = follow->links[0].master->position.scale;
     approach_t *approach = &follow->approach;
     approach->then = follow->function;
     approach->mode = mcShortest;
-    approach->turn = absolute ? axis->modulo_range : 0.0;
+    approach->turn = absolute ? axis->position.modulo_range : 0.0;
     approach->start_distance = coupling->master_start_distance * scale;
     approach->sync = (coupling->master_sync_position * cam->master_scaling + cam->master_offset) * scale - cam->away;
     approach->again = table->periodic ? fabs(table->length * cam->master_scaling * scale) : 0.0;
@@ -347,7 +347,7 @@ cm1e_error_t cm1e_cam_in_update(cm1e_axis_t *axis, const cm1e_axis_coupling_t *c
     cm1e_motion_limits_t limits;
     cm1e_error_t error = take_numbers(axis, now->links[0].master, coupling, &cam);
     if (!error)
-        error = cm1e_axis_limits_of(axis, &from, &axis->move, &limits);
+        error = cm1e_axis_limits_of(axis, &from, &axis->commands.move, &limits);
     if (error)
         return error;
     if (!contained(axis, &from, &cam))

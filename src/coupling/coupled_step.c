@@ -22,7 +22,7 @@ static cm1e_motion_limits_t limits_beside(const cm1e_axis_t *axis, const from_t 
     const catch_up_t *catch_up = &axis->coupling->catch_up;
     if (axis->coupling->now->to_position)
         return cm1e_cam_leaves(axis, axis->coupling->now, &catch_up->asked);
-    const cm1e_motion_limits_t *most = &axis->maximum;
+    const cm1e_motion_limits_t *most = &axis->limits.maximum;
     const double now = f->velocity + catch_up->now.velocity, way = catch_up->now.velocity > 0.0 ? -1.0 : 1.0;
     const bool helps = f->acceleration * way <= 0.0 && catch_up->now.acceleration * way >= 0.0;
     const double used = helps ? 0.0 : fabs(f->acceleration);
@@ -69,12 +69,12 @@ static from_t sum_of(const cm1e_axis_t *axis, const from_t *f)
     const cm1e_motion_state_t *catch_up = &axis->coupling->catch_up.now, *on_top = &axis->superimposed.now;
     from_t sum = *f;
     if (axis->coupling->catch_up.on) {
-        sum.position = cm1e_position_plus(sum.position, catch_up->position * axis->scale);
+        sum.position = cm1e_position_plus(sum.position, catch_up->position * axis->position.scale);
         sum.velocity += catch_up->velocity;
         sum.acceleration += catch_up->acceleration;
     }
     if (axis->superimposed.id) {
-        sum.position = cm1e_position_plus(sum.position, on_top->position * axis->scale);
+        sum.position = cm1e_position_plus(sum.position, on_top->position * axis->position.scale);
         sum.velocity += on_top->velocity;
         sum.acceleration += on_top->acceleration;
     }
@@ -185,13 +185,13 @@ static from_t with_superimposed(cm1e_axis_t *axis, const from_t *f, verdict_t *v
 
 static void emit(cm1e_axis_t *axis, const from_t *point)
 {
-    axis->set = point->position;
-    axis->set_velocity = point->velocity;
-    axis->set_acceleration = point->acceleration;
+    axis->setpoint.position = point->position;
+    axis->setpoint.velocity = point->velocity;
+    axis->setpoint.acceleration = point->acceleration;
     if (point->velocity != 0.0)
-        axis->positive_before = point->velocity > 0.0;
-    if (!cm1e_position_in_range(axis->set))
-        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->set),
+        axis->setpoint.positive_before = point->velocity > 0.0;
+    if (!cm1e_position_in_range(axis->setpoint.position))
+        cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->setpoint.position),
                        cm1e_axis_farthest(axis));
 }
 
@@ -201,7 +201,7 @@ static void end_catch_up(cm1e_axis_t *axis)
     coupling_t *c = axis->coupling;
     const double left = c->catch_up.profile.end.position;
     if (!c->catch_up.made_up)
-        c->now->anchor = cm1e_position_plus(c->now->anchor, left * axis->scale);
+        c->now->anchor = cm1e_position_plus(c->now->anchor, left * axis->position.scale);
     c->catch_up.on = false;
     c->catch_up.now = (cm1e_motion_state_t){0};
 }
@@ -210,7 +210,8 @@ static void end_catch_up(cm1e_axis_t *axis)
 static void catch_up_ended(cm1e_axis_t *axis, const from_t *f)
 {
     catch_up_t *catch_up = &axis->coupling->catch_up;
-    if (!catch_up->made_up || catch_up->to_place || fabs(catch_up->now.position * axis->scale) < rounding_counts) {
+    if (!catch_up->made_up || catch_up->to_place ||
+        fabs(catch_up->now.position * axis->position.scale) < rounding_counts) {
         end_catch_up(axis);
         return;
     }
@@ -231,8 +232,8 @@ static void after_set_point(cm1e_axis_t *axis, const from_t *f)
         catch_up_ended(axis, f);
     if (axis->superimposed.id)
         cm1e_axis_superimposed_after(axis);
-    axis->reached = !catch_up->on && c->now->in_step;
-    if (axis->reached && axis->waiting.count > 0 &&
+    axis->setpoint.reached = !catch_up->on && c->now->in_step;
+    if (axis->setpoint.reached && axis->commands.waiting.count > 0 &&
         (!c->now->waits_for_end || c->end_of_profile || c->now->cam.left != 0.0)) {
         const from_t from = from_base(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);
@@ -243,7 +244,7 @@ static void after_set_point(cm1e_axis_t *axis, const from_t *f)
 static bool stop_alone(cm1e_axis_t *axis, guard_t guard)
 {
     if (axis->coupling->stopping)
-        cm1e_axis_ramp_down(axis, &axis->emergency);
+        cm1e_axis_ramp_down(axis, &axis->limits.emergency);
     else if (guard.limit)
         cm1e_axis_guard_fail(axis, guard);
     else
@@ -317,8 +318,9 @@ static void leave(cm1e_axis_t *axis)
 /* Nobody knows where the masters go. */
 static bool keeps(const cm1e_axis_t *axis, double lower, double upper)
 {
-    const double v = axis->set_velocity, stop = cm1e_axis_line(axis, axis->set) + v * fabs(v) * axis->emergency_way;
-    return stop <= upper + axis->tolerance && stop >= lower - axis->tolerance;
+    const double v = axis->setpoint.velocity;
+    const double stop = cm1e_axis_line(axis, axis->setpoint.position) + v * fabs(v) * axis->limits.emergency_way;
+    return stop <= upper + axis->limits.tolerance && stop >= lower - axis->limits.tolerance;
 }
 
 const source_t cm1e_source_coupling = {
@@ -336,7 +338,7 @@ const source_t cm1e_source_coupling = {
 /* What rounding leaves of nothing at all. */
 static bool is_nothing(const cm1e_axis_t *axis, const cm1e_motion_state_t *left)
 {
-    const double counts = 1e-6, t = axis->cycle_s, scale = fabs(axis->scale);
+    const double counts = 1e-6, t = axis->cycle_s, scale = fabs(axis->position.scale);
     return fabs(left->position) * scale < counts && fabs(left->velocity) * scale * t < counts &&
            fabs(left->acceleration) * scale * t * t < counts;
 }
@@ -356,7 +358,8 @@ static void begin_catch_up(cm1e_axis_t *axis, const from_t *from, const cm1e_mot
     c->f_velocity = f.velocity;
     c->f_acceleration = f.acceleration;
     c->catch_up = (catch_up_t){.asked = *asked, .made_up = made_up,
-                       .now = {counts / axis->scale, from->velocity - f.velocity, from->acceleration - f.acceleration},
+                       .now = {counts / axis->position.scale, from->velocity - f.velocity,
+                               from->acceleration - f.acceleration},
                        .held_back = f.acceleration != 0.0};
     if (is_nothing(axis, &c->catch_up.now))
         c->catch_up.now = (cm1e_motion_state_t){0};
@@ -379,7 +382,7 @@ void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *fro
     begin_catch_up(axis, from, asked, c->now->to_position);
     cm1e_axis_set_source(axis, &cm1e_source_coupling);
     cm1e_axis_guard_renew(axis);
-    axis->reached = axis->paused = axis->stands = false;
+    axis->setpoint.reached = axis->setpoint.paused = axis->setpoint.stands = false;
 }
 
 /* Where all stand at their last targets, they are in step as before: the catch-up is what it was. */
@@ -397,15 +400,15 @@ static void begin_anew(cm1e_axis_t *axis)
     /* A slave that was in step gets back into its place; on its way there, lost distance is not made up (4.5, note 1).
      * A motor that went on by itself in CSV is not asked to come back. */
     const bool was_in_step = !c->catch_up.on || c->catch_up.made_up, comes_back = axis->mode == CM1E_MODE_CSP ||
-                                                                          axis->silent_before > 0;
+                                                                          axis->silence.silent_before > 0;
     begin_catch_up(axis, &from, &asked, c->now->to_position || (was_in_step && comes_back));
-    axis->reached = false;
+    axis->setpoint.reached = false;
 }
 
 void cm1e_coupling_shift(cm1e_axis_t *axis, double way)
 {
     follow_t *now = axis->coupling->now;
-    const double counts = way * axis->scale;
+    const double counts = way * axis->position.scale;
     position_t *const places[] = {&now->anchor, &now->cam.slave_zero, &now->approach.begin, &now->approach.end};
     for (int i = 0; i < 4; i++)
         *places[i] = cm1e_position_plus(*places[i], counts);

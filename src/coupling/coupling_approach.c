@@ -47,8 +47,8 @@ static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
 {
     const approach_t *approach = &follow->approach;
     const link_t *link = &follow->links[0];
-    const double counts = link->seen.counts - approach->sync, master = counts / link->master->scale;
-    const double left = (approach->first < 0.0 ? -master : master) * fabs(link->master->scale);
+    const double counts = link->seen.counts - approach->sync, master = counts / link->master->position.scale;
+    const double left = (approach->first < 0.0 ? -master : master) * fabs(link->master->position.scale);
     if (left <= same_place) {
         arrive(follow);
         follow->function->evaluate(axis, follow, point);
@@ -56,7 +56,7 @@ static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
     }
     const cm1e_curve_point_t here = point_at(approach, master);
     const cm1e_motion_state_t motion = cm1e_curve_motion(&here, link->seen.velocity, link->seen.acceleration);
-    *point = (from_t){.position = cm1e_position_towards(approach->begin, motion.position * axis->scale),
+    *point = (from_t){.position = cm1e_position_towards(approach->begin, motion.position * axis->position.scale),
                       .velocity = motion.velocity, .acceleration = motion.acceleration};
 }
 
@@ -95,14 +95,14 @@ static cm1e_error_t plan(cm1e_axis_t *axis, follow_t *follow, const from_t *from
     approach_t *approach = &follow->approach;
     const link_t *link = &follow->links[0];
     const cm1e_motion_state_t slave = {0.0, from->velocity, from->acceleration};
-    const double first = (link->seen.counts - sync) / link->master->scale;
+    const double first = (link->seen.counts - sync) / link->master->position.scale;
     cm1e_curve_point_t begin, end = {.slope = link->ratio};
     cm1e_curve_t curve;
     cm1e_curve_extremes_t extremes;
     position_t meeting = approach->end;
     if (follow->cam.slot)
         cm1e_cam_in_point(axis, follow, sync, &meeting, &end);
-    const double place = cm1e_position_minus(meeting, from->position) / axis->scale;
+    const double place = cm1e_position_minus(meeting, from->position) / axis->position.scale;
     axis->coupling->cams->approach_refused = (approach_refused_t){0};
     if (!cm1e_curve_point_of(&begin, &slave, link->seen.velocity, link->seen.acceleration))
         return CM1E_ERROR_AXIS_SYNC_WAY;
@@ -114,7 +114,7 @@ static cm1e_error_t plan(cm1e_axis_t *axis, follow_t *follow, const from_t *from
         return CM1E_ERROR_AXIS_SYNC_WAY;
     if (!cm1e_axis_limits_contain_way(axis, from, extremes.lowest, extremes.highest))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    const double shift = (end.position - place) * axis->scale; /* turns of a modulo slave */
+    const double shift = (end.position - place) * axis->position.scale; /* turns of a modulo slave */
     if (!cm1e_position_reaches(meeting, shift))
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     approach->curve = curve;
@@ -133,7 +133,7 @@ static double direction(const follow_t *follow)
 {
     const double distance = follow->approach.start_distance;
     const link_t *link = &follow->links[0];
-    return copysign(1.0, distance != 0.0 ? distance : link->seen.velocity * link->master->scale);
+    return copysign(1.0, distance != 0.0 ? distance : link->seen.velocity * link->master->position.scale);
 }
 
 /* Counts of the master since it was where the approach begins; where that comes again, since the last time. */
@@ -184,13 +184,13 @@ static bool met_already(const cm1e_axis_t *axis, follow_t *follow, const from_t 
     const link_t *link = &follow->links[0];
     const double few_counts = 2.0, left = approach->sync - link->seen.counts;
     const double master = approach->again > 0.0 ? remainder(left, approach->again) : left;
-    const double u = cm1e_position_minus(approach->end, from->position) / axis->scale;
+    const double u = cm1e_position_minus(approach->end, from->position) / axis->position.scale;
     const double slave = (approach->turn > 0.0 ? remainder(u, approach->turn) : u);
-    if (fabs(master) > few_counts || fabs(slave * axis->scale) > few_counts || link->seen.velocity != 0.0 ||
+    if (fabs(master) > few_counts || fabs(slave * axis->position.scale) > few_counts || link->seen.velocity != 0.0 ||
         from->velocity != 0.0)
         return false;
     follow->approach.sync = link->seen.counts + master;
-    follow->approach.end = cm1e_position_plus(from->position, slave * axis->scale);
+    follow->approach.end = cm1e_position_plus(from->position, slave * axis->position.scale);
     return true;
 }
 
@@ -270,10 +270,10 @@ cm1e_error_t cm1e_gear_in_pos_prepare(cm1e_axis_t *axis, const move_t *move,
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     approach->then = follow->function;
     approach->mode = coupling->sync_mode;
-    approach->turn = axis->modulo_range;
-    approach->start_distance = coupling->master_start_distance * master->scale;
-    approach->sync = (coupling->master_sync_position - cm1e_axis_units(master, link->origin)) * master->scale;
-    approach->again = master->modulo_range * fabs(master->scale);
+    approach->turn = axis->position.modulo_range;
+    approach->start_distance = coupling->master_start_distance * master->position.scale;
+    approach->sync = (coupling->master_sync_position - cm1e_axis_units(master, link->origin)) * master->position.scale;
+    approach->again = master->position.modulo_range * fabs(master->position.scale);
     return cm1e_coupling_approach_prepare(axis, follow, move, from);
 }
 

@@ -14,7 +14,7 @@ static prepare_t *const preparers[CM1E_COMMAND_KIND_COUNT] = {
 /* Some numbers are too small to compute with, whatever the masters do when it begins. */
 static cm1e_error_t check_size(const cm1e_axis_t *axis, const cm1e_motion_limits_t *asked)
 {
-    const double most = axis->maximum.velocity;
+    const double most = axis->limits.maximum.velocity;
     const cm1e_motion_state_t fastest = {.velocity = most};
     const cm1e_motion_limits_t limits = {2.0 * most, asked->acceleration, asked->deceleration, asked->jerk};
     cm1e_profile_t profile;
@@ -34,9 +34,9 @@ static void take(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling
                  const from_t *from, const cm1e_motion_limits_t *limits)
 {
     cm1e_axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    axis->active = move->id;
-    axis->kind = (cm1e_command_kind_t)move->kind;
-    axis->move = *move;
+    axis->commands.active = move->id;
+    axis->commands.kind = (cm1e_command_kind_t)move->kind;
+    axis->commands.move = *move;
     axis->coupling->inputs = *coupling;
     axis->coupling->ends = 0;
     cm1e_coupling_follow(axis, follow, from, limits);
@@ -70,17 +70,17 @@ static cm1e_error_t update_active(cm1e_axis_t *axis, const cm1e_axis_command_t *
     const from_t from = from_base(axis);
     move_t move = cm1e_axis_move_of(command);
     cm1e_motion_limits_t limits;
-    if (axis_follows(axis) && command->kind == axis->kind && command->kind == CM1E_COMMAND_CAM_IN)
+    if (axis_follows(axis) && command->kind == axis->commands.kind && command->kind == CM1E_COMMAND_CAM_IN)
         return cm1e_cam_in_update(axis, command->coupling);
-    if (!axis_follows(axis) || command->kind != axis->kind || !begins_anew(command->kind))
+    if (!axis_follows(axis) || command->kind != axis->commands.kind || !begins_anew(command->kind))
         return CM1E_ERROR_INVALID_ARGUMENT;
-    if (cm1e_axis_same_inputs(&axis->move, &move) && same_inputs(&c->inputs, command->coupling))
+    if (cm1e_axis_same_inputs(&axis->commands.move, &move) && same_inputs(&c->inputs, command->coupling))
         return CM1E_OK;
     const cm1e_error_t error = prepare(axis, &move, command->coupling, &from, &limits);
     if (error)
         return error;
-    move.id = axis->move.id;
-    axis->move = move;
+    move.id = axis->commands.move.id;
+    axis->commands.move = move;
     c->inputs = *command->coupling;
     cm1e_coupling_follow(axis, cm1e_coupling_spare(axis), &from, &limits);
     return CM1E_OK;
@@ -110,7 +110,7 @@ static void take_later(cm1e_axis_t *axis, move_t *move, const cm1e_axis_coupling
     cm1e_axis_waiting_end(axis, CM1E_COMMAND_ABORTED);
     move->id = cm1e_axis_next_id(axis);
     *free_place(axis) = (waiting_coupling_t){move->id, *coupling};
-    *waiting_move(axis, axis->waiting.count++) = *move;
+    *waiting_move(axis, axis->commands.waiting.count++) = *move;
     cm1e_coupling_await(axis, follow);
 }
 
@@ -146,7 +146,7 @@ cm1e_error_t cm1e_coupling_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *
         return CM1E_ERROR_INVALID_ARGUMENT;
     if (!place)
         return CM1E_ERROR_FULL;
-    *place = (waiting_coupling_t){axis->last_id + 1 ? axis->last_id + 1 : 1, *command->coupling};
+    *place = (waiting_coupling_t){axis->commands.last_id + 1 ? axis->commands.last_id + 1 : 1, *command->coupling};
     const cm1e_error_t error = cm1e_axis_buffer(axis, &move);
     if (error)
         place->id = 0; /* the number will be another command's */
@@ -159,7 +159,7 @@ cm1e_error_t cm1e_coupling_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *
 static from_t at_present(const cm1e_axis_t *axis, const from_t *from, double late_s)
 {
     from_t here = *from;
-    here.position = cm1e_position_plus(from->position, from->velocity * late_s * axis->scale);
+    here.position = cm1e_position_plus(from->position, from->velocity * late_s * axis->position.scale);
     return here;
 }
 
@@ -216,7 +216,7 @@ cm1e_error_t cm1e_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, const
 {
     if (!command->coupling)
         return CM1E_ERROR_INVALID_ARGUMENT;
-    if (id == axis->active)
+    if (id == axis->commands.active)
         return update_active(axis, command);
     move_t *waiting = cm1e_axis_find_waiting(axis, id);
     if (!waiting)

@@ -65,24 +65,27 @@ static double braking_together(const cm1e_axis_t *axis)
     const double slope = follow->function->steepest(axis, follow, 0);
     if (follow->count != 1 || link->source != mcSetValue || !set_points_move(link->master) || !(slope > 0.0))
         return 0.0;
-    return fmin(axis->emergency.deceleration, link->master->emergency.deceleration * slope);
+    return fmin(axis->limits.emergency.deceleration, link->master->limits.emergency.deceleration * slope);
 }
 
 /* The limit that the pair would run over if it went on for another cycle before it brakes. */
 static guard_t limit_ahead(const cm1e_axis_t *axis, double braking)
 {
-    const double t = axis->cycle_s, v = axis->set_velocity + axis->set_acceleration * t, most = axis->system.velocity;
-    const double line = cm1e_axis_line(axis, axis->set) + (axis->set_velocity + v) / 2.0 * t;
+    const double t = axis->cycle_s, v = axis->setpoint.velocity + axis->setpoint.acceleration * t;
+    const double most = axis->limits.system.velocity;
+    const double line = cm1e_axis_line(axis, axis->setpoint.position) + (axis->setpoint.velocity + v) / 2.0 * t;
     const double end = line + v * fabs(v) / (2.0 * braking) + v * t;
     /* In that cycle the acceleration may grow too; what it is then takes time to end. */
-    const double a = fabs(axis->set_acceleration) + axis->guarding.jerk, toward = axis->set_acceleration * v;
+    const double a = fabs(axis->setpoint.acceleration) + axis->limits.guarding.jerk;
+    const double toward = axis->setpoint.acceleration * v;
     const bool eases = coupling_keeps_jerk(axis->coupling) && toward > 0.0;
-    const double peak = fabs(v) + (eases ? a * a * axis->guarding.ease : 0.0);
+    const double peak = fabs(v) + (eases ? a * a * axis->limits.guarding.ease : 0.0);
     if (peak > most)
         return (guard_t){.limit = GUARD_VELOCITY, .asked = peak, .allowed = most};
-    if (axis->software_limits && ((v > 0.0 && end > axis->upper) || (v < 0.0 && end < axis->lower)))
+    if (axis->limits.software_limits && ((v > 0.0 && end > axis->limits.upper) ||
+                                         (v < 0.0 && end < axis->limits.lower)))
         return (guard_t){.limit = GUARD_SOFTWARE_LIMIT, .asked = line,
-                         .allowed = v > 0.0 ? axis->upper : axis->lower};
+                         .allowed = v > 0.0 ? axis->limits.upper : axis->limits.lower};
     return (guard_t){.limit = GUARD_KEPT};
 }
 

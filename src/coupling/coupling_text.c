@@ -29,18 +29,18 @@ static void master_lost_text(const cm1e_axis_t *axis, bool refused, char *text, 
 
 static void not_coupled_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    const cm1e_command_kind_t kind = axis->refused.kind;
+    const cm1e_command_kind_t kind = axis->commands.refused.kind;
     snprintf(text, size, "Axis \"%s\", %s: %s needs an axis that follows a master by %s; this one follows %s.",
              axis->config->name, cm1e_axis_state_name(axis->state), kind_row(kind)->name,
              kind == CM1E_COMMAND_CAM_OUT    ? "MC_CamIn"
              : kind == CM1E_COMMAND_GEAR_OUT ? "MC_GearIn, MC_GearInPos or MC_CombineAxes"
                                              : "MC_GearIn, MC_GearInPos, MC_CamIn or MC_CombineAxes",
-             axis_follows(axis) && axis->active ? kind_row(axis->kind)->name : "none");
+             axis_follows(axis) && axis->commands.active ? kind_row(axis->commands.kind)->name : "none");
 }
 
 static void ratio_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    if (axis->refused.kind == CM1E_COMMAND_CAM_IN)
+    if (axis->commands.refused.kind == CM1E_COMMAND_CAM_IN)
         snprintf(text, size, "Axis \"%s\": MasterScaling or SlaveScaling is not a number of 1e-9 ... 1e9, of either "
                  "sign, nor 0, which acts as 1.", axis->config->name);
     else
@@ -58,11 +58,11 @@ static bool mode_text(const cm1e_axis_t *axis, char *text, size_t size)
         [CM1E_COMMAND_CAM_IN] = "; StartMode is mcAbsolute, mcRelative or mcRampIn",
         [CM1E_COMMAND_COMBINE_AXES] = "; CombineMode is mcAddAxes or mcSubAxes",
     };
-    const unsigned kind = axis->refused.kind;
+    const unsigned kind = axis->commands.refused.kind;
     const char *mode = kind < CM1E_COMMAND_KIND_COUNT ? modes[kind] : NULL;
     if (mode)
         snprintf(text, size, "Axis \"%s\": %s was given an unknown mode. MasterValueSource is mcSetValue or "
-                 "mcActualValue%s.", axis->config->name, kind_row(axis->refused.kind)->name, mode);
+                 "mcActualValue%s.", axis->config->name, kind_row(axis->commands.refused.kind)->name, mode);
     return mode != NULL;
 }
 

@@ -27,9 +27,9 @@ static const coupling_function_t gear = {evaluate, steepest};
 /* Whole numbers as far as doubles hold them, so that they are rounded once: positions are this times counts. */
 static double counts_ratio(const cm1e_axis_t *slave, const cm1e_axis_t *master, double numerator, double denominator)
 {
-    const double sign = slave->scale * master->scale < 0.0 ? -1.0 : 1.0;
-    return sign * (numerator * (slave->unit.counts * master->unit.units)) /
-           (denominator * (slave->unit.units * master->unit.counts));
+    const double sign = slave->position.scale * master->position.scale < 0.0 ? -1.0 : 1.0;
+    return sign * (numerator * (slave->position.unit.counts * master->position.unit.units)) /
+           (denominator * (slave->position.unit.units * master->position.unit.counts));
 }
 
 cm1e_error_t cm1e_gear_prepare(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
@@ -72,7 +72,7 @@ cm1e_error_t cm1e_gear_out(cm1e_axis_t *axis, const cm1e_axis_command_t *command
     const from_t from = from_set(axis);
     move_t move = {.kind = (uint8_t)command->kind, .end_velocity = from_base(axis).velocity};
     cm1e_profile_t profile;
-    if (!axis_follows(axis) || !axis->active || !leaves(command->kind, axis->kind))
+    if (!axis_follows(axis) || !axis->commands.active || !leaves(command->kind, axis->commands.kind))
         return CM1E_ERROR_AXIS_NOT_COUPLED;
     const cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, false, &profile);
     if (error)

@@ -45,7 +45,7 @@ void cm1e_coupling_resume_masters(cm1e_axis_t *axis, int64_t pause_ns)
 static bool master_began_anew(const follow_t *follow)
 {
     for (int i = 0; i < follow->count; i++)
-        if (follow->links[i].master && follow->links[i].master->began_anew)
+        if (follow->links[i].master && follow->links[i].master->silence.began_anew)
             return true;
     return false;
 }
@@ -144,7 +144,7 @@ follow_t *cm1e_coupling_spare(cm1e_axis_t *axis)
 void cm1e_coupling_await(cm1e_axis_t *axis, follow_t *follow)
 {
     axis->coupling->awaited = follow;
-    axis->awaits = true;
+    axis->commands.awaits = true;
     axis->coupling->due = false;
     cm1e_coupling_list_links(follow);
 }
@@ -154,7 +154,7 @@ void cm1e_coupling_await_nothing(cm1e_axis_t *axis)
     if (axis->coupling->awaited)
         cm1e_coupling_unlist_links(axis->coupling->awaited);
     axis->coupling->awaited = NULL;
-    axis->awaits = false;
+    axis->commands.awaits = false;
 }
 
 /* ---- what is seen of them ---------------------------------------------------------------------------------------- */
@@ -194,9 +194,9 @@ static master_trouble_t see(link_t *link, position_t *position)
     const master_trouble_t trouble = trouble_of_set_value(master);
     if (trouble && trouble != MASTER_STOPPING)
         return trouble;
-    *position = master->set;
-    link->seen.velocity = master->set_velocity;
-    link->seen.acceleration = master->set_acceleration;
+    *position = master->setpoint.position;
+    link->seen.velocity = master->setpoint.velocity;
+    link->seen.acceleration = master->setpoint.acceleration;
     return trouble;
 }
 
@@ -210,7 +210,7 @@ static bool keeps_phase(const cm1e_axis_t *slave, const link_t *link)
 static void add_phase(const cm1e_axis_t *slave, link_t *link)
 {
     const cm1e_motion_state_t *phase = &slave->coupling->phase;
-    link->seen.counts += phase->position * link->master->scale;
+    link->seen.counts += phase->position * link->master->position.scale;
     link->seen.velocity += phase->velocity;
     link->seen.acceleration += phase->acceleration;
 }
@@ -220,10 +220,11 @@ static void add_phase(const cm1e_axis_t *slave, link_t *link)
 static void know_ways(link_t *link, double cycle_s)
 {
     const cm1e_axis_t *master = link->master;
-    const double corner = fmax(master->system.acceleration, master->system.deceleration) * cycle_s * cycle_s / 2.0;
-    link->half_cycle = master->scale * cycle_s / 2.0;
+    const cm1e_motion_limits_t *system = &master->limits.system;
+    const double corner = fmax(system->acceleration, system->deceleration) * cycle_s * cycle_s / 2.0;
+    link->half_cycle = master->position.scale * cycle_s / 2.0;
     link->most_unexplained = link->source == mcActualValue ? INFINITY
-                                                           : same_way_counts + corner * fabs(master->scale);
+                                                           : same_way_counts + corner * fabs(master->position.scale);
 }
 
 static bool jumped(const link_t *link, const master_view_t *before)
@@ -238,7 +239,7 @@ static master_trouble_t trouble_with(cm1e_axis_t *slave, const link_t *link, mas
     if (c->stopping)
         return trouble; /* the first cause is the one to tell */
     c->trouble = trouble;
-    c->master_error = link->master ? link->master->error : CM1E_OK;
+    c->master_error = link->master ? link->master->fault.error : CM1E_OK;
     memcpy(c->other_name, link->master ? link->master->config->name : "", link->master ? sizeof c->other_name : 1);
     return trouble;
 }

@@ -16,7 +16,7 @@ static void look(cm1e_axis_t *axis)
     const cm1e_observed_t seen = cm1e_observer_now(&own->filter);
     own->before = own->now;
     own->now.position = cm1e_position_plus((position_t){seen.counts, 0.0}, seen.offset);
-    const double way = cm1e_position_minus(own->now.position, own->before.position) / axis->scale;
+    const double way = cm1e_position_minus(own->now.position, own->before.position) / axis->position.scale;
     own->now.velocity = way / axis->cycle_s;
     own->now.acceleration = (own->now.velocity - own->before.velocity) / axis->cycle_s;
 }
@@ -24,7 +24,7 @@ static void look(cm1e_axis_t *axis)
 /* By set-points of ours, not by hand and not by a profile of its drive. */
 static bool goes_as_told(const cm1e_axis_t *axis)
 {
-    return !axis_free(axis) && axis->source != &cm1e_source_drive;
+    return !axis_free(axis) && axis->setpoint.source != &cm1e_source_drive;
 }
 
 /* Counts/s, of what nobody has looked at before: a motor goes as it is told to, or says how. An encoder is looked at
@@ -34,7 +34,7 @@ static double first_velocity(const cm1e_axis_t *axis)
     if (axis->config->type == CM1E_AXIS_ENCODER)
         return 0.0;
     return !goes_as_told(axis) ? axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis)
-                                           : axis->set_velocity * axis->scale;
+                                           : axis->setpoint.velocity * axis->position.scale;
 }
 
 static void begin(cm1e_axis_t *axis)
@@ -46,9 +46,9 @@ static void begin(cm1e_axis_t *axis)
                        axis_actual(axis).counts);
     own->filter.velocity = velocity;
     if (goes_as_told(axis))
-        own->filter.acceleration = axis->set_acceleration * axis->scale;
+        own->filter.acceleration = axis->setpoint.acceleration * axis->position.scale;
     look(axis);
-    own->now = own->before = (from_t){.position = own->now.position, .velocity = velocity / axis->scale};
+    own->now = own->before = (from_t){.position = own->now.position, .velocity = velocity / axis->position.scale};
     own->before.position = cm1e_position_plus(own->now.position, -velocity * cycle_s);
     own->lost = 0;
     own->begun = axis->observed = true;

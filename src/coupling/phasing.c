@@ -26,7 +26,7 @@ static double steepest(const cm1e_axis_t *axis)
 /* u of the master: where the slave has all its limits for the shift. */
 static cm1e_motion_limits_t most_of(const cm1e_axis_t *axis)
 {
-    const cm1e_motion_limits_t *most = &axis->maximum;
+    const cm1e_motion_limits_t *most = &axis->limits.maximum;
     const double slope = steepest(axis);
     return (cm1e_motion_limits_t){most->velocity / slope, most->acceleration / slope, most->deceleration / slope,
                                   most->jerk / slope};
@@ -67,7 +67,7 @@ static cm1e_error_t check(const cm1e_axis_t *axis, const move_t *move)
 static bool fits_beside_master(const cm1e_axis_t *axis, const cm1e_profile_t *profile)
 {
     const coupling_t *c = axis->coupling;
-    const double slope = steepest(axis), most = axis->maximum.velocity * (1.0 + relative_tolerance);
+    const double slope = steepest(axis), most = axis->limits.maximum.velocity * (1.0 + relative_tolerance);
     const double master = c->now->links[0].seen.velocity - c->phase.velocity;
     const double before = fabs(c->now->links[0].seen.velocity) * slope;
     for (int i = 0; i < profile->segment_count; i++) {
@@ -262,7 +262,7 @@ double cm1e_phasing_covered(const cm1e_axis_t *axis, cm1e_command_id_t id)
 
 bool cm1e_phasing_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    const cm1e_axis_command_t *refused = &axis->refused;
+    const cm1e_axis_command_t *refused = &axis->commands.refused;
     if (kind_row(refused->kind)->plan != PLAN_PHASING || !axis_follows(axis))
         return false;
     const link_t *link = &axis->coupling->now->links[0];

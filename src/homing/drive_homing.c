@@ -73,7 +73,7 @@ static uint8_t bits(const cm1e_axis_t *axis)
 static double default_of(const cm1e_axis_t *axis, int which, const cm1e_homing_object_t *object,
                          const cm1e_entry_t *entry)
 {
-    const double most = CM1E_COUNTS_PER_REVOLUTION * axis->count / object->unit;
+    const double most = CM1E_COUNTS_PER_REVOLUTION * axis->position.count / object->unit;
     return which == SPEED ? fmin((double)entry->default_value, most) : (double)entry->default_value;
 }
 
@@ -121,7 +121,7 @@ void cm1e_homing_wrong_text(const cm1e_axis_t *axis, char *text, size_t size)
     } else if (which != METHOD) {
         const cm1e_homing_object_t object = object_of(axis, which, axis->homing->drive.raw[METHOD]);
         const cm1e_entry_t *entry = range_of(axis, object);
-        const double counts = which == TORQUE ? 1.0 : fabs(axis->scale);
+        const double counts = which == TORQUE ? 1.0 : fabs(axis->position.scale);
         least = (double)entry->minimum * object.unit / counts;
         most = (double)entry->maximum * object.unit / counts;
     }
@@ -133,9 +133,9 @@ void cm1e_homing_wrong_text(const cm1e_axis_t *axis, char *text, size_t size)
 
 static cm1e_error_t take_parameters(cm1e_axis_t *axis, const cm1e_homing_config_t *c)
 {
-    const double scale = fabs(axis->scale);
+    const double scale = fabs(axis->position.scale);
     const double values[HOMING_PARAMETERS] = {
-        [OFFSET] = kind_of(axis)->offset_by_axis ? 0.0 : c->offset * axis->scale,
+        [OFFSET] = kind_of(axis)->offset_by_axis ? 0.0 : c->offset * axis->position.scale,
         [METHOD] = c->method,
         [SPEED] = c->velocity * scale,
         [ACCELERATION] = c->acceleration * scale,
@@ -143,7 +143,7 @@ static cm1e_error_t take_parameters(cm1e_axis_t *axis, const cm1e_homing_config_
     };
     const double asked[HOMING_PARAMETERS] = {c->offset, c->method, c->velocity, c->acceleration, c->torque};
     axis->homing->drive.k45 = -1; /* until it is read: the largest unit */
-    axis->homing->drive.offset = c->offset * axis->scale;
+    axis->homing->drive.offset = c->offset * axis->position.scale;
     if (!isfinite(c->offset) || fabs(axis->homing->drive.offset) > INT32_MAX)
         return wrong(&axis->homing->drive, OFFSET, c->offset);
     axis->homing->drive.raw[METHOD] = c->method;
@@ -165,7 +165,7 @@ cm1e_error_t cm1e_homing_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *c
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     if (axis->motor_hooks && axis->motor_hooks->refuses_homing(axis))
         return CM1E_ERROR_CM_MODE;
-    if (!(axis->enable_positive && axis->enable_negative))
+    if (!(axis->power.enable_positive && axis->power.enable_negative))
         return CM1E_ERROR_AXIS_DIRECTION_DISABLED; /* every method moves both ways */
     if (c->method > kind->last_method || c->method < kind->first_method || c->method == 0) /* 0: none is selected */
         return wrong(home, METHOD, c->method);
@@ -190,13 +190,13 @@ static void enter(cm1e_axis_t *axis, cm1e_home_step_t step)
     cm1e_drive_command_t *command = &axis->drive.command;
     home->step = step;
     home->step_ns = home->quiet_ns = home->told_ns = axis->now_ns;
-    home->quiet_position = axis->raw;
+    home->quiet_position = axis->position.raw;
     if (step == HOME_SWITCH) {
         home->away = true;
         command->mode = CM1E_MODE_HM;
         command->homing_start = command->halt = false;
     } else if (step == HOME_START) {
-        axis->homed = false;
+        axis->position.homed = false;
         home->bits_before = bits(axis);
         home->deadline_ns = axis->now_ns + home->timeout_ns;
         command->homing_start = true;
@@ -213,9 +213,9 @@ static void enter(cm1e_axis_t *axis, cm1e_home_step_t step)
 static void take_reference(cm1e_axis_t *axis)
 {
     const int64_t offset = kind_of(axis)->offset_by_axis ? llround(axis->homing->drive.offset) : 0;
-    const position_t at = cm1e_axis_load(axis, axis->actual_counts - axis->raw + offset);
+    const position_t at = cm1e_axis_load(axis, axis->position.actual_counts - axis->position.raw + offset);
     cm1e_axis_set_origin(axis, at, axis->homing->drive.position);
-    axis->homed = true;
+    axis->position.homed = true;
 }
 
 static void next_step(cm1e_axis_t *axis)
@@ -245,7 +245,7 @@ static void leave(cm1e_axis_t *axis)
     axis->homing->drive.away = false;
     if (cm1e_axis_settle(axis))
         return;
-    if (axis->active)
+    if (axis->commands.active)
         cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK); /* of MC_Home, or of the MC_Stop that ended it */
     cm1e_axis_go(axis, ON_DONE);
 }
@@ -339,7 +339,7 @@ static void take_offset_unit(cm1e_axis_t *axis)
     else if (k45_is_known(home) && parameter(axis, OFFSET, home->raw[METHOD], home->offset))
         next_step(axis);
     else
-        refuse(axis, wrong(home, OFFSET, home->offset / axis->scale));
+        refuse(axis, wrong(home, OFFSET, home->offset / axis->position.scale));
 }
 
 static void step_read(cm1e_axis_t *axis)
@@ -361,10 +361,10 @@ static void step_read(cm1e_axis_t *axis)
 static bool stands(cm1e_axis_t *axis)
 {
     drive_homing_t *home = &axis->homing->drive;
-    const int32_t moved = (int32_t)((uint32_t)axis->raw - (uint32_t)home->quiet_position);
+    const int32_t moved = (int32_t)((uint32_t)axis->position.raw - (uint32_t)home->quiet_position);
     if (!axis->drive.feedback.online || llabs(moved) > cm1e_axis_few(axis, standing_counts)) {
         home->quiet_ns = axis->now_ns;
-        home->quiet_position = axis->raw;
+        home->quiet_position = axis->position.raw;
     }
     return axis->now_ns - home->quiet_ns >= standing_ns;
 }

@@ -7,8 +7,8 @@ cm1e_error_t cm1e_homing_start(cm1e_axis_t *axis, const cm1e_axis_command_t *com
     if (error)
         return error;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    *id = axis->active = cm1e_axis_next_id(axis);
-    axis->kind = command->kind;
+    *id = axis->commands.active = cm1e_axis_next_id(axis);
+    axis->commands.kind = command->kind;
     cm1e_homing_run(axis);
     return CM1E_OK;
 }
@@ -26,8 +26,8 @@ cm1e_error_t cm1e_homing_step_start(cm1e_axis_t *axis, const cm1e_axis_command_t
     if (error)
         return error;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    *id = axis->active = cm1e_axis_next_id(axis);
-    axis->kind = command->kind;
+    *id = axis->commands.active = cm1e_axis_next_id(axis);
+    axis->commands.kind = command->kind;
     cm1e_homing_step_run(axis, &next, &profile);
     return CM1E_OK;
 }
@@ -47,8 +47,8 @@ cm1e_error_t cm1e_homing_begin(cm1e_axis_t *axis, move_t *move, const from_t *fr
     const cm1e_error_t error = cm1e_homing_prepare(axis, &command);
     if (error)
         return error;
-    axis->active = move->id;
-    axis->kind = command.kind;
+    axis->commands.active = move->id;
+    axis->commands.kind = command.kind;
     cm1e_homing_run(axis);
     return CM1E_OK;
 }
@@ -56,7 +56,7 @@ cm1e_error_t cm1e_homing_begin(cm1e_axis_t *axis, move_t *move, const from_t *fr
 /* What a homing needs beside its command is kept once, for the one that may wait. */
 static cm1e_error_t keep_homing(cm1e_axis_t *axis, const cm1e_axis_command_t *command)
 {
-    for (int i = 0; i < axis->waiting.count; i++)
+    for (int i = 0; i < axis->commands.waiting.count; i++)
         if (waiting_move(axis, i)->kind == CM1E_COMMAND_HOME)
             return CM1E_ERROR_BUSY;
     if (!drive_homes(axis)) {
@@ -89,8 +89,8 @@ cm1e_error_t cm1e_homing_step_begin(cm1e_axis_t *axis, move_t *move, const from_
                                        : CM1E_ERROR_AXIS_STATE;
     if (error)
         return error;
-    axis->active = move->id;
-    axis->kind = CM1E_COMMAND_HOMING_STEP;
+    axis->commands.active = move->id;
+    axis->commands.kind = CM1E_COMMAND_HOMING_STEP;
     cm1e_homing_step_run(axis, &next, &profile);
     return CM1E_OK;
 }

@@ -130,13 +130,14 @@ cm1e_error_t cm1e_homing_step_check(const cm1e_axis_t *axis, const cm1e_homing_s
 
 static cm1e_motion_state_t set_state(const cm1e_axis_t *axis)
 {
-    return (cm1e_motion_state_t){0.0, axis->set_velocity, axis->set_acceleration};
+    return (cm1e_motion_state_t){0.0, axis->setpoint.velocity, axis->setpoint.acceleration};
 }
 
 static void run(cm1e_axis_t *axis, const cm1e_profile_t *profile)
 {
     const from_t from = from_set(axis);
-    cm1e_axis_run(axis, &from, profile, cm1e_position_plus(axis->set, profile->end.position * axis->scale), 0.0);
+    cm1e_axis_run(axis, &from, profile,
+                  cm1e_position_plus(axis->setpoint.position, profile->end.position * axis->position.scale), 0.0);
 }
 
 static void go_within(cm1e_axis_t *axis, double velocity, const cm1e_motion_limits_t *limits)
@@ -153,10 +154,10 @@ static void go(cm1e_axis_t *axis, double velocity) { go_within(axis, velocity, &
  * change soon, for whatever follows has to take that back by jerk alone. */
 static void press_on(cm1e_axis_t *axis, double velocity)
 {
-    cm1e_motion_limits_t limits = axis->emergency;
-    const double soon = fmax(fabs(axis->set_velocity), fabs(velocity)) / pressing_time_s;
+    cm1e_motion_limits_t limits = axis->limits.emergency;
+    const double soon = fmax(fabs(axis->setpoint.velocity), fabs(velocity)) / pressing_time_s;
     if (soon > 0.0)
-        limits.acceleration = limits.deceleration = fmin(axis->emergency.deceleration, soon);
+        limits.acceleration = limits.deceleration = fmin(axis->limits.emergency.deceleration, soon);
     go_within(axis, velocity, &limits);
 }
 
@@ -168,14 +169,18 @@ static void turn_to(cm1e_axis_t *axis, double way)
 
 static double torque_percent(const cm1e_axis_t *axis)
 {
-    return axis->drive.feedback.torque * (axis->scale < 0.0 ? -0.1 : 0.1);
+    return axis->drive.feedback.torque * (axis->position.scale < 0.0 ? -0.1 : 0.1);
 }
 
-static double lag_counts(const cm1e_axis_t *axis) { return cm1e_position_minus(axis->set, axis_actual(axis)); }
+static double lag_counts(const cm1e_axis_t *axis)
+{
+    return cm1e_position_minus(axis->setpoint.position, axis_actual(axis));
+}
 
 static double relief_velocity(const cm1e_axis_t *axis)
 {
-    return fmin(relief_velocity_counts * axis->count / fabs(axis->scale), axis->maximum.velocity);
+    return fmin(relief_velocity_counts * axis->position.count / fabs(axis->position.scale),
+                axis->limits.maximum.velocity);
 }
 
 /* The motor pushes, or is about to, in the direction of `way`. The set-point goes back until it does not any more: to
@@ -185,18 +190,18 @@ static void relieve(cm1e_axis_t *axis, double way)
     stepping_t *s = &axis->homing->stepping;
     s->phase = STEPPING_RELIEVE;
     s->way = -way;
-    s->travel = -fabs(lag_counts(axis) / axis->scale);
+    s->travel = -fabs(lag_counts(axis) / axis->position.scale);
     press_on(axis, s->way * relief_velocity(axis));
 }
 
 static void relieve_cycle(cm1e_axis_t *axis)
 {
     stepping_t *s = &axis->homing->stepping;
-    s->travel += fabs(axis->set_velocity) * axis->cycle_s;
-    const double push = -s->way, lag = lag_counts(axis) / axis->scale;
+    s->travel += fabs(axis->setpoint.velocity) * axis->cycle_s;
+    const double push = -s->way, lag = lag_counts(axis) / axis->position.scale;
     /* Whole counts, whole per cent: what is less is rounding. */
-    const bool pushes = lag * fabs(axis->scale) * push > 1.0 || torque_percent(axis) * push > 1.0;
-    const bool enough = s->travel * fabs(axis->scale) >= farthest_relief_counts * axis->count;
+    const bool pushes = lag * fabs(axis->position.scale) * push > 1.0 || torque_percent(axis) * push > 1.0;
+    const bool enough = s->travel * fabs(axis->position.scale) >= farthest_relief_counts * axis->position.count;
     if ((pushes && !enough) || !axis->drive.feedback.fresh)
         return;
     s->phase = STEPPING_RELIEVED;
@@ -212,7 +217,8 @@ static bool presses_by_torque(const cm1e_axis_t *axis)
 /* Without a doubt: no motor that is free is so far from a set-point that stands. */
 static bool presses(const cm1e_axis_t *axis)
 {
-    return presses_by_torque(axis) || fabs(lag_counts(axis) / axis->scale) >= pressing_lag * axis->max_lag;
+    return presses_by_torque(axis) ||
+           fabs(lag_counts(axis) / axis->position.scale) >= pressing_lag * axis->limits.max_lag;
 }
 
 static bool held_up(const cm1e_axis_t *axis)
@@ -223,8 +229,8 @@ static bool held_up(const cm1e_axis_t *axis)
 
 static double pushed_way(const cm1e_axis_t *axis)
 {
-    const double lag = lag_counts(axis) / axis->scale;
-    const double way = fabs(lag * axis->scale) > cm1e_axis_few(axis, few_counts) ? lag : torque_percent(axis);
+    const double lag = lag_counts(axis) / axis->position.scale;
+    const double way = fabs(lag * axis->position.scale) > cm1e_axis_few(axis, few_counts) ? lag : torque_percent(axis);
     return way > 0.0 ? 1.0 : -1.0;
 }
 
@@ -341,19 +347,19 @@ cm1e_error_t cm1e_homing_step_prepare(const cm1e_axis_t *axis, const cm1e_homing
     if (next->step.kind == CM1E_STEP_FINISH)
         return prepare_finish(axis, move, next, profile);
     const cm1e_motion_state_t now = set_state(axis);
-    next->limits = axis->maximum;
+    next->limits = axis->limits.maximum;
     return cm1e_profile_to_velocity(profile, &now, 0.0, &next->limits);
 }
 
 void cm1e_homing_step_run(cm1e_axis_t *axis, const stepping_t *next, const cm1e_profile_t *profile)
 {
     axis->homing->stepping = *next;
-    axis->finishing = next->finishing;
-    axis->pushing = true;
-    axis->after_stop = false;
+    axis->homing_step.finishing = next->finishing;
+    axis->homing_step.pushing = true;
+    axis->homing_step.after_stop = false;
     cm1e_axis_go(axis, ON_HOMING_STEP);
     if (searches(next->step.kind))
-        axis->homed = false;
+        axis->position.homed = false;
     run(axis, profile);
     if (next->step.kind == CM1E_STEP_DIRECT && profile->duration_s == 0.0)
         (void)cm1e_homing_step_ended(axis); /* it stands: done at once */
@@ -393,7 +399,7 @@ static bool look_at_switch(cm1e_axis_t *axis)
 {
     stepping_t *s = &axis->homing->stepping;
     const bool on = level_of(axis, s), before = s->level;
-    const double moving = axis->set_velocity > 0.0 ? 1.0 : axis->set_velocity < 0.0 ? -1.0 : 0.0;
+    const double moving = axis->setpoint.velocity > 0.0 ? 1.0 : axis->setpoint.velocity < 0.0 ? -1.0 : 0.0;
     s->level = on;
     s->seen_on |= on;
     if (!level_is_meant(s, on) && !(on != before && moving != 0.0 && edge_is_meant(s, on, moving)))
@@ -430,7 +436,7 @@ static void look_at_limit_switch(cm1e_axis_t *axis)
     turn_to(axis, -s->way);
 }
 
-static double actual_velocity(const cm1e_axis_t *axis) { return axis->drive.feedback.velocity / axis->scale; }
+static double actual_velocity(const cm1e_axis_t *axis) { return axis->drive.feedback.velocity / axis->position.scale; }
 
 static bool stands(const cm1e_axis_t *axis)
 {
@@ -443,7 +449,7 @@ static double pressure(const cm1e_axis_t *axis)
     const stepping_t *s = &axis->homing->stepping;
     if (s->step.torque_limit > 0.0)
         return torque_percent(axis) * s->way / s->step.torque_limit;
-    return lag_counts(axis) / axis->scale * s->way / (pressing_lag * axis->max_lag);
+    return lag_counts(axis) / axis->position.scale * s->way / (pressing_lag * axis->limits.max_lag);
 }
 
 /* The set-point that keeps the motor pressed with about TorqueLimit, whatever its controller sums up meanwhile; without
@@ -452,7 +458,8 @@ static void keep_pressed(cm1e_axis_t *axis, double now)
 {
     stepping_t *s = &axis->homing->stepping;
     const double pace = s->step.torque_limit == 0.0 ? 0.0
-                        : now >= 1.0 ? -relief_velocity(axis) : creep_velocity_counts * axis->count / fabs(axis->scale);
+                        : now >= 1.0 ? -relief_velocity(axis)
+                        : creep_velocity_counts * axis->position.count / fabs(axis->position.scale);
     if (s->pressed && pace == s->pace)
         return;
     s->pace = pace;
@@ -465,7 +472,7 @@ static void look_for_block(cm1e_axis_t *axis)
     stepping_t *s = &axis->homing->stepping;
     const double now = pressure(axis);
     /* Faster than that at first, or a start from rest would look like a stop. */
-    const bool fast = fabs(axis->set_velocity) > s->step.detection_velocity;
+    const bool fast = fabs(axis->setpoint.velocity) > s->step.detection_velocity;
     if (!s->pressed && !(stands(axis) && fast && now >= 1.0))
         return;
     if (!stands(axis)) {
@@ -487,9 +494,9 @@ static void look_for_block(cm1e_axis_t *axis)
 /* Behind a bridge the motor's own counts end, whatever positions mean. TRUE: it has to brake now. */
 static bool out_of_counts(const cm1e_axis_t *axis)
 {
-    const double v = axis->set_velocity, now = cm1e_axis_line(axis, axis->set);
-    const double end = now + v * (axis->cycle_s + fabs(v) * axis->emergency_way);
-    return v > 0.0 ? end > axis->counts_upper : v < 0.0 && end < axis->counts_lower;
+    const double v = axis->setpoint.velocity, now = cm1e_axis_line(axis, axis->setpoint.position);
+    const double end = now + v * (axis->cycle_s + fabs(v) * axis->limits.emergency_way);
+    return v > 0.0 ? end > axis->limits.counts_upper : v < 0.0 && end < axis->limits.counts_lower;
 }
 
 /* TRUE: one of the limits of the step is reached, or the direction is taken away. */
@@ -497,9 +504,9 @@ static bool over_a_limit(cm1e_axis_t *axis)
 {
     const stepping_t *s = &axis->homing->stepping;
     cm1e_error_t error = CM1E_OK;
-    if (axis->counts_limit && out_of_counts(axis)) {
+    if (axis->limits.counts_limit && out_of_counts(axis)) {
         decide(axis, CM1E_ERROR_AXIS_POSITION_RANGE);
-        go_within(axis, 0.0, &axis->emergency);
+        go_within(axis, 0.0, &axis->limits.emergency);
         return true;
     }
     if (!cm1e_axis_direction_enabled(axis, s->way))
@@ -519,7 +526,7 @@ static bool over_a_limit(cm1e_axis_t *axis)
 static void search(cm1e_axis_t *axis)
 {
     stepping_t *s = &axis->homing->stepping;
-    s->travel += fabs(axis->set_velocity) * axis->cycle_s;
+    s->travel += fabs(axis->setpoint.velocity) * axis->cycle_s;
     const bool look = axis->drive.feedback.fresh;
     if (look && by_switch(s->step.kind) && look_at_switch(axis))
         return;
@@ -538,7 +545,7 @@ static void search(cm1e_axis_t *axis)
 /* MC_Stop has ended a step at its set-point, but the motor is still to be relieved before it is Done. */
 static bool relieving_after_stop(const cm1e_axis_t *axis)
 {
-    return axis->after_stop && axis->state == CM1E_AXIS_STOPPING;
+    return axis->homing_step.after_stop && axis->state == CM1E_AXIS_STOPPING;
 }
 
 void cm1e_homing_step_cycle(cm1e_axis_t *axis)
@@ -553,7 +560,7 @@ void cm1e_homing_step_cycle(cm1e_axis_t *axis)
     else if (stepping && axis->homing->stepping.phase == STEPPING_SEARCH)
         search(axis);
     else if (stepping && axis->homing->stepping.finishing && axis->homing->stepping.outcome == CM1E_OK &&
-             !cm1e_axis_direction_enabled(axis, axis->set_velocity))
+             !cm1e_axis_direction_enabled(axis, axis->setpoint.velocity))
         give_up(axis, CM1E_ERROR_AXIS_DIRECTION_DISABLED);
 }
 
@@ -563,18 +570,19 @@ static void complete(cm1e_axis_t *axis)
 {
     stepping_t *s = &axis->homing->stepping;
     const bool last = s->step.kind == CM1E_STEP_DIRECT || s->step.kind == CM1E_STEP_FINISH;
-    axis->pushing = false;
+    axis->homing_step.pushing = false;
     if (s->outcome) { /* what was to build on it is pointless */
         cm1e_axis_command_end(axis, CM1E_COMMAND_ERROR, s->outcome);
         cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
         return;
     }
     if (s->step.kind != CM1E_STEP_FINISH && !isnan(s->position)) {
-        cm1e_axis_set_origin(axis, s->step.kind == CM1E_STEP_DIRECT ? axis->set : s->reference, s->position);
+        cm1e_axis_set_origin(axis, s->step.kind == CM1E_STEP_DIRECT ? axis->setpoint.position : s->reference,
+                             s->position);
         s->referenced = true;
     }
     if (last) {
-        axis->homed = s->referenced;
+        axis->position.homed = s->referenced;
         cm1e_axis_go(axis, ON_DONE);
     }
     cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
@@ -583,14 +591,14 @@ static void complete(cm1e_axis_t *axis)
 /* The set-point of MC_Stop stands, or has been taken back. */
 static bool stop_ended(cm1e_axis_t *axis)
 {
-    axis->after_stop = false;
-    if (axis->state != CM1E_AXIS_STOPPING || !axis->pushing)
+    axis->homing_step.after_stop = false;
+    if (axis->state != CM1E_AXIS_STOPPING || !axis->homing_step.pushing)
         return false;
-    axis->pushing = false;
+    axis->homing_step.pushing = false;
     if (!held_up(axis))
         return false;
     cm1e_axis_stand(axis);
-    axis->after_stop = true;
+    axis->homing_step.after_stop = true;
     settle(axis);
     return true;
 }
@@ -599,9 +607,9 @@ bool cm1e_homing_step_ended(cm1e_axis_t *axis)
 {
     const stepping_t *s = &axis->homing->stepping;
     const bool stepping = axis_stepping(axis);
-    if (axis->profile.end.velocity != 0.0) {
-        axis->reached = stepping || relieving_after_stop(axis);
-        return axis->reached;
+    if (axis->setpoint.profile.end.velocity != 0.0) {
+        axis->setpoint.reached = stepping || relieving_after_stop(axis);
+        return axis->setpoint.reached;
     }
     if (!stepping)
         return stop_ended(axis);
@@ -619,14 +627,16 @@ bool cm1e_homing_step_ended(cm1e_axis_t *axis)
 cm1e_error_t cm1e_homing_step_anew(cm1e_axis_t *axis)
 {
     const stepping_t *s = &axis->homing->stepping;
-    const cm1e_motion_state_t now = {0.0, axis->set_velocity, axis->set_acceleration};
-    const double way = cm1e_position_minus(axis->target, axis->set) / axis->scale, end = axis->profile.end.velocity;
+    const cm1e_motion_state_t now = {0.0, axis->setpoint.velocity, axis->setpoint.acceleration};
+    const double way = cm1e_position_minus(axis->setpoint.target, axis->setpoint.position) / axis->position.scale;
+    const double end = axis->setpoint.profile.end.velocity;
     const from_t from = from_set(axis);
     cm1e_profile_t profile;
     const bool planned = s->finishing ? cm1e_profile_to_position(&profile, &now, way, &s->limits) == CM1E_OK
                                       : cm1e_profile_to_velocity(&profile, &now, end, &s->limits) == CM1E_OK;
     if (!planned)
         return CM1E_ERROR_AXIS_POSITION_RANGE;
-    cm1e_axis_run(axis, &from, &profile, cm1e_position_plus(axis->set, profile.end.position * axis->scale), 0.0);
+    cm1e_axis_run(axis, &from, &profile,
+                  cm1e_position_plus(axis->setpoint.position, profile.end.position * axis->position.scale), 0.0);
     return CM1E_OK;
 }

@@ -6,9 +6,9 @@
 
 bool cm1e_homing_failed_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    if (axis->error != CM1E_ERROR_AXIS_HOMING_FAILED && axis->error != CM1E_ERROR_AXIS_HOMING_TIMEOUT)
+    if (axis->fault.error != CM1E_ERROR_AXIS_HOMING_FAILED && axis->fault.error != CM1E_ERROR_AXIS_HOMING_TIMEOUT)
         return false;
-    const unsigned bits = (unsigned)axis->error_value;
+    const unsigned bits = (unsigned)axis->fault.value;
     const drive_homing_t *home = &axis->homing->drive;
     if (home->unstoppable) {
         snprintf(text, size, "Axis \"%s\": homing was to stop, the motor did not come to rest, and has no torque now. "
@@ -19,7 +19,7 @@ bool cm1e_homing_failed_text(const cm1e_axis_t *axis, char *text, size_t size)
              "Axis \"%s\": %s. Method %d; statusword bits 13 (error), 12 (attained), 10 (reached) were %u %u %u; "
              "homing began with %u %u %u. Check that the %s is reached in this direction, speed, torque limit and "
              "timeout; then reset the axis with MC_Reset.",
-             axis->config->name, cm1e_strerror(axis->error), (int)home->raw[1], bits >> 2 & 1u, bits >> 1 & 1u,
+             axis->config->name, cm1e_strerror(axis->fault.error), (int)home->raw[1], bits >> 2 & 1u, bits >> 1 & 1u,
              bits & 1u, home->bits_before >> 2 & 1u, home->bits_before >> 1 & 1u, home->bits_before & 1u,
              cm1e_homing_by_switch(axis, home->raw[1]) ? "sensor" : "hard stop");
     return true;
@@ -61,8 +61,8 @@ bool cm1e_homing_not_finished_text(const cm1e_axis_t *axis, char *text, size_t s
 
 bool cm1e_homing_refused_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    if (axis->refusal != CM1E_ERROR_AXIS_HOMING_METHOD && axis->refusal != CM1E_ERROR_AXIS_HOMING_PARAMETER)
-        return false;
+    if (axis->commands.refusal != CM1E_ERROR_AXIS_HOMING_METHOD &&
+        axis->commands.refusal != CM1E_ERROR_AXIS_HOMING_PARAMETER) return false;
     cm1e_homing_wrong_text(axis, text, size);
     return true;
 }

@@ -94,7 +94,7 @@ static void record_chain(call_order_t order, bool axes_backwards)
         trigger(&other, cycle_now == 1200);
         cycle();
         for (int n = 0; n < CHAIN; n++)
-            recorded[order][n][cycle_now] = axes_axis(n)->set.counts;
+            recorded[order][n][cycle_now] = axes_axis(n)->setpoint.position.counts;
     }
 }
 

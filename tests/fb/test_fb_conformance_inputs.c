@@ -50,8 +50,8 @@ static void run(const block_t *type, bool updates, void (*disturb)(int cycle), r
     trigger(&subject, true);
     for (int n = 0; n < RECORDED; n++) {
         cycle();
-        record->counts[n] = judged.axis->set.counts;
-        record->velocity[n] = judged.axis->set_velocity;
+        record->counts[n] = judged.axis->setpoint.position.counts;
+        record->velocity[n] = judged.axis->setpoint.velocity;
         if (disturb)
             disturb(n);
     }
@@ -219,7 +219,7 @@ START_TEST(test_instance_serves_one_axis_after_the_other)
         make(&subject, type->name);
         trigger(&subject, true);
         cycles_of_both(300, judged.axis);
-        MUST(other_axis->set_velocity == 0.0 && other_axis->state == CM1E_AXIS_STANDSTILL, "the other axis moves");
+        MUST(other_axis->setpoint.velocity == 0.0 && other_axis->state == CM1E_AXIS_STANDSTILL, "the other axis moves");
         bench.power.Enable = FALSE; /* which ends the first command */
         cycles_of_both(900, judged.axis);
         trigger(&subject, false);
@@ -233,7 +233,7 @@ START_TEST(test_instance_serves_one_axis_after_the_other)
         cycles_of_both(50, other_axis);
         MUST(bench.info.set_position == at_first && judged.axis->state == CM1E_AXIS_DISABLED, "the first axis moves");
         const bool stands = strstr(type->name, "Halt") || strstr(type->name, "Stop");
-        MUST(stands || other_axis->set_velocity != 0.0 || subject.now.done, "the other axis does not move");
+        MUST(stands || other_axis->setpoint.velocity != 0.0 || subject.now.done, "the other axis does not move");
         cm1e_axis_destroy(other_axis);
     }
 }

@@ -154,7 +154,7 @@ static void pair(const char *a, const char *b, int mode, int phase)
     put(&second, "BufferMode", mode);
     if (mode != mcAborting && is(&first, "MC_GearInPos"))
         put_out_of_reach_of_another(&second);
-    if (mode > mcBuffered && strstr(b, "Profile") && judged.axis->active)
+    if (mode > mcBuffered && strstr(b, "Profile") && judged.axis->commands.active)
         check_no_blending();
     else if (mode == mcAborting || first_is_through())
         check_aborting();
@@ -192,7 +192,7 @@ START_TEST(test_edge_on_a_busy_block_shows_nothing_of_the_first_command)
         cycle();
         const block_rule_t *rule = &first.view->type->rules[judged.state];
         if (rule->refusal) { /* refused: the motion goes on, this block shows the error */
-            MUST(first.now.error && judged.axis->active, "Error %d", first.now.error);
+            MUST(first.now.error && judged.axis->commands.active, "Error %d", first.now.error);
             continue;
         }
         for (int n = 0; n < 5; n++, cycle())

@@ -196,7 +196,8 @@ START_TEST(test_instance_serves_one_slave_after_the_other)
         MUST(follower.now.error_id == cm1e_error_id(CM1E_ERROR_FB_AXIS_CHANGED), "Error 0x%04X", follower.now.error_id);
         trigger(&follower, false);
         cycles(100);
-        MUST(axes_state(0) == CM1E_AXIS_SYNCHRONIZED_MOTION && axes_axis(0)->reached, "the first slave is disturbed");
+        MUST(axes_state(0) == CM1E_AXIS_SYNCHRONIZED_MOTION && axes_axis(0)->setpoint.reached,
+             "the first slave is disturbed");
         MUST(axes_state(2) == CM1E_AXIS_CONTINUOUS_MOTION, "the second is touched");
         follower.of = judged_at = 2;
         judged.master = axes_reference(1);
@@ -204,7 +205,8 @@ START_TEST(test_instance_serves_one_slave_after_the_other)
         put_in_reach(&follower, followers[i]);
         trigger(&follower, true);
         CYCLE_UNTIL(follower.now.reached);
-        MUST(axes_state(0) == CM1E_AXIS_SYNCHRONIZED_MOTION && axes_axis(0)->reached, "the first slave is disturbed");
+        MUST(axes_state(0) == CM1E_AXIS_SYNCHRONIZED_MOTION && axes_axis(0)->setpoint.reached,
+             "the first slave is disturbed");
     }
 }
 END_TEST
@@ -243,7 +245,7 @@ static void check_slave_lost(loss_t loss)
          "CommandAborted %d, Error 0x%04X", follower.now.aborted, follower.now.error_id);
     cycles(500);
     MUST(axes_state(1) == CM1E_AXIS_CONTINUOUS_MOTION && axes_info(1).set_velocity == 4.0, "the master is disturbed");
-    MUST(!axes_axis(0)->active, "a command is left");
+    MUST(!axes_axis(0)->commands.active, "a command is left");
 }
 
 /** Its master is lost: an error of the slave as soon as it follows. What waits may not know of it yet. */
@@ -257,7 +259,7 @@ static void check_master_lost(phase_t phase)
          follower.now.error_id);
     if (phase != WAITING) {
         MUST(axes_state(0) == CM1E_AXIS_ERROR_STOP, "the slave is in %s", cm1e_axis_state_name(axes_state(0)));
-        MUST(axes_axis(0)->error == CM1E_ERROR_AXIS_MASTER_LOST, "%s", axes_text(0));
+        MUST(axes_axis(0)->fault.error == CM1E_ERROR_AXIS_MASTER_LOST, "%s", axes_text(0));
     }
     cycles(1500);
     MUST(axes_info(0).set_velocity == 0.0 && axes_info(2).set_velocity == -1.0, "the slave moves on: %g u/s",
@@ -304,7 +306,7 @@ START_TEST(test_master_that_is_homed_is_lost_and_one_that_is_renamed_is_not)
     make_and_start(1, -1, &other, "MC_Home");
     MUST(other.now.busy, "Error 0x%04X: %s", other.now.error_id, axes_text(1));
     CYCLE_UNTIL(!follower.now.busy);
-    MUST(follower.now.error && axes_axis(0)->error == CM1E_ERROR_AXIS_MASTER_LOST, "Error 0x%04X",
+    MUST(follower.now.error && axes_axis(0)->fault.error == CM1E_ERROR_AXIS_MASTER_LOST, "Error 0x%04X",
          follower.now.error_id);
 }
 END_TEST
@@ -369,9 +371,9 @@ START_TEST(test_master_without_torque_is_followed_by_its_actual_value)
                  follower.now.error_id, axes_text(0));
         }
         cycles(200);
-        const double way = 10000.0 / axes_axis(1)->scale * (i == 0 ? 0.5 : 0.75);
-        MUST(fabs(axes_info(0).set_position - from - way) < 2.0 / fabs(axes_axis(0)->scale), "it has gone %g u, not %g",
-             axes_info(0).set_position - from, way);
+        const double way = 10000.0 / axes_axis(1)->position.scale * (i == 0 ? 0.5 : 0.75);
+        MUST(fabs(axes_info(0).set_position - from - way) < 2.0 / fabs(axes_axis(0)->position.scale),
+             "it has gone %g u, not %g", axes_info(0).set_position - from, way);
         for (int on = 1; on >= 0; on--) { /* its torque is of no matter, whenever that comes and goes */
             axes_power(1, on);
             cycles(100);

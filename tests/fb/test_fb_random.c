@@ -237,10 +237,11 @@ static void judge_motor(void)
     const bool holding = bus->state == OPERATION_ENABLED && bus->mode == CM1E_MODE_CSP && slot.bytes;
     if (!holding || bus->blocked || type_of(judged_at) != CM1E_AXIS_MOTOR)
         return;
-    const double fastest = judged.axis->maximum.velocity * fabs(judged.axis->scale) * (double)judged.cycle_ns * 1e-9;
+    const double fastest = judged.axis->limits.maximum.velocity * fabs(judged.axis->position.scale) *
+                           (double)judged.cycle_ns * 1e-9;
     const uint32_t target = (uint32_t)cm1e_get_uint(bench.bus.outputs + slot.offset, slot.bytes);
     const double off = (double)(int32_t)(target - (uint32_t)bus->position);
-    MUST(fabs(off) <= fastest + 1.01 + judged.axis->max_lag * fabs(judged.axis->scale),
+    MUST(fabs(off) <= fastest + 1.01 + judged.axis->limits.max_lag * fabs(judged.axis->position.scale),
          "the target is %.0f counts from the motor", off);
 }
 

@@ -226,14 +226,15 @@ static void judge_motor(void)
     const int64_t soon = judged.number + SETTLING;
     const cm1e_sim_probe_t shaft = probe();
     judge_rules(&shaft, cm1e_axis_configuration(judged.axis));
-    if (fabs(shaft.velocity_counts_per_s) > 1.3 * judged.axis->maximum.velocity * fabs(judged.axis->scale))
+    if (fabs(shaft.velocity_counts_per_s) > 1.3 * judged.axis->limits.maximum.velocity *
+        fabs(judged.axis->position.scale))
         bench.disturbed_until = judged.number + 1000; /* somebody has turned it; it is braked */
     if ((!moved_by_us || judged.axis->state == CM1E_AXIS_ERROR_STOP) && bench.disturbed_until < soon)
         bench.disturbed_until = soon;
     if (judged.number < bench.disturbed_until)
         return;
-    const double counts = fabs(judged.axis->scale), cycle_s = (double)judged.cycle_ns * 1e-9;
-    const double allowed = 300 * judged.axis->count + 4 * watched.most.velocity * counts * cycle_s;
+    const double counts = fabs(judged.axis->position.scale), cycle_s = (double)judged.cycle_ns * 1e-9;
+    const double allowed = 300 * judged.axis->position.count + 4 * watched.most.velocity * counts * cycle_s;
     MUST(fabs(bench.info.position_lag) * counts <= allowed, "%s: the motor lags by %.0f counts, %.0f allowed",
          cm1e_axis_state_name(judged.axis->state), bench.info.position_lag * counts, allowed);
 }

@@ -84,7 +84,7 @@ static cm1e_command_state_t state_of(cm1e_command_id_t id) { return cm1e_group_c
 /* Half a count of the coarsest motor. */
 static double half_a_count(void)
 {
-    return 0.51 / fmin(fabs(axes[MOTOR]->scale), fabs(axes[BRIDGED]->scale));
+    return 0.51 / fmin(fabs(axes[MOTOR]->position.scale), fabs(axes[BRIDGED]->position.scale));
 }
 
 START_TEST(test_targets_of_a_line_are_on_it)

@@ -125,7 +125,7 @@ static inline void axes_must_be(int n, cm1e_axis_state_t state)
 
 static inline bool axes_own(const cm1e_axis_t *axis)
 {
-    return !axis_free(axis) && !drive_homes(axis) && axis->source != &cm1e_source_drive;
+    return !axis_free(axis) && !drive_homes(axis) && axis->setpoint.source != &cm1e_source_drive;
 }
 
 /** Of a ramp without limit of jerk, and of what has none by its nature. */
@@ -133,11 +133,12 @@ static inline void axes_judge_steep(int n, double t, double most_a)
 {
     const cm1e_axis_t *axis = axes_bench.axes[n];
     const axes_witness_t *w = &axes_bench.witness[n];
-    const double v = axis->set_velocity, step = cm1e_position_minus(axis->set, w->set) / axis->scale;
+    const double v = axis->setpoint.velocity;
+    const double step = cm1e_position_minus(axis->setpoint.position, w->set) / axis->position.scale;
     const double off = fabs(step - t * (v + w->velocity) / 2.0), slack = 1.0 + 1e-6;
     AXES_MUST(fabs(v - w->velocity) <= most_a * t * slack + 1e-9 * fabs(v), "axis %d, %s: velocity %.12g -> %.12g", n,
               cm1e_axis_state_name(axis->state), w->velocity, v);
-    AXES_MUST(off <= most_a * t * t / 2.0 * slack + 1e-3 / fabs(axis->scale) + 1e-9 * fabs(step),
+    AXES_MUST(off <= most_a * t * t / 2.0 * slack + 1e-3 / fabs(axis->position.scale) + 1e-9 * fabs(step),
               "axis %d, %s: the position moves by %.12g at %.12g ... %.12g u/s", n, cm1e_axis_state_name(axis->state),
               step, w->velocity, v);
 }
@@ -146,12 +147,13 @@ static inline void axes_judge_smooth(int n, double t)
 {
     const cm1e_axis_t *axis = axes_bench.axes[n];
     const axes_witness_t *w = &axes_bench.witness[n];
-    const cm1e_motion_limits_t *most = &axis->maximum;
-    const double v0 = w->velocity, a0 = w->acceleration, v = axis->set_velocity, a = axis->set_acceleration;
+    const cm1e_motion_limits_t *most = &axis->limits.maximum;
+    const double v0 = w->velocity, a0 = w->acceleration, v = axis->setpoint.velocity, a = axis->setpoint.acceleration;
     /* Two jerks that add up to one within the limit over a cycle may change places in the middle of it. */
     const double corner = axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION ? 2.0 : 1.0;
-    const double j = most->jerk, slack = 1.0 + 1e-6, step = cm1e_position_minus(axis->set, w->set) / axis->scale;
-    const double noise = 1e-9 * (fabs(step) + fabs(v0) * t) + 1e-4 / fabs(axis->scale);
+    const double j = most->jerk, slack = 1.0 + 1e-6;
+    const double step = cm1e_position_minus(axis->setpoint.position, w->set) / axis->position.scale;
+    const double noise = 1e-9 * (fabs(step) + fabs(v0) * t) + 1e-4 / fabs(axis->position.scale);
     const char *state = cm1e_axis_state_name(axis->state);
     const double largest = fmax(most->acceleration, most->deceleration);
     AXES_MUST(fabs(a) <= largest * slack, "axis %d, %s: acceleration %.12g, limit %.12g", n, state, a, largest);
@@ -170,45 +172,48 @@ static inline bool axes_judge_silence(int n)
 {
     const cm1e_axis_t *axis = axes_bench.axes[n];
     const axes_witness_t *w = &axes_bench.witness[n];
-    const bool silent = axis->frozen || (axis->silent > 0 && axis->mode == CM1E_MODE_CSP &&
-                                         !cm1e_drive_is_virtual(&axis->drive));
-    const double v = axis->set_velocity, step = cm1e_position_minus(axis->set, w->set) / axis->scale;
+    const bool silent = axis->silence.frozen || (axis->silence.silent > 0 && axis->mode == CM1E_MODE_CSP &&
+                                                 !cm1e_drive_is_virtual(&axis->drive));
+    const double v = axis->setpoint.velocity;
+    const double step = cm1e_position_minus(axis->setpoint.position, w->set) / axis->position.scale;
     if (silent)
         AXES_MUST(step == 0, "axis %d: its target moves by %.12g while no frame comes back", n, step);
-    else if (axis->began_anew)
-        AXES_MUST(v * w->velocity >= 0 && fabs(v) <= fabs(w->velocity) + axis->maximum.acceleration * axis->cycle_s &&
-                      fabs(step) <= fabs(w->velocity) * axis->cycle_s * (1 + 1e-9) + 1e-6 / fabs(axis->scale),
+    else if (axis->silence.began_anew)
+        AXES_MUST(v * w->velocity >= 0 &&
+                  fabs(v) <= fabs(w->velocity) + axis->limits.maximum.acceleration * axis->cycle_s &&
+                      fabs(step) <= fabs(w->velocity) * axis->cycle_s * (1 + 1e-9) + 1e-6 / fabs(axis->position.scale),
                   "axis %d: after silence %.12g u/s and a step of %.12g u, before %.12g u/s", n, v, step, w->velocity);
-    return silent || axis->began_anew;
+    return silent || axis->silence.began_anew;
 }
 
 static inline void axes_judge(int n)
 {
     const cm1e_axis_t *axis = axes_bench.axes[n];
     axes_witness_t *w = &axes_bench.witness[n];
-    const double t = axis->cycle_s, line = cm1e_axis_line(axis, axis->set);
+    const double t = axis->cycle_s, line = cm1e_axis_line(axis, axis->setpoint.position);
     const bool ours = axes_own(axis);
     const bool hard = axis->state == CM1E_AXIS_ERROR_STOP || w->state == CM1E_AXIS_ERROR_STOP;
-    const double most_a = fmax(axis->system.acceleration, axis->system.deceleration);
+    const double most_a = fmax(axis->limits.system.acceleration, axis->limits.system.deceleration);
     if (ours && w->ours && w->strictness != AXES_UNWATCHED && !axes_judge_silence(n)) {
-        AXES_MUST(fabs(axis->set_velocity) <= axis->maximum.velocity * (1.0 + 1e-9) || hard,
+        AXES_MUST(fabs(axis->setpoint.velocity) <= axis->limits.maximum.velocity * (1.0 + 1e-9) || hard,
                   "axis %d, %s: velocity %.12g, limit %.12g", n, cm1e_axis_state_name(axis->state),
-                  axis->set_velocity, axis->maximum.velocity);
+                  axis->setpoint.velocity, axis->limits.maximum.velocity);
         if (hard || w->strictness == AXES_STEEP)
             axes_judge_steep(n, t, most_a);
         else
             axes_judge_smooth(n, t);
-        w->worst_step = fmax(w->worst_step, fabs(cm1e_position_minus(axis->set, w->set) / axis->scale));
-        w->worst_gain = fmax(w->worst_gain, fabs(axis->set_velocity - w->velocity) / t);
-        w->worst_jerk = fmax(w->worst_jerk, fabs(axis->set_acceleration - w->acceleration) / t);
+        w->worst_step = fmax(w->worst_step,
+                             fabs(cm1e_position_minus(axis->setpoint.position, w->set) / axis->position.scale));
+        w->worst_gain = fmax(w->worst_gain, fabs(axis->setpoint.velocity - w->velocity) / t);
+        w->worst_jerk = fmax(w->worst_jerk, fabs(axis->setpoint.acceleration - w->acceleration) / t);
     }
     w->lowest = fmin(w->lowest, line);
     w->highest = fmax(w->highest, line);
     w->ours = ours;
     w->state = axis->state;
-    w->set = axis->set;
-    w->velocity = axis->set_velocity;
-    w->acceleration = axis->set_acceleration;
+    w->set = axis->setpoint.position;
+    w->velocity = axis->setpoint.velocity;
+    w->acceleration = axis->setpoint.acceleration;
 }
 
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
@@ -293,13 +298,13 @@ static inline void axes_make(void)
     axes_cycles(3);
     for (int n = 0; n < axes_bench.count; n++)
         axes_bench.witness[n].lowest = axes_bench.witness[n].highest =
-            cm1e_axis_line(axes_bench.axes[n], axes_bench.axes[n]->set);
+            cm1e_axis_line(axes_bench.axes[n], axes_bench.axes[n]->setpoint.position);
 }
 
 /** The axis has been going on and on: its counter is so many times 2^32 counts away. While it is Disabled. */
 static inline void axes_start_far(int n, int64_t wraps)
 {
-    axes_bench.axes[n]->actual_counts += wraps * (INT64_C(1) << 32);
+    axes_bench.axes[n]->position.actual_counts += wraps * (INT64_C(1) << 32);
     axes_cycles(1);
 }
 

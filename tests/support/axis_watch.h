@@ -23,7 +23,7 @@ static watch_t watch;
 
 static inline void watch_begin(void)
 {
-    const double now = cm1e_axis_units(axis, axis->set);
+    const double now = cm1e_axis_units(axis, axis->setpoint.position);
     watch = (watch_t){.lowest = now, .highest = now, .stretch = 1.0, .run = ""};
 }
 
@@ -41,8 +41,8 @@ static inline void watch_begin(void)
 /** What a cycle with acceleration within both limits can end with. */
 static inline void watch_bounds(double t)
 {
-    const cm1e_motion_limits_t *most = &axis->maximum;
-    const double v = axis->set_velocity, a = axis->set_acceleration;
+    const cm1e_motion_limits_t *most = &axis->limits.maximum;
+    const double v = axis->setpoint.velocity, a = axis->setpoint.acceleration;
     const double most_a = fmax(most->acceleration, most->deceleration), slow = most_a * t;
     const double bound = fabs(v) < slow || watch.stretch > 1.0 ? most_a
                          : a * v > 0.0 ? most->acceleration : most->deceleration;
@@ -53,15 +53,16 @@ static inline void watch_bounds(double t)
 static inline void watch_one(void)
 {
     const bool ours = axis_holds(axis) || axis_on_profile(axis);
-    const double t = axis->cycle_s, j = axis->maximum.jerk;
-    const double now = cm1e_axis_units(axis, axis->set);
+    const double t = axis->cycle_s, j = axis->limits.maximum.jerk;
+    const double now = cm1e_axis_units(axis, axis->setpoint.position);
     watch.cycles++;
     watch.lowest = fmin(watch.lowest, now);
     watch.highest = fmax(watch.highest, now);
     if (ours && watch.ours && axis->state != CM1E_AXIS_ERROR_STOP) {
-        const double step = cm1e_position_minus(axis->set, watch.position) / axis->scale;
-        const double v0 = watch.velocity, a0 = watch.acceleration, v = axis->set_velocity, a = axis->set_acceleration;
-        const double noise = 1e-9 * (fabs(step) + fabs(v0) * t) + 1e-6 / fabs(axis->scale);
+        const double step = cm1e_position_minus(axis->setpoint.position, watch.position) / axis->position.scale;
+        const double v0 = watch.velocity, a0 = watch.acceleration, v = axis->setpoint.velocity;
+        const double a = axis->setpoint.acceleration;
+        const double noise = 1e-9 * (fabs(step) + fabs(v0) * t) + 1e-6 / fabs(axis->position.scale);
         watch_bounds(t);
         WATCH(fabs(a - a0) <= j * t * (1.0 + 1e-9) + 1e-9 * (fabs(a) + fabs(a0)), "jerk: acceleration %.12g -> %.12g",
               a0, a);
@@ -71,9 +72,9 @@ static inline void watch_one(void)
               "position moved by %.12g at %.12g u/s", step, v0);
     }
     watch.ours = ours && axis->state != CM1E_AXIS_ERROR_STOP;
-    watch.position = axis->set;
-    watch.velocity = axis->set_velocity;
-    watch.acceleration = axis->set_acceleration;
+    watch.position = axis->setpoint.position;
+    watch.velocity = axis->setpoint.velocity;
+    watch.acceleration = axis->setpoint.acceleration;
 }
 
 static inline void watch_cycles(int n)

@@ -196,7 +196,7 @@ static inline void bench_power_up(void)
     CYCLE_UNTIL(bench.power.Status && (!bench.master || bench.master_power.Status));
     if (bench.master) {
         bench_turn_master(4);
-        CYCLE_UNTIL(bench.master->reached);
+        CYCLE_UNTIL(bench.master->setpoint.reached);
     }
     MUST(judged.axis->state == CM1E_AXIS_STANDSTILL, "not in Standstill");
 }

@@ -283,7 +283,7 @@ static void judge_members(const instance_t *fb, unsigned members)
              name_of(fb), n, member, cm1e_axis_state_name(before), cm1e_axis_state_name(after));
         one->reset_asked = one->reset_asked || (resets && member && !fb->now.error);
         one->state = after;
-        one->led = one->axis->source == &cm1e_source_leader;
+        one->led = one->axis->setpoint.source == &cm1e_source_leader;
     }
 }
 
@@ -311,7 +311,8 @@ static void call(instance_t *fb)
     judged_at = fb->of;
     const cm1e_axis_state_t state = judged.axis->state;
     /* MC_GearInPos waits for its StartSync, alone or behind another command. */
-    const bool before_it = judged.axis->active || judged.axis->waiting.count > 0 || judged.axis->coupling->awaited;
+    const bool before_it = judged.axis->commands.active || judged.axis->commands.waiting.count > 0 ||
+                           judged.axis->coupling->awaited;
     const bool may_wait = before_it && v->buffer_mode != NOWHERE && fb->memory[v->buffer_mode] != mcAborting;
     MUST(state == judged.state, "the state changed from %s to %s between two calls", cm1e_axis_state_name(judged.state),
          cm1e_axis_state_name(state));
@@ -367,10 +368,10 @@ static bool set_point_is_ours(void)
 static void watch_limits(void)
 {
     const cm1e_axis_t *axis = judged.axis;
-    const double now = cm1e_axis_units(axis, axis->set), tolerance = 0.02 / fabs(axis->scale);
-    const double way = axis->set_velocity * axis->set_velocity / (2.0 * axis->maximum.deceleration) +
-                       2.0 * fabs(axis->set_velocity) * (double)judged.cycle_ns * 1e-9;
-    const bool changed = axis->lower != watched.lower || axis->upper != watched.upper ||
+    const double now = cm1e_axis_units(axis, axis->setpoint.position), tolerance = 0.02 / fabs(axis->position.scale);
+    const double way = axis->setpoint.velocity * axis->setpoint.velocity / (2.0 * axis->limits.maximum.deceleration) +
+                       2.0 * fabs(axis->setpoint.velocity) * (double)judged.cycle_ns * 1e-9;
+    const bool changed = axis->limits.lower != watched.lower || axis->limits.upper != watched.upper ||
                          cm1e_axis_units(axis, watched.set) != watched.units;
     /* Where the limits are is not known before a homing; what follows it begins wherever it was. */
     const bool stopped = (watched.searched || judged.searched) && axis->state == CM1E_AXIS_STOPPING;
@@ -378,18 +379,18 @@ static void watch_limits(void)
     const bool searched = searches || judged.searched; /* it may have failed in the cycle in which it began */
     watched.searched = searches;
     judged.searched = false;
-    if (!axis->software_limits || !watched.ours || axis->set_velocity == 0.0 || changed || searched) {
-        watched.lowest = fmin(axis->lower, now - way) - tolerance;
-        watched.highest = fmax(axis->upper, now + way) + tolerance;
+    if (!axis->limits.software_limits || !watched.ours || axis->setpoint.velocity == 0.0 || changed || searched) {
+        watched.lowest = fmin(axis->limits.lower, now - way) - tolerance;
+        watched.highest = fmax(axis->limits.upper, now + way) + tolerance;
     }
     if (axis->state == CM1E_AXIS_ERROR_STOP && watched.lost) { /* it brakes where a load has turned the motor to */
         const double actual = cm1e_axis_units(axis, axis_actual(axis));
         watched.lowest = fmin(watched.lowest, actual - way - tolerance);
         watched.highest = fmax(watched.highest, actual + way + tolerance);
     }
-    watched.lower = axis->lower;
-    watched.upper = axis->upper;
-    if (axis->software_limits)
+    watched.lower = axis->limits.lower;
+    watched.upper = axis->limits.upper;
+    if (axis->limits.software_limits)
         MUST(now >= watched.lowest && now <= watched.highest, "the set position %.9g is outside %.9g ... %.9g", now,
              watched.lowest, watched.highest);
 }
@@ -411,7 +412,7 @@ static bool follows_roughly(const cm1e_axis_t *axis, int depth)
 static double rounding_of(const cm1e_axis_t *axis, int depth)
 {
     const follow_t *follow = axis_follows(axis) ? axis->coupling->now : NULL;
-    double rounding = 1e-3 / fabs(axis->scale);
+    double rounding = 1e-3 / fabs(axis->position.scale);
     for (int i = 0; follow && depth > 0 && i < follow->count; i++)
         if (follow->links[i].master)
             rounding += fabs(follow->links[i].ratio) * rounding_of(follow->links[i].master, depth - 1);
@@ -423,9 +424,9 @@ static double rounding_of(const cm1e_axis_t *axis, int depth)
 static double largest_number(const cm1e_axis_t *axis)
 {
     const cm1e_group_t *const group = axis->group;
-    if (group && !axis->active) /* led, maybe for this cycle alone */
+    if (group && !axis->commands.active) /* led, maybe for this cycle alone */
         return fmax(fabs(group->path.end[axis->leader.index]), fabs(cm1e_axis_place(axis, false)));
-    return fabs(cm1e_position_minus(axis->target, axis->set) / axis->scale);
+    return fabs(cm1e_position_minus(axis->setpoint.target, axis->setpoint.position) / axis->position.scale);
 }
 
 /** The master was late by so much: the motor stands, or in CSV has gone on. */
@@ -444,13 +445,13 @@ static inline void pause_of_master(int64_t pause_ns)
 /** Parameters may be changed under way: what was planned before keeps to what they were. */
 static const cm1e_motion_limits_t *limits_in_force(void)
 {
-    const cm1e_motion_limits_t *now = &judged.axis->maximum;
+    const cm1e_motion_limits_t *now = &judged.axis->limits.maximum;
     if (!watched.ours || watched.resting)
         watched.most = watched.maximum;
     watched.resting = axis_holds(judged.axis);
     watched.maximum = *now;
     if (axis_follows(judged.axis)) /* the bounds of commands are lowered by parameters, not these */
-        now = &judged.axis->system;
+        now = &judged.axis->limits.system;
     watched.most.velocity = fmax(watched.most.velocity, now->velocity);
     watched.most.acceleration = fmax(watched.most.acceleration, now->acceleration);
     watched.most.deceleration = fmax(watched.most.deceleration, now->deceleration);
@@ -466,23 +467,24 @@ static double jerk_to_stay_below(const cm1e_motion_limits_t *most)
 }
 
 #define KEEPS(condition, format, ...)                                                                                \
-    MUST(condition, "%s, command kind %d: " format, cm1e_axis_state_name(judged.axis->state), (int)judged.axis->kind,  \
-         __VA_ARGS__)
+    MUST(condition, "%s, command kind %d: " format, cm1e_axis_state_name(judged.axis->state), \
+         (int)judged.axis->commands.kind, __VA_ARGS__)
 
 /** While no answer comes the time of the set-points stands still; with the first one the motor goes on no faster than it
  *  did. TRUE: nothing else is to be said of this cycle. */
 static inline bool watch_silence(void)
 {
     const cm1e_axis_t *axis = judged.axis;
-    const double way = cm1e_position_minus(axis->set, watched.set) / axis->scale;
-    const double v = axis->set_velocity, gain = fmax(axis->system.acceleration, axis->system.deceleration) *
-                                                (double)judged.cycle_ns * 1e-9;
-    if (axis->frozen)
+    const double way = cm1e_position_minus(axis->setpoint.position, watched.set) / axis->position.scale;
+    const double v = axis->setpoint.velocity;
+    const double gain = fmax(axis->limits.system.acceleration, axis->limits.system.deceleration) *
+                                                     (double)judged.cycle_ns * 1e-9;
+    if (axis->silence.frozen)
         KEEPS(way == 0.0, "the set position moves by %.9g while no frame comes back", way);
-    else if (axis->began_anew)
+    else if (axis->silence.began_anew)
         KEEPS((v * watched.velocity >= 0.0 || fabs(v) <= gain) && fabs(v) <= fabs(watched.velocity) + gain,
               "after silence %.9g u/s, before %.9g", v, watched.velocity);
-    return axis->frozen || axis->began_anew;
+    return axis->silence.frozen || axis->silence.began_anew;
 }
 
 static inline void watch_set_point(void)
@@ -491,26 +493,28 @@ static inline void watch_set_point(void)
     watch_limits();
     const double far = largest_number(axis);
     const cm1e_motion_limits_t *most = limits_in_force();
-    const double t = (double)judged.cycle_ns * 1e-9, v = axis->set_velocity, a = axis->set_acceleration;
-    const bool stop = axis->source != &cm1e_source_leader && (!axis->active || axis->kind == CM1E_COMMAND_HALT ||
-                                                         axis->kind == CM1E_COMMAND_STOP || axis->paused);
+    const double t = (double)judged.cycle_ns * 1e-9, v = axis->setpoint.velocity, a = axis->setpoint.acceleration;
+    const bool stop = axis->setpoint.source != &cm1e_source_leader &&
+                      (!axis->commands.active || axis->commands.kind == CM1E_COMMAND_HALT ||
+                                                         axis->commands.kind == CM1E_COMMAND_STOP ||
+                                                             axis->setpoint.paused);
     const bool ours = set_point_is_ours(), stepping = watched.searched; /* lets go of what it pushes at */
     watched.rough = follows_roughly(axis, JUDGED_MOST) || (watched.rough && ours && watched.velocity != 0.0);
-    const bool is_hard = axis->state == CM1E_AXIS_ERROR_STOP || stepping || (stop && axis->software_limits) ||
+    const bool is_hard = axis->state == CM1E_AXIS_ERROR_STOP || stepping || (stop && axis->limits.software_limits) ||
                          watched.rough;
     const bool hard = is_hard || watched.hard;
     const double largest = fmax(most->acceleration, most->deceleration), slack = 1.0 + 1e-6;
     const bool taken_over = watched.disabled && axis->state == CM1E_AXIS_STANDSTILL && v == 0.0 && a == 0.0 &&
-                            cm1e_position_minus(axis->set, axis_actual(axis)) == 0.0;
+                            cm1e_position_minus(axis->setpoint.position, axis_actual(axis)) == 0.0;
     if (ours && watched.ours && !hard && !watched.lost && !taken_over && !watch_silence()) {
-        const double way = cm1e_position_minus(axis->set, watched.set) / axis->scale;
+        const double way = cm1e_position_minus(axis->setpoint.position, watched.set) / axis->position.scale;
         const double jerk = fabs(a - watched.acceleration) / t, gain = fabs(v - watched.velocity);
         const double rounding = rounding_of(axis, JUDGED_MOST) + 4e-16 * fmax(far, watched.far);
         const double off = fabs(way - (v + watched.velocity) * t / 2.0);
         KEEPS(fabs(v) <= most->velocity * slack, "velocity %.12g, limit %.12g", v, most->velocity);
         KEEPS(fabs(a) <= largest * slack, "acceleration %.12g, limit %.12g", a, largest);
         /* Of a set-point that is not of its own making the axis accepts 1e-5 counts of rounding (axis_guard.c). */
-        const double guarded = axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION ? 1e-5 / fabs(axis->scale) : 0.0;
+        const double guarded = axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION ? 1e-5 / fabs(axis->position.scale) : 0.0;
         KEEPS(gain <= largest * t * slack + guarded + 1e-12, "velocity from %.9g to %.9g in a cycle", watched.velocity, v);
         KEEPS(jerk <= fmax(most->jerk, jerk_to_stay_below(most)) * slack + 1e-9,
               "jerk %.9g, limit %.9g (acceleration from %.9g to %.9g, velocity %.9g)", jerk, most->jerk,
@@ -522,12 +526,13 @@ static inline void watch_set_point(void)
     watched.moving += ours && v != 0.0;
     watched.ours = ours;
     watched.disabled = axis->state == CM1E_AXIS_DISABLED;
-    watched.set = axis->set;
+    watched.set = axis->setpoint.position;
     watched.far = far;
-    watched.units = cm1e_axis_units(axis, axis->set);
+    watched.units = cm1e_axis_units(axis, axis->setpoint.position);
     watched.velocity = v;
     watched.acceleration = a;
-    watched.lost = fabs(cm1e_position_minus(axis->set, axis_actual(axis)) / axis->scale) > 0.9 * axis->max_lag;
+    watched.lost = fabs(cm1e_position_minus(axis->setpoint.position, axis_actual(axis)) / axis->position.scale) > 0.9 *
+                   axis->limits.max_lag;
 }
 
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
@@ -548,8 +553,8 @@ static void judge_cycle(void)
     const cm1e_axis_state_t before = judged.state, after = judged.axis->state;
     bool waits = judged.waited;
     const bool led = judged.led; /* its group has come to rest, and lets it go with the last set-point */
-    judged.led = judged.axis->source == &cm1e_source_leader;
-    judged.waited = judged.axis->waiting.count > 0;
+    judged.led = judged.axis->setpoint.source == &cm1e_source_leader;
+    judged.waited = judged.axis->commands.waiting.count > 0;
     if (after == before)
         return;
     for (int i = 0; i < called_count; i++)

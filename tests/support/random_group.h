@@ -98,9 +98,9 @@ static void random_points(instance_t *fb)
         const cm1e_axis_t *axis = cm1e_group_axis(g->group, (uint32_t)i + 1);
         if (!axis)
             continue;
-        const double turn = cm1e_axis_configuration(axis)->modulo_range, scale = fabs(axis->scale);
+        const double turn = cm1e_axis_configuration(axis)->modulo_range, scale = fabs(axis->position.scale);
         const double most = (one_in(2) ? 20000 : one_in(2) ? 2000 : 100000) / scale;
-        from[i] = relative ? 0 : cm1e_axis_units(axis, axis->set);
+        from[i] = relative ? 0 : cm1e_axis_units(axis, axis->setpoint.position);
         end[i] = absurd(turn > 0 && !relative ? uniform(0, turn) : uniform(-most, most) + (relative ? 0 : from[i] / 2));
         auxiliary[i] = absurd(uniform(-most, most) + from[i] / 2);
         if (one_in(6))
@@ -252,11 +252,12 @@ static void judge_led(void)
         for (int i = 0; i < groups[g].group->axes; i++)
             leaders += (groups[g].group->led >> i & 1u) &&
                        cm1e_group_axis(groups[g].group, groups[g].group->ident[i]) == axis;
-    const bool led = axis->source == &cm1e_source_leader, synchronised = axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION;
+    const bool led = axis->setpoint.source == &cm1e_source_leader;
+    const bool synchronised = axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION;
     led_total += led;
     MUST(leaders == (led ? 1 : 0), "led: %d, by %d groups", led, leaders);
     MUST(!led || synchronised, "led in %s", cm1e_axis_state_name(axis->state));
-    MUST(!led || !axis->active, "led, and a command of its own is active");
+    MUST(!led || !axis->commands.active, "led, and a command of its own is active");
     MUST(!synchronised || led || axis_follows(axis), "SynchronizedMotion with nothing to follow");
 }
 
@@ -265,7 +266,7 @@ static bool group_stands(const cm1e_group_t *group)
     bool stands = true;
     for (uint32_t ident = 1; ident <= CM1E_GROUP_AXES; ident++) {
         const cm1e_axis_t *axis = cm1e_group_axis(group, ident);
-        stands = stands && (!axis || axis->set_velocity == 0.0);
+        stands = stands && (!axis || axis->setpoint.velocity == 0.0);
     }
     return stands;
 }
@@ -336,8 +337,8 @@ static void judge_group_arrival(int n)
         if (!axis || g->story.origin[i] != origin_of(axis) || cm1e_axis_configuration(axis)->modulo_range > 0 ||
             stories_touched[number_of(axis)] || axis->state == CM1E_AXIS_ERROR_STOP)
             continue;
-        const double scale = fabs(axis->scale), end = g->story.end[i];
-        const double off = (cm1e_axis_units(axis, axis->set) - end) * scale;
+        const double scale = fabs(axis->position.scale), end = g->story.end[i];
+        const double off = (cm1e_axis_units(axis, axis->setpoint.position) - end) * scale;
         MUST(fabs(off) < 0.05 + fabs(end) * scale * 1e-14, "%s is Done, but axis %d stands %.6g counts beside %.9g",
              name_of(fb), number_of(axis), off, end);
     }

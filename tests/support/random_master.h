@@ -21,7 +21,7 @@ typedef struct random_master {
  *  leaves `room` of both. */
 static inline random_master_t random_master_for(int axis, int follower, double ratio, double part)
 {
-    const cm1e_motion_limits_t *own = &axes_axis(axis)->maximum, *its = &axes_axis(follower)->maximum;
+    const cm1e_motion_limits_t *own = &axes_axis(axis)->limits.maximum, *its = &axes_axis(follower)->limits.maximum;
     const double r = fabs(ratio);
     const double a = fmin(own->acceleration, own->deceleration), b = fmin(its->acceleration, its->deceleration);
     return (random_master_t){
@@ -44,7 +44,7 @@ static inline void random_master_command(const random_master_t *master)
 {
     cm1e_axis_t *axis = axes_axis(master->axis);
     const cm1e_motion_limits_t *most = &master->most;
-    const double now = cm1e_axis_line(axis, axis->set) - master->middle;
+    const double now = cm1e_axis_line(axis, axis->setpoint.position) - master->middle;
     const double largest = one_in(3) ? 1.0 : one_in(4) ? uniform(0.001, 0.05) : uniform(0.05, 1.0);
     cm1e_axis_command_t command = {
         .kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = most->velocity * largest,

@@ -165,8 +165,8 @@ static void begin_program(void)
     memset(named, 0, sizeof named);
     for (int n = 0; n < axis_count; n++) {
         judged_at = n;
-        const cm1e_motion_limits_t *most = &judged.axis->maximum;
-        player.ranges = (ranges_t){150000 / fabs(judged.axis->scale), most->velocity, most->acceleration,
+        const cm1e_motion_limits_t *most = &judged.axis->limits.maximum;
+        player.ranges = (ranges_t){150000 / fabs(judged.axis->position.scale), most->velocity, most->acceleration,
                                    most->deceleration, most->jerk};
         named[n] = judged.reference;
         judged.master = named[pick(axis_count)];
@@ -195,11 +195,12 @@ static void judge_arrival(int n)
 {
     const instance_t *fb = &instances[n];
     done_total++;
-    const bool rests = judged.axis->state == CM1E_AXIS_STANDSTILL && !judged.axis->active;
+    const bool rests = judged.axis->state == CM1E_AXIS_STANDSTILL && !judged.axis->commands.active;
     if (!stories[n].known || stories[n].origin != origin() || !rests)
         return;
     const double end = stories[n].end;
-    const double scale = fabs(judged.axis->scale), off = (cm1e_axis_units(judged.axis, judged.axis->set) - end) * scale;
+    const double scale = fabs(judged.axis->position.scale);
+    const double off = (cm1e_axis_units(judged.axis, judged.axis->setpoint.position) - end) * scale;
     /* Three roundings to a double in u: of where it began, of where that is to end, and of where it is. */
     MUST(fabs(off) < 0.01 + fabs(end) * scale * 4e-16, "%s is Done, but stands %.6g counts beside %.9g",
          name_of(fb), off, end);
@@ -209,7 +210,7 @@ static void judge_arrival(int n)
 static story_t story_of(const instance_t *fb, double set)
 {
     const bool absolute = is(fb, "MC_MoveAbsolute"), relative = is(fb, "MC_MoveRelative");
-    if (!(absolute || relative) || !fb->now.busy || judged.axis->modulo_range != 0)
+    if (!(absolute || relative) || !fb->now.busy || judged.axis->position.modulo_range != 0)
         return (story_t){0};
     const bool updates = fb->memory[place_of(fb->view->type, "ContinuousUpdate")];
     const bool aborting = *(const int *)(const void *)(fb->memory + fb->view->buffer_mode) == mcAborting;
@@ -274,7 +275,7 @@ static sync_t sync_of(const instance_t *fb)
         return (sync_t){0};
     const double ratio = (double)integer_of(fb, "RatioNumerator") / (UDINT)integer_of(fb, "RatioDenominator");
     return (sync_t){.asked = !fb->memory[place_of(fb->view->type, "ContinuousUpdate")], .master = n,
-                    .ratio = ratio * judged.axis->scale / judged_axes[n].axis->scale};
+                    .ratio = ratio * judged.axis->position.scale / judged_axes[n].axis->position.scale};
 }
 
 /** InGear: the slave is where it has to be by where both were when that began. After the set-points. */
@@ -285,25 +286,26 @@ static void judge_sync(int n)
     sync_t *sync = &syncs[n];
     const cm1e_axis_t *slave = judged.axis, *master = judged_axes[sync->master].axis;
     const bool moved_else = slave->superimposed.id != 0 || slave->coupling->phasing.moving;
-    const bool in_gear = fb->now.reached && slave->reached && slave->kind == CM1E_COMMAND_GEAR_IN;
-    if (!sync->asked || !in_gear || slave->coupling->now->by_actual || moved_else || slave->active != sync->id) {
-        sync->id = fb->now.active ? slave->active : 0;
+    const bool in_gear = fb->now.reached && slave->setpoint.reached && slave->commands.kind == CM1E_COMMAND_GEAR_IN;
+    if (!sync->asked || !in_gear || slave->coupling->now->by_actual || moved_else ||
+        slave->commands.active != sync->id) {
+        sync->id = fb->now.active ? slave->commands.active : 0;
         sync->known = false;
         return;
     }
     if (!sync->known) {
         sync->known = true;
-        sync->master_at = master->set;
-        sync->slave_at = slave->set;
+        sync->master_at = master->setpoint.position;
+        sync->slave_at = slave->setpoint.position;
         return;
     }
-    const double way = cm1e_position_minus(master->set, sync->master_at) * sync->ratio;
-    const double off = cm1e_position_minus(slave->set, sync->slave_at) - way;
-    const double v = sync->ratio * master->set_velocity * master->scale / slave->scale;
+    const double way = cm1e_position_minus(master->setpoint.position, sync->master_at) * sync->ratio;
+    const double off = cm1e_position_minus(slave->setpoint.position, sync->slave_at) - way;
+    const double v = sync->ratio * master->setpoint.velocity * master->position.scale / slave->position.scale;
     synchronised_total++;
     MUST(fabs(off) <= 0.1 + 1e-9 * fabs(way), "InGear, and %.6g counts beside, after %.9g", off, way);
-    MUST(fabs(slave->set_velocity - v) <= 1e-6 * (fabs(v) + slave->maximum.velocity * 1e-3),
-         "InGear with %.9g instead of %.9g u/s", slave->set_velocity, v);
+    MUST(fabs(slave->setpoint.velocity - v) <= 1e-6 * (fabs(v) + slave->limits.maximum.velocity * 1e-3),
+         "InGear with %.9g instead of %.9g u/s", slave->setpoint.velocity, v);
 }
 
 static void play(int n)
@@ -311,18 +313,19 @@ static void play(int n)
     instance_t *fb = &instances[n];
     judged_at = fb->of;
     const bool edge_to_come = !fb->now.trigger && flag(fb, fb->view->execute);
-    const cm1e_command_id_t active = judged.axis->active;
+    const cm1e_command_id_t active = judged.axis->commands.active;
     const bool busy = fb->now.busy;
     const from_t from = from_set(judged.axis);
-    const double set = cm1e_axis_units(judged.axis, judged.axis->set);
+    const double set = cm1e_axis_units(judged.axis, judged.axis->setpoint.position);
     double sets[JUDGED_MOST];
     for (int a = 0; a < axis_count && group_count > 0; a++)
-        sets[a] = cm1e_axis_units(judged_axes[a].axis, judged_axes[a].axis->set);
+        sets[a] = cm1e_axis_units(judged_axes[a].axis, judged_axes[a].axis->setpoint.position);
     const struct random_group *group = random_group_of(fb);
     const cm1e_group_state_t group_state = group ? group->group->state : CM1E_GROUP_DISABLED;
     call(fb);
     judge_group_states(fb);
-    if (is(fb, "MC_SetOverride") && judged.axis->active != active) /* what waited at 0 is done at once by a new factor */
+    if (is(fb, "MC_SetOverride") &&
+        judged.axis->commands.active != active) /* what waited at 0 is done at once by a new factor */
         player.edge_in_cycle = true;
     if (edge_to_come && group) {
         tell(fb, &from);
@@ -343,7 +346,7 @@ static void play(int n)
         if (!fb->now.error && !fb->view->type->rules)
             forget_stories();
         if (fb->now.error && fb->view->buffer_mode != NOWHERE)
-            MUST(judged.axis->active == active, "%s is refused with 0x%04X, but the active command changed",
+            MUST(judged.axis->commands.active == active, "%s is refused with 0x%04X, but the active command changed",
                  name_of(fb), fb->now.error_id);
         if (!fb->now.error && (is_superimposed(fb) || is(fb, "MC_SetPosition")))
             forget_stories();
@@ -479,15 +482,15 @@ static void judge_rest(void)
     const cm1e_axis_t *axis = judged.axis;
     const cm1e_axis_state_t state = axis->state;
     if (state == CM1E_AXIS_STANDSTILL) {
-        MUST(axis->set_velocity == 0.0 && axis->set_acceleration == 0.0, "Standstill with the velocity %g",
-             axis->set_velocity);
-        MUST(!axis->active, "Standstill with an active command");
+        MUST(axis->setpoint.velocity == 0.0 && axis->setpoint.acceleration == 0.0, "Standstill with the velocity %g",
+             axis->setpoint.velocity);
+        MUST(!axis->commands.active, "Standstill with an active command");
     }
     player.at_rest = state == CM1E_AXIS_STANDSTILL ? player.at_rest + 1 : 0;
     const bool off = state == CM1E_AXIS_ERROR_STOP || !bench.powers[judged_at].Enable;
     double longest_s = 0;
     for (int n = 0; n < axis_count; n++) { /* a master that keeps its ratio brakes as its slave can */
-        const cm1e_motion_limits_t *most = &judged_axes[n].axis->maximum;
+        const cm1e_motion_limits_t *most = &judged_axes[n].axis->limits.maximum;
         longest_s = fmax(longest_s, most->velocity / most->deceleration + 2 * most->deceleration / most->jerk +
                                         2 * sqrt(most->velocity / most->jerk) + 0.2);
     }
@@ -502,8 +505,9 @@ static void judge_progress(void)
 {
     const cm1e_axis_t *axis = judged.axis;
     const bool to_move = axis->state == CM1E_AXIS_DISCRETE_MOTION ||
-                         (axis->state == CM1E_AXIS_STOPPING && !axis->stop_held);
-    player.still_cycles = to_move && axis->set_velocity == 0.0 && !axis->paused ? player.still_cycles + 1 : 0;
+                         (axis->state == CM1E_AXIS_STOPPING && !axis->commands.stop_held);
+    player.still_cycles = to_move && axis->setpoint.velocity == 0.0 && !axis->setpoint.paused ? player.still_cycles + 1
+                          : 0;
     MUST(player.still_cycles < STUCK, "%s, and nothing has moved for %d cycles", cm1e_axis_state_name(axis->state),
          player.still_cycles);
 }
@@ -527,7 +531,7 @@ static void judge_groups(void)
 {
     double longest_s = 0;
     for (int n = 0; n < axis_count; n++) {
-        const cm1e_motion_limits_t *most = &judged_axes[n].axis->maximum;
+        const cm1e_motion_limits_t *most = &judged_axes[n].axis->limits.maximum;
         longest_s = fmax(longest_s, most->velocity / most->deceleration + 2 * most->deceleration / most->jerk +
                                         2 * sqrt(most->velocity / most->jerk) + 0.2);
     }

@@ -39,7 +39,7 @@ static void gap_follow(void)
     gap_low = gap_high - GAP;
 }
 
-static double load_units(void) { return (inverted ? gap_low : gap_high) / axis->scale; }
+static double load_units(void) { return (inverted ? gap_low : gap_high) / axis->position.scale; }
 
 static void cycles(int n)
 {
@@ -84,7 +84,7 @@ static void move_to(double position)
 static void expect_smooth(void)
 {
     const double most = 2500000.0 * axis->cycle_s, ramp = 2.5e6, cycle_s = axis->cycle_s;
-    const double change = (axis->emergency.deceleration * fabs(axis->scale) + ramp) * cycle_s * cycle_s;
+    const double change = (axis->limits.emergency.deceleration * fabs(axis->position.scale) + ramp) * cycle_s * cycle_s;
     TEST_ASSERT_TRUE(worst_step <= (int64_t)most + 1);
     TEST_ASSERT_TRUE(worst_change <= (int64_t)change + 3);
 }
@@ -140,7 +140,7 @@ static void test_reversals_at_any_time_keep_the_motors_limits(void)
         for (int n = 0; n < 3000; n++) {
             if (draw(pace) == 0) {
                 cm1e_command_id_t id;
-                const double most = axis->maximum.velocity;
+                const double most = axis->limits.maximum.velocity;
                 const cm1e_axis_command_t command = {
                     .kind = CM1E_COMMAND_MOVE_VELOCITY, .velocity = uniform(0.001, 1) * (draw(3) ? most : 0.1),
                     .direction = draw(2) ? mcPositiveDirection : mcNegativeDirection};
@@ -155,8 +155,8 @@ static void test_reversals_at_any_time_keep_the_motors_limits(void)
             }
             cycles(1);
             TEST_ASSERT_TRUE(axis->backlash.offset <= 1e-6 && axis->backlash.offset >= -GAP - 1e-6);
-            TEST_ASSERT_TRUE(fabs(axis->set_velocity * axis->scale) + fabs(axis->backlash.offset_velocity) <=
-                             2500000.0 * (1 + 1e-9));
+            TEST_ASSERT_TRUE(fabs(axis->setpoint.velocity * axis->position.scale) +
+                             fabs(axis->backlash.offset_velocity) <= 2500000.0 * (1 + 1e-9));
         }
         expect_smooth();
         TEST_ASSERT_NOT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);

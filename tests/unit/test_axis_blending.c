@@ -48,12 +48,12 @@ static cm1e_command_id_t post_absolute(double position, double velocity, MC_BUFF
 static double velocity_at(double position)
 {
     for (int i = 0; i < 20000; i++) {
-        const double before = bench_info().set_position, v0 = axis->set_velocity;
+        const double before = bench_info().set_position, v0 = axis->setpoint.velocity;
         watch_cycles(1);
         const double after = bench_info().set_position;
         if ((before < position) != (after < position) || after == position)
-            return after == position ? axis->set_velocity
-                                     : v0 + (axis->set_velocity - v0) * (position - before) / (after - before);
+            return after == position ? axis->setpoint.velocity
+                                     : v0 + (axis->setpoint.velocity - v0) * (position - before) / (after - before);
     }
     TEST_FAIL_MESSAGE("never got there");
     return 0.0;
@@ -75,7 +75,7 @@ static void test_velocity_at_the_junction_is_what_the_mode_says(void)
                     double fastest = 0.0; /* the first one cruises with its own velocity */
                     while (fabs(bench_info().set_position) < 8.0) {
                         watch_cycles(1);
-                        fastest = fmax(fastest, fabs(axis->set_velocity));
+                        fastest = fmax(fastest, fabs(axis->setpoint.velocity));
                     }
                     TEST_ASSERT_DOUBLE_WITHIN(1e-9, v1, fastest);
                     /* without acceleration there, the velocity of a cycle differs by what a jerk can do in it */
@@ -162,7 +162,7 @@ static void test_moves_shorter_than_a_cycle(void)
     while (bench_info().set_position < 6.9) {
         watch_cycles(1);
         if (bench_info().set_position > 4.5)
-            slowest = fmin(slowest, axis->set_velocity);
+            slowest = fmin(slowest, axis->setpoint.velocity);
     }
     TEST_ASSERT_EQUAL_DOUBLE(20.0, slowest);
     watch_cycles(2000);
@@ -201,7 +201,7 @@ static void test_blending_after_a_velocity_is_previous(void)
         while (bench_state_of(second) == CM1E_COMMAND_BUFFERED) {
             before = bench_info().set_position;
             watch_cycles(1);
-            fastest = fmax(fastest, axis->set_velocity);
+            fastest = fmax(fastest, axis->setpoint.velocity);
         }
         TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ABORTED, bench_state_of(first));
         TEST_ASSERT_DOUBLE_WITHIN(2e-3, 7.0, fastest);
@@ -281,13 +281,14 @@ static void test_random_chains_never_stop_and_never_overrun(void)
         int posted = 0, n = 0;
         cm1e_command_id_t id = 0;
         for (; n < 40000; n++) {
-            if (posted < 20 && axis->waiting.count < CM1E_AXIS_BUFFER_DEPTH && (posted < 5 || uniform(0, 1) < 0.02)) {
+            if (posted < 20 && axis->commands.waiting.count < CM1E_AXIS_BUFFER_DEPTH &&
+                (posted < 5 || uniform(0, 1) < 0.02)) {
                 end += sign * pow(10.0, uniform(-3, 0.7));
                 id = bench_start_command(&(cm1e_axis_command_t){
                     .kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = end, .velocity = uniform(0.5, 20),
-                    .acceleration = uniform(0.3, 1) * axis->maximum.acceleration,
-                    .deceleration = uniform(0.3, 1) * axis->maximum.deceleration,
-                    .jerk = uniform(0.3, 1) * axis->maximum.jerk,
+                    .acceleration = uniform(0.3, 1) * axis->limits.maximum.acceleration,
+                    .deceleration = uniform(0.3, 1) * axis->limits.maximum.deceleration,
+                    .jerk = uniform(0.3, 1) * axis->limits.maximum.jerk,
                     .buffer_mode = posted ? (MC_BUFFER_MODE)(mcBlendingLow + (int)uniform(0, 4)) : mcAborting});
                 posted++;
             }
@@ -297,8 +298,9 @@ static void test_random_chains_never_stop_and_never_overrun(void)
             WATCH(step >= -1e-9, "backwards by %g", step);
             WATCH(sign * (bench_info().set_position - end) <= 1e-9, "beyond the last end by %g",
                   sign * (bench_info().set_position - end));
-            WATCH(axis->waiting.count == 0 || n < 2 || step > 1e-9, "a stop with %d to go, exit %g", axis->waiting.count,
-                  axis->move.exit_velocity);
+            WATCH(axis->commands.waiting.count == 0 || n < 2 || step > 1e-9,
+                  "a stop with %d to go, exit %g", axis->commands.waiting.count,
+                  axis->commands.move.exit_velocity);
             if (posted == 20 && axis_holds(axis))
                 break;
         }

@@ -169,7 +169,7 @@ typedef struct {
 static void check_limits(const chain_t *chain, int leg, double acceleration_before)
 {
     const leg_t *limits = &chain->legs[leg];
-    const double v = chain->sign * axis->set_velocity, a = chain->sign * axis->set_acceleration;
+    const double v = chain->sign * axis->setpoint.velocity, a = chain->sign * axis->setpoint.acceleration;
     WATCH(v >= -1e-9, "backwards at %g", v);
     WATCH(v <= limits->velocity * (1 + 1e-9) || a >= -1e-6 || leg > 0, "faster without need: %g", v);
     const double most = a > 0 ? limits->acceleration : limits->deceleration;
@@ -201,10 +201,10 @@ static run_t run_chain(const chain_t *chain)
     const double t = axis->cycle_s;
     int leg = 0;
     while (bench_state_of(ids[chain->count - 1]) != CM1E_COMMAND_DONE) {
-        const double v0 = axis->set_velocity, a0 = axis->set_acceleration;
+        const double v0 = axis->setpoint.velocity, a0 = axis->setpoint.acceleration;
         watch_cycles(1);
-        const double way = chain->sign * (bench_info().set_position - begins_at), v = axis->set_velocity;
-        const double a = axis->set_acceleration;
+        const double way = chain->sign * (bench_info().set_position - begins_at), v = axis->setpoint.velocity;
+        const double a = axis->setpoint.acceleration;
         run.time += t;
         sum += chain->sign * (t * (v0 + v) / 2 - t * t * (a - a0) / 12); /* exact under a constant jerk */
         WATCH(run.time < 60, "never ends");

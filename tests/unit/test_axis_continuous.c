@@ -55,7 +55,7 @@ static void test_in_end_velocity_at_the_position_and_on(void)
         /* it was passed inside this cycle, exactly */
         const double late = (bench_info().set_position - rows[i].position) / rows[i].end;
         TEST_ASSERT_TRUE_MESSAGE(late >= -1e-8 && late <= 1e-3 + 1e-8, where);
-        TEST_ASSERT_EQUAL_DOUBLE(rows[i].end, axis->set_velocity);
+        TEST_ASSERT_EQUAL_DOUBLE(rows[i].end, axis->setpoint.velocity);
         const double at = bench_info().set_position;
         watch_cycles(500);
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, at + 0.5 * rows[i].end, bench_info().set_position);
@@ -83,7 +83,7 @@ static void test_too_short_a_way_never_backs_up(void)
             const cm1e_command_id_t id = pass(sign * ways[w], 9.0, ends[e]);
             wait_reached(id);
             TEST_ASSERT_TRUE(sign > 0 ? watch.lowest >= -1e-9 : watch.highest <= 1e-9);
-            TEST_ASSERT_EQUAL_DOUBLE(ends[e], axis->set_velocity);
+            TEST_ASSERT_EQUAL_DOUBLE(ends[e], axis->setpoint.velocity);
             TEST_ASSERT_TRUE(fabs(bench_info().set_position) > 0.6);
         }
     setUp(); /* the same with too short a way to slow down */
@@ -93,7 +93,7 @@ static void test_too_short_a_way_never_backs_up(void)
     const cm1e_command_id_t id = pass(now + 0.05, 5.0, 1.0);
     wait_reached(id);
     TEST_ASSERT_TRUE(bench_info().set_position > now + 0.5);
-    TEST_ASSERT_EQUAL_DOUBLE(1.0, axis->set_velocity);
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, axis->setpoint.velocity);
 }
 
 static void test_a_position_behind_is_gone_back_for(void)
@@ -104,7 +104,7 @@ static void test_a_position_behind_is_gone_back_for(void)
     const cm1e_command_id_t id = pass(now - 1.0, 5.0, 5.0);
     wait_reached(id);
     TEST_ASSERT_DOUBLE_WITHIN(5.1e-3, now - 1.0, bench_info().set_position);
-    TEST_ASSERT_EQUAL_DOUBLE(5.0, axis->set_velocity);
+    TEST_ASSERT_EQUAL_DOUBLE(5.0, axis->setpoint.velocity);
 }
 
 static void test_relative_counts_from_the_set_position(void)

@@ -135,19 +135,19 @@ static void test_a_million_revolutions_lose_no_count(void)
     axes_enable_all();
     axes_gear_in(1, 0, 17, 997);
     axes_cycles(1);
-    const position_t master = axes_axis(0)->set, slave = axes_axis(1)->set;
-    axes_move_velocity(0, axes_axis(0)->maximum.velocity);
+    const position_t master = axes_axis(0)->setpoint.position, slave = axes_axis(1)->setpoint.position;
+    axes_move_velocity(0, axes_axis(0)->limits.maximum.velocity);
     int64_t counts = 0;
     while (counts < INT64_C(50000) * 1000000) {
         axes_axis(0)->advanced = axes_axis(1)->advanced = false;
         cm1e_axis_advance(axes_axis(1));
-        counts = axes_axis(0)->set.counts - master.counts;
+        counts = axes_axis(0)->setpoint.position.counts - master.counts;
     }
     axes_must_be(1, CM1E_AXIS_SYNCHRONIZED_MOTION);
     /* 1080 u of the master are 350000 counts, 127 u of the slave -250000. */
     __extension__ typedef __int128 wide_t;
     const wide_t exact = -(wide_t)counts * (1080 * 17 * INT64_C(250000)) / (350000 * INT64_C(997) * 127);
-    TEST_ASSERT_INT64_WITHIN(1, (int64_t)exact, axes_axis(1)->set.counts - slave.counts);
+    TEST_ASSERT_INT64_WITHIN(1, (int64_t)exact, axes_axis(1)->setpoint.position.counts - slave.counts);
 }
 
 /* MC_SetPosition of master or slave is no motion: positions count from where the coupling began. */
@@ -180,7 +180,7 @@ static void test_modulo_axes_turn_on_and_on(void)
     axes_move_velocity(0, 3000.0);
     axes_cycles(6000);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, -1000.0, axes_info(1).set_velocity);
-    const double turned = cm1e_axis_line(axes_axis(0), axes_axis(0)->set);
+    const double turned = cm1e_axis_line(axes_axis(0), axes_axis(0)->setpoint.position);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, fmod(-turned / 3.0, 360.0) + 360.0, set_of(1));
 }
 

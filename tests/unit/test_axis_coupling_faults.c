@@ -62,8 +62,8 @@ static cm1e_command_id_t begin_combination(void)
 /** To the point where the master is 4 u farther; a polynomial over its way. */
 static cm1e_command_id_t begin_gear_in_pos(void)
 {
-    const double master = cm1e_axis_units(axes_axis(MASTER), axes_axis(MASTER)->set);
-    const double slave = cm1e_axis_units(axes_axis(SLAVE), axes_axis(SLAVE)->set);
+    const double master = cm1e_axis_units(axes_axis(MASTER), axes_axis(MASTER)->setpoint.position);
+    const double slave = cm1e_axis_units(axes_axis(SLAVE), axes_axis(SLAVE)->setpoint.position);
     return couple(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN_POS, .velocity = 40},
                   (cm1e_axis_coupling_t){.master = {{.numerator = 1, .denominator = 1}},
                                          .master_sync_position = master + 1.0, .slave_sync_position = slave + 0.5,
@@ -245,7 +245,7 @@ static void begin_run(int kind, int fault, int fault_cycle, cm1e_coupling_stop_t
 static bool all_rest(void)
 {
     for (int n = 0; n < AXES; n++)
-        if (axes_axis(n)->set_velocity != 0 && axes_state(n) == CM1E_AXIS_ERROR_STOP)
+        if (axes_axis(n)->setpoint.velocity != 0 && axes_state(n) == CM1E_AXIS_ERROR_STOP)
             return false;
     return true;
 }
@@ -290,18 +290,19 @@ static void judge_ratio(void)
 {
     const cm1e_axis_t *master = axes_axis(MASTER), *slave = axes_axis(SLAVE);
     const bool follows = run.kind == A_GEAR && axis_follows(slave);
-    if (slave->frozen) /* its target stays, whatever has become of its master */
+    if (slave->silence.frozen) /* its target stays, whatever has become of its master */
         return;
     if (follows && !run.known && axes_status(SLAVE, run.slave).reached) {
         run.known = true;
-        run.master_at = master->set;
-        run.slave_at = slave->set;
+        run.master_at = master->setpoint.position;
+        run.slave_at = slave->setpoint.position;
     }
     run.known = run.known && follows;
     if (!run.known)
         return;
-    const double way = cm1e_position_minus(master->set, run.master_at) / master->scale * 1.5 * slave->scale;
-    const double off = cm1e_position_minus(slave->set, run.slave_at) - way;
+    const double way = cm1e_position_minus(master->setpoint.position, run.master_at) / master->position.scale * 1.5 *
+                       slave->position.scale;
+    const double off = cm1e_position_minus(slave->setpoint.position, run.slave_at) - way;
     AXES_MUST(fabs(off) <= 0.1, "the slave is %g counts beside its gear, %s", off,
               cm1e_axis_state_name(slave->state));
 }
@@ -364,10 +365,11 @@ static void judge_end(void)
         break;
     case MASTER_STOP: /* they follow it to its standstill */
         axes_must_be(MASTER, CM1E_AXIS_STOPPING);
-        AXES_MUST(active(BESIDE, run.beside) && axes_axis(BESIDE)->set_velocity == 0, "axis 2: %s",
+        AXES_MUST(active(BESIDE, run.beside) && axes_axis(BESIDE)->setpoint.velocity == 0, "axis 2: %s",
                   axes_text(BESIDE));
-        AXES_MUST(!run.coupled || (active(SLAVE, run.slave) && run.kind != A_COMBINATION ? axes_axis(SLAVE)->set_velocity == 0
-                                                                            : true), "the slave: %s", axes_text(SLAVE));
+        const bool still = axes_axis(SLAVE)->setpoint.velocity == 0;
+        AXES_MUST(!run.coupled || (active(SLAVE, run.slave) && run.kind != A_COMBINATION ? still : true),
+                  "the slave: %s", axes_text(SLAVE));
         break;
     case SLAVE_LAG:
     case TOO_FAST:

@@ -91,7 +91,7 @@ static void test_it_does_not_creep_over_a_software_limit(void)
     axes_enable_all();
     axes_wait(SLAVE, axes_move_to(SLAVE, -1.0, 5.0), 2000);
     for (int sign = -1; sign <= 1; sign++) {
-        const from_t next = {cm1e_position_plus(axes_axis(SLAVE)->set, 0.05 * sign), 0.0, 0.0, false};
+        const from_t next = {cm1e_position_plus(axes_axis(SLAVE)->setpoint.position, 0.05 * sign), 0.0, 0.0, false};
         TEST_ASSERT_EQUAL_INT(sign < 0 ? GUARD_SOFTWARE_LIMIT : GUARD_KEPT,
                               cm1e_axis_guard(axes_axis(SLAVE), &next, false).limit);
     }

@@ -257,16 +257,16 @@ static void test_modulo_axes_by_every_mode(void)
             const cm1e_command_id_t id = axes_command(SLAVE, &command);
             while (!axes_status(SLAVE, id).synchronizing)
                 axes_cycles(1);
-            const double begin = cm1e_axis_line(axes_axis(SLAVE), axes_axis(SLAVE)->set);
-            const double master = cm1e_axis_line(axes_axis(MASTER), axes_axis(MASTER)->set);
+            const double begin = cm1e_axis_line(axes_axis(SLAVE), axes_axis(SLAVE)->setpoint.position);
+            const double master = cm1e_axis_line(axes_axis(MASTER), axes_axis(MASTER)->setpoint.position);
             axes_wait_reached(SLAVE, id, 20000);
             for (int i = 0; i < 1000; i++) {
                 TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, remainder(set_of(SLAVE) - 20 - (set_of(MASTER) - 90), 20));
                 axes_cycles(1);
                 if (i)
                     continue;
-                const double mean = (cm1e_axis_line(axes_axis(SLAVE), axes_axis(SLAVE)->set) - begin) /
-                                    (cm1e_axis_line(axes_axis(MASTER), axes_axis(MASTER)->set) - master);
+                const double mean = (cm1e_axis_line(axes_axis(SLAVE), axes_axis(SLAVE)->setpoint.position) - begin) /
+                                    (cm1e_axis_line(axes_axis(MASTER), axes_axis(MASTER)->setpoint.position) - master);
                 TEST_ASSERT_TRUE(mode == mcCatchUp ? mean >= 1 - 1e-9 : mode == mcSlowDown ? mean <= 1 + 1e-9 : true);
             }
         }

@@ -605,7 +605,7 @@ static void test_steps_are_refused_in_every_other_state(void)
             TEST_ASSERT_EQUAL_STRING(cm1e_strerror(states[i].error), cm1e_strerror(refusal(1.0, 0.0)));
         }
     axis->state = CM1E_AXIS_HOMING; /* the drive's own homing is under way */
-    axis->source = &cm1e_source_homing;
+    axis->setpoint.source = &cm1e_source_homing;
     step = (cm1e_homing_step_t){.kind = CM1E_STEP_DIRECT};
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_HOMING, refusal(1.0, 0.0));
 }
@@ -920,9 +920,9 @@ static void test_power_off_while_a_stop_relieves_leaves_nothing_behind(void)
     TEST_ASSERT_GREATER_OR_EQUAL_INT(300, bus.torque);
     const cm1e_axis_command_t stop = {.kind = CM1E_COMMAND_STOP};
     cm1e_axis_hold_stop(axis, bench_start_command(&stop), false);
-    for (int i = 0; i < 200 && !axis->after_stop; i++)
+    for (int i = 0; i < 200 && !axis->homing_step.after_stop; i++)
         bench_cycles(1);
-    TEST_ASSERT_TRUE(axis->after_stop);
+    TEST_ASSERT_TRUE(axis->homing_step.after_stop);
     bench_power(false);
     bench_cycles(200);
     stops_there = false;

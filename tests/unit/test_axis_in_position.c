@@ -366,7 +366,7 @@ static void test_a_chain_moves_as_without_it(void)
             post(CM1E_COMMAND_MOVE_ABSOLUTE, chain[i].position, chain[i].mode);
         for (int i = 0; i < CYCLES; i++) {
             watch_cycles(1);
-            set[waits][i] = axis->set;
+            set[waits][i] = axis->setpoint.position;
         }
     }
     for (int i = 0; i < CYCLES; i++)

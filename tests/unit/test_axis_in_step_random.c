@@ -30,8 +30,8 @@ static int taken, stopped;
 
 static void judge(const cm1e_axis_t *axis, const double step[3])
 {
-    const cm1e_motion_limits_t *most = &axis->maximum;
-    const double t = axis->cycle_s, u = 1.0 / fabs(axis->scale);
+    const cm1e_motion_limits_t *most = &axis->limits.maximum;
+    const double t = axis->cycle_s, u = 1.0 / fabs(axis->position.scale);
     const double second = fmax(fabs(step[0] - step[1]) - rounding_counts, 0.0) * u / (t * t);
     const double third = fmax(fabs(step[0] - 2.0 * step[1] + step[2]) - rounding_counts, 0.0) * u / (t * t * t);
     const bool turns = step[0] * step[1] <= 0.0, faster = fabs(step[0]) > fabs(step[1]);
@@ -49,7 +49,7 @@ static void look(void)
     const cm1e_axis_t *axis = axes_axis(1);
     for (int i = HISTORY - 1; i > 0; i--)
         seen.set[i] = seen.set[i - 1];
-    seen.set[0] = axis->set;
+    seen.set[0] = axis->setpoint.position;
     seen.count = axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION ? seen.count + 1 : 0;
     if (seen.count < HISTORY)
         return;
@@ -109,7 +109,7 @@ static double part_of(double most) { return one_in(2) ? 0.0 : uniform(0.1, 1.0) 
 
 static cm1e_axis_command_t dynamics(cm1e_command_kind_t kind, const cm1e_axis_coupling_t *coupling)
 {
-    const cm1e_motion_limits_t *most = &axes_axis(1)->maximum;
+    const cm1e_motion_limits_t *most = &axes_axis(1)->limits.maximum;
     return (cm1e_axis_command_t){.kind = kind, .coupling = coupling, .velocity = most->velocity,
                                  .acceleration = part_of(most->acceleration),
                                  .deceleration = part_of(most->deceleration), .jerk = part_of(most->jerk)};
@@ -132,7 +132,7 @@ static bool gear(void)
 
 static bool gear_in_pos(void)
 {
-    const double v = axes_axis(0)->set_velocity;
+    const double v = axes_axis(0)->setpoint.velocity;
     const cm1e_axis_coupling_t coupling = {
         .master = {{.axis = axes_reference(0), .numerator = 1, .denominator = 1 + (uint32_t)pick(3)}},
         .master_sync_position = axes_info(0).set_position + v * uniform(0.5, 3.0),
@@ -147,7 +147,7 @@ static bool cam(const random_master_t *master, bool by_place)
 {
     static MC_CAM_POINT points[3] = {{.Master = 0}, {.Master = 0.5, .Slave = 1}, {.Master = 1}};
     const MC_CAM_REF table = {.Points = points, .NumberOfPoints = 3, .Curve = mcCamPolynomial5};
-    const cm1e_motion_limits_t *most = &axes_axis(1)->maximum, *its = &master->most;
+    const cm1e_motion_limits_t *most = &axes_axis(1)->limits.maximum, *its = &master->most;
     const double length = its->velocity * uniform(0.3, 3.0), v = its->velocity / length;
     const double a = fmax(its->acceleration, its->deceleration) / length, j = its->jerk / length;
     const double slope = 1.875 * 2.0, curve = 5.77 * 4.0, third = 60.0 * 8.0;

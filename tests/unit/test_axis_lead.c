@@ -100,7 +100,7 @@ static void test_the_motor_goes_where_the_leader_says(void)
     TEST_ASSERT_FALSE(cm1e_axis_led_by(axis, &bus));
     for (int n = 0; n < 500; n++) {
         bench_cycles(1);
-        const double counts = (lead.position - lead.start) * axis->scale;
+        const double counts = (lead.position - lead.start) * axis->position.scale;
         TEST_ASSERT_DOUBLE_WITHIN(0.5 + 1e-6, counts, (double)(int32_t)fake_output(&bus, OBJ_607A_TARGET_POSITION, 0));
     }
     lead_down();
@@ -290,8 +290,8 @@ static void reversed(void) { lead.velocity = -lead.velocity; }
 static void no_direction(void) { TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_power(axis, &owner, true, false, true)); }
 static void over_the_limit(void)
 {
-    axis->limit_positive = lead.position + 0.01;
-    axis->limit_positive_enabled = true;
+    axis->limits.positive = lead.position + 0.01;
+    axis->limits.positive_enabled = true;
     cm1e_axis_apply_limits(axis);
 }
 
@@ -346,8 +346,8 @@ static void test_a_step_is_within_what_the_acceleration_can_do_in_a_cycle(void)
     for (size_t n = 0; n < sizeof cases / sizeof cases[0]; n++) {
         bench_start();
         led_in_motion();
-        TEST_ASSERT_EQUAL_DOUBLE(100.0, axis->system.acceleration);
-        TEST_ASSERT_EQUAL_DOUBLE(100.0, axis->system.deceleration);
+        TEST_ASSERT_EQUAL_DOUBLE(100.0, axis->limits.system.acceleration);
+        TEST_ASSERT_EQUAL_DOUBLE(100.0, axis->limits.system.deceleration);
         lead.position += cases[n].beside;
         bench_cycles(1);
         TEST_ASSERT_EQUAL_INT(cases[n].kept ? CM1E_AXIS_SYNCHRONIZED_MOTION : CM1E_AXIS_ERROR_STOP, bench_info().state);

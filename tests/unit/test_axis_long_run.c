@@ -21,15 +21,16 @@ void tearDown(void) { bench_end(); }
 /** Counts that the set-point has gone since another one. */
 static long double way(position_t from)
 {
-    return (long double)(axis->set.counts - from.counts) + (long double)axis->set.fraction -
+    return (long double)(axis->setpoint.position.counts - from.counts) + (long double)axis->setpoint.position.fraction -
            (long double)from.fraction;
 }
 
 /** Cycles pass that nobody reckons. */
 static void let_pass(int64_t cycles)
 {
-    axis->profile_cycles += cycles;
-    axis->profile_next_s = axis->profile_offset_s + (double)(axis->profile_cycles + 1) * axis->cycle_s;
+    axis->setpoint.profile_cycles += cycles;
+    axis->setpoint.profile_next_s = axis->setpoint.profile_offset_s + (double)(axis->setpoint.profile_cycles + 1) *
+                                    axis->cycle_s;
 }
 
 static void test_a_billion_turns_lose_nothing(void)
@@ -42,8 +43,8 @@ static void test_a_billion_turns_lose_nothing(void)
         const cm1e_command_id_t id = bench_move_velocity(velocity);
         bench_cycles(2000);
         TEST_ASSERT_TRUE(cm1e_axis_command_status(axis, id).reached);
-        const long double step = (long double)velocity * (long double)axis->cycle_s * (long double)axis->scale;
-        const position_t begin = axis->set;
+        const long double step = (long double)velocity * (long double)axis->cycle_s * (long double)axis->position.scale;
+        const position_t begin = axis->setpoint.position;
         int64_t cycles = 0;
         while (fabsl(way(begin)) < (long double)(turns * counts_per_turn)) {
             let_pass(jump - 1);
@@ -52,10 +53,10 @@ static void test_a_billion_turns_lose_nothing(void)
         }
         TEST_ASSERT_TRUE(fabsl(way(begin) - step * (long double)cycles) < 1e-4L);
         for (int n = 0; n < 10000; n++) {
-            const position_t before = axis->set;
+            const position_t before = axis->setpoint.position;
             cm1e_axis_motion_step(axis);
             TEST_ASSERT_TRUE(fabsl(way(before) - step) < 2e-6L);
-            TEST_ASSERT_EQUAL_DOUBLE(velocity, axis->set_velocity);
+            TEST_ASSERT_EQUAL_DOUBLE(velocity, axis->setpoint.velocity);
         }
         TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(id));
         TEST_ASSERT_TRUE(cm1e_axis_command_status(axis, id).reached);
@@ -67,7 +68,7 @@ static void test_what_follows_is_exact(void)
 {
     bench_move_velocity(50.0);
     bench_cycles(2000);
-    while (axis->set.counts < INT64_C(1000000000) * CM1E_COUNTS_PER_REVOLUTION) {
+    while (axis->setpoint.position.counts < INT64_C(1000000000) * CM1E_COUNTS_PER_REVOLUTION) {
         let_pass(999983);
         cm1e_axis_motion_step(axis);
     }
@@ -81,7 +82,7 @@ static void test_what_follows_is_exact(void)
     for (int n = 0; n < 1000000 && axis->state != CM1E_AXIS_STANDSTILL; n++)
         cm1e_axis_motion_step(axis);
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, axis->state);
-    TEST_ASSERT_EQUAL_DOUBLE(target, cm1e_axis_units(axis, axis->set));
+    TEST_ASSERT_EQUAL_DOUBLE(target, cm1e_axis_units(axis, axis->setpoint.position));
 }
 
 int main(void)

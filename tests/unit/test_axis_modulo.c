@@ -67,7 +67,7 @@ static void test_billion_turns_and_back_are_exact(void)
 {
     for (int invert = 0; invert < 2; invert++) {
         table(invert);
-        const int64_t start = axis->actual_counts, jump = 2147483646;
+        const int64_t start = axis->position.actual_counts, jump = 2147483646;
         const int jumps = 54400;
         for (int way = 1; way >= -1; way -= 2)
             for (int n = 1; n <= jumps; n++) {
@@ -75,11 +75,11 @@ static void test_billion_turns_and_back_are_exact(void)
                 fake_bus_show(&bus);
                 cm1e_axis_inputs(axis, CM1E_OK, CM1E_OK, bus.clock.virtual_now_ns);
                 if (n % 1000 == 0)
-                    expect_at(invert ? start - axis->actual_counts : axis->actual_counts - start);
+                    expect_at(invert ? start - axis->position.actual_counts : axis->position.actual_counts - start);
                 if (n == jumps && way == 1)
-                    TEST_ASSERT_TRUE(axis->actual_counts * 3 / 350000 >= 1000000000);
+                    TEST_ASSERT_TRUE(axis->position.actual_counts * 3 / 350000 >= 1000000000);
             }
-        TEST_ASSERT_EQUAL_INT64(start, axis->actual_counts);
+        TEST_ASSERT_EQUAL_INT64(start, axis->position.actual_counts);
         TEST_ASSERT_EQUAL_DOUBLE(0.0, bench_info().actual_position);
     }
 }
@@ -91,9 +91,9 @@ static void test_turns_begin_at_their_multiple_of_a_fraction(void)
         wide_t begin = (wide_t)turn * 350000 / 3, rest = (wide_t)turn * 350000 % 3;
         begin -= rest < 0;
         rest = rest < 0 ? rest + 3 : rest;
-        axis->actual_counts = (int64_t)begin + (rest > 0); /* the first whole count in the turn */
+        axis->position.actual_counts = (int64_t)begin + (rest > 0); /* the first whole count in the turn */
         const double first = bench_info().actual_position;
-        axis->actual_counts--;
+        axis->position.actual_counts--;
         const double last = bench_info().actual_position;
         TEST_ASSERT_DOUBLE_WITHIN(1e-10, (rest > 0 ? (double)(3 - rest) / 3 : 0.0) * 360 * 3 / 350000, first);
         TEST_ASSERT_TRUE(last > 359.99 && last < 360.0);
@@ -117,10 +117,11 @@ static void test_random_turns_are_exact(void)
         bench_create();
         const int64_t numerator = INT64_C(50000) * config->gear_numerator * range;
         const int64_t denominator = (int64_t)config->gear_denominator * tenths;
-        TEST_ASSERT_TRUE((wide_t)axis->turn.numerator * denominator == (wide_t)axis->turn.denominator * numerator);
+        TEST_ASSERT_TRUE((wide_t)axis->position.turn.numerator * denominator ==
+                         (wide_t)axis->position.turn.denominator * numerator);
         for (int k = 0; k < 300; k++) {
             const int64_t at = (int64_t)((double)(INT64_C(1) << draw(52)) * uniform(-1, 1));
-            axis->actual_counts = at;
+            axis->position.actual_counts = at;
             const double position = bench_info().actual_position;
             TEST_ASSERT_TRUE(position >= 0.0 && position < config->modulo_range);
             TEST_ASSERT_DOUBLE_WITHIN(1e-12 * config->modulo_range + 1e-9 * config->modulo_range / counts,
@@ -146,7 +147,7 @@ static bool goes_positive(MC_DIRECTION direction, double velocity, double way)
         return way >= 0.0;
     }
     if (direction == mcCurrentDirection)
-        return velocity != 0.0 ? velocity > 0.0 : axis->positive_before;
+        return velocity != 0.0 ? velocity > 0.0 : axis->setpoint.positive_before;
     return direction != mcNegativeDirection;
 }
 
@@ -162,13 +163,13 @@ static void test_target_is_the_first_repetition_beyond_the_stop(void)
         const double start = cm1e_axis_units(axis, from);
         const double position = draw(10) ? uniform(0, 359.999) : start;
         const double velocity = draw(3) ? uniform(-1000, 1000) : 0.0, stop = velocity * uniform(0.0, 1.0);
-        axis->positive_before = draw(2);
+        axis->setpoint.positive_before = draw(2);
         position_t target;
         TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_resolve_target(axis, position, direction, from, velocity, stop,
                                                                 &target));
         const double shown = cm1e_axis_units(axis, target), error = fabs(shown - position);
         TEST_ASSERT_TRUE(error < 1e-9 || error > 360.0 - 1e-9);
-        const double way = cm1e_position_minus(target, from) / axis->scale;
+        const double way = cm1e_position_minus(target, from) / axis->position.scale;
         const double beyond = way - stop;
         if (goes_positive(direction, velocity, position - start)) {
             TEST_ASSERT_TRUE(beyond > -0.6 * count);
@@ -197,7 +198,7 @@ static void test_half_a_turn_away_the_shortest_way_is_positive(void)
             TEST_ASSERT_TRUE(cm1e_axis_position_from_units(axis, from, &at));
             TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_resolve_target(axis, (from + 180) % 360, mcShortestWay, at, 0.0,
                                                                     0.0, &target));
-            TEST_ASSERT_DOUBLE_WITHIN(1e-9, 180.0, cm1e_position_minus(target, at) / axis->scale);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, 180.0, cm1e_position_minus(target, at) / axis->position.scale);
         }
     }
 }
@@ -227,10 +228,10 @@ static cm1e_command_id_t move(double position, MC_DIRECTION direction)
 /* Way in u that the move took, by the motor. */
 static double moved(double position, MC_DIRECTION direction)
 {
-    const int64_t before = axis->actual_counts;
+    const int64_t before = axis->position.actual_counts;
     bench_wait(move(position, direction), 20000);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, position, bench_info().set_position);
-    return (double)(axis->actual_counts - before) / axis->scale;
+    return (double)(axis->position.actual_counts - before) / axis->position.scale;
 }
 
 static void test_every_direction_takes_its_way(void)
@@ -258,23 +259,23 @@ static void test_insufficient_braking_distance_goes_on_to_the_next_repetition(vo
 {
     table(false);
     bench_enable();
-    const int64_t before = axis->actual_counts;
+    const int64_t before = axis->position.actual_counts;
     bench_move_velocity(2000);
     while (bench_info().set_velocity < 1999 || bench_info().actual_position < 80 || bench_info().actual_position > 88)
         bench_cycles(1);
     const cm1e_command_id_t id = bench_start_command(&(cm1e_axis_command_t){
         .kind = CM1E_COMMAND_MOVE_ABSOLUTE, .position = 90, .velocity = 2000, .deceleration = 10000,
         .direction = mcPositiveDirection}); /* stops in some 200 degrees */
-    const int64_t there = axis->actual_counts;
+    const int64_t there = axis->position.actual_counts;
     int64_t last = there;
     while (bench_state_of(id) == CM1E_COMMAND_ACTIVE) {
         bench_cycles(1);
-        TEST_ASSERT_TRUE(axis->actual_counts >= last);
-        last = axis->actual_counts;
+        TEST_ASSERT_TRUE(axis->position.actual_counts >= last);
+        last = axis->position.actual_counts;
     }
     TEST_ASSERT_TRUE(there > before);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 90, bench_info().set_position);
-    TEST_ASSERT_DOUBLE_WITHIN(10, 360, (double)(last - there) / axis->scale);
+    TEST_ASSERT_DOUBLE_WITHIN(10, 360, (double)(last - there) / axis->position.scale);
 }
 
 static void test_asked_to_turn_round_it_brakes_first(void)
@@ -282,11 +283,11 @@ static void test_asked_to_turn_round_it_brakes_first(void)
     bench_enable();
     bench_move_velocity(2000);
     bench_cycles(1000);
-    const int64_t there = axis->actual_counts;
+    const int64_t there = axis->position.actual_counts;
     const double from = bench_info().set_position;
     bench_wait(move(fmod(from + 1.0, 360.0), mcNegativeDirection), 20000);
     /* beyond the braking distance it comes back to the first repetition: that one degree ahead, or those after it */
-    const double way = (double)(axis->actual_counts - there) / axis->scale;
+    const double way = (double)(axis->position.actual_counts - there) / axis->position.scale;
     TEST_ASSERT_TRUE(way >= 0.99);
     TEST_ASSERT_DOUBLE_WITHIN(2.1, 1.0, fmod(way, 360.0)); /* the motor is a cycle behind */
     TEST_ASSERT_LESS_OR_EQUAL_INT64((int64_t)(2500000.0 * axis->cycle_s) + 1, worst_step);
@@ -297,7 +298,7 @@ static void test_asked_to_turn_round_it_brakes_first(void)
 /* Within the turn, also as a trace prints it, and beside each other where the motor is at the set-point. */
 static void expect_shown(void)
 {
-    const double range = axis->modulo_range, count = 1.0 / fabs(axis->scale);
+    const double range = axis->position.modulo_range, count = 1.0 / fabs(axis->position.scale);
     const cm1e_axis_info_t info = bench_info();
     const double shown[] = {info.set_position, info.actual_position};
     for (int i = 0; i < 2; i++) {
@@ -306,7 +307,7 @@ static void expect_shown(void)
         TEST_ASSERT_TRUE(shown[i] >= 0.0 && shown[i] < range);
         TEST_ASSERT_TRUE_MESSAGE(i == 1 || info.set_velocity != 0.0 || strtod(text, NULL) < range, text);
     }
-    if (info.set_velocity == 0.0 && fabs(cm1e_position_minus(axis->set, axis_actual(axis))) <= 0.5)
+    if (info.set_velocity == 0.0 && fabs(cm1e_position_minus(axis->setpoint.position, axis_actual(axis))) <= 0.5)
         TEST_ASSERT_DOUBLE_WITHIN(0.5 * count + 1e-9 * range, info.set_position, info.actual_position);
 }
 
@@ -332,8 +333,8 @@ static void test_a_move_to_0_shows_0_on_the_set_and_on_the_actual_side(void)
     for (int n = 0; n < 150; n++) {
         random_table();
         for (int k = 0; k < 6; k++) {
-            const double range = axis->modulo_range, away = uniform(-0.3, 0.3) * range;
-            const double velocity = uniform(0.5, 1.0) * fmin(axis->maximum.velocity, 20.0 * range);
+            const double range = axis->position.modulo_range, away = uniform(-0.3, 0.3) * range;
+            const double velocity = uniform(0.5, 1.0) * fmin(axis->limits.maximum.velocity, 20.0 * range);
             bench_wait(bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = away,
                                                                   .velocity = velocity}), 20000);
             const MC_DIRECTION direction = directions[draw(5)];
@@ -356,11 +357,12 @@ static void test_set_and_actual_position_are_shown_on_the_same_side_of_a_turn(vo
     for (int n = 0; n < 100; n++) {
         random_table();
         for (int k = 0; k < 40; k++) {
-            const double near = (k % 4 == 0 ? uniform(-1e-9, 1e-9) : uniform(-2.0, 2.0)) / fabs(axis->scale);
+            const double near = (k % 4 == 0 ? uniform(-1e-9, 1e-9) : uniform(-2.0, 2.0)) / fabs(axis->position.scale);
             const int turns = (int)draw(3);
-            const double to = near - cm1e_axis_line(axis, axis->set) + axis->modulo_range * turns;
+            const double to = near - cm1e_axis_line(axis, axis->setpoint.position) + axis->position.modulo_range *
+                              turns;
             bench_wait(bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_MOVE_RELATIVE, .position = to,
-                                                                  .velocity = axis->maximum.velocity}), 20000);
+                                                                  .velocity = axis->limits.maximum.velocity}), 20000);
             bench_cycles(2);
             expect_shown();
         }

@@ -158,15 +158,15 @@ static void test_turning_for_ever_passes_the_range_of_the_device_many_times(void
     const cm1e_command_id_t id = bench_move_velocity(50.0);
     bench_cycles(4000); /* the range of 2^32 counts takes half an hour: everything is put forward by 30 days instead */
     const int64_t counts = INT64_C(86400) * 30 * 2500000;
-    axis->profile_cycles += INT64_C(86400000) * 30;
-    axis->profile_next_s += 86400.0 * 30;
-    axis->set.counts += counts;
-    axis->actual_counts += counts;
+    axis->setpoint.profile_cycles += INT64_C(86400000) * 30;
+    axis->setpoint.profile_next_s += 86400.0 * 30;
+    axis->setpoint.position.counts += counts;
+    axis->position.actual_counts += counts;
     axis->drive.target_position = (int32_t)((uint32_t)axis->drive.target_position + (uint32_t)(uint64_t)counts);
     axis->drive.feedback.position = (int32_t)((uint32_t)axis->drive.feedback.position + (uint32_t)(uint64_t)counts);
-    axis->raw = bus.position = (int32_t)((uint32_t)bus.position + (uint32_t)(uint64_t)counts);
+    axis->position.raw = bus.position = (int32_t)((uint32_t)bus.position + (uint32_t)(uint64_t)counts);
     const cm1e_image_slot_t target = fake_find(&bus.rx, OBJ_607A_TARGET_POSITION);
-    cm1e_put_u32(bus.outputs + target.offset, (uint32_t)(uint64_t)axis->set.counts);
+    cm1e_put_u32(bus.outputs + target.offset, (uint32_t)(uint64_t)axis->setpoint.position.counts);
     bench_cycles(1);
     bench_forget_steps();
     bench_cycles(5000);
@@ -687,7 +687,8 @@ static void test_a_lost_bus_leaves_the_torque_for_the_ramp_and_20_ms(void)
         received = health = CM1E_ERROR_BUS_LOST;
         bench_cycles(1);
         TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
-        const int bound_ms = (int)(speeds[n] / axis->emergency.deceleration * 1e3) + 20, torque_ms = torque_left();
+        const int bound_ms = (int)(speeds[n] / axis->limits.emergency.deceleration * 1e3) + 20;
+        const int torque_ms = torque_left();
         TEST_ASSERT_GREATER_OR_EQUAL_INT(bound_ms, torque_ms);
         TEST_ASSERT_LESS_OR_EQUAL_INT(bound_ms + 3, torque_ms);
     }
@@ -737,7 +738,7 @@ static void test_bus_trouble_while_disabled_is_no_error_until_enable(void)
 
 static void test_a_slave_that_was_away_is_no_longer_homed(void)
 {
-    axis->homed = true;
+    axis->position.homed = true;
     bus.watch.lost = true;
     bench_cycles(1);
     TEST_ASSERT_FALSE(bench_info().homed);
@@ -836,7 +837,7 @@ static void random_run(void)
             cm1e_axis_reset(axis);
         if (uniform(0, 1) < 0.01) {
             const bool positive = uniform(0, 1) < 0.8, negative = uniform(0, 1) < 0.8;
-            cm1e_axis_power(axis, &owner, axis->power_enable, positive, negative);
+            cm1e_axis_power(axis, &owner, axis->power.enable, positive, negative);
         }
         bench_outputs();
         const cm1e_axis_info_t info = bench_info();

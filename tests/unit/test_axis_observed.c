@@ -65,7 +65,8 @@ static cm1e_command_id_t follow(int32_t numerator, uint32_t denominator, MC_SOUR
     const cm1e_command_id_t id =
         axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN, .coupling = &coupling});
     axes_wait_reached(SLAVE, id, 3000);
-    counts_ratio = (double)numerator / denominator * axes_axis(SLAVE)->scale / axes_axis(MASTER)->scale;
+    counts_ratio = (double)numerator / denominator * axes_axis(SLAVE)->position.scale /
+                   axes_axis(MASTER)->position.scale;
     return id;
 }
 
@@ -75,13 +76,14 @@ static double true_now(void) { return encoder.at(time_s() - 1e-3); }
 static void take_zero(void)
 {
     zero_true = true_now();
-    zero_slave = axes_axis(SLAVE)->set;
+    zero_slave = axes_axis(SLAVE)->setpoint.position;
 }
 
 /* Counts of the encoder. */
 static double off(void)
 {
-    return cm1e_position_minus(axes_axis(SLAVE)->set, zero_slave) / counts_ratio - (true_now() - zero_true);
+    return cm1e_position_minus(axes_axis(SLAVE)->setpoint.position, zero_slave) / counts_ratio -
+           (true_now() - zero_true);
 }
 
 static double still(double t)
@@ -133,9 +135,10 @@ static void test_nothing_is_lost_on_a_long_way(void)
 {
     begin_with(going_and_resting, 0.0);
     follow(1, 40, mcActualValue);
-    const position_t before = axes_axis(SLAVE)->set;
+    const position_t before = axes_axis(SLAVE)->setpoint.position;
     axes_cycles(6000);
-    TEST_ASSERT_DOUBLE_WITHIN(0.01, 210000.0 * counts_ratio, cm1e_position_minus(axes_axis(SLAVE)->set, before));
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 210000.0 * counts_ratio,
+                              cm1e_position_minus(axes_axis(SLAVE)->setpoint.position, before));
     TEST_ASSERT_EQUAL_DOUBLE(0.0, axes_info(SLAVE).set_velocity);
 }
 

@@ -42,21 +42,21 @@ static void test_velocity_factor_acts_on_the_motion_and_on_the_next(void)
 {
     const cm1e_command_id_t first = bench_move_to(20.0, 10.0);
     watch_cycles(500);
-    TEST_ASSERT_EQUAL_DOUBLE(10.0, axis->set_velocity);
+    TEST_ASSERT_EQUAL_DOUBLE(10.0, axis->setpoint.velocity);
     override(0.5, 1.0, 1.0);
     watch_cycles(300);
-    TEST_ASSERT_EQUAL_DOUBLE(5.0, axis->set_velocity);
+    TEST_ASSERT_EQUAL_DOUBLE(5.0, axis->setpoint.velocity);
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_DISCRETE_MOTION, bench_info().state);
     override(1.0, 1.0, 1.0);
     watch_cycles(300);
-    TEST_ASSERT_EQUAL_DOUBLE(10.0, axis->set_velocity);
+    TEST_ASSERT_EQUAL_DOUBLE(10.0, axis->setpoint.velocity);
     override(0.3, 1.0, 1.0);
     watch_cycles(6000);
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(first));
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 20.0, bench_info().set_position);
     const cm1e_command_id_t second = bench_move_velocity(10.0); /* kept until it is set anew */
     watch_cycles(300);
-    TEST_ASSERT_EQUAL_DOUBLE(3.0, axis->set_velocity);
+    TEST_ASSERT_EQUAL_DOUBLE(3.0, axis->setpoint.velocity);
     TEST_ASSERT_TRUE(cm1e_axis_command_status(axis, second).reached);
 }
 
@@ -67,9 +67,9 @@ static void test_acceleration_and_jerk_factors_bound_what_follows(void)
     double most = 0.0, jerk = 0.0, before = 0.0;
     for (int i = 0; i < 4000; i++) {
         watch_cycles(1);
-        most = fmax(most, fabs(axis->set_acceleration));
-        jerk = fmax(jerk, fabs(axis->set_acceleration - before) / 1e-3);
-        before = axis->set_acceleration;
+        most = fmax(most, fabs(axis->setpoint.acceleration));
+        jerk = fmax(jerk, fabs(axis->setpoint.acceleration - before) / 1e-3);
+        before = axis->setpoint.acceleration;
     }
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 25.0, most);
     TEST_ASSERT_TRUE(jerk <= 1000.0 + 1e-6);
@@ -88,7 +88,7 @@ static void test_velocity_0_stands_without_standstill_and_goes_on(void)
             const bool over = bench_state_of(id) == CM1E_COMMAND_DONE;
             override(0.0, 1.0, 1.0);
             watch_cycles(400);
-            TEST_ASSERT_EQUAL_DOUBLE(0.0, axis->set_velocity);
+            TEST_ASSERT_EQUAL_DOUBLE(0.0, axis->setpoint.velocity);
             TEST_ASSERT_FALSE(cm1e_axis_command_status(axis, id).reached);
             const double at = bench_info().set_position;
             watch_cycles(100);
@@ -135,7 +135,7 @@ static void test_factors_out_of_range_change_nothing(void)
 {
     bench_move_to(20.0, 10.0);
     watch_cycles(300);
-    const int64_t cycles = axis->profile_cycles;
+    const int64_t cycles = axis->setpoint.profile_cycles;
     static const double bad[][3] = {{1, 0, 1}, {1, 1, 0}, {-0.1, 1, 1}, {1.1, 1, 1}, {1, 1.1, 1}, {1, 1, -1},
                                     {NAN, 1, 1}, {1, NAN, 1}, {1, 1, NAN}, {INFINITY, 1, 1}};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
@@ -152,7 +152,7 @@ static void test_factors_out_of_range_change_nothing(void)
     char text[CM1E_AXIS_ERROR_TEXT_BYTES];
     cm1e_axis_error_text(cm1e_axis_reference(axis), text, sizeof text);
     TEST_ASSERT_EQUAL_STRING("", text);
-    TEST_ASSERT_EQUAL_INT64(cycles, axis->profile_cycles);
+    TEST_ASSERT_EQUAL_INT64(cycles, axis->setpoint.profile_cycles);
 }
 
 /* Less deceleration in the middle of braking does not lead beyond the target (note 9 warns of it). */

@@ -46,8 +46,8 @@ static double start_chain(double sign, cm1e_command_id_t *last)
         end += sign * (one_in(4) ? uniform(0.001, 0.3) : uniform(0.3, 12.0));
         *last = bench_start_command(&(cm1e_axis_command_t){
             .kind = relative ? CM1E_COMMAND_MOVE_RELATIVE : CM1E_COMMAND_MOVE_ABSOLUTE, .position = end,
-            .velocity = uniform(3.0, 25.0), .acceleration = part_of(axis->maximum.acceleration),
-            .deceleration = part_of(axis->maximum.deceleration), .jerk = part_of(axis->maximum.jerk),
+            .velocity = uniform(3.0, 25.0), .acceleration = part_of(axis->limits.maximum.acceleration),
+            .deceleration = part_of(axis->limits.maximum.deceleration), .jerk = part_of(axis->limits.maximum.jerk),
             .buffer_mode = i ? (MC_BUFFER_MODE)(mcBuffered + pick(5)) : mcAborting});
     }
     return end;
@@ -64,11 +64,11 @@ static void change_override(void)
 
 static void judge(double sign, double before, double now, double end)
 {
-    const double rounding = rounding_counts / fabs(axis->scale);
-    WATCH(sign * (now - end) <= rounding, "%.6g counts beyond the target %.9g", sign * (now - end) * fabs(axis->scale),
-          end);
+    const double rounding = rounding_counts / fabs(axis->position.scale);
+    WATCH(sign * (now - end) <= rounding, "%.6g counts beyond the target %.9g",
+          sign * (now - end) * fabs(axis->position.scale), end);
     WATCH(sign * (now - before) >= -rounding, "%.6g counts back, at %.9g on the way to %.9g",
-          sign * (before - now) * fabs(axis->scale), now, end);
+          sign * (before - now) * fabs(axis->position.scale), now, end);
 }
 
 /* What is still to be done goes on with all factors 1. */
@@ -111,8 +111,8 @@ static void run_superimposed(unsigned seed)
     for (int i = 0; i < 20 * CYCLES && bench_info().state != CM1E_AXIS_STANDSTILL; i++) {
         const cm1e_axis_command_t command = {.kind = CM1E_COMMAND_MOVE_SUPERIMPOSED, .position = more,
                                              .velocity = uniform(1.0, 10.0),
-                                             .acceleration = part_of(axis->maximum.acceleration),
-                                             .jerk = part_of(axis->maximum.jerk)};
+                                             .acceleration = part_of(axis->limits.maximum.acceleration),
+                                             .jerk = part_of(axis->limits.maximum.jerk)};
         if (i == when && bench_state_of(move) == CM1E_COMMAND_ACTIVE &&
             cm1e_axis_start(axis, &command, &on_top) == CM1E_OK)
             end += more;

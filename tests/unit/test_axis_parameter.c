@@ -205,7 +205,7 @@ static void test_maxima_of_the_application_bound_the_next_commands(void)
     }
     TEST_ASSERT_EQUAL_DOUBLE(50, parameter(8));
     TEST_ASSERT_EQUAL_DOUBLE(100, parameter(14));
-    TEST_ASSERT_EQUAL_DOUBLE(100, axis->emergency.deceleration); /* an error brakes as before */
+    TEST_ASSERT_EQUAL_DOUBLE(100, axis->limits.emergency.deceleration); /* an error brakes as before */
 }
 
 /* ---- software limits --------------------------------------------------------------------------------------------- */
@@ -286,7 +286,7 @@ static void test_limit_inside_the_way_of_a_motion_is_refused(void)
     set(4, 1);
     bench_cycles(500);
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, bench_info().state);
-    TEST_ASSERT_TRUE(axis->set_velocity == 0 && bench_info().actual_position <= now + 3);
+    TEST_ASSERT_TRUE(axis->setpoint.velocity == 0 && bench_info().actual_position <= now + 3);
 }
 
 static void test_modulo_axis_takes_no_limits(void)
@@ -328,7 +328,8 @@ static void test_random_limits_are_kept_by_random_motions(void)
             bench_cycles(1);
             const double now = bench_info().set_position;
             const double count = 1.0 / 50000; /* without torque the set-point is the motor, in whole counts */
-            TEST_ASSERT_TRUE(now <= fmax(axis->upper, before) + count && now >= fmin(axis->lower, before) - count);
+            TEST_ASSERT_TRUE(now <= fmax(axis->limits.upper, before) + count &&
+                             now >= fmin(axis->limits.lower, before) - count);
             if (bench_info().state == CM1E_AXIS_ERROR_STOP && axis_free(axis)) {
                 TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_POSITION_RANGE, bench_info().error);
                 (void)cm1e_axis_reset(axis);
@@ -353,7 +354,7 @@ static void test_lag_is_monitored_as_the_parameters_say(void)
     set(6, 1);
     bench_cycles(2);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_LAG, bench_info().error);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.2, axis->error_bound);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.2, axis->fault.bound);
 }
 
 /* ---- MC_SetPosition ---------------------------------------------------------------------------------------------- */

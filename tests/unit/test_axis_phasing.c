@@ -55,16 +55,17 @@ static void in_step(int32_t numerator, uint32_t denominator)
     const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, numerator, denominator);
     axes_wait_reached(SLAVE, gear, 2000);
     axes_cycles(1);
-    zero = (struct reference){axes_axis(MASTER)->set, axes_axis(SLAVE)->set,
-                              (double)numerator / denominator * axes_axis(SLAVE)->scale / axes_axis(MASTER)->scale};
+    zero = (struct reference){axes_axis(MASTER)->setpoint.position, axes_axis(SLAVE)->setpoint.position,
+                              (double)numerator / denominator * axes_axis(SLAVE)->position.scale /
+                                  axes_axis(MASTER)->position.scale};
 }
 
 /* Counts of the slave between where it is and where it would be with the master at `shifted` (u) more. */
 static double off(double shifted)
 {
-    const double master = cm1e_position_minus(axes_axis(MASTER)->set, zero.master);
-    return cm1e_position_minus(axes_axis(SLAVE)->set, zero.slave) -
-           (master + shifted * axes_axis(MASTER)->scale) * zero.counts_ratio;
+    const double master = cm1e_position_minus(axes_axis(MASTER)->setpoint.position, zero.master);
+    return cm1e_position_minus(axes_axis(SLAVE)->setpoint.position, zero.slave) -
+           (master + shifted * axes_axis(MASTER)->position.scale) * zero.counts_ratio;
 }
 
 /* A shift of its own against one that the test makes with the same numbers, sample by sample. */

@@ -31,7 +31,7 @@ static void expect(uint32_t id, cm1e_command_state_t state)
     TEST_ASSERT_EQUAL_INT(state, cm1e_axis_probe_status(axis, id).state);
 }
 
-static double units(double counts) { return counts / axis->scale; }
+static double units(double counts) { return counts / axis->position.scale; }
 
 static void expect_recorded(uint32_t id, double middle_counts, double half_counts)
 {

@@ -186,10 +186,10 @@ static void check_axis(void)
     TEST_ASSERT_NOT_EQUAL_INT(CM1E_AXIS_SYNCHRONIZED_MOTION, info.state);
     TEST_ASSERT_EQUAL_INT(info.state == CM1E_AXIS_ERROR_STOP, info.error != CM1E_OK);
     TEST_ASSERT_TRUE(isfinite(info.set_position) && isfinite(info.actual_position));
-    TEST_ASSERT_TRUE(fabs(info.set_velocity) <= axis->system.velocity + 1e-6);
-    if (axis->modulo_range > 0.0) {
-        TEST_ASSERT_TRUE(info.set_position >= 0.0 && info.set_position < axis->modulo_range);
-        TEST_ASSERT_TRUE(info.actual_position >= 0.0 && info.actual_position < axis->modulo_range);
+    TEST_ASSERT_TRUE(fabs(info.set_velocity) <= axis->limits.system.velocity + 1e-6);
+    if (axis->position.modulo_range > 0.0) {
+        TEST_ASSERT_TRUE(info.set_position >= 0.0 && info.set_position < axis->position.modulo_range);
+        TEST_ASSERT_TRUE(info.actual_position >= 0.0 && info.actual_position < axis->position.modulo_range);
     }
     if (info.state == CM1E_AXIS_STANDSTILL)
         TEST_ASSERT_EQUAL_DOUBLE(0.0, info.set_velocity);
@@ -197,17 +197,17 @@ static void check_axis(void)
     const bool was_ours = source_before == &cm1e_source_hold || source_before->find_stretch;
     /* A ramp of ErrorStop whose set-points were not heard begins anew where the motor is. */
     const bool anew = axis->state == CM1E_AXIS_ERROR_STOP &&
-                      fabs(cm1e_position_minus(axis->set, axis_actual(axis))) < 2501.0;
+                      fabs(cm1e_position_minus(axis->setpoint.position, axis_actual(axis))) < 2501.0;
     if (ours && was_ours && !anew) /* peak speed: 2500 counts a cycle */
-        TEST_ASSERT_TRUE(fabs(cm1e_position_minus(axis->set, set_before)) < 2501.0);
+        TEST_ASSERT_TRUE(fabs(cm1e_position_minus(axis->setpoint.position, set_before)) < 2501.0);
     if (axis_free(axis)) {
-        TEST_ASSERT_EQUAL_DOUBLE(0.0, cm1e_position_minus(axis->set, axis_actual(axis)));
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, cm1e_position_minus(axis->setpoint.position, axis_actual(axis)));
         TEST_ASSERT_TRUE(!axis->drive.command.enable || cm1e_axis_wants_enable(axis));
     }
-    TEST_ASSERT_TRUE(axis->set.fraction >= 0.0 && axis->set.fraction < 1.0);
-    TEST_ASSERT_EQUAL_INT32(axis->raw, (int32_t)(uint32_t)(uint64_t)axis->actual_counts);
-    source_before = axis->source;
-    set_before = axis->set;
+    TEST_ASSERT_TRUE(axis->setpoint.position.fraction >= 0.0 && axis->setpoint.position.fraction < 1.0);
+    TEST_ASSERT_EQUAL_INT32(axis->position.raw, (int32_t)(uint32_t)(uint64_t)axis->position.actual_counts);
+    source_before = axis->setpoint.source;
+    set_before = axis->setpoint.position;
 }
 
 static unsigned moving_cycles;
@@ -247,7 +247,7 @@ static void run(void)
         bench_outputs();
         check_commands();
         check_axis();
-        moving_cycles += axis_on_profile(axis) || axis->source == &cm1e_source_drive;
+        moving_cycles += axis_on_profile(axis) || axis->setpoint.source == &cm1e_source_drive;
         if (i % 100 == 0)
             cm1e_axis_error_text(cm1e_axis_reference(axis), text, sizeof text);
     }

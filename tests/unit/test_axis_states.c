@@ -11,7 +11,7 @@ void setUp(void)
     cm1e_diag_t diag;
     bench_start();
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_create(&master, &bus, 0, &diag));
-    master->source = &cm1e_source_hold;
+    master->setpoint.source = &cm1e_source_hold;
     master->advanced = true;
 }
 
@@ -196,7 +196,7 @@ static void test_every_command_in_every_state(void)
         for (int kind = 0; kind < CM1E_COMMAND_KIND_COUNT; kind++) {
             bench_start();
             into((cm1e_axis_state_t)state);
-            const cm1e_command_id_t active = axis->active;
+            const cm1e_command_id_t active = axis->commands.active;
             const cm1e_axis_command_t command = command_of((cm1e_command_kind_t)kind);
             cm1e_command_id_t id = 99;
             const cm1e_error_t error = cm1e_axis_start(axis, &command, &id);
@@ -248,7 +248,7 @@ static void test_power_off_in_every_state(void)
     for (int state = 0; state < CM1E_AXIS_STATE_COUNT; state++) {
         bench_start();
         into((cm1e_axis_state_t)state);
-        const cm1e_command_id_t active = axis->active;
+        const cm1e_command_id_t active = axis->commands.active;
         bench_power(false);
         const bool error = state == CM1E_AXIS_ERROR_STOP;
         TEST_ASSERT_EQUAL_INT(error ? CM1E_AXIS_ERROR_STOP : CM1E_AXIS_DISABLED, bench_info().state);
@@ -303,7 +303,7 @@ static void test_error_in_every_state_leads_to_error_stop_and_shows_as_error(voi
     for (int state = 0; state < CM1E_AXIS_ERROR_STOP; state++) {
         bench_start();
         into((cm1e_axis_state_t)state);
-        const cm1e_command_id_t active = axis->active;
+        const cm1e_command_id_t active = axis->commands.active;
         raise_error();
         const cm1e_axis_info_t info = bench_info();
         TEST_ASSERT_EQUAL_INT(CM1E_AXIS_ERROR_STOP, info.state);
@@ -415,7 +415,7 @@ static void test_reset_during_the_error_ramp_waits_for_its_end(void)
 static void test_stop_holds_until_done_and_released(void)
 {
     into(CM1E_AXIS_STOPPING);
-    const cm1e_command_id_t stop = axis->active;
+    const cm1e_command_id_t stop = axis->commands.active;
     bench_cycles(300);
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(stop));
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STOPPING, bench_info().state);
@@ -430,7 +430,7 @@ static void test_stop_holds_until_done_and_released(void)
 static void test_stop_released_early_ends_when_done(void)
 {
     into(CM1E_AXIS_STOPPING);
-    const cm1e_command_id_t stop = axis->active;
+    const cm1e_command_id_t stop = axis->commands.active;
     cm1e_axis_hold_stop(axis, stop, false);
     bench_cycles(1);
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STOPPING, bench_info().state);
@@ -492,7 +492,7 @@ static void test_commands_are_remembered_for_a_while_and_then_unknown(void)
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_UNKNOWN, bench_state_of(first));
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_UNKNOWN, bench_state_of(0));
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_UNKNOWN, bench_state_of(4000000000u));
-    axis->last_id = UINT32_MAX; /* the number after the last one is not 0 */
+    axis->commands.last_id = UINT32_MAX; /* the number after the last one is not 0 */
     TEST_ASSERT_EQUAL_UINT32(1, bench_move_to(0.6, 1.0));
 }
 

@@ -127,13 +127,13 @@ static void test_on_a_velocity(void)
     int n = 0;
     for (; bench_state_of(id) == CM1E_COMMAND_ACTIVE; n++) {
         watch_cycles(1);
-        fastest = fmax(fastest, axis->set_velocity);
+        fastest = fmax(fastest, axis->setpoint.velocity);
         TEST_ASSERT_TRUE(cm1e_axis_command_status(axis, base).reached);
     }
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 15.0, fastest);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, from + 10.0 * n * 1e-3 + 4.0, bench_info().set_position);
     watch_cycles(2);
-    TEST_ASSERT_EQUAL_DOUBLE(10.0, axis->set_velocity);
+    TEST_ASSERT_EQUAL_DOUBLE(10.0, axis->setpoint.velocity);
     TEST_ASSERT_TRUE(cm1e_axis_command_status(axis, base).reached);
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(base));
 }
@@ -264,7 +264,7 @@ static void test_errors_and_power_end_it(void)
         bench_cycles(2);
         TEST_ASSERT_EQUAL_INT(off ? CM1E_COMMAND_ABORTED : CM1E_COMMAND_ERROR, bench_state_of(id));
         bench_cycles(500);
-        TEST_ASSERT_EQUAL_DOUBLE(0.0, axis->set_velocity);
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, axis->setpoint.velocity);
     }
 }
 
@@ -340,7 +340,7 @@ static void test_continuous_update_and_override(void)
     watch_cycles(100);
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_override(axis, 0.0, 1.0, 1.0));
     watch_cycles(500);
-    TEST_ASSERT_EQUAL_DOUBLE(0.0, axis->set_velocity);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, axis->setpoint.velocity);
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(id));
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_set_override(axis, 0.5, 0.5, 0.5));
     wait_for(id, CM1E_COMMAND_DONE);
@@ -435,7 +435,7 @@ static void test_random_programs_keep_all_limits(void)
                 (void)cm1e_axis_set_override(axis, draw(0.0, 1.0) < 0.3 ? 0.0 : draw(0.1, 1.0), draw(0.1, 1.0),
                                              draw(0.1, 1.0));
             watch_cycles(1);
-            on_top += axis->superimposed.moving && axis->active;
+            on_top += axis->superimposed.moving && axis->commands.active;
             WATCH(watch.highest <= 60.0 + 1e-6 && watch.lowest >= -60.0 - 1e-6, "outside");
             if (axis->state == CM1E_AXIS_ERROR_STOP) /* a velocity met a limit */
                 break;

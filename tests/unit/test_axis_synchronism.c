@@ -43,7 +43,7 @@ static gear_t gear_from_now(int slave, int master, int32_t numerator, uint32_t d
     const long double in_units = (long double)numerator / (long double)denominator;
     return (gear_t){.master = master, .slave = slave,
                     .ratio = in_units * counts_per_u(axes_config(slave)) / counts_per_u(axes_config(master)),
-                    .master_at = axes_axis(master)->set, .slave_at = axes_axis(slave)->set};
+                    .master_at = axes_axis(master)->setpoint.position, .slave_at = axes_axis(slave)->setpoint.position};
 }
 
 static long double way(position_t from, position_t to)
@@ -53,8 +53,8 @@ static long double way(position_t from, position_t to)
 
 static long double gear_error(const gear_t *gear)
 {
-    const long double ideal = gear->ratio * way(gear->master_at, axes_axis(gear->master)->set);
-    return fabsl(way(gear->slave_at, axes_axis(gear->slave)->set) - ideal);
+    const long double ideal = gear->ratio * way(gear->master_at, axes_axis(gear->master)->setpoint.position);
+    return fabsl(way(gear->slave_at, axes_axis(gear->slave)->setpoint.position) - ideal);
 }
 
 static void judge_gear(const gear_t *gear)
@@ -66,12 +66,12 @@ static void judge_gear(const gear_t *gear)
     worst = fmaxl(worst, error);
     axes_must_be(gear->slave, CM1E_AXIS_SYNCHRONIZED_MOTION);
     AXES_MUST(error <= largest_error, "slave %d is %Lg counts beside its gear, %Lg counts from the start",
-              gear->slave, error, way(gear->slave_at, s->set));
-    const double v = ratio * m->set_velocity, a = ratio * m->set_acceleration;
-    AXES_MUST(fabs(s->set_velocity - v) <= 1e-9 * fabs(v) + 1e-12, "velocity %.15g instead of %.15g", s->set_velocity,
-              v);
-    AXES_MUST(fabs(s->set_acceleration - a) <= 1e-9 * fabs(a) + 1e-9, "acceleration %.15g instead of %.15g",
-              s->set_acceleration, a);
+              gear->slave, error, way(gear->slave_at, s->setpoint.position));
+    const double v = ratio * m->setpoint.velocity, a = ratio * m->setpoint.acceleration;
+    AXES_MUST(fabs(s->setpoint.velocity - v) <= 1e-9 * fabs(v) + 1e-12, "velocity %.15g instead of %.15g",
+              s->setpoint.velocity, v);
+    AXES_MUST(fabs(s->setpoint.acceleration - a) <= 1e-9 * fabs(a) + 1e-9, "acceleration %.15g instead of %.15g",
+              s->setpoint.acceleration, a);
 }
 
 /* ---- cams -------------------------------------------------------------------------------------------------------- */
@@ -88,7 +88,8 @@ typedef struct placed_cam {
 
 static long double master_in_cam(const placed_cam_t *cam)
 {
-    const long double u = way(cam->master_zero, axes_axis(cam->master)->set) / counts_per_u(axes_config(cam->master));
+    const long double u = way(cam->master_zero, axes_axis(cam->master)->setpoint.position) /
+                          counts_per_u(axes_config(cam->master));
     return (u - cam->master_offset) / cam->master_scaling;
 }
 
@@ -114,7 +115,7 @@ static long double cam_error(const placed_cam_t *cam)
                                 cam->table.points[cam->table.count - 1].Master};
     const long double now = ideal_cam_at(&cam->table, ends[cam->left + 1]);
     const long double ideal = (cam->slave_offset + cam->slave_scaling * (now - begin)) * s;
-    return fabsl(way(cam->slave_zero, axes_axis(cam->slave)->set) - ideal);
+    return fabsl(way(cam->slave_zero, axes_axis(cam->slave)->setpoint.position) - ideal);
 }
 
 static void judge_cam(const placed_cam_t *cam)
@@ -162,7 +163,7 @@ static MC_CAM_REF random_table(MC_CAM_POINT *points, double length, bool periodi
 /** The slave scaling with which the slave needs a third of its limits where the master needs all of its own. */
 static double scaling_for(const ideal_cam_t *cam, double master_scaling, int slave, const random_master_t *master)
 {
-    const cm1e_motion_limits_t *most = &axes_axis(slave)->maximum, *its = &master->most;
+    const cm1e_motion_limits_t *most = &axes_axis(slave)->limits.maximum, *its = &master->most;
     const double k = 1.0 / fabs(master_scaling), v = its->velocity * k, a = its->acceleration * k, j = its->jerk * k;
     double slope, curvature, third;
     steepness(cam, &slope, &curvature, &third);
@@ -184,7 +185,8 @@ static placed_cam_t random_cam_in(int slave, int master_axis, const random_maste
     MC_CAM_ID cam_id = 0;
     placed_cam_t cam = {.master = master_axis, .slave = slave, .master_scaling = uniform(0.5, 2) * (one_in(2) ? 1 : -1),
                         .master_offset = uniform(-1, 1) * master->most.velocity,
-                        .master_zero = axes_axis(master_axis)->set, .slave_zero = axes_axis(slave)->set};
+                        .master_zero = axes_axis(master_axis)->setpoint.position,
+                        .slave_zero = axes_axis(slave)->setpoint.position};
     ideal_cam_init(&cam.table, &table, periodic);
     const double scaling = scaling_for(&cam.table, (double)cam.master_scaling, slave, master);
     cam.slave_scaling = scaling * (one_in(2) ? 1 : -1);
@@ -247,7 +249,7 @@ static void random_axes(int count)
 /** A ratio of small numbers with which neither axis is much slower than the other. */
 static void random_ratio(int slave, int master, int32_t *numerator, uint32_t *denominator)
 {
-    const double s = axes_axis(slave)->maximum.velocity, m = axes_axis(master)->maximum.velocity;
+    const double s = axes_axis(slave)->limits.maximum.velocity, m = axes_axis(master)->limits.maximum.velocity;
     do {
         *numerator = (1 + pick(one_in(4) ? 30000 : 30)) * (one_in(2) ? 1 : -1);
         *denominator = 1 + (uint32_t)pick(one_in(4) ? 60000 : 40);
@@ -256,7 +258,7 @@ static void random_ratio(int slave, int master, int32_t *numerator, uint32_t *de
 
 static cm1e_command_id_t gear_in(int slave, int master, int32_t numerator, uint32_t denominator, double part)
 {
-    const cm1e_motion_limits_t *most = &axes_axis(slave)->maximum;
+    const cm1e_motion_limits_t *most = &axes_axis(slave)->limits.maximum;
     const cm1e_axis_coupling_t coupling = {
         .master = {{.axis = axes_reference(master), .numerator = numerator, .denominator = denominator}}};
     return axes_command(slave, &(cm1e_axis_command_t){
@@ -269,10 +271,10 @@ static cm1e_command_id_t gear_in(int slave, int master, int32_t numerator, uint3
 static void rename_positions(int n)
 {
     cm1e_axis_t *axis = axes_axis(n);
-    const position_t set = axis->set;
-    const double range = axis->modulo_range > 0 ? axis->modulo_range : 1000;
+    const position_t set = axis->setpoint.position;
+    const double range = axis->position.modulo_range > 0 ? axis->position.modulo_range : 1000;
     (void)cm1e_axis_set_position(axis, uniform(0, range), false);
-    AXES_MUST(way(set, axis->set) == 0.0L, "MC_SetPosition moved the set-point of axis %d", n);
+    AXES_MUST(way(set, axis->setpoint.position) == 0.0L, "MC_SetPosition moved the set-point of axis %d", n);
 }
 
 /* ---- gears ------------------------------------------------------------------------------------------------------- */
@@ -297,7 +299,7 @@ static void test_slave_of_a_gear_is_where_its_master_says_in_every_cycle(void)
             const random_master_t master = random_master_for(0, 1, (double)numerator / denominator, 0.5);
             const random_master_t both = random_master_of_both(before, &master);
             random_master_command(&both);
-            for (int n = pick(2000); n > 0 || fabs(axes_axis(0)->set_velocity) > master.most.velocity; n--) {
+            for (int n = pick(2000); n > 0 || fabs(axes_axis(0)->setpoint.velocity) > master.most.velocity; n--) {
                 random_master_drive(&both);
                 axes_cycles(1);
             }
@@ -319,15 +321,15 @@ static void test_slave_of_a_gear_is_where_its_master_says_in_every_cycle(void)
             }
             before = master;
             if (one_in(3)) {
-                const double velocity = axes_axis(1)->set_velocity;
+                const double velocity = axes_axis(1)->setpoint.velocity;
                 cm1e_command_id_t out = 0;
                 const cm1e_axis_command_t gear_out = {.kind = CM1E_COMMAND_GEAR_OUT};
                 AXES_MUST(cm1e_axis_start(axes_axis(1), &gear_out, &out) == CM1E_OK, "MC_GearOut is refused");
                 axes_cycles(1500);
                 AXES_MUST(velocity == 0 || axes_state(1) == CM1E_AXIS_CONTINUOUS_MOTION, "%s after MC_GearOut",
                           cm1e_axis_state_name(axes_state(1)));
-                AXES_MUST(fabs(axes_axis(1)->set_velocity - velocity) <= 1e-9 * fabs(velocity),
-                          "MC_GearOut at %.12g u/s, it goes on with %.12g", velocity, axes_axis(1)->set_velocity);
+                AXES_MUST(fabs(axes_axis(1)->setpoint.velocity - velocity) <= 1e-9 * fabs(velocity),
+                          "MC_GearOut at %.12g u/s, it goes on with %.12g", velocity, axes_axis(1)->setpoint.velocity);
             }
         }
     }
@@ -406,13 +408,13 @@ static void test_slave_of_a_cam_is_where_its_table_says_in_every_cycle(void)
                 judge_cam(&cam);
             }
             if (one_in(3)) {
-                const double velocity = axes_axis(1)->set_velocity;
+                const double velocity = axes_axis(1)->setpoint.velocity;
                 cm1e_command_id_t out = 0;
                 const cm1e_axis_command_t cam_out = {.kind = CM1E_COMMAND_CAM_OUT};
                 AXES_MUST(cm1e_axis_start(axes_axis(1), &cam_out, &out) == CM1E_OK, "MC_CamOut is refused");
                 axes_cycles(1500);
-                AXES_MUST(fabs(axes_axis(1)->set_velocity - velocity) <= 1e-9 * fabs(velocity),
-                          "MC_CamOut at %.12g u/s, it goes on with %.12g", velocity, axes_axis(1)->set_velocity);
+                AXES_MUST(fabs(axes_axis(1)->setpoint.velocity - velocity) <= 1e-9 * fabs(velocity),
+                          "MC_CamOut at %.12g u/s, it goes on with %.12g", velocity, axes_axis(1)->setpoint.velocity);
             }
         }
     }
@@ -441,16 +443,16 @@ static void test_million_revolutions_of_the_master_leave_no_drift(void)
     const gear_t ideal = gear_from_now(1, 0, 17, 101);
     random_master_t master = random_master_for(0, 1, 17.0 / 101, 0.9);
     long double turned = 0;
-    position_t last = axes_axis(0)->set;
+    position_t last = axes_axis(0)->setpoint.position;
     for (long long cycle = 0; turned < 50000.0L * (long double)revolutions; cycle++) {
         if (cycle % 100000 == 50000) { /* now and then it turns round for a while */
             random_master_command(&master);
         } else if (cycle % 100000 == 51000 || cycle == 0) {
-            (void)axes_move_velocity(0, axes_axis(0)->maximum.velocity);
+            (void)axes_move_velocity(0, axes_axis(0)->limits.maximum.velocity);
         }
         axes_cycles(1);
-        turned += fabsl(way(last, axes_axis(0)->set));
-        last = axes_axis(0)->set;
+        turned += fabsl(way(last, axes_axis(0)->setpoint.position));
+        last = axes_axis(0)->setpoint.position;
         judge_gear(&ideal);
         const double modulo = axes_info(1).set_position;
         AXES_MUST(modulo >= 0 && modulo < 360, "the slave is at %.17g", modulo);

@@ -35,13 +35,13 @@ static cm1e_command_id_t start(cm1e_command_kind_t kind, const pair_t *pairs, in
 static void expect_refused(cm1e_error_t error, const cm1e_axis_command_t *command)
 {
     const cm1e_axis_info_t was = bench_info();
-    const cm1e_command_id_t active = axis->active;
+    const cm1e_command_id_t active = axis->commands.active;
     cm1e_command_id_t id = 99;
     const cm1e_error_t got = cm1e_axis_start(axis, command, &id);
     TEST_ASSERT_EQUAL_STRING(cm1e_strerror(error), cm1e_strerror(got));
     const cm1e_axis_info_t is = bench_info();
     TEST_ASSERT_EQUAL_UINT32(0, id);
-    TEST_ASSERT_EQUAL_UINT32(active, axis->active);
+    TEST_ASSERT_EQUAL_UINT32(active, axis->commands.active);
     TEST_ASSERT_EQUAL_INT(was.state, is.state);
     TEST_ASSERT_EQUAL_DOUBLE(was.set_position, is.set_position);
     TEST_ASSERT_EQUAL_DOUBLE(was.set_velocity, is.set_velocity);
@@ -84,9 +84,10 @@ static void cycles_within_limits(int n)
         bench_cycles(1);
         const cm1e_axis_info_t is = bench_info();
         const double t = axis->cycle_s, way = is.set_position - was.set_position;
-        TEST_ASSERT_TRUE(fabs(is.set_velocity) <= axis->maximum.velocity * (1.0 + 1e-9));
-        TEST_ASSERT_TRUE(fabs(is.set_velocity - was.set_velocity) <= axis->maximum.acceleration * t * (1.0 + 1e-6));
-        TEST_ASSERT_DOUBLE_WITHIN(axis->maximum.acceleration * t * t + 1e-9,
+        TEST_ASSERT_TRUE(fabs(is.set_velocity) <= axis->limits.maximum.velocity * (1.0 + 1e-9));
+        TEST_ASSERT_TRUE(fabs(is.set_velocity - was.set_velocity) <= axis->limits.maximum.acceleration * t *
+                         (1.0 + 1e-6));
+        TEST_ASSERT_DOUBLE_WITHIN(axis->limits.maximum.acceleration * t * t + 1e-9,
                                   0.5 * (is.set_velocity + was.set_velocity) * t, way);
     }
 }
@@ -150,7 +151,7 @@ static void test_accelerations_and_the_velocity_that_they_make(void)
     cycles_within_limits(10);
     TEST_ASSERT_TRUE(cm1e_axis_command_status(axis, id).reached);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, bench_info().set_acceleration);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 5.0 - 2.0 * 2.0 / (2.0 * axis->maximum.jerk), bench_info().set_velocity);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 5.0 - 2.0 * 2.0 / (2.0 * axis->limits.maximum.jerk), bench_info().set_velocity);
 }
 
 static void test_scales_and_offset(void)
@@ -508,7 +509,7 @@ static void test_random_tables_are_refused_or_kept_to_at_every_sample(void)
             const double position = bench_info().set_position;
             TEST_ASSERT_TRUE_MESSAGE(position < 30.0 + 1e-6 && position > -30.0 - 1e-6, what);
         }
-        TEST_ASSERT_TRUE_MESSAGE(bench_state_of(id) == CM1E_COMMAND_DONE || axis->reached, what);
+        TEST_ASSERT_TRUE_MESSAGE(bench_state_of(id) == CM1E_COMMAND_DONE || axis->setpoint.reached, what);
     }
     TEST_ASSERT_GREATER_THAN_INT(30, taken);
     TEST_ASSERT_GREATER_THAN_INT(30, refused);

@@ -42,7 +42,7 @@ static void configure(uint32_t numerator, uint32_t denominator, double units, bo
 /* The axis as if the motor had turned so far. */
 static double units_at(int64_t counts)
 {
-    axis->actual_counts = counts;
+    axis->position.actual_counts = counts;
     return bench_info().actual_position;
 }
 
@@ -70,7 +70,7 @@ static void test_quotient_of_the_gear_is_the_scale_of_velocity(void)
     bus.velocity_raw = 350000 / 7; /* a revolution of the motor a second: 3/7 of the load */
     bench_cycles(2);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 360.0 * 3.0 / 7.0, bench_info().actual_velocity);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2500000.0 / 50000.0 * 360.0 * 3.0 / 7.0, axis->maximum.velocity);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2500000.0 / 50000.0 * 360.0 * 3.0 / 7.0, axis->limits.maximum.velocity);
 }
 
 static void test_positions_come_back_within_half_a_count(void)
@@ -103,7 +103,7 @@ static void test_positions_grow_with_the_counts_over_the_drives_wrap(void)
         TEST_ASSERT_DOUBLE_WITHIN(1e-2, 2000000011.0 * 1080 / 350000, bench_info().actual_position - before);
         before = bench_info().actual_position;
     }
-    TEST_ASSERT_EQUAL_INT64(INT64_C(50) * 2000000011, axis->actual_counts);
+    TEST_ASSERT_EQUAL_INT64(INT64_C(50) * 2000000011, axis->position.actual_counts);
     TEST_ASSERT_EQUAL_DOUBLE(2000000011.0 * 50 * 1080 / 350000, before);
 }
 

@@ -49,7 +49,7 @@ static void test_relative_counts_from_where_it_began(void)
         for (int i = 0; i < 60000 && bench_state_of(id) == CM1E_COMMAND_ACTIVE; i++) {
             TEST_ASSERT_EQUAL_INT(CM1E_OK, update(id, inputs(kinds[k], 130.0, 20.0))); /* as a block */
             watch_cycles(1);
-            fastest = fmax(fastest, axis->set_velocity);
+            fastest = fmax(fastest, axis->setpoint.velocity);
         }
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, 20.0, fastest);
         TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_DONE, bench_state_of(id));
@@ -66,11 +66,11 @@ static void test_unchanged_inputs_leave_the_profile_alone(void)
     const cm1e_axis_command_t command = inputs(CM1E_COMMAND_MOVE_ABSOLUTE, 10.0, 5.0);
     const cm1e_command_id_t id = bench_start_command(&command);
     watch_cycles(20);
-    const int64_t cycles = axis->profile_cycles;
+    const int64_t cycles = axis->setpoint.profile_cycles;
     TEST_ASSERT_EQUAL_INT(CM1E_OK, update(id, command));
-    TEST_ASSERT_EQUAL_INT64(cycles, axis->profile_cycles);
+    TEST_ASSERT_EQUAL_INT64(cycles, axis->setpoint.profile_cycles);
     TEST_ASSERT_EQUAL_INT(CM1E_OK, update(id, inputs(CM1E_COMMAND_MOVE_ABSOLUTE, 10.0, 6.0)));
-    TEST_ASSERT_EQUAL_INT64(0, axis->profile_cycles);
+    TEST_ASSERT_EQUAL_INT64(0, axis->setpoint.profile_cycles);
 }
 
 static void test_a_velocity_follows_its_input(void)
@@ -85,12 +85,12 @@ static void test_a_velocity_follows_its_input(void)
     TEST_ASSERT_FALSE(cm1e_axis_command_status(axis, id).reached);
     watch_cycles(500);
     TEST_ASSERT_TRUE(cm1e_axis_command_status(axis, id).reached);
-    TEST_ASSERT_EQUAL_DOUBLE(8.0, axis->set_velocity);
+    TEST_ASSERT_EQUAL_DOUBLE(8.0, axis->setpoint.velocity);
     cm1e_axis_command_t back = inputs(CM1E_COMMAND_MOVE_VELOCITY, 0.0, 2.0);
     back.direction = mcNegativeDirection;
     TEST_ASSERT_EQUAL_INT(CM1E_OK, update(id, back));
     watch_cycles(1000);
-    TEST_ASSERT_EQUAL_DOUBLE(-2.0, axis->set_velocity);
+    TEST_ASSERT_EQUAL_DOUBLE(-2.0, axis->setpoint.velocity);
     TEST_ASSERT_EQUAL_INT(CM1E_COMMAND_ACTIVE, bench_state_of(id));
     TEST_ASSERT_EQUAL_INT(CM1E_AXIS_CONTINUOUS_MOTION, bench_info().state);
 }
@@ -109,7 +109,7 @@ static void test_a_continuous_move_gets_another_end(void)
     command.end_velocity = 3.0; /* behind the position: only a velocity is left to be changed */
     TEST_ASSERT_EQUAL_INT(CM1E_OK, update(id, command));
     watch_cycles(500);
-    TEST_ASSERT_EQUAL_DOUBLE(3.0, axis->set_velocity);
+    TEST_ASSERT_EQUAL_DOUBLE(3.0, axis->setpoint.velocity);
     TEST_ASSERT_TRUE(bench_info().set_position > 21.0);
     command.position = 30.0; /* and a new one ahead is passed as well */
     command.end_velocity = 1.0;
@@ -137,7 +137,7 @@ static void test_a_refused_update_changes_nothing(void)
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_DYNAMICS_RANGE, update(id, bad));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, update(id, inputs(CM1E_COMMAND_MOVE_RELATIVE, 1.0, 5.0)));
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_INVALID_ARGUMENT, update(0, good));
-    TEST_ASSERT_EQUAL_INT64(200, axis->profile_cycles);
+    TEST_ASSERT_EQUAL_INT64(200, axis->setpoint.profile_cycles);
     wait_end(id);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 10.0, bench_info().set_position);
 }
@@ -158,7 +158,7 @@ static void test_a_waiting_command_is_updated_too(void)
     second.position = 15.0;
     while (bench_state_of(id1) == CM1E_COMMAND_ACTIVE)
         watch_cycles(1);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-2, 9.0, axis->set_velocity); /* the junction has followed */
+    TEST_ASSERT_DOUBLE_WITHIN(1e-2, 9.0, axis->setpoint.velocity); /* the junction has followed */
     watch_cycles(100);
     second.position = 16.0; /* from where it began, now that it is active */
     TEST_ASSERT_EQUAL_INT(CM1E_OK, update(id2, second));

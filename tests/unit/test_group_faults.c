@@ -232,25 +232,25 @@ static void test_a_bus_that_is_lost_brakes_the_axes_in_step_in_csv(void)
     axes_cycles(500);
     double at[3], before[3];
     for (int n = 0; n < 3; n++) {
-        at[n] = axes_axis(n)->set_velocity;
-        before[n] = cm1e_axis_line(axes_axis(n), axes_axis(n)->set);
+        at[n] = axes_axis(n)->setpoint.velocity;
+        before[n] = cm1e_axis_line(axes_axis(n), axes_axis(n)->setpoint.position);
     }
     TEST_ASSERT_TRUE(fabs(at[0]) > 0.5 && fabs(at[1]) > 0.3);
     int longest_ms = 0; /* docs/SAFETY.md: length of the longest ramp */
     for (int n = 0; n < 3; n++)
-        longest_ms = (int)fmax(longest_ms, ceil(fabs(at[n]) / axes_axis(n)->maximum.deceleration * 1e3));
+        longest_ms = (int)fmax(longest_ms, ceil(fabs(at[n]) / axes_axis(n)->limits.maximum.deceleration * 1e3));
     axes_bench.received = CM1E_ERROR_BUS_LOST;
     axes_bench.health = CM1E_ERROR_BUS_LOST;
     for (int i = 0; i < 200; i++) {
         axes_cycles(1);
         for (int n = 1; n < 3; n++) {
-            const double way = cm1e_axis_line(axes_axis(n), axes_axis(n)->set) - before[n];
-            const double first = cm1e_axis_line(axes_axis(0), axes_axis(0)->set) - before[0];
+            const double way = cm1e_axis_line(axes_axis(n), axes_axis(n)->setpoint.position) - before[n];
+            const double first = cm1e_axis_line(axes_axis(0), axes_axis(0)->setpoint.position) - before[0];
             if (axis_on_profile(axes_axis(0)) && axis_on_profile(axes_axis(n)))
                 TEST_ASSERT_DOUBLE_WITHIN(2.0 / 50000, first * at[n] / at[0], way);
         }
         for (int n = 0; n < 3 && i > longest_ms; n++)
-            TEST_ASSERT_EQUAL_DOUBLE(0.0, axes_axis(n)->set_velocity);
+            TEST_ASSERT_EQUAL_DOUBLE(0.0, axes_axis(n)->setpoint.velocity);
     }
     for (int n = 0; n < 3; n++)
         axes_must_be(n, CM1E_AXIS_ERROR_STOP);
@@ -290,7 +290,7 @@ static void test_an_axis_that_is_destroyed_on_the_way(void)
             cm1e_axis_inputs(axes_axis(n), CM1E_OK, CM1E_OK, axes_bench.bus.clock.virtual_now_ns);
             cm1e_axis_outputs(axes_axis(n));
         }
-    TEST_ASSERT_EQUAL_DOUBLE(0.0, axes_axis(0)->set_velocity);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, axes_axis(0)->setpoint.velocity);
     group_must_be(CM1E_GROUP_ERROR_STOP);
     group_told("does not exist any more");
 }
@@ -301,14 +301,14 @@ static void test_a_limit_that_is_lowered_on_the_way_stops_it(void)
     group_begin(3);
     group_line(3.0, 1.0, 3.0, mcAborting);
     axes_cycles(400);
-    axes_axis(1)->limit_positive = group_at(1) + 0.05;
-    axes_axis(1)->limit_positive_enabled = true;
+    axes_axis(1)->limits.positive = group_at(1) + 0.05;
+    axes_axis(1)->limits.positive_enabled = true;
     cm1e_axis_apply_limits(axes_axis(1));
     axes_cycles(800);
     group_must_be(CM1E_GROUP_ERROR_STOP);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_COUPLING_LIMIT, axes_info(1).error);
     group_told("could not stop before the software limit");
-    TEST_ASSERT_TRUE(group_at(1) <= axes_axis(1)->limit_positive + 1e-6);
+    TEST_ASSERT_TRUE(group_at(1) <= axes_axis(1)->limits.positive + 1e-6);
 }
 
 int main(void)

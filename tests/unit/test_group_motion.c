@@ -56,8 +56,8 @@ static void test_without_dynamics_it_goes_as_the_axes_allow(void)
         fastest = fmax(fastest, axes_info(0).set_velocity);
         steepest = fmax(steepest, axes_info(0).set_acceleration);
     }
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, axes_axis(0)->maximum.velocity, fastest);
-    TEST_ASSERT_DOUBLE_WITHIN(2.1, axes_axis(0)->maximum.acceleration, steepest);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, axes_axis(0)->limits.maximum.velocity, fastest);
+    TEST_ASSERT_DOUBLE_WITHIN(2.1, axes_axis(0)->limits.maximum.acceleration, steepest);
 }
 
 static void test_arcs_by_border_and_by_centre(void)
@@ -462,13 +462,13 @@ static void test_after_silence_the_path_begins_anew_at_once_for_all(void)
             memcpy(axes_bench.order, orders[i], sizeof orders[i]);
             const cm1e_command_id_t id = group_line(2.0, 0.0, 2.0, mcAborting);
             axes_cycles(700);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.0, axes_axis(0)->set_velocity);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.0, axes_axis(0)->setpoint.velocity);
             axes_bench.received = CM1E_ERROR_BUS_LOST;
             axes_cycles(silence);
             const double stood = group_at(0);
             axes_bench.received = CM1E_OK;
             axes_cycles(1);
-            TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.0, axes_axis(0)->set_velocity);
+            TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.0, axes_axis(0)->setpoint.velocity);
             TEST_ASSERT_DOUBLE_WITHIN(1e-5, stood, group_at(0));
             group_done(id);
         }
