@@ -71,16 +71,6 @@ cm1e_error_t cm1e_bus_open(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm
     return CM1E_OK;
 }
 
-void cm1e_bus_free_image(cm1e_bus_t *bus)
-{
-    free(bus->image);
-    free(bus->sent_outputs);
-    free(bus->outputs);
-    free(bus->inputs);
-    bus->image = bus->sent_outputs = bus->outputs = bus->inputs = NULL;
-    bus->output_bytes = bus->input_bytes = 0;
-}
-
 cm1e_error_t cm1e_bus_close(cm1e_bus_t *bus)
 {
     if (!bus)
@@ -96,67 +86,4 @@ cm1e_error_t cm1e_bus_close(cm1e_bus_t *bus)
     free(bus);
     cm1e_clock_make_current(NULL); /* the clock of the nic is gone */
     return error;
-}
-
-int64_t cm1e_bus_enter(cm1e_bus_t *bus)
-{
-    cm1e_clock_make_current(bus->clock);
-    return cm1e_clock_now(bus->clock);
-}
-
-/* ---- looking --------------------------------------------------------------------------------------------------- */
-
-uint32_t cm1e_bus_slave_count(const cm1e_bus_t *bus) { return bus ? bus->slave_count : 0; }
-
-const cm1e_slave_info_t *cm1e_bus_slave(const cm1e_bus_t *bus, uint32_t position)
-{
-    const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
-    return slave ? &slave->info : NULL;
-}
-
-uint16_t cm1e_bus_axis_position(const cm1e_bus_t *bus, uint32_t axis)
-{
-    return bus && axis < bus->config.axis_count ? bus->axis_position[axis] : 0;
-}
-
-const cm1e_bus_counters_t *cm1e_bus_counters(const cm1e_bus_t *bus) { return &bus->counters; }
-const cm1e_bus_config_t *cm1e_bus_configuration(const cm1e_bus_t *bus) { return &bus->config; }
-uint32_t cm1e_bus_operation(const cm1e_bus_t *bus) { return bus->phase == BUS_OPERATING ? bus->operations : 0; }
-cm1e_clock_t *cm1e_bus_clock(cm1e_bus_t *bus) { return bus->clock; }
-struct cm1e_nic *cm1e_bus_nic(cm1e_bus_t *bus) { return bus->nic; }
-
-const cm1e_firmware_info_t *cm1e_bus_slave_firmware(const cm1e_bus_t *bus, uint16_t position)
-{
-    const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
-    return slave ? slave->firmware : NULL;
-}
-
-const char *cm1e_bus_kind(const cm1e_bus_slave_t *slave, char kind[CM1E_KIND_LENGTH])
-{
-    const cm1e_device_t *device = slave->info.device;
-    if (device && device->family)
-        snprintf(kind, CM1E_KIND_LENGTH, "%s %s", device->family, device->name ? device->name : "of an unknown model");
-    else
-        snprintf(kind, CM1E_KIND_LENGTH, "%s", slave->info.name[0] ? slave->info.name : "no name");
-    return kind;
-}
-
-const char *cm1e_bus_label(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, char label[CM1E_LABEL_LENGTH])
-{
-    char kind[CM1E_KIND_LENGTH];
-    int used = snprintf(label, CM1E_LABEL_LENGTH, "slave %u (", slave->info.position);
-    for (unsigned channel = 0; channel < CM1E_CHANNELS; channel++) {
-        const cm1e_axis_config_t *axis = cm1e_bus_axis_of(bus, slave, channel);
-        if (axis)
-            used += snprintf(label + used, CM1E_LABEL_LENGTH - (size_t)used, "\"%s\", ", axis->name);
-    }
-    snprintf(label + used, CM1E_LABEL_LENGTH - (size_t)used, "%s)", cm1e_bus_kind(slave, kind));
-    return label;
-}
-
-const char *cm1e_bus_label_first(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, char label[CM1E_LABEL_LENGTH])
-{
-    cm1e_bus_label(bus, slave, label);
-    label[0] = 'S';
-    return label;
 }

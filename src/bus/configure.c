@@ -103,6 +103,16 @@ static cm1e_error_t set_process_data(cm1e_bus_t *bus, cm1e_diag_t *diag)
     return CM1E_OK;
 }
 
+void cm1e_bus_free_image(cm1e_bus_t *bus)
+{
+    free(bus->image);
+    free(bus->sent_outputs);
+    free(bus->outputs);
+    free(bus->inputs);
+    bus->image = bus->sent_outputs = bus->outputs = bus->inputs = NULL;
+    bus->output_bytes = bus->input_bytes = 0;
+}
+
 static cm1e_error_t map_image(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     const size_t room = cm1e_soem_image_bytes(bus->soem);

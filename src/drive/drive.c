@@ -1,4 +1,4 @@
-/* The drive in the cycle: reading, latching of faults, the way to Operation enabled, and what may pass to the motor. */
+/* The drive in the cycle: reading, the way to Operation enabled, and what may pass to the motor. */
 #include "drive/drive.h"
 
 #include <stdlib.h>
@@ -11,40 +11,6 @@ static const int64_t enable_timeout_ns = 2000 * MS_IN_NS;
 /* A controlword shows in the statusword some cycles later. Who took the torque away waits so long before he asks for it
  * again; else the answer to the old command would look like a loss of the new one. */
 static const int64_t torque_pause_ns = 20 * MS_IN_NS;
-
-/* Who does not know the firmware takes one with that unit for an old one in the other respects too. */
-static void set_velocity_unit(cm1e_drive_t *drive, bool in_counts_per_ms)
-{
-    drive->velocity_unit = in_counts_per_ms ? 1000 : 1;
-    drive->velocity_most = (int32_t)(drive->motor->max_velocity_counts_per_s / drive->velocity_unit);
-    drive->velocity_quarter = drive->firmware ? drive->firmware->velocity_quarter_in_hm_pp : in_counts_per_ms;
-}
-
-static cm1e_error_t velocity_unit(cm1e_drive_t *drive, cm1e_diag_t *diag)
-{
-    const cm1e_axis_config_t *config = drive->config;
-    if (config->velocity_unit_stated) {
-        set_velocity_unit(drive, config->velocity_in_counts_per_ms);
-        return CM1E_OK;
-    }
-    if (!drive->firmware)
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, OBJ_100A_SOFTWARE_VERSION,
-                             "Axis \"%s\" (slave %u): the firmware version (object 0x100A) cannot be read, and the "
-                             "unit of velocities depends on it (counts/ms before V1.3.3). State the unit in the "
-                             "configuration of the axis.", config->name, drive->position);
-    set_velocity_unit(drive, drive->firmware->velocity_in_counts_per_ms);
-    return CM1E_OK;
-}
-
-cm1e_error_t cm1e_drive_init_cm1e(cm1e_drive_t *drive, cm1e_diag_t *diag)
-{
-    drive->motor = cm1e_device_motor(drive->config->motor);
-    if (!drive->motor)
-        return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": there is no motor \"%s\".",
-                             drive->config->name, drive->config->motor);
-    drive->firmware = cm1e_bus_slave_firmware(drive->bus, drive->position);
-    return velocity_unit(drive, diag);
-}
 
 /* The slave has been matched with the axis (cm1e_bus_identify()); a bus that was made otherwise may have another. */
 static cm1e_error_t find_device(cm1e_drive_t *drive, const cm1e_drive_kind_t **kind, cm1e_diag_t *diag)
@@ -109,72 +75,6 @@ const cm1e_entry_t *cm1e_drive_entry(const cm1e_drive_t *drive, uint16_t index, 
     return entry && entry->availability == CM1E_AVAILABLE ? entry : NULL;
 }
 
-void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
-{
-    cm1e_drive_fault_t *fault = &drive->fault;
-    if (fault->error == CM1E_OK)
-        *fault = (cm1e_drive_fault_t){
-            .error = error,
-            .device_code = drive->feedback.fault ? drive->feedback.error_code : 0,
-            .statusword = drive->feedback.statusword,
-            .mode_commanded = (int8_t)drive->mode,
-            .mode_shown = drive->feedback.mode != CM1E_MODE_NONE ? drive->feedback.mode : drive->mode_read,
-        };
-    /* Details that arrive after the first sign: the device's code, and what the supervision found out. */
-    if (fault->device_code == 0 && drive->feedback.online && drive->feedback.fault)
-        fault->device_code = drive->feedback.error_code;
-    fault->slave_lost |= drive->watch.lost;
-    fault->slave_deaf |= drive->watch.lost || drive->watch.silent;
-    /* And nobody would see it hear again while the working counter stays wrong. */
-    fault->slave_deaf |= fault->error == CM1E_ERROR_BUS_WORKING_COUNTER && error == CM1E_ERROR_BUS_LOST;
-    if (!cm1e_drive_operational(drive)) {
-        fault->al_state = drive->watch.al_state;
-        fault->al_status_code = drive->watch.al_status_code;
-    }
-}
-
-/* The cause of what this cycle's inputs show, or CM1E_OK. */
-static cm1e_error_t cause_in_inputs(const cm1e_drive_t *drive)
-{
-    const cm1e_drive_feedback_t *f = &drive->feedback;
-    if (f->fault) {
-        const cm1e_device_error_t *error = drive->kind->error(f->error_code);
-        return error && error->motor_power ? CM1E_ERROR_DRIVE_POWER : CM1E_ERROR_DRIVE_FAULT;
-    }
-    if (!drive->torque)
-        return CM1E_OK;
-    const bool power_stage = f->state == OPERATION_ENABLED || f->state == SWITCHED_ON;
-    if (!f->voltage && (power_stage || drive->was_enabled))
-        return CM1E_ERROR_DRIVE_POWER;
-    if (drive->was_enabled && !drive->operates)
-        return CM1E_ERROR_DRIVE_ENABLE_LOST;
-    const bool shown = f->mode == (int8_t)drive->mode;
-    if (drive->was_enabled && !shown && drive->mode_confirmed)
-        return CM1E_ERROR_DRIVE_MODE_LOST;
-    if (drive->was_enabled && !shown && drive->now_ns >= drive->mode_deadline_ns)
-        return CM1E_ERROR_DRIVE_MODE_TIMEOUT;
-    if (!drive->was_enabled && !drive->operates && drive->now_ns >= drive->enable_deadline_ns)
-        return !f->voltage ? CM1E_ERROR_DRIVE_POWER
-               : !shown    ? CM1E_ERROR_DRIVE_MODE_TIMEOUT : CM1E_ERROR_DRIVE_ENABLE_TIMEOUT;
-    return CM1E_OK;
-}
-
-static void latch_faults(cm1e_drive_t *drive)
-{
-    cm1e_error_t error = drive->fault.error; /* a latched one only collects its details */
-    if (!error && drive->torque && drive->watch.lost)
-        error = CM1E_ERROR_AXIS_OFFLINE;
-    if (!error && drive->torque && !cm1e_drive_operational(drive))
-        error = CM1E_ERROR_BUS_STATE;
-    if (!error && drive->feedback.online)
-        error = cause_in_inputs(drive);
-    if (!error && drive->torque && drive->positions_rejected > 0 &&
-        drive->positions_rejected >= cm1e_bus_configuration(drive->bus)->lost_cycles_limit)
-        error = CM1E_ERROR_DRIVE_POSITION;
-    if (error)
-        cm1e_drive_fail(drive, error);
-}
-
 void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
 {
     cm1e_drive_feedback_t *f = &drive->feedback;
@@ -203,7 +103,7 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
     }
     const bool operating = drive->operates && drive->torque;
     const bool shown = f->mode == (int8_t)drive->mode;
-    latch_faults(drive);
+    cm1e_drive_latch_faults(drive);
     if (operating && f->online)
         drive->was_enabled = true;
     if (operating && shown && f->online)

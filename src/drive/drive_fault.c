@@ -1,136 +1,68 @@
-/* The latched fault in sentences: whose, what, with which numbers, and what to do about it. */
-#include <stdarg.h>
-#include <stdio.h>
-
-#include "device/bridge_status.h"
-#include "drive/drive_kind.h"
+/* Faults of a drive: what in the inputs is one, and how the first one is latched with its details. */
 #include "drive/drive_private.h"
 
-typedef struct writer {
-    char *text;
-    size_t size, used;
-} writer_t;
-
-__attribute__((format(printf, 2, 3))) static void say(writer_t *w, const char *format, ...)
+void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
 {
-    if (w->used + 1 >= w->size)
-        return;
-    va_list arguments;
-    va_start(arguments, format);
-    const int n = vsnprintf(w->text + w->used, w->size - w->used, format, arguments);
-    va_end(arguments);
-    if (n > 0)
-        w->used += (size_t)n < w->size - w->used ? (size_t)n : w->size - w->used - 1;
-}
-
-typedef struct advice {
-    cm1e_error_t error;
-    const char *text;
-} advice_t;
-
-static const advice_t advices[] = {
-    {CM1E_ERROR_BUS_LOST, "No frame came back for several cycles. Check cable, network interface and the load of this "
-                          "machine"},
-    {CM1E_ERROR_BUS_WORKING_COUNTER, "A slave did not take part in the cycle. Look for a slave without power, a loose "
-                                     "cable, or one that left Operational"},
-    {CM1E_ERROR_BUS_STATE, "The slave left Operational. Remove what the AL status code names"},
-    {CM1E_ERROR_AXIS_OFFLINE, "Check its power and its cables"},
-    {CM1E_ERROR_DRIVE_POWER, "Motor power (24 V, statusword bit 4) is missing: check supply, fuse and emergency stop"},
-    {CM1E_ERROR_DRIVE_ENABLE_LOST, "The drive dropped its torque without a fault. Check its watchdog, its power and "
-                                   "whether another tool controls it"},
-    {CM1E_ERROR_DRIVE_ENABLE_TIMEOUT, "The drive stayed in the state named here although it was told to go on. Check "
-                                      "motor power and whether another tool controls it"},
-    {CM1E_ERROR_DRIVE_MODE_TIMEOUT, "Object 0x6061 does not show the mode that was commanded"},
-    {CM1E_ERROR_DRIVE_MODE_LOST, "Object 0x6061 left the commanded mode by itself. Check whether another tool controls "
-                                 "the drive"},
-    {CM1E_ERROR_DRIVE_POSITION, "For several cycles object 0x6064 showed a place that the motor cannot have come to since "
-                                "the last good one; its set-points were ramped down without it. Check the motor's "
-                                "encoder, what else writes to the drive (homing, position preset), and its PDO mapping"},
-    {CM1E_ERROR_AXIS_POSITION_RANGE, "The actual position, or a target, is beyond what the resolution of the motor "
-                                     "(K37) allows"},
-    {CM1E_ERROR_DRIVE_RESET_TIMEOUT, "The fault came back or stayed. Remove its cause, or switch the drive off and on"},
-};
-
-static const char *advice(cm1e_error_t error)
-{
-    for (size_t i = 0; i < sizeof advices / sizeof advices[0]; i++)
-        if (advices[i].error == error)
-            return advices[i].text;
-    return "Remove the cause";
-}
-
-static const char *mode_name(const cm1e_drive_t *drive, int8_t mode)
-{
-    const char *name = cm1e_drive_mode_name(drive, mode);
-    return name ? name : "none";
-}
-
-static void say_words(writer_t *w, const cm1e_drive_t *drive)
-{
-    const cm1e_drive_fault_t *fault = &drive->fault;
-    const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, fault->mode_shown);
-    const cm1e_fsa_row_t *states = (row ? row : drive->wanted)->words->states;
-    say(w, " Statusword 0x%04X", fault->statusword);
-    if (states)
-        say(w, " (%s)", cm1e_fsa_name(cm1e_fsa_decode_by(states, fault->statusword)));
-    if (fault->mode_commanded != fault->mode_shown)
-        say(w, ", mode %d (%s) commanded, %d (%s) shown", fault->mode_commanded,
-            mode_name(drive, fault->mode_commanded), fault->mode_shown, mode_name(drive, fault->mode_shown));
-}
-
-/* BR 7.4 */
-static void say_status(writer_t *w, const cm1e_drive_t *drive)
-{
-    char text[CM1E_BRIDGE_STATUS_TEXT];
-    const cm1e_bridge_motor_t motor = cm1e_drive_bridge_motor(drive);
-    const uint8_t status = drive->fault.motor_status;
-    const char *cure = cm1e_bridge_status_cure(motor, status);
-    say(w, " The motor (%s) says: %s (F530:%u = 0x%02X).", cm1e_bridge_motor_name(motor),
-        cm1e_bridge_status_text(motor, status, text, sizeof text),
-        CM1E_BRIDGE_STATUS_SUBINDEX(drive->config->channel), status);
-    if (cure[0])
-        say(w, " Cure: %s.", cure);
-}
-
-/* What the user can do about it, where another answer is better than the common one. */
-static const char *further(const cm1e_drive_t *drive)
-{
-    const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, drive->fault.mode_shown);
-    const cm1e_error_t error = drive->fault.error;
-    if (error == CM1E_ERROR_DRIVE_MODE_TIMEOUT)
-        return drive->kind->refusal;
-    const bool stays = error == CM1E_ERROR_DRIVE_RESET_TIMEOUT || error == CM1E_ERROR_DRIVE_FAULT;
-    return stays && row ? row->cure : NULL;
-}
-
-void cm1e_drive_fault_text(const cm1e_drive_t *drive, char *text, size_t size)
-{
-    if (!text || size == 0)
-        return;
-    text[0] = '\0';
-    const cm1e_drive_fault_t *fault = &drive->fault;
+    cm1e_drive_fault_t *fault = &drive->fault;
     if (fault->error == CM1E_OK)
-        return;
-    writer_t w = {.text = text, .size = size};
-    say(&w, "Axis \"%s\" (slave %u): %s.", drive->config->name, drive->position, cm1e_strerror(fault->error));
-    if (fault->device_code) {
-        const cm1e_device_error_t *device = drive->kind->error(fault->device_code);
-        say(&w, " Device error 0x%04X: %s.", fault->device_code, device ? device->text : "not a code of the manual");
-        if (device)
-            say(&w, " Cure: %s.", device->cure);
+        *fault = (cm1e_drive_fault_t){
+            .error = error,
+            .device_code = drive->feedback.fault ? drive->feedback.error_code : 0,
+            .statusword = drive->feedback.statusword,
+            .mode_commanded = (int8_t)drive->mode,
+            .mode_shown = drive->feedback.mode != CM1E_MODE_NONE ? drive->feedback.mode : drive->mode_read,
+        };
+    /* Details that arrive after the first sign: the device's code, and what the supervision found out. */
+    if (fault->device_code == 0 && drive->feedback.online && drive->feedback.fault)
+        fault->device_code = drive->feedback.error_code;
+    fault->slave_lost |= drive->watch.lost;
+    fault->slave_deaf |= drive->watch.lost || drive->watch.silent;
+    /* And nobody would see it hear again while the working counter stays wrong. */
+    fault->slave_deaf |= fault->error == CM1E_ERROR_BUS_WORKING_COUNTER && error == CM1E_ERROR_BUS_LOST;
+    if (!cm1e_drive_operational(drive)) {
+        fault->al_state = drive->watch.al_state;
+        fault->al_status_code = drive->watch.al_status_code;
     }
-    if (fault->slave_lost)
-        say(&w, " This slave does not answer at its address.");
-    else if (fault->al_state)
-        say(&w, " EtherCAT state %u, AL status code 0x%04X: %s.", fault->al_state & 0x0Fu, fault->al_status_code,
-            cm1e_al_status_text(fault->al_status_code));
-    const uint64_t unsent = fault->error == CM1E_ERROR_BUS_LOST ? cm1e_bus_counters(drive->bus)->unsent_frames : 0;
-    if (unsent > 0)
-        say(&w, " The network interface did not take %llu frames since the start: it is down, or too slow.",
-            (unsigned long long)unsent);
-    if (fault->motor_status_known)
-        say_status(&w, drive);
-    say_words(&w, drive);
-    const char *more = further(drive);
-    say(&w, ". %s%s%s, then reset the axis with MC_Reset.", advice(fault->error), more ? ". " : "", more ? more : "");
+}
+
+/* The cause of what this cycle's inputs show, or CM1E_OK. */
+static cm1e_error_t cause_in_inputs(const cm1e_drive_t *drive)
+{
+    const cm1e_drive_feedback_t *f = &drive->feedback;
+    if (f->fault) {
+        const cm1e_device_error_t *error = drive->kind->error(f->error_code);
+        return error && error->motor_power ? CM1E_ERROR_DRIVE_POWER : CM1E_ERROR_DRIVE_FAULT;
+    }
+    if (!drive->torque)
+        return CM1E_OK;
+    const bool power_stage = f->state == OPERATION_ENABLED || f->state == SWITCHED_ON;
+    if (!f->voltage && (power_stage || drive->was_enabled))
+        return CM1E_ERROR_DRIVE_POWER;
+    if (drive->was_enabled && !drive->operates)
+        return CM1E_ERROR_DRIVE_ENABLE_LOST;
+    const bool shown = f->mode == (int8_t)drive->mode;
+    if (drive->was_enabled && !shown && drive->mode_confirmed)
+        return CM1E_ERROR_DRIVE_MODE_LOST;
+    if (drive->was_enabled && !shown && drive->now_ns >= drive->mode_deadline_ns)
+        return CM1E_ERROR_DRIVE_MODE_TIMEOUT;
+    if (!drive->was_enabled && !drive->operates && drive->now_ns >= drive->enable_deadline_ns)
+        return !f->voltage ? CM1E_ERROR_DRIVE_POWER
+               : !shown    ? CM1E_ERROR_DRIVE_MODE_TIMEOUT : CM1E_ERROR_DRIVE_ENABLE_TIMEOUT;
+    return CM1E_OK;
+}
+
+void cm1e_drive_latch_faults(cm1e_drive_t *drive)
+{
+    cm1e_error_t error = drive->fault.error; /* a latched one only collects its details */
+    if (!error && drive->torque && drive->watch.lost)
+        error = CM1E_ERROR_AXIS_OFFLINE;
+    if (!error && drive->torque && !cm1e_drive_operational(drive))
+        error = CM1E_ERROR_BUS_STATE;
+    if (!error && drive->feedback.online)
+        error = cause_in_inputs(drive);
+    if (!error && drive->torque && drive->positions_rejected > 0 &&
+        drive->positions_rejected >= cm1e_bus_configuration(drive->bus)->lost_cycles_limit)
+        error = CM1E_ERROR_DRIVE_POSITION;
+    if (error)
+        cm1e_drive_fail(drive, error);
 }

@@ -2,7 +2,6 @@
 #include <stdlib.h>
 
 #include "core/bytes.h"
-#include "drive/drive_kind.h"
 #include "drive/drive_private.h"
 
 #define SLOT(member) offsetof(cm1e_drive_t, member)
@@ -171,6 +170,9 @@ static int32_t velocity_of(const cm1e_drive_t *drive, const uint8_t *in, int32_t
     return clamp_i32(velocity);
 }
 
+/* Of a mode that is not known: no state, no torque, controlword 0000h. */
+static const cm1e_device_words_t unknown_words = {0};
+
 static void derive(cm1e_drive_t *drive)
 {
     const bool same = drive->words == drive->wanted->words;
@@ -200,7 +202,7 @@ static void take_mode(cm1e_drive_t *drive, int8_t mode)
     if (drive->shown)
         drive->words = drive->shown->words;
     else if (drive->words != drive->wanted->words || drive->words->own_coding)
-        drive->words = &cm1e_drive_words_unknown;
+        drive->words = &unknown_words;
     derive(drive);
 }
 

@@ -4,8 +4,6 @@
 
 #include "drive/drive_private.h"
 
-const cm1e_device_words_t cm1e_drive_words_unknown = {0};
-
 static const cm1e_drive_kind_t kinds[] = {
     {"cm1-e", cm1e_drive_init_cm1e, NULL},
     {"bridge", cm1e_drive_init_bridge, cm1e_drive_bridge_step},

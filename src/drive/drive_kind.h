@@ -17,7 +17,5 @@ typedef struct cm1e_drive_kind {
 
 /** NULL: no such device. */
 const cm1e_drive_kind_t *cm1e_drive_kind(const cm1e_device_t *device);
-/** Of a mode that is not known: no state, no torque, controlword 0000h. */
-extern const cm1e_device_words_t cm1e_drive_words_unknown;
 
 #endif

@@ -19,7 +19,11 @@ static inline bool drive_fault_allows_ramp(cm1e_error_t error)
     return error == CM1E_ERROR_BUS_LOST || error == CM1E_ERROR_BUS_WORKING_COUNTER || error == CM1E_ERROR_DRIVE_POSITION;
 }
 
-/* drive.c */
+/* drive_fault.c */
+/** Latches what this cycle's inputs show. A latched fault only collects its details. */
+void cm1e_drive_latch_faults(cm1e_drive_t *drive);
+
+/* drive_cm1e.c */
 cm1e_error_t cm1e_drive_init_cm1e(cm1e_drive_t *drive, cm1e_diag_t *diag);
 
 /* drive_io.c */

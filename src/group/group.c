@@ -1,37 +1,58 @@
-/* Members of a group, its states, and what it shows. */
+/* A group: its members, its states, and what it shows. */
+#include <stdlib.h>
+#include <string.h>
+
 #include "group/group_private.h"
 
-/* ---- what became of the axes ------------------------------------------------------------------------------------- */
+/* ---- created and destroyed ------------------------------------------------------------------------------------- */
 
-cm1e_axis_t *cm1e_group_axis(const cm1e_group_t *group, uint32_t ident)
+cm1e_error_t cm1e_group_create(AXES_GROUP_REF_t *reference, const cm1e_group_config_t *config, cm1e_diag_t *diag)
 {
-    const AXIS_REF_t reference = ident >= 1 && ident <= CM1E_GROUP_AXES ? group->member[ident - 1] : (AXIS_REF_t){0};
-    return reference.Handle ? cm1e_axis_from_reference(&reference) : NULL;
+    if (!reference)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "No place to put the group's handle.");
+    *reference = (AXES_GROUP_REF_t){0};
+    cm1e_group_t *group = calloc(1, sizeof *group);
+    if (!group)
+        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for an axes group.");
+    if (config)
+        group->config = *config;
+    group->config.name[sizeof group->config.name - 1] = '\0';
+    if (!group->config.name[0])
+        (void)memcpy(group->config.name, "group", sizeof "group");
+    group->override = 1.0;
+    group->reset_state = CM1E_COMMAND_DONE;
+    if (!cm1e_group_take_handle(group)) {
+        free(group);
+        return cm1e_diag_set(diag, CM1E_ERROR_FULL, 0, "There are already %d axes groups in this process.",
+                             GROUP_HANDLES);
+    }
+    reference->Handle = group->handle;
+    return CM1E_OK;
 }
+
+cm1e_error_t cm1e_group_destroy(AXES_GROUP_REF_t reference)
+{
+    cm1e_group_t *group = cm1e_group_from_reference(&reference);
+    if (!group)
+        return CM1E_ERROR_GROUP_REF;
+    cm1e_group_refresh(group);
+    if (!cm1e_group_at_rest(group))
+        return CM1E_ERROR_GROUP_STATE;
+    cm1e_group_let_go(group);
+    for (uint32_t ident = 1; ident <= CM1E_GROUP_AXES; ident++)
+        cm1e_group_leave(group, ident);
+    cm1e_group_drop_handle(reference);
+    free(group);
+    return CM1E_OK;
+}
+
+/* ---- what became of the axes ------------------------------------------------------------------------------------- */
 
 static cm1e_axis_state_t state_of(const cm1e_axis_t *axis)
 {
     cm1e_axis_info_t info;
     cm1e_axis_get(axis, &info);
     return info.state;
-}
-
-cm1e_error_t cm1e_group_refuse(cm1e_group_t *group, group_refusal_t refusal)
-{
-    group->refusal = refusal;
-    return refusal.error;
-}
-
-void cm1e_group_fail(cm1e_group_t *group, cm1e_error_t error, uint32_t culprit)
-{
-    if (group->state == CM1E_GROUP_ERROR_STOP || group->state == CM1E_GROUP_DISABLED)
-        return; /* the first cause is kept; a disabled group only lets its axes come to rest */
-    cm1e_group_end_all(group, CM1E_COMMAND_ERROR, CM1E_ERROR_GROUP_ERROR_STOP);
-    group->error = error;
-    group->culprit = culprit;
-    group->refusal.error = CM1E_OK;
-    group->state = cm1e_group_rule(group->state, TRIGGER_FAIL)->next;
-    cm1e_group_brake(group, 0.0, 0.0);
 }
 
 /* State of MC_GroupReset. It is done when none of its axes is in ErrorStop and the others have come to rest. */
@@ -100,22 +121,6 @@ static cm1e_error_t refuse_member(cm1e_group_t *group, cm1e_error_t error, uint3
     return cm1e_group_refuse(group, (group_refusal_t){.error = error, .ident = ident, .why = why});
 }
 
-static uint32_t free_ident(const cm1e_group_t *group)
-{
-    for (uint32_t ident = 1; ident <= CM1E_GROUP_AXES; ident++)
-        if (group->member[ident - 1].Handle == 0)
-            return ident;
-    return 0;
-}
-
-static int count_members(const cm1e_group_t *group)
-{
-    int count = 0;
-    for (int i = 0; i < CM1E_GROUP_AXES; i++)
-        count += group->member[i].Handle != 0;
-    return count;
-}
-
 cm1e_error_t cm1e_group_add(cm1e_group_t *group, AXIS_REF_t reference, uint32_t ident)
 {
     const cm1e_error_t refused = refused_by_state(group, TRIGGER_CONFIGURE);
@@ -125,13 +130,13 @@ cm1e_error_t cm1e_group_add(cm1e_group_t *group, AXIS_REF_t reference, uint32_t 
     if (!axis)
         return refuse_member(group, CM1E_ERROR_FB_AXIS_REF, 0, NULL);
     if (ident == 0)
-        ident = free_ident(group);
+        ident = cm1e_group_free_ident(group);
     if (ident == 0 || ident > CM1E_GROUP_AXES)
         return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "IdentInGroup must be 1 ... 8.");
     if (group->member[ident - 1].Handle != 0)
         return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, ident, "This place is taken: use MC_RemoveAxisFromGroup "
                                                                     "first.");
-    if (count_members(group) > 0 && cm1e_axis_bus(axis) != group->bus)
+    if (cm1e_group_count(group) > 0 && cm1e_axis_bus(axis) != group->bus)
         return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "The axis belongs to another bus than the other axes "
                                                                 "of the group.");
     if (cm1e_axis_configuration(axis)->motion == CM1E_MOTION_DRIVE)
@@ -148,14 +153,6 @@ cm1e_error_t cm1e_group_add(cm1e_group_t *group, AXIS_REF_t reference, uint32_t 
     group->bus = cm1e_axis_bus(axis);
     group->member[ident - 1] = reference;
     return CM1E_OK;
-}
-
-void cm1e_group_leave(cm1e_group_t *group, uint32_t ident)
-{
-    cm1e_axis_t *axis = cm1e_group_axis(group, ident);
-    if (axis)
-        cm1e_axis_leave(axis, group);
-    group->member[ident - 1] = (AXIS_REF_t){0};
 }
 
 cm1e_error_t cm1e_group_remove(cm1e_group_t *group, uint32_t ident)
@@ -177,13 +174,6 @@ cm1e_error_t cm1e_group_ungroup(cm1e_group_t *group)
     return error;
 }
 
-cm1e_error_t cm1e_group_member(const cm1e_group_t *group, uint32_t ident, AXIS_REF_t *axis)
-{
-    const bool there = ident >= 1 && ident <= CM1E_GROUP_AXES && group->member[ident - 1].Handle != 0;
-    *axis = there ? group->member[ident - 1] : (AXIS_REF_t){0};
-    return there ? CM1E_OK : CM1E_ERROR_GROUP_MEMBER;
-}
-
 /* ---- the state diagram ------------------------------------------------------------------------------------------- */
 
 cm1e_error_t cm1e_group_enable(cm1e_group_t *group)
@@ -191,7 +181,7 @@ cm1e_error_t cm1e_group_enable(cm1e_group_t *group)
     const cm1e_error_t refused = refused_by_state(group, TRIGGER_ENABLE);
     if (refused)
         return refused;
-    if (count_members(group) == 0)
+    if (cm1e_group_count(group) == 0)
         return refuse_member(group, CM1E_ERROR_GROUP_MEMBER, 0, "It has no axes: use MC_AddAxisToGroup first.");
     group->state = cm1e_group_rule(group->state, TRIGGER_ENABLE)->next;
     group->error = CM1E_OK;
@@ -247,7 +237,7 @@ void cm1e_group_get(cm1e_group_t *group, cm1e_group_info_t *info)
     *info = (cm1e_group_info_t){
         .state = group->state,
         .error = group->error,
-        .axes = count_members(group),
+        .axes = cm1e_group_count(group),
         .commands = group->queue.count,
     };
     for (int i = 0; i < CM1E_GROUP_AXES; i++)

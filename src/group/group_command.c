@@ -1,68 +1,5 @@
-/* Commands of a group: posted by function blocks, known by number, the first of them active. */
+/* Commands of a group: what function blocks may request in which state, where it leads, and how it starts. */
 #include "group/group_private.h"
-
-/* ---- records ----------------------------------------------------------------------------------------------------- */
-
-void cm1e_group_record(cm1e_group_t *group, cm1e_command_id_t id, cm1e_command_state_t state, cm1e_error_t error)
-{
-    group->records[id % GROUP_RECORDS] = (group_record_t){.id = id, .state = state, .error = error};
-}
-
-static cm1e_command_id_t first_of(const cm1e_group_t *group)
-{
-    return group->queue.count > 0 ? group->queue.ids[group->queue.first] : 0;
-}
-
-void cm1e_group_finish(cm1e_group_t *group, cm1e_command_id_t id)
-{
-    group_queue_t *queue = &group->queue;
-    if (id == 0 || first_of(group) != id)
-        return;
-    cm1e_group_record(group, id, CM1E_COMMAND_DONE, CM1E_OK);
-    queue->first = (queue->first + 1) % CM1E_GROUP_COMMANDS;
-    queue->count--;
-}
-
-void cm1e_group_end_all(cm1e_group_t *group, cm1e_command_state_t state, cm1e_error_t error)
-{
-    for (int i = 0; i < group->queue.count; i++)
-        cm1e_group_record(group, group->queue.ids[(group->queue.first + i) % CM1E_GROUP_COMMANDS], state, error);
-    group->queue.count = 0;
-    group->stop = 0;
-    group->stop_held = false;
-}
-
-static void enqueue(cm1e_group_t *group, cm1e_command_id_t id)
-{
-    group_queue_t *queue = &group->queue;
-    queue->ids[(queue->first + queue->count++) % CM1E_GROUP_COMMANDS] = id;
-}
-
-cm1e_command_status_t cm1e_group_command_status(const cm1e_group_t *group, cm1e_command_id_t id)
-{
-    if (id != 0 && first_of(group) == id)
-        return (cm1e_command_status_t){.state = CM1E_COMMAND_ACTIVE};
-    for (int i = 1; i < group->queue.count; i++)
-        if (group->queue.ids[(group->queue.first + i) % CM1E_GROUP_COMMANDS] == id)
-            return (cm1e_command_status_t){.state = CM1E_COMMAND_BUFFERED};
-    const group_record_t *record = &group->records[id % GROUP_RECORDS];
-    if (id == 0 || record->id != id)
-        return (cm1e_command_status_t){.state = CM1E_COMMAND_UNKNOWN};
-    return (cm1e_command_status_t){.state = record->state, .error = record->error};
-}
-
-bool cm1e_group_runs(AXES_GROUP_REF_t reference, cm1e_command_id_t id)
-{
-    const cm1e_group_t *group = cm1e_group_from_reference(&reference);
-    return group && id != 0 && first_of(group) == id;
-}
-
-static cm1e_command_id_t next_id(cm1e_group_t *group)
-{
-    if (++group->last_id == 0)
-        group->last_id = 1; /* 0 is no command */
-    return group->last_id;
-}
 
 /* ---- what a command asks for ------------------------------------------------------------------------------------- */
 
@@ -278,7 +215,7 @@ static cm1e_error_t start_move(cm1e_group_t *group, const cm1e_group_command_t *
     const cm1e_error_t error = !moving ? begin_move(group, command, id)
                                : aborting ? replace(group, command, id) : wait_behind(group, command, id);
     if (!error)
-        enqueue(group, id);
+        cm1e_group_enqueue(group, id);
     return error;
 }
 
@@ -293,7 +230,7 @@ static cm1e_error_t start_halt(cm1e_group_t *group, const cm1e_group_command_t *
         const cm1e_group_command_t rest = {.kind = CM1E_GROUP_LINEAR_RELATIVE, .buffer_mode = mcBuffered};
         const cm1e_error_t error = wait_behind(group, &rest, id);
         if (!error)
-            enqueue(group, id);
+            cm1e_group_enqueue(group, id);
         return error;
     }
     cm1e_group_brake(group, command->deceleration, command->jerk);
@@ -301,7 +238,7 @@ static cm1e_error_t start_halt(cm1e_group_t *group, const cm1e_group_command_t *
     group->halting = true;
     group->halt_deceleration = command->deceleration;
     group->halt_jerk = command->jerk;
-    enqueue(group, id);
+    cm1e_group_enqueue(group, id);
     return CM1E_OK;
 }
 
@@ -314,7 +251,7 @@ static void start_stop(cm1e_group_t *group, const cm1e_group_command_t *command,
     cm1e_group_end_all(group, CM1E_COMMAND_ABORTED, CM1E_OK);
     group->stop = id;
     group->stop_held = true;
-    enqueue(group, id);
+    cm1e_group_enqueue(group, id);
     if (!group->led)
         cm1e_group_finish(group, id);
 }
@@ -352,7 +289,7 @@ cm1e_error_t cm1e_group_start(cm1e_group_t *group, const cm1e_group_command_t *c
         return CM1E_ERROR_INVALID_ARGUMENT;
     cm1e_group_refresh(group);
     group->refusal = (group_refusal_t){.error = CM1E_OK};
-    const cm1e_command_id_t number = next_id(group);
+    const cm1e_command_id_t number = cm1e_group_next_id(group);
     const cm1e_error_t error = start(group, command, number);
     if (!error)
         *id = number;

@@ -17,6 +17,18 @@ void cm1e_group_brake(cm1e_group_t *group, double deceleration, double jerk)
     cm1e_path_clear(&group->path);
 }
 
+void cm1e_group_fail(cm1e_group_t *group, cm1e_error_t error, uint32_t culprit)
+{
+    if (group->state == CM1E_GROUP_ERROR_STOP || group->state == CM1E_GROUP_DISABLED)
+        return; /* the first cause is kept; a disabled group only lets its axes come to rest */
+    cm1e_group_end_all(group, CM1E_COMMAND_ERROR, CM1E_ERROR_GROUP_ERROR_STOP);
+    group->error = error;
+    group->culprit = culprit;
+    group->refusal.error = CM1E_OK;
+    group->state = cm1e_group_rule(group->state, TRIGGER_FAIL)->next;
+    cm1e_group_brake(group, 0.0, 0.0);
+}
+
 /* ---- the cycle --------------------------------------------------------------------------------------------------- */
 
 /* The transitions of the state diagram that depend on the motion. */

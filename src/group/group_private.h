@@ -90,23 +90,36 @@ struct cm1e_group {
 /* group_state.c */
 const group_rule_t *cm1e_group_rule(cm1e_group_state_t state, group_trigger_t trigger);
 
-/* group.c */
+/* group_handle.c */
+/** Gives the group a handle. false: all are in use. */
+bool cm1e_group_take_handle(cm1e_group_t *group);
+void cm1e_group_drop_handle(AXES_GROUP_REF_t reference);
+
+/* group_member.c */
 /** The member with this `ident`; NULL: no member, or the axis no longer exists. */
 cm1e_axis_t *cm1e_group_axis(const cm1e_group_t *group, uint32_t ident);
+int cm1e_group_count(const cm1e_group_t *group);
+/** 0: there is no free place. */
+uint32_t cm1e_group_free_ident(const cm1e_group_t *group);
 /** Removes the member; the axis may no longer exist. */
 void cm1e_group_leave(cm1e_group_t *group, uint32_t ident);
-/** Updates the group from the states of its axes while it is at rest. */
-void cm1e_group_refresh(cm1e_group_t *group);
-cm1e_error_t cm1e_group_refuse(cm1e_group_t *group, group_refusal_t refusal);
-/** Goes to GroupErrorStop: commands end with an error, and axes that are still led brake along the path. */
-void cm1e_group_fail(cm1e_group_t *group, cm1e_error_t error, uint32_t culprit);
 
-/* group_command.c */
+/* group_text.c */
+/** Keeps a refusal for the text. Returns its error. */
+cm1e_error_t cm1e_group_refuse(cm1e_group_t *group, group_refusal_t refusal);
+
+/* group_record.c */
+cm1e_command_id_t cm1e_group_next_id(cm1e_group_t *group);
 void cm1e_group_record(cm1e_group_t *group, cm1e_command_id_t id, cm1e_command_state_t state, cm1e_error_t error);
+void cm1e_group_enqueue(cm1e_group_t *group, cm1e_command_id_t id);
 /** Ends the first command of the queue. */
 void cm1e_group_finish(cm1e_group_t *group, cm1e_command_id_t id);
 /** Ends all commands of the queue. */
 void cm1e_group_end_all(cm1e_group_t *group, cm1e_command_state_t state, cm1e_error_t error);
+
+/* group.c */
+/** Updates the group from the states of its axes while it is at rest. */
+void cm1e_group_refresh(cm1e_group_t *group);
 
 /* group_motion.c */
 /** Whether the set-points are at rest. */
@@ -120,5 +133,7 @@ cm1e_error_t cm1e_group_lead(cm1e_group_t *group, bool some);
 void cm1e_group_let_go(cm1e_group_t *group);
 /** Brakes along the path and drops what is behind it. */
 void cm1e_group_brake(cm1e_group_t *group, double deceleration, double jerk);
+/** Goes to GroupErrorStop: commands end with an error, and axes that are still led brake along the path. */
+void cm1e_group_fail(cm1e_group_t *group, cm1e_error_t error, uint32_t culprit);
 
 #endif

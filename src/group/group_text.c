@@ -1,8 +1,14 @@
-/* Error texts of a group. */
+/* The last refusal of a group, and its error texts. */
 #include <stdio.h>
 #include <string.h>
 
 #include "group/group_private.h"
+
+cm1e_error_t cm1e_group_refuse(cm1e_group_t *group, group_refusal_t refusal)
+{
+    group->refusal = refusal;
+    return refusal.error;
+}
 
 static const char *name_of(const cm1e_group_t *group, uint32_t ident)
 {
