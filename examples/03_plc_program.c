@@ -16,6 +16,7 @@
 #include <string.h>
 
 #include <cm1e/plcopen.h>
+#include <cm1e/plot.h>
 #include <cm1e/scheduler.h>
 #include <cm1e/sim.h>
 

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 
 #include <cm1e/plcopen.h>
+#include <cm1e/plot.h>
 #include <cm1e/scheduler.h>
 
 enum { EXAMPLE_TRACE_SAMPLES = 120000, EXAMPLE_VIRTUAL_TIME = 256, EXAMPLE_CSV, EXAMPLE_SVG };

@@ -112,8 +112,6 @@ CM1E_API cm1e_error_t cm1e_scheduler_check_path(const char *path, cm1e_diag_t *d
  *  writes a new file beside `path` and renames it when it is complete. Returns CM1E_ERROR_STATE without a trace.
  *  @rt block */
 CM1E_API cm1e_error_t cm1e_scheduler_write_csv(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);
-/** Writes the trace as an SVG plot with panels per axis; conditions as for cm1e_scheduler_write_csv(). @rt block */
-CM1E_API cm1e_error_t cm1e_scheduler_write_svg(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);
 
 #ifdef __cplusplus
 }

@@ -265,12 +265,7 @@ cm1e_error_t cm1e_scheduler_write_csv(const cm1e_scheduler_t *scheduler, const c
     return cm1e_trace_write_file(&scheduler->trace, path, cm1e_trace_print_csv, diag);
 }
 
-cm1e_error_t cm1e_scheduler_write_svg(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag)
-{
-    if (cm1e_in_task())
-        return cm1e_in_task_refuse("cm1e_scheduler_write_svg()", "", diag);
-    return cm1e_trace_write_file(&scheduler->trace, path, cm1e_trace_print_svg, diag);
-}
+const trace_t *cm1e_scheduler_trace(const cm1e_scheduler_t *scheduler) { return &scheduler->trace; }
 
 /* ---- before and after ------------------------------------------------------------------------------------------ */
 

@@ -9,6 +9,7 @@
 
 #include "axis/axis.h"
 #include "cm1e/scheduler.h"
+#include "core/guest_api.h"
 
 typedef struct cm1e_trace_sample {
     double set_position, actual_position, set_velocity, actual_velocity, torque;
@@ -45,17 +46,19 @@ void cm1e_trace_record(trace_t *trace, cm1e_axis_t *const axes[], int64_t time_n
 void cm1e_trace_mark(trace_t *trace, const char *text, int64_t time_ns);
 
 /** Sample n, 0 = oldest. */
-int64_t cm1e_trace_time_ns(const trace_t *trace, uint32_t n);
-const trace_sample_t *cm1e_trace_sample(const trace_t *trace, uint32_t n, uint32_t axis);
+CM1E_GUEST_API int64_t cm1e_trace_time_ns(const trace_t *trace, uint32_t n);
+CM1E_GUEST_API const trace_sample_t *cm1e_trace_sample(const trace_t *trace, uint32_t n, uint32_t axis);
 /** Mark n, 0 = oldest. */
-const trace_mark_t *cm1e_trace_mark_at(const trace_t *trace, uint32_t n);
+CM1E_GUEST_API const trace_mark_t *cm1e_trace_mark_at(const trace_t *trace, uint32_t n);
 
-/** Writers of a file's content. */
+/** The trace of a scheduler. It lives as long as the scheduler. @rt init */
+CM1E_GUEST_API const trace_t *cm1e_scheduler_trace(const cm1e_scheduler_t *scheduler);
+
+/** Prints the content of a CSV file. */
 void cm1e_trace_print_csv(const trace_t *trace, FILE *file);
-void cm1e_trace_print_svg(const trace_t *trace, FILE *file);
 /** Writes under a temporary name and renames, so that no reader sees an incomplete file; in the "C" locale.
  *  @rt block */
-cm1e_error_t cm1e_trace_write_file(const trace_t *trace, const char *path,
+CM1E_GUEST_API cm1e_error_t cm1e_trace_write_file(const trace_t *trace, const char *path,
                                    void (*print)(const trace_t *trace, FILE *file), cm1e_diag_t *diag);
 
 #endif

@@ -19,7 +19,7 @@ from test_wire_only import guests
 
 INSTALLED = ("bin/cm1e", "include/cm1e/plcopen.h", "share/doc/cm1e/LICENSE", "share/doc/cm1e/THIRD-PARTY.md",
              "share/doc/cm1e/licenses/SOEM.txt")
-APART = ("busfile", "generate", "sim")
+APART = ("busfile", "generate", "plot", "sim")
 PROGRAMS = ("consumer", "own_names", "before_libpcap", "after_libpcap")
 
 

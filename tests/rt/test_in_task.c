@@ -7,6 +7,7 @@
 
 #include "cm1e/bridge.h"
 #include "cm1e/cml.h"
+#include "cm1e/plot.h"
 #include "cm1e/sdo_info.h"
 #include "cm1e/sii.h"
 #include "machine.h"

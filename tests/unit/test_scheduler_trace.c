@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "scheduler/trace.h"
+#include "plot/plot.h"
 #include "unity.h"
 
 void setUp(void) {}
@@ -66,7 +66,7 @@ static const char svg_path[] = CM1E_TEST_OUTPUT "/trace-unit.svg", csv_path[] = 
 static char *write_svg(const trace_t *trace, size_t *size)
 {
     cm1e_diag_t diag = {0};
-    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_trace_write_file(trace, svg_path, cm1e_trace_print_svg, &diag), diag.text);
+    TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_trace_write_file(trace, svg_path, cm1e_plot_print_svg, &diag), diag.text);
     return read_file(svg_path, size);
 }
 
@@ -359,7 +359,7 @@ static void test_paths_that_cannot_be_written_are_named(void)
     struct stat status;
     TEST_ASSERT_EQUAL(0, stat("/dev/null", &status));
     TEST_ASSERT_TRUE(S_ISCHR(status.st_mode)); /* a device is written to, not replaced */
-    TEST_ASSERT_EQUAL(CM1E_ERROR_IO, cm1e_trace_write_file(&empty, "/dev/full", cm1e_trace_print_svg, &diag));
+    TEST_ASSERT_EQUAL(CM1E_ERROR_IO, cm1e_trace_write_file(&empty, "/dev/full", cm1e_plot_print_svg, &diag));
     cm1e_trace_free(&empty);
     const trace_t none = {.axes = 3}; /* as cm1e_trace_init() leaves it for capacity 0 */
     TEST_ASSERT_EQUAL(CM1E_ERROR_STATE, cm1e_trace_write_file(&none, csv_path, cm1e_trace_print_csv, &diag));

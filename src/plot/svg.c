@@ -6,7 +6,9 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "scheduler/trace.h"
+#include "cm1e/plot.h"
+#include "core/in_task.h"
+#include "plot/plot.h"
 
 /* ---- layout, in pixels ----------------------------------------------------------------------------------------- */
 
@@ -476,7 +478,7 @@ static uint32_t slices_for(uint32_t axes, uint32_t pixels)
     return affordable > pixels ? pixels : affordable < 20 ? 20 : affordable;
 }
 
-void cm1e_trace_print_svg(const trace_t *trace, FILE *file)
+void cm1e_plot_print_svg(const trace_t *trace, FILE *file)
 {
     const uint32_t columns = trace->axes < COLUMNS_PER_ROW ? (trace->axes ? trace->axes : 1) : COLUMNS_PER_ROW;
     const uint32_t rows = (trace->axes + COLUMNS_PER_ROW - 1) / COLUMNS_PER_ROW;
@@ -500,4 +502,11 @@ void cm1e_trace_print_svg(const trace_t *trace, FILE *file)
         print_column(&plot, (axis % COLUMNS_PER_ROW) * column_width(&plot),
                      HEAD + (axis / COLUMNS_PER_ROW) * column_height(&plot), axis);
     fputs("</svg>\n", file);
+}
+
+cm1e_error_t cm1e_scheduler_write_svg(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag)
+{
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_scheduler_write_svg()", "", diag);
+    return cm1e_trace_write_file(cm1e_scheduler_trace(scheduler), path, cm1e_plot_print_svg, diag);
 }
