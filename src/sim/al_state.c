@@ -25,41 +25,9 @@ static void show(cm1e_sim_slave_t *slave, uint16_t code)
 
 static bool has_mailbox(cm1e_sim_slave_t *slave) { return cm1e_sim_esc_sm(slave, ESC_ROLE_MAILBOX_OUT) != NULL; }
 
-static bool overlaps_another(const cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm)
-{
-    for (int i = 0; i < ESC_SYNC_MANAGERS; i++) {
-        const esc_sync_manager_t *other = &slave->managers[i];
-        if (other != sm && other->active && other->start < sm->start + sm->length &&
-            sm->start < other->start + other->length)
-            return true;
-    }
-    return false;
-}
-
-static bool mailbox_valid(cm1e_sim_slave_t *slave, unsigned role)
-{
-    const esc_sync_manager_t *sm = cm1e_sim_esc_sm(slave, role);
-    return sm && sm->active && sm->mailbox && sm->master_writes == (role == ESC_ROLE_MAILBOX_OUT) &&
-           sm->length >= MAILBOX_MIN_BYTES && sm->length <= MAILBOX_MAX_BYTES && !overlaps_another(slave, sm);
-}
-
-static bool process_data_valid(cm1e_sim_slave_t *slave, unsigned role, uint16_t bytes)
-{
-    const esc_sync_manager_t *sm = cm1e_sim_esc_sm(slave, role);
-    if (bytes == 0)
-        return !sm || !sm->active;
-    return sm && sm->active && !sm->mailbox && sm->master_writes == (role == ESC_ROLE_OUTPUTS) && sm->length == bytes &&
-           !overlaps_another(slave, sm);
-}
-
-bool cm1e_sim_al_mailboxes_valid(cm1e_sim_slave_t *slave)
-{
-    return mailbox_valid(slave, ESC_ROLE_MAILBOX_OUT) && mailbox_valid(slave, ESC_ROLE_MAILBOX_IN);
-}
-
 static uint16_t check_mailbox(cm1e_sim_slave_t *slave)
 {
-    return !has_mailbox(slave) || cm1e_sim_al_mailboxes_valid(slave) ? AL_CODE_NONE : AL_CODE_INVALID_MAILBOX_PREOP;
+    return !has_mailbox(slave) || cm1e_sim_esc_mailboxes_valid(slave) ? AL_CODE_NONE : AL_CODE_INVALID_MAILBOX_PREOP;
 }
 
 static uint16_t check_process_data(cm1e_sim_slave_t *slave)
@@ -67,9 +35,9 @@ static uint16_t check_process_data(cm1e_sim_slave_t *slave)
     uint16_t outputs = 0, inputs = 0;
     if (slave->ops->process_data_sizes)
         slave->ops->process_data_sizes(slave->app, &outputs, &inputs);
-    if (!process_data_valid(slave, ESC_ROLE_OUTPUTS, outputs))
+    if (!cm1e_sim_esc_process_data_valid(slave, ESC_ROLE_OUTPUTS, outputs))
         return AL_CODE_INVALID_OUTPUT_CONFIG;
-    return process_data_valid(slave, ESC_ROLE_INPUTS, inputs) ? AL_CODE_NONE : AL_CODE_INVALID_INPUT_CONFIG;
+    return cm1e_sim_esc_process_data_valid(slave, ESC_ROLE_INPUTS, inputs) ? AL_CODE_NONE : AL_CODE_INVALID_INPUT_CONFIG;
 }
 
 static uint16_t ask_application(cm1e_sim_slave_t *slave, uint8_t to)

@@ -188,11 +188,6 @@ cm1e_sim_bridge_t *cm1e_sim_bridge_create_app(cm1e_device_model_t model,
     return bridge;
 }
 
-uint32_t cm1e_sim_bridge_product_code(cm1e_device_model_t model)
-{
-    return (uint32_t)strtoul(cm1e_bridge_name(model), NULL, 16);
-}
-
 static size_t write_sii(uint8_t *sii, size_t room, const cm1e_sim_bridge_t *bridge, uint16_t alias)
 {
     const cm1e_device_options_t options = {

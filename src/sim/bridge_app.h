@@ -3,9 +3,12 @@
  * The EtherCAT Cool MUSCLE Bridge as the application behind a simulated slave controller, with four CM1 or CM2 motors;
  * private to the simulator. Files:
  *   bridge.c             life, EtherCAT state changes, time, cycle time
- *   bridge_dictionary.c  object dictionary: SDO access
+ *   bridge_values.c      the values of the object dictionary
+ *   bridge_dictionary.c  access by SDO
  *   bridge_image.c       PDO assignment, process data in and out
- *   bridge_axis.c        one axis: power drive system, statusword, the motor with its errors (BR 6.1, 7.4)
+ *   bridge_motor.c       the motor of an axis: position, torque, targets
+ *   bridge_states.c      the power drive system of an axis (BR 6.1), and errors of its motor (BR 7.4)
+ *   bridge_axis.c        one axis in time: its process data, statusword, serial line
  *   bridge_modes.c       modes of operation and the ways between them (BR 6, appendix 3)
  *   bridge_homing.c      origin search: hm and CMD (BR 6.4)
  *   bridge_cml.c         CML strings (BR 7.2, appendix 2)
@@ -140,20 +143,22 @@ enum { CM1E_SIM_BRIDGE_LATE_US = 1300, CM1E_SIM_BRIDGE_EARLY_US = 700 };
 /** How many cycles in a row were all too long or all too short, where they are too many; else 0. */
 int cm1e_sim_bridge_wrong_cycles(const cm1e_sim_bridge_t *bridge);
 
-/* ---- bridge_dictionary.c ---------------------------------------------------------------------------------------- */
+/* ---- bridge_values.c -------------------------------------------------------------------------------------------- */
 bool cm1e_sim_bridge_dictionary_create(cm1e_sim_bridge_t *bridge);
 /** Back to what it is after power-on; what the motors keep stays. */
 void cm1e_sim_bridge_dictionary_reset(cm1e_sim_bridge_t *bridge);
+/** The value of an object of an axis, by its index on the first axis. */
+int64_t *cm1e_sim_bridge_value(const cm1e_sim_bridge_t *bridge, unsigned axis, uint16_t index, uint8_t subindex);
+/** K21 ... K99 of a motor. */
+int64_t *cm1e_sim_bridge_k(const cm1e_sim_bridge_t *bridge, unsigned axis, unsigned number);
+
+/* ---- bridge_dictionary.c ---------------------------------------------------------------------------------------- */
 const cm1e_object_t *cm1e_sim_bridge_object(void *app, size_t n);
 const cm1e_entry_t *cm1e_sim_bridge_entry(void *app, uint16_t index, uint8_t subindex);
 uint32_t cm1e_sim_bridge_sdo_read(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, uint8_t *data,
                                   size_t *size);
 uint32_t cm1e_sim_bridge_sdo_write(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, const uint8_t *data,
                                    size_t size);
-/** The value of an object of an axis, by its index on the first axis. */
-int64_t *cm1e_sim_bridge_value(const cm1e_sim_bridge_t *bridge, unsigned axis, uint16_t index, uint8_t subindex);
-/** K21 ... K99 of a motor. */
-int64_t *cm1e_sim_bridge_k(const cm1e_sim_bridge_t *bridge, unsigned axis, unsigned number);
 
 /* ---- bridge_image.c --------------------------------------------------------------------------------------------- */
 /** Writing 0x1C12 or 0x1C13; 0 or an abort code. */
@@ -166,48 +171,64 @@ void cm1e_sim_bridge_outputs(void *app, const uint8_t *data, uint16_t size, int6
 void cm1e_sim_bridge_deliver(cm1e_sim_bridge_t *bridge);
 void cm1e_sim_bridge_inputs(void *app, uint8_t *data, uint16_t size);
 
-/* ---- bridge_axis.c ---------------------------------------------------------------------------------------------- */
-void cm1e_sim_bridge_axis_create(cm1e_sim_bridge_t *bridge, unsigned number, const cm1e_axis_config_t *config);
-/** Control power comes: the motor stands where it stands, which is 0 now. */
-void cm1e_sim_bridge_axis_power_on(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
-/** Initialisation is over. */
-void cm1e_sim_bridge_axis_ready(cm1e_sim_bridge_axis_t *axis);
-/** New process data has come over the serial line. */
-void cm1e_sim_bridge_axis_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
-/** No more process data comes: motor free, Switch on disabled. */
-void cm1e_sim_bridge_axis_disable(cm1e_sim_bridge_axis_t *axis);
-void cm1e_sim_bridge_axis_step(cm1e_sim_bridge_axis_t *axis, double step_s);
-/** A millisecond of the serial line. */
-void cm1e_sim_bridge_axis_exchange(cm1e_sim_bridge_axis_t *axis);
-/** The cable between bridge and motor. */
-void cm1e_sim_bridge_axis_plug(cm1e_sim_bridge_axis_t *axis, bool plugged);
-/** An error of the motor, or of the serial line to it: one of BRIDGE_STATUS_... */
-void cm1e_sim_bridge_axis_error(cm1e_sim_bridge_axis_t *axis, uint8_t status);
-/** What the low four bits of a controlword ask for (BR 6.1.2). */
-void cm1e_sim_bridge_axis_obey(cm1e_sim_bridge_axis_t *axis, unsigned controlword);
+/* ---- bridge_motor.c --------------------------------------------------------------------------------------------- */
+#define CM1E_SIM_BRIDGE_CYCLE_S 1e-3 /* BR 6.3 */
+/** Not in the guide: that of the CM1-E. */
+#define CM1E_SIM_BRIDGE_PEAK_TO_RATED 1.25
 void cm1e_sim_bridge_axis_power(cm1e_sim_bridge_axis_t *axis, bool on);
 /** Limits the torque to so many % of the rated one; 0: to the peak torque. */
 void cm1e_sim_bridge_axis_torque(cm1e_sim_bridge_axis_t *axis, double percent);
+/** The guide states none: that of the smallest CM1-E. */
+double cm1e_sim_bridge_peak_torque(void);
+/** The reference stays where it is. */
+void cm1e_sim_bridge_axis_hold(cm1e_sim_bridge_axis_t *axis);
 bool cm1e_sim_bridge_axis_stands(const cm1e_sim_bridge_axis_t *axis);
 /** Where it is is 0 now. */
 void cm1e_sim_bridge_axis_zero(cm1e_sim_bridge_axis_t *axis);
-/** The target of the process data holds from now on. */
-void cm1e_sim_bridge_axis_begin_csp(cm1e_sim_bridge_axis_t *axis);
-/** The guide states none: that of the smallest CM1-E. */
-double cm1e_sim_bridge_peak_torque(void);
+/** In pulses. */
+int64_t cm1e_sim_bridge_position(const cm1e_sim_bridge_axis_t *axis);
+/** 0x6064 */
+int64_t cm1e_sim_bridge_shown_position(const cm1e_sim_bridge_axis_t *axis);
 /** Bit 0: input 1. Those that the motor has: on a CM1 the first is its serial line. */
 uint8_t cm1e_sim_bridge_inputs_of(const cm1e_sim_bridge_axis_t *axis);
+/** F530:5 ... F530:8 */
+uint8_t cm1e_sim_bridge_motor_status(const cm1e_sim_bridge_axis_t *axis);
+/** The cable between bridge and motor. */
+void cm1e_sim_bridge_axis_plug(cm1e_sim_bridge_axis_t *axis, bool plugged);
+/** In this mode the target of the process data counts. */
+bool cm1e_sim_bridge_follows_targets(const cm1e_sim_bridge_axis_t *axis);
+/** The target holds from now on. It is taken as it is: one that is not the actual position makes the motor jump. */
+void cm1e_sim_bridge_axis_begin_csp(cm1e_sim_bridge_axis_t *axis);
+/** The target of a further cycle. */
+void cm1e_sim_bridge_axis_follow(cm1e_sim_bridge_axis_t *axis);
+
+/* ---- bridge_states.c -------------------------------------------------------------------------------------------- */
+/** Initialisation is over. */
+void cm1e_sim_bridge_axis_ready(cm1e_sim_bridge_axis_t *axis);
+/** What the low four bits of a controlword ask for (BR 6.1.2). */
+void cm1e_sim_bridge_axis_obey(cm1e_sim_bridge_axis_t *axis, unsigned controlword);
+/** No more process data comes: motor free, Switch on disabled. */
+void cm1e_sim_bridge_axis_disable(cm1e_sim_bridge_axis_t *axis);
+/** A state without torque is reached. */
+void cm1e_sim_bridge_axis_release(cm1e_sim_bridge_axis_t *axis, cm1e_fsa_state_t state);
+/** An error of the motor, or of the serial line to it: one of BRIDGE_STATUS_... */
+void cm1e_sim_bridge_axis_error(cm1e_sim_bridge_axis_t *axis, uint8_t status);
+void cm1e_sim_bridge_axis_reset_fault(cm1e_sim_bridge_axis_t *axis);
 /** 0x60FD, 0x60FE: in csp, in Switched on and Operation enabled only (BR 6.5). */
 bool cm1e_sim_bridge_io_available(const cm1e_sim_bridge_axis_t *axis);
 /** Bits 0 ... 3 and 6 of the statusword. */
 uint16_t cm1e_sim_bridge_state_bits(const cm1e_sim_bridge_axis_t *axis);
+
+/* ---- bridge_axis.c ---------------------------------------------------------------------------------------------- */
+void cm1e_sim_bridge_axis_create(cm1e_sim_bridge_t *bridge, unsigned number, const cm1e_axis_config_t *config);
+/** Control power comes: the motor stands where it stands, which is 0 now. */
+void cm1e_sim_bridge_axis_power_on(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
+/** New process data has come over the serial line. */
+void cm1e_sim_bridge_axis_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
+void cm1e_sim_bridge_axis_step(cm1e_sim_bridge_axis_t *axis, double step_s);
+/** A millisecond of the serial line. */
+void cm1e_sim_bridge_axis_exchange(cm1e_sim_bridge_axis_t *axis);
 uint16_t cm1e_sim_bridge_statusword(const cm1e_sim_bridge_axis_t *axis);
-/** F530:5 ... F530:8 */
-uint8_t cm1e_sim_bridge_motor_status(const cm1e_sim_bridge_axis_t *axis);
-/** 0x6064 */
-int64_t cm1e_sim_bridge_shown_position(const cm1e_sim_bridge_axis_t *axis);
-/** In pulses. */
-int64_t cm1e_sim_bridge_position(const cm1e_sim_bridge_axis_t *axis);
 
 /* ---- bridge_modes.c --------------------------------------------------------------------------------------------- */
 /** 0x6060 is written. */

@@ -22,7 +22,6 @@ enum { ERROR_OVERLOAD = 0x2310, ERROR_OVER_SPEED = 0x7310, ERROR_POSITION = 0x73
 #define LAG_TIME_S 0.005
 #define FOLLOWING_WINDOW_COUNTS 1000.0
 #define STANDSTILL_COUNTS_PER_S 100.0
-#define STANDSTILL_TIME_S 0.005
 #define OVERLOAD_LIMIT_S 0.5      /* i2t: 0.9 s at peak torque */
 
 /* ---- time ------------------------------------------------------------------------------------------------------- */
@@ -45,12 +44,6 @@ static void supervise(cm1e_sim_cm1e_t *drive, double step_s)
         cm1e_sim_fsa_error(drive, ERROR_POSITION);
     else if (drive->overload > OVERLOAD_LIMIT_S)
         cm1e_sim_fsa_error(drive, ERROR_OVERLOAD);
-}
-
-bool cm1e_sim_stands(const cm1e_sim_cm1e_t *drive)
-{
-    const bool moved = drive->state == OPERATION_ENABLED && drive->servo.reference_velocity != 0;
-    return !moved && drive->still_s >= STANDSTILL_TIME_S;
 }
 
 static void move(cm1e_sim_cm1e_t *drive, double step_s)
@@ -141,6 +134,16 @@ void cm1e_sim_cm1e_power_on(void *app, int64_t now_ns)
     cm1e_sim_fsa_reset(drive);
 }
 
+/* Without a slave controller there is no bus to be absent from: a restart is over at once. */
+static void outputs(void *app, const uint8_t *data, uint16_t size, int64_t now_ns)
+{
+    cm1e_sim_cm1e_t *drive = app;
+    drive->restarts = false;
+    cm1e_sim_outputs(drive, data, size, now_ns);
+    if (drive->restarts && !drive->slave)
+        cm1e_sim_cm1e_power_on(drive, drive->now_ns);
+}
+
 static void destroy(void *app)
 {
     cm1e_sim_cm1e_t *drive = app;
@@ -150,7 +153,7 @@ static void destroy(void *app)
 
 #define COMMON_OPS                                                                                                  \
     .advance = advance, .due = due, .state_change = state_change,                                                   \
-    .process_data_sizes = cm1e_sim_process_data_sizes, .outputs = cm1e_sim_outputs, .inputs = cm1e_sim_inputs,      \
+    .process_data_sizes = cm1e_sim_process_data_sizes, .outputs = outputs, .inputs = cm1e_sim_inputs,               \
     .sdo_read = cm1e_sim_sdo_read, .sdo_write = cm1e_sim_sdo_write, .object = cm1e_sim_object,                      \
     .entry = cm1e_sim_entry, .explicit_device_id = explicit_device_id, .power_on = cm1e_sim_cm1e_power_on,          \
     .destroy = destroy

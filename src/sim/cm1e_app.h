@@ -2,6 +2,8 @@
  * @file cm1e_app.h
  * The CM1-E as the application behind a simulated slave controller; private to the simulator. Files:
  *   cm1e.c             life, EtherCAT state changes, time
+ *   cm1e_motor.c       the motor as the other parts see it
+ *   cm1e_objects.c     the objects that the drive works with
  *   cm1e_dictionary.c  object dictionary: SDO access
  *   cm1e_image.c       PDO assignment, process data in and out, cycle time detection
  *   cm1e_fsa.c         power drive system: states, errors, modes of operation, statusword (UG 6.1)
@@ -92,6 +94,7 @@ struct cm1e_sim_cm1e {
     uint8_t al_state;
     bool settled;            /**< the controlword has had all its effect in this state */
     bool was_enabled;        /**< since the last power-on or fault */
+    bool restarts;           /**< the device's processor was reset by the last outputs */
     bool motor_power;
     bool power_up_fault;     /**< no connection to the motor controller since power-on (0x7510) */
     int64_t deadline_ns;     /**< of the state or of the mode switch, whichever comes first; INT64_MAX: none */
@@ -132,10 +135,24 @@ cm1e_sim_cm1e_t *cm1e_sim_cm1e_create_app(const cm1e_axis_config_t *config, cm1e
 void cm1e_sim_cm1e_power_on(void *app, int64_t now_ns);
 /** The CM1-E in a slave; NULL: it is something else. */
 cm1e_sim_cm1e_t *cm1e_sim_cm1e_of(cm1e_sim_slave_t *slave);
+
+/* ---- cm1e_motor.c ----------------------------------------------------------------------------------------------- */
 /** "Velocity of axis is 0": for a while, so that a shaft that only turns round does not stand. */
 bool cm1e_sim_stands(const cm1e_sim_cm1e_t *drive);
 /** 0x6064's view of the shaft. */
 int64_t cm1e_sim_actual_counts(const cm1e_sim_cm1e_t *drive);
+/** 0x60FD */
+uint16_t cm1e_sim_digital_inputs(const cm1e_sim_cm1e_t *drive);
+/** Rounded to whole counts, half away from zero. */
+static inline int64_t cm1e_sim_rounded(double value) { return (int64_t)(value < 0 ? value - 0.5 : value + 0.5); }
+
+/* ---- cm1e_objects.c --------------------------------------------------------------------------------------------- */
+/** Which int32_t of cm1e_sim_objects_t an object is; -1: it is not among them. */
+int cm1e_sim_object_place(uint16_t index, uint8_t subindex);
+/** An entry of the device tables as this drive has it. */
+const cm1e_entry_t *cm1e_sim_own_entry(const cm1e_sim_cm1e_t *drive, const cm1e_entry_t *entry);
+/** All to their defaults. */
+void cm1e_sim_objects_reset(cm1e_sim_cm1e_t *drive);
 
 /* ---- cm1e_dictionary.c ------------------------------------------------------------------------------------------ */
 bool cm1e_sim_dictionary_create(cm1e_sim_cm1e_t *drive);
@@ -145,8 +162,6 @@ const cm1e_entry_t *cm1e_sim_entry(void *app, uint16_t index, uint8_t subindex);
 uint32_t cm1e_sim_sdo_read(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, uint8_t *data, size_t *size);
 uint32_t cm1e_sim_sdo_write(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, const uint8_t *data,
                             size_t size);
-/** Which int32_t of cm1e_sim_objects_t an object is; -1: it is not among them. */
-int cm1e_sim_object_place(uint16_t index, uint8_t subindex);
 
 /* ---- cm1e_image.c ----------------------------------------------------------------------------------------------- */
 /** Writing 0x1C12 or 0x1C13; 0 or an abort code. */
@@ -192,7 +207,5 @@ void cm1e_sim_homing_reset(cm1e_sim_cm1e_t *drive);
 /** Torque is gone: a procedure under way is lost. */
 void cm1e_sim_homing_abort(cm1e_sim_cm1e_t *drive);
 bool cm1e_sim_homing_running(const cm1e_sim_cm1e_t *drive);
-/** 0x60FD */
-uint16_t cm1e_sim_digital_inputs(const cm1e_sim_cm1e_t *drive);
 
 #endif

@@ -168,10 +168,9 @@ static bool connection_fails(cm1e_sim_cm1e_t *drive)
 static void restart(cm1e_sim_cm1e_t *drive)
 {
     cm1e_sim_fsa_off(drive);
+    drive->restarts = true;
     if (drive->slave)
         cm1e_sim_slave_reset(drive->slave, drive->now_ns + RESTART_NS);
-    else
-        cm1e_sim_cm1e_power_on(drive, drive->now_ns);
 }
 
 /* The rising edge of controlword bit 7. */

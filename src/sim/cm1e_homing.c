@@ -10,11 +10,6 @@ static const struct {
 };
 enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
 
-uint16_t cm1e_sim_digital_inputs(const cm1e_sim_cm1e_t *drive)
-{
-    return cm1e_sim_sensors_inputs(&drive->sensors, drive->mechanics.position);
-}
-
 bool cm1e_sim_homing_running(const cm1e_sim_cm1e_t *drive)
 {
     return cm1e_sim_search_running(&drive->homing.search);

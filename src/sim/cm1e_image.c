@@ -139,14 +139,6 @@ void cm1e_sim_outputs(void *app, const uint8_t *data, uint16_t size, int64_t now
     cm1e_sim_fsa_outputs(drive);
 }
 
-/* Rounded to whole counts, half away from zero. */
-static int64_t rounded(double value) { return (int64_t)(value < 0 ? value - 0.5 : value + 0.5); }
-
-int64_t cm1e_sim_actual_counts(const cm1e_sim_cm1e_t *drive)
-{
-    return rounded(drive->mechanics.position) - drive->zero;
-}
-
 static int32_t shown_velocity(const cm1e_sim_cm1e_t *drive)
 {
     double velocity = drive->mechanics.velocity;
@@ -155,7 +147,7 @@ static int32_t shown_velocity(const cm1e_sim_cm1e_t *drive)
         velocity /= 4; /* UG 10.1, V1.3.0: "It was 1/4 of the actual value" */
     if (drive->firmware->velocity_in_counts_per_ms)
         velocity /= 1000;
-    return (int32_t)rounded(velocity);
+    return (int32_t)cm1e_sim_rounded(velocity);
 }
 
 void cm1e_sim_refresh(cm1e_sim_cm1e_t *drive)
@@ -163,7 +155,7 @@ void cm1e_sim_refresh(cm1e_sim_cm1e_t *drive)
     cm1e_sim_objects_t *objects = &drive->objects;
     objects->position = (int32_t)(uint32_t)cm1e_sim_actual_counts(drive);
     objects->velocity = shown_velocity(drive);
-    objects->torque = (int32_t)rounded(drive->servo.torque * 1000 / drive->rated_torque);
+    objects->torque = (int32_t)cm1e_sim_rounded(drive->servo.torque * 1000 / drive->rated_torque);
     objects->digital_inputs = cm1e_sim_digital_inputs(drive);
     cm1e_sim_fsa_update_error(drive);
     objects->statusword = cm1e_sim_fsa_statusword(drive);

@@ -51,17 +51,3 @@ uint16_t cm1e_sim_coe_request(cm1e_sim_slave_t *slave, const uint8_t *request, s
         return MAILBOX_ERROR_INVALID_HEADER;
     }
 }
-
-const cm1e_object_t *cm1e_sim_coe_object(cm1e_sim_slave_t *slave, uint16_t index)
-{
-    const cm1e_object_t *object;
-    for (size_t n = 0; slave->ops->object && (object = slave->ops->object(slave->app, n)) != NULL; n++)
-        if (object->index == index)
-            return object;
-    return NULL;
-}
-
-const cm1e_entry_t *cm1e_sim_coe_entry(cm1e_sim_slave_t *slave, uint16_t index, uint8_t subindex)
-{
-    return slave->ops->entry ? slave->ops->entry(slave->app, index, subindex) : NULL;
-}

@@ -7,6 +7,20 @@
 /* In complete access (ETG.1000.6 5.6.2.1) an object is the row of its entries, sub-index 0 as 16 bits. */
 enum { SUBINDEX_0_BYTES = 2 };
 
+const cm1e_object_t *cm1e_sim_coe_object(cm1e_sim_slave_t *slave, uint16_t index)
+{
+    const cm1e_object_t *object;
+    for (size_t n = 0; slave->ops->object && (object = slave->ops->object(slave->app, n)) != NULL; n++)
+        if (object->index == index)
+            return object;
+    return NULL;
+}
+
+const cm1e_entry_t *cm1e_sim_coe_entry(cm1e_sim_slave_t *slave, uint16_t index, uint8_t subindex)
+{
+    return slave->ops->entry ? slave->ops->entry(slave->app, index, subindex) : NULL;
+}
+
 static size_t entry_bytes(const cm1e_entry_t *entry) { return (entry->bits + 7u) / 8u; }
 
 static uint32_t read_entry(cm1e_sim_slave_t *slave, uint16_t index, uint8_t subindex, uint8_t *data, size_t *size)

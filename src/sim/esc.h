@@ -138,6 +138,8 @@ void cm1e_sim_esc_frame(cm1e_sim_slave_t *slave, uint8_t *begin, const uint8_t *
 void cm1e_sim_esc_registers_power_on(cm1e_sim_slave_t *slave);
 bool cm1e_sim_esc_registers_read(cm1e_sim_slave_t *slave, uint16_t address, uint8_t *data, size_t length);
 bool cm1e_sim_esc_registers_write(cm1e_sim_slave_t *slave, uint16_t address, const uint8_t *data, size_t length);
+
+/* esc_events.c */
 void cm1e_sim_esc_event(cm1e_sim_slave_t *slave, uint16_t bits, bool on);
 /** Links of the two ports: the neighbour is there, and the port is open. */
 void cm1e_sim_esc_links(cm1e_sim_slave_t *slave, const bool link[2], const bool open[2]);
@@ -146,6 +148,8 @@ void cm1e_sim_esc_count(cm1e_sim_slave_t *slave, uint16_t address);
 
 /* esc_fmmu.c */
 void cm1e_sim_esc_fmmu_decode(cm1e_sim_slave_t *slave);
+
+/* esc_logical.c */
 bool cm1e_sim_esc_logical_read(cm1e_sim_slave_t *slave, uint32_t address, uint8_t *data, uint16_t length);
 bool cm1e_sim_esc_logical_write(cm1e_sim_slave_t *slave, uint32_t address, const uint8_t *data, uint16_t length);
 
@@ -158,14 +162,24 @@ void cm1e_sim_esc_sm_lock(cm1e_sim_slave_t *slave, unsigned role, bool locked);
 esc_sync_manager_t *cm1e_sim_esc_sm(cm1e_sim_slave_t *slave, unsigned role);
 /** The number of bytes from `address` on that the same rule holds for, and the sync manager that rules (NULL: none). */
 size_t cm1e_sim_esc_sm_span(cm1e_sim_slave_t *slave, uint32_t address, uint32_t end, esc_sync_manager_t **manager);
+/** A complete buffer was written from either side: the three take turns. */
+void cm1e_sim_esc_sm_next_buffer(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm);
+/** Shows in the status that a complete buffer was written or read. */
+void cm1e_sim_esc_sm_accessed(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm, bool written);
+/** The slave's side of a mailbox: fills or empties it. */
+void cm1e_sim_esc_sm_set_full(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, bool full);
+/** Both mailboxes are there and set as Pre-Operational demands. */
+bool cm1e_sim_esc_mailboxes_valid(cm1e_sim_slave_t *slave);
+/** The sync manager of outputs or inputs carries this many bytes, as Safe-Operational demands. */
+bool cm1e_sim_esc_process_data_valid(cm1e_sim_slave_t *slave, unsigned role, uint16_t bytes);
+
+/* esc_buffer.c */
 bool cm1e_sim_esc_sm_read(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, uint16_t offset, uint8_t *data,
                           size_t length);
 bool cm1e_sim_esc_sm_write(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, uint16_t offset, const uint8_t *data,
                            size_t length);
 /** Hands outputs that arrived in this frame to the application. */
 void cm1e_sim_esc_deliver_outputs(cm1e_sim_slave_t *slave);
-/** The slave's side of a mailbox: fills or empties it. */
-void cm1e_sim_esc_sm_set_full(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, bool full);
 
 /* esc_sii.c */
 void cm1e_sim_esc_sii_power_on(cm1e_sim_slave_t *slave);
@@ -186,8 +200,6 @@ void cm1e_sim_al_power_on(cm1e_sim_slave_t *slave);
 /** The master wrote AL control. */
 void cm1e_sim_al_control(cm1e_sim_slave_t *slave);
 void cm1e_sim_al_due(cm1e_sim_slave_t *slave);
-/** Both mailboxes are there and set as Pre-Operational demands. */
-bool cm1e_sim_al_mailboxes_valid(cm1e_sim_slave_t *slave);
 
 /* al_watchdog.c */
 void cm1e_sim_al_watchdog_trigger(cm1e_sim_slave_t *slave);

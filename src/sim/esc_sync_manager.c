@@ -1,8 +1,5 @@
 #include "sim/esc.h"
 
-#include <string.h>
-
-#include "cm1e/bus.h"
 #include "core/bytes.h"
 
 /* Registers of a sync manager (0x0800 + 8 n). */
@@ -27,8 +24,7 @@ static void show_full(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm)
     cm1e_sim_esc_event(slave, (uint16_t)(ESC_EVENT_SM0 << sm->number), sm->full);
 }
 
-/* A complete buffer was written from either side: the three take turns. */
-static void next_buffer(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm)
+void cm1e_sim_esc_sm_next_buffer(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm)
 {
     uint8_t *status = registers(slave, sm) + AT_STATUS;
     const unsigned buffer = *status >> STATUS_BUFFER_SHIFT & NO_BUFFER;
@@ -36,10 +32,10 @@ static void next_buffer(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm)
     *status = (uint8_t)((*status & ~STATUS_BUFFER) | next << STATUS_BUFFER_SHIFT);
 }
 
-static void set_status(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm, uint8_t set, uint8_t clear)
+void cm1e_sim_esc_sm_accessed(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm, bool written)
 {
     uint8_t *status = registers(slave, sm) + AT_STATUS;
-    *status = (uint8_t)((*status & ~clear) | set);
+    *status = (uint8_t)((*status & ~(STATUS_WRITTEN | STATUS_READ)) | (written ? STATUS_WRITTEN : STATUS_READ));
 }
 
 static void reset_buffers(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm)
@@ -104,89 +100,40 @@ size_t cm1e_sim_esc_sm_span(cm1e_sim_slave_t *slave, uint32_t address, uint32_t 
     return end - address;
 }
 
-/* Fresh inputs are made once for a frame, and only when they are read. */
-static void refresh_inputs(cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm)
-{
-    if (sm->role != ESC_ROLE_INPUTS || !slave->inputs_stale || slave->al_state < CM1E_AL_SAFE_OP || !slave->ops->inputs)
-        return;
-    slave->inputs_stale = false;
-    slave->ops->inputs(slave->app, slave->memory + sm->start, sm->length);
-    next_buffer(slave, sm);
-    set_status(slave, sm, STATUS_WRITTEN, STATUS_READ);
-}
-
-bool cm1e_sim_esc_sm_read(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, uint16_t offset, uint8_t *data,
-                          size_t length)
-{
-    if (sm->locked || sm->master_writes)
-        return false;
-    /* A buffer is opened at its first byte and given back at its last. */
-    if (offset == 0) {
-        if (sm->mailbox && !sm->full)
-            return false;
-        sm->open = true;
-        refresh_inputs(slave, sm);
-    } else if (!sm->open) {
-        return false;
-    }
-    memcpy(data, slave->memory + sm->start + offset, length);
-    if (offset + length < sm->length)
-        return true;
-    sm->open = false;
-    set_status(slave, sm, STATUS_READ, STATUS_WRITTEN);
-    if (sm->mailbox) {
-        cm1e_sim_esc_sm_set_full(slave, sm, false);
-        if (sm->role == ESC_ROLE_MAILBOX_IN)
-            cm1e_sim_mailbox_read(slave);
-    }
-    return true;
-}
-
-bool cm1e_sim_esc_sm_write(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, uint16_t offset, const uint8_t *data,
-                           size_t length)
-{
-    if (sm->locked || !sm->master_writes)
-        return false;
-    if (offset == 0) {
-        if (sm->mailbox && sm->full)
-            return false;
-        sm->open = true;
-        /* The slave reads a complete buffer while the next one fills. */
-        if (sm->role == ESC_ROLE_OUTPUTS)
-            cm1e_sim_esc_deliver_outputs(slave);
-    } else if (!sm->open) {
-        return false;
-    }
-    memcpy(slave->memory + sm->start + offset, data, length);
-    if (offset + length < sm->length)
-        return true;
-    sm->open = false;
-    set_status(slave, sm, STATUS_WRITTEN, STATUS_READ);
-    if (sm->triggers_watchdog)
-        cm1e_sim_al_watchdog_trigger(slave);
-    if (sm->mailbox) {
-        cm1e_sim_esc_sm_set_full(slave, sm, true);
-        if (sm->role == ESC_ROLE_MAILBOX_OUT)
-            cm1e_sim_mailbox_written(slave);
-    } else {
-        next_buffer(slave, sm);
-        slave->outputs_arrived |= sm->role == ESC_ROLE_OUTPUTS;
-    }
-    return true;
-}
-
-void cm1e_sim_esc_deliver_outputs(cm1e_sim_slave_t *slave)
-{
-    if (!slave->outputs_arrived)
-        return;
-    slave->outputs_arrived = false;
-    const esc_sync_manager_t *sm = cm1e_sim_esc_sm(slave, ESC_ROLE_OUTPUTS);
-    if (sm && slave->al_state == CM1E_AL_OP && slave->ops->outputs)
-        slave->ops->outputs(slave->app, slave->memory + sm->start, sm->length, slave->now_ns);
-}
-
 void cm1e_sim_esc_sm_set_full(cm1e_sim_slave_t *slave, esc_sync_manager_t *sm, bool full)
 {
     sm->full = full;
     show_full(slave, sm);
+}
+
+static bool overlaps_another(const cm1e_sim_slave_t *slave, const esc_sync_manager_t *sm)
+{
+    for (int i = 0; i < ESC_SYNC_MANAGERS; i++) {
+        const esc_sync_manager_t *other = &slave->managers[i];
+        if (other != sm && other->active && other->start < sm->start + sm->length &&
+            sm->start < other->start + other->length)
+            return true;
+    }
+    return false;
+}
+
+static bool mailbox_valid(cm1e_sim_slave_t *slave, unsigned role)
+{
+    const esc_sync_manager_t *sm = cm1e_sim_esc_sm(slave, role);
+    return sm && sm->active && sm->mailbox && sm->master_writes == (role == ESC_ROLE_MAILBOX_OUT) &&
+           sm->length >= MAILBOX_MIN_BYTES && sm->length <= MAILBOX_MAX_BYTES && !overlaps_another(slave, sm);
+}
+
+bool cm1e_sim_esc_process_data_valid(cm1e_sim_slave_t *slave, unsigned role, uint16_t bytes)
+{
+    const esc_sync_manager_t *sm = cm1e_sim_esc_sm(slave, role);
+    if (bytes == 0)
+        return !sm || !sm->active;
+    return sm && sm->active && !sm->mailbox && sm->master_writes == (role == ESC_ROLE_OUTPUTS) && sm->length == bytes &&
+           !overlaps_another(slave, sm);
+}
+
+bool cm1e_sim_esc_mailboxes_valid(cm1e_sim_slave_t *slave)
+{
+    return mailbox_valid(slave, ESC_ROLE_MAILBOX_OUT) && mailbox_valid(slave, ESC_ROLE_MAILBOX_IN);
 }

@@ -214,7 +214,7 @@ void cm1e_sim_mailbox_due(cm1e_sim_slave_t *slave)
     esc_sync_manager_t *in = cm1e_sim_esc_sm(slave, ESC_ROLE_MAILBOX_IN);
     slave->mailbox_due_ns = ESC_NEVER;
     /* The master may have changed the sync managers since Pre-Operational. */
-    if (!mailbox->running || !cm1e_sim_al_mailboxes_valid(slave))
+    if (!mailbox->running || !cm1e_sim_esc_mailboxes_valid(slave))
         return;
     const uint16_t room = (uint16_t)(in->length - MAILBOX_HEADER);
     repeat_last(slave, in);
