@@ -54,6 +54,7 @@ typedef struct cm1e_slave_info {
 typedef struct cm1e_bus_counters_t {
     uint64_t cycles, lost_frames, working_counter_errors, late_frames, mailbox_retries;
     uint64_t unsent_frames; /**< frames that the network interface did not take: it is down, or its queue is full */
+    uint64_t foreign_frames; /**< frames of another master, which sends on the same network without asking for it */
 } cm1e_bus_counters_t;
 
 /** Opens the interface (network interface or simulated segment); nothing is sent yet. `config` is copied. Free the bus

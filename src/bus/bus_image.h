@@ -42,6 +42,9 @@ void cm1e_bus_request_recovery(cm1e_bus_t *bus, uint16_t position);
  *  Operational. Locations that were resolved in one operation are not valid in the next. @rt init */
 uint32_t cm1e_bus_operation(const cm1e_bus_t *bus);
 cm1e_clock_t *cm1e_bus_clock(cm1e_bus_t *bus);
+/** A sentence for diagnoses; its value is cm1e_bus_counters_t.foreign_frames as unsigned long long. */
+#define CM1E_OTHER_MASTER_TEXT " Another master sends on this network: %llu of its frames were seen since the start. " \
+                               "Only one master may: find that program and end it."
 /** The firmware of a slave as object 0x100A tells; NULL: unreadable. @rt init */
 const cm1e_firmware_info_t *cm1e_bus_slave_firmware(const cm1e_bus_t *bus, uint16_t position);
 /** The nic below: the simulator finds its segment by it. @rt any */

@@ -179,6 +179,9 @@ void cm1e_supervision_note(cm1e_bus_slave_t *slave, uint16_t al_state, uint16_t 
 
 /** Brings all slaves to a state together; the first failure is diagnosed. */
 cm1e_error_t cm1e_bus_all_to_state(cm1e_bus_t *bus, uint8_t target, int64_t timeout_ns, cm1e_diag_t *diag);
+/** " Another master sends ...", or "" if none was seen; for the end of a diagnosis. */
+enum { CM1E_OTHER_MASTER_LENGTH = 160 };
+const char *cm1e_bus_other_master(const cm1e_bus_t *bus, char text[CM1E_OTHER_MASTER_LENGTH]);
 /** Diagnosis of a failed transfer or transition. */
 cm1e_error_t cm1e_bus_diagnose_sdo(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, const cm1e_sdo_t *sdo,
                                    const char *purpose, cm1e_diag_t *diag);

@@ -24,9 +24,11 @@ static cm1e_error_t exchange(cm1e_bus_t *bus, bool operational, cm1e_diag_t *dia
             good = error == CM1E_OK || (!operational && error == CM1E_ERROR_BUS_WORKING_COUNTER) ? good + 1 : 0;
         if (cm1e_clock_now(bus->clock) < deadline_ns)
             continue;
+        char other[CM1E_OTHER_MASTER_LENGTH];
         return cm1e_diag_set(diag, error == CM1E_OK ? CM1E_ERROR_TIMEOUT : error, 0,
                              "The process data does not come back as it must after configuration (working counter %d "
-                             "expected): %s.", bus->expected_working_counter, cm1e_strerror(error));
+                             "expected): %s.%s", bus->expected_working_counter, cm1e_strerror(error),
+                             cm1e_bus_other_master(bus, other));
     }
     return CM1E_OK;
 }

@@ -168,6 +168,7 @@ int cm1e_soem_receive_process_data(cm1e_soem_t *soem, int64_t timeout_ns)
 }
 
 uint64_t cm1e_soem_late_frames(const cm1e_soem_t *soem) { return soem->port.counters.late; }
+uint64_t cm1e_soem_foreign_frames(const cm1e_soem_t *soem) { return soem->port.counters.foreign; }
 uint64_t cm1e_soem_unsent_frames(const cm1e_soem_t *soem) { return soem->port.counters.send_failed; }
 
 /* ---- single datagrams ------------------------------------------------------------------------------------------ */

@@ -75,6 +75,8 @@ void cm1e_soem_send_process_data(cm1e_soem_t *soem);
 int cm1e_soem_receive_process_data(cm1e_soem_t *soem, int64_t timeout_ns);
 /** Number of frames that came back too late; only grows. */
 uint64_t cm1e_soem_late_frames(const cm1e_soem_t *soem);
+/** Number of frames of another master that were seen; only grows. */
+uint64_t cm1e_soem_foreign_frames(const cm1e_soem_t *soem);
 /** Number of frames that the network interface did not take; only grows. */
 uint64_t cm1e_soem_unsent_frames(const cm1e_soem_t *soem);
 

@@ -1,20 +1,33 @@
+#include <stdio.h>
+
 #include "bus/bus_internal.h"
+
+const char *cm1e_bus_other_master(const cm1e_bus_t *bus, char text[CM1E_OTHER_MASTER_LENGTH])
+{
+    const uint64_t frames = cm1e_soem_foreign_frames(bus->soem);
+    text[0] = 0;
+    if (frames > 0)
+        snprintf(text, CM1E_OTHER_MASTER_LENGTH, CM1E_OTHER_MASTER_TEXT, (unsigned long long)frames);
+    return text;
+}
 
 cm1e_error_t cm1e_bus_diagnose_state(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
 {
-    char label[CM1E_LABEL_LENGTH];
+    char label[CM1E_LABEL_LENGTH], other[CM1E_OTHER_MASTER_LENGTH];
     const cm1e_al_machine_t *al = &slave->al;
     const char *target = cm1e_al_state_text(al->target);
     cm1e_bus_label_first(bus, slave, label);
+    cm1e_bus_other_master(bus, other);
     if (!al->answered)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, 0,
-                             "%s does not answer when asked to go to %s: check its power and its cable.", label,
-                             target);
+                             "%s does not answer when asked to go to %s: check its power and its cable.%s",
+                             label, target, other);
     if (al->state & AL_ERROR_FLAG)
-        return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code, "%s refuses %s and is in %s: AL status 0x%04X, %s.",
-                             label, target, cm1e_al_state_text(al->state), al->code, cm1e_al_status_text(al->code));
-    return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code, "%s did not reach %s in time; it stays in %s.", label,
-                         target, cm1e_al_state_text(al->state));
+        return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code, "%s refuses %s and is in %s: AL status 0x%04X, %s.%s",
+                             label, target, cm1e_al_state_text(al->state), al->code, cm1e_al_status_text(al->code),
+                             other);
+    return cm1e_diag_set(diag, CM1E_ERROR_BUS_STATE, al->code, "%s did not reach %s in time; it stays in %s.%s", label,
+                         target, cm1e_al_state_text(al->state), other);
 }
 
 cm1e_error_t cm1e_bus_all_to_state(cm1e_bus_t *bus, uint8_t target, int64_t timeout_ns, cm1e_diag_t *diag)

@@ -128,6 +128,9 @@ void cm1e_drive_fault_text(const cm1e_drive_t *drive, char *text, size_t size)
     if (unsent > 0)
         say(&w, " The network interface did not take %llu frames since the start: it is down, or too slow.",
             (unsigned long long)unsent);
+    const uint64_t foreign = cm1e_bus_counters(drive->bus)->foreign_frames;
+    if (foreign > 0)
+        say(&w, CM1E_OTHER_MASTER_TEXT, (unsigned long long)foreign);
     if (fault->motor_status_known)
         say_status(&w, drive);
     say_words(&w, drive);

@@ -8,12 +8,17 @@
 
 #include "nic/nic.h"
 
+/** What SOEM's source address has in these bytes. */
+enum { CM1E_SOEM_IDENTITY = 0x0101 };
+
 /** What a backend and the nic share. The nic fills it in before open(). */
 typedef struct cm1e_nic_link {
     void *state;             /**< the backend's own; set by open() */
     cm1e_clock_t *clock;     /**< monotonic; open() may set a clock of the backend, which lives until close() */
     int ports;               /**< 1, or 2 for a ring */
     char interface_name[64]; /**< of the first port */
+    uint16_t identity;       /**< in the source address of every frame: what came back of another master is told from
+                                  our own by it. CM1E_SOEM_IDENTITY unless open() sets another */
 } cm1e_nic_link_t;
 
 struct cm1e_nic_backend {

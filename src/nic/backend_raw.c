@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
+#include <sys/random.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -13,7 +14,8 @@
 enum { NS_PER_S = 1000000000, USELESS_WAKE_UPS = 16 };
 
 typedef struct raw {
-    struct pollfd sockets[CM1E_NIC_PORTS];
+    cm1e_raw_socket_t sockets[CM1E_NIC_PORTS];
+    struct pollfd fds[CM1E_NIC_PORTS];
 } raw_t;
 
 static bool raw_matches(const char *name) { return name[0] != 0; }
@@ -22,9 +24,17 @@ static void raw_close(cm1e_nic_link_t *link)
 {
     raw_t *raw = link->state;
     for (int i = 0; i < link->ports; i++)
-        if (raw->sockets[i].fd >= 0)
-            close(raw->sockets[i].fd);
+        cm1e_raw_socket_close(&raw->sockets[i]);
     free(raw);
+}
+
+/** By chance, so that no two programs have the same, whatever their process numbers. */
+static uint16_t make_identity(void)
+{
+    uint16_t identity;
+    if (getrandom(&identity, sizeof identity, GRND_NONBLOCK) != sizeof identity)
+        identity = (uint16_t)getpid();
+    return identity != CM1E_SOEM_IDENTITY ? identity : 0;
 }
 
 static cm1e_error_t raw_open(cm1e_nic_link_t *link, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
@@ -34,7 +44,7 @@ static cm1e_error_t raw_open(cm1e_nic_link_t *link, const cm1e_bus_config_t *con
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the network interface.");
     link->state = raw;
     for (int i = 0; i < CM1E_NIC_PORTS; i++)
-        raw->sockets[i] = (struct pollfd){.fd = -1, .events = POLLIN};
+        raw->sockets[i] = CM1E_RAW_SOCKET_CLOSED;
     const char *names[CM1E_NIC_PORTS] = {link->interface_name, config->second_interface};
     if (link->ports > 1 && strcmp(names[0], names[1]) == 0) {
         raw_close(link);
@@ -42,12 +52,14 @@ static cm1e_error_t raw_open(cm1e_nic_link_t *link, const cm1e_bus_config_t *con
                              "Both interfaces of the ring are \"%s\": a ring needs two network interfaces.", names[0]);
     }
     for (int i = 0; i < link->ports; i++) {
-        const cm1e_error_t error = cm1e_raw_socket_open(&raw->sockets[i].fd, names[i], diag);
+        const cm1e_error_t error = cm1e_raw_socket_open(&raw->sockets[i], names[i], diag);
         if (error) {
             raw_close(link);
             return error;
         }
+        raw->fds[i] = (struct pollfd){.fd = raw->sockets[i].fd, .events = POLLIN};
     }
+    link->identity = make_identity();
     /* A thread without real-time priority is woken up to 50 us late by default; this is the thread that waits. */
     prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
     return CM1E_OK;
@@ -83,7 +95,7 @@ static size_t raw_receive(cm1e_nic_link_t *link, int *port, uint8_t *frame, int6
         if (left_ns <= 0)
             return 0;
         const struct timespec left = {.tv_sec = left_ns / NS_PER_S, .tv_nsec = left_ns % NS_PER_S};
-        const int ready = ppoll(raw->sockets, (nfds_t)link->ports, &left, NULL);
+        const int ready = ppoll(raw->fds, (nfds_t)link->ports, &left, NULL);
         /* An interface that went away reports errors without end, which would make this a busy loop. */
         if (ready > 0 && ++useless > USELESS_WAKE_UPS)
             cm1e_clock_sleep_until(link->clock, deadline_ns);

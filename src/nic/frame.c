@@ -48,6 +48,22 @@ frame_order_t cm1e_frame_order(const uint8_t *frame, size_t length)
     return order;
 }
 
+static bool is_datagrams(uint16_t header) { return (header & ETHERCAT_TYPE_MASK) == ETHERCAT_TYPE_DATAGRAMS; }
+
+bool cm1e_frame_is_ethercat(const uint8_t *frame, size_t length)
+{
+    if (length < FRAME_MINIMUM || frame[12] != ETHERTYPE_HIGH || frame[13] != ETHERTYPE_LOW)
+        return false;
+    const uint16_t header = cm1e_get_u16(frame + ETHERNET_HEADER);
+    const size_t end = (size_t)(header & DATAGRAM_LENGTH_MASK) + FRAME_HEADER;
+    datagram_t d = {.more = true};
+    size_t offset = FRAME_HEADER;
+    while (d.more && offset < end)
+        if (!cm1e_frame_datagram(frame, length, &offset, &d))
+            return false;
+    return is_datagrams(header) && !d.more && offset == end;
+}
+
 bool cm1e_frame_is_reply(const uint8_t *reply, size_t reply_length, const uint8_t *sent, size_t sent_length,
                          uint8_t index)
 {
@@ -57,7 +73,7 @@ bool cm1e_frame_is_reply(const uint8_t *reply, size_t reply_length, const uint8_
         return false;
     const uint16_t header = cm1e_get_u16(reply + ETHERNET_HEADER), mask = ETHERCAT_TYPE_MASK | DATAGRAM_LENGTH_MASK;
     if ((header & mask) != (cm1e_get_u16(sent + ETHERNET_HEADER) & mask) ||
-        (header & ETHERCAT_TYPE_MASK) != ETHERCAT_TYPE_DATAGRAMS ||
+        !is_datagrams(header) ||
         (size_t)(header & DATAGRAM_LENGTH_MASK) + FRAME_HEADER != sent_length)
         return false;
     if (reply[FRAME_HEADER + 1] != index)

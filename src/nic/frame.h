@@ -53,6 +53,8 @@ bool cm1e_frame_is_reply(const uint8_t *reply, size_t reply_length, const uint8_
  *  cm1e_frame_is_reply(). */
 void cm1e_frame_merge(uint8_t *a, const uint8_t *b, const uint8_t *sent, size_t length);
 
+/** EtherCAT with datagrams that fill the length it states. */
+bool cm1e_frame_is_ethercat(const uint8_t *frame, size_t length);
 /** The working counter of any datagram is not 0. */
 bool cm1e_frame_is_counted(const uint8_t *frame, size_t length);
 /** Its datagrams are marked as having circulated (ETG.1000.4 5.4.1.2). */

@@ -33,6 +33,7 @@ cm1e_error_t cm1e_nic_open_backend(cm1e_nic_t **nic, const cm1e_nic_backend_t *b
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the network interface.");
     n->backend = backend;
     n->link.clock = cm1e_clock_monotonic();
+    n->link.identity = CM1E_SOEM_IDENTITY;
     n->link.ports = config->second_interface[0] ? 2 : 1;
     snprintf(n->link.interface_name, sizeof n->link.interface_name, "%s", first_interface(config));
     cm1e_error_t error = backend->open(&n->link, config, diag);

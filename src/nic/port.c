@@ -17,7 +17,12 @@
 const uint16 priMAC[3] = {0x0101, 0x0101, 0x0101};
 const uint16 secMAC[3] = {0x0404, 0x0404, 0x0404};
 
-enum { NS_PER_US = 1000, LOCALLY_ADMINISTERED = 0x02, MAC_ROUTE = 8, MAC_STAMP = 11, NO_ROUTE = -1 };
+enum {
+    NS_PER_US = 1000, LOCALLY_ADMINISTERED = 0x02,
+    MAC_IDENTITY_HIGH = 7, MAC_ROUTE = 8, MAC_IDENTITY_LOW = 10, MAC_STAMP = 11,
+    NO_ROUTE = -1,      /* not one of our source addresses */
+    FOREIGN_ROUTE = -2, /* another SOEM's, or of another program with this library */
+};
 
 /* ---- opening and closing ----------------------------------------------------------------------------------------- */
 
@@ -134,6 +139,8 @@ void ecx_setbufstat(ecx_portt *port, uint8 idx, int bufstat)
 void cm1e_port_stamp(ecx_portt *port, uint8_t *frame, uint8 idx, int source, uint32_t transmission)
 {
     const uint16 route = source ? secMAC[1] : priMAC[1];
+    frame[MAC_IDENTITY_HIGH] = (uint8_t)(port->nic->link.identity >> 8);
+    frame[MAC_IDENTITY_LOW] = (uint8_t)port->nic->link.identity;
     frame[MAC_ROUTE] = (uint8_t)(route >> 8);
     frame[MAC_ROUTE + 1] = (uint8_t)route;
     frame[MAC_STAMP] = (uint8_t)transmission;
@@ -212,13 +219,21 @@ int ecx_outframe(ecx_portt *port, uint8 idx, int stacknumber)
 
 /* ---- receiving --------------------------------------------------------------------------------------------------- */
 
-/** Which of our interfaces a frame was sent by; NO_ROUTE: not one of our source addresses. */
-static int route(const uint8_t *frame)
+/** Which of our interfaces a frame was sent by, or NO_ROUTE, FOREIGN_ROUTE. */
+static int route(const ecx_portt *port, const uint8_t *frame)
 {
-    if ((frame[6] & ~LOCALLY_ADMINISTERED) != 0x01 || frame[7] != 0x01 || frame[10] != 0x01)
-        return NO_ROUTE;
     const unsigned word = (unsigned)frame[MAC_ROUTE] << 8 | frame[MAC_ROUTE + 1];
-    return word == priMAC[1] ? 0 : word == secMAC[1] ? 1 : NO_ROUTE;
+    if ((frame[6] & ~LOCALLY_ADMINISTERED) != 0x01 || (word != priMAC[1] && word != secMAC[1]))
+        return NO_ROUTE;
+    if ((frame[MAC_IDENTITY_HIGH] << 8 | frame[MAC_IDENTITY_LOW]) != port->nic->link.identity)
+        return FOREIGN_ROUTE;
+    return word == priMAC[1] ? 0 : 1;
+}
+
+/** An answer that is none of ours; nobody but another master makes whole EtherCAT frames. */
+static bool is_foreign(const uint8_t *frame, size_t length, int source)
+{
+    return source == FOREIGN_ROUTE || (source == NO_ROUTE && cm1e_frame_is_ethercat(frame, length));
 }
 
 static void not_awaited(ecx_portt *port, const cm1e_port_slot_t *slot, int source, uint8_t stamp)
@@ -256,17 +271,26 @@ static void store(ecx_portt *port, uint8 idx, int arrival, int source, const uin
         slot->state = EC_BUF_RCVD;
 }
 
+static bool is_awaited(const ecx_portt *port, uint8 idx, const uint8_t *frame, size_t length)
+{
+    return idx < EC_MAXBUF && port->slots[idx].state == EC_BUF_TX &&
+           cm1e_frame_is_reply(frame, length, port->txbuf[idx], (size_t)port->txbuflength[idx], idx);
+}
+
 static void accept_frame(ecx_portt *port, int arrival, const uint8_t *frame, size_t length)
 {
     port->counters.received++;
     const uint8 idx = length >= FRAME_MINIMUM ? frame[FRAME_HEADER + 1] : EC_MAXBUF;
-    int source = length >= FRAME_MINIMUM ? route(frame) : NO_ROUTE;
-    /* A software slave may put its own source address in; without a ring that does no harm. */
-    const bool stamped = source != NO_ROUTE;
-    if (!stamped && !port->redundant)
+    int source = length >= FRAME_MINIMUM ? route(port, frame) : NO_ROUTE;
+    const bool stamped = source >= 0;
+    /* A software slave may put its own source address into our frames; without a ring that does no harm. */
+    if (source == NO_ROUTE && !port->redundant && is_awaited(port, idx, frame, length))
         source = 0;
-    if (idx >= EC_MAXBUF || source == NO_ROUTE || (source == 1 && !port->redundant)) {
-        port->counters.malformed++;
+    if (idx >= EC_MAXBUF || source < 0 || (source == 1 && !port->redundant)) {
+        if (is_foreign(frame, length, source))
+            port->counters.foreign++;
+        else
+            port->counters.malformed++;
         return;
     }
     cm1e_port_slot_t *slot = &port->slots[idx];

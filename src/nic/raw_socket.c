@@ -105,27 +105,42 @@ static cm1e_error_t set_up(int fd, const char *name, unsigned index, cm1e_diag_t
     return CM1E_OK;
 }
 
-cm1e_error_t cm1e_raw_socket_open(int *fd, const char *interface_name, cm1e_diag_t *diag)
+static cm1e_error_t open_socket(int *fd, const char *interface_name, unsigned index, cm1e_diag_t *diag)
 {
-    *fd = -1;
-    /* The name first: it needs no privilege to say that it is wrong. */
+    /* Protocol 0: nothing is received before bind() names the interface. */
+    *fd = socket(AF_PACKET, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    if (*fd < 0)
+        return no_socket(errno, diag);
+    const cm1e_error_t error = set_up(*fd, interface_name, index, diag);
+    if (error)
+        return error;
+    uint8_t stale[64];
+    for (int i = 0; i < DRAIN_LIMIT && cm1e_raw_socket_receive(*fd, stale, sizeof stale) != 0; i++)
+        ;
+    return CM1E_OK;
+}
+
+cm1e_error_t cm1e_raw_socket_open(cm1e_raw_socket_t *made, const char *interface_name, cm1e_diag_t *diag)
+{
+    *made = CM1E_RAW_SOCKET_CLOSED;
+    /* The name and the owner first: it needs no privilege to say that the interface is wrong or in use. */
     const unsigned index = strlen(interface_name) < IFNAMSIZ ? if_nametoindex(interface_name) : 0;
     if (index == 0)
         return no_interface(interface_name, diag);
-    /* Protocol 0: nothing is received before bind() names the interface. */
-    const int s = socket(AF_PACKET, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    if (s < 0)
-        return no_socket(errno, diag);
-    const cm1e_error_t error = set_up(s, interface_name, index, diag);
-    if (error) {
-        close(s);
-        return error;
-    }
-    uint8_t stale[64];
-    for (int i = 0; i < DRAIN_LIMIT && cm1e_raw_socket_receive(s, stale, sizeof stale) != 0; i++)
-        ;
-    *fd = s;
-    return CM1E_OK;
+    cm1e_error_t error = cm1e_interface_lock_take(&made->lock, interface_name, diag);
+    if (!error)
+        error = open_socket(&made->fd, interface_name, index, diag);
+    if (error)
+        cm1e_raw_socket_close(made);
+    return error;
+}
+
+void cm1e_raw_socket_close(cm1e_raw_socket_t *closed)
+{
+    if (closed->fd >= 0)
+        close(closed->fd);
+    closed->fd = -1;
+    cm1e_interface_lock_release(&closed->lock); /* last: nothing of ours is sent any more */
 }
 
 int cm1e_raw_socket_receive(int fd, uint8_t *frame, size_t room)

@@ -9,9 +9,21 @@
 #include <stdint.h>
 
 #include "cm1e/error.h"
+#include "nic/interface_lock.h"
 
-/** Opens, binds, drains. A missing privilege, an unknown interface or one that is down is diagnosed with the cure. */
-cm1e_error_t cm1e_raw_socket_open(int *fd, const char *interface_name, cm1e_diag_t *diag);
+/** Whoever sends on an interface owns it: there is no socket without the lock. */
+typedef struct cm1e_raw_socket {
+    int fd;                        /**< -1: closed */
+    cm1e_interface_lock_t lock;
+} cm1e_raw_socket_t;
+
+#define CM1E_RAW_SOCKET_CLOSED ((cm1e_raw_socket_t){-1, {-1, -1}})
+
+/** Locks, opens, binds, drains. An interface that is in use, unknown or down, and a missing privilege, are diagnosed with
+ *  the cure. */
+cm1e_error_t cm1e_raw_socket_open(cm1e_raw_socket_t *made, const char *interface_name, cm1e_diag_t *diag);
+/** Closing a closed socket does nothing. */
+void cm1e_raw_socket_close(cm1e_raw_socket_t *closed);
 /** A frame that is here already. Its length; 0: none; -1: the socket reports an error. */
 int cm1e_raw_socket_receive(int fd, uint8_t *frame, size_t room);
 

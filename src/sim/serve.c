@@ -16,7 +16,6 @@
 #include "nic/frame.h"
 #include "nic/frame_queue.h"
 #include "nic/raw_socket.h"
-#include "sim/serve_lock.h"
 
 enum {
     NS_PER_S = 1000000000, PRIORITY = 60, FRAMES_AT_ONCE = 64, LINE_LENGTH = 256,
@@ -31,7 +30,7 @@ struct cm1e_sim_server {
     cm1e_sim_segment_t *segment;
     cm1e_clock_t *clock;
     char interface_name[64];
-    int socket_fd, lock_fd;
+    cm1e_raw_socket_t socket;
     cm1e_sim_streams_t console;
     int64_t advanced_ns;                /**< the segment's time */
     int64_t retry_ns;                   /**< without a socket: when the interface is looked for again */
@@ -144,7 +143,7 @@ static bool read_console(server_t *server)
 static void reply(const server_t *server, const uint8_t *frame, size_t length)
 {
     /* A full transmit queue loses the answer, as a wire would. */
-    const ssize_t sent = send(server->socket_fd, frame, length, MSG_DONTWAIT | MSG_NOSIGNAL);
+    const ssize_t sent = send(server->socket.fd, frame, length, MSG_DONTWAIT | MSG_NOSIGNAL);
     (void)sent;
 }
 
@@ -198,7 +197,7 @@ static void answer_frame(server_t *server, size_t length, int64_t now_ns)
 static bool answer_frames(server_t *server)
 {
     for (int i = 0; i < FRAMES_AT_ONCE; i++) {
-        const int n = cm1e_raw_socket_receive(server->socket_fd, server->frame, sizeof server->frame);
+        const int n = cm1e_raw_socket_receive(server->socket.fd, server->frame, sizeof server->frame);
         if (n <= 0)
             return n == 0;
         answer_frame(server, (size_t)n, cm1e_clock_now(server->clock));
@@ -219,8 +218,7 @@ static void release_delayed(server_t *server, int64_t now_ns)
 /* A socket is bound to the interface that was there. One that went down, or was made anew, needs another socket. */
 static void lose_interface(server_t *server)
 {
-    close(server->socket_fd);
-    server->socket_fd = -1;
+    cm1e_raw_socket_close(&server->socket);
     server->retry_ns = 0;
     server->told = CM1E_OK;
 }
@@ -228,9 +226,9 @@ static void lose_interface(server_t *server)
 static void find_interface(server_t *server, int64_t now_ns)
 {
     cm1e_diag_t why = {0};
-    if (server->socket_fd >= 0 || now_ns < server->retry_ns)
+    if (server->socket.fd >= 0 || now_ns < server->retry_ns)
         return;
-    const cm1e_error_t error = cm1e_raw_socket_open(&server->socket_fd, server->interface_name, &why);
+    const cm1e_error_t error = cm1e_raw_socket_open(&server->socket, server->interface_name, &why);
     if (error && error != server->told)
         notice(server, "%s The simulated segment waits for it.", why.text);
     if (!error && server->told)
@@ -255,7 +253,7 @@ static int wait(server_t *server, struct pollfd fds[2])
     if (left_ns < 0)
         left_ns = 0;
     const struct timespec left = {.tv_sec = left_ns / NS_PER_S, .tv_nsec = left_ns % NS_PER_S};
-    fds[0].fd = server->socket_fd;
+    fds[0].fd = server->socket.fd;
     return ppoll(fds, 2, &left, NULL);
 }
 
@@ -296,10 +294,8 @@ void cm1e_sim_server_run(cm1e_sim_server_t *server, const cm1e_sim_streams_t *co
 
 void cm1e_sim_server_close(cm1e_sim_server_t *server)
 {
-    if (server && server->socket_fd >= 0)
-        close(server->socket_fd);
-    if (server && server->lock_fd >= 0)
-        close(server->lock_fd);
+    if (server)
+        cm1e_raw_socket_close(&server->socket);
     free(server);
 }
 
@@ -313,10 +309,7 @@ cm1e_error_t cm1e_sim_server_open(cm1e_sim_server_t **server, cm1e_sim_segment_t
     made->segment = segment;
     made->clock = cm1e_clock_monotonic();
     snprintf(made->interface_name, sizeof made->interface_name, "%s", interface_name);
-    made->lock_fd = -1;
-    cm1e_error_t error = cm1e_raw_socket_open(&made->socket_fd, interface_name, diag);
-    if (!error)
-        error = cm1e_serve_lock_take(&made->lock_fd, interface_name, diag);
+    const cm1e_error_t error = cm1e_raw_socket_open(&made->socket, interface_name, diag);
     if (error)
         cm1e_sim_server_close(made);
     else

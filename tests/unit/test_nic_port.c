@@ -285,6 +285,50 @@ static void test_a_foreign_source_address_is_taken_without_a_ring(void)
     TEST_ASSERT_EQUAL_INT(1, ecx_waitinframe(&port, idx, 0));
 }
 
+static void expect_foreign(const uint8_t *frame, size_t length, uint64_t foreign, uint64_t others)
+{
+    const cm1e_port_counters_t *c = &port.counters;
+    TEST_ASSERT_TRUE(cm1e_nic_inject(nic, 0, frame, length, 0));
+    const uint8 idx = send_unanswered();
+    TEST_ASSERT_EQUAL_INT(EC_NOFRAME, ecx_waitinframe(&port, idx, 0));
+    ecx_setbufstat(&port, idx, EC_BUF_EMPTY);
+    TEST_ASSERT_EQUAL_UINT64(foreign, c->foreign);
+    TEST_ASSERT_EQUAL_UINT64(others, c->late + c->duplicates + c->malformed);
+}
+
+static void test_frames_of_another_master_are_counted_apart(void)
+{
+    nic->link.identity = 0x7A5C; /* as of a packet socket */
+    uint8_t frame[CM1E_FRAME_MAX] = {0};
+    const uint8 idx = send_unanswered();
+    const size_t length = good_answer(idx, frame);
+    ecx_setbufstat(&port, idx, EC_BUF_EMPTY);
+    expect_foreign(frame, length, 0, 1); /* our own, too late */
+    frame[7] = frame[10] = 0x01;
+    expect_foreign(frame, length, 1, 1); /* SOEM's */
+    frame[10] = 0x5D;
+    expect_foreign(frame, length, 2, 1); /* another program's with this library */
+    memcpy(frame + 6, "\x00\x1b\x21\x3c\x9d\xf8", 6);
+    expect_foreign(frame, length, 3, 1); /* one that uses the address of the network card */
+    frame[14] ^= 1;
+    expect_foreign(frame, length, 3, 2); /* damaged: nobody's */
+    frame[14] ^= 1;
+    frame[12] = 0x08;
+    expect_foreign(frame, length, 3, 3); /* not EtherCAT */
+}
+
+static void test_an_answer_of_another_soem_is_never_taken_for_ours(void)
+{
+    nic->link.identity = 0x7A5C;
+    uint8_t frame[CM1E_FRAME_MAX] = {0};
+    const uint8 idx = send_unanswered();
+    const size_t length = good_answer(idx, frame);
+    memset(frame + 6, 0x01, 6);
+    cm1e_nic_inject(nic, 0, frame, length, 0);
+    TEST_ASSERT_EQUAL_INT(EC_NOFRAME, ecx_waitinframe(&port, idx, 0));
+    TEST_ASSERT_EQUAL_UINT64(1, port.counters.foreign);
+}
+
 static void test_nothing_is_written_beyond_what_was_sent(void)
 {
     const uint8 idx = send_unanswered();
@@ -424,6 +468,8 @@ int main(void)
     RUN_TEST(test_every_single_damaged_header_byte_is_noticed);
     RUN_TEST(test_truncated_answers_are_dropped_and_padded_ones_taken);
     RUN_TEST(test_a_foreign_source_address_is_taken_without_a_ring);
+    RUN_TEST(test_frames_of_another_master_are_counted_apart);
+    RUN_TEST(test_an_answer_of_another_soem_is_never_taken_for_ours);
     RUN_TEST(test_nothing_is_written_beyond_what_was_sent);
     RUN_TEST(test_random_frames_neither_crash_nor_answer);
     RUN_TEST(test_a_flood_does_not_hold_the_caller_beyond_its_deadline);

@@ -50,7 +50,7 @@ static int64_t now(void) { return cm1e_clock_now(cm1e_clock_monotonic()); }
 
 static struct {
     pthread_t thread;
-    int fd;
+    cm1e_raw_socket_t socket;
     atomic_bool stop, mute;
     atomic_uint frames;
 } echo;
@@ -60,7 +60,7 @@ static void *run_echo(void *unused)
     (void)unused;
     uint8_t frame[CM1E_FRAME_MAX];
     while (!atomic_load(&echo.stop)) {
-        const int n = cm1e_raw_socket_receive(echo.fd, frame, sizeof frame);
+        const int n = cm1e_raw_socket_receive(echo.socket.fd, frame, sizeof frame);
         if (n <= 0) {
             usleep(20);
             continue;
@@ -71,14 +71,14 @@ static void *run_echo(void *unused)
         const int body = (frame[14] | frame[15] << 8) & 0x7FF;
         frame[6] |= 2;
         frame[16 + body - 2]++;
-        send(echo.fd, frame, (size_t)n, 0);
+        send(echo.socket.fd, frame, (size_t)n, 0);
     }
     return NULL;
 }
 
 static void start_echo(bool mute)
 {
-    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_raw_socket_open(&echo.fd, "wire1", &diag));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_raw_socket_open(&echo.socket, "wire1", &diag));
     atomic_store(&echo.stop, false);
     atomic_store(&echo.mute, mute);
     atomic_store(&echo.frames, 0);
@@ -89,7 +89,7 @@ static void stop_echo(void)
 {
     atomic_store(&echo.stop, true);
     pthread_join(echo.thread, NULL);
-    close(echo.fd);
+    cm1e_raw_socket_close(&echo.socket);
 }
 
 /* ---- exchange ---------------------------------------------------------------------------------------------------- */
@@ -131,20 +131,20 @@ static void test_our_own_frames_are_not_received(void)
 static void test_frames_from_before_the_opening_are_not_received(void)
 {
     need_wire();
-    int fd;
-    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_raw_socket_open(&fd, "wire1", &diag));
+    cm1e_raw_socket_t other;
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_raw_socket_open(&other, "wire1", &diag));
     uint8_t frame[60] = {255, 255, 255, 255, 255, 255, 1, 1, 1, 1, 1, 1, 0x88, 0xA4};
     for (int i = 0; i < 50; i++)
-        send(fd, frame, sizeof frame, 0);
+        send(other.fd, frame, sizeof frame, 0);
     cm1e_nic_t *nic = NULL;
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_nic_open(&nic, &config, &diag));
     int port;
     TEST_ASSERT_EQUAL_UINT(0, cm1e_nic_receive(nic, &port, frame, now() + 2000000));
     /* Other protocols are none of ours either. */
     frame[13] = 0xA5;
-    send(fd, frame, sizeof frame, 0);
+    send(other.fd, frame, sizeof frame, 0);
     TEST_ASSERT_EQUAL_UINT(0, cm1e_nic_receive(nic, &port, frame, now() + 2000000));
-    close(fd);
+    cm1e_raw_socket_close(&other);
     cm1e_nic_close(nic);
 }
 

@@ -28,6 +28,7 @@ typedef struct cm1e_port_counters {
     uint64_t late;          /**< answers that nobody waits for any more */
     uint64_t duplicates;    /**< second and further answers to one frame */
     uint64_t malformed;     /**< not EtherCAT, cut short, or not the frame that was sent */
+    uint64_t foreign;       /**< frames that another master sent on this network */
     uint64_t unneeded;      /**< ring: frames of the second interface whose answer was not needed */
     uint64_t resent;        /**< ring: frames that needed a second trip through the other interface */
     uint64_t index_reused;  /**< ecx_getindex() found all 16 in use and took one away: somebody does not release */

@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""One owner of an interface: every other command beside a running `cm1e move` on the same interface is refused in words
+and disturbs nothing. A master that knows no lock is recognised by its frames, and named in the error that it causes.
+
+test_two_masters.py CM1E
+"""
+import os
+import re
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import wire  # noqa: E402
+
+ROUNDS = 5
+ETHERCAT, BWR, AL_CONTROL, INIT = 0x88A4, 8, 0x0120, 1
+SOEM_ADDRESS, NETWORK_CARD_ADDRESS = b"\1" * 6, b"\x00\x1b\x21\x3c\x9d\xf8"
+SLAVES = "axes: [{sim: {no_stops: true}}]\n"
+
+
+def others(cm1e, bus_file, interface):
+    return ([cm1e, "scan", "-i", interface], [cm1e, "status", "-b", bus_file],
+            [cm1e, "sdo", "read", "-i", interface, "1", "0x6041"],
+            [cm1e, "move", "-b", bus_file, "X", "--by", "0.1", "--velocity", "1"])
+
+
+def start_move(segment, cm1e, bus_file):
+    move = subprocess.Popen(segment.command([cm1e, "move", "-b", bus_file, "X", "--speed", "0.5", "--for", "8"]),
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    wire.wait_for(lambda: "Operation enabled" in segment.console("status 1") or move.poll() is not None, 10,
+                  "the motor was not enabled")
+    return move
+
+
+def move_is_left_alone(segment, cm1e, bus_file):
+    move = start_move(segment, cm1e, bus_file)
+    began = time.strftime("%Y-%m-%d %H:")
+    for number in range(ROUNDS):
+        for command in others(cm1e, bus_file, wire.MASTER_INTERFACE):
+            wire.check(move.poll() is None, f"the move ended beside {command[1]}: {move.poll()}")
+            result = segment.run(command)
+            told = result.stdout + result.stderr
+            wire.check(result.returncode == 1, f"{command[1]} beside a move was not refused: {told}")
+            wire.check(re.search(rf"in use by cm1e move \(process {move.pid}\) since", told),
+                       f"{command[1]}: who has it is not said: {told}")
+            wire.check(began[:10] in told, f"{command[1]}: since when is not said: {told}")
+            if number == 0:
+                print(told.strip())
+    out, err = move.communicate(timeout=60)
+    wire.check(move.returncode == 0, f"the move did not end: {out}{err}")
+
+
+def lock_ends_with_its_owner(segment, cm1e, bus_file):
+    """However it ends: the interface is free at once."""
+    for end in ("kill", "terminate"):
+        move = start_move(segment, cm1e, bus_file)
+        getattr(move, end)()
+        move.communicate(timeout=20)
+        result = segment.run([cm1e, "scan", "-i", wire.MASTER_INTERFACE])
+        wire.check(result.returncode == 0, f"after {end} the interface is not free: {result.stderr}")
+
+
+# ---- a master that takes no lock, in a process of its own in the master's namespace ----------------------------------
+
+def interfere(address):
+    """Asks all slaves for Init, as a scan of any master does."""
+    datagram = bytes([BWR, 0x05, 0, 0]) + AL_CONTROL.to_bytes(2, "little") + (2).to_bytes(2, "little") + bytes(2)
+    body = datagram + INIT.to_bytes(2, "little") + bytes(2)
+    frame = b"\xff" * 6 + address + ETHERCAT.to_bytes(2, "big") + (0x1000 | len(body)).to_bytes(2, "little") + body
+    with socket.socket(socket.AF_PACKET, socket.SOCK_RAW, socket.htons(ETHERCAT)) as wire_socket:
+        wire_socket.bind((wire.MASTER_INTERFACE, 0))
+        for _ in range(20):
+            wire_socket.send(frame.ljust(60, b"\0"))
+
+
+def other_master_is_named(segment, cm1e, bus_file):
+    for address in (SOEM_ADDRESS, NETWORK_CARD_ADDRESS):
+        move = start_move(segment, cm1e, bus_file)
+        segment.run([sys.executable, os.path.abspath(__file__), "interfere", address.hex()])
+        out, err = move.communicate(timeout=30)
+        told = out + err
+        wire.check(move.returncode == 1, f"the move went on although all slaves were sent to Init: {told}")
+        wire.check(re.search(r"Another master sends on this network: \d+ of its frames", told),
+                   f"the other master ({address.hex(':')}) is not named: {told}")
+        print(told.strip())
+
+
+def nobody_is_named_alone(segment, cm1e, bus_file):
+    """A slave that leaves Operational by itself: no other master is blamed."""
+    move = start_move(segment, cm1e, bus_file)
+    segment.console("power-cycle 1")
+    out, err = move.communicate(timeout=30)
+    wire.check(move.returncode == 1 and "nother master" not in out + err, f"without another master: {out}{err}")
+
+
+if __name__ == "__main__":
+    if sys.argv[1] == "interfere":
+        sys.exit(interfere(bytes.fromhex(sys.argv[2])))
+    with tempfile.TemporaryDirectory() as folder:
+        slaves = os.path.join(folder, "slaves.yaml")
+        with open(slaves, "w", encoding="utf-8") as file:
+            file.write(SLAVES)
+        with wire.segment(sys.argv[1], slaves) as segment:
+            bus_file = segment.bus_file()
+            move_is_left_alone(segment, sys.argv[1], bus_file)
+            lock_ends_with_its_owner(segment, sys.argv[1], bus_file)
+            other_master_is_named(segment, sys.argv[1], bus_file)
+            nobody_is_named_alone(segment, sys.argv[1], bus_file)
+    print(f"{ROUNDS * 4} commands beside a move: all refused, the move done")
