@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "assembly/assembly.h"
-#include "axis/axis_private.h"
+#include "axis/axis_setpoint.h"
 #include "cm1e/plcopen.h"
 
 enum { BUSES = 2, BUS_AXES = BLOCKS_MAX_AXES / BUSES };

@@ -4,7 +4,21 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "axis/axis_backlash.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_device.h"
+#include "axis/axis_events.h"
+#include "axis/axis_guard.h"
 #include "axis/axis_handle.h"
+#include "axis/axis_in_position.h"
+#include "axis/axis_lead.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_pause.h"
+#include "axis/axis_position.h"
+#include "axis/axis_power.h"
+#include "axis/axis_setpoint.h"
+#include "axis/axis_table.h"
+#include "core/clock.h"
 
 cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t index, cm1e_diag_t *diag)
 {

@@ -10,7 +10,9 @@
  */
 #include <math.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_backlash.h"
+#include "axis/axis_power.h"
+#include "axis/axis_setpoint.h"
 
 /* The ramp of the compensation: its velocity within this time. */
 static const double ramp_s = 0.02;

@@ -5,15 +5,7 @@
 #ifndef CM1E_AXIS_AXIS_BACKLASH_H
 #define CM1E_AXIS_AXIS_BACKLASH_H
 
-#include "axis/axis.h"
-
-/** Counts in the direction in which u grows. */
-typedef struct backlash {
-    double gap;                    /**< 0: none */
-    double velocity, acceleration; /**< of its compensation; counts/s, counts/s2 */
-    double offset;                 /**< -gap ... 0: of the motor as seen from the load */
-    double offset_velocity, target;
-} backlash_t;
+#include "axis/axis_parts.h"
 
 void cm1e_axis_backlash_init(cm1e_axis_t *axis); /* @rt init; after the limits */
 /** Counts of the motor beyond its load; 0 without backlash. */
@@ -24,5 +16,25 @@ bool cm1e_axis_backlash_at_rest(const cm1e_axis_t *axis);
 /* Both only where there is a gap. */
 void cm1e_axis_backlash_track(cm1e_axis_t *axis, int32_t moved_counts);
 void cm1e_axis_backlash_step(cm1e_axis_t *axis);
+
+/** Where the load is while the motor is there. */
+static inline position_t cm1e_axis_load(const cm1e_axis_t *axis, int64_t motor_counts)
+{
+    const position_t motor = {motor_counts, 0.0};
+    return axis->backlash.gap > 0.0 ? cm1e_position_plus(motor, -cm1e_axis_backlash_offset(axis)) : motor;
+}
+/** Actual position, of the load. */
+static inline position_t axis_actual(const cm1e_axis_t *axis)
+{
+    return cm1e_axis_load(axis, axis->position.actual_counts);
+}
+/** Where the motor has to be for the set-point; whole counts. */
+static inline int64_t cm1e_axis_motor_target(const cm1e_axis_t *axis)
+{
+    const position_t target = axis->backlash.gap > 0.0
+                              ? cm1e_position_plus(axis->setpoint.position, cm1e_axis_backlash_offset(axis))
+                                                       : axis->setpoint.position;
+    return target.counts + (target.fraction >= 0.5);
+}
 
 #endif

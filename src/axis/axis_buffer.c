@@ -4,7 +4,12 @@
  */
 #include <math.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_events.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_position.h"
+#include "axis/axis_superimpose.h"
 
 /* What an exit velocity may differ by when it is asked again on the way. */
 static const double same_velocity = 1e-9;

@@ -1,6 +1,14 @@
 /* Commands: posted by function blocks, known by number, one of them active. */
+#include "axis/axis_commands.h"
+#include "axis/axis_driving.h"
 #include "axis/axis_handle.h"
-#include "axis/axis_private.h"
+#include "axis/axis_in_position.h"
+#include "axis/axis_lead.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_setpoint.h"
+#include "axis/axis_superimpose.h"
+#include "axis/axis_table.h"
 
 /* ---- ends -------------------------------------------------------------------------------------------------------- */
 

@@ -5,56 +5,7 @@
 #ifndef CM1E_AXIS_AXIS_DEVICE_H
 #define CM1E_AXIS_AXIS_DEVICE_H
 
-#include "axis/axis.h"
-#include "axis/axis_place.h"
-
-enum { PROBES = 2 * 6 }; /* every input, both edges */
-
-/** A touch probe: what it waits for stands in its place in the list. */
-typedef struct probe {
-    uint32_t id;
-    int16_t error;      /**< cm1e_error_t */
-    uint8_t state;      /**< cm1e_command_state_t */
-    bool window;
-    union {
-        struct { double first, last; };           /**< u; the window, while it waits */
-        struct { double position, uncertainty; }; /**< u; when it is done */
-    };
-} probe_t;
-
-typedef struct probe_sample {
-    int64_t time_ns;
-    position_t position;            /**< of the load */
-    uint16_t inputs;
-} probe_sample_t;
-
-/** Digital signals and touch probes. */
-typedef struct signals {
-    uint32_t probes_armed, probe_count;
-    probe_t probes[PROBES];
-    probe_sample_t probe_sample;    /**< the last one, while probes are armed */
-    int64_t output_until_ns;        /**< the digital output goes off then unless it is written again */
-    int64_t inputs_asked_ns, inputs_since_ns; /**< where SDOs bring them: last, and without an answer since */
-} signals_t;
-
-enum { OBJECT_REQUESTS = 8 };
-
-/** A vendor parameter that is asked for (axis_object.c). */
-typedef struct object_request {
-    uint32_t ticket; /**< number << 16 | sequence; 0: none */
-    int16_t error;   /**< cm1e_error_t */
-    uint8_t state;   /**< cm1e_command_state_t */
-    bool write;
-    double value;
-} object_request_t;
-
-typedef struct objects {
-    uint16_t head, next;                        /**< sequence of the one under way, and of the next to be asked for */
-    bool submitted;
-    object_request_t requests[OBJECT_REQUESTS]; /**< by sequence */
-    uint8_t data[8];
-    cm1e_sdo_t sdo;
-} objects_t;
+#include "axis/axis_parts.h"
 
 /* axis_probe.c */
 void cm1e_axis_probe_step(cm1e_axis_t *axis); /* with fresh inputs, while probes are armed */

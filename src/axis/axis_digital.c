@@ -1,6 +1,9 @@
 /* Digital inputs and the output of the motor, and the switches among them. */
-#include "axis/axis_private.h"
+#include "axis/axis_device.h"
+#include "axis/axis_setpoint.h"
 #include "axis/axis_signals.h"
+#include "axis/axis_text.h"
+#include "core/clock.h"
 
 /* ---- behind a bridge --------------------------------------------------------------------------------------------- */
 

@@ -1,5 +1,9 @@
 /* MC_Power permits a direction no longer (3.1). */
-#include "axis/axis_private.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_events.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_setpoint.h"
+#include "axis/axis_superimpose.h"
 
 void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign)
 {

@@ -8,8 +8,19 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_device.h"
+#include "axis/axis_driving.h"
+#include "axis/axis_events.h"
+#include "axis/axis_in_position.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_position.h"
+#include "axis/axis_power.h"
+#include "axis/axis_setpoint.h"
+#include "axis/axis_text.h"
 #include "core/bytes.h"
+#include "core/clock.h"
 
 static const int64_t parameter_timeout_ns = 5000 * MS_IN_NS;
 static const int64_t acknowledge_timeout_ns = 500 * MS_IN_NS;

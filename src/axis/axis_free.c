@@ -1,5 +1,8 @@
 /* No torque: the source of set-points that is none, and what it takes from others. */
-#include "axis/axis_private.h"
+#include "axis/axis_lead.h"
+#include "axis/axis_position.h"
+#include "axis/axis_power.h"
+#include "axis/axis_setpoint.h"
 
 void cm1e_axis_lead_end(cm1e_axis_t *axis, cm1e_error_t error)
 {

@@ -3,7 +3,12 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_guard.h"
+#include "axis/axis_events.h"
+#include "axis/axis_lead.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
 #include "core/rare.h"
 
 /* What sums of doubles leave, relative and in counts. */

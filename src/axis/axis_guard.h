@@ -5,28 +5,7 @@
 #ifndef CM1E_AXIS_AXIS_GUARD_H
 #define CM1E_AXIS_AXIS_GUARD_H
 
-#include "axis/axis_move.h"
-
-/** What a set-point that is not of the axis's own making would break. */
-typedef enum guard_limit {
-    GUARD_KEPT = 0,
-    GUARD_FINITE,
-    GUARD_PAUSE,       /**< the motor has gone on without it (axis_pause.c) */
-    GUARD_DIRECTION,
-    GUARD_VELOCITY,
-    GUARD_ACCELERATION,
-    GUARD_DECELERATION,
-    GUARD_JERK,
-    GUARD_STEP,
-    GUARD_SOFTWARE_LIMIT,
-    GUARD_COUNT,
-} guard_limit_t;
-
-typedef struct guard {
-    guard_limit_t limit;
-    double asked, allowed; /**< in the units of the limit */
-    bool by_actual;        /**< what asked for it was the actual value of a master */
-} guard_t;
+#include "axis/axis_parts.h"
 
 guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk);
 /** Whether a motion that keeps acceleration and jerk at every moment of the cycle leads to the next set-point. Then the
@@ -37,5 +16,32 @@ void cm1e_axis_guard_renew(cm1e_axis_t *axis);
 /** ErrorStop with CM1E_ERROR_AXIS_COUPLING_LIMIT, which tells what was asked for and allowed. */
 void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t broken);
 void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size);
+/** Within the limits without any slack: nearly every set-point is, and this costs next to nothing. What is not a number
+ *  is not. */
+static inline bool cm1e_axis_well_within(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
+{
+    const guarding_t *g = &axis->limits.guarding;
+    const double v0 = axis->setpoint.velocity, v = next->velocity, a = next->acceleration, speed = fabs(v);
+    const double step = cm1e_position_minus(next->position, axis->setpoint.position) - (v0 + v) * g->half_cycle;
+    if (!(speed <= g->velocity && fabs(v - v0) <= (speed >= fabs(v0) ? g->up : g->down) &&
+          fabs(a) <= g->acceleration && fabs(step) <= g->step && axis->power.enable_positive &&
+              axis->power.enable_negative))
+        return false;
+    if (kept_jerk && !(fabs(a - axis->setpoint.acceleration) <= g->jerk &&
+                       (a * v <= 0.0 || speed + a * a * g->ease <= g->velocity)))
+        return false;
+    if (!axis->limits.software_limits)
+        return true;
+    const double line = axis->position.origin_units + cm1e_position_minus(next->position, axis->position.origin) *
+                        g->per_count;
+    const double way = speed * speed * axis->limits.emergency_way;
+    return line + way <= axis->limits.upper && line - way >= axis->limits.lower;
+}
+/** Whether the next set-point may follow the present one. `kept_jerk`: the limit of jerk counts too. */
+static inline guard_t cm1e_axis_guard(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
+{
+    return cm1e_axis_well_within(axis, next, kept_jerk) ? (guard_t){.limit = GUARD_KEPT}
+                                                        : cm1e_axis_look_closely(axis, next, kept_jerk);
+}
 
 #endif

@@ -1,4 +1,5 @@
 #include "axis/axis_handle.h"
+#include "axis/axis_parts.h"
 
 _Atomic(cm1e_axis_t *) cm1e_axis_table[CM1E_AXIS_HANDLES];
 static _Atomic uint8_t uses[CM1E_AXIS_HANDLES];

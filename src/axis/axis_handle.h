@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_parts.h"
 
 enum { CM1E_AXIS_HANDLES = 256 };
 

@@ -12,7 +12,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_in_position.h"
+#include "axis/axis_backlash.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_events.h"
+#include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
 
 /* Counts of a CM1-E: a fiftieth of a percent of a revolution, which a servo in good order keeps at rest. */
 static const double default_window_counts = 10.0;

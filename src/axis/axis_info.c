@@ -1,7 +1,10 @@
 /* What an axis tells of itself. */
 #include <math.h>
 
+#include "axis/axis_backlash.h"
 #include "axis/axis_handle.h"
+#include "axis/axis_in_position.h"
+#include "axis/axis_position.h"
 #include "axis/axis_signals.h"
 #include "config/interface.h"
 

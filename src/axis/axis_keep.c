@@ -1,5 +1,5 @@
 /* What goes off, or halts, when it is not renewed. */
-#include "axis/axis_private.h"
+#include "axis/axis_device.h"
 #include "axis/axis_signals.h"
 
 void cm1e_axis_keep(cm1e_axis_t *axis, cm1e_command_id_t id, int64_t keep_ns, double deceleration, double jerk)

@@ -2,7 +2,12 @@
  * An axis that somebody above leads: its axes group. The leader gives a set-point in every cycle; the axis looks at it
  * once more, and stops by itself when it is not one that the motor can follow, or when there is none.
  */
-#include "axis/axis_private.h"
+#include "axis/axis_lead.h"
+#include "axis/axis_backlash.h"
+#include "axis/axis_events.h"
+#include "axis/axis_guard.h"
+#include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
 
 static bool at_rest(const cm1e_axis_t *axis)
 {

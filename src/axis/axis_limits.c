@@ -1,7 +1,9 @@
 /* What the axis may do: dynamics, software limits, enabled directions. */
 #include <math.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_backlash.h"
+#include "axis/axis_position.h"
 
 /* Nobody means a difference of a hundredth of a count; sums of doubles make smaller ones. */
 static const double tolerance_counts = 0.01;

@@ -5,35 +5,7 @@
 #ifndef CM1E_AXIS_AXIS_LIMITS_H
 #define CM1E_AXIS_AXIS_LIMITS_H
 
-#include "axis/axis_move.h"
-
-/** What a set-point may be beside the one before it, in the numbers that are compared; made once. */
-typedef struct guarding {
-    double velocity;         /**< u/s */
-    double up, down;         /**< u/s in a cycle */
-    double acceleration;     /**< u/s2 */
-    double jerk;             /**< u/s2 in a cycle */
-    double ease;             /**< s3/u; by the square of an acceleration: what it adds to the velocity while it ends */
-    double half_cycle, step; /**< counts in half a cycle at 1 u/s; counts beside the mean of both velocities */
-    double per_count;        /**< u, signed */
-} guarding_t;
-
-typedef struct limits {
-    bool software_limits;           /**< one of them at least; those in force are ... */
-    bool lag_monitoring;
-    bool positive_enabled, negative_enabled;
-    int32_t counts_limit;           /**< of the motor's own counts in either direction, by its K37; 0: none */
-    double lower, upper;            /**< u, as cm1e_axis_line() counts; infinite: none on that side */
-    double tolerance;               /**< u; which they are kept with */
-    double emergency_way;           /**< s2/u; times the square of a velocity: that it goes */
-    guarding_t guarding;
-    double max_lag;                 /**< u */
-    cm1e_motion_limits_t system;    /**< u; of motor and configuration */
-    cm1e_motion_limits_t maximum;   /**< u; what the application allows of it: the bounds of commands */
-    cm1e_motion_limits_t emergency; /**< u; the ramp of an error: that of `system` without a limit of jerk */
-    double positive, negative;      /**< u; the software limits as they are written */
-    double counts_lower, counts_upper; /**< u, as cm1e_axis_line() counts; where that limit is; infinite: none */
-} limits_t;
+#include "axis/axis_parts.h"
 
 cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt init */
 /** The dynamics of a command that begins there; MC_Halt and MC_Stop have too large ones cut to the axis's instead of
@@ -66,5 +38,21 @@ bool cm1e_axis_profile_keeps(const cm1e_axis_t *axis, double lower, double upper
 void cm1e_axis_steps_init(cm1e_axis_t *axis);
 /** When limits are written, and when positions get another meaning. */
 void cm1e_axis_apply_limits(cm1e_axis_t *axis);
+/** Whether the emergency ramp from `next` (its position counted from `base`, u) would end inside the software
+ *  limits. */
+static inline bool cm1e_axis_limits_can_stop(const cm1e_axis_t *axis, double base, cm1e_motion_state_t next)
+{
+    if (!axis->limits.software_limits)
+        return true;
+    /* Without a limit of jerk the way of a stop is known in closed form, whatever the acceleration is. */
+    const double end = base + next.position + next.velocity * fabs(next.velocity) * axis->limits.emergency_way;
+    return next.velocity > 0.0 ? end <= axis->limits.upper + axis->limits.tolerance
+           : next.velocity < 0.0 ? end >= axis->limits.lower - axis->limits.tolerance : true;
+}
+/** Whether the motion under way, and a stop from it, would keep these software limits (u). */
+static inline bool cm1e_axis_limits_hold(const cm1e_axis_t *axis, double lower, double upper)
+{
+    return !axis->setpoint.source->keeps || axis->setpoint.source->keeps(axis, lower, upper);
+}
 
 #endif

@@ -8,7 +8,11 @@
 #include <float.h>
 #include <math.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_position.h"
+#include "axis/axis_superimpose.h"
 
 /* A waiting command that is passed into without a stop. */
 typedef struct leg {

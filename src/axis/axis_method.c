@@ -1,6 +1,8 @@
 /* What is done with a command, by how it is planned: a row for each command_plan_t that is not
  * one of a room above the axis. */
-#include "axis/axis_private.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_superimpose.h"
+#include "axis/axis_table.h"
 
 #define BY_PROFILE {cm1e_axis_start_move, cm1e_axis_buffer_move, NULL, cm1e_axis_begin_move, cm1e_axis_update_move}
 

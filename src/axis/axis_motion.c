@@ -1,7 +1,15 @@
 /* The set-point of every cycle: planned once at the command, sampled here. */
 #include <math.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_backlash.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_events.h"
+#include "axis/axis_in_position.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
+#include "axis/axis_superimpose.h"
 #include "core/rare.h"
 
 /* CSV only (a mapping without target position): the position loop is ours then. 1/s. */

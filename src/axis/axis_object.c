@@ -3,8 +3,9 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "axis/axis_device.h"
 #include "axis/axis_parameters.h"
-#include "axis/axis_private.h"
+#include "axis/axis_text.h"
 #include "core/bytes.h"
 
 /* docs/DEVICE.md has the same table in words. No commands: what moves the motor goes through the blocks for it. */

@@ -5,7 +5,12 @@
  */
 #include <string.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_events.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_setpoint.h"
+#include "axis/axis_superimpose.h"
+#include "axis/axis_text.h"
 
 static bool is_factor(double value) { return value > 0.0 && value <= 1.0; }
 

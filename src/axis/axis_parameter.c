@@ -6,7 +6,9 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_guard.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_text.h"
 
 /* The axis keeps positions as doubles: whole counts are exact up to 2^53. */
 static const double farthest_limit_counts = 9e15;

@@ -12,7 +12,17 @@
  * stands at its last target by then, in CSV it has gone on with its last velocity. What moves begins anew from rest, or
  * from where the motor must be by now. Stops and ramps of errors end where they stand.
  */
-#include "axis/axis_private.h"
+#include "axis/axis_pause.h"
+#include "axis/axis_backlash.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_events.h"
+#include "axis/axis_lead.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_position.h"
+#include "axis/axis_power.h"
+#include "axis/axis_setpoint.h"
+#include "axis/axis_superimpose.h"
 
 /* Counts/s; resolution of the actual velocity of old firmware, and of one that is the difference of two positions. */
 static const double velocity_noise = 3000.0;

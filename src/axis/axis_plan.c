@@ -1,7 +1,10 @@
 /* The profile of each kind of command, from any state of motion. Nothing here changes the axis. */
 #include <math.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_position.h"
 
 static cm1e_motion_state_t start_of(const from_t *from)
 {

@@ -6,7 +6,9 @@
 #include <float.h>
 #include <math.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_position.h"
+#include "axis/axis_backlash.h"
+#include "axis/axis_limits.h"
 
 __extension__ typedef __int128 wide_t;
 

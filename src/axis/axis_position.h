@@ -1,27 +1,23 @@
 /**
  * @file axis_position.h
- * Where the axis is: counts of the drive without wrap-around, units, turns of a modulo axis, the origin (axis_position.c).
+ * Where the axis is: counts of the drive without wrap-around, units, turns of a modulo axis, the origin
+ * (axis_position.c).
  */
 #ifndef CM1E_AXIS_AXIS_POSITION_H
 #define CM1E_AXIS_AXIS_POSITION_H
 
-#include "axis/axis_place.h"
-#include "axis/axis.h"
-#include "device/unit.h"
+#include "axis/axis_parts.h"
 
-typedef struct axis_position {
-    bool known, homed;
-    int32_t raw;                    /**< counts of the drive, last seen */
-    int64_t actual_counts;          /**< the same without wrap-around */
-    double scale;                   /**< counts per u; negative: inverted */
-    double count;                   /**< counts of this motor on the way of one count of a CM1-E */
-    position_t origin;              /**< position origin_units is there; modulo: 0 */
-    double origin_units;
-    double modulo_range;            /**< u; 0: a linear axis */
-    cm1e_fraction_t turn;           /**< counts of it */
-    cm1e_unit_t unit;               /**< its amount, exactly */
-} axis_position_t;
-
+/** Counts of this motor that are as far as so many of a CM1-E; two at least, as one is rounding. */
+static inline double cm1e_axis_few(const cm1e_axis_t *axis, double counts)
+{
+    return fmax(counts * axis->position.count, 2.0);
+}
+/** Whether a way of so many u can be counted; what is not a number cannot. */
+static inline bool cm1e_axis_can_count(const cm1e_axis_t *axis, double units)
+{
+    return fabs(units * axis->position.scale) < (double)CM1E_FARTHEST_COUNTS;
+}
 double cm1e_axis_units(const cm1e_axis_t *axis, position_t position);
 /** Set and actual position, as they are shown. */
 void cm1e_axis_shown(const cm1e_axis_t *axis, double *set, double *actual);

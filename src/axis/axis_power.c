@@ -8,8 +8,15 @@
  */
 #include <math.h>
 
+#include "axis/axis_power.h"
+#include "axis/axis_backlash.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_device.h"
 #include "axis/axis_handle.h"
-#include "axis/axis_private.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
+#include "core/clock.h"
 
 /* How long a drive that cannot be heard any more counts as "still there" at the end. */
 static const int64_t gone_after_ns = 100 * MS_IN_NS;

@@ -5,29 +5,13 @@
 #ifndef CM1E_AXIS_AXIS_POWER_H
 #define CM1E_AXIS_AXIS_POWER_H
 
-#include "axis/axis.h"
-#include "axis/axis_guard.h"
+#include "axis/axis_parts.h"
 
-typedef struct power {
-    bool enable, enable_positive, enable_negative;
-    bool energized;                 /**< the axis has taken over the enabled drive */
-    bool shutting_down;
-    bool reset_sent;
-    cm1e_error_t reset_error;
-    cm1e_command_state_t reset_state;
-    const void *owner;
-    int64_t free_ns;                /**< since when no torque is asked for */
-    int64_t brake_until_ns;         /**< so long at least the torque stays to brake */
-} power_t;
-
-/** Why the axis is in ErrorStop. */
-typedef struct fault {
-    cm1e_error_t error;
-    uint16_t device_error;
-    double value, bound;            /**< numbers for the text */
-    guard_t guard;                  /**< with CM1E_ERROR_AXIS_COUPLING_LIMIT */
-} fault_t;
-
+static inline bool cm1e_axis_wants_enable(const cm1e_axis_t *axis)
+{
+    return axis->power.enable && !axis->power.shutting_down && axis->state != CM1E_AXIS_ERROR_STOP &&
+           (!axis->motor_hooks || axis->motor_hooks->is_home(axis));
+}
 void cm1e_axis_become_free(cm1e_axis_t *axis); /* axis_free.c */
 void cm1e_axis_error_stop(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound,
                           const cm1e_motion_limits_t *ramp);

@@ -5,8 +5,12 @@
  */
 #include <math.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_backlash.h"
+#include "axis/axis_device.h"
+#include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
 #include "axis/axis_signals.h"
+#include "axis/axis_text.h"
 
 static uint16_t bit_of(cm1e_axis_trigger_t trigger) { return (uint16_t)(1u << (trigger.input - 1)); }
 

@@ -1,6 +1,7 @@
 /* What is kept of commands and refusals: how a command ended, for who asks by number; what was refused last, for the
  * text. */
-#include "axis/axis_private.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_text.h"
 
 /* ---- records ----------------------------------------------------------------------------------------------------- */
 

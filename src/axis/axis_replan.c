@@ -1,5 +1,7 @@
 /* What becomes of the profile of a command: another one takes over, or it is planned anew from the present set-point. */
-#include "axis/axis_private.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_setpoint.h"
 
 void cm1e_axis_take(cm1e_axis_t *axis, const move_t *move, const from_t *from, const cm1e_profile_t *profile,
                     double offset_s)

@@ -1,7 +1,13 @@
 /* MC_SetPosition (3.17): the coordinates shift, and nothing moves. */
 #include <math.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_backlash.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_lead.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
+#include "axis/axis_text.h"
 
 static cm1e_error_t set_position(cm1e_axis_t *axis, double position, bool relative)
 {

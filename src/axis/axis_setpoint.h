@@ -6,26 +6,37 @@
 #ifndef CM1E_AXIS_AXIS_SETPOINT_H
 #define CM1E_AXIS_AXIS_SETPOINT_H
 
-#include "axis/axis_move.h"
+#include "axis/axis_parts.h"
 
-typedef struct setpoint {
-    const source_t *source;         /**< cm1e_axis_set_source() */
-    bool reached, positive_before;
-    bool paused;                    /**< its end is not that of its command, which waits (MC_SetOverride) */
-    bool stands;                    /**< the base has come to its end, only a superimposed motion goes on */
-    bool brakes_hard;               /**< the set-point is one of a ramp without limit of jerk */
-    position_t position;            /**< set position */
-    position_t base, target;        /**< base: where the profile began; target: where it ends, exactly */
-    double velocity, acceleration;  /**< set velocity and acceleration; u/s, u/s2 */
-    double base_line;               /**< u; cm1e_axis_line() of base */
-    int64_t profile_cycles;         /**< since it began ... */
-    double profile_offset_s;        /**< ... so long before the first of them */
-    double profile_next_s;          /**< its time in the next cycle */
-    cm1e_profile_stretch_t stretch; /**< of it, the one that the set-point is in */
-    double loop_velocity;           /**< counts/s that the position loop adds in CSV */
-    cm1e_profile_t profile;         /**< relative to base, in u; along a table only its duration and end */
-} setpoint_t;
+/* Where the set-point comes from. */
+static inline void cm1e_axis_set_source(cm1e_axis_t *axis, const source_t *source)
+{
+    if (axis->setpoint.source != source && axis->setpoint.source->leave)
+        axis->setpoint.source->leave(axis);
+    axis->setpoint.source = source;
+}
+static inline bool axis_free(const cm1e_axis_t *axis) { return axis->setpoint.source->is_free; }
+static inline bool axis_holds(const cm1e_axis_t *axis) { return axis->setpoint.source->holds; }
+/** A profile, or a table over time, which is one too. */
+static inline bool axis_on_profile(const cm1e_axis_t *axis) { return axis->setpoint.source->find_stretch != NULL; }
+/** F of a coupling is what moves the axis. */
+static inline bool axis_follows(const cm1e_axis_t *axis) { return axis->setpoint.source->follows; }
+/** Set-points of ours change from cycle to cycle. */
+static inline bool set_points_move(const cm1e_axis_t *axis) { return axis->setpoint.source->moves; }
+/** The drive moves, or is about to, by itself. */
+static inline bool drive_moves(const cm1e_axis_t *axis) { return axis->setpoint.source->by_drive; }
+/** ... in its homing. */
+static inline bool drive_homes(const cm1e_axis_t *axis) { return axis->setpoint.source->homes; }
+/** The axis's motions are the drive's: `motion: drive`. */
+static inline bool drive_profiles(const cm1e_axis_t *axis) { return axis->config->motion == CM1E_MOTION_DRIVE; }
+/** Set-points of ours reach the motor. */
+static inline bool axis_acts(const cm1e_axis_t *axis)
+{
+    return axis->drive.feedback.enabled && axis->drive.feedback.mode == (int8_t)axis->mode;
+}
 
+/** The axis's own half of cm1e_axis_outputs(): state diagram and set-point, before they become the drive's. */
+void cm1e_axis_advance(cm1e_axis_t *axis);
 /** A profile takes over that began at `from`, `offset_s` before the present set-point. */
 void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile, position_t target,
                    double offset_s);

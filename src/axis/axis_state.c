@@ -10,7 +10,7 @@
  */
 #include "axis/axis_state.h"
 
-#include "axis/axis_private.h"
+#include "axis/axis_parts.h"
 
 enum {
     DISABLED = CM1E_AXIS_DISABLED,

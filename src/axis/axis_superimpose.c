@@ -15,7 +15,14 @@
  */
 #include <math.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_superimpose.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_events.h"
+#include "axis/axis_in_position.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
 
 static const double same_moment = 1e-6; /* cycles */
 

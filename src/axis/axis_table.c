@@ -9,7 +9,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_table.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
 #include "core/rare.h"
 
 static const double relative_tolerance = 1e-9;

@@ -3,7 +3,13 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_text.h"
+#include "axis/axis_device.h"
+#include "axis/axis_guard.h"
+#include "axis/axis_in_position.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
 
 static bool coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool refused, char *text, size_t size)
 {

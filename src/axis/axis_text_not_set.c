@@ -1,8 +1,9 @@
 /* What was not set, in sentences: parameters, positions, overrides, signals, cams. */
 #include <stdio.h>
 
+#include "axis/axis_device.h"
 #include "axis/axis_parameters.h"
-#include "axis/axis_private.h"
+#include "axis/axis_text.h"
 
 static void override_text(const cm1e_axis_t *axis, char *text, size_t size)
 {

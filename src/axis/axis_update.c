@@ -2,7 +2,11 @@
  * ContinuousUpdate (2.4.6): new inputs of a command that runs or waits. What has not changed costs a comparison. What
  * has is planned anew from the present set-point; relative values go on counting from where the command began.
  */
-#include "axis/axis_private.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_in_position.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_setpoint.h"
 
 /* The new inputs in an old command. */
 static move_t merged(const move_t *old, const move_t *inputs)

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "axis/axis_private.h"
+#include "axis/axis_setpoint.h"
 #include "cm1e/cml.h"
 #include "device/cml.h"
 #include "drive/drive_bridge.h"

@@ -10,6 +10,10 @@
 
 #include "core/guest_api.h"
 
+#define US_IN_NS INT64_C(1000)
+#define MS_IN_NS INT64_C(1000000)
+#define S_IN_NS INT64_C(1000000000)
+
 typedef struct cm1e_clock cm1e_clock_t;
 
 typedef struct cm1e_clock_ops {

@@ -1,6 +1,9 @@
 /* The coupling function by a cam (MC_CamIn): where it is placed, what it asks of the slave (coupling_cam.h). */
 #include <math.h>
 
+#include "axis/axis_limits.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_position.h"
 #include "coupling/coupling_private.h"
 
 /* A slave is where the cam wants it, and moves like it, when what is left to be done is as little as this. */

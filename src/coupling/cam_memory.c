@@ -2,6 +2,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "axis/axis_commands.h"
+#include "axis/axis_setpoint.h"
+#include "axis/axis_text.h"
 #include "coupling/coupling_private.h"
 
 enum { DEFAULT_POINTS = 128 };

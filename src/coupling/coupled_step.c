@@ -1,6 +1,12 @@
 /* Followers: their set-point of every cycle, and how a coupling begins (coupling_private.h). */
-#include "coupling/coupling_private.h"
+#include "axis/axis_events.h"
+#include "axis/axis_guard.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
+#include "axis/axis_superimpose.h"
 #include "core/rare.h"
+#include "coupling/coupling_private.h"
 
 #include <math.h>
 

@@ -6,6 +6,11 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "axis/axis_commands.h"
+#include "axis/axis_events.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_position.h"
 #include "coupling/coupling_private.h"
 
 /* Counts of a master that are none, and what of a limit is rounding. */

@@ -14,7 +14,7 @@
 #ifndef CM1E_COUPLING_COUPLING_CAM_H
 #define CM1E_COUPLING_COUPLING_CAM_H
 
-#include "axis/axis_private.h"
+#include "axis/axis_parts.h"
 #include "coupling/coupling.h"
 #include "motion/approach.h"
 #include "motion/cam.h"

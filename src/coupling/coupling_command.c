@@ -1,4 +1,8 @@
 /* Commands of followers: those that begin at once, those that wait, and those that wait for their master. */
+#include "axis/axis_commands.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_setpoint.h"
 #include "coupling/coupling_private.h"
 
 typedef cm1e_error_t prepare_t(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,

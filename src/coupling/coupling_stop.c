@@ -8,6 +8,10 @@
  */
 #include <string.h>
 
+#include "axis/axis_events.h"
+#include "axis/axis_guard.h"
+#include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
 #include "coupling/coupling_private.h"
 
 static bool keeps_ratio(const cm1e_axis_t *axis)

@@ -1,6 +1,7 @@
 /* Couplings in sentences: what was refused, and what they were lost for. */
 #include <stdio.h>
 
+#include "axis/axis_setpoint.h"
 #include "coupling/coupling_private.h"
 
 static const char *const troubles[] = {

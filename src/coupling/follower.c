@@ -1,6 +1,7 @@
 /* What the axis knows of couplings: a table of functions, added to it when it is made. */
 #include <stdlib.h>
 
+#include "axis/axis_commands.h"
 #include "coupling/coupling.h"
 #include "coupling/coupling_private.h"
 

@@ -1,6 +1,9 @@
 /* MC_GearIn, MC_CombineAxes: the sum of the masters' motions, each by its ratio. And the way out again. */
 #include <math.h>
 
+#include "axis/axis_commands.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_setpoint.h"
 #include "coupling/coupling_private.h"
 
 static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)

@@ -1,6 +1,8 @@
 /* The masters of a follower: who follows whom, in which order they advance, and what is seen of them. */
 #include <string.h>
 
+#include "axis/axis_pause.h"
+#include "axis/axis_setpoint.h"
 #include "coupling/coupling_private.h"
 
 /* Counts by which a master's position may differ from what its velocities explain: rounding of where a ramp without a

@@ -6,6 +6,8 @@
  */
 #include <math.h>
 
+#include "axis/axis_backlash.h"
+#include "axis/axis_setpoint.h"
 #include "coupling/coupling_private.h"
 
 enum { DEFAULT_FILTER_CYCLES = 10 };

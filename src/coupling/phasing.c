@@ -8,6 +8,9 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "axis/axis_commands.h"
+#include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
 #include "coupling/coupling_private.h"
 
 static const double same_moment = 1e-6; /* cycles */

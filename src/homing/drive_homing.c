@@ -12,8 +12,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "homing/homing_private.h"
+#include "axis/axis_backlash.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_events.h"
+#include "axis/axis_in_position.h"
+#include "axis/axis_position.h"
+#include "axis/axis_power.h"
+#include "axis/axis_setpoint.h"
 #include "core/bytes.h"
+#include "homing/homing_private.h"
 
 static const int64_t start_timeout_ns = 500 * MS_IN_NS;
 static const int64_t longest_halt_ns = 10000 * MS_IN_NS;

@@ -1,4 +1,6 @@
 /* MC_Home and the steps of Part 5 as commands: at once, waiting, and when their turn comes. */
+#include "axis/axis_commands.h"
+#include "axis/axis_setpoint.h"
 #include "homing/homing_private.h"
 
 cm1e_error_t cm1e_homing_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)

@@ -6,7 +6,7 @@
 #ifndef CM1E_HOMING_HOMING_PRIVATE_H
 #define CM1E_HOMING_HOMING_PRIVATE_H
 
-#include "axis/axis_private.h"
+#include "axis/axis_parts.h"
 
 extern const source_t cm1e_source_homing; /**< the drive's own; drive_homing.c */
 

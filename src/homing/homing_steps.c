@@ -11,8 +11,15 @@
  */
 #include <math.h>
 
-#include "homing/homing_private.h"
+#include "axis/axis_backlash.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_device.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
 #include "axis/axis_signals.h"
+#include "homing/homing_private.h"
 
 static const int64_t default_detection_ns = 50 * MS_IN_NS;
 static const double default_timeout_s = 60.0;

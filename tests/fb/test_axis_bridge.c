@@ -4,7 +4,7 @@
  * bus and the real frames, on virtual time.
  */
 #include "axis/axis_parameters.h"
-#include "axis/axis_private.h"
+#include "axis/axis_parts.h"
 #include "axis/axis_signals.h"
 #include "homing/homing_private.h"
 #include "sim/bridge_app.h"

@@ -1,7 +1,7 @@
 /* CM_SendCML, CM_SetMode, CM_Command on a simulated bridge with four motors: what they ask for happens, what they must
  * not do is refused, nothing jumps, and everything that can go wrong meanwhile ends in a word. */
 #include "bridge/cool_muscle.h"
-#include "axis/axis_private.h"
+#include "axis/axis_parts.h"
 #include "cm1e/plcopen.h"
 #include "drive/drive_bridge.h"
 #include "sim/bridge_app.h"

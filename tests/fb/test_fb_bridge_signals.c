@@ -1,6 +1,6 @@
 /* The blocks of digital signals on motors behind the simulated bridge, a CM1 and a CM2 at a time: by SDO in csp, in the
  * words in CPIO, and what is refused outside of it (docs/FUNCTION-BLOCKS.md, "Motors behind a bridge"). */
-#include "axis/axis_private.h"
+#include "axis/axis_parts.h"
 #include "cm1e/plcopen.h"
 #include "core/bytes.h"
 #include "homing/homing_private.h"

@@ -2,7 +2,7 @@
  * An axes group on the simulated segment, with SOEM and real frames: a CM1-E, a CM1 behind a bridge, and a virtual axis
  * in one group. What reaches the motors is compared with what was programmed, cycle by cycle.
  */
-#include "axis/axis_private.h"
+#include "axis/axis_position.h"
 #include "core/bytes.h"
 #include "device/bridge.h"
 #include "group/group.h"

@@ -23,7 +23,12 @@
 
 #include "assembly/assembly.h"
 #include "axis/axis.h"
-#include "axis/axis_private.h"
+#include "axis/axis_backlash.h"
+#include "axis/axis_commands.h"
+#include "axis/axis_guard.h"
+#include "axis/axis_limits.h"
+#include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
 #include "coupling/coupling.h"
 #include "fake_bus.h"
 

@@ -15,6 +15,10 @@
 
 #include "assembly/assembly.h"
 #include "axis/axis.h"
+#include "axis/axis_backlash.h"
+#include "axis/axis_plan.h"
+#include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
 #include "coupling/coupling_private.h"
 #include "block_table.h"
 #include "group/group_private.h"
