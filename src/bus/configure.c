@@ -13,37 +13,23 @@
  *  CM1E_DATAGRAMS_PER_CYCLE mailboxes of a CM1-E and the supervision take beside the process data. */
 enum { NS_PER_BYTE = 80, FRAME_OVERHEAD_BYTES = 52, NS_PER_SLAVE = 1000, BESIDE_PROCESS_DATA_NS = 65000 };
 
-/** "200, 250, 500 and 1000" */
-static const char *cycle_times(const cm1e_device_t *device, char text[64])
-{
-    size_t used = 0;
-    text[0] = 0;
-    for (size_t i = 0; i < device->cycle_time_count; i++)
-        used += (size_t)snprintf(text + used, 64 - used, "%s%lld",
-                                 i == 0 ? "" : i + 1 == device->cycle_time_count ? " and " : ", ",
-                                 (long long)(device->cycle_times_ns[i] / 1000));
-    return text;
-}
-
 /** UG 4.3: four cycle times; before V1.3.2 only 1 ms (UG 10.1). An unreadable version is given the benefit. Behind a
  *  bridge 1 ms (BR 6.3). */
 static cm1e_error_t check_cycle_time(const cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_diag_t *diag)
 {
-    char label[CM1E_LABEL_LENGTH], list[64];
+    char label[CM1E_LABEL_LENGTH], list[CM1E_CYCLE_TIMES_TEXT];
     const cm1e_device_t *device = slave->info.device;
     const int64_t cycle_ns = bus->config.cycle_time_ns;
-    bool known = device->cycle_time_count == 0;
-    for (size_t i = 0; i < device->cycle_time_count; i++)
-        known = known || device->cycle_times_ns[i] == cycle_ns;
+    const bool known = cm1e_device_has_cycle_time(device, cycle_ns);
     if (!known && device->cycle_time_count == 1)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_CYCLE_TIME, 0,
                              "%s runs with a cycle time of %s us only; configured are %lld us, for all slaves.",
-                             cm1e_bus_label_first(bus, slave, label), cycle_times(device, list),
+                             cm1e_bus_label_first(bus, slave, label), cm1e_device_cycle_times(device, list),
                              (long long)(cycle_ns / 1000));
     if (!known)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_CYCLE_TIME, 0,
                              "The cycle time of %lld us is not one of %s us, which %s accepts.",
-                             (long long)(cycle_ns / 1000), cycle_times(device, list),
+                             (long long)(cycle_ns / 1000), cm1e_device_cycle_times(device, list),
                              cm1e_bus_label(bus, slave, label));
     if (slave->firmware && !slave->firmware->all_cycle_times && cycle_ns != 1000000)
         return cm1e_diag_set(diag, CM1E_ERROR_BUS_CYCLE_TIME, 0,

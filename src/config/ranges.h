@@ -6,6 +6,7 @@
 #define CM1E_CONFIG_RANGES_H
 
 #include "config/problem.h"
+#include "device/devices.h"
 
 /* Every check returns false with the problem filled. Paths and key names are those of a bus file; a configuration made
  * by hand has the same names in other places. */
@@ -23,7 +24,22 @@ typedef struct check {
 __attribute__((format(printf, 3, 4)))
 bool cm1e_config_axis_wrong(const check_t *check, const char *key, const char *format, ...);
 #define axis_wrong cm1e_config_axis_wrong
+/** Whether a text ends within its array and has no control characters. */
+bool cm1e_config_is_text(const char *text, size_t size);
+#define IS_TEXT(array) cm1e_config_is_text(array, sizeof(array))
+#define NO_TEXT "is not a text of less than %zu bytes without control characters"
 
+static inline const cm1e_device_t *device_of(const check_t *check) { return cm1e_device_configured(check->axis); }
+static inline const cm1e_device_drive_t *drive_of(const check_t *check)
+{
+    return cm1e_device_drive_configured(check->axis);
+}
+
+/** Which device, where it is, its motor, and the keys that it has (ranges_device.c). */
+bool cm1e_config_check_device(const check_t *check);
+/** The unit, which the numbers need; then the numbers of an axis (ranges_numbers.c). */
+bool cm1e_config_check_unit(check_t *check);
+bool cm1e_config_check_numbers(check_t *check);
 /** Checks that a virtual axis or an encoder has no keys of a motor. */
 bool cm1e_config_check_without_motor(const check_t *check);
 

@@ -1,5 +1,8 @@
 /* The EtherCAT Cool MUSCLE Bridge as rows of the device interface: a model for each set of motors, a drive for each
  * kind of motor. Its dictionary has sources of its own (bridge_objects.c, bridge_axes.c). */
+#include <stdio.h>
+#include <string.h>
+
 #include "device/bridge_tables.h"
 #include "device/device_rows.h"
 
@@ -157,6 +160,32 @@ static const char *motor(size_t n)
     return n == 0 ? cm1_drive.short_name : n == 1 ? cm2_drive.short_name : NULL;
 }
 
+static cm1e_bridge_motor_t motor_of(const cm1e_axis_config_t *axis)
+{
+    return strcmp(axis->motor, cm1_drive.short_name) == 0 ? CM1E_BRIDGE_CM1 : CM1E_BRIDGE_CM2;
+}
+
+/* BR appendix 5. */
+static double position_limit(const cm1e_axis_config_t *axis)
+{
+    return cm1e_bridge_position_limit(motor_of(axis), axis->k37);
+}
+
+static bool check_axis(const cm1e_axis_config_t *axis, cm1e_wrong_key_t *wrong)
+{
+    wrong->key = "k37";
+    if (!axis->k37_stated)
+        snprintf(wrong->text, sizeof wrong->text,
+                 "is missing; expected the K37 of the motor, which defines counts and speeds: send it \"K37.%u\" with "
+                 "cm1e cml", axis->channel);
+    else if (cm1e_bridge_counts_per_revolution(axis->k37) > 0 && position_limit(axis) > 0)
+        return true;
+    else
+        snprintf(wrong->text, sizeof wrong->text, "is %u; expected 0 ... 8 or 10, 40 ... 50, or each of these plus 20%s",
+                 axis->k37, motor_of(axis) == CM1E_BRIDGE_CM2 ? ", or 80 ... 88 or 90" : "");
+    return false;
+}
+
 #define LACKS(key, reason)                                                                                          \
     {key, "is given, but the axis has a channel of a bridge: " reason "; expected no such key"}
 static const cm1e_absent_key_t absent[] = {
@@ -169,6 +198,13 @@ static const cm1e_absent_key_t absent[] = {
     {NULL, NULL},
 };
 
+static const cm1e_device_t *with_motors(const char *const motors[CM1E_BRIDGE_AXES])
+{
+    static const cm1e_device_t *const models[] = {&cm1e_device_eb01, &cm1e_device_eb02, &cm1e_device_eb12};
+    cm1e_device_model_t model;
+    return cm1e_bridge_model_with(motors, &model) ? models[model - CM1E_DEVICE_EB01] : NULL;
+}
+
 static const int64_t cycle_times_ns[] = {CM1E_BRIDGE_CYCLE_TIME_NS};
 
 #define BRIDGE                                                                                                      \
@@ -176,7 +212,9 @@ static const int64_t cycle_times_ns[] = {CM1E_BRIDGE_CYCLE_TIME_NS};
     .questions = questions, .question_count = COUNT(questions), .channels = CM1E_BRIDGE_AXES,                       \
     .described = true, .extra_is_error = true, .cycle_times_ns = cycle_times_ns, .cycle_time_count = 1,             \
     .object = object, .entry = entry, .pdos = pdos, .counts_per_revolution = counts_per_revolution,                 \
-    .peak_velocity = peak_velocity, .motor = motor, .motors_note = ", which stand behind a bridge", .absent = absent
+    .peak_velocity = peak_velocity, .motor = motor, .motors_note = ", which stand behind a bridge", .absent = absent, \
+    .check_axis = check_axis, .position_limit = position_limit, .with_motors = with_motors,                         \
+    .models_note = "CM1 at all channels (EB01), CM2 at all (EB02), or CM1 at 1 and 2 and CM2 at 3 and 4 (EB12)"
 
 const cm1e_device_t cm1e_device_eb01 = {
     BRIDGE, .name = "EB01", .model = CM1E_DEVICE_EB01, .drives = {&cm1_drive, &cm1_drive, &cm1_drive, &cm1_drive},

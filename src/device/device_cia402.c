@@ -2,6 +2,8 @@
 #include "device/cia402.h"
 #include "device/device_rows.h"
 
+#include <stdio.h>
+
 /* Sizes are those of the standard. Which objects a drive has mapped is its own affair, or the bus file's; a mode
  * whose target is not mapped is not used. */
 static const cm1e_device_object_t process_data[] = {
@@ -116,6 +118,24 @@ static const char *motor(size_t n)
     return NULL;
 }
 
+static bool check_axis(const cm1e_axis_config_t *axis, cm1e_wrong_key_t *wrong)
+{
+    wrong->key = "drive.max_speed_rpm";
+    if (axis->counts_per_revolution < 100 || axis->counts_per_revolution > 1 << 30) {
+        wrong->key = "drive.counts_per_revolution";
+        snprintf(wrong->text, sizeof wrong->text, "is %u; expected 100 ... %d", axis->counts_per_revolution, 1 << 30);
+    } else if (!(axis->max_speed_rpm >= 1 && axis->max_speed_rpm <= 100000)) {
+        snprintf(wrong->text, sizeof wrong->text, "is %g; expected 1 ... 100000", axis->max_speed_rpm);
+    } else if (peak_velocity(axis) > INT32_MAX) {
+        snprintf(wrong->text, sizeof wrong->text,
+                 "is %g, at which the motor makes %.0f counts/s; expected at most %d counts/s", axis->max_speed_rpm,
+                 peak_velocity(axis), INT32_MAX);
+    } else {
+        return true;
+    }
+    return false;
+}
+
 #define LACKS(key, reason)                                                                                          \
     {key, "is given, but the axis is a generic CiA 402 drive: " reason "; expected no such key"}
 static const cm1e_absent_key_t absent[] = {
@@ -134,6 +154,6 @@ const cm1e_device_t cm1e_device_cia402 = {
     .object = object, .entry = entry, .pdos = pdos,
     .counts_per_revolution = counts_per_revolution, .peak_velocity = peak_velocity,
     .motor = motor, .motors_note = "no such key: drive.counts_per_revolution and drive.max_speed_rpm state its motor",
-    .absent = absent,
+    .absent = absent, .check_axis = check_axis,
     .drives = {&drive},
 };

@@ -115,6 +115,39 @@ static const char *motor(size_t n)
     return n < sizeof cm1e_device_motors / sizeof cm1e_device_motors[0] ? cm1e_device_motors[n].name : NULL;
 }
 
+static bool revision_known(uint32_t revision)
+{
+    for (int firmware = 0; firmware < CM1E_FIRMWARE_COUNT; firmware++)
+        if (cm1e_firmware_info((cm1e_firmware_t)firmware)->revision == revision)
+            return true;
+    return false;
+}
+
+static bool same_entries(const cm1e_pdo_t *a, const cm1e_pdo_t *b)
+{
+    if (a->entry_count != b->entry_count)
+        return false;
+    for (unsigned i = 0; i < a->entry_count; i++)
+        if (a->entries[i].index != b->entries[i].index || a->entries[i].subindex != b->entries[i].subindex ||
+            a->entries[i].bits != b->entries[i].bits)
+            return false;
+    return true;
+}
+
+/* By the tables of some firmware, in one of the two orders of the guide. */
+static bool pdo_known(const cm1e_pdo_t *pdo, bool transmit)
+{
+    enum { MAPPINGS = CM1E_MAPPING_PROFILE + 1, PDO_ORDERS = 2 };
+    for (unsigned n = 0; n < MAPPINGS * CM1E_FIRMWARE_COUNT * PDO_ORDERS; n++) {
+        cm1e_pdo_t known;
+        cm1e_device_pdo(&known, (cm1e_mapping_t)(n % MAPPINGS), transmit,
+                        (cm1e_pdo_order_t)(n / MAPPINGS % PDO_ORDERS), (cm1e_firmware_t)(n / MAPPINGS / PDO_ORDERS));
+        if (known.index == pdo->index && same_entries(pdo, &known))
+            return true;
+    }
+    return false;
+}
+
 static const cm1e_absent_key_t absent[] = {
     {"k37", "is given without a channel; expected only behind a bridge: a CM1-E has 50000 counts in a revolution"},
     {NULL, NULL},
@@ -128,6 +161,8 @@ const cm1e_device_t cm1e_device_cm1e = {
     .firmware = cm1e_firmware_from_version,
     .object = object, .entry = entry, .pdos = pdos,
     .counts_per_revolution = counts_per_revolution, .peak_velocity = peak_velocity,
+    .revision_known = revision_known,
+    .revisions = "0x20020001 and, from firmware V1.3.0 on, 0x20020103", .pdo_known = pdo_known,
     .motor = motor, .motors_note = " (CM1 and CM2 have a channel of a bridge)", .absent = absent,
     .drives = {&drive},
 };

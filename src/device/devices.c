@@ -1,5 +1,6 @@
 #include "device/devices.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* All devices; of a kind the model that can do most comes first. */
@@ -65,6 +66,39 @@ const cm1e_device_drive_t *cm1e_device_drive_configured(const cm1e_axis_config_t
 {
     const cm1e_device_t *device = cm1e_device_configured(axis);
     return device ? cm1e_device_drive(device, axis->channel) : NULL;
+}
+
+bool cm1e_device_is_shared(const cm1e_axis_config_t *axis)
+{
+    const cm1e_device_t *device = cm1e_device_configured(axis);
+    return device && device->channels > 0;
+}
+
+bool cm1e_device_has_motors(const cm1e_device_t *device, const char *const motors[CM1E_BRIDGE_AXES])
+{
+    for (unsigned i = 0; device && i < device->channels; i++)
+        if (motors[i] && motors[i][0] && strcmp(motors[i], device->drives[i]->short_name) != 0)
+            return false;
+    return device && device->channels > 0;
+}
+
+const char *cm1e_device_cycle_times(const cm1e_device_t *device, char text[CM1E_CYCLE_TIMES_TEXT])
+{
+    size_t used = 0;
+    text[0] = 0;
+    for (size_t i = 0; i < device->cycle_time_count; i++)
+        used += (size_t)snprintf(text + used, CM1E_CYCLE_TIMES_TEXT - used, "%s%lld",
+                                 i == 0 ? "" : i + 1 == device->cycle_time_count ? " and " : ", ",
+                                 (long long)(device->cycle_times_ns[i] / 1000));
+    return text;
+}
+
+bool cm1e_device_has_cycle_time(const cm1e_device_t *device, int64_t cycle_time_ns)
+{
+    bool known = device->cycle_time_count == 0;
+    for (size_t i = 0; i < device->cycle_time_count; i++)
+        known = known || device->cycle_times_ns[i] == cycle_time_ns;
+    return known;
 }
 
 bool cm1e_device_same_kind(const cm1e_device_t *a, const cm1e_device_t *b)

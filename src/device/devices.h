@@ -179,6 +179,12 @@ typedef struct cm1e_question {
     uint32_t wanted;                /**< the answer of the device; 0: whatever it is, it is kept */
 } cm1e_question_t;
 
+/** A key of the configuration whose value is wrong for a device, and why. */
+typedef struct cm1e_wrong_key {
+    const char *key;
+    char text[200];
+} cm1e_wrong_key_t;
+
 /** A key of the configuration that means nothing for a device, and what is said where it is given. */
 typedef struct cm1e_absent_key {
     const char *key, *text;
@@ -212,6 +218,11 @@ struct cm1e_device {
     /** What the bus assigns; `axis` NULL: no axis is configured there. */
     cm1e_pdo_choice_t (*pdos)(const cm1e_axis_config_t *axis);
 
+    /* Files of other masters; NULL: nothing is known that could be wrong. */
+    bool (*revision_known)(uint32_t revision);
+    const char *revisions;          /**< in a text: the revisions that are known */
+    bool (*pdo_known)(const cm1e_pdo_t *pdo, bool transmit); /**< its mappings are fixed, and this is one of them */
+
     /* Of the configuration of an axis, before a slave is known. */
     bool motor_stated;              /**< the configuration has to state counts per revolution and maximum speed */
     double (*counts_per_revolution)(const cm1e_axis_config_t *axis);
@@ -219,6 +230,14 @@ struct cm1e_device {
     const char *(*motor)(size_t n); /**< names for `motor`; NULL: no more. NULL: it takes none */
     const char *motors_note;        /**< behind their list in a text */
     const cm1e_absent_key_t *absent; /**< keys that mean nothing for it; ends with a key of NULL */
+    /** Checks the keys that only this device has; NULL: there are none. */
+    bool (*check_axis)(const cm1e_axis_config_t *axis, cm1e_wrong_key_t *wrong);
+    /** The greatest position in either direction, counts; NULL: what a double counts exactly. */
+    double (*position_limit)(const cm1e_axis_config_t *axis);
+    /** The model of this kind that has these motors at its channels ("" or NULL: any); NULL: there is none. NULL where
+     *  the device has no channels. */
+    const cm1e_device_t *(*with_motors)(const char *const motors[CM1E_BRIDGE_AXES]);
+    const char *models_note;        /**< in a text: the motors of each model */
 
     const cm1e_device_drive_t *drives[CM1E_BRIDGE_AXES]; /**< by channel - 1; without channels the first */
 };
@@ -243,6 +262,15 @@ const cm1e_device_t *cm1e_device_recognised(cm1e_recognition_kind_t recognised);
 const cm1e_device_t *cm1e_device_configured(const cm1e_axis_config_t *axis);
 /** The drive that the configuration says; NULL: see cm1e_device_configured(). */
 const cm1e_device_drive_t *cm1e_device_drive_configured(const cm1e_axis_config_t *axis);
+/** The axis shares its slave with others, and has a channel there. */
+bool cm1e_device_is_shared(const cm1e_axis_config_t *axis);
+/** A model with channels, and with these motors at them ("" or NULL: any). */
+bool cm1e_device_has_motors(const cm1e_device_t *device, const char *const motors[CM1E_BRIDGE_AXES]);
+/** "200, 250, 500 and 1000": its cycle times in us. */
+enum { CM1E_CYCLE_TIMES_TEXT = 64 };
+const char *cm1e_device_cycle_times(const cm1e_device_t *device, char text[CM1E_CYCLE_TIMES_TEXT]);
+/** A bus with this cycle time can have the device. */
+bool cm1e_device_has_cycle_time(const cm1e_device_t *device, int64_t cycle_time_ns);
 /** Models of one kind, whatever motors they have; false where one of them is NULL. */
 bool cm1e_device_same_kind(const cm1e_device_t *a, const cm1e_device_t *b);
 /** The drive of an axis by its channel; NULL: there is no such channel, or the model is not known. */

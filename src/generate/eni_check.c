@@ -7,7 +7,7 @@
 #include "generate/eni.h"
 #include "generate/eni_registers.h"
 
-enum { STATIONS = 0x10000, MAPPINGS = 4, PDO_ORDERS = 2 };
+enum { STATIONS = 0x10000 };
 
 /* ---- addresses -------------------------------------------------------------------------------------------------- */
 
@@ -229,86 +229,72 @@ static void check_mailbox(cm1e_findings_t *findings, const cm1e_eni_device_t *de
     }
 }
 
-/* ---- our motor -------------------------------------------------------------------------------------------------- */
+/* ---- devices that we know --------------------------------------------------------------------------------------- */
 
-static bool same_entries(const cm1e_described_pdo_t *pdo, const cm1e_pdo_t *table)
+static bool pdo_known(const cm1e_device_t *known, const cm1e_described_pdo_t *pdo)
 {
-    if (pdo->entries.count != table->entry_count)
+    cm1e_pdo_t table = {.index = pdo->index};
+    if (pdo->entries.count > CM1E_PDO_MAX_ENTRIES)
         return false;
     for (size_t i = 0; i < pdo->entries.count; i++) {
         const cm1e_described_pdo_entry_t *entry = &pdo->entries.at[i];
-        if (entry->index != table->entries[i].index || entry->subindex != table->entries[i].subindex ||
-            entry->bits != table->entries[i].bits)
+        if (entry->bits > UINT8_MAX)
             return false;
+        table.entries[table.entry_count++] =
+            (cm1e_pdo_entry_t){entry->index, entry->subindex, (uint8_t)entry->bits};
     }
-    return true;
+    return known->pdo_known(&table, pdo->transmit);
 }
 
-/* By the tables of some firmware, in one of the two orders of the guide. */
-static bool is_of_cm1e(const cm1e_described_pdo_t *pdo)
+static void check_known(cm1e_findings_t *findings, const cm1e_eni_device_t *device, const cm1e_device_t *known)
 {
-    for (int mapping = 0; mapping < MAPPINGS; mapping++)
-        for (int firmware = 0; firmware < CM1E_FIRMWARE_COUNT; firmware++)
-            for (int order = 0; order < PDO_ORDERS; order++) {
-                cm1e_pdo_t table;
-                cm1e_device_pdo(&table, (cm1e_mapping_t)mapping, pdo->transmit, (cm1e_pdo_order_t)order,
-                                (cm1e_firmware_t)firmware);
-                if (table.index == pdo->index && same_entries(pdo, &table))
-                    return true;
-            }
-    return false;
-}
-
-static void check_cm1e(cm1e_findings_t *findings, const cm1e_eni_device_t *device)
-{
-    bool known = false;
-    for (int firmware = 0; firmware < CM1E_FIRMWARE_COUNT; firmware++)
-        known |= cm1e_firmware_info((cm1e_firmware_t)firmware)->revision == device->revision;
-    if (!known)
+    if (known->revision_known && !known->revision_known(device->revision))
         cm1e_findings_add(findings, CM1E_RULE_ENI_CM1E_REVISION, device->place,
-                          "%s is a CM1-E of revision 0x%08X; known are 0x20020001 and, from firmware V1.3.0 on, "
-                          "0x20020103.",
-                          device->name, (unsigned)device->revision);
-    for (size_t i = 0; i < device->pdos.count; i++)
-        if (!is_of_cm1e(&device->pdos.at[i]))
+                          "%s is a %s of revision 0x%08X; known are %s.", device->name, known->label,
+                          (unsigned)device->revision, known->revisions);
+    for (size_t i = 0; i < device->pdos.count && known->pdo_known; i++)
+        if (!pdo_known(known, &device->pdos.at[i]))
             cm1e_findings_add(findings, CM1E_RULE_ENI_CM1E_PDO, device->pdos.at[i].place,
-                              "%s is a CM1-E, whose mappings are fixed; none of them has the entries of this "
-                              "PDO 0x%04X.",
-                              device->name, device->pdos.at[i].index);
+                              "%s is a %s, whose mappings are fixed; none of them has the entries of this PDO 0x%04X.",
+                              device->name, known->label, device->pdos.at[i].index);
 }
 
-static void check_cycle_time(cm1e_findings_t *findings, const cm1e_eni_t *document)
+static const cm1e_device_t *known_device(const cm1e_eni_device_t *device)
 {
-    for (size_t i = 0; i < document->cyclics.count; i++) {
-        const int64_t time_us = document->cyclics.at[i].cycle_time_us;
-        bool known = time_us == CM1E_ENI_NOT_GIVEN;
-        for (int n = 0; n < 4; n++)
-            known |= time_us * 1000 == cm1e_device_cycle_times_ns[n];
-        if (!known)
-            cm1e_findings_add(findings, CM1E_RULE_ENI_CYCLE_TIME, document->cyclics.at[i].place,
-                              "A cycle time of %lld us; a CM1-E follows 200, 250, 500 and 1000 us.",
-                              (long long)time_us);
+    return cm1e_device_of_identity(device->vendor_id, device->product_code);
+}
+
+/* A cycle time that a device in the file does not follow is told once. */
+static void check_cycle_time(cm1e_findings_t *findings, const cm1e_eni_t *document, const cm1e_eni_cyclic_t *cyclic)
+{
+    char list[CM1E_CYCLE_TIMES_TEXT];
+    for (size_t i = 0; i < document->devices.count && cyclic->cycle_time_us != CM1E_ENI_NOT_GIVEN; i++) {
+        const cm1e_device_t *known = known_device(&document->devices.at[i]);
+        if (!known || cm1e_device_has_cycle_time(known, cyclic->cycle_time_us * 1000))
+            continue;
+        cm1e_findings_add(findings, CM1E_RULE_ENI_CYCLE_TIME, cyclic->place,
+                          "A cycle time of %lld us; a %s follows %s us.", (long long)cyclic->cycle_time_us,
+                          known->label, cm1e_device_cycle_times(known, list));
+        return;
     }
 }
 
 void cm1e_eni_check(cm1e_findings_t *findings, const cm1e_eni_t *document)
 {
-    bool any_known = false;
     check_addresses(findings, document);
     check_previous_ports(findings, document);
     check_commands(findings, document);
     for (size_t i = 0; i < document->devices.count; i++) {
         const cm1e_eni_device_t *device = &document->devices.at[i];
-        const bool known = cm1e_device_of_identity(device->vendor_id, device->product_code) != NULL;
+        const cm1e_device_t *known = known_device(device);
         check_sync_managers(findings, device);
         check_range(findings, device, true);
         check_range(findings, device, false);
         check_mailbox(findings, device);
         if (known)
-            check_cm1e(findings, device);
-        any_known |= known;
+            check_known(findings, device, known);
     }
-    if (any_known)
-        check_cycle_time(findings, document);
+    for (size_t i = 0; i < document->cyclics.count; i++)
+        check_cycle_time(findings, document, &document->cyclics.at[i]);
     cm1e_eni_check_frames(findings, document);
 }

@@ -135,7 +135,7 @@ typedef struct node {
 /* Another axis of the same bridge; the check of the configuration ensures that the channels differ. */
 static bool is_behind(const node_t *node, const cm1e_axis_config_t *axis)
 {
-    return node->axis && axis->channel && axis->address && node->axis->address_kind == axis->address_kind &&
+    return node->axis && cm1e_device_is_shared(axis) && axis->address && node->axis->address_kind == axis->address_kind &&
            node->axis->address == axis->address;
 }
 
@@ -176,7 +176,7 @@ static cm1e_error_t find_nodes(node_t *nodes, uint32_t *count, const cm1e_bus_co
         *count += !node->axis;
         node->axis = node->axis ? node->axis : config;
         cm1e_slave_name_add(node->name, config);
-        if (config->channel)
+        if (cm1e_device_is_shared(config))
             node->motors[config->channel - 1] = config->motor;
     }
     for (uint32_t place = *count; place < network->axis_count; place++)
@@ -189,16 +189,18 @@ static cm1e_error_t find_nodes(node_t *nodes, uint32_t *count, const cm1e_bus_co
 static cm1e_error_t describe_bridge(cm1e_description_file_t *described, const node_t *node,
                                     const cm1e_generate_options_t *options, cm1e_diag_t *diag)
 {
+    const cm1e_device_t *expected = cm1e_device_configured(node->axis);
     const cm1e_device_options_t *found = NULL;
     for (size_t i = 0; options->devices && i < options->device_count; i++) {
         const cm1e_device_options_t *device = &options->devices[i];
-        if (!cm1e_bridge_name(device->model) || !cm1e_bridge_has_motors(device->model, node->motors))
+        const cm1e_device_t *model = cm1e_device_of_model(device->model);
+        if (!cm1e_device_same_kind(model, expected) || !cm1e_device_has_motors(model, node->motors))
             continue;
         if (found)
             return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0,
                                  "%s: an %s and an %s can both be the bridge there; state the motor of each of "
-                                 "its axes", node->name, cm1e_bridge_name(found->model),
-                                 cm1e_bridge_name(device->model));
+                                 "its axes", node->name, cm1e_device_of_model(found->model)->name,
+                                 model->name);
         found = device;
     }
     if (!found)

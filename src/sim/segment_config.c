@@ -16,12 +16,14 @@ typedef struct place {
 /* Returns false if the place is taken, or if there is no such connector. */
 static bool take_place(place_t *place, const cm1e_axis_config_t *axis)
 {
-    const bool shared = place->axis && place->axis->channel && axis->channel;
-    if (axis->channel > CM1E_BRIDGE_AXES || (place->axis && !shared))
+    const bool shares = cm1e_device_is_shared(axis);
+    if (place->axis && !(shares && cm1e_device_is_shared(place->axis)))
+        return false;
+    if (shares && (axis->channel == 0 || axis->channel > cm1e_device_configured(axis)->channels))
         return false;
     if (!place->axis)
         place->axis = axis;
-    if (axis->channel == 0)
+    if (!shares)
         return true;
     const bool is_free = !place->channels[axis->channel - 1];
     place->channels[axis->channel - 1] = axis;
@@ -31,9 +33,9 @@ static bool take_place(place_t *place, const cm1e_axis_config_t *axis)
 /* The place of the bridge of which the list has named another axis before; NULL: none. */
 static place_t *place_of_bridge(place_t *places, const cm1e_axis_config_t *axis)
 {
-    for (uint32_t i = 0; axis->channel && i < CM1E_MAX_SLAVES; i++) {
+    for (uint32_t i = 0; cm1e_device_is_shared(axis) && i < CM1E_MAX_SLAVES; i++) {
         const cm1e_axis_config_t *other = places[i].axis;
-        if (other && other->channel && other->address_kind == axis->address_kind && other->address == axis->address)
+        if (other && cm1e_device_is_shared(other) && other->address_kind == axis->address_kind && other->address == axis->address)
             return &places[i];
     }
     return NULL;
@@ -91,15 +93,16 @@ static cm1e_error_t check_cm1e(const cm1e_axis_config_t *axis, cm1e_diag_t *diag
     return CM1E_OK;
 }
 
-static cm1e_error_t find_model(const place_t *place, cm1e_device_model_t *model, cm1e_diag_t *diag)
+static const cm1e_device_t *find_model(const place_t *place, cm1e_diag_t *diag)
 {
     const char *motors[CM1E_BRIDGE_AXES];
     for (int i = 0; i < CM1E_BRIDGE_AXES; i++)
         motors[i] = place->channels[i] ? place->channels[i]->motor : "";
-    if (cm1e_bridge_model_with(motors, model))
-        return CM1E_OK;
-    return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "no bridge has the motors '%s', '%s', '%s' and '%s'", motors[0],
-                         motors[1], motors[2], motors[3]);
+    const cm1e_device_t *device = cm1e_device_configured(place->axis)->with_motors(motors);
+    if (!device)
+        cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "no bridge has the motors '%s', '%s', '%s' and '%s'", motors[0],
+                      motors[1], motors[2], motors[3]);
+    return device;
 }
 
 /* What stands at a place, made from its axes. */
@@ -120,9 +123,9 @@ static cm1e_sim_slave_t *make_cm1e(made_t *made)
 
 static cm1e_sim_slave_t *make_bridge(made_t *made)
 {
-    cm1e_device_model_t model;
-    made->error = find_model(made->place, &model, made->diag);
-    return made->error ? NULL : cm1e_sim_bridge_create(model, made->place->channels, made->alias);
+    const cm1e_device_t *device = find_model(made->place, made->diag);
+    made->error = device ? CM1E_OK : CM1E_ERROR_CONFIG;
+    return device ? cm1e_sim_bridge_create(device->model, made->place->channels, made->alias) : NULL;
 }
 
 static cm1e_sim_slave_t *make_cia402(made_t *made) { return cm1e_sim_cia402_create(made->place->axis, made->alias); }
