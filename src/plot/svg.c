@@ -3,7 +3,6 @@
  * the smallest and largest value of each of a few hundred slices of time, so that no peak is lost and the file stays
  * below half a megabyte. */
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
 #include "cm1e/plot.h"
@@ -24,7 +23,7 @@ typedef struct box {
 } box_t;
 
 typedef struct curve {
-    size_t offset; /**< of the value in trace_sample_t */
+    uint32_t column; /**< of the axis */
     const char *css;
 } curve_t;
 
@@ -34,10 +33,10 @@ static const struct panel {
     curve_t curves[2]; /**< the first one is drawn below */
 } panels[] = {
     {"position", "u", 170, 1e-3,
-     {{offsetof(trace_sample_t, actual_position), "actual"}, {offsetof(trace_sample_t, set_position), "set"}}},
+     {{TRACE_ACTUAL_POSITION, "actual"}, {TRACE_SET_POSITION, "set"}}},
     {"velocity", "u/s", 150, 1e-2,
-     {{offsetof(trace_sample_t, actual_velocity), "actual"}, {offsetof(trace_sample_t, set_velocity), "set"}}},
-    {"torque", "% of rated", 110, 1.0, {{offsetof(trace_sample_t, torque), "torque"}, {0, NULL}}},
+     {{TRACE_ACTUAL_VELOCITY, "actual"}, {TRACE_SET_VELOCITY, "set"}}},
+    {"torque", "% of rated", 110, 1.0, {{TRACE_TORQUE, "torque"}, {0, NULL}}},
 };
 enum { PANELS = sizeof panels / sizeof panels[0] };
 
@@ -86,11 +85,9 @@ static double x_of(const plot_t *plot, const box_t *box, double seconds)
     return box->x + (seconds - plot->begin_s) / (plot->end_s - plot->begin_s) * box->width;
 }
 
-static double value_of(const plot_t *plot, uint32_t n, uint32_t axis, const curve_t *curve)
+static double value_of(const plot_t *plot, uint32_t n, uint32_t axis, uint32_t column)
 {
-    double value;
-    memcpy(&value, (const char *)cm1e_trace_sample(plot->trace, n, axis) + curve->offset, sizeof value);
-    return value;
+    return cm1e_trace_sample(plot->trace, n)[axis * TRACE_AXIS_COLUMNS + column];
 }
 
 static void print_escaped(FILE *file, const char *text, size_t bytes)
@@ -122,7 +119,7 @@ static scale_t scale_of_panel(const plot_t *plot, uint32_t axis, const struct pa
     double low = INFINITY, high = -INFINITY;
     for (int c = 0; c < 2 && panel->curves[c].css; c++)
         for (uint32_t n = 0; n < plot->trace->used; n++) {
-            const double value = value_of(plot, n, axis, &panel->curves[c]);
+            const double value = value_of(plot, n, axis, panel->curves[c].column);
             if (isfinite(value)) {
                 low = fmin(low, value);
                 high = fmax(high, value);
@@ -202,10 +199,10 @@ static extremes_t extremes_of_slice(const plot_t *plot, uint32_t axis, const cur
     const uint32_t slice = slice_of(plot, *n);
     uint32_t low = *n, high = *n;
     for (; *n < plot->trace->used && slice_of(plot, *n) == slice; ++*n) {
-        const double value = value_of(plot, *n, axis, curve);
-        if (value < value_of(plot, low, axis, curve))
+        const double value = value_of(plot, *n, axis, curve->column);
+        if (value < value_of(plot, low, axis, curve->column))
             low = *n;
-        if (value > value_of(plot, high, axis, curve))
+        if (value > value_of(plot, high, axis, curve->column))
             high = *n;
     }
     return low < high ? (extremes_t){low, high} : (extremes_t){high, low};
@@ -217,7 +214,8 @@ static void print_curve(const plot_t *plot, const box_t *box, const scale_t *sca
     fprintf(plot->file, "<path class=\"%s\" d=\"", curve->css);
     for (uint32_t n = 0; n < plot->trace->used;) {
         const extremes_t e = extremes_of_slice(plot, axis, curve, &n);
-        const double first = value_of(plot, e.first, axis, curve), last = value_of(plot, e.last, axis, curve);
+        const double first = value_of(plot, e.first, axis, curve->column);
+        const double last = value_of(plot, e.last, axis, curve->column);
         if (isfinite(first))
             pen_to(&pen, x_of(plot, box, time_s(plot, e.first)), y_of(box, scale, first));
         if (e.last != e.first && isfinite(last))
@@ -232,9 +230,9 @@ static void print_curve(const plot_t *plot, const box_t *box, const scale_t *sca
 static cm1e_axis_state_t state_of_slice(const plot_t *plot, uint32_t axis, uint32_t *n)
 {
     const uint32_t slice = slice_of(plot, *n);
-    cm1e_axis_state_t state = cm1e_trace_sample(plot->trace, *n, axis)->state;
+    cm1e_axis_state_t state = (cm1e_axis_state_t)value_of(plot, *n, axis, TRACE_STATE);
     for (; *n < plot->trace->used && slice_of(plot, *n) == slice; ++*n) {
-        const cm1e_axis_state_t other = cm1e_trace_sample(plot->trace, *n, axis)->state;
+        const cm1e_axis_state_t other = (cm1e_axis_state_t)value_of(plot, *n, axis, TRACE_STATE);
         if (states[other].rank > states[state].rank)
             state = other;
     }

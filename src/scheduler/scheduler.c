@@ -108,6 +108,12 @@ static void scan(cm1e_scheduler_t *s)
     cm1e_bus_send(s->bus);
 }
 
+static void count_overrun(cm1e_scheduler_t *s)
+{
+    atomic_fetch_add_explicit(&s->statistics.overruns, 1, memory_order_relaxed);
+    s->trace.timing.overruns++;
+}
+
 /** Waits for the planned start. A thread that wakes up one cycle late or more continues with the present cycle. */
 static void wait_for_start(cm1e_scheduler_t *s)
 {
@@ -117,10 +123,11 @@ static void wait_for_start(cm1e_scheduler_t *s)
     if (s->statistics.cycles > 0)
         cm1e_distribution_add(&s->statistics.cycle_time, now_ns - s->begin_ns);
     cm1e_distribution_add(&s->statistics.wake_up_latency, now_ns - planned_ns(s, s->number));
+    s->trace.timing.wake_up_latency_us = (double)(now_ns - planned_ns(s, s->number)) * 1e-3;
     s->begin_ns = now_ns;
     if (missed > 0) {
         s->number += missed;
-        atomic_fetch_add_explicit(&s->statistics.overruns, 1, memory_order_relaxed);
+        count_overrun(s);
     }
 }
 
@@ -131,11 +138,12 @@ static void end_cycle(cm1e_scheduler_t *s)
     const int64_t end_ns = cm1e_clock_now(s->clock);
     cm1e_distribution_add(&s->statistics.execution_time, end_ns - s->begin_ns);
     cm1e_statistics_note_bus(&s->statistics, cm1e_bus_counters(s->bus));
+    s->trace.timing.execution_time_us = (double)(end_ns - s->begin_ns) * 1e-3;
     atomic_fetch_add_explicit(&s->statistics.cycles, 1, memory_order_relaxed);
     s->number++;
     if (end_ns <= planned_ns(s, s->number))
         return;
-    atomic_fetch_add_explicit(&s->statistics.overruns, 1, memory_order_relaxed);
+    count_overrun(s);
     s->number = (end_ns - s->start_ns + s->cycle_time_ns - 1) / s->cycle_time_ns;
 }
 
@@ -143,6 +151,7 @@ static void cycle(cm1e_scheduler_t *s)
 {
     wait_for_start(s);
     scan(s);
+    s->trace.timing.lost_frames = cm1e_bus_counters(s->bus)->lost_frames;
     cm1e_trace_record(&s->trace, s->axes, cm1e_scheduler_time_ns(s));
     end_cycle(s);
 }
@@ -220,6 +229,9 @@ cm1e_error_t cm1e_scheduler_run(cm1e_scheduler_t *scheduler, int64_t duration_ns
     const cm1e_error_t other_operation = check_operation(scheduler, diag);
     if (other_operation != CM1E_OK)
         return other_operation;
+    const cm1e_error_t no_memory = cm1e_trace_begin(&scheduler->trace, diag);
+    if (no_memory != CM1E_OK)
+        return no_memory;
     scheduler->run = true;
     cm1e_clock_t *clock_before = cm1e_clock_current();
     cm1e_clock_make_current(scheduler->clock); /* this thread may differ from the one that opened the bus */
@@ -265,6 +277,13 @@ cm1e_error_t cm1e_scheduler_write_csv(const cm1e_scheduler_t *scheduler, const c
     return cm1e_trace_write_file(&scheduler->trace, path, cm1e_trace_print_csv, diag);
 }
 
+cm1e_error_t cm1e_scheduler_write_npy(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag)
+{
+    if (cm1e_in_task())
+        return cm1e_in_task_refuse("cm1e_scheduler_write_npy()", "", diag);
+    return cm1e_trace_write_file(&scheduler->trace, path, cm1e_trace_print_npy, diag);
+}
+
 const trace_t *cm1e_scheduler_trace(const cm1e_scheduler_t *scheduler) { return &scheduler->trace; }
 
 /* ---- before and after ------------------------------------------------------------------------------------------ */
@@ -298,6 +317,14 @@ static cm1e_error_t make_axes(cm1e_scheduler_t *s, cm1e_diag_t *diag)
     return CM1E_OK;
 }
 
+static cm1e_error_t make_trace(cm1e_scheduler_t *s, cm1e_diag_t *diag)
+{
+    const char *names[CM1E_MAX_AXES];
+    for (uint32_t i = 0; i < s->axis_count; i++)
+        names[i] = cm1e_axis_name(cm1e_axis_reference(s->axes[i]));
+    return cm1e_trace_init(&s->trace, names, s->axis_count, s->config.trace_capacity, s->config.trace_every, diag);
+}
+
 cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus, const cm1e_scheduler_config_t *config,
                                    cm1e_diag_t *diag)
 {
@@ -319,8 +346,7 @@ cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus
     if (error == CM1E_OK)
         error = make_axes(s, diag);
     if (error == CM1E_OK)
-        error = cm1e_trace_init(&s->trace, s->axes, s->axis_count, s->config.trace_capacity, s->config.trace_every,
-                                diag);
+        error = make_trace(s, diag);
     if (error != CM1E_OK) {
         cm1e_scheduler_destroy(s);
         return error;
@@ -345,6 +371,40 @@ cm1e_error_t cm1e_scheduler_add_task(cm1e_scheduler_t *scheduler, const cm1e_tas
     if (scheduler->run)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Tasks are added before the scheduler runs.");
     return cm1e_tasks_add(&scheduler->tasks, task, scheduler->cycle_time_ns, diag);
+}
+
+/* ---- what the trace records beside the axes ---------------------------------------------------------------------- */
+
+cm1e_error_t cm1e_scheduler_trace_variable(cm1e_scheduler_t *scheduler, const char *name, const char *unit,
+                                           cm1e_trace_type_t type, const void *variable, cm1e_diag_t *diag)
+{
+    trace_column_t column = {.type = type, .value = variable};
+    column.kind = type == CM1E_TRACE_BOOL ? TRACE_KIND_FLAG : TRACE_KIND_NUMBER;
+    if ((name && strlen(name) >= sizeof column.name) || (unit && strlen(unit) >= sizeof column.unit))
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0,
+                             "The name of a signal has at most %zu bytes, and its unit %zu.", sizeof column.name - 1,
+                             sizeof column.unit - 1);
+    snprintf(column.name, sizeof column.name, "%s", name ? name : "");
+    snprintf(column.unit, sizeof column.unit, "%s", unit ? unit : "");
+    return cm1e_trace_add(&scheduler->trace, &column, diag);
+}
+
+cm1e_error_t cm1e_scheduler_trace_object(cm1e_scheduler_t *scheduler, AXIS_REF_t axis, uint16_t index, uint8_t subindex,
+                                         cm1e_diag_t *diag)
+{
+    for (uint32_t i = 0; i < scheduler->axis_count; i++)
+        if (axis.Handle != 0 && cm1e_axis_reference(scheduler->axes[i]).Handle == axis.Handle)
+            return cm1e_trace_add_object(&scheduler->trace, scheduler->bus, cm1e_bus_axis_position(scheduler->bus, i),
+                                         cm1e_axis_name(axis), index, subindex, diag);
+    return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The axis is none of this scheduler.");
+}
+
+cm1e_error_t cm1e_scheduler_trace_trigger(cm1e_scheduler_t *scheduler, const cm1e_trace_trigger_t *trigger,
+                                          cm1e_diag_t *diag)
+{
+    if (!trigger)
+        return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "A trigger is missing.");
+    return cm1e_trace_set_trigger(&scheduler->trace, trigger, diag);
 }
 
 AXIS_REF_t cm1e_scheduler_axis(const cm1e_scheduler_t *scheduler, uint32_t index)

@@ -1,6 +1,7 @@
 /**
  * @file trace.h
- * The last cycles of every axis in a ring that is allocated before the cycle starts, and its writers.
+ * A recorder: one value per signal and cycle, in a ring that is allocated before the cycle starts, and the writers of
+ * files. A signal is a column. The first columns are those of the axes, TRACE_AXIS_COLUMNS each.
  */
 #ifndef CM1E_SCHEDULER_TRACE_H
 #define CM1E_SCHEDULER_TRACE_H
@@ -8,13 +9,31 @@
 #include <stdio.h>
 
 #include "axis/axis.h"
-#include "cm1e/scheduler.h"
+#include "cm1e/trace.h"
 #include "core/guest_api.h"
 
-typedef struct cm1e_trace_sample {
-    double set_position, actual_position, set_velocity, actual_velocity, torque;
-    cm1e_axis_state_t state;
-} trace_sample_t;
+/** Columns of an axis, in their order. */
+enum {
+    TRACE_STATE = 0, TRACE_SET_POSITION, TRACE_ACTUAL_POSITION, TRACE_SET_VELOCITY, TRACE_ACTUAL_VELOCITY, TRACE_TORQUE,
+    TRACE_AXIS_COLUMNS,
+};
+
+typedef enum trace_kind {
+    TRACE_KIND_NUMBER = 0,
+    TRACE_KIND_FLAG,   /**< 0 or 1 */
+    TRACE_KIND_STATE,  /**< cm1e_axis_state_t */
+    TRACE_KIND_ERROR,  /**< cm1e_error_t */
+    TRACE_KIND_COUNT,  /**< a number of events since the start */
+} trace_kind_t;
+
+/** One signal. */
+typedef struct trace_column {
+    char name[CM1E_TRACE_NAME_BYTES], unit[CM1E_TRACE_UNIT_BYTES];
+    trace_kind_t kind;
+    cm1e_trace_type_t type;
+    const void *value;  /**< where it is read; NULL: a column of an axis */
+    bool little_endian; /**< it lies in the process image */
+} trace_column_t;
 
 /** A moment that the program marked. */
 typedef struct cm1e_trace_mark {
@@ -24,41 +43,74 @@ typedef struct cm1e_trace_mark {
 
 enum { TRACE_MARKS = 64 };
 
+/** What the scheduler tells of its own cycles. */
+typedef struct trace_timing {
+    double wake_up_latency_us, execution_time_us;
+    uint64_t lost_frames, overruns;
+} trace_timing_t;
+
+/** When the recording ends. */
+typedef struct trace_trigger {
+    cm1e_trace_trigger_kind_t kind;
+    uint32_t column;
+    double level, before;     /**< `before`: value of the last cycle */
+    uint32_t samples_before;
+    bool seen;                /**< it came */
+    uint32_t left;            /**< samples to record from then on */
+    char text[CM1E_TRACE_NAME_BYTES + 16]; /**< of its mark */
+} trace_trigger_t;
+
 typedef struct trace {
     uint32_t axes, capacity, every;
     uint32_t first, used;     /**< samples: index of the oldest, and their number */
     uint32_t until_next;      /**< cycles until the next one is recorded */
     const char **names;       /**< of the axes */
+    trace_column_t *columns;
+    uint32_t column_count, column_room, variables;
     int64_t *times_ns;        /**< [capacity] */
-    trace_sample_t *samples;  /**< [capacity][axes] */
+    double *values;           /**< [capacity][column_count]; NULL: no sample yet */
+    trace_timing_t timing;
+    trace_trigger_t trigger;
     trace_mark_t marks[TRACE_MARKS]; /**< ring of marks */
     uint32_t first_mark, mark_count;
 } trace_t;
 
-/** `capacity` 0: a trace that records nothing. @rt init */
-cm1e_error_t cm1e_trace_init(trace_t *trace, cm1e_axis_t *const axes[], uint32_t count, uint32_t capacity,
+/** A trace of `count` axes with these names, which are not copied. `capacity` 0: a trace that records nothing.
+ *  @rt init */
+cm1e_error_t cm1e_trace_init(trace_t *trace, const char *const names[], uint32_t count, uint32_t capacity,
                              uint32_t every, cm1e_diag_t *diag);
 void cm1e_trace_free(trace_t *trace);
+/** Adds a column that is read at `column->value`; conditions as for cm1e_scheduler_trace_variable(). @rt init */
+cm1e_error_t cm1e_trace_add(trace_t *trace, const trace_column_t *column, cm1e_diag_t *diag);
+/** Adds the object of a drive at `position`; cm1e_scheduler_trace_object(). @rt init */
+cm1e_error_t cm1e_trace_add_object(trace_t *trace, cm1e_bus_t *bus, uint16_t position, const char *axis, uint16_t index,
+                                   uint8_t subindex, cm1e_diag_t *diag);
+cm1e_error_t cm1e_trace_set_trigger(trace_t *trace, const cm1e_trace_trigger_t *trigger, cm1e_diag_t *diag);
+/** Allocates the samples; columns are complete. @rt init */
+cm1e_error_t cm1e_trace_begin(trace_t *trace, cm1e_diag_t *diag);
 /** @rt cycle */
 void cm1e_trace_record(trace_t *trace, cm1e_axis_t *const axes[], int64_t time_ns);
+/** The next sample of the ring, all values 0; NULL: the trigger has ended the recording. @rt cycle */
+double *cm1e_trace_next_sample(trace_t *trace, int64_t time_ns);
 
 /** Keeps the last TRACE_MARKS marks; `text` must outlive the trace. @rt cycle */
 void cm1e_trace_mark(trace_t *trace, const char *text, int64_t time_ns);
 
-/** Sample n, 0 = oldest. */
+/** Sample n, 0 = oldest: its time, and its values by column. */
 CM1E_GUEST_API int64_t cm1e_trace_time_ns(const trace_t *trace, uint32_t n);
-CM1E_GUEST_API const trace_sample_t *cm1e_trace_sample(const trace_t *trace, uint32_t n, uint32_t axis);
+CM1E_GUEST_API const double *cm1e_trace_sample(const trace_t *trace, uint32_t n);
 /** Mark n, 0 = oldest. */
 CM1E_GUEST_API const trace_mark_t *cm1e_trace_mark_at(const trace_t *trace, uint32_t n);
 
 /** The trace of a scheduler. It lives as long as the scheduler. @rt init */
 CM1E_GUEST_API const trace_t *cm1e_scheduler_trace(const cm1e_scheduler_t *scheduler);
 
-/** Prints the content of a CSV file. */
+/** Print the content of files. */
 void cm1e_trace_print_csv(const trace_t *trace, FILE *file);
+void cm1e_trace_print_npy(const trace_t *trace, FILE *file);
 /** Writes under a temporary name and renames, so that no reader sees an incomplete file; in the "C" locale.
  *  @rt block */
 CM1E_GUEST_API cm1e_error_t cm1e_trace_write_file(const trace_t *trace, const char *path,
-                                   void (*print)(const trace_t *trace, FILE *file), cm1e_diag_t *diag);
+                                                  void (*print)(const trace_t *trace, FILE *file), cm1e_diag_t *diag);
 
 #endif

@@ -17,33 +17,29 @@ void tearDown(void) {}
 static trace_t make_trace(uint32_t axes, uint32_t capacity)
 {
     static const char *const names[] = {"X", "gripper", "<&\"'>\x01", "Achse \xC3\xA4"};
-    trace_t trace = {.axes = axes, .capacity = capacity, .every = 1};
-    trace.names = calloc(axes, sizeof *trace.names);
-    trace.times_ns = calloc(capacity, sizeof *trace.times_ns);
-    trace.samples = calloc((size_t)capacity * axes, sizeof *trace.samples);
+    const char *of_axes[128];
+    trace_t trace;
     for (uint32_t i = 0; i < axes; i++)
-        trace.names[i] = names[i % 4];
+        of_axes[i] = names[i % 4];
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_trace_init(&trace, of_axes, axes, capacity, 1, NULL));
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_trace_begin(&trace, NULL));
     return trace;
 }
 
-/** Samples that move, n = 0, 1, 2 ...; into the ring as cm1e_trace_record() does. */
-static void add_sample(trace_t *trace, uint32_t n, double scale)
+/** Samples that move, n = 0, 1, 2 ...; returns the new one. */
+static double *add_sample(trace_t *trace, uint32_t n, double scale)
 {
-    const uint32_t place = (trace->first + trace->used) % trace->capacity;
-    if (trace->used < trace->capacity)
-        trace->used++;
-    else
-        trace->first = (trace->first + 1) % trace->capacity;
-    trace->times_ns[place] = n * INT64_C(1000000);
-    for (uint32_t axis = 0; axis < trace->axes; axis++)
-        trace->samples[(size_t)place * trace->axes + axis] = (trace_sample_t){
-            .set_position = scale * sin(n * 0.01 + axis),
-            .actual_position = scale * sin(n * 0.01 + axis - 0.02),
-            .set_velocity = scale * cos(n * 0.01 + axis),
-            .actual_velocity = scale * cos(n * 0.01 + axis - 0.02) + (n % 3) * 0.01 * scale,
-            .torque = 40 * sin(n * 0.7),
-            .state = (cm1e_axis_state_t)(n / 500 % CM1E_AXIS_STATE_COUNT),
-        };
+    double *sample = cm1e_trace_next_sample(trace, n * INT64_C(1000000));
+    for (uint32_t axis = 0; axis < trace->axes; axis++) {
+        double *columns = sample + axis * TRACE_AXIS_COLUMNS;
+        columns[TRACE_SET_POSITION] = scale * sin(n * 0.01 + axis);
+        columns[TRACE_ACTUAL_POSITION] = scale * sin(n * 0.01 + axis - 0.02);
+        columns[TRACE_SET_VELOCITY] = scale * cos(n * 0.01 + axis);
+        columns[TRACE_ACTUAL_VELOCITY] = scale * cos(n * 0.01 + axis - 0.02) + (n % 3) * 0.01 * scale;
+        columns[TRACE_TORQUE] = 40 * sin(n * 0.7);
+        columns[TRACE_STATE] = n / 500 % CM1E_AXIS_STATE_COUNT;
+    }
+    return sample;
 }
 
 /** The whole file; the caller frees it. */
@@ -197,9 +193,9 @@ static void test_svg_survives_any_values(void)
         trace_t trace = make_trace(1, 50);
         size_t size;
         for (uint32_t n = 0; n < 50; n++) {
-            add_sample(&trace, n, 1);
+            double *sample = add_sample(&trace, n, 1);
             const double value = constant < VALUES ? values[constant] : values[n % VALUES];
-            trace.samples[n].set_position = trace.samples[n].actual_velocity = trace.samples[n].torque = value;
+            sample[TRACE_SET_POSITION] = sample[TRACE_ACTUAL_VELOCITY] = sample[TRACE_TORQUE] = value;
         }
         char *svg = write_svg(&trace, &size);
         TEST_ASSERT_LESS_THAN(100000, size);
@@ -214,11 +210,10 @@ static void test_svg_shows_a_state_of_one_sample_and_a_peak_of_one_sample(void)
     trace_t trace = make_trace(1, 100000);
     size_t size;
     for (uint32_t n = 0; n < 100000; n++) {
-        add_sample(&trace, n, 1);
-        trace.samples[n].state = CM1E_AXIS_STANDSTILL;
-        trace.samples[n].torque = n == 43210 ? 100 : 0;
+        double *sample = add_sample(&trace, n, 1);
+        sample[TRACE_STATE] = n == 61234 ? CM1E_AXIS_ERROR_STOP : CM1E_AXIS_STANDSTILL;
+        sample[TRACE_TORQUE] = n == 43210 ? 100 : 0;
     }
-    trace.samples[61234].state = CM1E_AXIS_ERROR_STOP;
     char *svg = write_svg(&trace, &size);
     TEST_ASSERT_EQUAL(1, count(svg, "<title>ErrorStop,"));
     TEST_ASSERT_EQUAL(2, count(svg, "<title>Standstill,"));
@@ -269,7 +264,7 @@ static void test_csv_has_a_row_a_sample_in_the_order_of_time_also_after_the_ring
         unsigned commas = 0;
         for (; *line != '\n'; line++)
             commas += *line == ',';
-        TEST_ASSERT_EQUAL(18, commas);
+        TEST_ASSERT_EQUAL(18 + 4 + 3, commas); /* the axes, the cycle, the errors of the axes */
         line++;
     }
     free(csv);
