@@ -12,7 +12,7 @@
 #include "device/device.h"
 #include "sdo_list.h"
 
-enum { KEY_TYPE = 0x200, KEY_VALUES, MAX_SDO_BYTES = 4096, MAX_WORDS = 32 };
+enum { KEY_TYPE = 0x200, KEY_VALUES, MAX_SDO_BYTES = 4096 };
 
 static const struct {
     const char *name;
@@ -202,29 +202,6 @@ static int transfer(cm1e_bus_t *bus, const sdo_options_t *options, cm1e_diag_t *
     return error == CM1E_OK ? EXIT_OK : fail_at(entry, diag);
 }
 
-/** A negative value looks like an option, so such a word is moved to the end, behind a "--". Words behind a "--" of the
- *  user are not moved. */
-static int shelter_negative_value(int argc, char **argv, char **sheltered)
-{
-    static char end_of_options[] = "--";
-    int count = 0;
-    char *value = NULL;
-    bool options_end = false;
-    for (int i = 0; i < argc; i++) {
-        options_end = options_end || (i > 0 && strcmp(argv[i], "--") == 0);
-        if (!value && !options_end && i > 0 && argv[i][0] == '-' && argv[i][1] >= '0' && argv[i][1] <= '9')
-            value = argv[i];
-        else
-            sheltered[count++] = argv[i];
-    }
-    if (value && !options_end)
-        sheltered[count++] = end_of_options;
-    if (value)
-        sheltered[count++] = value;
-    sheltered[count] = NULL;
-    return count;
-}
-
 int command_sdo(int argc, char **argv)
 {
     static const struct argp_option table[] = {
@@ -239,11 +216,9 @@ int command_sdo(int argc, char **argv)
         children, NULL, NULL};
     sdo_options_t options = {0};
     char *words[MAX_WORDS + 2];
-    if (argc >= MAX_WORDS) {
-        complain("too many arguments");
-        return EXIT_WRONG_USE;
-    }
     const int count = shelter_negative_value(argc, argv, words);
+    if (count < 0)
+        return EXIT_WRONG_USE;
     argp_parse(&argp, count, words, 0, NULL, &options);
 
     static cm1e_bus_config_t config;

@@ -233,6 +233,31 @@ bool parse_real(const char *word, const char *what, double *value)
     return false;
 }
 
+int shelter_negative_value(int argc, char **argv, char **sheltered)
+{
+    static char end_of_options[] = "--";
+    if (argc >= MAX_WORDS) {
+        complain("too many arguments");
+        return -1;
+    }
+    int count = 0;
+    char *value = NULL;
+    bool options_end = false;
+    for (int i = 0; i < argc; i++) {
+        options_end = options_end || (i > 0 && strcmp(argv[i], "--") == 0);
+        if (!value && !options_end && i > 0 && argv[i][0] == '-' && argv[i][1] >= '0' && argv[i][1] <= '9')
+            value = argv[i];
+        else
+            sheltered[count++] = argv[i];
+    }
+    if (value && !options_end)
+        sheltered[count++] = end_of_options;
+    if (value)
+        sheltered[count++] = value;
+    sheltered[count] = NULL;
+    return count;
+}
+
 json_t *text_as_json(const char *text)
 {
     char *copy = strdup(text ? text : "");

@@ -28,6 +28,7 @@ int command_sii(int argc, char **argv);
 int command_cml(int argc, char **argv);
 int command_diff(int argc, char **argv);
 int command_check(int argc, char **argv);
+int command_explain(int argc, char **argv);
 
 /** Options that most subcommands take: a child parser to be listed in a subcommand's argp. */
 typedef struct common_options {
@@ -60,6 +61,11 @@ int find_axis_at(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave
 bool parse_number(const char *word, const char *what, long long minimum, long long maximum, long long *value);
 /** A finite decimal number; false and a complaint otherwise. */
 bool parse_real(const char *word, const char *what, double *value);
+
+/** A negative value looks like an option, so such a word is moved to the end, behind a "--". Words behind a "--" of the
+ *  user are not moved. `sheltered` has room for MAX_WORDS + 2. Returns their number; -1 and a complaint: too many. */
+int shelter_negative_value(int argc, char **argv, char **sheltered);
+enum { MAX_WORDS = 32 };
 
 /** Prints "cm1e <command>: <text of diag>" on standard error and returns EXIT_FAILED. */
 int fail(const cm1e_diag_t *diag);

@@ -20,6 +20,7 @@ static const struct {
     {"generate", "write files for other masters", command_generate},
     {"check", "check a file for other masters, from any source", command_check},
     {"diff", "compare a file with the live devices that it describes", command_diff},
+    {"explain", "say what an error number or name means", command_explain},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
@@ -61,7 +62,7 @@ int main(int argc, char **argv)
         if (strcmp(argv[1], commands[i].name) == 0) {
             char name[32];
             snprintf(name, sizeof name, "cm1e %s", commands[i].name);
-            argv[1] = name;
+            argv[1] = program_invocation_name = name;
             return finish(commands[i].run(argc - 1, argv + 1));
         }
     fprintf(stderr, "cm1e: there is no command \"%s\"\n\n", argv[1]);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Writes everything that follows from the ST declarations in fb/interface/*.st: the public headers, the table of blocks
-for tests, the reference pages. The same input gives the same bytes.
+for tests, the reference pages, and what `cm1e explain` says of an ErrorID. The same input gives the same bytes.
 
     fb/interface/generate.py                writes into the source tree
     fb/interface/generate.py FOLDER         writes below FOLDER instead
@@ -9,6 +9,7 @@ for tests, the reference pages. The same input gives the same bytes.
 import os
 import sys
 
+import c_explain
 import c_header
 import c_table
 import pages
@@ -32,6 +33,7 @@ def outputs():
     notes = tables.notes(read("fb/interface/notes.md"), {block.name for file in files for block in file.blocks()})
     result = {f"include/cm1e/{file.header}": c_header.header(file) for file in files}
     result["tests/support/block_table.c"] = c_table.source(files, classes)
+    result["tools/error_notes.inc"] = c_explain.source(files, classes, read("docs/FUNCTION-BLOCKS.md"))
     has_diagram = lambda name: os.path.exists(os.path.join(SOURCE, "docs/blocks", f"{name}.svg"))
     result.update(pages.all_pages(files, classes, notes, has_diagram))
     return result

@@ -3,17 +3,21 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "core/codes.h"
 #include "core/text.h"
 
-static const struct {
-    cm1e_error_t error;
-    const char *text;
-} errors[] = {
-#define ERROR_ROW(name, value, text) {CM1E_##name, text},
+static const cm1e_error_row_t errors[] = {
+#define ERROR_ROW(name, value, text) {CM1E_##name, #name, text},
     CM1E_ERRORS(ERROR_ROW)
 #undef ERROR_ROW
 };
 enum { ERROR_COUNT = sizeof errors / sizeof errors[0] };
+
+const cm1e_error_row_t *cm1e_error_rows(size_t *count)
+{
+    *count = ERROR_COUNT;
+    return errors;
+}
 
 const char *cm1e_strerror(cm1e_error_t error)
 {

@@ -43,7 +43,7 @@ static bool takes(int row, cm1e_bridge_motor_t motor, uint32_t *rest)
 }
 
 /* "x" in the guide's patterns: the three errors of the lowest bits can be there together, and nothing else can. */
-static bool is_listed(cm1e_bridge_motor_t motor, uint32_t status)
+bool cm1e_bridge_status_is_listed(cm1e_bridge_motor_t motor, uint32_t status)
 {
     for (int i = 0; i < ROWS; i++)
         if (name_of(i, motor) && status == rows[i].bits)
@@ -70,7 +70,7 @@ const char *cm1e_bridge_status_text(cm1e_bridge_motor_t motor, uint32_t status, 
         snprintf(unknown, sizeof unknown, "unknown bits 0x%02X", (unsigned)rest);
         length = append(text, size, length, unknown);
     }
-    if (!is_listed(motor, status) && length < size)
+    if (!cm1e_bridge_status_is_listed(motor, status) && length < size)
         snprintf(text + length, size - length, " (0x%02X is not listed in the guide)", (unsigned)status);
     return text;
 }

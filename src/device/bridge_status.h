@@ -24,6 +24,9 @@ enum {
 /** An error or an alarm of the motor or of the serial line to it. TRUE also for bits that the guide gives no meaning
  *  for this motor. */
 bool cm1e_bridge_status_is_error(cm1e_bridge_motor_t motor, uint32_t status);
+/** One of the values that the guide lists for this motor. */
+bool cm1e_bridge_status_is_listed(cm1e_bridge_motor_t motor, uint32_t status);
+#define CM1E_BRIDGE_STATUS_CLAUSE "BR 7.4"
 /** It moves or pushes: has neither arrived nor an error, nor is it free. */
 bool cm1e_bridge_status_is_moving(cm1e_bridge_motor_t motor, uint32_t status);
 

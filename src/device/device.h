@@ -208,6 +208,7 @@ typedef struct cm1e_device_error {
     bool fault;                  /**< raises statusword bit 3 */
     bool fault_only_when_enabled;/**< ... from Operation enabled only (0xFF05) */
     const char *text;            /**< UG 7.3.1 */
+    const char *cause;           /**< how it comes to it; NULL: `text` says it */
     const char *cure;            /**< what the user does about it */
     bool motor_power;            /**< it says that motor power is missing */
     bool only_off;               /**< while the drive is not enabled it says no more than that */

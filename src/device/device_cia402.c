@@ -77,7 +77,7 @@ static const cm1e_device_drive_t drive = {
     .homing = &homing,
     .signals = {.inputs = 0x000F, .outputs = CM1E_CIA402_OUTPUTS, .output_subindex = 1,
                 .output_shift = CM1E_CIA402_OUTPUT_SHIFT},
-    .error = cm1e_cia402_error,
+    .error = cm1e_cia402_error, .error_clause = "CiA 301, CiA 402 (IEC 61800-7-201)",
 };
 
 static const cm1e_object_t *object(const cm1e_device_t *device, size_t n)

@@ -75,7 +75,7 @@ static const cm1e_device_drive_t drive = {
     .refusal = "Check the mapping and the firmware",
     .homing = &homing,
     .signals = {.inputs = 0x000F, .outputs = 0x0001},
-    .error = cm1e_device_error,
+    .error = cm1e_device_error, .error_clause = "UG 7.3.1",
 };
 
 static const cm1e_object_t *object(const cm1e_device_t *device, size_t n)

@@ -159,6 +159,7 @@ typedef struct cm1e_device_drive {
     cm1e_device_signals_t signals;
     /** Error codes (0x603F); NULL: not one of the device. */
     const cm1e_device_error_t *(*error)(uint16_t code);
+    const char *error_clause;       /**< where they are listed: "UG 7.3.1"; NULL: they are another drive's */
 } cm1e_device_drive_t;
 
 /** NULL: not a mode of this drive. */
