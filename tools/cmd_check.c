@@ -29,15 +29,16 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
+static const struct argp_option table[] = {{"json", 'j', NULL, 0, "Write JSON", 0}, {0}};
+const struct argp argp_check = {table, parse, "FILE",
+                                 "Checks an ESI, EC_EXTEND, SII or ENI file from any source for errors that a "
+                                 "schema does not find (docs/CHECK-RULES.md). Exit status 0: no finding, or "
+                                 "warnings only; 1: errors, or the file cannot be read.", NULL, NULL, NULL};
+
 int command_check(int argc, char **argv)
 {
-    static const struct argp_option table[] = {{"json", 'j', NULL, 0, "Write JSON", 0}, {0}};
-    static const struct argp argp = {table, parse, "FILE",
-                                     "Checks an ESI, EC_EXTEND, SII or ENI file from any source for errors that a "
-                                     "schema does not find (docs/CHECK-RULES.md). Exit status 0: no finding, or "
-                                     "warnings only; 1: errors, or the file cannot be read.", NULL, NULL, NULL};
     check_options_t options = {0};
-    if (argp_parse(&argp, argc, argv, 0, NULL, &options))
+    if (parse_options(&argp_check, argc, argv, &options))
         return EXIT_WRONG_USE;
     input_t input;
     if (!read_input(options.file, &input))

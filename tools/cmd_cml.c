@@ -328,28 +328,29 @@ static void end_in_order(void)
     sigaction(SIGPIPE, &ignore, NULL);
 }
 
+static const struct argp_option table[] = {
+    {"axis", 'a', "AXIS", 0, "The motor, by the name or number of its axis in the bus file", 0},
+    {"slave", KEY_SLAVE, "POSITION", 0, "The bridge of the motor, by position; default: the only bridge", 0},
+    {"channel", KEY_CHANNEL, "ID", 0, "The connector of the motor, 1 ... 4; default: the one that the "
+                                      "string names", 0},
+    {"timeout", KEY_TIMEOUT, "SECONDS", 0, "Time for an answer; default 1, for an origin search 70", 0},
+    {"allow-motion", KEY_ALLOW, NULL, 0, "Also send strings that may move the motor or change its power", 0},
+    {"stay", KEY_STAY, NULL, 0, "Leave the motor in CML mode, with its torque", 0},
+    {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+const struct argp argp_cml = {
+    table, parse, "[STRING...]",
+    "Sends strings in CML, the language of the Cool Muscle motors, to a motor behind an EtherCAT Cool MUSCLE "
+    "Bridge, and shows its answers, for example `cm1e cml -i eth1 \"?99.1\"`. Without strings it sends the lines "
+    "of standard input.\vQueries (?90.1, ?96.1, ?99.1, K37.1), parameters (K53.1=100; the motor keeps them when "
+    "its power is off) and outputs (O2.1, F2.1) are sent unchanged. All other strings may move the motor: they "
+    "need --allow-motion, and at the end the motor is freed. No other master may use the bridge meanwhile.",
+    children, NULL, NULL};
+
 int command_cml(int argc, char **argv)
 {
-    static const struct argp_option table[] = {
-        {"axis", 'a', "AXIS", 0, "The motor, by the name or number of its axis in the bus file", 0},
-        {"slave", KEY_SLAVE, "POSITION", 0, "The bridge of the motor, by position; default: the only bridge", 0},
-        {"channel", KEY_CHANNEL, "ID", 0, "The connector of the motor, 1 ... 4; default: the one that the "
-                                          "string names", 0},
-        {"timeout", KEY_TIMEOUT, "SECONDS", 0, "Time for an answer; default 1, for an origin search 70", 0},
-        {"allow-motion", KEY_ALLOW, NULL, 0, "Also send strings that may move the motor or change its power", 0},
-        {"stay", KEY_STAY, NULL, 0, "Leave the motor in CML mode, with its torque", 0},
-        {0}};
-    static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
-    static const struct argp argp = {
-        table, parse, "[STRING...]",
-        "Sends strings in CML, the language of the Cool Muscle motors, to a motor behind an EtherCAT Cool MUSCLE "
-        "Bridge, and shows its answers, for example `cm1e cml -i eth1 \"?99.1\"`. Without strings it sends the lines "
-        "of standard input.\vQueries (?90.1, ?96.1, ?99.1, K37.1), parameters (K53.1=100; the motor keeps them when "
-        "its power is off) and outputs (O2.1, F2.1) are sent unchanged. All other strings may move the motor: they "
-        "need --allow-motion, and at the end the motor is freed. No other master may use the bridge meanwhile.",
-        children, NULL, NULL};
     cml_options_t options = {0};
-    if (argp_parse(&argp, argc, argv, 0, NULL, &options) != 0)
+    if (parse_options(&argp_cml, argc, argv, &options))
         return EXIT_WRONG_USE;
     static cm1e_bus_config_t config;
     if (!load_configuration(&options.common, &config))

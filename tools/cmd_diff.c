@@ -84,19 +84,20 @@ static int run(cm1e_bus_t *bus, const diff_options_t *options, const input_t *in
     return EXIT_WRONG_USE;
 }
 
+static const struct argp_option table[] = {
+    {"position", 'p', "POSITION", 0, "Compare only this slave; default: every slave that the file "
+                                     "describes", 0}, {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+const struct argp argp_diff = {
+    table, parse, "FILE",
+    "Compares an ESI, EC_EXTEND, SII or ENI file with live devices: identity, EEPROM, mailbox, sync managers, PDO "
+    "mapping and assignment, dictionary (docs/CHECK-RULES.md). Exit status 0: no difference, or warnings only; 1: "
+    "differences; 2: not compared.", children, NULL, NULL};
+
 int command_diff(int argc, char **argv)
 {
-    static const struct argp_option table[] = {
-        {"position", 'p', "POSITION", 0, "Compare only this slave; default: every slave that the file "
-                                         "describes", 0}, {0}};
-    static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
-    static const struct argp argp = {
-        table, parse, "FILE",
-        "Compares an ESI, EC_EXTEND, SII or ENI file with live devices: identity, EEPROM, mailbox, sync managers, PDO "
-        "mapping and assignment, dictionary (docs/CHECK-RULES.md). Exit status 0: no difference, or warnings only; 1: "
-        "differences; 2: not compared.", children, NULL, NULL};
     diff_options_t options = {0};
-    if (argp_parse(&argp, argc, argv, 0, NULL, &options))
+    if (parse_options(&argp_diff, argc, argv, &options))
         return EXIT_WRONG_USE;
     static cm1e_bus_config_t config;
     input_t input;

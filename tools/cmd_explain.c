@@ -229,19 +229,20 @@ static int explain(const explain_options_t *options, const meaning_t *rows, size
     return found ? EXIT_OK : complain_unknown(rows, count, options->query, &question);
 }
 
+static const struct argp_option table[] = {{"json", KEY_JSON, NULL, 0, "Write JSON", 0}, {0}};
+const struct argp argp_explain = {
+    table, parse, "NUMBER|WORD...",
+    "Explains what the library, a motor or EtherCAT shows: error codes of drives (object 0x603F), ErrorIDs of "
+    "function blocks, AL status codes, SDO abort codes, statuses of motors behind a bridge. A number is given as "
+    "0xFF05, 16#FF05, FF05h or in decimal, an error of the C interface as -71; all its meanings are shown. Words "
+    "are looked for in names and texts: `cm1e explain lag`.", NULL, NULL, NULL};
+
 int command_explain(int argc, char **argv)
 {
-    static const struct argp_option table[] = {{"json", KEY_JSON, NULL, 0, "Write JSON", 0}, {0}};
-    static const struct argp argp = {
-        table, parse, "NUMBER|WORD...",
-        "Explains what the library, a motor or EtherCAT shows: error codes of drives (object 0x603F), ErrorIDs of "
-        "function blocks, AL status codes, SDO abort codes, statuses of motors behind a bridge. A number is given as "
-        "0xFF05, 16#FF05, FF05h or in decimal, an error of the C interface as -71; all its meanings are shown. Words "
-        "are looked for in names and texts: `cm1e explain lag`.", NULL, NULL, NULL};
     explain_options_t options = {0};
     char *words[MAX_WORDS + 2];
     const int word_count = shelter_negative_value(argc, argv, words);
-    if (word_count < 0 || argp_parse(&argp, word_count, words, 0, NULL, &options))
+    if (word_count < 0 || parse_options(&argp_explain, word_count, words, &options))
         return EXIT_WRONG_USE;
     size_t count;
     meaning_t *rows = all_meanings(&count);

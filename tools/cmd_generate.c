@@ -6,6 +6,7 @@
 #include "cm1e/generate.h"
 #include "command.h"
 #include "core/bytes.h"
+#include "core/near.h"
 #include "description/sii.h"
 #include "device/devices.h"
 #include "files.h"
@@ -76,7 +77,11 @@ static bool choose(const char *what, const char *word, const choice_t *choices, 
         }
         snprintf(list + strlen(list), sizeof list - strlen(list), " %s", choice->word);
     }
-    complain("there is no %s \"%s\"; there are%s", what, word, list);
+    char text[CM1E_NEAR_TEXT_BYTES];
+    cm1e_near_t near = {.word = word};
+    for (const choice_t *choice = choices; choice->word; choice++)
+        cm1e_near_look(&near, choice->word);
+    complain("there is no %s \"%s\"; there are%s%s", what, word, list, cm1e_near_text(&near, text, sizeof text));
     return false;
 }
 
@@ -299,16 +304,16 @@ static const struct argp_option table[] = {
     {"from", KEY_FROM, "FILE", 0,
      "Convert FILE: to its own format, or from ESI to SII and back", 1},
     {"number", KEY_NUMBER, "N", 0, "With --from: the device of the ESI for which the SII is written; 1 = first", 1},
-    {"layout", KEY_LAYOUT, "LAYOUT", 0, "ESI: flat (default) or mdp", 2},
+    {"layout", KEY_LAYOUT, "flat|mdp", 0, "ESI: how it is laid out; default flat", 2},
     {"program", KEY_PROGRAM, "FILE", 0, "ec-extend: also write a TrioBASIC start program", 2},
     {"dc-mode", KEY_DC_MODE, "NUMBER", 0, "ec-extend: Dc/Mode; default 0x0300", 2},
     {"mailbox-rate", KEY_MAILBOX_RATE, "NUMBER", 0, "ec-extend: MbxRate; default 100", 2},
-    {"device", KEY_DEVICE, "DEVICE", 0,
-     "cm1-e (default), eb01, eb02, eb12; repeat it for a further device in one file. The options below belong to the "
+    {"device", KEY_DEVICE, "cm1-e|eb01|eb02|eb12", 0,
+     "The device; default cm1-e; repeat it for a further device in one file. The options below belong to the "
      "device before them", 3},
     {"firmware", KEY_FIRMWARE, "VERSION", 0, "1.2.0 ... 1.3.5 (default)", 3},
-    {"mapping", KEY_MAPPING, "MAPPING", 0, "dynamic (default), csp, csv or profile: the PDOs that the file chooses", 3},
-    {"pdo-order", KEY_ORDER, "ORDER", 0, "ug-4.4 (default) or ug-7.2", 3},
+    {"mapping", KEY_MAPPING, "dynamic|csp|csv|profile", 0, "The PDOs that the file chooses; default dynamic", 3},
+    {"pdo-order", KEY_ORDER, "ug-4.4|ug-7.2", 0, "The order of objects in the PDO mappings; default ug-4.4", 3},
     {"vendor", KEY_VENDOR, "NUMBER", 0,
      "Bridge: vendor ID, mandatory, for an ENI of a bus file too; the guide does not state it", 3},
     {"product", KEY_PRODUCT, "NUMBER", 0, "Bridge: product code, mandatory", 3},
@@ -381,17 +386,18 @@ static int write_files(const generate_options_t *options, const cm1e_file_t *fil
     return written ? EXIT_OK : EXIT_FAILED;
 }
 
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 4}, {0}};
+const struct argp argp_generate = {
+    table, parse, "esi|ec-extend|sii|eni",
+    "Writes a file for other masters: ESI for TwinCAT and others, EC_EXTEND.txt for Trio controllers, an SII "
+    "image, or an ENI of a network (-b BUS-FILE for a configured one, -i INTERFACE to scan one).", children, NULL,
+    NULL};
+
 int command_generate(int argc, char **argv)
 {
-    static const struct argp_child children[] = {{&common_argp, 0, NULL, 4}, {0}};
-    static const struct argp argp = {
-        table, parse, "esi|ec-extend|sii|eni",
-        "Writes a file for other masters: ESI for TwinCAT and others, EC_EXTEND.txt for Trio controllers, an SII "
-        "image, or an ENI of a network (-b BUS-FILE for a configured one, -i INTERFACE to scan one).", children, NULL,
-        NULL};
     static generate_options_t options;
     options.what.device_count = 1;
-    if (argp_parse(&argp, argc, argv, 0, NULL, &options))
+    if (parse_options(&argp_generate, argc, argv, &options))
         return EXIT_WRONG_USE;
     cm1e_file_t file = {0};
     cm1e_diag_t diag = {0};

@@ -433,58 +433,60 @@ static int move_or_home(motion_options_t *options, const char *what)
     return close_bus(bus, &options->common, status);
 }
 
+static const struct argp_option move_table[] = {
+    {"to", KEY_TO, "POSITION", 0, "Absolute target, in units of the axis", 0},
+    {"by", KEY_BY, "DISTANCE", 0, "Relative distance", 0},
+    {"speed", KEY_SPEED, "VELOCITY", 0, "Move at this velocity, then halt", 0},
+    {"for", KEY_FOR, "SECONDS", 0, "Duration of --speed", 0},
+    {"velocity", 'v', "VELOCITY", 0, "Units/s; default 1", 0},
+    {"acceleration", 'a', "ACCELERATION", 0, "Units/s2; default: the axis's maximum", 0},
+    {"deceleration", 'd', "DECELERATION", 0, "Units/s2; default: the axis's maximum", 0},
+    {"jerk", KEY_JERK, "JERK", 0, "Units/s3; default: the axis's maximum", 0},
+    {"reset", KEY_RESET, NULL, 0, "Reset an error of the drive first", 0},
+    {"csv", KEY_CSV, "FILE", 0, "Write a trace", 0},
+    {"svg", KEY_SVG, "FILE", 0, "Write a plot", 0},
+    {0}};
+static const struct argp_child move_children[] = {{&common_argp, 0, NULL, 0}, {0}};
+const struct argp argp_move = {move_table, parse_move, "[AXIS]",
+                                 "Enables one axis (name or number, default 1), moves it, disables it. The command "
+                                 "is done when the motor is in position (in_position of the bus file). Without a "
+                                 "bus file the unit is one revolution.", move_children, NULL, NULL};
+
 int command_move(int argc, char **argv)
 {
-    static const struct argp_option table[] = {
-        {"to", KEY_TO, "POSITION", 0, "Absolute target, in units of the axis", 0},
-        {"by", KEY_BY, "DISTANCE", 0, "Relative distance", 0},
-        {"speed", KEY_SPEED, "VELOCITY", 0, "Move at this velocity, then halt", 0},
-        {"for", KEY_FOR, "SECONDS", 0, "Duration of --speed", 0},
-        {"velocity", 'v', "VELOCITY", 0, "Units/s; default 1", 0},
-        {"acceleration", 'a', "ACCELERATION", 0, "Units/s2; default: the axis's maximum", 0},
-        {"deceleration", 'd', "DECELERATION", 0, "Units/s2; default: the axis's maximum", 0},
-        {"jerk", KEY_JERK, "JERK", 0, "Units/s3; default: the axis's maximum", 0},
-        {"reset", KEY_RESET, NULL, 0, "Reset an error of the drive first", 0},
-        {"csv", KEY_CSV, "FILE", 0, "Write a trace", 0},
-        {"svg", KEY_SVG, "FILE", 0, "Write a plot", 0},
-        {0}};
-    static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
-    static const struct argp argp = {table, parse_move, "[AXIS]",
-                                     "Enables one axis (name or number, default 1), moves it, disables it. The command "
-                                     "is done when the motor is in position (in_position of the bus file). Without a "
-                                     "bus file the unit is one revolution.", children, NULL, NULL};
     motion_options_t options = {0};
-    if (argp_parse(&argp, argc, argv, 0, NULL, &options))
+    if (parse_options(&argp_move, argc, argv, &options))
         return EXIT_WRONG_USE;
     return move_or_home(&options, "move");
 }
 
+static const struct argp_option home_table[] = {
+    {"method", KEY_METHOD, "METHOD", 0, "-1/-2 hard stop CW/CCW, -3/-4 input 2 CW/CCW, -5/-6 input 3 CW/CCW; "
+                                        "behind a bridge 1/2 hard stop, 3/4 switch CW/CCW; default: the bus "
+                                        "file's homing", 0},
+    {"velocity", 'v', "VELOCITY", 0, "Units/s", 0},
+    {"acceleration", 'a', "ACCELERATION", 0, "Units/s2", 0},
+    {"offset", KEY_OFFSET, "OFFSET", 0, "Units from the reference to the home position", 0},
+    {"torque", KEY_TORQUE, "PERCENT", 0, "10 ... 100 % of rated torque", 0},
+    {"position", KEY_POSITION, "POSITION", 0, "Position of the axis at the home position; default 0", 0},
+    {"for", KEY_FOR, "SECONDS", 0, "Maximum time; default 60", 0},
+    {"reset", KEY_RESET, NULL, 0, "Reset an error of the drive first", 0},
+    {"csv", KEY_CSV, "FILE", 0, "Write a trace", 0},
+    {"svg", KEY_SVG, "FILE", 0, "Write a plot", 0},
+    {0}};
+static const struct argp_child home_children[] = {{&common_argp, 0, NULL, 0}, {0}};
+const struct argp argp_home = {home_table, parse_home, "[AXIS]",
+                                 "Enables one axis (name or number, default 1), homes it, disables it. Values that "
+                                 "are not given are those of the bus file; with --method they are the defaults of "
+                                 "the motor.",
+                                 home_children, NULL, NULL};
+
 int command_home(int argc, char **argv)
 {
-    static const struct argp_option table[] = {
-        {"method", KEY_METHOD, "METHOD", 0, "-1/-2 hard stop CW/CCW, -3/-4 input 2 CW/CCW, -5/-6 input 3 CW/CCW; "
-                                            "behind a bridge 1/2 hard stop, 3/4 switch CW/CCW; default: the bus "
-                                            "file's homing", 0},
-        {"velocity", 'v', "VELOCITY", 0, "Units/s", 0},
-        {"acceleration", 'a', "ACCELERATION", 0, "Units/s2", 0},
-        {"offset", KEY_OFFSET, "OFFSET", 0, "Units from the reference to the home position", 0},
-        {"torque", KEY_TORQUE, "PERCENT", 0, "10 ... 100 % of rated torque", 0},
-        {"position", KEY_POSITION, "POSITION", 0, "Position of the axis at the home position; default 0", 0},
-        {"for", KEY_FOR, "SECONDS", 0, "Maximum time; default 60", 0},
-        {"reset", KEY_RESET, NULL, 0, "Reset an error of the drive first", 0},
-        {"csv", KEY_CSV, "FILE", 0, "Write a trace", 0},
-        {"svg", KEY_SVG, "FILE", 0, "Write a plot", 0},
-        {0}};
-    static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
-    static const struct argp argp = {table, parse_home, "[AXIS]",
-                                     "Enables one axis (name or number, default 1), homes it, disables it. Values that "
-                                     "are not given are those of the bus file; with --method they are the defaults of "
-                                     "the motor.",
-                                     children, NULL, NULL};
     motion_options_t options = {.kind = MOTION_HOME,
                                 .homing = {.offset = NAN, .velocity = NAN, .acceleration = NAN, .torque = NAN,
                                            .timeout_s = NAN}};
-    if (argp_parse(&argp, argc, argv, 0, NULL, &options))
+    if (parse_options(&argp_home, argc, argv, &options))
         return EXIT_WRONG_USE;
     return move_or_home(&options, "home");
 }

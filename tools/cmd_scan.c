@@ -81,12 +81,14 @@ static void print_table(const cm1e_bus_t *bus)
     }
 }
 
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+const struct argp argp_scan = {NULL, parse, NULL, "Lists the slaves of a network.", children, NULL, NULL};
+
 int command_scan(int argc, char **argv)
 {
-    static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
-    static const struct argp argp = {NULL, parse, NULL, "Lists the slaves of a network.", children, NULL, NULL};
     common_options_t options = {0};
-    argp_parse(&argp, argc, argv, 0, NULL, &options);
+    if (parse_options(&argp_scan, argc, argv, &options))
+        return EXIT_WRONG_USE;
 
     static cm1e_bus_config_t config;
     if (!load_configuration(&options, &config))

@@ -24,6 +24,7 @@ static const struct {
     {"USINT", CM1E_TYPE_USINT, 1, false}, {"UINT", CM1E_TYPE_UINT, 2, false}, {"UDINT", CM1E_TYPE_UDINT, 4, false},
     {"STRING", CM1E_TYPE_STRING, 0, false},
 };
+#define TYPES "SINT|INT|DINT|USINT|UINT|UDINT|STRING" /* in the order of the table */
 enum { TYPE_COUNT = sizeof types / sizeof types[0] };
 
 typedef struct sdo_options {
@@ -44,6 +45,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_ARG:
         if (options->word_count >= 4)
             argp_error(state, "too many arguments from \"%s\" on", arg);
+        if (options->word_count == 0 && choose_word("action", arg, "read|write|list") < 0)
+            return EINVAL;
         options->words[options->word_count++] = arg;
         return 0;
     case ARGP_KEY_END: {
@@ -83,11 +86,8 @@ static bool parse_object(const char *word, uint16_t *index, uint8_t *subindex)
 static int find_type(const char *name, const cm1e_entry_t *entry)
 {
     if (name) {
-        for (int i = 0; i < TYPE_COUNT; i++)
-            if (strcasecmp(types[i].name, name) == 0)
-                return i;
-        complain("there is no type \"%s\"; there are SINT INT DINT USINT UINT UDINT STRING", name);
-        return -2;
+        const int i = choose_word("type", name, TYPES);
+        return i < 0 ? -2 : i;
     }
     for (int i = 0; entry && i < TYPE_COUNT; i++)
         if (types[i].type == entry->type)
@@ -202,24 +202,26 @@ static int transfer(cm1e_bus_t *bus, const sdo_options_t *options, cm1e_diag_t *
     return error == CM1E_OK ? EXIT_OK : fail_at(entry, diag);
 }
 
+static const struct argp_option table[] = {
+    {"type", KEY_TYPE, TYPES, 0, "The type of the object; default: as the device tables say", 0},
+    {"values", KEY_VALUES, NULL, 0, "list: also show the present values of the objects", 0},
+    {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+const struct argp argp_sdo = {
+    table, parse, "read POSITION INDEX[:SUB]\nwrite POSITION INDEX[:SUB] VALUE\nlist POSITION",
+    "Reads or writes an object, for example `cm1e sdo read -i eth1 1 0x1018:2`, or lists the dictionary of the "
+    "slave: type, bits, access (p: in Pre-Operational only), whether the object can be mapped, name.",
+    children, NULL, NULL};
+
 int command_sdo(int argc, char **argv)
 {
-    static const struct argp_option table[] = {
-        {"type", KEY_TYPE, "TYPE", 0, "SINT INT DINT USINT UINT UDINT STRING; default: as the device tables say", 0},
-        {"values", KEY_VALUES, NULL, 0, "list: also show the present values of the objects", 0},
-        {0}};
-    static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
-    static const struct argp argp = {
-        table, parse, "read POSITION INDEX[:SUB]\nwrite POSITION INDEX[:SUB] VALUE\nlist POSITION",
-        "Reads or writes an object, for example `cm1e sdo read -i eth1 1 0x1018:2`, or lists the dictionary of the "
-        "slave: type, bits, access (p: in Pre-Operational only), whether the object can be mapped, name.",
-        children, NULL, NULL};
     sdo_options_t options = {0};
     char *words[MAX_WORDS + 2];
     const int count = shelter_negative_value(argc, argv, words);
     if (count < 0)
         return EXIT_WRONG_USE;
-    argp_parse(&argp, count, words, 0, NULL, &options);
+    if (parse_options(&argp_sdo, count, words, &options))
+        return EXIT_WRONG_USE;
 
     static cm1e_bus_config_t config;
     if (!load_configuration(&options.common, &config))

@@ -40,6 +40,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_ARG:
         if (options->word_count >= 3)
             argp_error(state, "too many arguments from \"%s\" on", arg);
+        if (options->word_count == 0 && choose_word("action", arg, "read|write|decode") < 0)
+            return EINVAL;
         options->words[options->word_count++] = arg;
         return 0;
     case ARGP_KEY_END:
@@ -215,27 +217,29 @@ static int run_on_bus(const sii_options_t *options)
     return close_bus(bus, &options->common, status);
 }
 
+static const struct argp_option table[] = {
+    {"backup", KEY_BACKUP, "FILE", 0, "write: file for the present contents of the slave; it must not exist", 0},
+    {"force-checksum", KEY_FORCE_CHECKSUM, NULL, 0, "write: allow an image whose checksum is wrong", 0},
+    {"force-identity", KEY_FORCE_IDENTITY, NULL, 0,
+     "write: allow a slave that is not a CM1-E, or not the product of the image", 0},
+    {"force-configuration", KEY_FORCE_CONFIGURATION, NULL, 0,
+     "write: allow words 0-6 that differ from the slave's; a wrong word can make the slave unreachable", 0},
+    {"own-alias-and-serial", KEY_OWN, NULL, 0,
+     "write: also write alias and serial number of the image; by default those of the slave stay", 0},
+    {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+const struct argp argp_sii = {
+    table, parse, "read POSITION FILE\nwrite POSITION FILE --backup FILE\ndecode FILE|POSITION",
+    "Reads, writes or shows the SII, the EEPROM with the identity of a slave. Writing changes only the words that "
+    "differ, reads all data back, and names the word at which it stopped. To undo it, write the backup with `cm1e "
+    "sii write`.",
+    children, NULL, NULL};
+
 int command_sii(int argc, char **argv)
 {
-    static const struct argp_option table[] = {
-        {"backup", KEY_BACKUP, "FILE", 0, "write: file for the present contents of the slave; it must not exist", 0},
-        {"force-checksum", KEY_FORCE_CHECKSUM, NULL, 0, "write: allow an image whose checksum is wrong", 0},
-        {"force-identity", KEY_FORCE_IDENTITY, NULL, 0,
-         "write: allow a slave that is not a CM1-E, or not the product of the image", 0},
-        {"force-configuration", KEY_FORCE_CONFIGURATION, NULL, 0,
-         "write: allow words 0-6 that differ from the slave's; a wrong word can make the slave unreachable", 0},
-        {"own-alias-and-serial", KEY_OWN, NULL, 0,
-         "write: also write alias and serial number of the image; by default those of the slave stay", 0},
-        {0}};
-    static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
-    static const struct argp argp = {
-        table, parse, "read POSITION FILE\nwrite POSITION FILE --backup FILE\ndecode FILE|POSITION",
-        "Reads, writes or shows the SII, the EEPROM with the identity of a slave. Writing changes only the words that "
-        "differ, reads all data back, and names the word at which it stopped. To undo it, write the backup with `cm1e "
-        "sii write`.",
-        children, NULL, NULL};
     sii_options_t options = {0};
-    argp_parse(&argp, argc, argv, 0, NULL, &options);
+    if (parse_options(&argp_sii, argc, argv, &options))
+        return EXIT_WRONG_USE;
     if (!is_verb(&options, "decode", 2) || is_position(options.words[1]))
         return run_on_bus(&options);
     input_t image;

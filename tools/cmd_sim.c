@@ -1,4 +1,5 @@
 /** cm1e sim: a simulated network on a network interface, for any master. */
+#include <errno.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,20 +40,24 @@ static const struct extra {
 };
 enum { EXTRAS = sizeof extras / sizeof extras[0] };
 
-static void take_extra(sim_options_t *options, int key, const char *word, struct argp_state *state)
+#define ORDERS "ug-4.4|ug-7.2"
+#define BRIDGES "eb01|eb02|eb12"
+#define IO_KINDS "module|terminal|coupler"
+
+static error_t take_extra(sim_options_t *options, int key, const char *word, struct argp_state *state)
 {
+    const bool bridge = key == KEY_BRIDGE;
+    if (choose_word(bridge ? "bridge" : "simple device", word, bridge ? BRIDGES : IO_KINDS) < 0)
+        return EINVAL;
     int i = 0;
-    while (i < EXTRAS && (extras[i].key != key || strcmp(extras[i].word, word) != 0))
+    while (i < EXTRAS && (extras[i].key != key || strcasecmp(extras[i].word, word) != 0))
         i++;
-    if (i == EXTRAS && key == KEY_BRIDGE)
-        argp_error(state, "there is no bridge \"%s\"; there are eb01, eb02 and eb12", word);
-    else if (i == EXTRAS)
-        argp_error(state, "there is no simple device \"%s\"; there are module, terminal and coupler", word);
-    else if (options->extra_count == CM1E_MAX_SLAVES)
+    if (options->extra_count == CM1E_MAX_SLAVES)
         argp_error(state, "a segment has %d slaves at most", CM1E_MAX_SLAVES);
     else
         options->extras[options->extra_count++] = &extras[i];
-    options->has_bridges |= key == KEY_BRIDGE;
+    options->has_bridges |= bridge;
+    return 0;
 }
 
 static error_t parse(int key, char *arg, struct argp_state *state)
@@ -71,7 +76,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         options->sii[options->sii_count++] = arg;
         return 0;
     case KEY_BRIDGE:
-    case KEY_IO: take_extra(options, key, arg, state); return 0;
+    case KEY_IO: return take_extra(options, key, arg, state);
     case ARGP_KEY_ARG:
         if (options->bus_file)
             argp_error(state, "one bus file is enough; \"%s\" is too many", arg);
@@ -95,12 +100,10 @@ static bool describe(const sim_options_t *options, cm1e_bus_config_t *config)
         fail(&diag);
         return false;
     }
-    if (options->order && strcmp(options->order, "ug-7.2") == 0)
-        config->sim_pdo_order = CM1E_PDO_ORDER_UG_7_2;
-    else if (options->order && strcmp(options->order, "ug-4.4") != 0) {
-        complain("there is no PDO order \"%s\"; there are ug-4.4 and ug-7.2", options->order);
+    const int order = options->order ? choose_word("PDO order", options->order, ORDERS) : 0;
+    if (order < 0)
         return false;
-    }
+    config->sim_pdo_order = options->order ? (cm1e_pdo_order_t)order : config->sim_pdo_order;
     return true;
 }
 
@@ -168,26 +171,27 @@ static cm1e_error_t serve(cm1e_sim_segment_t *segment, const char *interface_nam
     return CM1E_OK;
 }
 
+static const struct argp_option table[] = {
+    {"interface", 'i', "INTERFACE", 0, "Network interface to answer on", 0},
+    {"pdo-order", 'o', ORDERS, 0, "The order of objects in the PDO mappings; default ug-4.4", 0},
+    {"sii", KEY_SII, "FILE", 0, "A slave boots from this SII image instead of the tables; the first option is for "
+     "the first slave, the second for the second, and so on", 0},
+    {"bridge", KEY_BRIDGE, BRIDGES, 0, "A Cool MUSCLE Bridge with four motors behind the other slaves; repeat it for "
+     "another one", 0},
+    {"io", KEY_IO, IO_KINDS, 0, "A simple device behind the other slaves: module (8 outputs wired to 8 inputs), "
+     "terminal (4 and 4, with device emulation) or coupler (no process data, with device emulation); repeat it for "
+     "another one", 0},
+    {0}};
+const struct argp argp_sim = {
+    table, parse, "[BUS-FILE]",
+    "Serves a simulated network until Ctrl-C, or until its terminal is closed. Without a bus file it has one "
+    "CM1-E-17S30D, firmware 1.3.5, or one for each SII image, or none with --bridge. It takes commands on standard "
+    "input; `help` lists them.", NULL, NULL, NULL};
+
 int command_sim(int argc, char **argv)
 {
-    static const struct argp_option table[] = {
-        {"interface", 'i', "INTERFACE", 0, "Network interface to answer on", 0},
-        {"pdo-order", 'o', "ORDER", 0, "ug-4.4 (default) or ug-7.2: the order of objects in the PDO mappings", 0},
-        {"sii", KEY_SII, "FILE", 0, "A slave boots from this SII image instead of the tables; the first option is for "
-         "the first slave, the second for the second, and so on", 0},
-        {"bridge", KEY_BRIDGE, "MODEL", 0, "A Cool MUSCLE Bridge with four motors behind the other slaves: eb01, eb02 "
-         "or eb12; repeat it for another one", 0},
-        {"io", KEY_IO, "KIND", 0, "A simple device behind the other slaves: module (8 outputs wired to 8 inputs), "
-         "terminal (4 and 4, with device emulation) or coupler (no process data, with device emulation); repeat it for "
-         "another one", 0},
-        {0}};
-    static const struct argp argp = {
-        table, parse, "[BUS-FILE]",
-        "Serves a simulated network until Ctrl-C, or until its terminal is closed. Without a bus file it has one "
-        "CM1-E-17S30D, firmware 1.3.5, or one for each SII image, or none with --bridge. It takes commands on standard "
-        "input; `help` lists them.", NULL, NULL, NULL};
     sim_options_t options = {0};
-    if (argp_parse(&argp, argc, argv, 0, NULL, &options))
+    if (parse_options(&argp_sim, argc, argv, &options))
         return EXIT_WRONG_USE;
 
     static cm1e_bus_config_t config;

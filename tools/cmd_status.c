@@ -70,16 +70,18 @@ static bool show_bridge(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const 
     return readable;
 }
 
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+const struct argp argp_status = {NULL, parse, NULL,
+                                 "Shows state, error and measurements of every drive, and which slaves are not "
+                                 "motors. It brings the network to Pre-Operational: do not use it while another "
+                                 "master runs.",
+                                 children, NULL, NULL};
+
 int command_status(int argc, char **argv)
 {
-    static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
-    static const struct argp argp = {NULL, parse, NULL,
-                                     "Shows state, error and measurements of every drive, and which slaves are not "
-                                     "motors. It brings the network to Pre-Operational: do not use it while another "
-                                     "master runs.",
-                                     children, NULL, NULL};
     common_options_t options = {0};
-    argp_parse(&argp, argc, argv, 0, NULL, &options);
+    if (parse_options(&argp_status, argc, argv, &options))
+        return EXIT_WRONG_USE;
 
     static cm1e_bus_config_t config;
     if (!load_configuration(&options, &config))

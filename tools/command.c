@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "cm1e/bridge.h"
+#include "core/near.h"
 #include "core/text.h"
 #include "device/devices.h"
 #include "device/place.h"
@@ -194,8 +195,14 @@ int find_axis(const cm1e_bus_config_t *config, const char *word)
                  config->axes[axis].type == CM1E_AXIS_ENCODER ? "an encoder" : "virtual");
         return -1;
     }
-    complain("there is no axis \"%s\"; there are 1 ... %u%s", word, config->axis_count,
-             config->axis_count > 0 && config->axes[0].name[0] ? ", or their names in the bus file" : "");
+    char text[CM1E_NEAR_TEXT_BYTES];
+    cm1e_near_t near = {.word = word};
+    for (uint32_t i = 0; i < config->axis_count; i++)
+        if (config->axes[i].name[0])
+            cm1e_near_look(&near, config->axes[i].name);
+    complain("there is no axis \"%s\"; there are 1 ... %u%s%s", word, config->axis_count,
+             config->axis_count > 0 && config->axes[0].name[0] ? ", or their names in the bus file" : "",
+             cm1e_near_text(&near, text, sizeof text));
     return -1;
 }
 

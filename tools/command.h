@@ -15,20 +15,52 @@
 
 enum { EXIT_OK = 0, EXIT_FAILED = 1, EXIT_WRONG_USE = 2 };
 
-typedef int (*command_fn)(int argc, char **argv);
+/** Every command: X(name, its summary, words that its arguments begin with). Each has a source cmd_<name>.c with
+ *  command_<name>() and the options argp_<name>. Help, man pages and completions follow from this list. */
+#define COMMANDS(X)                                                                                                 \
+    X(scan, "list the slaves of a network", "")                                                                     \
+    X(status, "show state, error and measurements of every drive", "")                                              \
+    X(sdo, "read or write an object of a slave", "read write list")                                                 \
+    X(cml, "send strings to a motor behind a Cool MUSCLE bridge", "")                                               \
+    X(sii, "read, write or show the EEPROM of a slave", "read write decode")                                        \
+    X(home, "home one axis", "")                                                                                    \
+    X(move, "move one axis", "")                                                                                    \
+    X(sim, "serve a simulated network on a network interface", "")                                                  \
+    X(generate, "write files for other masters", "esi ec-extend sii eni")                                           \
+    X(check, "check a file for other masters, from any source", "")                                                 \
+    X(diff, "compare a file with the live devices that it describes", "")                                           \
+    X(explain, "say what an error number or name means", "")
 
-int command_scan(int argc, char **argv);
-int command_sdo(int argc, char **argv);
-int command_status(int argc, char **argv);
-int command_move(int argc, char **argv);
-int command_home(int argc, char **argv);
-int command_sim(int argc, char **argv);
-int command_generate(int argc, char **argv);
-int command_sii(int argc, char **argv);
-int command_cml(int argc, char **argv);
-int command_diff(int argc, char **argv);
-int command_check(int argc, char **argv);
-int command_explain(int argc, char **argv);
+#define DECLARE(name, summary, words)              \
+    int command_##name(int argc, char **argv);     \
+    extern const struct argp argp_##name;
+COMMANDS(DECLARE)
+#undef DECLARE
+
+typedef struct command {
+    const char *name, *summary, *words;
+    int (*run)(int argc, char **argv);
+    const struct argp *argp;
+} command_t;
+extern const command_t commands[];
+extern const int command_count;
+
+/** The exit statuses of all commands; a description of NULL ends the list. */
+typedef struct exit_status {
+    int status;
+    const char *meaning;
+} exit_status_t;
+extern const exit_status_t exit_statuses[];
+
+/** argp_parse(), but an unknown long option is refused with the one that may have been meant. 0: parsed. */
+int parse_options(const struct argp *argp, int argc, char **argv, void *options);
+
+/** Calls `visit` for every option of a parser and of its children; false from it ends the walk. */
+typedef bool (*option_visitor_t)(const struct argp_option *option, void *context);
+bool visit_options(const struct argp *argp, option_visitor_t visit, void *context);
+
+/** The number of `word` in "flat|mdp"; -1 and a complaint, with the word that may have been meant: it is none. */
+int choose_word(const char *what, const char *word, const char *words);
 
 /** Options that most subcommands take: a child parser to be listed in a subcommand's argp. */
 typedef struct common_options {

@@ -4,34 +4,34 @@
 
 #include "cm1e/version.h"
 #include "command.h"
+#include "core/near.h"
+#include "describe.h"
 
-static const struct {
-    const char *name, *summary;
-    command_fn run;
-} commands[] = {
-    {"scan", "list the slaves of a network", command_scan},
-    {"status", "show state, error and measurements of every drive", command_status},
-    {"sdo", "read or write an object of a slave", command_sdo},
-    {"cml", "send strings to a motor behind a Cool MUSCLE bridge", command_cml},
-    {"sii", "read, write or show the EEPROM of a slave", command_sii},
-    {"home", "home one axis", command_home},
-    {"move", "move one axis", command_move},
-    {"sim", "serve a simulated network on a network interface", command_sim},
-    {"generate", "write files for other masters", command_generate},
-    {"check", "check a file for other masters, from any source", command_check},
-    {"diff", "compare a file with the live devices that it describes", command_diff},
-    {"explain", "say what an error number or name means", command_explain},
-};
-enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
+#define ROW(name, summary, words) {#name, summary, words, command_##name, &argp_##name},
+const command_t commands[] = {COMMANDS(ROW)};
+#undef ROW
+const int command_count = sizeof commands / sizeof commands[0];
 
 static void print_usage(FILE *file)
 {
-    fputs("Usage: cm1e COMMAND [OPTION...]\n"
-          "Drives Myostat CM1-E servo motors, and Cool Muscle motors behind a bridge, over EtherCAT.\n\n", file);
-    for (int i = 0; i < COMMAND_COUNT; i++)
+    fputs("Usage: cm1e COMMAND [OPTION...]\n" PROGRAM_SUMMARY "\n\n", file);
+    for (int i = 0; i < command_count; i++)
         fprintf(file, "  %-10s %s\n", commands[i].name, commands[i].summary);
-    fputs("\n`cm1e COMMAND --help` shows a command's options. `-i sim` is a simulated network in this process,\n`-i "
-          "eth1` a real one (it needs the right to open raw sockets).\n", file);
+    fputs("\n`cm1e COMMAND --help` and `man cm1e-COMMAND` describe a command. `-i sim` is a simulated network in this\n"
+          "process, `-i eth1` a real one (it needs the right to open raw sockets).\n\nExit status:\n", file);
+    for (const exit_status_t *row = exit_statuses; row->meaning; row++)
+        fprintf(file, "  %d  %s\n", row->status, row->meaning);
+}
+
+static int complain_unknown(const char *word)
+{
+    char text[CM1E_NEAR_TEXT_BYTES];
+    cm1e_near_t near = {.word = word};
+    for (int i = 0; i < command_count; i++)
+        cm1e_near_look(&near, commands[i].name);
+    fprintf(stderr, "cm1e: there is no command \"%s\"%s\n\n", word, cm1e_near_text(&near, text, sizeof text));
+    print_usage(stderr);
+    return EXIT_WRONG_USE;
 }
 
 /* Output that was not written (a full disk, a closed pipe) is a failure. */
@@ -57,15 +57,15 @@ int main(int argc, char **argv)
         printf("cm1e %s\n", cm1e_version());
         return EXIT_OK;
     }
+    if (strcmp(argv[1], "--describe") == 0)
+        return finish(describe(argc - 2, argv + 2));
     argp_err_exit_status = EXIT_WRONG_USE;
-    for (int i = 0; i < COMMAND_COUNT; i++)
+    for (int i = 0; i < command_count; i++)
         if (strcmp(argv[1], commands[i].name) == 0) {
             char name[32];
             snprintf(name, sizeof name, "cm1e %s", commands[i].name);
             argv[1] = program_invocation_name = name;
             return finish(commands[i].run(argc - 1, argv + 1));
         }
-    fprintf(stderr, "cm1e: there is no command \"%s\"\n\n", argv[1]);
-    print_usage(stderr);
-    return EXIT_WRONG_USE;
+    return complain_unknown(argv[1]);
 }

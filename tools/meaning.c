@@ -138,7 +138,8 @@ static void add_statuses(list_t *list)
                                  ? add(list, status, 2, CM1E_BRIDGE_STATUS_CLAUSE) : NULL;
             if (!row)
                 continue;
-            snprintf(row->whose, sizeof row->whose, "status of a %s behind a bridge (CML ?99, objects 0xF530:05 ... 08)",
+            snprintf(row->whose, sizeof row->whose,
+                     "status of a %s behind a bridge (CML ?99, objects 0xF530:05 ... 08)",
                      names[motor]);
             cm1e_bridge_status_text(motor, status, row->text, sizeof row->text);
             row->cure = cm1e_bridge_status_cure(motor, status);

@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "busfile/busfile.h"
+#include "core/near.h"
 
 typedef struct compare {
     yaml_document_t *document;
@@ -154,9 +155,13 @@ static bool compare_enum(const compare_t *compare, const yaml_node_t *node, cons
     for (uint32_t i = 0; i < schema->enumeration.count; i++)
         if (strcmp((const char *)node->data.scalar.value, schema->enumeration.strings[i].str) == 0)
             return true;
-    char shown[SHOWN], words[200];
+    char shown[SHOWN], words[200], meant[CM1E_NEAR_TEXT_BYTES];
     list_strings(words, sizeof words, schema);
-    return wrong(compare, node, "%s is %s; expected one of: %s", key, found(node, shown), words);
+    cm1e_near_t near = {.word = (const char *)node->data.scalar.value};
+    for (uint32_t i = 0; i < schema->enumeration.count; i++)
+        cm1e_near_look(&near, schema->enumeration.strings[i].str);
+    return wrong(compare, node, "%s is %s; expected one of: %s%s", key, found(node, shown), words,
+                 cm1e_near_text(&near, meant, sizeof meant));
 }
 
 static bool compare_scalar(const compare_t *compare, const yaml_node_t *node, const cyaml_schema_value_t *schema,
@@ -203,6 +208,21 @@ static int find_field(const cyaml_schema_field_t *fields, const yaml_node_t *nam
     return -1;
 }
 
+static bool unknown_key(const compare_t *compare, const yaml_node_t *name, const char *key,
+                        const cyaml_schema_field_t *fields)
+{
+    char shown[SHOWN], keys[200], meant[CM1E_NEAR_TEXT_BYTES] = "";
+    list_keys(keys, sizeof keys, fields);
+    if (name->type == YAML_SCALAR_NODE) {
+        cm1e_near_t near = {.word = (const char *)name->data.scalar.value};
+        for (int i = 0; fields[i].key; i++)
+            cm1e_near_look(&near, fields[i].key);
+        cm1e_near_text(&near, meant, sizeof meant);
+    }
+    return wrong(compare, name, "unknown key %s in %s; expected one of: %s%s", found(name, shown), key, keys,
+                 meant);
+}
+
 static bool compare_mapping(const compare_t *compare, const yaml_node_t *node, const cyaml_schema_value_t *schema,
                             const char *key)
 {
@@ -216,7 +236,7 @@ static bool compare_mapping(const compare_t *compare, const yaml_node_t *node, c
         const yaml_node_t *name = yaml_document_get_node(compare->document, pair->key);
         const int i = find_field(fields, name);
         if (i < 0)
-            return wrong(compare, name, "unknown key %s in %s; expected one of: %s", found(name, shown), key, keys);
+            return unknown_key(compare, name, key, fields);
         if (seen[i])
             return wrong(compare, name, "key '%s' is given twice in %s; expected once", fields[i].key, key);
         seen[i] = true;

@@ -18,7 +18,8 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../
 from test_wire_only import guests
 
 INSTALLED = ("bin/cm1e", "include/cm1e/plcopen.h", "share/doc/cm1e/LICENSE", "share/doc/cm1e/THIRD-PARTY.md",
-             "share/doc/cm1e/licenses/SOEM.txt")
+             "share/doc/cm1e/licenses/SOEM.txt", "share/man/man1/cm1e.1", "share/man/man1/cm1e-move.1",
+             "share/bash-completion/completions/cm1e", "share/zsh/site-functions/_cm1e")
 APART = ("busfile", "generate", "plot", "sim")
 PROGRAMS = ("consumer", "own_names", "before_libpcap", "after_libpcap")
 

@@ -1,0 +1,18 @@
+# cmake -DCM1E=PROGRAM -DEMULATOR=... -DFOLDER=FOLDER -P describe.cmake: man pages and completions into FOLDER.
+function(described file)
+  execute_process(COMMAND ${EMULATOR} ${CM1E} --describe ${ARGN} OUTPUT_FILE ${FOLDER}/${file} RESULT_VARIABLE failed)
+  if(failed)
+    message(FATAL_ERROR "${CM1E} --describe ${ARGN}: ${failed}")
+  endif()
+endfunction()
+
+file(REMOVE_RECURSE ${FOLDER})
+file(MAKE_DIRECTORY ${FOLDER}/man1)
+described(commands.txt commands)
+file(STRINGS ${FOLDER}/commands.txt commands)
+described(man1/cm1e.1 man)
+foreach(command ${commands})
+  described(man1/cm1e-${command}.1 man ${command})
+endforeach()
+described(cm1e.bash bash)
+described(_cm1e zsh)
