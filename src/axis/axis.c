@@ -28,7 +28,7 @@ cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t inde
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for axis %u.", (unsigned)index);
     static const axis_events_t events = {cm1e_axis_error_stop, cm1e_axis_begin_next, cm1e_axis_methods};
     axis->events = &events;
-    axis->setpoint.source = &cm1e_source_free;
+    cm1e_axis_setpoint_init(axis);
     cm1e_error_t error = cm1e_drive_init(&axis->drive, bus, index, diag);
     if (!error) {
         axis->config = axis->drive.config;
@@ -36,6 +36,7 @@ cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t inde
     }
     if (!error)
         error = cm1e_axis_table_init(axis, diag);
+    axis->override = axis->override_refused = (override_t){1.0, 1.0, 1.0};
     axis->mode = !error && !cm1e_drive_supports(&axis->drive, CM1E_MODE_CSP) ? CM1E_MODE_CSV : CM1E_MODE_CSP;
     if (!error && !cm1e_axis_handle_take(axis, &axis->handle))
         error = cm1e_diag_set(diag, CM1E_ERROR_FULL, 0, "There are already %d axes in this process.",
@@ -52,8 +53,7 @@ cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t inde
     cm1e_axis_in_position_init(axis);
     cm1e_axis_steps_init(axis);
     axis->drive.command.mode = axis->mode;
-    axis->setpoint.positive_before = true;
-    axis->power.reset_state = CM1E_COMMAND_DONE;
+    cm1e_axis_power_init(axis);
     *result = axis;
     return CM1E_OK;
 }
@@ -100,8 +100,7 @@ static void watch_lag(cm1e_axis_t *axis)
 {
     const bool own = axis_holds(axis) || set_points_move(axis);
     const bool blind_before = axis->silence.blind;
-    axis->silence.blind = own && !axis->drive.feedback.fresh;
-    if (axis->silence.blind)
+    if (cm1e_axis_note_blind(axis, own && !axis->drive.feedback.fresh))
         return;
     /* counts */
     const double lag = own ? cm1e_position_minus(axis->setpoint.position, axis_actual(axis)) + cm1e_axis_ran_on(axis)
@@ -122,39 +121,6 @@ static void watch_lag(cm1e_axis_t *axis)
     }
 }
 
-static uint16_t add_up(uint16_t to, int64_t more)
-{
-    return (uint16_t)(to + more < UINT16_MAX ? to + more : UINT16_MAX);
-}
-
-static void note_silence(cm1e_axis_t *axis, int64_t cycles)
-{
-    axis->silence.silent = add_up(axis->silence.silent, cycles);
-    axis->silence.shaken = add_up(axis->silence.shaken, cycles * CM1E_SHAKEN_BY_SILENCE);
-}
-
-/* While no answer comes it is not known which target the drive holds. */
-static void note_answer(cm1e_axis_t *axis, bool answered, bool lost)
-{
-    axis->silence.silent_before = answered ? axis->silence.silent : 0;
-    /* A velocity may be reduced all the same: a ramp of ErrorStop goes on. */
-    const bool brakes_on = axis->mode == CM1E_MODE_CSV && axis->state == CM1E_AXIS_ERROR_STOP;
-    axis->silence.frozen = !answered && !lost && !brakes_on;
-    if (answered) {
-        axis->silence.silent = 0;
-        axis->silence.shaken -= axis->silence.shaken > 0;
-    } else {
-        note_silence(axis, 1);
-    }
-}
-
-void cm1e_axis_hold_cycle(cm1e_axis_t *axis, int64_t missed)
-{
-    note_silence(axis, missed);
-    axis->silence.frozen = true;
-    cm1e_drive_slew(&axis->drive);
-}
-
 static bool asks_for_torque(const cm1e_axis_t *axis) { return axis->power.enable && !axis->power.shutting_down; }
 
 /* An axis that is neither under torque nor to be so has nothing to lose while the bus is away; one without a device
@@ -170,8 +136,8 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
 {
     cm1e_drive_t *drive = &axis->drive;
     axis->now_ns = now_ns;
-    axis->advanced = axis->silence.resumed = axis->silence.began_anew = false;
-    note_answer(axis, received == CM1E_OK, health != CM1E_OK);
+    axis->advanced = false;
+    cm1e_axis_note_answer(axis, received == CM1E_OK, health != CM1E_OK);
     cm1e_drive_read(drive, received == CM1E_OK, now_ns);
     if (drive->feedback.fresh)
         cm1e_axis_track(axis);
@@ -180,7 +146,7 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
     if (axis->signals.probes_armed > 0 && drive->feedback.fresh)
         cm1e_axis_probe_step(axis);
     if (drive->watch.lost || (drive->watch.al_state & 0x0F) == CM1E_AL_INIT)
-        axis->position.homed = false; /* it may have been without power, and count from somewhere else now */
+        cm1e_axis_set_homed(axis, false); /* it may have been without power, and count from somewhere else now */
     /* Here, so that no program sees an axis in error whose drive has forgotten why. */
     if (axis->power.reset_state == CM1E_COMMAND_ACTIVE)
         cm1e_axis_reset_step(axis);
@@ -198,7 +164,7 @@ void cm1e_axis_inputs(cm1e_axis_t *axis, cm1e_error_t received, cm1e_error_t hea
         else
             cm1e_axis_fail(axis, drive->fault.error, 0.0, 0.0);
         if (axis->fault.error == drive->fault.error)
-            axis->fault.device_error = drive->fault.device_code; /* it may come a cycle later */
+            cm1e_axis_tell_device_error(axis, drive->fault.device_code);
     }
     if (health)
         cm1e_axis_hold_unheard(axis);

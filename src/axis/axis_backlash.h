@@ -17,6 +17,8 @@ bool cm1e_axis_backlash_at_rest(const cm1e_axis_t *axis);
 void cm1e_axis_backlash_track(cm1e_axis_t *axis, int32_t moved_counts);
 void cm1e_axis_backlash_step(cm1e_axis_t *axis);
 
+/** The motor has not gone on with it. */
+static inline void cm1e_axis_backlash_stop(cm1e_axis_t *axis) { axis->backlash.offset_velocity = 0.0; }
 /** Where the load is while the motor is there. */
 static inline position_t cm1e_axis_load(const cm1e_axis_t *axis, int64_t motor_counts)
 {

@@ -74,7 +74,7 @@ cm1e_error_t cm1e_axis_buffer(cm1e_axis_t *axis, move_t *move)
     if (error)
         return error;
     move->id = cm1e_axis_next_id(axis);
-    *waiting_move(axis, axis->commands.waiting.count++) = *move;
+    cm1e_axis_append_waiting(axis, move);
     if (axis->setpoint.reached && hands_over(axis)) { /* the signal that it waits for is there already (table 4) */
         const from_t from = from_base(axis);
         (void)cm1e_axis_begin_waiting(axis, &from, 0.0);

@@ -9,6 +9,7 @@
 #include "axis/axis_setpoint.h"
 #include "axis/axis_superimpose.h"
 #include "axis/axis_table.h"
+#include "axis/axis_text.h"
 
 /* ---- ends -------------------------------------------------------------------------------------------------------- */
 
@@ -248,7 +249,7 @@ static cm1e_error_t start(cm1e_axis_t *axis, const cm1e_axis_command_t *command,
 cm1e_error_t cm1e_axis_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     if (axis->not_set.what == NOT_FINISHED) /* one that is taken now may end at once, and be told */
-        axis->not_set.error = CM1E_OK;
+        cm1e_axis_forget_not_set(axis);
     cm1e_axis_remember_refusal(axis, command, start(axis, command, id));
     if (axis->commands.refusal && (unsigned)command->kind < CM1E_COMMAND_KIND_COUNT &&
         kind_row(command->kind)->plan == PLAN_TABLE)

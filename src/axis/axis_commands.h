@@ -18,10 +18,40 @@ static inline bool axis_moves_by_command(const cm1e_axis_t *axis)
     const bool moving = axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION;
     return moving && ((axis->commands.active && axis->commands.kind != CM1E_COMMAND_HALT) || axis->superimposed.id);
 }
+/** It becomes the active command; cm1e_axis_command_end() has ended the one before. */
+static inline void cm1e_axis_activate(cm1e_axis_t *axis, const move_t *move)
+{
+    axis->commands.active = move->id;
+    axis->commands.kind = (cm1e_command_kind_t)move->kind;
+    axis->commands.move = *move;
+}
+/** Of a homing, which is no move. */
+static inline void cm1e_axis_activate_homing(cm1e_axis_t *axis, cm1e_command_id_t id, cm1e_command_kind_t kind)
+{
+    axis->commands.active = id;
+    axis->commands.kind = kind;
+}
+/** Its position lies behind now. */
+static inline void cm1e_axis_set_passing(cm1e_axis_t *axis) { axis->commands.move.passing = true; }
+/** It began and ends so many counts farther on. */
+static inline void cm1e_axis_shift_move(cm1e_axis_t *axis, double counts)
+{
+    axis->commands.move.origin = cm1e_position_plus(axis->commands.move.origin, counts);
+    axis->commands.move.target = cm1e_position_plus(axis->commands.move.target, counts);
+}
+/** The first waiting command awaits a place of its master. */
+static inline void cm1e_axis_set_awaits(cm1e_axis_t *axis, bool awaits) { axis->commands.awaits = awaits; }
+/** Why a command was refused, for the text; CM1E_OK: none was. */
+static inline void cm1e_axis_set_refusal(cm1e_axis_t *axis, cm1e_error_t error) { axis->commands.refusal = error; }
 /** The first of those that wait is 0. */
 static inline move_t *waiting_move(cm1e_axis_t *axis, int index)
 {
     return &axis->commands.waiting.moves[(axis->commands.waiting.first + index) % CM1E_AXIS_BUFFER_DEPTH];
+}
+/** There is room for it. */
+static inline void cm1e_axis_append_waiting(cm1e_axis_t *axis, const move_t *move)
+{
+    *waiting_move(axis, axis->commands.waiting.count++) = *move;
 }
 /** Of a room above the axis, or its own; without `start`: the axis cannot do it. */
 static inline const command_method_t *cm1e_axis_method(const cm1e_axis_t *axis, command_plan_t plan)

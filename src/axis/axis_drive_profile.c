@@ -124,7 +124,7 @@ static void enter(cm1e_axis_t *axis, drive_step_t step)
 void cm1e_axis_drive_begin(cm1e_axis_t *axis, const driving_t *d)
 {
     axis->driving = *d;
-    axis->setpoint.reached = false;
+    cm1e_axis_set_reached(axis, false);
     cm1e_axis_set_source(axis, &cm1e_source_drive);
     enter(axis, DRIVE_WRITE);
 }
@@ -257,7 +257,7 @@ static bool there(const cm1e_axis_t *axis)
 
 static void arrived(cm1e_axis_t *axis)
 {
-    axis->setpoint.position = axis->commands.move.target;
+    cm1e_axis_put_position(axis, axis->commands.move.target);
     back(axis);
 }
 
@@ -296,7 +296,7 @@ static void step_move(cm1e_axis_t *axis)
     if (!f->online)
         return;
     if (d->velocity_mode) {
-        axis->setpoint.reached = f->target_reached && axis->now_ns - d->step_ns >= stale_ns;
+        cm1e_axis_set_reached(axis, f->target_reached && axis->now_ns - d->step_ns >= stale_ns);
         if (!can_halt(axis))
             cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->setpoint.position),
                            f->velocity / axis->position.scale > 0.0 ? axis->limits.upper : axis->limits.lower);

@@ -76,7 +76,7 @@ CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *
     if (!isfinite(v) || !isfinite(a))
         return broken(GUARD_FINITE, 0.0, 0.0);
     /* What goes on accelerating so close below the maximum velocity can no longer be kept below it. */
-    const double peak = fabs(v) + (kept_jerk && a * v > 0.0 ? a * a * axis->limits.guarding.ease : 0.0);
+    const double peak = fabs(v) + (kept_jerk && a * v > 0.0 ? a * a * axis->guarding.ease : 0.0);
     if (peak > most->velocity * (1.0 + slack))
         return broken(GUARD_VELOCITY, peak, most->velocity);
     if (fabs(v) > axis->limits.tolerance && !cm1e_axis_direction_enabled(axis, v))
@@ -147,7 +147,7 @@ void cm1e_axis_guard_renew(cm1e_axis_t *axis)
 {
     const cm1e_motion_limits_t *most = limits_of(axis);
     const double t = axis->cycle_s, either = fmax(most->acceleration, most->deceleration);
-    axis->limits.guarding = (guarding_t){
+    axis->guarding = (guarding_t){
         .velocity = most->velocity,
         .up = most->acceleration * t,
         .down = most->deceleration * t,
@@ -164,7 +164,7 @@ void cm1e_axis_guard_fail(cm1e_axis_t *axis, guard_t guard)
 {
     guard.by_actual = axis_follows(axis) && axis->coupling_hooks->by_actual(axis);
     if (axis->state != CM1E_AXIS_ERROR_STOP)
-        axis->fault.guard = guard;
+        axis->broken = guard;
     cm1e_axis_fail(axis, CM1E_ERROR_AXIS_COUPLING_LIMIT, guard.asked, guard.allowed);
 }
 
@@ -185,13 +185,13 @@ static const char *const said[GUARD_COUNT] = {
 void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     char asked[160];
-    snprintf(asked, sizeof asked, said[axis->fault.guard.limit], axis->fault.guard.asked, axis->fault.guard.allowed);
+    snprintf(asked, sizeof asked, said[axis->broken.limit], axis->broken.asked, axis->broken.allowed);
     snprintf(text, size,
              "Axis \"%s\": what it was coupled with, or its axes group, asked it for %s. That set-point was not given "
              "to the motor, which was braked. Reduce the dynamics of what leads it, or raise the limits of this "
              "axis%s; then reset the axis with MC_Reset.",
              axis->config->name, asked,
-             axis->fault.guard.by_actual ? ", or smooth the actual value of its master more (encoder_filter_s of the "
+             axis->broken.by_actual ? ", or smooth the actual value of its master more (encoder_filter_s of the "
                                            "master)"
                                          : "");
 }

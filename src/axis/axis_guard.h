@@ -20,7 +20,7 @@ void cm1e_axis_guard_text(const cm1e_axis_t *axis, char *text, size_t size);
  *  is not. */
 static inline bool cm1e_axis_well_within(const cm1e_axis_t *axis, const from_t *next, bool kept_jerk)
 {
-    const guarding_t *g = &axis->limits.guarding;
+    const guarding_t *g = &axis->guarding;
     const double v0 = axis->setpoint.velocity, v = next->velocity, a = next->acceleration, speed = fabs(v);
     const double step = cm1e_position_minus(next->position, axis->setpoint.position) - (v0 + v) * g->half_cycle;
     if (!(speed <= g->velocity && fabs(v - v0) <= (speed >= fabs(v0) ? g->up : g->down) &&

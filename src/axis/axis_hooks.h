@@ -88,7 +88,8 @@ typedef struct homing_hooks {
     bool (*not_finished_text)(const cm1e_axis_t *axis, char *text, size_t size);
 } homing_hooks_t;
 
-/** What a homing in steps tells the axis of the step that runs. */
+/** What a homing in steps tells the axis of the step that runs. Written by homing_steps.c, axis_free.c and
+ *  axis_power.c. */
 typedef struct homing_step {
     bool pushing;    /**< the set-point may be where the motor cannot go */
     bool after_stop; /**< MC_Stop ended a step, and the motor is relieved before it is Done */

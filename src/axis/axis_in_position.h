@@ -12,6 +12,8 @@ void cm1e_axis_in_position_init(cm1e_axis_t *axis); /* @rt init; after limits an
 bool cm1e_axis_in_position(const cm1e_axis_t *axis);
 /** In every cycle in which the axis holds. */
 void cm1e_axis_in_position_step(cm1e_axis_t *axis);
+/** The set-point moves. */
+static inline void cm1e_axis_in_position_leave(cm1e_axis_t *axis) { axis->in_position.inside = false; }
 /** The set-point of the active command has arrived and stands. TRUE: the command stays active until the motor is
  *  there, in its state of the diagram. */
 bool cm1e_axis_settle(cm1e_axis_t *axis);

@@ -80,11 +80,7 @@ static bool step(cm1e_axis_t *axis)
         cm1e_axis_guard_fail(axis, guard);
         return false;
     }
-    axis->setpoint.position = next.position;
-    axis->setpoint.velocity = next.velocity;
-    axis->setpoint.acceleration = next.acceleration;
-    if (next.velocity != 0.0)
-        axis->setpoint.positive_before = next.velocity > 0.0;
+    cm1e_axis_put_set_point(axis, &next);
     if (lead == CM1E_LEAD_LAST)
         cm1e_axis_release(axis);
     return true;

@@ -83,11 +83,7 @@ cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
     const double backlash_velocity = c->backlash == 0.0 ? 0.0
                                      : or_default(c->backlash_velocity, cm1e_unit_backlash_velocity(c) / counts);
     const double peak = cm1e_unit_peak_velocity(axis->config) / counts - backlash_velocity;
-    axis->position.unit = cm1e_unit_of(c);
-    axis->position.count = count;
-    axis->position.scale = c->invert ? -counts : counts;
-    axis->position.modulo_range = c->modulo_range;
-    if (!(peak > 0.0) || (c->modulo_range > 0.0 && !cm1e_unit_modulo(c, &axis->position.turn)))
+    if (!cm1e_axis_position_init(axis) || !(peak > 0.0))
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "Axis \"%s\": backlash velocity, unit or a turn of %.17g u "
                              "are numbers that the axis cannot compute with.", c->name, c->modulo_range);
     axis->limits.maximum.velocity = fmin(or_default(c->max_velocity, peak), peak);
@@ -96,7 +92,6 @@ cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag)
     axis->limits.maximum.jerk = or_default(c->max_jerk, default_jerk_counts * count / counts);
     axis->limits.system = axis->limits.maximum;
     axis->limits.emergency = axis->limits.system;
-    axis->override = axis->override_refused = (override_t){1.0, 1.0, 1.0};
     axis->limits.emergency.jerk = INFINITY;
     axis->limits.emergency_way = 0.5 / axis->limits.emergency.deceleration;
     axis->limits.tolerance = tolerance_counts / fabs(axis->position.scale);

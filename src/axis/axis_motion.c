@@ -88,11 +88,17 @@ bool cm1e_axis_profile_goes(cm1e_axis_t *axis, double sign)
 
 static void hold_target(cm1e_axis_t *axis)
 {
-    axis->setpoint.position = axis->setpoint.target;
-    axis->setpoint.velocity = 0.0;
-    axis->setpoint.acceleration = 0.0;
+    cm1e_axis_put_position(axis, axis->setpoint.target);
+    cm1e_axis_put_velocity(axis, 0.0);
     cm1e_axis_set_source(axis, &cm1e_source_hold);
     axis->setpoint.stands = false;
+}
+
+void cm1e_axis_hold_here(cm1e_axis_t *axis)
+{
+    axis->setpoint.target = axis->setpoint.position;
+    cm1e_axis_put_velocity(axis, 0.0);
+    cm1e_axis_set_source(axis, &cm1e_source_hold);
 }
 
 void cm1e_axis_stand(cm1e_axis_t *axis)
@@ -134,7 +140,7 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
         if (may_go_on(axis, axis->setpoint.profile.end) && cm1e_axis_begin_waiting(axis, &end, late_s))
             return axis_on_profile(axis); /* not what follows a master */
         axis->setpoint.reached = true;
-        axis->commands.move.passing = true; /* the position lies behind now, whatever else changes */
+        cm1e_axis_set_passing(axis); /* the position lies behind now, whatever else changes */
         return true;
     }
     if (axis->commands.active && !goes_on && cm1e_axis_settle(axis)) {
@@ -300,7 +306,7 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
     if (axis_stepping(axis) || (axis->state == CM1E_AXIS_STOPPING && axis->homing_step.after_stop))
         axis->homing_hooks->step_cycle(axis);
     if (!axis_holds(axis))
-        axis->in_position.inside = false;
+        cm1e_axis_in_position_leave(axis);
     if (axis->setpoint.source == &cm1e_source_profile) /* most motions are, and a call by pointer costs a nanosecond */
         cm1e_axis_profile_step(axis);
     else if (!axis->setpoint.source->step(axis) && axis_on_profile(axis))

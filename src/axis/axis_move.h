@@ -53,7 +53,8 @@ typedef struct tables {
     table_points_t waiting;
 } tables_t;
 
-/** Factors of MC_SetOverride; acceleration: also for the deceleration. */
+/** Factors of MC_SetOverride; acceleration: also for the deceleration. Written by axis.c, axis_override.c and, while it
+ *  tries a plan without them, axis_plan.c. */
 typedef struct override {
     double velocity, acceleration, jerk;
 } override_t;
@@ -65,7 +66,7 @@ typedef struct from {
     bool shared;                   /**< a superimposed motion goes on above it and needs its part of the limits */
 } from_t;
 
-/** A motion on top of the commanded one (3.8), which is called the base of it. */
+/** A motion on top of the commanded one (3.8), which is called the base of it. Written by axis_superimpose.c. */
 typedef struct superimposed {
     cm1e_command_id_t id;          /**< MC_MoveSuperimposed, or MC_HaltSuperimposed; 0: none */
     bool moving;                   /**< FALSE: it waits until the base has room for it */
@@ -81,7 +82,8 @@ typedef struct superimposed {
     move_t move;
 } superimposed_t;
 
-/** The commands of an axis. */
+/** The commands of an axis. Written by axis_commands.h, axis_command.c, axis_record.c, axis_buffer.c, axis_replan.c and
+ *  axis_keep.c. */
 typedef struct commands {
     cm1e_command_id_t active;       /**< 0: none */
     cm1e_command_kind_t kind;       /**< of the active one */

@@ -14,6 +14,8 @@
 
 /* ---- set-point: axis_setpoint.h ---------------------------------------------------------------------------------- */
 
+/** Where the set-point comes from, where it is, and the profile that it is on. Written by axis_setpoint.h and
+ *  axis_motion.c. */
 typedef struct setpoint {
     const source_t *source;         /**< cm1e_axis_set_source() */
     bool reached, positive_before;
@@ -34,6 +36,7 @@ typedef struct setpoint {
 
 /* ---- position: axis_position.h ----------------------------------------------------------------------------------- */
 
+/** Counts of the drive, units, turns of a modulo axis, the origin. Written by axis_position.h and axis_position.c. */
 typedef struct axis_position {
     bool known, homed;
     int32_t raw;                    /**< counts of the drive, last seen */
@@ -49,7 +52,8 @@ typedef struct axis_position {
 
 /* ---- limits and guard: axis_limits.h, axis_guard.h --------------------------------------------------------------- */
 
-/** What a set-point may be beside the one before it, in the numbers that are compared; made once. */
+/** What a set-point may be beside the one before it, in the numbers that are compared; made once. Written by
+ *  axis_guard.c. */
 typedef struct guarding {
     double velocity;         /**< u/s */
     double up, down;         /**< u/s in a cycle */
@@ -60,6 +64,7 @@ typedef struct guarding {
     double per_count;        /**< u, signed */
 } guarding_t;
 
+/** What the axis may do: dynamics, software limits, directions. Written by axis_limits.c and axis_parameter.c. */
 typedef struct limits {
     bool software_limits;           /**< one of them at least; those in force are ... */
     bool lag_monitoring;
@@ -68,7 +73,6 @@ typedef struct limits {
     double lower, upper;            /**< u, as cm1e_axis_line() counts; infinite: none on that side */
     double tolerance;               /**< u; which they are kept with */
     double emergency_way;           /**< s2/u; times the square of a velocity: that it goes */
-    guarding_t guarding;
     double max_lag;                 /**< u */
     cm1e_motion_limits_t system;    /**< u; of motor and configuration */
     cm1e_motion_limits_t maximum;   /**< u; what the application allows of it: the bounds of commands */
@@ -92,6 +96,7 @@ typedef enum guard_limit {
     GUARD_COUNT,
 } guard_limit_t;
 
+/** What a set-point broke, and by how much. Written by axis_guard.c. */
 typedef struct guard {
     guard_limit_t limit;
     double asked, allowed; /**< in the units of the limit */
@@ -100,6 +105,8 @@ typedef struct guard {
 
 /* ---- power and errors: axis_power.h ------------------------------------------------------------------------------ */
 
+/** What MC_Power and MC_Reset ask for, and how far it has come. Written by axis_power.h, axis_power.c and
+ *  axis_free.c. */
 typedef struct power {
     bool enable, enable_positive, enable_negative;
     bool energized;                 /**< the axis has taken over the enabled drive */
@@ -112,12 +119,11 @@ typedef struct power {
     int64_t brake_until_ns;         /**< so long at least the torque stays to brake */
 } power_t;
 
-/** Why the axis is in ErrorStop. */
+/** Why the axis is in ErrorStop. Written by axis_power.h and axis_power.c. */
 typedef struct fault {
     cm1e_error_t error;
     uint16_t device_error;
     double value, bound;            /**< numbers for the text */
-    guard_t guard;                  /**< with CM1E_ERROR_AXIS_COUPLING_LIMIT */
 } fault_t;
 
 /* ---- silence: axis_pause.h --------------------------------------------------------------------------------------- */
@@ -125,6 +131,7 @@ typedef struct fault {
 /** A motor needs so many cycles to recover from one in which its target stood. */
 enum { CM1E_SHAKEN_BY_SILENCE = 8 };
 
+/** Cycles without an answer of the bus. Written by axis_pause.h and axis_pause.c. */
 typedef struct silence {
     uint16_t shaken;                /**< by silence not long ago: CM1E_SHAKEN_BY_SILENCE for each cycle of it, one less
                                          with each answer */
@@ -137,7 +144,8 @@ typedef struct silence {
 
 /* ---- backlash: axis_backlash.h ----------------------------------------------------------------------------------- */
 
-/** Counts in the direction in which u grows. */
+/** The gap between motor and load; counts in the direction in which u grows. Written by axis_backlash.h and
+ *  axis_backlash.c. */
 typedef struct backlash {
     double gap;                    /**< 0: none */
     double velocity, acceleration; /**< of its compensation; counts/s, counts/s2 */
@@ -147,6 +155,8 @@ typedef struct backlash {
 
 /* ---- in position: axis_in_position.h ----------------------------------------------------------------------------- */
 
+/** Whether the motor is where its set-point stands. Written by axis_in_position.h, axis_in_position.c and
+ *  axis_parameter.c. */
 typedef struct in_position {
     bool inside;                /**< where it was seen last, the motor is in the window; FALSE: the set-point moves */
     bool there;                 /**< ... and has been for the time */
@@ -183,7 +193,7 @@ typedef struct probe_sample {
     uint16_t inputs;
 } probe_sample_t;
 
-/** Digital signals and touch probes. */
+/** Digital signals and touch probes. Written by axis_probe.c, axis_digital.c and axis_keep.c. */
 typedef struct signals {
     uint32_t probes_armed, probe_count;
     probe_t probes[PROBES];
@@ -203,6 +213,7 @@ typedef struct object_request {
     double value;
 } object_request_t;
 
+/** Vendor parameters that are asked for. Written by axis_object.c. */
 typedef struct objects {
     uint16_t head, next;                        /**< sequence of the one under way, and of the next to be asked for */
     bool submitted;
@@ -224,7 +235,7 @@ typedef enum drive_step {
 
 enum { DRIVE_PARAMETERS = 2 };
 
-/** A motion that the drive does by itself. */
+/** A motion that the drive does by itself. Written by axis_drive_profile.c. */
 typedef struct driving {
     drive_step_t step;
     home_goal_t goal;
@@ -254,7 +265,7 @@ typedef enum not_set_what {
     NOT_FINISHED,          /**< a command, of the kind `number`, that was taken and ended with the error */
 } not_set_what_t;
 
-/** What else than a command at its start was refused last, for the text. */
+/** What else than a command at its start was refused last, for the text. Written by axis_text.h and axis_record.c. */
 typedef struct not_set {
     cm1e_error_t error; /**< CM1E_OK: it was set */
     not_set_what_t what;
@@ -282,6 +293,7 @@ struct cm1e_axis {
     setpoint_t setpoint;
     axis_position_t position;
     limits_t limits;
+    guarding_t guarding;
     backlash_t backlash;
     in_position_t in_position;
     superimposed_t superimposed;
@@ -292,6 +304,7 @@ struct cm1e_axis {
     /* the rest */
     const cm1e_axis_config_t *config;
     fault_t fault;
+    guard_t broken;                 /**< with CM1E_ERROR_AXIS_COUPLING_LIMIT */
     not_set_t not_set;
     override_t override, override_refused; /**< the latter for the text; one that is good: none was */
     cm1e_axis_leader_t leader;      /**< next is NULL: none */

@@ -80,8 +80,7 @@ static void begin_anew(cm1e_axis_t *axis, double velocity)
 {
     axis->silence.began_anew = true;
     cm1e_axis_keep_torque(axis, axis->setpoint.velocity - velocity);
-    axis->setpoint.velocity = velocity;
-    axis->setpoint.acceleration = 0.0;
+    cm1e_axis_put_velocity(axis, velocity);
     cm1e_axis_superimposed_abandon(axis);
     if (axis->setpoint.source->begin_anew)
         axis->setpoint.source->begin_anew(axis);
@@ -98,16 +97,48 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
     if (axis_follows(axis))
         axis->coupling_hooks->resume_masters(axis, pause_ns);
     if (!goes_on)
-        axis->backlash.offset_velocity = 0.0;
+        cm1e_axis_backlash_stop(axis);
     if (!set_points_move(axis))
         return;
     if (goes_on)
-        axis->setpoint.position = cm1e_position_plus(axis->setpoint.position, axis->setpoint.velocity *
-                                                     axis->position.scale * (double)pause_ns * 1e-9);
+        cm1e_axis_shift_set_point(axis, axis->setpoint.velocity * axis->position.scale * (double)pause_ns * 1e-9);
     begin_anew(axis, goes_on ? axis->setpoint.velocity : 0.0);
 }
 
 /* ---- silence ----------------------------------------------------------------------------------------------------- */
+
+static uint16_t add_up(uint16_t to, int64_t more)
+{
+    return (uint16_t)(to + more < UINT16_MAX ? to + more : UINT16_MAX);
+}
+
+static void note_silence(cm1e_axis_t *axis, int64_t cycles)
+{
+    axis->silence.silent = add_up(axis->silence.silent, cycles);
+    axis->silence.shaken = add_up(axis->silence.shaken, cycles * CM1E_SHAKEN_BY_SILENCE);
+}
+
+void cm1e_axis_note_answer(cm1e_axis_t *axis, bool answered, bool lost)
+{
+    axis->silence.resumed = axis->silence.began_anew = false;
+    axis->silence.silent_before = answered ? axis->silence.silent : 0;
+    /* A velocity may be reduced all the same: a ramp of ErrorStop goes on. */
+    const bool brakes_on = axis->mode == CM1E_MODE_CSV && axis->state == CM1E_AXIS_ERROR_STOP;
+    axis->silence.frozen = !answered && !lost && !brakes_on;
+    if (answered) {
+        axis->silence.silent = 0;
+        axis->silence.shaken -= axis->silence.shaken > 0;
+    } else {
+        note_silence(axis, 1);
+    }
+}
+
+void cm1e_axis_hold_cycle(cm1e_axis_t *axis, int64_t missed)
+{
+    note_silence(axis, missed);
+    axis->silence.frozen = true;
+    cm1e_drive_slew(&axis->drive);
+}
 
 /* u/s; what the motor still has of the set velocity. In CSV it has gone on by itself. */
 static double velocity_left(const cm1e_axis_t *axis)
@@ -146,7 +177,7 @@ static void go_on_or_begin_anew(cm1e_axis_t *axis)
     const double ran_on = cm1e_axis_ran_on(axis);
     if (is_composite(axis) && !follows_on && !shaken && ran_on == 0.0)
         return;
-    axis->setpoint.position = cm1e_position_plus(axis->setpoint.position, ran_on);
+    cm1e_axis_shift_set_point(axis, ran_on);
     const bool led = axis_led(axis); /* the path stands for an axis at rest too */
     const double left = led && !in_place ? 0.0 : velocity_left(axis);
     if (left != axis->setpoint.velocity || follows_on || led || ran_on != 0.0)

@@ -9,6 +9,7 @@
 #include "axis/axis_position.h"
 #include "axis/axis_backlash.h"
 #include "axis/axis_limits.h"
+#include "axis/axis_setpoint.h"
 
 __extension__ typedef __int128 wide_t;
 
@@ -247,6 +248,17 @@ bool cm1e_axis_new_position(const cm1e_axis_t *axis, double now, double position
     return fabs(to_counts(axis, *value)) < (double)CM1E_FARTHEST_COUNTS;
 }
 
+bool cm1e_axis_position_init(cm1e_axis_t *axis)
+{
+    const cm1e_axis_config_t *c = axis->config;
+    const double counts = cm1e_unit_scale(c);
+    axis->position.unit = cm1e_unit_of(c);
+    axis->position.count = cm1e_unit_count(c);
+    axis->position.scale = c->invert ? -counts : counts;
+    axis->position.modulo_range = c->modulo_range;
+    return !(c->modulo_range > 0.0) || cm1e_unit_modulo(c, &axis->position.turn);
+}
+
 void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units)
 {
     if (axis->position.modulo_range > 0.0) {
@@ -256,7 +268,7 @@ void cm1e_axis_set_origin(cm1e_axis_t *axis, position_t at, double units)
         axis->position.origin = at;
         axis->position.origin_units = units;
     }
-    axis->setpoint.base_line = cm1e_axis_line(axis, axis->setpoint.base);
+    cm1e_axis_renew_base_line(axis);
     cm1e_axis_apply_limits(axis);
 }
 
@@ -280,7 +292,6 @@ void cm1e_axis_track(cm1e_axis_t *axis)
 
 void cm1e_axis_set_to_actual(cm1e_axis_t *axis)
 {
-    axis->setpoint.position = axis_actual(axis);
-    axis->setpoint.velocity = 0.0;
-    axis->setpoint.acceleration = 0.0;
+    cm1e_axis_put_position(axis, axis_actual(axis));
+    cm1e_axis_put_velocity(axis, 0.0);
 }

@@ -18,6 +18,10 @@ static inline bool cm1e_axis_can_count(const cm1e_axis_t *axis, double units)
 {
     return fabs(units * axis->position.scale) < (double)CM1E_FARTHEST_COUNTS;
 }
+/** What counts mean, by the configuration. FALSE: numbers that the axis cannot compute with. @rt init */
+bool cm1e_axis_position_init(cm1e_axis_t *axis);
+/** MC_ReadAxisInfo.IsHomed */
+static inline void cm1e_axis_set_homed(cm1e_axis_t *axis, bool homed) { axis->position.homed = homed; }
 double cm1e_axis_units(const cm1e_axis_t *axis, position_t position);
 /** Set and actual position, as they are shown. */
 void cm1e_axis_shown(const cm1e_axis_t *axis, double *set, double *actual);

@@ -16,6 +16,7 @@
 #include "axis/axis_limits.h"
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
+#include "axis/axis_text.h"
 #include "core/clock.h"
 
 /* How long a drive that cannot be heard any more counts as "still there" at the end. */
@@ -44,7 +45,8 @@ void cm1e_axis_error_stop(cm1e_axis_t *axis, cm1e_error_t error, double value, d
     /* 2.2.2: the blocks that lose the axis show an error, not CommandAborted. */
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ERROR,
                            homing_broke || coupling_broke ? error : CM1E_ERROR_AXIS_ERROR_STOP);
-    axis->commands.refusal = axis->not_set.error = CM1E_OK; /* old by the time of the reset */
+    cm1e_axis_set_refusal(axis, CM1E_OK); /* old by the time of the reset */
+    cm1e_axis_forget_not_set(axis);
     axis->fault.error = error;
     axis->fault.device_error = axis->drive.fault.device_code;
     axis->fault.value = value;
@@ -65,7 +67,7 @@ void cm1e_axis_brake_from_actual(cm1e_axis_t *axis)
     const double motor = axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis);
     const double velocity = motor / axis->position.scale, before = axis->setpoint.velocity;
     cm1e_axis_set_to_actual(axis);
-    axis->setpoint.velocity = before > 0.0 ? fmax(0.0, fmin(velocity, before)) : fmin(0.0, fmax(velocity, before));
+    cm1e_axis_put_velocity(axis, before > 0.0 ? fmax(0.0, fmin(velocity, before)) : fmin(0.0, fmax(velocity, before)));
     cm1e_axis_ramp_down(axis, &axis->limits.emergency);
     axis->power.brake_until_ns = axis->now_ns + brake_ns;
 }
@@ -81,9 +83,7 @@ void cm1e_axis_hold_unheard(cm1e_axis_t *axis)
     if (axis->mode != CM1E_MODE_CSP || cm1e_drive_is_virtual(&axis->drive) || !set_points_move(axis))
         return;
     cm1e_axis_keep_torque(axis, axis->setpoint.velocity);
-    axis->setpoint.target = axis->setpoint.position;
-    axis->setpoint.velocity = axis->setpoint.acceleration = 0.0;
-    cm1e_axis_set_source(axis, &cm1e_source_hold);
+    cm1e_axis_hold_here(axis);
 }
 
 static void power_off(cm1e_axis_t *axis)
@@ -98,8 +98,10 @@ static void power_off(cm1e_axis_t *axis)
 cm1e_error_t cm1e_axis_power(cm1e_axis_t *axis, const void *owner, bool enable, bool enable_positive,
                              bool enable_negative)
 {
-    if (enable && axis->config->type == CM1E_AXIS_ENCODER)
-        return axis->commands.refusal = CM1E_ERROR_AXIS_VIRTUAL;
+    if (enable && axis->config->type == CM1E_AXIS_ENCODER) {
+        cm1e_axis_set_refusal(axis, CM1E_ERROR_AXIS_VIRTUAL);
+        return CM1E_ERROR_AXIS_VIRTUAL;
+    }
     if (axis->power.owner != owner) {
         /* A block that does not enable may be replaced, one that does may not. */
         if (axis->power.owner && (axis->power.enable || axis->power.energized))

@@ -7,6 +7,9 @@
 
 #include "axis/axis_parts.h"
 
+static inline void cm1e_axis_power_init(cm1e_axis_t *axis) { axis->power.reset_state = CM1E_COMMAND_DONE; }
+/** The drive's own code of the fault may come a cycle later. */
+static inline void cm1e_axis_tell_device_error(cm1e_axis_t *axis, uint16_t code) { axis->fault.device_error = code; }
 static inline bool cm1e_axis_wants_enable(const cm1e_axis_t *axis)
 {
     return axis->power.enable && !axis->power.shutting_down && axis->state != CM1E_AXIS_ERROR_STOP &&

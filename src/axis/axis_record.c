@@ -1,6 +1,7 @@
 /* What is kept of commands and refusals: how a command ended, for who asks by number; what was refused last, for the
  * text. */
 #include "axis/axis_commands.h"
+#include "axis/axis_setpoint.h"
 #include "axis/axis_text.h"
 
 /* ---- records ----------------------------------------------------------------------------------------------------- */
@@ -87,5 +88,5 @@ void cm1e_axis_command_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_e
     cm1e_axis_record(axis, axis->commands.active, state, error);
     cm1e_axis_remember_end(axis, axis->commands.kind, error);
     axis->commands.active = 0;
-    axis->setpoint.reached = false;
+    cm1e_axis_set_reached(axis, false);
 }

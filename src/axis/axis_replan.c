@@ -7,11 +7,9 @@ void cm1e_axis_take(cm1e_axis_t *axis, const move_t *move, const from_t *from, c
                     double offset_s)
 {
     cm1e_axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    axis->commands.active = move->id;
-    axis->commands.kind = (cm1e_command_kind_t)move->kind;
-    axis->commands.move = *move;
+    cm1e_axis_activate(axis, move);
     cm1e_axis_run(axis, from, profile, cm1e_axis_profile_end(axis, from, move, profile), offset_s);
-    axis->setpoint.paused = move->paused;
+    cm1e_axis_set_paused(axis, move->paused);
 }
 
 void cm1e_axis_taken(cm1e_axis_t *axis, const command_kind_t *kind)
@@ -24,7 +22,7 @@ static void go_on_as(cm1e_axis_t *axis, const from_t *from, const move_t *move, 
 {
     axis->commands.move = *move;
     cm1e_axis_run(axis, from, profile, cm1e_axis_profile_end(axis, from, move, profile), 0.0);
-    axis->setpoint.paused = move->paused;
+    cm1e_axis_set_paused(axis, move->paused);
 }
 
 cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *as)

@@ -6,7 +6,7 @@
 #ifndef CM1E_AXIS_AXIS_SETPOINT_H
 #define CM1E_AXIS_AXIS_SETPOINT_H
 
-#include "axis/axis_parts.h"
+#include "axis/axis_position.h"
 
 /* Where the set-point comes from. */
 static inline void cm1e_axis_set_source(cm1e_axis_t *axis, const source_t *source)
@@ -14,6 +14,11 @@ static inline void cm1e_axis_set_source(cm1e_axis_t *axis, const source_t *sourc
     if (axis->setpoint.source != source && axis->setpoint.source->leave)
         axis->setpoint.source->leave(axis);
     axis->setpoint.source = source;
+}
+static inline void cm1e_axis_setpoint_init(cm1e_axis_t *axis) /* @rt init */
+{
+    axis->setpoint.source = &cm1e_source_free;
+    axis->setpoint.positive_before = true;
 }
 static inline bool axis_free(const cm1e_axis_t *axis) { return axis->setpoint.source->is_free; }
 static inline bool axis_holds(const cm1e_axis_t *axis) { return axis->setpoint.source->holds; }
@@ -37,6 +42,53 @@ static inline bool axis_acts(const cm1e_axis_t *axis)
 
 /** The axis's own half of cm1e_axis_outputs(): state diagram and set-point, before they become the drive's. */
 void cm1e_axis_advance(cm1e_axis_t *axis);
+/* What sources write that are no profile of axis_motion.c, and those who change something beside the motion. */
+/** The set-point of this cycle. */
+static inline void cm1e_axis_put_set_point(cm1e_axis_t *axis, const from_t *point)
+{
+    axis->setpoint.position = point->position;
+    axis->setpoint.velocity = point->velocity;
+    axis->setpoint.acceleration = point->acceleration;
+    if (point->velocity != 0.0)
+        axis->setpoint.positive_before = point->velocity > 0.0;
+}
+static inline void cm1e_axis_put_position(cm1e_axis_t *axis, position_t position)
+{
+    axis->setpoint.position = position;
+}
+/** From here on with this velocity, u/s, and no acceleration. */
+static inline void cm1e_axis_put_velocity(cm1e_axis_t *axis, double velocity)
+{
+    axis->setpoint.velocity = velocity;
+    axis->setpoint.acceleration = 0.0;
+}
+static inline void cm1e_axis_shift_set_point(cm1e_axis_t *axis, double counts)
+{
+    cm1e_axis_put_position(axis, cm1e_position_plus(axis->setpoint.position, counts));
+}
+/** The coordinates have changed. */
+static inline void cm1e_axis_renew_base_line(cm1e_axis_t *axis)
+{
+    axis->setpoint.base_line = cm1e_axis_line(axis, axis->setpoint.base);
+}
+/** The profile begins and ends so many counts farther on. */
+static inline void cm1e_axis_shift_profile(cm1e_axis_t *axis, double counts)
+{
+    axis->setpoint.base = cm1e_position_plus(axis->setpoint.base, counts);
+    axis->setpoint.target = cm1e_position_plus(axis->setpoint.target, counts);
+    cm1e_axis_renew_base_line(axis);
+}
+/** Of a table over time the profile has only these. */
+static inline void cm1e_axis_put_duration(cm1e_axis_t *axis, double duration_s, cm1e_motion_state_t end)
+{
+    axis->setpoint.profile.duration_s = duration_s;
+    axis->setpoint.profile.end = end;
+    axis->setpoint.profile.segment_count = 0;
+}
+static inline void cm1e_axis_set_reached(cm1e_axis_t *axis, bool reached) { axis->setpoint.reached = reached; }
+static inline void cm1e_axis_set_paused(cm1e_axis_t *axis, bool paused) { axis->setpoint.paused = paused; }
+static inline void cm1e_axis_set_stands(cm1e_axis_t *axis, bool stands) { axis->setpoint.stands = stands; }
+
 /** A profile takes over that began at `from`, `offset_s` before the present set-point. */
 void cm1e_axis_run(cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile, position_t target,
                    double offset_s);
@@ -53,6 +105,8 @@ bool cm1e_axis_profile_goes(cm1e_axis_t *axis, double sign);
 /** Motion in the direction of `sign` is no longer enabled (MC_Power, 3.1): a command that goes there fails, the next
  *  one begins, or the axis stops. */
 void cm1e_axis_direction_disabled(cm1e_axis_t *axis, double sign);
+/** The set-point stands where it is, and its profile ends there. */
+void cm1e_axis_hold_here(cm1e_axis_t *axis);
 /** The set-point stands at the end of its profile. */
 void cm1e_axis_stand(cm1e_axis_t *axis);
 void cm1e_axis_motion_step(cm1e_axis_t *axis);

@@ -140,15 +140,11 @@ void cm1e_axis_superimposed_give_way(cm1e_axis_t *axis, from_t *from)
 static void give_to_base(cm1e_axis_t *axis)
 {
     const double covered = axis->superimposed.now.position, counts = covered * axis->position.scale;
-    axis->setpoint.base = cm1e_position_plus(axis->setpoint.base, counts);
-    axis->setpoint.base_line = cm1e_axis_line(axis, axis->setpoint.base);
-    axis->setpoint.target = cm1e_position_plus(axis->setpoint.target, counts);
+    cm1e_axis_shift_profile(axis, counts);
     if (axis_follows(axis))
         axis->coupling_hooks->shift(axis, covered);
-    if (axis->commands.active) {
-        axis->commands.move.origin = cm1e_position_plus(axis->commands.move.origin, counts);
-        axis->commands.move.target = cm1e_position_plus(axis->commands.move.target, counts);
-    }
+    if (axis->commands.active)
+        cm1e_axis_shift_move(axis, counts);
     axis->superimposed.now.position = 0.0;
 }
 
@@ -169,7 +165,7 @@ void cm1e_axis_superimposed_end(cm1e_axis_t *axis, cm1e_command_state_t state, c
     record(axis, state, error);
     axis->superimposed.moving = false;
     axis->superimposed.now = (cm1e_motion_state_t){0};
-    axis->setpoint.stands = false;
+    cm1e_axis_set_stands(axis, false);
 }
 
 void cm1e_axis_superimposed_abandon(cm1e_axis_t *axis)
@@ -178,7 +174,8 @@ void cm1e_axis_superimposed_abandon(cm1e_axis_t *axis)
         return;
     record(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     give_to_base(axis);
-    axis->superimposed.moving = axis->setpoint.stands = false;
+    axis->superimposed.moving = false;
+    cm1e_axis_set_stands(axis, false);
     axis->superimposed.now = (cm1e_motion_state_t){0};
 }
 
@@ -248,7 +245,7 @@ static void stand_as_base(cm1e_axis_t *axis)
     cm1e_axis_settled(axis);
     (void)cm1e_profile_to_velocity(&profile, &rest, 0.0, &axis->limits.maximum);
     cm1e_axis_run(axis, &from, &profile, axis->setpoint.position, 0.0);
-    axis->setpoint.stands = true;
+    cm1e_axis_set_stands(axis, true);
 }
 
 /* From how it goes now; asked before anything is changed, as what goes cannot end on the spot. */

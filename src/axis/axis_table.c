@@ -119,9 +119,7 @@ static void run_table(cm1e_axis_t *axis, const from_t *from, const cm1e_table_pr
                       double offset_s)
 {
     axis->tables->running = *table;
-    axis->setpoint.profile.duration_s = table->duration_s;
-    axis->setpoint.profile.end = table->end;
-    axis->setpoint.profile.segment_count = 0;
+    cm1e_axis_put_duration(axis, table->duration_s, table->end);
     cm1e_axis_begin_run(axis, &cm1e_source_table, from, target, offset_s);
 }
 
@@ -178,11 +176,10 @@ static void take(cm1e_axis_t *axis, const move_t *move, const from_t *from, cons
 {
     const cm1e_command_kind_t kind = (cm1e_command_kind_t)move->kind;
     cm1e_axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    axis->commands.active = move->id;
-    axis->commands.kind = kind;
-    axis->commands.move = *move;
-    axis->commands.move.target = end_of(axis, from, kind, points, table);
-    run_table(axis, from, table, axis->commands.move.target, offset_s);
+    move_t taken = *move;
+    taken.target = end_of(axis, from, kind, points, table);
+    cm1e_axis_activate(axis, &taken);
+    run_table(axis, from, table, taken.target, offset_s);
 }
 
 cm1e_error_t cm1e_axis_table_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)

@@ -9,6 +9,7 @@
 
 /** For the text: what was refused last is told. A success takes back only what was told of the same. */
 void cm1e_axis_remember_not_set(cm1e_axis_t *axis, not_set_t what);
+static inline void cm1e_axis_forget_not_set(cm1e_axis_t *axis) { axis->not_set.error = CM1E_OK; }
 void cm1e_axis_parameter_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_axis_not_set_text(const cm1e_axis_t *axis, char *text, size_t size);      /* axis_text_not_set.c */
 void cm1e_axis_not_finished_text(const cm1e_axis_t *axis, char *text, size_t size); /* axis_text.c */

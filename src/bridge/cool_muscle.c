@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "axis/axis_commands.h"
+#include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
 #include "cm1e/cml.h"
 #include "device/cml.h"
@@ -63,7 +65,7 @@ static cm1e_drive_cml_t *cml_of(const cm1e_axis_t *axis)
 
 static cm1e_error_t refuse(cm1e_axis_t *axis, cm1e_error_t error, const char *why, const char *text)
 {
-    axis->commands.refusal = error;
+    cm1e_axis_set_refusal(axis, error);
     if (axis->muscle) {
         axis->muscle->why = why;
         const size_t size = text ? strnlen(text, sizeof axis->muscle->text - 1) : 0;
@@ -150,14 +152,14 @@ cm1e_error_t cm1e_axis_cml_send(cm1e_axis_t *axis, const char *text, size_t size
     if (error)
         return refuse(axis, error, why, copy);
     cool_muscle_t *muscle = axis->muscle;
-    axis->commands.refusal = CM1E_OK;
+    cm1e_axis_set_refusal(axis, CM1E_OK);
     muscle->last = *ticket;
     if (muscle->next != CM1E_BRIDGE_MODE_CML)
         end_switching(muscle, CM1E_COMMAND_ABORTED, CM1E_OK);
     muscle->next = CM1E_BRIDGE_MODE_CML;
     if (cm1e_cml_kind(copy) == CM1E_CML_MOTION) {
         muscle->moved = true;
-        axis->position.homed = false;
+        cm1e_axis_set_homed(axis, false);
     }
     return CM1E_OK;
 }
@@ -197,7 +199,7 @@ cm1e_error_t cm1e_axis_set_mode(cm1e_axis_t *axis, cm1e_bridge_mode_t mode, bool
     if (error)
         return refuse(axis, error, why, NULL);
     cool_muscle_t *muscle = axis->muscle;
-    axis->commands.refusal = CM1E_OK;
+    cm1e_axis_set_refusal(axis, CM1E_OK);
     muscle->next = (int8_t)mode;
     muscle->insist = insist;
     *ticket = ++muscle->switching.ticket;
@@ -270,9 +272,9 @@ cm1e_error_t cm1e_axis_motor_command(cm1e_axis_t *axis, cm1e_drive_cmd_t command
         error = CM1E_ERROR_CM_MODE;
     if (error)
         return refuse(axis, error, error == CM1E_ERROR_CM_MODE ? not_in_cmd : NULL, NULL);
-    axis->commands.refusal = CM1E_OK;
-    axis->position.homed = axis->position.homed && command != CM1E_DRIVE_CMD_ORIGIN_SEARCH &&
-                           command != CM1E_DRIVE_CMD_RESET_COUNTER;
+    cm1e_axis_set_refusal(axis, CM1E_OK);
+    if (command == CM1E_DRIVE_CMD_ORIGIN_SEARCH || command == CM1E_DRIVE_CMD_RESET_COUNTER)
+        cm1e_axis_set_homed(axis, false);
     *ticket = ++axis->muscle->command.ticket;
     axis->muscle->command.state = CM1E_COMMAND_ACTIVE;
     return CM1E_OK;

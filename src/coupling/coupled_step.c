@@ -191,11 +191,7 @@ static from_t with_superimposed(cm1e_axis_t *axis, const from_t *f, verdict_t *v
 
 static void emit(cm1e_axis_t *axis, const from_t *point)
 {
-    axis->setpoint.position = point->position;
-    axis->setpoint.velocity = point->velocity;
-    axis->setpoint.acceleration = point->acceleration;
-    if (point->velocity != 0.0)
-        axis->setpoint.positive_before = point->velocity > 0.0;
+    cm1e_axis_put_set_point(axis, point);
     if (!cm1e_position_in_range(axis->setpoint.position))
         cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->setpoint.position),
                        cm1e_axis_farthest(axis));
@@ -238,7 +234,7 @@ static void after_set_point(cm1e_axis_t *axis, const from_t *f)
         catch_up_ended(axis, f);
     if (axis->superimposed.id)
         cm1e_axis_superimposed_after(axis);
-    axis->setpoint.reached = !catch_up->on && c->now->in_step;
+    cm1e_axis_set_reached(axis, !catch_up->on && c->now->in_step);
     if (axis->setpoint.reached && axis->commands.waiting.count > 0 &&
         (!c->now->waits_for_end || c->end_of_profile || c->now->cam.left != 0.0)) {
         const from_t from = from_base(axis);
@@ -388,7 +384,9 @@ void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *fro
     begin_catch_up(axis, from, asked, c->now->to_position);
     cm1e_axis_set_source(axis, &cm1e_source_coupling);
     cm1e_axis_guard_renew(axis);
-    axis->setpoint.reached = axis->setpoint.paused = axis->setpoint.stands = false;
+    cm1e_axis_set_reached(axis, false);
+    cm1e_axis_set_paused(axis, false);
+    cm1e_axis_set_stands(axis, false);
 }
 
 /* Where all stand at their last targets, they are in step as before: the catch-up is what it was. */
@@ -408,7 +406,7 @@ static void begin_anew(cm1e_axis_t *axis)
     const bool was_in_step = !c->catch_up.on || c->catch_up.made_up, comes_back = axis->mode == CM1E_MODE_CSP ||
                                                                           axis->silence.silent_before > 0;
     begin_catch_up(axis, &from, &asked, c->now->to_position || (was_in_step && comes_back));
-    axis->setpoint.reached = false;
+    cm1e_axis_set_reached(axis, false);
 }
 
 void cm1e_coupling_shift(cm1e_axis_t *axis, double way)

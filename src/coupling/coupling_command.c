@@ -38,9 +38,7 @@ static void take(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling
                  const from_t *from, const cm1e_motion_limits_t *limits)
 {
     cm1e_axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    axis->commands.active = move->id;
-    axis->commands.kind = (cm1e_command_kind_t)move->kind;
-    axis->commands.move = *move;
+    cm1e_axis_activate(axis, move);
     axis->coupling->inputs = *coupling;
     axis->coupling->ends = 0;
     cm1e_coupling_follow(axis, follow, from, limits);
@@ -84,7 +82,7 @@ static cm1e_error_t update_active(cm1e_axis_t *axis, const cm1e_axis_command_t *
     if (error)
         return error;
     move.id = axis->commands.move.id;
-    axis->commands.move = move;
+    cm1e_axis_activate(axis, &move);
     c->inputs = *command->coupling;
     cm1e_coupling_follow(axis, cm1e_coupling_spare(axis), &from, &limits);
     return CM1E_OK;
@@ -114,7 +112,7 @@ static void take_later(cm1e_axis_t *axis, move_t *move, const cm1e_axis_coupling
     cm1e_axis_waiting_end(axis, CM1E_COMMAND_ABORTED);
     move->id = cm1e_axis_next_id(axis);
     *free_place(axis) = (waiting_coupling_t){move->id, *coupling};
-    *waiting_move(axis, axis->commands.waiting.count++) = *move;
+    cm1e_axis_append_waiting(axis, move);
     cm1e_coupling_await(axis, follow);
 }
 

@@ -80,10 +80,10 @@ static guard_t limit_ahead(const cm1e_axis_t *axis, double braking)
     const double line = cm1e_axis_line(axis, axis->setpoint.position) + (axis->setpoint.velocity + v) / 2.0 * t;
     const double end = line + v * fabs(v) / (2.0 * braking) + v * t;
     /* In that cycle the acceleration may grow too; what it is then takes time to end. */
-    const double a = fabs(axis->setpoint.acceleration) + axis->limits.guarding.jerk;
+    const double a = fabs(axis->setpoint.acceleration) + axis->guarding.jerk;
     const double toward = axis->setpoint.acceleration * v;
     const bool eases = coupling_keeps_jerk(axis->coupling) && toward > 0.0;
-    const double peak = fabs(v) + (eases ? a * a * axis->limits.guarding.ease : 0.0);
+    const double peak = fabs(v) + (eases ? a * a * axis->guarding.ease : 0.0);
     if (peak > most)
         return (guard_t){.limit = GUARD_VELOCITY, .asked = peak, .allowed = most};
     if (axis->limits.software_limits && ((v > 0.0 && end > axis->limits.upper) ||

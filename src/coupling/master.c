@@ -1,6 +1,7 @@
 /* The masters of a follower: who follows whom, in which order they advance, and what is seen of them. */
 #include <string.h>
 
+#include "axis/axis_commands.h"
 #include "axis/axis_pause.h"
 #include "axis/axis_setpoint.h"
 #include "coupling/coupling_private.h"
@@ -146,7 +147,7 @@ follow_t *cm1e_coupling_spare(cm1e_axis_t *axis)
 void cm1e_coupling_await(cm1e_axis_t *axis, follow_t *follow)
 {
     axis->coupling->awaited = follow;
-    axis->commands.awaits = true;
+    cm1e_axis_set_awaits(axis, true);
     axis->coupling->due = false;
     cm1e_coupling_list_links(follow);
 }
@@ -156,7 +157,7 @@ void cm1e_coupling_await_nothing(cm1e_axis_t *axis)
     if (axis->coupling->awaited)
         cm1e_coupling_unlist_links(axis->coupling->awaited);
     axis->coupling->awaited = NULL;
-    axis->commands.awaits = false;
+    cm1e_axis_set_awaits(axis, false);
 }
 
 /* ---- what is seen of them ---------------------------------------------------------------------------------------- */

@@ -203,7 +203,7 @@ static void enter(cm1e_axis_t *axis, cm1e_home_step_t step)
         command->mode = CM1E_MODE_HM;
         command->homing_start = command->halt = false;
     } else if (step == HOME_START) {
-        axis->position.homed = false;
+        cm1e_axis_set_homed(axis, false);
         home->bits_before = bits(axis);
         home->deadline_ns = axis->now_ns + home->timeout_ns;
         command->homing_start = true;
@@ -222,7 +222,7 @@ static void take_reference(cm1e_axis_t *axis)
     const int64_t offset = kind_of(axis)->offset_by_axis ? llround(axis->homing->drive.offset) : 0;
     const position_t at = cm1e_axis_load(axis, axis->position.actual_counts - axis->position.raw + offset);
     cm1e_axis_set_origin(axis, at, axis->homing->drive.position);
-    axis->position.homed = true;
+    cm1e_axis_set_homed(axis, true);
 }
 
 static void next_step(cm1e_axis_t *axis)

@@ -9,8 +9,8 @@ cm1e_error_t cm1e_homing_start(cm1e_axis_t *axis, const cm1e_axis_command_t *com
     if (error)
         return error;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    *id = axis->commands.active = cm1e_axis_next_id(axis);
-    axis->commands.kind = command->kind;
+    *id = cm1e_axis_next_id(axis);
+    cm1e_axis_activate_homing(axis, *id, command->kind);
     cm1e_homing_run(axis);
     return CM1E_OK;
 }
@@ -28,8 +28,8 @@ cm1e_error_t cm1e_homing_step_start(cm1e_axis_t *axis, const cm1e_axis_command_t
     if (error)
         return error;
     cm1e_axis_commands_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
-    *id = axis->commands.active = cm1e_axis_next_id(axis);
-    axis->commands.kind = command->kind;
+    *id = cm1e_axis_next_id(axis);
+    cm1e_axis_activate_homing(axis, *id, command->kind);
     cm1e_homing_step_run(axis, &next, &profile);
     return CM1E_OK;
 }
@@ -49,8 +49,7 @@ cm1e_error_t cm1e_homing_begin(cm1e_axis_t *axis, move_t *move, const from_t *fr
     const cm1e_error_t error = cm1e_homing_prepare(axis, &command);
     if (error)
         return error;
-    axis->commands.active = move->id;
-    axis->commands.kind = command.kind;
+    cm1e_axis_activate_homing(axis, move->id, command.kind);
     cm1e_homing_run(axis);
     return CM1E_OK;
 }
@@ -91,8 +90,7 @@ cm1e_error_t cm1e_homing_step_begin(cm1e_axis_t *axis, move_t *move, const from_
                                        : CM1E_ERROR_AXIS_STATE;
     if (error)
         return error;
-    axis->commands.active = move->id;
-    axis->commands.kind = CM1E_COMMAND_HOMING_STEP;
+    cm1e_axis_activate_homing(axis, move->id, CM1E_COMMAND_HOMING_STEP);
     cm1e_homing_step_run(axis, &next, &profile);
     return CM1E_OK;
 }

@@ -366,7 +366,7 @@ void cm1e_homing_step_run(cm1e_axis_t *axis, const stepping_t *next, const cm1e_
     axis->homing_step.after_stop = false;
     cm1e_axis_go(axis, ON_HOMING_STEP);
     if (searches(next->step.kind))
-        axis->position.homed = false;
+        cm1e_axis_set_homed(axis, false);
     run(axis, profile);
     if (next->step.kind == CM1E_STEP_DIRECT && profile->duration_s == 0.0)
         (void)cm1e_homing_step_ended(axis); /* it stands: done at once */
@@ -589,7 +589,7 @@ static void complete(cm1e_axis_t *axis)
         s->referenced = true;
     }
     if (last) {
-        axis->position.homed = s->referenced;
+        cm1e_axis_set_homed(axis, s->referenced);
         cm1e_axis_go(axis, ON_DONE);
     }
     cm1e_axis_command_end(axis, CM1E_COMMAND_DONE, CM1E_OK);
@@ -615,7 +615,7 @@ bool cm1e_homing_step_ended(cm1e_axis_t *axis)
     const stepping_t *s = &axis->homing->stepping;
     const bool stepping = axis_stepping(axis);
     if (axis->setpoint.profile.end.velocity != 0.0) {
-        axis->setpoint.reached = stepping || relieving_after_stop(axis);
+        cm1e_axis_set_reached(axis, stepping || relieving_after_stop(axis));
         return axis->setpoint.reached;
     }
     if (!stepping)
