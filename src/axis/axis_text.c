@@ -10,6 +10,7 @@
 #include "axis/axis_plan.h"
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
+#include "axis/axis_watch.h"
 
 static bool coupling_text(const cm1e_axis_t *axis, cm1e_error_t error, bool refused, char *text, size_t size)
 {
@@ -232,14 +233,9 @@ static const struct {
     {CM1E_ERROR_AXIS_COUPLING_LIMIT, cm1e_axis_guard_text},
 };
 
-void cm1e_axis_error_text(AXIS_REF_t reference, char *text, size_t size)
+void cm1e_axis_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    if (!text || size == 0)
-        return;
     text[0] = '\0';
-    const cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
-    if (!axis)
-        return;
     if (axis->fault.error == CM1E_OK) {
         if (axis->commands.refusal)
             refused_text(axis, text, size);
@@ -262,4 +258,14 @@ void cm1e_axis_error_text(AXIS_REF_t reference, char *text, size_t size)
         return;
     if (!coupling_text(axis, axis->fault.error, false, text, size))
         other_text(axis, text, size);
+}
+
+void cm1e_axis_error_text(AXIS_REF_t reference, char *text, size_t size)
+{
+    if (!text || size == 0)
+        return;
+    text[0] = '\0';
+    const cm1e_axis_t *axis = cm1e_axis_from_reference(&reference);
+    if (axis)
+        cm1e_axis_text(axis, text, size);
 }

@@ -10,7 +10,9 @@
 #include "cm1e/scan_time.h"
 #include "core/in_task.h"
 #include "core/output.h"
+#include "scheduler/log.h"
 #include "scheduler/realtime.h"
+#include "scheduler/scheduler_window.h"
 #include "scheduler/signals.h"
 #include "scheduler/statistics.h"
 #include "scheduler/tasks.h"
@@ -28,6 +30,8 @@ struct cm1e_scheduler {
     uint32_t axis_count;
     task_list_t tasks;
     trace_t trace;
+    log_t log;
+    void *windows[CM1E_WINDOWS]; /**< of this run, by kind; NULL: it has none */
     statistics_t statistics;
     atomic_bool stop;      /**< a stop was requested */
     bool run;              /**< cm1e_scheduler_run() was called */
@@ -39,6 +43,57 @@ struct cm1e_scheduler {
     int64_t begin_ns;      /**< actual start of this cycle */
     int64_t sent_ns;       /**< time of the outputs of the last cycle */
 };
+
+/* ---- windows --------------------------------------------------------------------------------------------------- */
+
+static const cm1e_window_t *kinds[CM1E_WINDOWS];
+
+bool cm1e_scheduler_register_window(const cm1e_window_t *window)
+{
+    for (int i = 0; i < CM1E_WINDOWS; i++) {
+        if (!kinds[i])
+            kinds[i] = window;
+        if (kinds[i] == window)
+            return true;
+    }
+    return false;
+}
+
+static void open_windows(cm1e_scheduler_t *s)
+{
+    statistics_t *statistics = &s->statistics;
+    cm1e_window_told_t told = {.socket = statistics->control_socket, .socket_size = sizeof statistics->control_socket,
+                               .advice = statistics->control_advice, .advice_size = sizeof statistics->control_advice};
+    for (int i = 0; i < CM1E_WINDOWS; i++)
+        s->windows[i] = kinds[i] ? kinds[i]->open(s, &told) : NULL;
+}
+
+static void close_windows(cm1e_scheduler_t *s)
+{
+    for (int i = 0; i < CM1E_WINDOWS; i++)
+        if (s->windows[i])
+            kinds[i]->close(s->windows[i]);
+    memset(s->windows, 0, sizeof s->windows);
+}
+
+cm1e_axis_t *const *cm1e_scheduler_axes(const cm1e_scheduler_t *scheduler, uint32_t *count)
+{
+    *count = scheduler->axis_count;
+    return scheduler->axes;
+}
+
+cm1e_bus_t *cm1e_scheduler_bus(const cm1e_scheduler_t *scheduler) { return scheduler->bus; }
+
+bool cm1e_scheduler_is_virtual(const cm1e_scheduler_t *scheduler)
+{
+    return scheduler->clock != cm1e_clock_monotonic();
+}
+
+size_t cm1e_log_read(const cm1e_scheduler_t *scheduler, uint64_t after, cm1e_log_event_t *events, size_t room,
+                     uint64_t *lost)
+{
+    return cm1e_log_copy(&scheduler->log, after, events, room, lost);
+}
 
 /* ---- the cycle ------------------------------------------------------------------------------------------------- */
 
@@ -147,12 +202,23 @@ static void end_cycle(cm1e_scheduler_t *s)
     s->number = (end_ns - s->start_ns + s->cycle_time_ns - 1) / s->cycle_time_ns;
 }
 
+/** What others see of a cycle. */
+static void show(cm1e_scheduler_t *s)
+{
+    const uint64_t overruns = atomic_load_explicit(&s->statistics.overruns, memory_order_relaxed);
+    s->trace.timing.lost_frames = cm1e_bus_counters(s->bus)->lost_frames;
+    cm1e_trace_record(&s->trace, s->axes, cm1e_scheduler_time_ns(s));
+    cm1e_log_look(&s->log, s->axes, s->axis_count, overruns, cm1e_bus_counters(s->bus), cm1e_scheduler_time_ns(s));
+    for (int i = 0; i < CM1E_WINDOWS; i++)
+        if (s->windows[i])
+            kinds[i]->cycle(s->windows[i]);
+}
+
 static void cycle(cm1e_scheduler_t *s)
 {
     wait_for_start(s);
     scan(s);
-    s->trace.timing.lost_frames = cm1e_bus_counters(s->bus)->lost_frames;
-    cm1e_trace_record(&s->trace, s->axes, cm1e_scheduler_time_ns(s));
+    show(s);
     end_cycle(s);
 }
 
@@ -192,15 +258,19 @@ static cm1e_error_t take_real_time(cm1e_scheduler_t *s, realtime_t *realtime, cm
 static cm1e_error_t run(cm1e_scheduler_t *s, int64_t duration_ns, cm1e_diag_t *diag)
 {
     realtime_t realtime = {0};
+    open_windows(s);
     cm1e_error_t error = take_real_time(s, &realtime, diag);
     if (error == CM1E_OK) {
         s->start_ns = s->sent_ns = cm1e_clock_now(s->clock);
+        cm1e_log_run(&s->log, true, 0);
         while (!stop_asked(s) && (duration_ns == 0 || cm1e_scheduler_time_ns(s) < duration_ns))
             cycle(s);
         error = shut_down(s, diag);
+        cm1e_log_run(&s->log, false, cm1e_scheduler_time_ns(s));
     }
     cm1e_bus_stop(s->bus);
     cm1e_realtime_end(&realtime);
+    close_windows(s);
     return error;
 }
 
@@ -347,6 +417,8 @@ cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus
         error = make_axes(s, diag);
     if (error == CM1E_OK)
         error = make_trace(s, diag);
+    if (error == CM1E_OK)
+        error = cm1e_log_init(&s->log, s->clock, diag);
     if (error != CM1E_OK) {
         cm1e_scheduler_destroy(s);
         return error;
@@ -361,6 +433,7 @@ void cm1e_scheduler_destroy(cm1e_scheduler_t *scheduler)
         return;
     cm1e_signals_detach(scheduler);
     cm1e_trace_free(&scheduler->trace);
+    cm1e_log_free(&scheduler->log);
     for (uint32_t i = 0; i < scheduler->axis_count; i++)
         cm1e_axis_destroy(scheduler->axes[i]);
     free(scheduler);

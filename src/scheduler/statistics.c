@@ -34,6 +34,7 @@ void cm1e_statistics_note_bus(statistics_t *statistics, const cm1e_bus_counters_
     WRITE(statistics->lost_frames, counters->lost_frames);
     WRITE(statistics->working_counter_errors, counters->working_counter_errors);
     WRITE(statistics->late_frames, counters->late_frames);
+    WRITE(statistics->foreign_frames, counters->foreign_frames);
     WRITE(statistics->unsent_frames, counters->unsent_frames);
     WRITE(statistics->mailbox_retries, counters->mailbox_retries);
 }
@@ -68,11 +69,14 @@ void cm1e_statistics_read(const statistics_t *statistics, cm1e_scheduler_statist
         .lost_frames = READ(statistics->lost_frames),
         .working_counter_errors = READ(statistics->working_counter_errors),
         .late_frames = READ(statistics->late_frames),
+        .foreign_frames = READ(statistics->foreign_frames),
         .unsent_frames = READ(statistics->unsent_frames),
         .mailbox_retries = READ(statistics->mailbox_retries),
     };
     if (atomic_load_explicit(&statistics->ready, memory_order_acquire)) {
         copy->realtime = READ(statistics->realtime);
         memcpy(copy->advice, statistics->advice, sizeof copy->advice);
+        memcpy(copy->control_socket, statistics->control_socket, sizeof copy->control_socket);
+        memcpy(copy->control_advice, statistics->control_advice, sizeof copy->control_advice);
     }
 }

@@ -19,8 +19,11 @@ typedef struct distribution {
 typedef struct statistics {
     distribution_t cycle_time, wake_up_latency, execution_time;
     _Atomic uint64_t cycles, overruns;
-    _Atomic uint64_t bus_cycles, lost_frames, working_counter_errors, late_frames, mailbox_retries, unsent_frames;
+    _Atomic uint64_t bus_cycles, lost_frames, working_counter_errors, late_frames, mailbox_retries, unsent_frames,
+        foreign_frames;
     char advice[sizeof((cm1e_scheduler_statistics_t *)0)->advice]; /**< written once, before `ready` */
+    char control_socket[sizeof((cm1e_scheduler_statistics_t *)0)->control_socket]; /**< as advice, the next too */
+    char control_advice[sizeof((cm1e_scheduler_statistics_t *)0)->control_advice];
     _Atomic bool realtime, ready;
 } statistics_t;
 

@@ -1,0 +1,43 @@
+#include "axis/axis_watch.h"
+
+#include <string.h>
+
+#include "axis/axis_kind.h"
+#include "axis/axis_parts.h"
+
+void cm1e_axis_news(const cm1e_axis_t *axis, cm1e_axis_news_t *news)
+{
+    const commands_t *commands = &axis->commands;
+    *news = (cm1e_axis_news_t){
+        .state = axis->state,
+        .error = axis->fault.error,
+        .device_error = axis->fault.device_error,
+        .value = axis->fault.value,
+        .bound = axis->fault.bound,
+        .command = commands->active,
+        .kind = commands->kind,
+    };
+    if (commands->active && commands->active == commands->move.id) {
+        news->position = kind_row(commands->kind)->target != TARGET_NONE ? commands->move.position : 0.0;
+        news->velocity = kind_row(commands->kind)->has_velocity ? commands->move.velocity : 0.0;
+    }
+}
+
+const char *cm1e_command_name(cm1e_command_kind_t kind)
+{
+    return (unsigned)kind < CM1E_COMMAND_KIND_COUNT ? kind_row(kind)->name : "an unknown command";
+}
+
+const cm1e_device_error_t *cm1e_axis_device_error(const cm1e_axis_t *axis, uint16_t code)
+{
+    return axis->drive.kind ? axis->drive.kind->error(code) : NULL;
+}
+
+bool cm1e_axis_has_text(const cm1e_axis_t *axis)
+{
+    return axis->fault.error || axis->commands.refusal || axis->not_set.error;
+}
+
+size_t cm1e_axis_copy_bytes(void) { return sizeof(cm1e_axis_t); }
+
+void cm1e_axis_copy(const cm1e_axis_t *axis, void *copy) { memcpy(copy, axis, sizeof *axis); }

@@ -1,0 +1,130 @@
+#include "scheduler/log.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define NS_PER_S INT64_C(1000000000)
+/** Between two records of one counter. */
+#define QUIET_NS INT64_C(100000000)
+
+_Static_assert(sizeof(cm1e_log_event_t) % sizeof(uint64_t) == 0, "a record is whole words");
+
+cm1e_error_t cm1e_log_init(log_t *log, const cm1e_clock_t *clock, cm1e_diag_t *diag)
+{
+    log->clock = clock;
+    log->places = calloc(CM1E_LOG_EVENTS, sizeof *log->places);
+    return log->places ? CM1E_OK : cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "No memory for the event log.");
+}
+
+void cm1e_log_free(log_t *log)
+{
+    free(log->places);
+    log->places = NULL;
+}
+
+/* ---- writing ---------------------------------------------------------------------------------------------------- */
+
+static int64_t present_ns(const log_t *log)
+{
+    struct timespec now;
+    if (log->clock != cm1e_clock_monotonic())
+        return cm1e_clock_now(log->clock);
+    clock_gettime(CLOCK_REALTIME, &now);
+    return now.tv_sec * NS_PER_S + now.tv_nsec;
+}
+
+static void write_event(log_t *log, cm1e_log_event_t event, int64_t run_ns)
+{
+    uint64_t words[CM1E_LOG_WORDS];
+    event.number = atomic_load_explicit(&log->last, memory_order_relaxed) + 1;
+    event.time_ns = present_ns(log);
+    event.run_ns = run_ns;
+    memcpy(words, &event, sizeof words);
+    log_place_t *place = &log->places[event.number % CM1E_LOG_EVENTS];
+    /* Release and acquire at every word keep them between the two writes of the sequence, without fences. */
+    atomic_store_explicit(&place->sequence, 0, memory_order_relaxed);
+    for (int i = 0; i < CM1E_LOG_WORDS; i++)
+        atomic_store_explicit(&place->words[i], words[i], memory_order_release);
+    atomic_store_explicit(&place->sequence, event.number, memory_order_release);
+    atomic_store_explicit(&log->last, event.number, memory_order_release);
+}
+
+void cm1e_log_run(log_t *log, bool begins, int64_t run_ns)
+{
+    write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_RUN, .axis = -1, .code = begins}, run_ns);
+}
+
+static void look_at_axis(log_t *log, const cm1e_axis_t *axis, uint32_t index, int64_t run_ns)
+{
+    cm1e_axis_news_t *seen = &log->seen[index], now;
+    cm1e_axis_news(axis, &now);
+    if (now.command && now.command != seen->command)
+        write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_COMMAND, .axis = (int32_t)index, .code = (int32_t)now.kind,
+                                            .value = now.position, .bound = now.velocity}, run_ns);
+    if (now.state != seen->state)
+        write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_STATE, .axis = (int32_t)index, .code = (int32_t)now.state,
+                                            .detail = (uint32_t)seen->state}, run_ns);
+    /* The code of the drive may come a cycle after the error. */
+    if (now.error && (now.error != seen->error || now.device_error != seen->device_error))
+        write_event(log, (cm1e_log_event_t){.kind = CM1E_LOG_ERROR, .axis = (int32_t)index, .code = (int32_t)now.error,
+                                            .detail = now.device_error, .value = now.value, .bound = now.bound}, run_ns);
+    *seen = now;
+}
+
+static void look_at_counter(log_t *log, cm1e_log_kind_t kind, uint64_t total, int64_t run_ns)
+{
+    log_counter_t *counter = &log->counters[kind - CM1E_LOG_OVERRUN];
+    if (total == counter->told || run_ns < counter->quiet_until_ns)
+        return;
+    write_event(log, (cm1e_log_event_t){.kind = kind, .axis = -1, .code = (int32_t)(total - counter->told),
+                                        .detail = (uint32_t)total}, run_ns);
+    *counter = (log_counter_t){.told = total, .quiet_until_ns = run_ns + QUIET_NS};
+}
+
+void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64_t overruns,
+                   const cm1e_bus_counters_t *bus, int64_t run_ns)
+{
+    for (uint32_t i = 0; i < count; i++)
+        look_at_axis(log, axes[i], i, run_ns);
+    look_at_counter(log, CM1E_LOG_OVERRUN, overruns, run_ns);
+    look_at_counter(log, CM1E_LOG_LOST_FRAMES, bus->lost_frames, run_ns);
+    look_at_counter(log, CM1E_LOG_WORKING_COUNTER, bus->working_counter_errors, run_ns);
+    look_at_counter(log, CM1E_LOG_UNSENT_FRAMES, bus->unsent_frames, run_ns);
+    look_at_counter(log, CM1E_LOG_OTHER_MASTER, bus->foreign_frames, run_ns);
+}
+
+/* ---- reading ---------------------------------------------------------------------------------------------------- */
+
+/** false: the record has been overwritten meanwhile. */
+static bool read_event(const log_place_t *place, uint64_t number, cm1e_log_event_t *event)
+{
+    uint64_t words[CM1E_LOG_WORDS];
+    if (atomic_load_explicit(&place->sequence, memory_order_acquire) != number)
+        return false;
+    for (int i = 0; i < CM1E_LOG_WORDS; i++)
+        words[i] = atomic_load_explicit(&place->words[i], memory_order_acquire);
+    if (atomic_load_explicit(&place->sequence, memory_order_relaxed) != number)
+        return false;
+    memcpy(event, words, sizeof *event);
+    return true;
+}
+
+size_t cm1e_log_copy(const log_t *log, uint64_t after, cm1e_log_event_t *events, size_t room, uint64_t *lost)
+{
+    const uint64_t last = atomic_load_explicit(&log->last, memory_order_acquire);
+    const uint64_t oldest = last > CM1E_LOG_EVENTS ? last - CM1E_LOG_EVENTS : 0;
+    uint64_t missing = after < oldest ? oldest - after : 0;
+    size_t count = 0;
+    for (uint64_t number = after < last ? after + missing + 1 : last + 1; number <= last && count < room; number++) {
+        if (read_event(&log->places[number % CM1E_LOG_EVENTS], number, &events[count])) {
+            count++;
+        } else {
+            missing += 1 + count; /* only the oldest are overwritten: what was copied before them is not in a row */
+            count = 0;
+        }
+    }
+    if (lost)
+        *lost = missing;
+    return count;
+}

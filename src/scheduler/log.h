@@ -1,0 +1,46 @@
+/**
+ * @file scheduler/log.h
+ * The event log from within: the cycle compares what it sees with what it saw last, and writes what changed.
+ */
+#ifndef CM1E_SCHEDULER_LOG_H
+#define CM1E_SCHEDULER_LOG_H
+
+#include <stdatomic.h>
+
+#include "axis/axis_watch.h"
+#include "cm1e/log.h"
+#include "core/clock.h"
+
+/** A record as words, because a reader in another thread may look while it is written: then the sequence tells. */
+enum { CM1E_LOG_WORDS = sizeof(cm1e_log_event_t) / sizeof(uint64_t) };
+typedef struct log_place {
+    _Atomic uint64_t sequence; /**< number of the record; 0: it is being written */
+    _Atomic uint64_t words[CM1E_LOG_WORDS];
+} log_place_t;
+
+/** A number that only grows and is looked at in every cycle. */
+typedef struct log_counter {
+    uint64_t told;
+    int64_t quiet_until_ns;
+} log_counter_t;
+enum { CM1E_LOG_COUNTERS = CM1E_LOG_KIND_COUNT - CM1E_LOG_OVERRUN };
+
+typedef struct log {
+    log_place_t *places;
+    _Atomic uint64_t last;      /**< number of the newest complete record */
+    const cm1e_clock_t *clock;
+    cm1e_axis_news_t seen[CM1E_MAX_AXES];
+    log_counter_t counters[CM1E_LOG_COUNTERS];
+} log_t;
+
+/** CM1E_ERROR_NO_MEMORY. @rt init */
+cm1e_error_t cm1e_log_init(log_t *log, const cm1e_clock_t *clock, cm1e_diag_t *diag);
+void cm1e_log_free(log_t *log);
+/** @rt cycle */
+void cm1e_log_run(log_t *log, bool begins, int64_t run_ns);
+/** Called in every cycle, after its work. @rt cycle */
+void cm1e_log_look(log_t *log, cm1e_axis_t *const axes[], uint32_t count, uint64_t overruns,
+                   const cm1e_bus_counters_t *bus, int64_t run_ns);
+size_t cm1e_log_copy(const log_t *log, uint64_t after, cm1e_log_event_t *events, size_t room, uint64_t *lost);
+
+#endif

@@ -1,0 +1,77 @@
+/* Records of the event log as sentences. */
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "scheduler/scheduler_window.h"
+
+static const char *const kind_names[] = {
+    [CM1E_LOG_RUN] = "run",
+    [CM1E_LOG_STATE] = "state",
+    [CM1E_LOG_ERROR] = "error",
+    [CM1E_LOG_COMMAND] = "command",
+    [CM1E_LOG_OVERRUN] = "overrun",
+    [CM1E_LOG_LOST_FRAMES] = "lost frames",
+    [CM1E_LOG_WORKING_COUNTER] = "working counter",
+    [CM1E_LOG_UNSENT_FRAMES] = "unsent frames",
+    [CM1E_LOG_OTHER_MASTER] = "other master",
+};
+_Static_assert(sizeof kind_names / sizeof *kind_names == CM1E_LOG_KIND_COUNT, "a kind of the log has no name");
+
+static const char *const counter_texts[] = {
+    [CM1E_LOG_OVERRUN] = "cycles whose work ended after the start of the next one",
+    [CM1E_LOG_LOST_FRAMES] = "cycles without an answer because frames were lost",
+    [CM1E_LOG_WORKING_COUNTER] = "cycles with a wrong working counter because a slave did not take part",
+    [CM1E_LOG_UNSENT_FRAMES] = "frames that the network interface did not take because it is down or too slow",
+    [CM1E_LOG_OTHER_MASTER] = "frames of another master on this network, which is to be ended",
+};
+
+const char *cm1e_log_kind_name(cm1e_log_kind_t kind)
+{
+    return (unsigned)kind < CM1E_LOG_KIND_COUNT ? kind_names[kind] : "unknown";
+}
+
+static void error_text(const cm1e_axis_t *axis, const char *name, const cm1e_log_event_t *event, char *text, size_t size)
+{
+    const cm1e_device_error_t *device = event->detail ? cm1e_axis_device_error(axis, (uint16_t)event->detail) : NULL;
+    char numbers[64] = "", code[400] = "";
+    if (event->bound != 0.0)
+        snprintf(numbers, sizeof numbers, ": %.6g u, allowed are %.6g u", event->value, event->bound);
+    if (event->detail)
+        snprintf(code, sizeof code, " Device error 0x%04X: %s.%s%s%s", event->detail,
+                 device ? device->text : "not a code of the manual", device ? " Cure: " : "", device ? device->cure : "",
+                 device ? "." : "");
+    snprintf(text, size, "%s: %s%s.%s", name, cm1e_strerror((cm1e_error_t)event->code), numbers, code);
+}
+
+static void command_text(const char *name, const cm1e_log_event_t *event, char *text, size_t size)
+{
+    char position[40] = "", velocity[40] = "";
+    if (event->value != 0.0)
+        snprintf(position, sizeof position, ", position %.6g u", event->value);
+    if (event->bound != 0.0)
+        snprintf(velocity, sizeof velocity, ", velocity %.6g u/s", event->bound);
+    snprintf(text, size, "%s: %s%s%s", name, cm1e_command_name((cm1e_command_kind_t)event->code), position, velocity);
+}
+
+void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event, char *text, size_t size)
+{
+    uint32_t count;
+    cm1e_axis_t *const *axes = cm1e_scheduler_axes(scheduler, &count);
+    const bool of_axis = event->axis >= 0 && (uint32_t)event->axis < count;
+    const char *name = of_axis ? cm1e_axis_configuration(axes[event->axis])->name : "";
+    if (!text || size == 0)
+        return;
+    text[0] = 0;
+    if (event->kind == CM1E_LOG_RUN)
+        snprintf(text, size, event->code ? "the run began" : "the run ended");
+    else if (event->kind >= CM1E_LOG_OVERRUN && event->kind < CM1E_LOG_KIND_COUNT)
+        snprintf(text, size, "%s: %" PRId32 " (%" PRIu32 " since the start)", counter_texts[event->kind], event->code,
+                 event->detail);
+    else if (of_axis && event->kind == CM1E_LOG_STATE)
+        snprintf(text, size, "%s: %s (was %s)", name, cm1e_axis_state_name((cm1e_axis_state_t)event->code),
+                 cm1e_axis_state_name((cm1e_axis_state_t)event->detail));
+    else if (of_axis && event->kind == CM1E_LOG_ERROR)
+        error_text(axes[event->axis], name, event, text, size);
+    else if (of_axis && event->kind == CM1E_LOG_COMMAND)
+        command_text(name, event, text, size);
+}

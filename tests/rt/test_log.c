@@ -1,0 +1,208 @@
+/**
+ * The event log: what a run leaves in it, what of it survives a reset, and readers beside the writer.
+ */
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+
+#include "cm1e/log.h"
+#include "cm1e/sim.h"
+#include "machine.h"
+#include "scheduler/log.h"
+
+#define MS INT64_C(1000000)
+
+static cm1e_log_event_t events[CM1E_LOG_EVENTS + 8];
+
+/* ---- a run ------------------------------------------------------------------------------------------------------ */
+
+typedef struct program {
+    machine_t *machine;
+    MC_Power_t power;
+    MC_MoveAbsolute_t move;
+    MC_Reset_t reset;
+} program_t;
+
+static void simulate(const program_t *p, const char *line)
+{
+    char answer[128];
+    ck_assert_msg(cm1e_bus_simulate(p->machine->bus, line, answer, sizeof answer) == CM1E_OK, "%s: %s", line, answer);
+}
+
+/** Enables, moves, gets a fault, loses frames, resets. */
+static void program(void *context)
+{
+    program_t *p = context;
+    p->power.Axis = p->move.Axis = p->reset.Axis = &p->machine->axis[0];
+    const int64_t now = cm1e_scheduler_time_ns(p->machine->scheduler);
+    p->power.Enable = p->power.EnablePositive = p->power.EnableNegative = TRUE;
+    MC_Power(&p->power);
+    p->move.Execute = p->power.Status;
+    p->move.Position = 3.0;
+    p->move.Velocity = 2.0;
+    MC_MoveAbsolute(&p->move);
+    p->reset.Execute = now >= 1500 * MS;
+    MC_Reset(&p->reset);
+    if (now == 900 * MS)
+        simulate(p, "over-torque 1");
+    if (now == 1200 * MS)
+        simulate(p, "lose 6");
+    if (now == 1350 * MS)
+        simulate(p, "lose 1");
+}
+
+static const cm1e_log_event_t *find(size_t count, cm1e_log_kind_t kind, int code)
+{
+    for (size_t i = 0; i < count; i++)
+        if (events[i].kind == kind && (code < -1000 || events[i].code == code))
+            return &events[i];
+    return NULL;
+}
+
+static void expect_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event, const char *words)
+{
+    char text[512];
+    ck_assert_msg(event != NULL, "no record for \"%s\"", words);
+    cm1e_log_text(scheduler, event, text, sizeof text);
+    ck_assert_msg(strstr(text, words) != NULL, "\"%s\" is not in: %s", words, text);
+}
+
+START_TEST(test_a_run_leaves_what_happened_and_a_reset_takes_nothing_away)
+{
+    machine_t machine = {.axis_count = 1};
+    program_t p = {.machine = &machine};
+    machine_open(&machine);
+    machine_add(&machine, "", 0, 0, program, &p);
+    machine_run(&machine, 2000 * MS);
+    uint64_t lost = 77;
+    const cm1e_scheduler_t *s = machine.scheduler;
+    const size_t n = cm1e_log_read(s, 0, events, CM1E_LOG_EVENTS, &lost);
+    ck_assert_uint_eq(lost, 0);
+    for (size_t i = 0; i < n; i++) {
+        char text[512];
+        cm1e_log_text(s, &events[i], text, sizeof text);
+        printf("%4d ms %-15s %s\n", (int)(events[i].run_ns / MS), cm1e_log_kind_name(events[i].kind), text);
+        ck_assert_uint_eq(events[i].number, i + 1);
+        ck_assert(text[0] && (i == 0 || events[i].run_ns >= events[i - 1].run_ns));
+    }
+    ck_assert(p.reset.Done && !p.reset.Error);
+    ck_assert_int_eq(events[0].kind, CM1E_LOG_RUN);
+    expect_text(s, &events[0], "the run began");
+    expect_text(s, &events[n - 1], "the run ended");
+    expect_text(s, find(n, CM1E_LOG_STATE, CM1E_AXIS_STANDSTILL), "axis1: Standstill (was Disabled)");
+    expect_text(s, find(n, CM1E_LOG_COMMAND, CM1E_COMMAND_MOVE_ABSOLUTE), "MC_MoveAbsolute, position 3 u, velocity 2");
+    expect_text(s, find(n, CM1E_LOG_STATE, CM1E_AXIS_ERROR_STOP), "ErrorStop (was DiscreteMotion)");
+    expect_text(s, find(n, CM1E_LOG_ERROR, CM1E_ERROR_DRIVE_FAULT), "Device error 0x2310");
+    expect_text(s, find(n, CM1E_LOG_ERROR, CM1E_ERROR_DRIVE_FAULT), "Cure: ");
+    const cm1e_log_event_t *frames = find(n, CM1E_LOG_LOST_FRAMES, -2000);
+    expect_text(s, frames, "frames were lost");
+    ck_assert_int_eq(frames->run_ns / MS / 10, 120);
+    /* Of a burst the first is told at once, the others with the next record of the counter. */
+    const uint64_t lost_frames = cm1e_bus_counters(machine.bus)->lost_frames;
+    ck_assert_uint_ge(lost_frames, 3);
+    uint32_t told = 0;
+    for (size_t i = 0; i < n; i++)
+        if (events[i].kind == CM1E_LOG_LOST_FRAMES)
+            told += (uint32_t)events[i].code;
+    ck_assert_uint_eq(told, lost_frames);
+    machine_close(&machine);
+}
+END_TEST
+
+START_TEST(test_a_reader_goes_on_where_it_was)
+{
+    machine_t machine = {.axis_count = 1};
+    program_t p = {.machine = &machine};
+    machine_open(&machine);
+    machine_add(&machine, "", 0, 0, program, &p);
+    machine_run(&machine, 1000 * MS);
+    const size_t all = cm1e_log_read(machine.scheduler, 0, events, CM1E_LOG_EVENTS, NULL);
+    ck_assert_uint_gt(all, 3);
+    ck_assert_uint_eq(cm1e_log_read(machine.scheduler, 0, events, 2, NULL), 2);
+    ck_assert_uint_eq(cm1e_log_read(machine.scheduler, events[1].number, events, CM1E_LOG_EVENTS, NULL), all - 2);
+    ck_assert_uint_eq(events[0].number, 3);
+    ck_assert_uint_eq(cm1e_log_read(machine.scheduler, all, events, CM1E_LOG_EVENTS, NULL), 0);
+    ck_assert_uint_eq(cm1e_log_read(machine.scheduler, all + 1000, events, CM1E_LOG_EVENTS, NULL), 0);
+    ck_assert_uint_eq(cm1e_log_read(machine.scheduler, UINT64_MAX, events, CM1E_LOG_EVENTS, NULL), 0);
+    machine_close(&machine);
+}
+END_TEST
+
+/* ---- the ring alone --------------------------------------------------------------------------------------------- */
+
+static void write_many(log_t *ring, uint64_t count)
+{
+    cm1e_bus_counters_t bus = {0};
+    for (uint64_t i = 1; i <= count; i++) /* one record each: 200 ms lie between them */
+        cm1e_log_look(ring, NULL, 0, i, &bus, (int64_t)i * 200 * MS);
+}
+
+START_TEST(test_a_full_ring_keeps_the_newest_and_counts_the_others)
+{
+    log_t ring = {0};
+    uint64_t lost;
+    ck_assert(cm1e_log_init(&ring, cm1e_clock_monotonic(), NULL) == CM1E_OK);
+    write_many(&ring, CM1E_LOG_EVENTS + 10);
+    ck_assert_uint_eq(cm1e_log_copy(&ring, 0, events, CM1E_LOG_EVENTS + 8, &lost), CM1E_LOG_EVENTS);
+    ck_assert_uint_eq(lost, 10);
+    ck_assert_uint_eq(events[0].number, 11);
+    ck_assert_uint_eq(cm1e_log_copy(&ring, 4, events, 5, &lost), 5);
+    ck_assert_uint_eq(lost, 6);
+    ck_assert_uint_eq(events[4].number, 15);
+    cm1e_log_free(&ring);
+}
+END_TEST
+
+static log_t shared;
+static atomic_bool written;
+
+static void *write_beside(void *unused)
+{
+    (void)unused;
+    write_many(&shared, 300000);
+    atomic_store(&written, true);
+    return NULL;
+}
+
+START_TEST(test_a_reader_beside_the_writer_gets_whole_records_in_a_row)
+{
+    pthread_t writer;
+    uint64_t next = 0, seen = 0, gaps = 0;
+    ck_assert(cm1e_log_init(&shared, cm1e_clock_monotonic(), NULL) == CM1E_OK);
+    atomic_store(&written, false);
+    ck_assert(pthread_create(&writer, NULL, write_beside, NULL) == 0);
+    for (bool last = false; !last || next < 300000;) {
+        last = atomic_load(&written);
+        uint64_t lost;
+        const size_t n = cm1e_log_copy(&shared, next, events, CM1E_LOG_EVENTS, &lost);
+        for (size_t i = 0; i < n; i++) {
+            ck_assert_uint_eq(events[i].number, next + lost + 1 + i);
+            ck_assert_uint_eq(events[i].detail, events[i].number);
+            ck_assert_int_eq(events[i].run_ns, (int64_t)events[i].number * 200 * MS);
+        }
+        next = n ? events[n - 1].number : next;
+        seen += n;
+        gaps += n ? lost : 0;
+    }
+    pthread_join(writer, NULL);
+    ck_assert_uint_eq(seen + gaps, 300000);
+    printf("%d of 300000 records seen, the others counted\n", (int)seen);
+    cm1e_log_free(&shared);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("log");
+    TCase *tcase = tcase_create("log");
+    tcase_add_test(tcase, test_a_run_leaves_what_happened_and_a_reset_takes_nothing_away);
+    tcase_add_test(tcase, test_a_reader_goes_on_where_it_was);
+    tcase_add_test(tcase, test_a_full_ring_keeps_the_newest_and_counts_the_others);
+    tcase_add_test(tcase, test_a_reader_beside_the_writer_gets_whole_records_in_a_row);
+    suite_add_tcase(suite, tcase);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_ENV);
+    const int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
