@@ -96,6 +96,9 @@ static bool is_one_axis(const cm1e_slave_info_t *slave)
     return slave->device && slave->device->channels == 0 && slave->device->extra_is_error;
 }
 
+/** A drive whose motor only the configuration can state. */
+static bool motor_is_unknown(const cm1e_slave_info_t *slave) { return slave->device && slave->device->motor_stated; }
+
 static const cm1e_slave_info_t *first_bridge(const cm1e_bus_t *bus)
 {
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++)
@@ -112,7 +115,7 @@ static void print_questions(const cm1e_bus_t *bus, const char *interface_name)
             fprintf(stderr, "  cm1e cml -i %s --slave %u \"K37.%d\"\n", interface_name, (unsigned)position, id);
 }
 
-/** A bus file that can be loaded when the K37 values are filled in. */
+/** A bus file that can be loaded when the values in capitals are filled in. */
 static void print_bus_file(const cm1e_bus_t *bus, const char *interface_name)
 {
     unsigned axis = 0;
@@ -121,6 +124,9 @@ static void print_bus_file(const cm1e_bus_t *bus, const char *interface_name)
         const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, position);
         if (is_one_axis(slave))
             fprintf(stderr, "  - {name: axis%u, position: %u}\n", ++axis, (unsigned)position);
+        else if (motor_is_unknown(slave))
+            fprintf(stderr, "  - {name: axis%u, position: %u, device: %s, drive: {counts_per_revolution: COUNTS, "
+                    "max_speed_rpm: SPEED}}\n", ++axis, (unsigned)position, slave->device->kind);
         for (int id = 1; id <= channels_of(slave); id++)
             fprintf(stderr, "  - {name: axis%u, position: %u, channel: %d, k37: ANSWER-TO-K37.%d}\n", ++axis,
                     (unsigned)position, id, id);
@@ -138,6 +144,22 @@ static bool refuse_bridge(const cm1e_bus_t *bus, const char *interface_name)
     fprintf(stderr, "and put the answers into a bus file for the option -b:\n");
     print_bus_file(bus, interface_name);
     return false;
+}
+
+/** Says why a servo drive of another maker is none of the axes. Whether there is one. */
+static bool tell_servo_drives(const cm1e_bus_t *bus, const char *interface_name)
+{
+    uint32_t found = 0;
+    for (uint32_t position = cm1e_bus_slave_count(bus); position >= 1; position--)
+        if (motor_is_unknown(cm1e_bus_slave(bus, position)))
+            found = position;
+    if (found == 0)
+        return false;
+    complain("slave %u is a %s: no scan shows the counts of a revolution and the maximum speed of "
+             "its motor, so it is not moved without them. Put them into a bus file for the option -b:", found,
+             cm1e_bus_slave(bus, (uint16_t)found)->device->label);
+    print_bus_file(bus, interface_name);
+    return true;
 }
 
 bool load_axes(const common_options_t *options, cm1e_bus_config_t *config)
@@ -162,10 +184,11 @@ bool load_axes(const common_options_t *options, cm1e_bus_config_t *config)
                 *axis = (cm1e_axis_config_t){.address = (uint16_t)position};
         }
     const bool known = refuse_bridge(bus, config->interface_name);
+    const bool told = known && tell_servo_drives(bus, config->interface_name);
     cm1e_bus_close(bus);
     if (!known)
         return false;
-    if (config->axis_count == 0)
+    if (config->axis_count == 0 && !told)
         complain("there is no CM1-E on %s", config->interface_name);
     return config->axis_count > 0;
 }

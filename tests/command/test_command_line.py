@@ -453,6 +453,7 @@ def check_bridge(folder):
     move = run("cm1e", "move", "-b", bus, "left", "--by", "0.5", "--json")
     expect(move.returncode == 0 and json.loads(move.stdout)["axis"] == "left", "move behind a bridge", move)
     check_unknown_bridge(folder, bus)
+    check_unknown_servo_drive(folder)
     refused = run("cm1e", "generate", "eni", "-b", bus, "-o", "-")
     expect(refused.returncode == WRONG_USE and "left, lift: it is behind a bridge" in refused.stderr, "ENI", refused)
     configured = run("cm1e", "generate", "eni", "-b", bus, "-o", "-", "--device", "eb12", "--vendor", "0xAA77",
@@ -479,6 +480,20 @@ def check_unknown_bridge(folder, bus):
             file.write(text)
         scan = run("cm1e", "scan", "-b", path)
         expect(scan.returncode == status and (status == 0 or "k37" in scan.stderr), "the printed bus file", scan)
+
+
+def check_unknown_servo_drive(folder):
+    """A drive of another maker is not skipped in silence, and the printed bus file holds when it is filled in."""
+    refused = run("cm1e", "move", "-i", f"sim:{SOURCE}/examples/cia402.yaml", "--by", "1")
+    expect(refused.returncode == FAILED and "slave 1 is a CiA 402 servo drive" in refused.stderr,
+           "move of a servo drive without a bus file", refused)
+    printed = refused.stderr[refused.stderr.index("bus:\n"):]
+    expect(printed.count("device: cia402") == 3, "the printed bus file", refused)
+    path = os.path.join(folder, "printed.yaml")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(printed.replace("COUNTS", "131072").replace("SPEED", "3000"))
+    moved = run("cm1e", "move", "-b", path, "axis2", "--by", "1")
+    expect(moved.returncode == 0 and "done" in moved.stdout, "move with the printed bus file", moved)
 
 
 def in_virtual_time(folder, name):

@@ -1,9 +1,9 @@
 /**
  * The random programs of test_fb_random.c on the simulated segment, with real frames and a simulated drive behind them:
  * the same rules, and the simulated motor follows the set-point. Faults come from the simulator's console and are those
- * that test_safety_random.c makes, which judges what is sent to the drives. The axis is a CM1-E alone, or a motor
- * behind a bridge (EB01, EB02, EB12; any K37) among up to three others there and a CM1-E, which move to and fro: what
- * happens to one motor is nothing to them.
+ * that test_safety_random.c makes, which judges what is sent to the drives. The axis is a CM1-E alone, a servo drive of
+ * another maker alone (CiA 402), or a motor behind a bridge (EB01, EB02, EB12; any K37) among up to three others there
+ * and a CM1-E, which move to and fro: what happens to one motor is nothing to them.
  *
  * Seeds: seeds.h.
  */
@@ -33,7 +33,8 @@ static struct bench {
     int64_t start_ns, disturbed_until;
     bool faulty;                    /**< a fault has not been healed yet */
     uint32_t position;              /**< of the slave of the judged axis */
-    unsigned channel;               /**< 0: a CM1-E */
+    unsigned channel;               /**< 0: the slave is the axis */
+    bool other_maker;               /**< a servo drive by CiA 402 */
     other_t others[MOST_OTHERS];
     int other_count;
     int64_t bus_disturbed_until;    /**< by what concerns all axes */
@@ -72,7 +73,10 @@ static void cycle_end(void)
 
 #include "random_program.h"
 
-enum { CYCLES = 20000, RUNS = 32, BRIDGE_RUNS = 24, BATCHES = 4 };
+enum { CYCLES = 20000, RUNS = 32, BRIDGE_RUNS = 24, CIA402_RUNS = 24, BATCHES = 4 };
+
+typedef enum kind { ALONE = 0, BEHIND_BRIDGE, OTHER_MAKER } kind_t;
+static const char *const kinds[] = {[ALONE] = "CM1-E", [BEHIND_BRIDGE] = "bridge", [OTHER_MAKER] = "CiA 402"};
 
 /** NULL: not behind a bridge. */
 static cm1e_sim_bridge_axis_t *motor_at(uint32_t position, unsigned channel)
@@ -122,17 +126,21 @@ __attribute__((format(printf, 1, 2))) static void console(const char *format, ..
     MUST(cm1e_bus_simulate(bench.bus, line, answer, sizeof answer) == CM1E_OK, "%s: %s", line, answer);
 }
 
+static uint16_t random_code(void)
+{
+    static const uint16_t codes[] = {0x2310, 0x3220, 0x4310, 0x5441, 0x7121, 0x7305, 0x8611, 0x8612};
+    return bench.other_maker ? codes[pick(sizeof codes / sizeof codes[0])]
+                             : cm1e_device_errors[(size_t)pick((int)cm1e_device_error_count)].code;
+}
+
 static void make_fault_of_motor(void)
 {
-    switch (pick(5)) {
+    switch (pick(bench.other_maker ? 4 : 5)) {
     case 0: console("power %u off", bench.position); break;
-    case 1:
-        console("error %u %04X", bench.position,
-                cm1e_device_errors[(size_t)pick((int)cm1e_device_error_count)].code);
-        break;
-    case 2: console("over-torque %u", bench.position); break;
-    case 3: console("load %u %g", bench.position, uniform(-0.5, 0.5)); break;
-    default: console("sensor %u %d on", bench.position, 1 + pick(4)); break;
+    case 1: console("error %u %04X", bench.position, random_code()); break;
+    case 2: console("load %u %g", bench.position, uniform(-0.5, 0.5)); break;
+    case 3: console("sensor %u %d on", bench.position, 1 + pick(4)); break;
+    default: console("over-torque %u", bench.position); break;
     }
 }
 
@@ -298,6 +306,24 @@ static void choose_alone(void)
     bench.position = 1;
 }
 
+/** With the drive's own PDOs, with those of all modes, or with those of csp alone, whose modes go by SDO. */
+static void choose_other_maker(void)
+{
+    static const int8_t methods[] = {17, 18, 19, 20, 21, 22, 35, 37};
+    static const uint32_t counts[] = {20000, 50000, 65536, 131072};
+    choose_alone();
+    cm1e_axis_config_t *axis = &config.axes[0];
+    const int pdos = pick(3);
+    bench.other_maker = true;
+    strcpy(axis->device, "cia402");
+    axis->counts_per_revolution = counts[pick(4)];
+    axis->max_speed_rpm = 3000 + 1000 * pick(3);
+    axis->outputs_pdo = (uint16_t)(pdos ? 0x15FF + pdos : 0);
+    axis->inputs_pdo = (uint16_t)(pdos ? 0x19FF + pdos : 0);
+    axis->homing.method = methods[pick(8)];
+    axis->inputs = (cm1e_input_config_t){.limit_positive = 2, .limit_negative = 1, .home = 3};
+}
+
 static void choose_motor(cm1e_axis_config_t *axis, cm1e_device_model_t model, unsigned channel)
 {
     const cm1e_bridge_motor_t kind = cm1e_bridge_motor(model, channel - 1);
@@ -334,16 +360,14 @@ static void choose_bridge(void)
     config.axes[0].inputs = inputs;
 }
 
-static void prepare(unsigned seed, bool bridge)
+static void prepare(unsigned seed, kind_t kind)
 {
     cm1e_diag_t diag = {0};
-    snprintf(judged.scene, sizeof judged.scene, "%s, seed %u", bridge ? "bridge" : "CM1-E", seed);
+    snprintf(judged.scene, sizeof judged.scene, "%s, seed %u", kinds[kind], seed);
     chance_seed(seed);
     memset(&bench, 0, sizeof bench);
-    if (bridge)
-        choose_bridge();
-    else
-        choose_alone();
+    static void (*const choose[])(void) = {choose_alone, choose_bridge, choose_other_maker};
+    choose[kind]();
     config.virtual_time = true;
     judged.cycle_ns = config.cycle_time_ns;
     cm1e_axis_config_t *axis = &config.axes[0];
@@ -369,9 +393,9 @@ static void prepare(unsigned seed, bool bridge)
     begin_program();
 }
 
-static void run(unsigned seed, bool bridge)
+static void run(unsigned seed, kind_t kind)
 {
-    prepare(seed, bridge);
+    prepare(seed, kind);
     const int length = CYCLES / 2 + pick(CYCLES);
     for (int i = 0; i < length; i++)
         one_cycle();
@@ -387,33 +411,42 @@ static void run(unsigned seed, bool bridge)
 
 static int batches(void) { return seeds_given() ? 1 : BATCHES; }
 
-static void run_seeds(int batch, int wanted, bool bridge)
+static void run_seeds(int batch, int wanted, kind_t kind)
 {
     const int runs = seed_count(wanted);
     for (int i = batch; i < runs; i += batches())
-        run(seed_of(i), bridge);
+        run(seed_of(i), kind);
     printf("%s, batch %d: %llu cycles, %llu of them moving, %llu edges, %llu times Done\n",
-           bridge ? "bridge" : "CM1-E", batch, cycles_total, watched.moving, edges_total, done_total);
+           kinds[kind], batch, cycles_total, watched.moving, edges_total, done_total);
     if (!seeds_given() && runs >= wanted)
         MUST(watched.moving > cycles_total / 8, "too wild to test anything");
 }
 
-START_TEST(test_random_programs_on_the_segment_keep_every_rule) { run_seeds(_i, RUNS, false); }
+START_TEST(test_random_programs_on_the_segment_keep_every_rule) { run_seeds(_i, RUNS, ALONE); }
 END_TEST
 
-START_TEST(test_random_programs_behind_a_bridge_keep_every_rule) { run_seeds(_i, BRIDGE_RUNS, true); }
+START_TEST(test_random_programs_behind_a_bridge_keep_every_rule) { run_seeds(_i, BRIDGE_RUNS, BEHIND_BRIDGE); }
+END_TEST
+
+START_TEST(test_random_programs_on_a_drive_of_another_maker_keep_every_rule)
+{
+    run_seeds(_i, CIA402_RUNS, OTHER_MAKER);
+}
 END_TEST
 
 int main(void)
 {
     Suite *suite = suite_create("random programs on the segment");
-    TCase *all = tcase_create("CM1-E"), *bridge = tcase_create("bridge");
+    TCase *all = tcase_create("CM1-E"), *bridge = tcase_create("bridge"), *other = tcase_create("CiA 402");
     tcase_set_timeout(all, 250);
     tcase_set_timeout(bridge, 250);
+    tcase_set_timeout(other, 250);
     tcase_add_loop_test(all, test_random_programs_on_the_segment_keep_every_rule, 0, batches());
     tcase_add_loop_test(bridge, test_random_programs_behind_a_bridge_keep_every_rule, 0, batches());
     suite_add_tcase(suite, all);
+    tcase_add_loop_test(other, test_random_programs_on_a_drive_of_another_maker_keep_every_rule, 0, batches());
     suite_add_tcase(suite, bridge);
+    suite_add_tcase(suite, other);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);
     const int failed = srunner_ntests_failed(runner);
