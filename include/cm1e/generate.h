@@ -76,14 +76,31 @@ typedef struct cm1e_file {
 /** Frees the bytes of a file; a zeroed struct is allowed. @rt init */
 CM1E_API void cm1e_file_free(cm1e_file_t *file);
 
+/* Both structs of options may grow at their ends in later versions. The functions ..._sized() are told the sizes that
+ * the program was compiled with. */
+
+/** Does the work of cm1e_generate(), for a program with these sizes of the options and of a device. @rt init */
+CM1E_API cm1e_error_t cm1e_generate_sized(cm1e_file_t *file, const cm1e_generate_options_t *options, size_t size,
+                                          size_t device_size, cm1e_diag_t *diag);
 /** Writes a file. Returns CM1E_ERROR_CONFIG if the options contradict each other; `diag` says which, and what would be
  *  right. @rt init */
-CM1E_API cm1e_error_t cm1e_generate(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag);
+static inline cm1e_error_t cm1e_generate(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag)
+{
+    return cm1e_generate_sized(file, options, sizeof(cm1e_generate_options_t), sizeof(cm1e_device_options_t), diag);
+}
 
+/** Does the work of cm1e_generate_trio_program(), for a program with these sizes of the options and of a device.
+ *  @rt init */
+CM1E_API cm1e_error_t cm1e_generate_trio_program_sized(cm1e_file_t *file, const cm1e_generate_options_t *options,
+                                                       size_t size, size_t device_size, cm1e_diag_t *diag);
 /** Writes the TrioBASIC start program for an EC_EXTEND file of these devices: axis set-up, move and reset for each axis
  *  (UG 11.2.1). @rt init */
-CM1E_API cm1e_error_t cm1e_generate_trio_program(cm1e_file_t *file, const cm1e_generate_options_t *options,
-                                                 cm1e_diag_t *diag);
+static inline cm1e_error_t cm1e_generate_trio_program(cm1e_file_t *file, const cm1e_generate_options_t *options,
+                                                      cm1e_diag_t *diag)
+{
+    return cm1e_generate_trio_program_sized(file, options, sizeof(cm1e_generate_options_t),
+                                            sizeof(cm1e_device_options_t), diag);
+}
 
 /** Writes the ENI of the network that a scan found. A CM1-E that is a configured axis gets the name and mapping of the
  *  axis; the others get `mapping`. A bridge gets the names of its axes. Other devices are described by their SII. The

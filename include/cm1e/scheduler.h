@@ -8,6 +8,7 @@
 #define CM1E_SCHEDULER_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "cm1e/api.h"
@@ -64,18 +65,34 @@ typedef struct cm1e_scheduler_statistics_t {
                                       none is wanted */
 } cm1e_scheduler_statistics_t;
 
+/* The structs of this header may grow at their ends in later versions. The functions ..._sized() are told the size that
+ * the program was compiled with. */
+
+/** Does the work of cm1e_scheduler_create(), for a program with this size of the configuration. @rt init */
+CM1E_API cm1e_error_t cm1e_scheduler_create_sized(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus,
+                                                  const cm1e_scheduler_config_t *config, size_t size,
+                                                  cm1e_diag_t *diag);
 /** Makes a scheduler for a bus in Operational (otherwise CM1E_ERROR_STATE), with one axis per configured axis. `config`
  *  may be NULL. The bus must outlive the scheduler; free it with cm1e_scheduler_destroy(). The watchdog of the slaves
  *  runs already: add the tasks and run soon. @rt init */
-CM1E_API cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus,
-                                            const cm1e_scheduler_config_t *config, cm1e_diag_t *diag);
+static inline cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus,
+                                                 const cm1e_scheduler_config_t *config, cm1e_diag_t *diag)
+{
+    return cm1e_scheduler_create_sized(scheduler, bus, config, sizeof(cm1e_scheduler_config_t), diag);
+}
 /** Frees a scheduler that does not run. NULL is allowed. In a task it is refused, and the run ends in order with an
  *  error. @rt init */
 CM1E_API void cm1e_scheduler_destroy(cm1e_scheduler_t *scheduler);
+/** Does the work of cm1e_scheduler_add_task(), for a program with this size of a task. @rt init */
+CM1E_API cm1e_error_t cm1e_scheduler_add_task_sized(cm1e_scheduler_t *scheduler, const cm1e_task_config_t *task,
+                                                    size_t size, cm1e_diag_t *diag);
 /** Adds a task, before the scheduler runs. `task` is copied. The interval must be a multiple of the bus cycle.
  *  @rt init */
-CM1E_API cm1e_error_t cm1e_scheduler_add_task(cm1e_scheduler_t *scheduler, const cm1e_task_config_t *task,
-                                              cm1e_diag_t *diag);
+static inline cm1e_error_t cm1e_scheduler_add_task(cm1e_scheduler_t *scheduler, const cm1e_task_config_t *task,
+                                                   cm1e_diag_t *diag)
+{
+    return cm1e_scheduler_add_task_sized(scheduler, task, sizeof(cm1e_task_config_t), diag);
+}
 /** The reference of the configured axis `index` (0 = first); Handle 0 if there is none. @rt any */
 CM1E_API AXIS_REF_t cm1e_scheduler_axis(const cm1e_scheduler_t *scheduler, uint32_t index);
 /** The reference of the axis with this name; Handle 0 if there is none. @rt any */
@@ -104,9 +121,16 @@ CM1E_API int64_t cm1e_scheduler_time_ns(const cm1e_scheduler_t *scheduler);
 /** Marks this cycle with a text that the plot of the trace shows (the last 64 are kept). `text` must live until the
  *  scheduler is destroyed. Call it in a program. @rt cycle */
 CM1E_API void cm1e_scheduler_mark(cm1e_scheduler_t *scheduler, const char *text);
+/** Does the work of cm1e_scheduler_statistics(), for a program with this size of the statistics. @rt any */
+CM1E_API void cm1e_scheduler_statistics_sized(const cm1e_scheduler_t *scheduler,
+                                              cm1e_scheduler_statistics_t *statistics, size_t size);
 /** Copies the statistics, before, during or after the run, from any thread. Each number is consistent; during the run
  *  two numbers may be of neighbouring cycles. @rt any */
-CM1E_API void cm1e_scheduler_statistics(const cm1e_scheduler_t *scheduler, cm1e_scheduler_statistics_t *statistics);
+static inline void cm1e_scheduler_statistics(const cm1e_scheduler_t *scheduler,
+                                             cm1e_scheduler_statistics_t *statistics)
+{
+    cm1e_scheduler_statistics_sized(scheduler, statistics, sizeof(cm1e_scheduler_statistics_t));
+}
 
 /** Checks before the run whether cm1e_scheduler_write_csv() and cm1e_scheduler_write_svg() can write `path`. Returns
  *  CM1E_ERROR_IO if not; `diag` has the reason. Leaves no file behind. @rt block */

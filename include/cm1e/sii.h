@@ -28,7 +28,7 @@ extern "C" {
 CM1E_API cm1e_error_t cm1e_sii_read_device(cm1e_bus_t *bus, uint16_t position, uint8_t *image, size_t *size,
                                            cm1e_diag_t *diag);
 
-/** Allows writing what is refused otherwise. A zeroed struct allows nothing. */
+/** Allows writing what is refused otherwise. A zeroed struct allows nothing. Later versions add members at its end. */
 typedef struct cm1e_sii_write_options {
     bool force_checksum;       /**< allow an image whose word 7 is not the checksum of words 0-6: no slave loads it */
     bool force_identity;       /**< allow a slave that is not the product of the image, or not a CM1-E */
@@ -38,14 +38,21 @@ typedef struct cm1e_sii_write_options {
                                     default those of the slave stay, so that no two slaves become equal */
 } cm1e_sii_write_options_t;
 
+/** Does the work of cm1e_sii_write_device(), for a program with this size of the options. @rt block */
+CM1E_API cm1e_error_t cm1e_sii_write_device_sized(cm1e_bus_t *bus, uint16_t position, const uint8_t *image, size_t size,
+                                                  const cm1e_sii_write_options_t *options, size_t options_size,
+                                                  cm1e_diag_t *diag);
 /** Writes an image into the EEPROM of a slave. Only words that differ are written: categories first, then the header,
  *  words 0-7 last. Each word is read back, and at the end the whole image. The slave uses it from its next power-on.
  *  Make a backup with cm1e_sii_read_device() before: it is the only way back. Errors after which nothing was written:
  *  CM1E_ERROR_FILE: the image is not valid; CM1E_ERROR_STATE: the slave is neither in Init nor in Pre-Operational;
  *  CM1E_ERROR_BUS_IDENTITY: another product; CM1E_ERROR_CONFIG: another configuration. After CM1E_ERROR_TIMEOUT and
  *  CM1E_ERROR_BUS_LOST `diag` says at which word the writing stopped. @rt block */
-CM1E_API cm1e_error_t cm1e_sii_write_device(cm1e_bus_t *bus, uint16_t position, const uint8_t *image, size_t size,
-                                            const cm1e_sii_write_options_t *options, cm1e_diag_t *diag);
+static inline cm1e_error_t cm1e_sii_write_device(cm1e_bus_t *bus, uint16_t position, const uint8_t *image, size_t size,
+                                                 const cm1e_sii_write_options_t *options, cm1e_diag_t *diag)
+{
+    return cm1e_sii_write_device_sized(bus, position, image, size, options, sizeof(cm1e_sii_write_options_t), diag);
+}
 
 #ifdef __cplusplus
 }

@@ -9,6 +9,7 @@
 #include "bus/sii.h"
 #include "core/bytes.h"
 #include "core/in_task.h"
+#include "core/sized.h"
 #include "description/sii.h"
 
 /* An EEPROM is addressed by words. */
@@ -307,16 +308,17 @@ static cm1e_error_t write_image(session_t *session, const uint8_t *image, uint8_
     return error == CM1E_OK ? verify(session, wanted, present, size, diag) : error;
 }
 
-cm1e_error_t cm1e_sii_write_device(cm1e_bus_t *bus, uint16_t position, const uint8_t *image, size_t size,
-                                   const cm1e_sii_write_options_t *options, cm1e_diag_t *diag)
+cm1e_error_t cm1e_sii_write_device_sized(cm1e_bus_t *bus, uint16_t position, const uint8_t *image, size_t size,
+                                         const cm1e_sii_write_options_t *options, size_t options_size,
+                                         cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_sii_write_device()", "", diag);
-    static const cm1e_sii_write_options_t nothing;
+    cm1e_sii_write_options_t own = {0};
     session_t session;
-    if (!options)
-        options = &nothing;
-    cm1e_error_t error = check_image(image, size, options, diag);
+    if (options)
+        cm1e_copy_sized(&own, sizeof own, options, options_size);
+    cm1e_error_t error = check_image(image, size, &own, diag);
     if (error != CM1E_OK)
         return error;
     uint8_t *room = malloc(2 * size);
@@ -324,7 +326,7 @@ cm1e_error_t cm1e_sii_write_device(cm1e_bus_t *bus, uint16_t position, const uin
         return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory when writing an SII.");
     error = begin(&session, bus, position, diag);
     if (error == CM1E_OK) {
-        error = write_image(&session, image, room, room + size, size, options, diag);
+        error = write_image(&session, image, room, room + size, size, &own, diag);
         cm1e_eeprom_give_back(&session.eeprom);
     }
     free(room);

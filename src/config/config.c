@@ -5,6 +5,7 @@
 #include "config/copy.h"
 #include "config/interface.h"
 #include "config/problem.h"
+#include "core/sized.h"
 
 /* ---- sizes: the program may have been compiled with fewer or more members than the library ----------------------- */
 
@@ -14,8 +15,6 @@ static size_t size_of_axis(const cm1e_bus_config_t *config)
 {
     return config->axis_size ? config->axis_size : sizeof *config->axes;
 }
-
-static size_t lesser(size_t a, size_t b) { return a < b ? a : b; }
 
 static void *axis_at(const cm1e_bus_config_t *config, uint32_t index)
 {
@@ -32,9 +31,8 @@ cm1e_error_t cm1e_config_copy_sized(cm1e_bus_config_t *to, size_t size, size_t a
     if (from->axis_count && !copy.axes)
         return CM1E_ERROR_NO_MEMORY;
     for (uint32_t i = 0; i < from->axis_count; i++)
-        memcpy(axis_at(&copy, i), axis_at(from, i), lesser(axis_size, size_of_axis(from)));
-    memset(to, 0, size);
-    memcpy(to, from, lesser(size, size_of(from)));
+        cm1e_copy_sized(axis_at(&copy, i), axis_size, axis_at(from, i), size_of_axis(from));
+    cm1e_copy_sized(to, size, from, size_of(from));
     to->size = size;
     to->axis_size = axis_size;
     to->axes = copy.axes;

@@ -13,6 +13,7 @@
 #include "generate/eni.h"
 #include "generate/esi.h"
 #include "generate/file.h"
+#include "generate/options.h"
 
 static const cm1e_device_options_t one_cm1e = {0};
 
@@ -304,9 +305,8 @@ static cm1e_error_t check_described(const cm1e_generate_options_t *options, cm1e
     return CM1E_OK;
 }
 
-cm1e_error_t cm1e_generate(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag)
+static cm1e_error_t generate(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag)
 {
-    *file = (cm1e_file_t){0};
     if (options->devices && options->device_count == 0)
         return cm1e_diag_set(diag, CM1E_ERROR_CONFIG, 0, "no device is given");
     const cm1e_error_t error = check_described(options, diag);
@@ -331,4 +331,16 @@ cm1e_error_t cm1e_generate(cm1e_file_t *file, const cm1e_generate_options_t *opt
     case CM1E_FILE_ENI: return generate_eni(file, options, diag);
     default: return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "there is no such file format");
     }
+}
+
+cm1e_error_t cm1e_generate_sized(cm1e_file_t *file, const cm1e_generate_options_t *options, size_t size,
+                                 size_t device_size, cm1e_diag_t *diag)
+{
+    cm1e_own_options_t own;
+    *file = (cm1e_file_t){0};
+    cm1e_error_t error = cm1e_own_options_take(&own, options, size, device_size, diag);
+    if (error == CM1E_OK)
+        error = generate(file, &own.options, diag);
+    cm1e_own_options_free(&own);
+    return error;
 }

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "generate/ec_extend.h"
+#include "generate/options.h"
 
 /* Half a revolution of following error; one revolution at one a second. The guide's values are at the motor's limit. */
 enum { FE_LIMIT = CM1E_COUNTS_PER_REVOLUTION / 2, TRAVEL = CM1E_COUNTS_PER_REVOLUTION,
@@ -180,12 +181,11 @@ static void put_program(FILE *out, const cm1e_ec_extend_t *document)
     fputs(program, out);
 }
 
-cm1e_error_t cm1e_generate_trio_program(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag)
+static cm1e_error_t generate(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag)
 {
     cm1e_ec_extend_t document = {0};
     char *text = NULL;
     size_t size = 0;
-    *file = (cm1e_file_t){0};
     cm1e_error_t error = check_mappings(options, diag);
     if (error == CM1E_OK)
         error = cm1e_ec_extend_make(&document, options, diag);
@@ -206,5 +206,17 @@ cm1e_error_t cm1e_generate_trio_program(cm1e_file_t *file, const cm1e_generate_o
     if (text)
         snprintf(file->warning, sizeof file->warning,
                  "nobody has run this program on a controller yet: read it, and run it with the motors uncoupled");
+    return error;
+}
+
+cm1e_error_t cm1e_generate_trio_program_sized(cm1e_file_t *file, const cm1e_generate_options_t *options, size_t size,
+                                              size_t device_size, cm1e_diag_t *diag)
+{
+    cm1e_own_options_t own;
+    *file = (cm1e_file_t){0};
+    cm1e_error_t error = cm1e_own_options_take(&own, options, size, device_size, diag);
+    if (error == CM1E_OK)
+        error = generate(file, &own.options, diag);
+    cm1e_own_options_free(&own);
     return error;
 }

@@ -10,6 +10,7 @@
 #include "cm1e/scan_time.h"
 #include "core/in_task.h"
 #include "core/output.h"
+#include "core/sized.h"
 #include "scheduler/log.h"
 #include "scheduler/realtime.h"
 #include "scheduler/scheduler_window.h"
@@ -328,9 +329,12 @@ void cm1e_scheduler_mark(cm1e_scheduler_t *scheduler, const char *text)
         cm1e_trace_mark(&scheduler->trace, text, cm1e_scheduler_time_ns(scheduler));
 }
 
-void cm1e_scheduler_statistics(const cm1e_scheduler_t *scheduler, cm1e_scheduler_statistics_t *statistics)
+void cm1e_scheduler_statistics_sized(const cm1e_scheduler_t *scheduler, cm1e_scheduler_statistics_t *statistics,
+                                     size_t size)
 {
-    cm1e_statistics_read(&scheduler->statistics, statistics);
+    cm1e_scheduler_statistics_t copy;
+    cm1e_statistics_read(&scheduler->statistics, &copy);
+    cm1e_copy_sized(statistics, size, &copy, sizeof copy);
 }
 
 cm1e_error_t cm1e_scheduler_check_path(const char *path, cm1e_diag_t *diag)
@@ -358,10 +362,11 @@ const trace_t *cm1e_scheduler_trace(const cm1e_scheduler_t *scheduler) { return 
 
 /* ---- before and after ------------------------------------------------------------------------------------------ */
 
-static cm1e_error_t take_config(cm1e_scheduler_t *s, const cm1e_scheduler_config_t *config, cm1e_diag_t *diag)
+static cm1e_error_t take_config(cm1e_scheduler_t *s, const cm1e_scheduler_config_t *config, size_t size,
+                                cm1e_diag_t *diag)
 {
     if (config)
-        s->config = *config;
+        cm1e_copy_sized(&s->config, sizeof s->config, config, size);
     if (s->config.realtime_priority == 0)
         s->config.realtime_priority = REALTIME_DEFAULT_PRIORITY;
     if (s->config.stop_timeout_ns == 0)
@@ -395,8 +400,8 @@ static cm1e_error_t make_trace(cm1e_scheduler_t *s, cm1e_diag_t *diag)
     return cm1e_trace_init(&s->trace, names, s->axis_count, s->config.trace_capacity, s->config.trace_every, diag);
 }
 
-cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus, const cm1e_scheduler_config_t *config,
-                                   cm1e_diag_t *diag)
+cm1e_error_t cm1e_scheduler_create_sized(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus,
+                                         const cm1e_scheduler_config_t *config, size_t size, cm1e_diag_t *diag)
 {
     *scheduler = NULL;
     if (cm1e_in_task())
@@ -412,7 +417,7 @@ cm1e_error_t cm1e_scheduler_create(cm1e_scheduler_t **scheduler, cm1e_bus_t *bus
     s->operation = cm1e_bus_operation(bus);
     cm1e_error_t error = check_operation(s, diag);
     if (error == CM1E_OK)
-        error = take_config(s, config, diag);
+        error = take_config(s, config, size, diag);
     if (error == CM1E_OK)
         error = make_axes(s, diag);
     if (error == CM1E_OK)
@@ -439,11 +444,14 @@ void cm1e_scheduler_destroy(cm1e_scheduler_t *scheduler)
     free(scheduler);
 }
 
-cm1e_error_t cm1e_scheduler_add_task(cm1e_scheduler_t *scheduler, const cm1e_task_config_t *task, cm1e_diag_t *diag)
+cm1e_error_t cm1e_scheduler_add_task_sized(cm1e_scheduler_t *scheduler, const cm1e_task_config_t *task, size_t size,
+                                           cm1e_diag_t *diag)
 {
+    cm1e_task_config_t own;
+    cm1e_copy_sized(&own, sizeof own, task, size);
     if (scheduler->run)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Tasks are added before the scheduler runs.");
-    return cm1e_tasks_add(&scheduler->tasks, task, scheduler->cycle_time_ns, diag);
+    return cm1e_tasks_add(&scheduler->tasks, &own, scheduler->cycle_time_ns, diag);
 }
 
 /* ---- what the trace records beside the axes ---------------------------------------------------------------------- */

@@ -191,6 +191,11 @@ START_TEST(alias_and_serial_number_stay_those_of_the_slave_unless_asked)
     ck_assert_mem_eq(eeprom_of(bus, 1) + 2 * 0x0E, before + 2 * 0x0E, 4);
     ck_assert_uint_eq(cm1e_get_u16(eeprom_of(bus, 1) + 2 * 0x0C), cm1e_get_u16(image + 2 * 0x0C));
     const cm1e_sii_write_options_t own = {.own_alias_and_serial = true};
+    /* An older program does not know that option: what lies behind its struct is not its own. */
+    ck_assert_int_eq(cm1e_sii_write_device_sized(bus, 1, image, sizeof image, &own,
+                                                 offsetof(cm1e_sii_write_options_t, own_alias_and_serial), &diag),
+                     CM1E_OK);
+    ck_assert_mem_eq(eeprom_of(bus, 1), before, 16);
     ck_assert_int_eq(write_image(bus, &own), CM1E_OK);
     ck_assert_mem_eq(eeprom_of(bus, 1), image, sizeof image);
     /* Of a slave whose header is not valid there is nothing to keep. */

@@ -59,6 +59,36 @@ START_TEST(test_tasks_run_by_priority_and_interval_from_the_first_cycle_on)
 }
 END_TEST
 
+/* Structs of a program that was compiled with fewer members than the library; what lies behind them is not its own. */
+static void count_calls(void *context) { ++*(int *)context; }
+
+START_TEST(test_an_older_program_has_shorter_structs)
+{
+    enum { OLD_CONFIG = offsetof(cm1e_scheduler_config_t, trace_every),
+           OLD_STATISTICS = offsetof(cm1e_scheduler_statistics_t, advice) };
+    machine_t machine = {.axis_count = 1};
+    cm1e_diag_t diag;
+    int calls = 0;
+    machine_open(&machine);
+    cm1e_scheduler_destroy(machine.scheduler);
+    cm1e_scheduler_config_t config;
+    memset(&config, 0x5A, sizeof config);
+    memset(&config, 0, OLD_CONFIG);
+    ck_assert_msg(cm1e_scheduler_create_sized(&machine.scheduler, machine.bus, &config, OLD_CONFIG, &diag) == CM1E_OK,
+                  "%s", diag.text);
+    const struct { cm1e_task_config_t task; int more; } newer = {{.program = count_calls, .context = &calls}, 0x5A5A};
+    ck_assert_int_eq(cm1e_scheduler_add_task_sized(machine.scheduler, &newer.task, sizeof newer, &diag), CM1E_OK);
+    ck_assert_int_eq(cm1e_scheduler_run(machine.scheduler, 9 * MS, &diag), CM1E_OK);
+    cm1e_scheduler_statistics_t statistics;
+    memset(&statistics, 0x5A, sizeof statistics);
+    cm1e_scheduler_statistics_sized(machine.scheduler, &statistics, OLD_STATISTICS);
+    ck_assert_int_eq(calls, 9);
+    ck_assert_uint_ge(statistics.cycles, 9);
+    ck_assert_int_eq(statistics.advice[0], 0x5A);
+    machine_close(&machine);
+}
+END_TEST
+
 /* What timers in a task see: the planned time of its cycle, the same for all of them. */
 static struct {
     TON_t ton;
@@ -537,6 +567,7 @@ int main(void)
         tcase_add_test(all, tests[i]);
     tcase_add_loop_test(all, test_stop_with_a_broken_segment_ends, 0, 7);
     tcase_add_loop_test(all, test_scheduler_of_a_bus_that_does_not_operate_is_refused, 0, 2);
+    tcase_add_test(all, test_an_older_program_has_shorter_structs);
     tcase_add_test(all, test_scheduler_of_an_earlier_operation_is_refused);
     tcase_add_test(all, test_longest_stop_timeout_is_no_short_one);
     suite_add_tcase(suite, all);

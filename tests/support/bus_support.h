@@ -12,6 +12,8 @@
 #include <string.h>
 
 #include "bus/bus_image.h"
+#include "cm1e/generate.h"
+#include "cm1e/sii.h"
 #include "core/bytes.h"
 #include "nic/nic.h"
 #include "sim/backend.h"
