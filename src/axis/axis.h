@@ -224,6 +224,10 @@ typedef struct cm1e_axis_leader {
     /** The motor has come to rest at its last set-point, because no frame was sent for a while:
      *  cm1e_axis_after_pause(), before the next set-point is asked for. The next ones begin there, from rest. */
     void (*paused)(void *context, uint32_t index);
+    /** A silence of few cycles has ended: all that are led together go on along their path with the part of their
+     *  velocity that cm1e_axis_part_left() leaves each of them. The velocity and the acceleration that the axis has
+     *  now, at its last set-point. Asked before the next one is. NULL: as fast as before. */
+    void (*slow)(void *context, uint32_t index, double *velocity, double *acceleration);
     /** s; how long the slowest of all that are led together needs to brake: the ramp that they have in common when the
      *  bus is lost. NULL: each has its own. */
     double (*stop_time)(void *context);
@@ -246,6 +250,9 @@ bool cm1e_axis_led_by(const cm1e_axis_t *axis, const void *context);
 double cm1e_axis_place(const cm1e_axis_t *axis, bool actual);
 /** The bus that the axis belongs to. @rt cycle */
 const cm1e_bus_t *cm1e_axis_bus(const cm1e_axis_t *axis);
+/** After a silence: the part of its set velocity (0 ... 1) that the motor can go on with. Faster, it would exceed the
+ *  axis's maximum velocity while it catches up. @rt cycle */
+double cm1e_axis_part_left(const cm1e_axis_t *axis);
 /** s; how far apart its set-points are. @rt cycle */
 double cm1e_axis_cycle(const cm1e_axis_t *axis);
 /** What MC_Power permits. @rt cycle */

@@ -95,6 +95,16 @@ static void begin_anew(cm1e_axis_t *axis)
         cm1e_axis_guard_fail(axis, (guard_t){.limit = GUARD_PAUSE, .asked = axis->setpoint.velocity});
 }
 
+static void slow(cm1e_axis_t *axis, double part)
+{
+    (void)part; /* the leader asks all of them */
+    const cm1e_axis_leader_t leader = axis->leader;
+    double velocity = axis->setpoint.velocity, acceleration = axis->setpoint.acceleration;
+    if (leader.slow)
+        leader.slow(leader.context, leader.index, &velocity, &acceleration);
+    cm1e_axis_put_motion(axis, velocity, acceleration);
+}
+
 /* Only the leader knows its way. */
 static bool keeps(const cm1e_axis_t *axis, double lower, double upper)
 {
@@ -106,6 +116,7 @@ const source_t cm1e_source_leader = {
     .step = step,
     .stop = cm1e_axis_stop_by_ramp,
     .begin_anew = begin_anew,
+    .slow = slow,
     .keeps = keeps,
     .moves = true,
     .is_composite = true,

@@ -28,6 +28,7 @@ void cm1e_axis_begin_run(cm1e_axis_t *axis, const source_t *source, const from_t
                          double offset_s)
 {
     axis->setpoint.stretch = no_stretch;
+    axis->setpoint.slow.missing = 0.0;
     axis->setpoint.base = from->position;
     axis->setpoint.base_line = cm1e_axis_line(axis, axis->setpoint.base);
     axis->setpoint.target = target;
@@ -131,7 +132,9 @@ static bool may_go_on(const cm1e_axis_t *axis, cm1e_motion_state_t next)
 static bool profile_ended(cm1e_axis_t *axis, double late_s)
 {
     const bool shared = axis->superimposed.moving && !axis->superimposed.alone;
-    const from_t end = {axis->setpoint.target, axis->setpoint.profile.end.velocity, 0.0, shared};
+    cm1e_motion_state_t last = {0.0, axis->setpoint.profile.end.velocity, 0.0};
+    cm1e_slow_time_apply(&axis->setpoint.slow, &last);
+    const from_t end = {axis->setpoint.target, last.velocity, last.acceleration, shared};
     const bool goes_on = end.velocity != 0.0;
     if (axis->homing_hooks && axis->homing_hooks->step_ended(axis))
         return axis_on_profile(axis);
@@ -221,7 +224,7 @@ static inline void follow(cm1e_axis_t *axis, double time_s)
     }
     const double counts = next.position * axis->position.scale;
     axis->setpoint.position = cm1e_position_plus(axis->setpoint.base, counts);
-    if (axis->setpoint.reached && !on_top && fabs(counts) > farthest_from_base)
+    if (axis->setpoint.reached && !on_top && fabs(counts) > farthest_from_base && axis->setpoint.slow.missing == 0.0)
         count_anew(axis);
     axis->setpoint.velocity = next.velocity;
     axis->setpoint.acceleration = next.acceleration;
@@ -253,7 +256,8 @@ static bool at_end(const cm1e_axis_t *axis, double time_s)
 CM1E_RARE static void follow_over_end(cm1e_axis_t *axis, double time_s)
 {
     while (at_end(axis, time_s)) {
-        if (!profile_ended(axis, fmax(time_s - axis->setpoint.profile.duration_s, 0.0))) {
+        const double over_s = fmax(time_s - axis->setpoint.profile.duration_s, 0.0);
+        if (!profile_ended(axis, over_s / (1.0 - axis->setpoint.slow.missing))) {
             if (axis_follows(axis))
                 axis->coupling_hooks->first_set_point(axis);
             return;
@@ -272,6 +276,36 @@ bool cm1e_axis_profile_step(cm1e_axis_t *axis)
     else
         follow(axis, time_s);
     return true;
+}
+
+bool cm1e_axis_timed_step(cm1e_axis_t *axis)
+{
+    setpoint_t *s = &axis->setpoint;
+    if (s->slow.missing == 0.0)
+        return cm1e_axis_profile_step(axis);
+    const source_t *source = s->source;
+    const double late_s = axis->cycle_s - cm1e_slow_time_step(&s->slow, axis->cycle_s);
+    s->profile_offset_s -= late_s;
+    s->profile_next_s -= late_s;
+    (void)cm1e_axis_profile_step(axis);
+    if (s->source == source) {
+        cm1e_motion_state_t now = {0.0, s->velocity, s->acceleration};
+        cm1e_slow_time_apply(&s->slow, &now);
+        cm1e_axis_put_motion(axis, now.velocity, now.acceleration);
+    }
+    return true;
+}
+
+void cm1e_axis_timed_slow(cm1e_axis_t *axis, double part)
+{
+    setpoint_t *s = &axis->setpoint;
+    const double now_s = s->profile_offset_s + (double)s->profile_cycles * axis->cycle_s;
+    s->source->find_stretch(axis, now_s);
+    cm1e_motion_state_t now = cm1e_profile_stretch_state(&s->stretch, now_s);
+    cm1e_slow_time_begin(&s->slow, part);
+    cm1e_slow_time_keep(&s->slow, &axis->limits.maximum);
+    cm1e_slow_time_apply(&s->slow, &now);
+    cm1e_axis_put_motion(axis, now.velocity, now.acceleration);
 }
 
 const source_t cm1e_source_profile = {

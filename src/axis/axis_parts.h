@@ -11,6 +11,7 @@
 #include "axis/axis_place.h"
 #include "device/unit.h"
 #include "drive/drive.h"
+#include "motion/slow_time.h"
 
 /* ---- set-point: axis_setpoint.h ---------------------------------------------------------------------------------- */
 
@@ -29,6 +30,7 @@ typedef struct setpoint {
     int64_t profile_cycles;         /**< since it began ... */
     double profile_offset_s;        /**< ... so long before the first of them */
     double profile_next_s;          /**< its time in the next cycle */
+    cm1e_slow_time_t slow;          /**< of a table over time (axis_pause.c) */
     cm1e_profile_stretch_t stretch; /**< of it, the one that the set-point is in */
     double loop_velocity;           /**< counts/s that the position loop adds in CSV */
     cm1e_profile_t profile;         /**< relative to base, in u; along a table only its duration and end */

@@ -8,6 +8,11 @@
  * gone on with its last velocity: after more than a few cycles what moves begins anew from where it must be. Bus-wide
  * silence stops the time of all axes alike, so that followers stay in step and groups on their path.
  *
+ * A motor that was at its maximum velocity has slowed down, and would exceed it while it catches up. So what moves goes
+ * on slower at first, by a part for each cycle. Where it is made of several (a path, a table over time, a superimposed
+ * motion), none of them is lost: the time of a path and of a table runs slower for a while (motion/slow_time.h), and a
+ * base and what is superimposed on it are both planned anew.
+ *
  * A pause: frames were never sent, because the work of a cycle or a wake-up took whole cycles too long. In CSP the motor
  * stands at its last target by then, in CSV it has gone on with its last velocity. What moves begins anew from rest, or
  * from where the motor must be by now. Stops and ramps of errors end where they stand.
@@ -75,11 +80,16 @@ static void profile_anew(cm1e_axis_t *axis)
                        axis->setpoint.velocity > 0.0 ? axis->limits.upper : axis->limits.lower);
 }
 
+static void lost_speed(cm1e_axis_t *axis, double velocity)
+{
+    axis->silence.began_anew = true;
+    cm1e_axis_keep_torque(axis, velocity);
+}
+
 /* Everything that moves begins at the present set-point with this velocity (u/s). */
 static void begin_anew(cm1e_axis_t *axis, double velocity)
 {
-    axis->silence.began_anew = true;
-    cm1e_axis_keep_torque(axis, axis->setpoint.velocity - velocity);
+    lost_speed(axis, axis->setpoint.velocity - velocity);
     cm1e_axis_put_velocity(axis, velocity);
     cm1e_axis_superimposed_abandon(axis);
     if (axis->setpoint.source->begin_anew)
@@ -140,15 +150,48 @@ void cm1e_axis_hold_cycle(cm1e_axis_t *axis, int64_t missed)
     cm1e_drive_slew(&axis->drive);
 }
 
-/* u/s; what the motor still has of the set velocity. In CSV it has gone on by itself. */
+/* In CSV it does by itself. */
+static bool motor_goes_on(const cm1e_axis_t *axis)
+{
+    return axis->mode == CM1E_MODE_CSV || cm1e_drive_is_virtual(&axis->drive);
+}
+
+/* u/s; no more, so that the motor does not exceed its maximum velocity while it gets back to its speed. */
+static double highest_after(const cm1e_axis_t *axis, int silent_cycles)
+{
+    return axis->limits.system.velocity * fmax(0.0, 1.0 - reserve * (double)silent_cycles);
+}
+
+/* Cycles of silence that the motor has not recovered from. */
+static int cycles_shaken(const cm1e_axis_t *axis)
+{
+    return (axis->silence.shaken + CM1E_SHAKEN_BY_SILENCE - 1) / CM1E_SHAKEN_BY_SILENCE;
+}
+
+/* u/s; what the set velocity grows to until the motor has recovered. */
+static double speed_ahead(const cm1e_axis_t *axis)
+{
+    const double v = axis->setpoint.velocity, a = axis->setpoint.acceleration;
+    const double ahead = fabs(v) + fmax(0.0, v > 0.0 ? a : -a) * axis->cycle_s * 2 * CM1E_SHAKEN_BY_SILENCE;
+    return fmax(fabs(v), fmin(ahead, axis->limits.system.velocity));
+}
+
+double cm1e_axis_part_left(const cm1e_axis_t *axis)
+{
+    static const double rounding = 1.0 + 1e-9;
+    const double ahead = speed_ahead(axis), highest = highest_after(axis, cycles_shaken(axis));
+    return motor_goes_on(axis) || ahead <= highest * rounding ? 1.0 : highest / ahead;
+}
+
+/* u/s; what the motor still has of the set velocity. */
 static double velocity_left(const cm1e_axis_t *axis)
 {
     const double set = axis->setpoint.velocity;
-    if (axis->mode == CM1E_MODE_CSV || cm1e_drive_is_virtual(&axis->drive))
+    if (motor_goes_on(axis))
         return set;
     const double motor = (axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis)) / axis->position.scale;
     const double left = set > 0.0 ? fmax(0.0, fmin(motor, set)) : fmin(0.0, fmax(motor, set));
-    const double most = axis->limits.system.velocity * fmax(0.0, 1.0 - reserve * (double)axis->silence.silent_before);
+    const double most = highest_after(axis, axis->silence.silent_before);
     const double change = fmax(axis->limits.system.acceleration, axis->limits.system.deceleration) * axis->cycle_s *
                           (double)(axis->silence.silent_before + 1);
     const double kept = fabs(set - left) <= change + velocity_noise / fabs(axis->position.scale) ? set : left;
@@ -169,14 +212,43 @@ double cm1e_axis_ran_on(const cm1e_axis_t *axis)
     return axis->setpoint.velocity * axis->position.scale * axis->cycle_s * (double)axis->silence.silent_before;
 }
 
+/* Of a base and what is superimposed on it; FALSE: the latter cannot go on. */
+static bool both_slower(cm1e_axis_t *axis, double part)
+{
+    if (!cm1e_axis_superimposed_slow(axis, part))
+        return false;
+    cm1e_axis_put_motion(axis, axis->setpoint.velocity * part, axis->setpoint.acceleration * part * part);
+    if (!axis->setpoint.stands)
+        profile_anew(axis);
+    return true;
+}
+
+/* Made of several, and none of them is lost. An axis that is led goes on as slowly as all that are. */
+static void go_on_slower(cm1e_axis_t *axis)
+{
+    const double part = cm1e_axis_part_left(axis), before = axis->setpoint.velocity;
+    if (part == 1.0 && !axis_led(axis))
+        return;
+    if (axis->setpoint.source->slow)
+        axis->setpoint.source->slow(axis, part);
+    else if (!both_slower(axis, part))
+        begin_anew(axis, velocity_left(axis));
+    if (axis->setpoint.velocity != before)
+        lost_speed(axis, before - axis->setpoint.velocity);
+}
+
 static void go_on_or_begin_anew(cm1e_axis_t *axis)
 {
     const bool follows_on = axis_follows(axis) && axis->coupling_hooks->begins_anew(axis);
     const bool in_place = axis->mode == CM1E_MODE_CSV; /* nearly, and as fast as before */
     const bool shaken = !in_place && axis->silence.shaken > CM1E_AXIS_RIDDEN_OUT_CYCLES * CM1E_SHAKEN_BY_SILENCE;
     const double ran_on = cm1e_axis_ran_on(axis);
-    if (is_composite(axis) && !follows_on && !shaken && ran_on == 0.0)
+    const bool goes_on = !shaken && ran_on == 0.0;
+    if (is_composite(axis) && !follows_on && goes_on) {
+        if (!axis_follows(axis))
+            go_on_slower(axis);
         return;
+    }
     cm1e_axis_shift_set_point(axis, ran_on);
     const bool led = axis_led(axis); /* the path stands for an axis at rest too */
     const double left = led && !in_place ? 0.0 : velocity_left(axis);

@@ -56,6 +56,12 @@ static inline void cm1e_axis_put_position(cm1e_axis_t *axis, position_t position
 {
     axis->setpoint.position = position;
 }
+/** From here on with this velocity, u/s, and acceleration, u/s2. */
+static inline void cm1e_axis_put_motion(cm1e_axis_t *axis, double velocity, double acceleration)
+{
+    axis->setpoint.velocity = velocity;
+    axis->setpoint.acceleration = acceleration;
+}
 /** From here on with this velocity, u/s, and no acceleration. */
 static inline void cm1e_axis_put_velocity(cm1e_axis_t *axis, double velocity)
 {
@@ -101,6 +107,9 @@ void cm1e_axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits);
 void cm1e_axis_stop_by_ramp(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal);
 /** The profile's functions, which a table over time shares. */
 bool cm1e_axis_profile_step(cm1e_axis_t *axis);
+/** The same of one whose time can run slower for a while (motion/slow_time.h). */
+bool cm1e_axis_timed_step(cm1e_axis_t *axis);
+void cm1e_axis_timed_slow(cm1e_axis_t *axis, double part);
 bool cm1e_axis_profile_goes(cm1e_axis_t *axis, double sign);
 /** Motion in the direction of `sign` is no longer enabled (MC_Power, 3.1): a command that goes there fails, the next
  *  one begins, or the axis stops. */

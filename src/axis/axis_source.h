@@ -20,6 +20,8 @@ typedef struct source {
     void (*stop)(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal);
     /** What moves begins anew at the present set-point. NULL: as a profile does (axis_pause.c), or nothing moves. */
     void (*begin_anew)(cm1e_axis_t *axis);
+    /** Goes on, at first with this part of its velocity or, led, of that of all. NULL: it begins anew with it. */
+    void (*slow)(cm1e_axis_t *axis, double part);
     /** Another source takes over. NULL: nothing is to be done then. */
     void (*leave)(cm1e_axis_t *axis);
     /** What is left to go: whether any of it goes in the direction of `sign`. NULL: none does. */

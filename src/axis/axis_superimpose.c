@@ -348,6 +348,17 @@ void cm1e_axis_superimposed_replan(cm1e_axis_t *axis)
         axis->superimposed = next;
 }
 
+bool cm1e_axis_superimposed_slow(cm1e_axis_t *axis, double part)
+{
+    superimposed_t slower = axis->superimposed;
+    slower.now.velocity *= part;
+    slower.now.acceleration *= part * part;
+    if (slower.moving && !plan(axis, &slower))
+        return false;
+    axis->superimposed = slower;
+    return true;
+}
+
 bool cm1e_axis_superimposed_goes(const cm1e_axis_t *axis, double sign)
 {
     const superimposed_t *on_top = &axis->superimposed;

@@ -18,6 +18,8 @@ cm1e_error_t cm1e_axis_superimpose_update(cm1e_axis_t *axis, cm1e_command_id_t i
 void cm1e_axis_superimposed_step(cm1e_axis_t *axis, cm1e_motion_state_t *next);
 /** Instead of that: its part is what was `before`, without jerk, and it goes on from there. */
 void cm1e_axis_superimposed_hold(cm1e_axis_t *axis, const cm1e_motion_state_t *before);
+/** Its part goes on with so much of its velocity. FALSE: it cannot, and nothing has changed. */
+bool cm1e_axis_superimposed_slow(cm1e_axis_t *axis, double part);
 /** A command begins there (the present set-point), as the base. Where that is faster than what is left beside the
  *  superimposed motion, that one stops being one, waits, and its part of the velocity is the base's. */
 void cm1e_axis_superimposed_give_way(cm1e_axis_t *axis, from_t *from);

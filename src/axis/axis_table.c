@@ -106,7 +106,8 @@ CM1E_RARE static void find_stretch(cm1e_axis_t *axis, double time_s)
 }
 
 const source_t cm1e_source_table = {
-    .step = cm1e_axis_profile_step,
+    .step = cm1e_axis_timed_step,
+    .slow = cm1e_axis_timed_slow,
     .stop = cm1e_axis_stop_by_ramp,
     .goes = goes,
     .keeps = cm1e_axis_profile_keeps,

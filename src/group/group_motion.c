@@ -97,6 +97,34 @@ static void paused(void *context, uint32_t index)
     group->paused |= bit;
 }
 
+/* The part of its velocity that the motor with the least speed left can go on with. */
+static double part_left(const cm1e_group_t *group)
+{
+    double least = 1.0;
+    for (int i = 0; i < group->axes; i++) {
+        const cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
+        if (axis && (group->led & 1u << i) != 0)
+            least = fmin(least, cm1e_axis_part_left(axis));
+    }
+    return least;
+}
+
+/* All axes report a silence too before the first of them asks again, the first before any of them is slower. */
+static void slow(void *context, uint32_t index, double *velocity, double *acceleration)
+{
+    cm1e_group_t *group = context;
+    const unsigned bit = 1u << index;
+    if (group->slowed == 0 || (group->slowed & bit) != 0) {
+        const double part = part_left(group);
+        group->slowed = 0;
+        if (part < 1.0)
+            cm1e_path_slow(&group->path, part, &group->sample);
+    }
+    group->slowed |= bit;
+    *velocity = group->sample.velocity[index];
+    *acceleration = group->sample.acceleration[index];
+}
+
 static double stop_time(void *context)
 {
     const cm1e_group_t *group = context;
@@ -155,11 +183,11 @@ cm1e_error_t cm1e_group_begin_path(cm1e_group_t *group)
 
 cm1e_error_t cm1e_group_lead(cm1e_group_t *group, bool some)
 {
-    group->led = group->asked = group->paused = 0;
+    group->led = group->asked = group->paused = group->slowed = 0;
     group->ending = group->halting = false;
     for (int i = 0; i < group->axes; i++) {
         cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
-        const cm1e_axis_leader_t leader = {.next = next, .lost = lost, .paused = paused,
+        const cm1e_axis_leader_t leader = {.next = next, .lost = lost, .paused = paused, .slow = slow,
                                            .stop_time = stop_time, .context = group,
                                            .index = (uint32_t)i};
         if (axis && cm1e_axis_lead(axis, &leader) == CM1E_OK) {

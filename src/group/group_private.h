@@ -64,8 +64,8 @@ struct cm1e_group {
     /* the motion: axes of the path are members in their order, without the gaps */
     int axes;
     uint8_t ident[CM1E_GROUP_AXES];     /**< IdentInGroup of the axes of the path */
-    unsigned led, asked, paused;        /**< bits of axes of the path: led by the group; has had this sample; has
-                                             reported this pause */
+    unsigned led, asked, paused, slowed; /**< bits of axes of the path: led by the group; has had this sample; has
+                                              reported this pause, this silence */
     bool ending;                        /**< the present sample is the last one */
     bool halting;                       /**< MC_GroupHalt brakes, with ... */
     double halt_deceleration, halt_jerk;

@@ -27,6 +27,7 @@ cm1e_error_t cm1e_path_begin(cm1e_path_t *path, const cm1e_path_config_t *config
     path->cut = path->stop_wanted = path->stopping = false;
     path->along = (cm1e_motion_state_t){0, 0, 0};
     path->begin = path->time_s = 0;
+    path->slow = (cm1e_slow_time_t){0, 0};
     for (int i = 0; i < config->axes; i++)
         path->end[i] = position[i];
     return CM1E_OK;
@@ -109,6 +110,7 @@ static cm1e_error_t take_in(cm1e_path_t *path, const cm1e_path_command_t *comman
     if (at_rest) {
         path->along = (cm1e_motion_state_t){0, 0, 0};
         path->begin = path->time_s = 0;
+        path->slow.missing = 0;
     }
     cm1e_path_join(path, before, segment);
     path->cut = false;
@@ -265,6 +267,7 @@ void cm1e_path_pause(cm1e_path_t *path)
     if (path->element_count == 0)
         return;
     path->along.velocity = path->along.acceleration = 0;
+    path->slow.missing = 0;
     path->stopping = false; /* a stop that is wanted is planned in the next step */
     (void)cm1e_path_plan(path, path->element_count);
 }
@@ -332,7 +335,9 @@ static bool go_to_next(cm1e_path_t *path, cm1e_path_sample_t *sample)
 static void fill(cm1e_path_t *path, cm1e_path_sample_t *sample)
 {
     const int axes = path->config.axes;
-    const double v = path->along.velocity, a = path->along.acceleration;
+    cm1e_motion_state_t along = path->along;
+    cm1e_slow_time_apply(&path->slow, &along);
+    const double v = along.velocity, a = along.acceleration;
     sample->path_velocity = v;
     sample->path_acceleration = a;
     const cm1e_path_element_t *element = cm1e_path_element(path, 0);
@@ -359,12 +364,31 @@ static void fill_idle(const cm1e_path_t *path, cm1e_path_sample_t *sample)
     sample->phase = CM1E_PATH_IDLE;
 }
 
+void cm1e_path_slow(cm1e_path_t *path, double factor, cm1e_path_sample_t *sample)
+{
+    if (path->element_count == 0)
+        return;
+    cm1e_slow_time_begin(&path->slow, factor);
+    for (int i = 0; i < path->config.axes; i++) {
+        const cm1e_path_axis_t *axis = &path->config.axis[i];
+        cm1e_slow_time_keep(&path->slow, &(cm1e_motion_limits_t){axis->velocity, axis->acceleration,
+                                                                 axis->acceleration, axis->jerk});
+    }
+    for (int i = 0; i < path->element_count; i++) {
+        const cm1e_path_element_t *element = cm1e_path_element(path, i);
+        cm1e_motion_limits_t limits = element->limits;
+        limits.velocity = fmin(limits.velocity, element->highest);
+        cm1e_slow_time_keep(&path->slow, &limits);
+    }
+    fill(path, sample);
+}
+
 void cm1e_path_step(cm1e_path_t *path, cm1e_path_sample_t *sample)
 {
     sample->done = 0;
     if (path->element_count > 0 && must_stop(path) && !path->stopping)
         (void)cm1e_path_plan_stop(path);
-    path->time_s += path->config.cycle_s;
+    path->time_s += cm1e_slow_time_step(&path->slow, path->config.cycle_s);
     bool moves = path->element_count > 0;
     while (moves && path->time_s >= path->profile.duration_s)
         moves = go_to_next(path, sample);

@@ -22,6 +22,7 @@
 #include <stdint.h>
 
 #include "motion/profile.h"
+#include "motion/slow_time.h"
 
 enum {
     CM1E_PATH_AXES = 8,
@@ -195,6 +196,7 @@ typedef struct cm1e_path {
     double time_s;                  /**< on the profile */
     double begin;                   /**< place on the profile where the first element begins */
     cm1e_motion_state_t along;      /**< on the profile */
+    cm1e_slow_time_t slow;          /**< the time of the profile runs slower */
 } cm1e_path_t;
 
 /* ---- functions --------------------------------------------------------------------------------------------------- */
@@ -248,6 +250,12 @@ void cm1e_path_clear(cm1e_path_t *path);
 /** The axes have come to rest at the last step, because no further set-points were sent. The remaining segments begin
  *  again from there, from rest. */
 void cm1e_path_pause(cm1e_path_t *path);
+
+/** The axes go on with this part (0.5 ... 1) of their velocities at the last step, along the path, and get back to what
+ *  is planned within all limits: the time of the path runs slower for a while (slow_time.h). What is appended meanwhile
+ *  keeps the limits of the axes; those of its command it may exceed a little until then. Changes the velocities and
+ *  accelerations of the last step's `sample`. */
+void cm1e_path_slow(cm1e_path_t *path, double factor, cm1e_path_sample_t *sample);
 
 /** Computes the positions of the axes after one more cycle. */
 void cm1e_path_step(cm1e_path_t *path, cm1e_path_sample_t *sample);

@@ -54,20 +54,33 @@ typedef struct bench_test {
     int count; /**< `_i` is 0 ... count - 1 */
 } bench_test_t;
 
-/** The tests, up to one without a name, each within so many seconds; with a stride that is stated, as long as they take. */
-static inline int bench_main(const char *about, double limit_s, const bench_test_t *tests)
+/** A test case for `_i` from `from` to below `to`, within so many seconds; with a stride that is stated, as long as it
+ *  takes. CK_RUN_CASE=name in the environment runs one of them. */
+static inline void bench_add(Suite *suite, const char *name, double limit_s, const TTest *test, int from, int to)
 {
-    Suite *suite = suite_create(about);
-    TCase *cases = tcase_create(about);
-    tcase_set_timeout(cases, stated_stride() > 0 ? 0 : limit_s);
-    for (; tests->test; tests++)
-        tcase_add_loop_test(cases, tests->test, 0, tests->count);
-    suite_add_tcase(suite, cases);
+    TCase *tcase = tcase_create(name);
+    tcase_set_timeout(tcase, stated_stride() > 0 ? 0 : limit_s);
+    tcase_add_loop_test(tcase, test, from, to);
+    suite_add_tcase(suite, tcase);
+}
+
+/** The result of main(). */
+static inline int bench_run_suite(Suite *suite)
+{
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);
     const int failed = srunner_ntests_failed(runner);
     srunner_free(runner);
     return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
+
+/** The tests, up to one without a name. */
+static inline int bench_main(const char *about, double limit_s, const bench_test_t *tests)
+{
+    Suite *suite = suite_create(about);
+    for (; tests->test; tests++)
+        bench_add(suite, about, limit_s, tests->test, 0, tests->count);
+    return bench_run_suite(suite);
 }
 
 #endif
