@@ -7,6 +7,7 @@
 #include "cm1e/plcopen.h"
 #include "cm1e/plot.h"
 #include "cm1e/scheduler.h"
+#include "axis_run.h"
 #include "command.h"
 
 enum { KEY_TO = 0x300, KEY_BY, KEY_SPEED, KEY_FOR, KEY_JERK, KEY_METHOD, KEY_OFFSET, KEY_TORQUE, KEY_POSITION, KEY_CSV,
@@ -47,6 +48,9 @@ typedef struct motion_program {
                                    the motor has arrived */
     MC_Home_t home;
     cm1e_axis_info_t before, after;
+    uint32_t axis_number;
+    const char *what, *simulated;
+    progress_t progress;
     int64_t started_ns, ended_ns;
     WORD error_id;
     BOOL failed, done, before_power_failed;
@@ -66,14 +70,32 @@ static error_t parse_real_option(char *arg, const char *what, double *value)
     return parse_real(arg, what, value) ? 0 : EINVAL;
 }
 
-/* 0 is the default of the block, so a written 0 is refused here. The axis checks all other values. */
-static error_t parse_other_than_0(char *arg, const char *what, double *value)
+/* 0 is the default of the block, so a written 0 is refused here, before anything moves. The axis checks the maximum. */
+static error_t parse_positive(char *arg, const char *what, double *value)
 {
     if (!parse_real(arg, what, value))
         return EINVAL;
+    if (*value > 0)
+        return 0;
+    complain("%s is %s; expected above 0, or leave the option out for the default", what, arg);
+    return EINVAL;
+}
+
+static error_t parse_speed(char *arg, double *value)
+{
     if (*value != 0)
         return 0;
-    complain("%s is %s; leave the option out for the default", what, arg);
+    complain("the speed is %s; expected another number than 0, below 0 for the negative direction", arg);
+    return EINVAL;
+}
+
+static error_t parse_torque(char *arg, double *value)
+{
+    if (!parse_real(arg, "the torque", value))
+        return EINVAL;
+    if (*value >= 10 && *value <= 100)
+        return 0;
+    complain("the torque is %s %%; expected 10 ... 100", arg);
     return EINVAL;
 }
 
@@ -128,14 +150,14 @@ static error_t parse_move(int key, char *arg, struct argp_state *state)
     case KEY_SPEED:
         if (set_kind(state, options, MOTION_SPEED, &options->speed, arg, "the speed") != 0)
             return EINVAL;
-        return parse_other_than_0(arg, "the speed", &options->speed);
+        return parse_speed(arg, &options->speed);
     case KEY_FOR: return parse_seconds(arg, &options->seconds);
     case 'v':
         options->velocity_given = true;
-        return parse_other_than_0(arg, "the velocity", &options->velocity);
-    case 'a': return parse_other_than_0(arg, "the acceleration", &options->acceleration);
-    case 'd': return parse_other_than_0(arg, "the deceleration", &options->deceleration);
-    case KEY_JERK: return parse_other_than_0(arg, "the jerk", &options->jerk);
+        return parse_positive(arg, "the velocity", &options->velocity);
+    case 'a': return parse_positive(arg, "the acceleration", &options->acceleration);
+    case 'd': return parse_positive(arg, "the deceleration", &options->deceleration);
+    case KEY_JERK: return parse_positive(arg, "the jerk", &options->jerk);
     case KEY_RESET: options->reset = true; return 0;
     case KEY_CSV: options->csv_file = arg; return 0;
     case KEY_SVG: options->svg_file = arg; return 0;
@@ -160,10 +182,10 @@ static error_t parse_home(int key, char *arg, struct argp_state *state)
             return EINVAL;
         options->homing.method = (int8_t)method;
         return 0;
-    case 'v': return parse_other_than_0(arg, "the velocity", &options->homing.velocity);
-    case 'a': return parse_other_than_0(arg, "the acceleration", &options->homing.acceleration);
+    case 'v': return parse_positive(arg, "the velocity", &options->homing.velocity);
+    case 'a': return parse_positive(arg, "the acceleration", &options->homing.acceleration);
     case KEY_OFFSET: return parse_real_option(arg, "the offset", &options->homing.offset);
-    case KEY_TORQUE: return parse_other_than_0(arg, "the torque", &options->homing.torque);
+    case KEY_TORQUE: return parse_torque(arg, &options->homing.torque);
     case KEY_FOR: return parse_seconds(arg, &options->homing.timeout_s);
     case KEY_POSITION: return parse_real_option(arg, "the position", &options->home_position);
     case KEY_RESET: options->reset = true; return 0;
@@ -202,6 +224,10 @@ static void start_motion(motion_program_t *p)
 {
     cm1e_axis_read(p->axis, &p->before);
     p->started_ns = cm1e_scheduler_time_ns(p->scheduler);
+    p->progress.from = p->before.actual_position;
+    p->progress.to = p->options->kind == MOTION_TO   ? p->options->target
+                     : p->options->kind == MOTION_BY ? p->before.set_position + p->options->target
+                                                     : p->before.actual_position;
     p->move_absolute.Execute = p->options->kind == MOTION_TO;
     p->move_relative.Execute = p->options->kind == MOTION_BY;
     p->move_velocity.Execute = p->options->kind == MOTION_SPEED;
@@ -243,6 +269,9 @@ static void program(void *context)
     motion_program_t *p = context;
     cm1e_axis_info_t info;
     cm1e_axis_read(p->axis, &info);
+    p->progress.position = info.actual_position;
+    if (p->started_ns > 0 && p->step < STEP_POWER_OFF)
+        p->progress.seconds = (double)(cm1e_scheduler_time_ns(p->scheduler) - p->started_ns) * 1e-9;
     p->power.Enable = p->step < STEP_POWER_OFF;
     call_blocks(p);
     switch (p->step) {
@@ -312,25 +341,28 @@ static double deviation_of(const motion_program_t *p)
     return turn > 0 ? remainder(deviation, turn) : deviation;
 }
 
-static json_t *report_as_json(const motion_program_t *p, const char *what, const char *text)
+static json_t *report_as_json(const motion_program_t *p, const char *text)
 {
     const double deviation = deviation_of(p), seconds = (double)(p->ended_ns - p->started_ns) * 1e-9;
-    return json_pack("{s:s, s:s, s:b, s:f, s:f, s:o, s:f, s:s, s:s}", "axis", cm1e_axis_name(p->axis), "command", what,
+    return json_pack("{s:s, s:s, s:b, s:f, s:f, s:o, s:f, s:s, s:s, s:b, s:o}", "axis", cm1e_axis_name(p->axis),
+                     "command", p->what,
                      "done", p->done, "from", p->before.actual_position, "to", p->after.actual_position, "deviation",
                      isnan(deviation) ? json_null() : json_real(deviation), "seconds", p->done ? seconds : 0.0, "error",
-                     p->failed ? cm1e_strerror(cm1e_error_from_id(p->error_id)) : "", "details", text);
+                     p->failed ? cm1e_strerror(cm1e_error_from_id(p->error_id)) : "", "details", text,
+                     "simulated", p->simulated[0] != '\0', "timing", timing_as_json());
 }
 
-static int report(const motion_program_t *p, const char *what)
+static int report(const motion_program_t *p)
 {
+    const char *what = p->what;
     char text[CM1E_AXIS_ERROR_TEXT_BYTES] = "";
     cm1e_axis_error_text(p->axis, text, sizeof text);
     if (p->options->common.json)
-        print_json(report_as_json(p, what, text));
+        print_json(report_as_json(p, text));
     else if (p->done)
-        printf("%s: %s done in %.3f s, from %.6g to %.6g, deviation %.2g\n", cm1e_axis_name(p->axis), what,
+        printf("%s: %s done in %.3f s, from %.6g to %.6g, deviation %.2g%s\n", cm1e_axis_name(p->axis), what,
                (double)(p->ended_ns - p->started_ns) * 1e-9, p->before.actual_position, p->after.actual_position,
-               deviation_of(p));
+               deviation_of(p), p->simulated);
     if (p->failed)
         complain("%s: %s. %s%s", cm1e_axis_name(p->axis), cm1e_strerror(cm1e_error_from_id(p->error_id)), text,
                  p->before_power_failed ? " (--reset does that here.)" : "");
@@ -339,30 +371,39 @@ static int report(const motion_program_t *p, const char *what)
     return p->done ? EXIT_OK : EXIT_FAILED;
 }
 
-static int run(const motion_options_t *options, const char *what, cm1e_bus_t *bus, int axis, cm1e_diag_t *diag)
+static void prepare_run(cm1e_scheduler_t *scheduler, void *context)
 {
-    static motion_program_t p;
-    const cm1e_scheduler_config_t settings = {.trace_capacity = options->csv_file || options->svg_file ? 60000 : 0};
-    cm1e_scheduler_t *scheduler = NULL;
-    if (cm1e_scheduler_create(&scheduler, bus, &settings, diag) != CM1E_OK)
-        return fail(diag);
-    p.scheduler = scheduler;
-    p.axis = cm1e_scheduler_axis(scheduler, (uint32_t)axis);
-    prepare(&p, options);
-    const cm1e_task_config_t task = {.name = what, .program = program, .context = &p};
-    cm1e_scheduler_stop_on_signals(scheduler);
-    int status = EXIT_OK;
-    if (cm1e_scheduler_add_task(scheduler, &task, diag) != CM1E_OK
-        || cm1e_scheduler_run(scheduler, 0, diag) != CM1E_OK)
-        status = fail(diag);
-    if (report(&p, what) != EXIT_OK)
-        status = EXIT_FAILED;
-    if (options->csv_file && cm1e_scheduler_write_csv(scheduler, options->csv_file, diag) != CM1E_OK)
-        status = fail(diag);
-    if (options->svg_file && cm1e_scheduler_write_svg(scheduler, options->svg_file, diag) != CM1E_OK)
-        status = fail(diag);
-    cm1e_scheduler_destroy(scheduler);
-    return status;
+    motion_program_t *p = context;
+    p->scheduler = scheduler;
+    p->axis = cm1e_scheduler_axis(scheduler, p->axis_number);
+    p->progress.name = cm1e_axis_name(p->axis);
+    prepare(p, p->options);
+}
+
+static int report_run(void *context)
+{
+    return report(context);
+}
+
+static void watch_run(void *context, bool end)
+{
+    motion_program_t *p = context;
+    if (end)
+        progress_clear(&p->progress);
+    else if (p->progress.seconds > 0)
+        progress_show(&p->progress);
+}
+
+static bool keep_traces(cm1e_scheduler_t *scheduler, void *context)
+{
+    const motion_options_t *options = ((motion_program_t *)context)->options;
+    cm1e_diag_t diag = {0};
+    bool kept = true;
+    if (options->csv_file && cm1e_scheduler_write_csv(scheduler, options->csv_file, &diag) != CM1E_OK)
+        kept = fail(&diag) == EXIT_OK;
+    if (options->svg_file && cm1e_scheduler_write_svg(scheduler, options->svg_file, &diag) != CM1E_OK)
+        kept = fail(&diag) == EXIT_OK;
+    return kept;
 }
 
 static void complete(double *value, double otherwise)
@@ -410,8 +451,11 @@ static bool has_homing_method(const motion_options_t *options)
 static int move_or_home(motion_options_t *options, const char *what)
 {
     static cm1e_bus_config_t config;
-    if (!files_can_be_written(options) || !load_axes(&options->common, &config))
+    if (!files_can_be_written(options))
         return EXIT_FAILED;
+    const int loaded = load_axes(&options->common, &config);
+    if (loaded != EXIT_OK)
+        return loaded;
     const int axis = find_axis(&config, options->axis_word ? options->axis_word : "1");
     if (axis < 0)
         return EXIT_WRONG_USE;
@@ -420,17 +464,18 @@ static int move_or_home(motion_options_t *options, const char *what)
     else if (options->velocity == 0)
         options->velocity = 1.0;
     if (!has_homing_method(options))
-        return EXIT_FAILED;
+        return EXIT_WRONG_USE;
     config.axes[axis].in_position_done_waits = config.axes[axis].type == CM1E_AXIS_MOTOR;
     options->modulo_range = config.axes[axis].modulo_range;
-    cm1e_diag_t diag = {0};
-    cm1e_bus_t *bus = NULL;
-    int status;
-    if (cm1e_bus_open(&bus, &config, &diag) != CM1E_OK || cm1e_bus_start(bus, &diag) != CM1E_OK)
-        status = fail(&diag);
-    else
-        status = run(options, what, bus, axis, &diag);
-    return close_bus(bus, &options->common, status);
+    static motion_program_t p;
+    p.options = options;
+    p.axis_number = (uint32_t)axis;
+    p.what = what;
+    p.simulated = simulated_mark(&config);
+    const axis_run_t run = {.what = what, .program = program, .prepare = prepare_run, .report = report_run,
+                            .watch = watch_run, .keep = keep_traces, .context = &p,
+                            .settings = {.trace_capacity = options->csv_file || options->svg_file ? 60000 : 0}};
+    return run_on_axes(&run, &options->common, &config);
 }
 
 static const struct argp_option move_table[] = {

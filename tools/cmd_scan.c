@@ -106,6 +106,7 @@ int command_scan(int argc, char **argv)
         print_json(slaves);
     } else {
         print_table(bus);
+        tell_simulated(&config);
     }
     /* A bus file states the expected slaves: compare. */
     const bool as_expected = config.axis_count == 0 || cm1e_bus_identify(bus, &diag) == CM1E_OK;

@@ -1,9 +1,11 @@
 /** cm1e status: state, error and measurements of every drive, read over SDO without acting on the motor; name and state
  *  of other slaves. status_drive.c reads a CM1-E, status_bridge.c a bridge. */
+#include <math.h>
 #include <stdio.h>
 
 #include "command.h"
 #include "device/devices.h"
+#include "device/unit.h"
 #include "status_bridge.h"
 #include "status_drive.h"
 
@@ -17,32 +19,61 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     return ARGP_ERR_UNKNOWN;
 }
 
-static void print_head(const cm1e_slave_info_t *slave, const char *what)
+static void print_head(const cm1e_slave_info_t *slave, const char *axis, const char *what)
 {
     char state[48];
-    printf("slave %u: %s, %s, %s\n", slave->position, slave->name[0] ? slave->name : "without a name", what,
+    printf("slave %u%s%s: %s, %s, %s\n", slave->position, axis[0] ? ", axis " : "", axis,
+           slave->name[0] ? slave->name : "without a name", what,
            al_state_name(slave->al_state, state, sizeof state));
 }
 
-static void print_drive(const cm1e_slave_info_t *slave, const drive_status_t *drive)
+/** The actual position in the unit of the axis, from the zero of the drive; NAN: not known. */
+static double units_of(const cm1e_axis_config_t *axis, const drive_status_t *drive)
+{
+    const double counts = drive_position(drive);
+    const cm1e_unit_t unit = cm1e_unit_of(axis);
+    return (axis->invert ? -counts : counts) * unit.units / unit.counts;
+}
+
+static void print_drive(const cm1e_slave_info_t *slave, const drive_status_t *drive, const cm1e_axis_config_t *axis,
+                        const char *name)
 {
     char text[DRIVE_TEXT_BYTES], firmware[48];
     const char *version = slave->software_version[0] ? slave->software_version : "unknown";
     snprintf(firmware, sizeof firmware, "firmware %s", version);
-    print_head(slave, firmware);
-    for (int i = 0; i < DRIVE_READINGS; i++)
-        printf("  %-18s %s\n", drive_label(drive, i), drive_text(drive, i, text, sizeof text));
+    print_head(slave, name, firmware);
+    for (int i = 0; i < DRIVE_READINGS; i++) {
+        printf("  %-18s %s", drive_label(drive, i), drive_text(drive, i, text, sizeof text));
+        if (axis && i == DRIVE_POSITION && !isnan(units_of(axis, drive)))
+            printf(" = %.6g u", units_of(axis, drive));
+        putchar('\n');
+    }
+}
+
+/** Adds the axis of the bus file: its name, and the position in its unit. */
+static json_t *with_axis(json_t *object, const cm1e_axis_config_t *axis, const char *name, const drive_status_t *drive)
+{
+    if (!axis)
+        return object;
+    const double position = units_of(axis, drive);
+    json_object_set_new(object, "axis", json_string(name));
+    json_object_set_new(object, "position_units", isnan(position) ? json_null() : json_real(position));
+    return object;
 }
 
 /** Appends to `all`, or prints if that is NULL. Returns false if the statusword cannot be read. */
-static bool show_drive(cm1e_bus_t *bus, const cm1e_slave_info_t *slave, json_t *all, cm1e_diag_t *diag)
+static bool show_drive(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave, json_t *all,
+                       cm1e_diag_t *diag)
 {
     drive_status_t drive;
+    const int number = find_axis_at(config, slave, 0);
+    const cm1e_axis_config_t *axis = number < 0 ? NULL : &config->axes[number];
+    const char *name = axis ? axis->name : "";
     const bool readable = read_drive(bus, slave->position, &drive, diag);
     if (all)
-        json_array_append_new(all, drive_status_as_json(slave, &drive));
+        json_array_append_new(all, with_axis(drive_status_as_json(slave, &drive), axis, name, &drive));
     else
-        print_drive(slave, &drive);
+        print_drive(slave, &drive, axis, name);
     return readable;
 }
 
@@ -55,7 +86,7 @@ static void show_other(const cm1e_slave_info_t *slave, json_t *all)
                                              slave->name, "firmware", slave->software_version, "al_state",
                                              al_state_name(slave->al_state, state, sizeof state), "is_motor", false));
     else
-        print_head(slave, "no motor");
+        print_head(slave, "", "no motor");
 }
 
 static bool show_bridge(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave, json_t *all,
@@ -97,7 +128,7 @@ int command_status(int argc, char **argv)
     for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++) {
         const cm1e_slave_info_t *slave = cm1e_bus_slave(bus, i);
         if (slave->device && slave->device->channels == 0)
-            readable = show_drive(bus, slave, all, &diag) && readable;
+            readable = show_drive(bus, &config, slave, all, &diag) && readable;
         else if (slave->device)
             readable = show_bridge(bus, &config, slave, all, &diag) && readable;
         else
@@ -105,5 +136,7 @@ int command_status(int argc, char **argv)
     }
     if (all)
         print_json(all);
+    else
+        tell_simulated(&config);
     return close_bus(bus, &options, readable ? EXIT_OK : fail(&diag));
 }

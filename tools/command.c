@@ -28,6 +28,8 @@ static error_t parse_common(int key, char *arg, struct argp_state *state)
     common_options_t *options = state->input;
     if ((key == 'i' || key == 'b' || key == KEY_PCAP) && !arg[0])
         argp_error(state, "%s needs a name; it is empty", key == 'i' ? "-i" : key == 'b' ? "-b" : "--pcap");
+    if (key == 'i' && strcmp(arg, "sim:") == 0)
+        argp_error(state, "-i sim: needs the name of a bus file behind the colon, as in sim:examples/three_axes.yaml");
     switch (key) {
     case 'i': options->interface_name = arg; return 0;
     case 'b': options->bus_file = arg; return 0;
@@ -162,20 +164,19 @@ static bool tell_servo_drives(const cm1e_bus_t *bus, const char *interface_name)
     return true;
 }
 
-bool load_axes(const common_options_t *options, cm1e_bus_config_t *config)
+int load_axes(const common_options_t *options, cm1e_bus_config_t *config)
 {
     if (!load_configuration(options, config))
-        return false;
+        return EXIT_WRONG_USE;
     if (config->axis_count > 0)
-        return true;
+        return EXIT_OK;
     cm1e_diag_t diag = {0};
     cm1e_bus_t *bus = NULL;
     cm1e_bus_config_t scanned = *config;
     scanned.pcap_file[0] = '\0';
     if (cm1e_bus_open(&bus, &scanned, &diag) != CM1E_OK || cm1e_bus_scan(bus, &diag) != CM1E_OK) {
         cm1e_bus_close(bus);
-        fail(&diag);
-        return false;
+        return fail(&diag);
     }
     for (uint32_t position = 1; position <= cm1e_bus_slave_count(bus); position++)
         if (is_one_axis(cm1e_bus_slave(bus, position))) {
@@ -187,10 +188,24 @@ bool load_axes(const common_options_t *options, cm1e_bus_config_t *config)
     const bool told = known && tell_servo_drives(bus, config->interface_name);
     cm1e_bus_close(bus);
     if (!known)
-        return false;
+        return EXIT_FAILED;
     if (config->axis_count == 0 && !told)
         complain("there is no CM1-E on %s", config->interface_name);
-    return config->axis_count > 0;
+    return config->axis_count > 0 ? EXIT_OK : EXIT_FAILED;
+}
+
+bool is_simulated(const cm1e_bus_config_t *config)
+{
+    return strcmp(config->interface_name, "sim") == 0 || strncmp(config->interface_name, "sim:", 4) == 0
+           || config->interface_name[0] == '\0';
+}
+
+const char *simulated_mark(const cm1e_bus_config_t *config) { return is_simulated(config) ? " (simulated)" : ""; }
+
+void tell_simulated(const cm1e_bus_config_t *config)
+{
+    if (is_simulated(config))
+        puts("simulated network: no real device");
 }
 
 int close_bus(cm1e_bus_t *bus, const common_options_t *options, int status)
@@ -257,9 +272,11 @@ bool parse_real(const char *word, const char *what, double *value)
 {
     char *end;
     *value = strtod(word, &end);
-    if (*word && *end == '\0' && isfinite(*value))
+    const bool decimal = word[strspn(word, "+-.0123456789eE")] == '\0';
+    if (*word && *end == '\0' && decimal && isfinite(*value))
         return true;
-    complain("%s is \"%s\"; expected a number", what, word);
+    complain("%s is \"%s\"; expected a number%s", what, word,
+             strchr(word, ',') ? ", with a point instead of the comma" : "");
     return false;
 }
 

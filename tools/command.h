@@ -77,11 +77,18 @@ bool load_configuration(const common_options_t *options, cm1e_bus_config_t *conf
 
 /** As load_configuration(), but without a bus file the network is scanned and every CM1-E found becomes an axis with
  *  default settings (unit: revolution). A scan does not show K37 of a motor behind a bridge: if there is a bridge, the
- *  function complains and prints a bus file to be completed. */
-bool load_axes(const common_options_t *options, cm1e_bus_config_t *config);
+ *  function complains and prints a bus file to be completed. Returns the exit status. */
+int load_axes(const common_options_t *options, cm1e_bus_config_t *config);
 
 /** Closes the bus. Returns the exit status: EXIT_FAILED, with a complaint, if frames are missing in the pcap file. */
 int close_bus(cm1e_bus_t *bus, const common_options_t *options, int status);
+
+/** The interface is a simulated segment. */
+bool is_simulated(const cm1e_bus_config_t *config);
+/** " (simulated)" or "". */
+const char *simulated_mark(const cm1e_bus_config_t *config);
+/** A line on standard output that no real device answered, if so. */
+void tell_simulated(const cm1e_bus_config_t *config);
 
 /** Finds an axis of the configuration by name or number (1 = first); -1 and a complaint: there is none. */
 int find_axis(const cm1e_bus_config_t *config, const char *word);

@@ -100,7 +100,8 @@ static void man_command(const command_t *command)
 static void man_program(void)
 {
     man_head("cm1e", "drives servo motors over EtherCAT");
-    puts("\\fBcm1e\\fR \\fICOMMAND\\fR [\\fIOPTION\\fR...]\n.br\n\\fBcm1e\\fR \\-\\-help|\\-\\-version\n.SH DESCRIPTION");
+    puts("\\fBcm1e\\fR \\fICOMMAND\\fR [\\fIOPTION\\fR...]\n.br\n"
+         "\\fBcm1e\\fR \\-\\-help|\\-\\-version\n.SH DESCRIPTION");
     print_roff(PROGRAM_SUMMARY);
     puts("\n.PP\nThe interface \\fBsim\\fR is a simulated network in the process.\n.SH COMMANDS");
     for (int i = 0; i < command_count; i++) {

@@ -1,5 +1,6 @@
 #include "status_drive.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #include "cia402/cia402.h"
@@ -56,6 +57,11 @@ bool read_drive(cm1e_bus_t *bus, uint16_t position, drive_status_t *drive, cm1e_
     for (int i = 0; i < DRIVE_READINGS; i++)
         read_object(bus, position, i, &drive->readings[i], i == STATUSWORD ? diag : &other);
     return drive->readings[STATUSWORD].valid;
+}
+
+double drive_position(const drive_status_t *drive)
+{
+    return drive->readings[DRIVE_POSITION].valid ? drive->readings[DRIVE_POSITION].value : NAN;
 }
 
 /* ---- in words --------------------------------------------------------------------------------------------------- */

@@ -29,6 +29,9 @@ typedef struct drive_status {
 
 /** Returns false, with the reason in `diag`, if the statusword cannot be read. */
 bool read_drive(cm1e_bus_t *bus, uint16_t position, drive_status_t *drive, cm1e_diag_t *diag);
+/** The actual position in counts; NAN: it cannot be read. */
+double drive_position(const drive_status_t *drive);
+enum { DRIVE_POSITION = 3 };
 /** Name of the n-th reading; for 0x603F "error", or "note" if the code is not an error. */
 const char *drive_label(const drive_status_t *drive, int i);
 /** Writes the value as text, or the reason why it cannot be read. Returns `text`. */

@@ -6,6 +6,8 @@ test_refusals.py BIN-DIRECTORY SOURCE-DIRECTORY
 """
 import json
 import os
+import pty
+import re
 import resource
 import signal
 import subprocess
@@ -45,12 +47,34 @@ NUMBERS = [
     (HOME + ["-v", "0"], "velocity"), (HOME + ["-a", "0"], "acceleration"), (HOME + ["--torque", "0"], "torque"),
     (HOME + ["--for", "0"], "time"), (HOME + ["--for", "-1"], "time"), (HOME + ["--for", "1e300"], "1000000"),
     (HOME + ["--offset", "inf"], "offset"), (HOME + ["--position", "-inf"], "position"),
+    (MOVE + ["--by", "1", "-v", "-1"], "above 0"), (MOVE + ["--by", "1", "-a", "-1"], "above 0"),
+    (MOVE + ["--by", "1", "-d", "-0.5"], "above 0"), (MOVE + ["--by", "1", "--jerk", "-1"], "above 0"),
+    (MOVE + ["--by", "1", "-v", "nan"], "number"), (MOVE + ["--by", "1", "-v", "1,5"], "point"),
+    (MOVE + ["--by", "1", "-v", "0x10"], "number"), (MOVE + ["--by", "1", "-v", " 3"], "number"),
+    (MOVE + ["--by", "1", "-v", "3 "], "number"), (MOVE + ["--by", "1", "-v", "fast"], "number"),
+    (MOVE + ["--by"], "--by"), (MOVE, "motion is missing"), (MOVE + ["--by", "1", "--by", "2"], "exclude"),
+    (MOVE + ["--speed", "1", "--for", "inf"], "time"), (MOVE + ["--speed", "1"], "--for"),
+    (MOVE + ["--by", "1", "0"], "no axis"), (MOVE + ["--by", "1", "1.5"], "no axis"),
+    (MOVE + ["--by", "1", "99999999999999999999"], "no axis"), (MOVE + ["--by", "1", "1", "2"], "one axis"),
+    (HOME + ["-v", "-1"], "above 0"), (HOME + ["--torque", "101"], "10 ... 100"), (HOME + ["--torque", "9"], "10"),
+    (HOME + ["--torque", "nan"], "torque"), (HOME + ["--for", "nan"], "time"), (HOME + ["--method", "99"], "-6 ... 4"),
+    (HOME + ["--method", "1.5"], "-6 ... 4"), (["cml", "-i", "sim", "--timeout", "-1", "?99.1"], "3600"),
+    (["cml", "-i", "sim", "--timeout", "nan", "?99.1"], "timeout"), (["cml", "-i", "sim", "--channel", "0"], "1 ... 4"),
+    (["sdo", "-i", "sim", "read", "0", "0x1018:1"], "position"), (["sdo", "-i", "sim", "read", "99999", "1"], "128"),
+    (["sdo", "-i", "sim", "read", "1", "0x10000"], "index"), (["sdo", "-i", "sim", "read", "1", "-1"], "index"),
+    (["sdo", "-i", "sim", "read", "1", "0x1018:-1"], "sub-index"),
+    (["sdo", "-i", "sim", "write", "1", "0x6060", "1000"], "127"),
+    (["sdo", "-i", "sim", "write", "1", "0x6060", "1.5"], "whole number"),
+    (["generate", "sii", "-o", "-", "--alias", "65536"], "65535"), (["generate", "sii", "-o", "-", "--alias", "-1"],
+                                                                    "65535"),
+    (["generate", "ec-extend", "-o", "-", "--device", "eb12", "--axes", "0"], "1 ... 4"),
+    (["sii", "-i", "sim", "read", "0", "never"], "position"), (["diff", "x", "-i", "sim", "-p", "0"], "position"),
     (["cml", "-i", "sim", "--timeout", "1e10", "?99.1"], "3600"),
     (["sdo", "-i", "sim", "read", "-1", "0x1018:1"], "position"),
     (["sdo", "-i", "sim", "read", "1", "0x1018:256"], "sub-index"),
 ]
 NAMES = [
-    (["scan", "-i", ""], "-i"), (["status", "-i", ""], "-i"), (["move", "-i", "", "--by", "1"], "-i"),
+    (["scan", "-i", "sim:"], "bus file behind the colon"), (["scan", "-i", ""], "-i"), (["status", "-i", ""], "-i"), (["move", "-i", "", "--by", "1"], "-i"),
     (["sim", "-i", ""], "-i"), (["scan", "-b", ""], "-b"), (["scan", "-i", "sim", "--pcap", ""], "--pcap"),
     (MOVE + ["--by", "1", "--csv", ""], "--csv"), (MOVE + ["--by", "1", "--svg", ""], "--svg"),
     (MOVE + ["--by", "1", "--svg", "x", "--csv", "x"], "same file"),
@@ -60,7 +84,7 @@ NAMES = [
 def check_wrong_words(folder):
     pcap = os.path.join(folder, "witness.pcap")
     for words, told in NUMBERS + NAMES:
-        witnessed = words[0] in ("move", "home") and "" not in words
+        witnessed = words[0] in ("move", "home") and "" not in words and words[-1] != "--by"
         result = run("cm1e", *words, *(["--pcap", pcap] if witnessed else []))
         expect(result.returncode == WRONG_USE and told in result.stderr, f"cm1e {words}: \"{told}\"", result)
         expect(not os.path.exists(pcap), f"cm1e {words}: something was sent", result)
@@ -76,7 +100,7 @@ def check_no_homing_method():
     """Without a bus file there is none; what helps is the option."""
     for words in (["-i", "sim"], ["-i", "sim", "--method", "0"]):
         result = run("cm1e", "home", *words)
-        expect(result.returncode == FAILED and "--method" in result.stderr and "homing.method in the bus file" in
+        expect(result.returncode == WRONG_USE and "--method" in result.stderr and "homing.method in the bus file" in
                result.stderr, f"home {words}", result)
 
 
@@ -148,12 +172,60 @@ def check_healthy_status():
     expect(isinstance(drive["dc_link_volt"], float), "dc_link_volt as JSON", told)
 
 
+def terminal(*words):
+    """What a person sees, and the exit status."""
+    pid, master = pty.fork()
+    if pid == 0:
+        os.execv(os.path.join(BIN, "cm1e"), ["cm1e", *words])
+    seen = b""
+    while True:
+        try:
+            data = os.read(master, 4096)
+        except OSError:
+            break
+        if not data:
+            break
+        seen += data
+    return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), seen.decode(errors="replace")
+
+
+def check_what_is_told():
+    """On a terminal position, time and a bar; on a pipe none of it; a simulated run says so, and the timing is there."""
+    status, seen = terminal("move", "-i", "sim", "--by", "1", "-v", "2")
+    lines = re.findall(r"axis1: +(-?[\d.]+) +([\d.]+) s  \[([= ]{30})\]", seen)
+    if status != 0 or len(lines) < 4 or not lines[0][2].count("=") < lines[-1][2].count("=") or "done" not in seen:
+        faults.append(f"progress on a terminal: {status} {seen!r}")
+    piped = run("cm1e", *MOVE, "--by", "0.2")
+    expect(piped.returncode == 0 and "\r" not in piped.stderr + piped.stdout and "\033" not in piped.stderr
+           and piped.stdout.endswith("(simulated)\n"), "a simulated move on a pipe", piped)
+    told = json.loads(run("cm1e", *MOVE, "--by", "0.2", "--json").stdout)
+    if told["simulated"] is not True or told["timing"]["cycles"] < 100 or told["timing"]["lost_frames"] != 0:
+        faults.append(f"what move tells of its timing: {told}")
+    for words in (["scan"], ["status"]):
+        text = run("cm1e", *words, "-i", "sim")
+        expect(text.stdout.endswith("simulated network: no real device\n"), f"{words} is simulated", text)
+
+
+def check_axes_in_status(folder):
+    bus = os.path.join(folder, "status.yaml")
+    with open(bus, "w", encoding="utf-8") as file:
+        file.write("bus: {interface: sim}\naxes: [{name: lift, unit: {units_per_revolution: 5}}, {position: 2}]\n")
+    text = run("cm1e", "status", "-b", bus)
+    expect("slave 1, axis lift: CM1-E" in text.stdout and "slave 2, axis axis2: " in text.stdout
+           and "0 counts = 0 u\n" in text.stdout, "axes in status", text)
+    told = json.loads(run("cm1e", "status", "-b", bus, "--json").stdout)
+    if [drive["axis"] for drive in told] != ["lift", "axis2"] or told[0]["position_units"] != 0:
+        faults.append(f"axes in status as JSON: {told}")
+
+
 def main():
     real_time.run_above_others()
     with tempfile.TemporaryDirectory() as folder:
         check_wrong_words(folder)
         check_files_before_the_move(folder)
         check_lost_frames(folder)
+        check_axes_in_status(folder)
+    check_what_is_told()
     check_no_homing_method()
     check_healthy_status()
     real_time.end(faults, f"refused before anything moves: {len(NUMBERS)} numbers, {len(NAMES)} names, files")
