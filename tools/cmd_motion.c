@@ -70,17 +70,6 @@ static error_t parse_real_option(char *arg, const char *what, double *value)
     return parse_real(arg, what, value) ? 0 : EINVAL;
 }
 
-/* 0 is the default of the block, so a written 0 is refused here, before anything moves. The axis checks the maximum. */
-static error_t parse_positive(char *arg, const char *what, double *value)
-{
-    if (!parse_real(arg, what, value))
-        return EINVAL;
-    if (*value > 0)
-        return 0;
-    complain("%s is %s; expected above 0, or leave the option out for the default", what, arg);
-    return EINVAL;
-}
-
 static error_t parse_speed(char *arg, double *value)
 {
     if (*value != 0)
@@ -96,16 +85,6 @@ static error_t parse_torque(char *arg, double *value)
     if (*value >= 10 && *value <= 100)
         return 0;
     complain("the torque is %s %%; expected 10 ... 100", arg);
-    return EINVAL;
-}
-
-static error_t parse_seconds(char *arg, double *value)
-{
-    if (!parse_real(arg, "the time", value))
-        return EINVAL;
-    if (*value > 0 && *value <= LONGEST_S)
-        return 0;
-    complain("the time is %s s; expected above 0, up to %d", arg, LONGEST_S);
     return EINVAL;
 }
 
@@ -151,13 +130,13 @@ static error_t parse_move(int key, char *arg, struct argp_state *state)
         if (set_kind(state, options, MOTION_SPEED, &options->speed, arg, "the speed") != 0)
             return EINVAL;
         return parse_speed(arg, &options->speed);
-    case KEY_FOR: return parse_seconds(arg, &options->seconds);
+    case KEY_FOR: return parse_seconds(arg, LONGEST_S, &options->seconds) ? 0 : EINVAL;
     case 'v':
         options->velocity_given = true;
-        return parse_positive(arg, "the velocity", &options->velocity);
-    case 'a': return parse_positive(arg, "the acceleration", &options->acceleration);
-    case 'd': return parse_positive(arg, "the deceleration", &options->deceleration);
-    case KEY_JERK: return parse_positive(arg, "the jerk", &options->jerk);
+        return parse_positive(arg, "the velocity", &options->velocity) ? 0 : EINVAL;
+    case 'a': return parse_positive(arg, "the acceleration", &options->acceleration) ? 0 : EINVAL;
+    case 'd': return parse_positive(arg, "the deceleration", &options->deceleration) ? 0 : EINVAL;
+    case KEY_JERK: return parse_positive(arg, "the jerk", &options->jerk) ? 0 : EINVAL;
     case KEY_RESET: options->reset = true; return 0;
     case KEY_CSV: options->csv_file = arg; return 0;
     case KEY_SVG: options->svg_file = arg; return 0;
@@ -182,11 +161,11 @@ static error_t parse_home(int key, char *arg, struct argp_state *state)
             return EINVAL;
         options->homing.method = (int8_t)method;
         return 0;
-    case 'v': return parse_positive(arg, "the velocity", &options->homing.velocity);
-    case 'a': return parse_positive(arg, "the acceleration", &options->homing.acceleration);
+    case 'v': return parse_positive(arg, "the velocity", &options->homing.velocity) ? 0 : EINVAL;
+    case 'a': return parse_positive(arg, "the acceleration", &options->homing.acceleration) ? 0 : EINVAL;
     case KEY_OFFSET: return parse_real_option(arg, "the offset", &options->homing.offset);
     case KEY_TORQUE: return parse_torque(arg, &options->homing.torque);
-    case KEY_FOR: return parse_seconds(arg, &options->homing.timeout_s);
+    case KEY_FOR: return parse_seconds(arg, LONGEST_S, &options->homing.timeout_s) ? 0 : EINVAL;
     case KEY_POSITION: return parse_real_option(arg, "the position", &options->home_position);
     case KEY_RESET: options->reset = true; return 0;
     case KEY_CSV: options->csv_file = arg; return 0;

@@ -10,6 +10,7 @@
 #include "command.h"
 #include "description/sii.h"
 #include "files.h"
+#include "sii_device.h"
 #include "sii_text.h"
 
 enum { KEY_BACKUP = 0x500, KEY_FORCE_CHECKSUM, KEY_FORCE_IDENTITY, KEY_FORCE_CONFIGURATION, KEY_OWN };
@@ -77,26 +78,13 @@ static bool parse_position(const char *word, uint16_t *position)
     return good;
 }
 
-/** The SII of a live slave; the caller frees it. */
-static bool read_slave(cm1e_bus_t *bus, uint16_t position, input_t *image, cm1e_diag_t *diag)
-{
-    *image = (input_t){.bytes = malloc(CM1E_SII_IMAGE_MAX), .size = CM1E_SII_IMAGE_MAX};
-    if (image->bytes && cm1e_sii_read_device(bus, position, image->bytes, &image->size, diag) == CM1E_OK)
-        return true;
-    if (!image->bytes)
-        cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
-    free(image->bytes);
-    image->bytes = NULL;
-    return false;
-}
-
 /* ---- read ------------------------------------------------------------------------------------------------------- */
 
 static int run_read(cm1e_bus_t *bus, const sii_options_t *options, uint16_t position)
 {
     cm1e_diag_t diag = {0};
     input_t image;
-    if (!read_slave(bus, position, &image, &diag))
+    if (!read_device(bus, position, &image, &diag))
         return fail(&diag);
     const bool written = write_output(options->words[2], image.bytes, image.size);
     if (written && options->common.json)
@@ -109,45 +97,12 @@ static int run_read(cm1e_bus_t *bus, const sii_options_t *options, uint16_t posi
 
 /* ---- write ------------------------------------------------------------------------------------------------------ */
 
-/** The backup is on the disk before anything is changed, and never overwrites a file. */
-static bool write_backup(const char *path, const input_t *image)
+static int write_and_tell(cm1e_bus_t *bus, const sii_options_t *options, uint16_t position, const input_t *image,
+                          const input_t *present)
 {
-    const int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-    if (file < 0) {
-        complain("cannot write the backup %s: %s; nothing was written into the slave", path, strerror(errno));
-        return false;
-    }
-    const bool whole = write(file, image->bytes, image->size) == (ssize_t)image->size && fsync(file) == 0;
-    const int error = errno;
-    if (close(file) == 0 && whole)
-        return true;
-    complain("cannot write the backup %s: %s; nothing was written into the slave", path, strerror(error));
-    remove(path);
-    return false;
-}
-
-/** Refused before the first word was written, so the backup is not needed. */
-static bool nothing_written(cm1e_error_t error)
-{
-    return error == CM1E_ERROR_FILE || error == CM1E_ERROR_STATE || error == CM1E_ERROR_CONFIG ||
-           error == CM1E_ERROR_BUS_IDENTITY || error == CM1E_ERROR_INVALID_ARGUMENT || error == CM1E_ERROR_NO_MEMORY;
-}
-
-static int write_with_backup(cm1e_bus_t *bus, const sii_options_t *options, uint16_t position, const input_t *image,
-                             const input_t *present)
-{
-    cm1e_diag_t diag = {0};
-    if (!write_backup(options->backup, present))
-        return EXIT_FAILED;
-    const cm1e_error_t error = cm1e_sii_write_device(bus, position, image->bytes, image->size, &options->write, &diag);
-    if (nothing_written(error))
-        remove(options->backup);
-    if (error != CM1E_OK) {
-        fail(&diag);
-        if (!nothing_written(error))
-            complain("the backup is %s", options->backup);
-        return EXIT_FAILED;
-    }
+    const int status = write_device(bus, position, image, present, options->backup, &options->write);
+    if (status != EXIT_OK)
+        return status;
     if (options->common.json)
         print_json(json_pack("{s:b, s:o}", "written", true, "backup", text_as_json(options->backup)));
     else
@@ -163,8 +118,8 @@ static int run_write(cm1e_bus_t *bus, const sii_options_t *options, uint16_t pos
     if (!read_input(options->words[2], &image))
         return EXIT_FAILED;
     int status = EXIT_FAILED;
-    if (read_slave(bus, position, &present, &diag)) {
-        status = write_with_backup(bus, options, position, &image, &present);
+    if (read_device(bus, position, &present, &diag)) {
+        status = write_and_tell(bus, options, position, &image, &present);
         free(present.bytes);
     } else {
         fail(&diag);
@@ -211,7 +166,7 @@ static int run_on_bus(const sii_options_t *options)
     } else {
         cm1e_diag_t diag = {0};
         input_t image;
-        status = read_slave(bus, position, &image, &diag) ? decode(&image, options->common.json) : fail(&diag);
+        status = read_device(bus, position, &image, &diag) ? decode(&image, options->common.json) : fail(&diag);
         free(image.bytes);
     }
     return close_bus(bus, &options->common, status);

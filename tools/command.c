@@ -305,6 +305,52 @@ int shelter_negative_value(int argc, char **argv, char **sheltered)
     return count;
 }
 
+bool parse_positive(const char *word, const char *what, double *value)
+{
+    if (!parse_real(word, what, value))
+        return false;
+    if (*value > 0)
+        return true;
+    complain("%s is %s; expected above 0, or leave the option out for the default", what, word);
+    return false;
+}
+
+bool parse_seconds(const char *word, int longest, double *value)
+{
+    if (!parse_real(word, "the time", value))
+        return false;
+    if (*value > 0 && *value <= longest)
+        return true;
+    complain("the time is %s s; expected above 0, up to %d", word, longest);
+    return false;
+}
+
+int find_slave(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const char *word, uint16_t *position)
+{
+    const uint32_t count = cm1e_bus_slave_count(bus);
+    long long number;
+    for (uint32_t i = 1; i <= count; i++) {
+        const int axis = find_axis_at(config, cm1e_bus_slave(bus, i), 0);
+        if (axis >= 0 && strcmp(config->axes[axis].name, word) == 0) {
+            *position = (uint16_t)i;
+            return EXIT_OK;
+        }
+    }
+    if (word[0] < '0' || word[0] > '9') {
+        const int axis = find_axis(config, word);
+        if (axis >= 0)
+            complain("the slave of axis \"%s\" is not on the network, or is a bridge: give its position", word);
+        return axis >= 0 ? EXIT_FAILED : EXIT_WRONG_USE;
+    }
+    if (!parse_number(word, "the position", 1, CM1E_MAX_SLAVES, &number))
+        return EXIT_WRONG_USE;
+    *position = (uint16_t)number;
+    if (number <= count)
+        return EXIT_OK;
+    complain("there is no slave %lld; the network has %u", number, count);
+    return EXIT_FAILED;
+}
+
 json_t *text_as_json(const char *text)
 {
     char *copy = strdup(text ? text : "");

@@ -25,6 +25,11 @@ enum { EXIT_OK = 0, EXIT_FAILED = 1, EXIT_WRONG_USE = 2 };
     X(sii, "read, write or show the EEPROM of a slave", "read write decode")                                        \
     X(home, "home one axis", "")                                                                                    \
     X(move, "move one axis", "")                                                                                    \
+    X(jog, "move one axis while a key is held", "")                                                                 \
+    X(enable, "let one motor hold its position, until a key is pressed", "")                                        \
+    X(reset, "reset the errors of drives", "")                                                                      \
+    X(led, "find a motor by its LED", "")                                                                           \
+    X(alias, "show or write the alias of a slave", "")                                                              \
     X(sim, "serve a simulated network on a network interface", "")                                                  \
     X(generate, "write files for other masters", "esi ec-extend sii eni")                                           \
     X(check, "check a file for other masters, from any source", "")                                                 \
@@ -100,6 +105,14 @@ int find_axis_at(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave
 bool parse_number(const char *word, const char *what, long long minimum, long long maximum, long long *value);
 /** A finite decimal number; false and a complaint otherwise. */
 bool parse_real(const char *word, const char *what, double *value);
+/** ... above 0. */
+bool parse_positive(const char *word, const char *what, double *value);
+/** ... above 0, up to `longest` seconds. */
+bool parse_seconds(const char *word, int longest, double *value);
+
+/** The slave of a word after a scan: the name of an axis of the bus file (not behind a bridge), or a position. Returns
+ *  the exit status, with a complaint: there is no such slave. */
+int find_slave(const cm1e_bus_t *bus, const cm1e_bus_config_t *config, const char *word, uint16_t *position);
 
 /** A negative value looks like an option, so such a word is moved to the end, behind a "--". Words behind a "--" of the
  *  user are not moved. `sheltered` has room for MAX_WORDS + 2. Returns their number; -1 and a complaint: too many. */
