@@ -19,6 +19,7 @@
 #include <cm1e/plot.h>
 #include <cm1e/scheduler.h>
 #include <cm1e/sim.h>
+#include <cm1e/trace.h>
 
 enum { MAX_UNITS = 3, VICTIM = 1, MAX_RESETS = 5, GUARD_S = 30, TRACE_SAMPLES = 120000 };
 #define MS INT64_C(1000000) /* in ns */
@@ -284,17 +285,18 @@ static void supervision_program(void *context)
 /* ---- before the run -------------------------------------------------------------------------------------------- */
 
 typedef struct options {
-    const char *interface_name, *bus_file, *csv_file, *svg_file;
+    const char *interface_name, *bus_file, *csv_file, *svg_file, *html_file;
     double seconds;
 } options_t;
 
-enum { KEY_CSV = 0x100, KEY_SVG };
+enum { KEY_CSV = 0x100, KEY_SVG, KEY_HTML };
 static const struct argp_option option_list[] = {
     {"interface", 'i', "INTERFACE", 0, "Network interface, or sim (default: the bus file's)", 0},
     {"bus", 'b', "FILE", 0, "Bus file; needed on a network interface", 0},
     {"seconds", 's', "N", 0, "Begin no new round after N seconds (12)", 0},
     {"csv", KEY_CSV, "FILE", 0, "Write what the axes did as CSV", 0},
     {"svg", KEY_SVG, "FILE", 0, "Write what the axes did as a plot", 0},
+    {"html", KEY_HTML, "FILE", 0, "Write what the axes did as a page for a browser, with the steps of the program", 0},
     {0},
 };
 
@@ -307,6 +309,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
     case 'b': options->bus_file = arg; break;
     case KEY_CSV: options->csv_file = arg; break;
     case KEY_SVG: options->svg_file = arg; break;
+    case KEY_HTML: options->html_file = arg; break;
     case 's':
         options->seconds = strtod(arg, &end);
         if (*end != '\0' || !(options->seconds > 0 && options->seconds <= 86400))
@@ -404,8 +407,21 @@ static cm1e_error_t add_tasks(cm1e_diag_t *why)
 /* Before anything moves. */
 static cm1e_error_t check_files(const options_t *options, cm1e_diag_t *why)
 {
-    const cm1e_error_t error = options->csv_file ? cm1e_scheduler_check_path(options->csv_file, why) : CM1E_OK;
-    return error == CM1E_OK && options->svg_file ? cm1e_scheduler_check_path(options->svg_file, why) : error;
+    const char *const files[] = {options->csv_file, options->svg_file, options->html_file};
+    cm1e_error_t error = CM1E_OK;
+    for (int i = 0; i < 3 && error == CM1E_OK; i++)
+        if (files[i])
+            error = cm1e_scheduler_check_path(files[i], why);
+    return error;
+}
+
+/* What the trace records of the program, beside the axes. */
+static cm1e_error_t trace_variables(cm1e_diag_t *why)
+{
+    cm1e_error_t error = cm1e_scheduler_trace_variable(m.scheduler, "step", "", CM1E_TRACE_UDINT, &m.step, why);
+    if (error == CM1E_OK)
+        error = cm1e_scheduler_trace_variable(m.scheduler, "homed", "", CM1E_TRACE_BOOL, &m.homed, why);
+    return error;
 }
 
 static cm1e_error_t start(const options_t *options, cm1e_diag_t *why)
@@ -423,14 +439,16 @@ static cm1e_error_t start(const options_t *options, cm1e_diag_t *why)
         return error;
     const double cycles = (options->seconds + GUARD_S) * 1e9 / (double)cm1e_bus_configuration(m.bus)->cycle_time_ns;
     const cm1e_scheduler_config_t scheduler = {
-        .trace_capacity = options->csv_file || options->svg_file ? TRACE_SAMPLES : 0,
+        .trace_capacity = options->csv_file || options->svg_file || options->html_file ? TRACE_SAMPLES : 0,
         .trace_every = 1 + (uint32_t)(cycles / TRACE_SAMPLES),
     };
     error = cm1e_scheduler_create(&m.scheduler, m.bus, &scheduler, why);
     if (error != CM1E_OK)
         return error;
     make_machine(cm1e_bus_configuration(m.bus), options->seconds);
-    return add_tasks(why);
+    if (scheduler.trace_capacity > 0)
+        error = trace_variables(why);
+    return error == CM1E_OK ? add_tasks(why) : error;
 }
 
 /* ---- after the run --------------------------------------------------------------------------------------------- */
@@ -495,6 +513,8 @@ static cm1e_error_t write_trace(const options_t *options, cm1e_diag_t *why)
         error = cm1e_scheduler_write_csv(m.scheduler, options->csv_file, why);
     if (error == CM1E_OK && options->svg_file)
         error = cm1e_scheduler_write_svg(m.scheduler, options->svg_file, why);
+    if (error == CM1E_OK && options->html_file)
+        error = cm1e_scheduler_write_html(m.scheduler, options->html_file, why);
     return error;
 }
 

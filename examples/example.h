@@ -14,10 +14,17 @@
 #include <cm1e/plot.h>
 #include <cm1e/scheduler.h>
 
-enum { EXAMPLE_TRACE_SAMPLES = 120000, EXAMPLE_VIRTUAL_TIME = 256, EXAMPLE_CSV, EXAMPLE_SVG };
+enum { EXAMPLE_TRACE_SAMPLES = 120000, EXAMPLE_VIRTUAL_TIME = 256, EXAMPLE_CSV, EXAMPLE_SVG, EXAMPLE_HTML };
+
+/** The files of a trace, in the order of their options. */
+enum { EXAMPLE_FILES = 3 };
+static cm1e_error_t (*const example_writers[EXAMPLE_FILES])(const cm1e_scheduler_t *scheduler, const char *path,
+                                                            cm1e_diag_t *why) = {
+    cm1e_scheduler_write_csv, cm1e_scheduler_write_svg, cm1e_scheduler_write_html,
+};
 
 typedef struct example {
-    const char *interface_name, *csv_file, *svg_file;
+    const char *interface_name, *files[EXAMPLE_FILES]; /**< NULL: not wanted */
     bool virtual_time;
     void (*describe)(cm1e_axis_config_t *axis); /**< what is special about the axis; NULL: nothing */
     uint32_t axis_count;                        /**< 0: 1 */
@@ -40,8 +47,9 @@ static inline error_t example_option(int key, char *argument, struct argp_state 
         e->interface_name = argument;
         return 0;
     case EXAMPLE_VIRTUAL_TIME: e->virtual_time = true; return 0;
-    case EXAMPLE_CSV: e->csv_file = argument; return 0;
-    case EXAMPLE_SVG: e->svg_file = argument; return 0;
+    case EXAMPLE_CSV:
+    case EXAMPLE_SVG:
+    case EXAMPLE_HTML: e->files[key - EXAMPLE_CSV] = argument; return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
 }
@@ -52,6 +60,7 @@ static const struct argp_option example_option_list[] = {
     {"virtual-time", EXAMPLE_VIRTUAL_TIME, NULL, 0, "sim only: do not wait, run as fast as the machine can", 0},
     {"csv", EXAMPLE_CSV, "FILE", 0, "write the trace as CSV", 0},
     {"svg", EXAMPLE_SVG, "FILE", 0, "write the trace as a plot", 0},
+    {"html", EXAMPLE_HTML, "FILE", 0, "write the trace as a page for a browser", 0},
     {0},
 };
 
@@ -81,14 +90,13 @@ static inline cm1e_error_t example_open_bus(example_t *e, cm1e_diag_t *why)
 /** Bus and scheduler stand afterwards, and e->axis is the first axis, or the only one. */
 static inline cm1e_error_t example_open(example_t *e, cm1e_diag_t *why)
 {
-    const cm1e_scheduler_config_t scheduler = {
-        .trace_capacity = e->csv_file || e->svg_file ? EXAMPLE_TRACE_SAMPLES : 0,
-    };
+    cm1e_scheduler_config_t scheduler = {0};
     cm1e_error_t error = CM1E_OK; /* files that cannot be written are told before anything moves */
-    if (e->csv_file)
-        error = cm1e_scheduler_check_path(e->csv_file, why);
-    if (error == CM1E_OK && e->svg_file)
-        error = cm1e_scheduler_check_path(e->svg_file, why);
+    for (int i = 0; i < EXAMPLE_FILES && error == CM1E_OK; i++)
+        if (e->files[i]) {
+            scheduler.trace_capacity = EXAMPLE_TRACE_SAMPLES;
+            error = cm1e_scheduler_check_path(e->files[i], why);
+        }
     if (error == CM1E_OK)
         error = example_open_bus(e, why);
     if (error == CM1E_OK)
@@ -106,10 +114,9 @@ static inline cm1e_error_t example_run(example_t *e, cm1e_program_t program, cm1
     cm1e_scheduler_stop_on_signals(e->scheduler); /* Ctrl-C, or a closed terminal, ramps down and disables */
     if (error == CM1E_OK)
         error = cm1e_scheduler_run(e->scheduler, 0, why);
-    if (error == CM1E_OK && e->csv_file)
-        error = cm1e_scheduler_write_csv(e->scheduler, e->csv_file, why);
-    if (error == CM1E_OK && e->svg_file)
-        error = cm1e_scheduler_write_svg(e->scheduler, e->svg_file, why);
+    for (int i = 0; i < EXAMPLE_FILES && error == CM1E_OK; i++)
+        if (e->files[i])
+            error = example_writers[i](e->scheduler, e->files[i], why);
     return error;
 }
 

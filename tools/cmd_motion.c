@@ -7,11 +7,22 @@
 #include "cm1e/plcopen.h"
 #include "cm1e/plot.h"
 #include "cm1e/scheduler.h"
+#include "cm1e/trace.h"
 #include "axis_run.h"
 #include "command.h"
 
 enum { KEY_TO = 0x300, KEY_BY, KEY_SPEED, KEY_FOR, KEY_JERK, KEY_METHOD, KEY_OFFSET, KEY_TORQUE, KEY_POSITION, KEY_CSV,
-       KEY_SVG, KEY_RESET };
+       KEY_SVG, KEY_HTML, KEY_NPY, KEY_RESET };
+
+/** The files of a trace, in the order of their keys. */
+static const struct {
+    const char *option;
+    cm1e_error_t (*write)(const cm1e_scheduler_t *scheduler, const char *path, cm1e_diag_t *diag);
+} trace_files[] = {{"--csv", cm1e_scheduler_write_csv},
+                   {"--svg", cm1e_scheduler_write_svg},
+                   {"--html", cm1e_scheduler_write_html},
+                   {"--npy", cm1e_scheduler_write_npy}};
+enum { TRACE_FILES = sizeof trace_files / sizeof trace_files[0], TRACE_SAMPLES = 60000 };
 
 enum { LONGEST_S = 1000000 };
 
@@ -21,7 +32,7 @@ typedef enum motion_kind { MOTION_NONE = 0, MOTION_TO, MOTION_BY, MOTION_SPEED, 
 
 typedef struct motion_options {
     common_options_t common;
-    const char *axis_word, *csv_file, *svg_file;
+    const char *axis_word, *files[TRACE_FILES]; /**< NULL: not wanted */
     motion_kind_t kind;
     double target, velocity, speed, acceleration, deceleration, jerk, seconds; /**< 0: not given */
     double home_position, modulo_range;
@@ -104,11 +115,14 @@ static void check_move(const motion_options_t *options, struct argp_state *state
 /* Checked before anything moves. */
 static void check_files(const motion_options_t *options, struct argp_state *state)
 {
-    const bool no_csv_name = options->csv_file && !options->csv_file[0];
-    if (no_csv_name || (options->svg_file && !options->svg_file[0]))
-        argp_error(state, "%s needs the name of a file", no_csv_name ? "--csv" : "--svg");
-    if (options->csv_file && options->svg_file && strcmp(options->csv_file, options->svg_file) == 0)
-        argp_error(state, "--csv and --svg write the same file");
+    for (int i = 0; i < TRACE_FILES; i++) {
+        const char *file = options->files[i];
+        if (file && !file[0])
+            argp_error(state, "%s needs the name of a file", trace_files[i].option);
+        for (int k = 0; k < i && file; k++)
+            if (options->files[k] && strcmp(file, options->files[k]) == 0)
+                argp_error(state, "%s and %s write the same file", trace_files[k].option, trace_files[i].option);
+    }
 }
 
 static error_t parse_axis(char *arg, struct argp_state *state, motion_options_t *options)
@@ -138,8 +152,10 @@ static error_t parse_move(int key, char *arg, struct argp_state *state)
     case 'd': return parse_positive(arg, "the deceleration", &options->deceleration) ? 0 : EINVAL;
     case KEY_JERK: return parse_positive(arg, "the jerk", &options->jerk) ? 0 : EINVAL;
     case KEY_RESET: options->reset = true; return 0;
-    case KEY_CSV: options->csv_file = arg; return 0;
-    case KEY_SVG: options->svg_file = arg; return 0;
+    case KEY_CSV:
+    case KEY_SVG:
+    case KEY_HTML:
+    case KEY_NPY: options->files[key - KEY_CSV] = arg; return 0;
     case ARGP_KEY_ARG: return parse_axis(arg, state, options);
     case ARGP_KEY_END:
         check_move(options, state);
@@ -168,8 +184,10 @@ static error_t parse_home(int key, char *arg, struct argp_state *state)
     case KEY_FOR: return parse_seconds(arg, LONGEST_S, &options->homing.timeout_s) ? 0 : EINVAL;
     case KEY_POSITION: return parse_real_option(arg, "the position", &options->home_position);
     case KEY_RESET: options->reset = true; return 0;
-    case KEY_CSV: options->csv_file = arg; return 0;
-    case KEY_SVG: options->svg_file = arg; return 0;
+    case KEY_CSV:
+    case KEY_SVG:
+    case KEY_HTML:
+    case KEY_NPY: options->files[key - KEY_CSV] = arg; return 0;
     case ARGP_KEY_ARG: return parse_axis(arg, state, options);
     case ARGP_KEY_END: check_files(options, state); return 0;
     default: return ARGP_ERR_UNKNOWN;
@@ -373,15 +391,22 @@ static void watch_run(void *context, bool end)
         progress_show(&p->progress);
 }
 
+static bool wants_trace(const motion_options_t *options)
+{
+    for (int i = 0; i < TRACE_FILES; i++)
+        if (options->files[i])
+            return true;
+    return false;
+}
+
 static bool keep_traces(cm1e_scheduler_t *scheduler, void *context)
 {
     const motion_options_t *options = ((motion_program_t *)context)->options;
     cm1e_diag_t diag = {0};
     bool kept = true;
-    if (options->csv_file && cm1e_scheduler_write_csv(scheduler, options->csv_file, &diag) != CM1E_OK)
-        kept = fail(&diag) == EXIT_OK;
-    if (options->svg_file && cm1e_scheduler_write_svg(scheduler, options->svg_file, &diag) != CM1E_OK)
-        kept = fail(&diag) == EXIT_OK;
+    for (int i = 0; i < TRACE_FILES; i++)
+        if (options->files[i] && trace_files[i].write(scheduler, options->files[i], &diag) != CM1E_OK)
+            kept = fail(&diag) == EXIT_OK;
     return kept;
 }
 
@@ -411,11 +436,12 @@ static void complete_homing(motion_options_t *options, const cm1e_homing_config_
 static bool files_can_be_written(const motion_options_t *options)
 {
     cm1e_diag_t diag = {0};
-    if ((!options->csv_file || cm1e_scheduler_check_path(options->csv_file, &diag) == CM1E_OK)
-        && (!options->svg_file || cm1e_scheduler_check_path(options->svg_file, &diag) == CM1E_OK))
-        return true;
-    fail(&diag);
-    return false;
+    for (int i = 0; i < TRACE_FILES; i++)
+        if (options->files[i] && cm1e_scheduler_check_path(options->files[i], &diag) != CM1E_OK) {
+            fail(&diag);
+            return false;
+        }
+    return true;
 }
 
 static bool has_homing_method(const motion_options_t *options)
@@ -453,7 +479,7 @@ static int move_or_home(motion_options_t *options, const char *what)
     p.simulated = simulated_mark(&config);
     const axis_run_t run = {.what = what, .program = program, .prepare = prepare_run, .report = report_run,
                             .watch = watch_run, .keep = keep_traces, .context = &p,
-                            .settings = {.trace_capacity = options->csv_file || options->svg_file ? 60000 : 0}};
+                            .settings = {.trace_capacity = wants_trace(options) ? TRACE_SAMPLES : 0}};
     return run_on_axes(&run, &options->common, &config);
 }
 
@@ -469,6 +495,8 @@ static const struct argp_option move_table[] = {
     {"reset", KEY_RESET, NULL, 0, "Reset an error of the drive first", 0},
     {"csv", KEY_CSV, "FILE", 0, "Write a trace", 0},
     {"svg", KEY_SVG, "FILE", 0, "Write a plot", 0},
+    {"html", KEY_HTML, "FILE", 0, "Write the trace as a page for a browser: zoom, cursors, events", 0},
+    {"npy", KEY_NPY, "FILE", 0, "Write the trace for NumPy", 0},
     {0}};
 static const struct argp_child move_children[] = {{&common_argp, 0, NULL, 0}, {0}};
 const struct argp argp_move = {move_table, parse_move, "[AXIS]",
@@ -497,6 +525,8 @@ static const struct argp_option home_table[] = {
     {"reset", KEY_RESET, NULL, 0, "Reset an error of the drive first", 0},
     {"csv", KEY_CSV, "FILE", 0, "Write a trace", 0},
     {"svg", KEY_SVG, "FILE", 0, "Write a plot", 0},
+    {"html", KEY_HTML, "FILE", 0, "Write the trace as a page for a browser: zoom, cursors, events", 0},
+    {"npy", KEY_NPY, "FILE", 0, "Write the trace for NumPy", 0},
     {0}};
 static const struct argp_child home_children[] = {{&common_argp, 0, NULL, 0}, {0}};
 const struct argp argp_home = {home_table, parse_home, "[AXIS]",

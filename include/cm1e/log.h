@@ -1,8 +1,8 @@
 /**
  * @file log.h
  * The event log of a scheduler: what happened to its axes and its bus, in the order in which it happened. The cycle
- * writes fixed records into a ring; their texts are made when they are read. A record stays when the error that it tells
- * of is reset. Any thread may read, during the run and after it.
+ * writes fixed records into a ring; their texts are made when they are read. A record stays when the error that it
+ * tells of is reset. Any thread may read, during the run and after it.
  */
 #ifndef CM1E_LOG_H
 #define CM1E_LOG_H
@@ -21,10 +21,10 @@ extern "C" {
 typedef enum cm1e_log_kind {
     CM1E_LOG_RUN = 0,         /**< code 1: the run began; 0: it ended */
     CM1E_LOG_STATE,           /**< of an axis; code: the new cm1e_axis_state_t, detail: the one before */
-    CM1E_LOG_ERROR,           /**< of an axis; code: cm1e_error_t, detail: 0x603F of the drive, value and bound: what was
-                                   found and what is allowed, 0: the error has none */
-    CM1E_LOG_COMMAND,         /**< of an axis: a command became the active one; value: its position, bound: its velocity,
-                                   0: it has none */
+    CM1E_LOG_ERROR,           /**< of an axis; code: cm1e_error_t, detail: 0x603F of the drive, value and bound: what
+                                   was found and what is allowed, 0: the error has none */
+    CM1E_LOG_COMMAND,         /**< of an axis: a command became the active one; value: its position, bound: its
+                                   velocity, 0: it has none */
     CM1E_LOG_OVERRUN,         /**< code: so many cycles since the last such record, detail: the total (32 bits) */
     CM1E_LOG_LOST_FRAMES,     /**< as OVERRUN */
     CM1E_LOG_WORKING_COUNTER, /**< as OVERRUN: cycles with a wrong working counter */
@@ -53,8 +53,8 @@ enum { CM1E_LOG_EVENTS = 1024 };
  *  ring. @rt any */
 CM1E_API size_t cm1e_log_read(const cm1e_scheduler_t *scheduler, uint64_t after, cm1e_log_event_t *events, size_t room,
                               uint64_t *lost);
-/** Writes a record as a sentence, without its time: 'X: ErrorStop (was DiscreteMotion)'. A buffer that is too small gets
- *  the beginning. 512 bytes are enough for every text. @rt block */
+/** Writes a record as a sentence, without its time: 'X: ErrorStop (was DiscreteMotion)'. A buffer that is too small
+ *  gets the beginning. 512 bytes are enough for every text. @rt block */
 CM1E_API void cm1e_log_text(const cm1e_scheduler_t *scheduler, const cm1e_log_event_t *event, char *text, size_t size);
 /** Name of a kind: "state", "error" ... Never NULL. @rt any */
 CM1E_API const char *cm1e_log_kind_name(cm1e_log_kind_t kind);

@@ -9,6 +9,16 @@
 
 #include "scheduler/trace.h"
 
+/** How a state is shown. In a picture that has not a pixel for every sample, the state with the highest rank is. */
+typedef struct plot_state {
+    const char *colour;
+    int rank;
+} plot_state_t;
+extern const plot_state_t cm1e_plot_states[CM1E_AXIS_STATE_COUNT];
+
+/** Prints the trace as a page of HTML that needs no other file. */
+void cm1e_plot_print_html(const trace_t *trace, FILE *file);
+
 /** Prints the trace as an SVG image. */
 void cm1e_plot_print_svg(const trace_t *trace, FILE *file);
 

@@ -1,7 +1,7 @@
-/* The trace as a picture: a column of panels per axis (position, velocity, torque over time), above them a band that
- * shows the axis's state in colour, and the program's marks as dashed lines with their text. Every curve is thinned to
- * the smallest and largest value of each of a few hundred slices of time, so that no peak is lost and the file stays
- * below half a megabyte. */
+/* The trace as a picture: the axes one under the other on one time scale, with panels of position, velocity and torque,
+ * a band above them that shows the state of the axis in colour, and the marks of the program as dashed lines with their
+ * text. Every curve is thinned to the smallest and the largest value of each of a few hundred slices of time, so that
+ * no peak is lost and the file stays below half a megabyte. */
 #include <math.h>
 #include <string.h>
 
@@ -12,8 +12,7 @@
 /* ---- layout, in pixels ----------------------------------------------------------------------------------------- */
 
 enum {
-    COLUMNS_PER_ROW = 3,
-    COLUMN_LEFT = 72, COLUMN_RIGHT = 18, PLOT_WIDTH = 400, ONLY_PLOT_WIDTH = 810, /* as wide as the head */
+    LEFT = 72, RIGHT = 18, PLOT_WIDTH = 810, /* as wide as the head */
     HEAD = 84, NAME = 24, MARK_ROW = 12, MARK_GAP = 3, ELLIPSIS = 15, BAND = 12, PANEL_GAP = 16, TIME_AXIS = 44,
     BYTES_FOR_CURVES = 380000, BYTES_PER_POINT = 13,
 };
@@ -32,19 +31,15 @@ static const struct panel {
     double height, smallest_range;
     curve_t curves[2]; /**< the first one is drawn below */
 } panels[] = {
-    {"position", "u", 170, 1e-3,
+    {"position", "u", 130, 1e-3,
      {{TRACE_ACTUAL_POSITION, "actual"}, {TRACE_SET_POSITION, "set"}}},
-    {"velocity", "u/s", 150, 1e-2,
+    {"velocity", "u/s", 120, 1e-2,
      {{TRACE_ACTUAL_VELOCITY, "actual"}, {TRACE_SET_VELOCITY, "set"}}},
     {"torque", "% of rated", 110, 1.0, {{TRACE_TORQUE, "torque"}, {0, NULL}}},
 };
 enum { PANELS = sizeof panels / sizeof panels[0] };
 
-/** Rank of a state: the state with the highest rank in a slice of time is shown. */
-static const struct {
-    const char *colour;
-    int rank;
-} states[CM1E_AXIS_STATE_COUNT] = {
+const plot_state_t cm1e_plot_states[CM1E_AXIS_STATE_COUNT] = {
     [CM1E_AXIS_DISABLED] = {"#b9bec6", 1},          [CM1E_AXIS_STANDSTILL] = {"#7cc68d", 0},
     [CM1E_AXIS_HOMING] = {"#f2c230", 5},            [CM1E_AXIS_DISCRETE_MOTION] = {"#4c8eda", 2},
     [CM1E_AXIS_CONTINUOUS_MOTION] = {"#8a6fd1", 3}, [CM1E_AXIS_SYNCHRONIZED_MOTION] = {"#2fa8a0", 4},
@@ -233,7 +228,7 @@ static cm1e_axis_state_t state_of_slice(const plot_t *plot, uint32_t axis, uint3
     cm1e_axis_state_t state = (cm1e_axis_state_t)value_of(plot, *n, axis, TRACE_STATE);
     for (; *n < plot->trace->used && slice_of(plot, *n) == slice; ++*n) {
         const cm1e_axis_state_t other = (cm1e_axis_state_t)value_of(plot, *n, axis, TRACE_STATE);
-        if (states[other].rank > states[state].rank)
+        if (cm1e_plot_states[other].rank > cm1e_plot_states[state].rank)
             state = other;
     }
     return state;
@@ -243,7 +238,7 @@ static void print_state(const plot_t *plot, const box_t *band, double bottom, do
                         cm1e_axis_state_t state)
 {
     const double x = x_of(plot, band, from_s), width = x_of(plot, band, to_s) - x;
-    fprintf(plot->file, "<g fill=\"%s\"><title>%s, %.3f to %.3f s</title>", states[state].colour,
+    fprintf(plot->file, "<g fill=\"%s\"><title>%s, %.3f to %.3f s</title>", cm1e_plot_states[state].colour,
             cm1e_axis_state_name(state), from_s, to_s);
     fprintf(plot->file, "<rect x=\"%.1f\" y=\"%.0f\" width=\"%.1f\" height=\"%.0f\"/>", x, band->y, width,
             band->height);
@@ -284,7 +279,7 @@ static void print_value_axis(const plot_t *plot, const box_t *box, const scale_t
     }
     const double middle = box->y + box->height / 2;
     fprintf(file, "<text class=\"unit\" text-anchor=\"middle\" transform=\"translate(%.0f,%.0f) rotate(-90)\">"
-            "%s [%s]</text>\n", box->x - COLUMN_LEFT + 16, middle, panel->title, panel->unit);
+            "%s [%s]</text>\n", box->x - LEFT + 16, middle, panel->title, panel->unit);
 }
 
 static void print_time_grid(const plot_t *plot, const box_t *box, bool with_text)
@@ -318,11 +313,9 @@ static void print_panel(const plot_t *plot, const box_t *box, uint32_t axis, uns
             box->y, box->width, box->height);
 }
 
-static double column_width(const plot_t *plot) { return COLUMN_LEFT + plot->width + COLUMN_RIGHT; }
-
 static double marks_height(const plot_t *plot) { return plot->label_rows > 0 ? plot->label_rows * MARK_ROW + 2 : 0; }
 
-static double column_height(const plot_t *plot)
+static double axis_height(const plot_t *plot)
 {
     double height = NAME + marks_height(plot) + BAND + TIME_AXIS + 20;
     for (unsigned i = 0; i < PANELS; i++)
@@ -376,7 +369,7 @@ static void place_label(plot_t *plot, const trace_mark_t *mark)
     label.x = x_of(plot, &(box_t){.width = plot->width}, (double)mark->time_ns * 1e-9);
     if (label.x < 0 || label.x > plot->width)
         return;
-    const double right = plot->width + COLUMN_RIGHT - 2 * MARK_GAP - label.x, left = label.x - MARK_GAP;
+    const double right = plot->width + RIGHT - 2 * MARK_GAP - label.x, left = label.x - MARK_GAP;
     double width = fit(mark->text, right > left ? right : left, &label.bytes);
     if (mark->text[label.bytes])
         width = ELLIPSIS + fit(mark->text, (right > left ? right : left) - ELLIPSIS, &label.bytes);
@@ -414,10 +407,10 @@ static void print_marks(const plot_t *plot, const box_t *band, double bottom)
     }
 }
 
-static void print_column(const plot_t *plot, double x, double y, uint32_t axis)
+static void print_axis(const plot_t *plot, double y, uint32_t axis)
 {
-    box_t box = {x + COLUMN_LEFT, y + NAME + marks_height(plot), plot->width, BAND};
-    const double bottom = y + column_height(plot) - TIME_AXIS - 20;
+    box_t box = {LEFT, y + NAME + marks_height(plot), plot->width, BAND};
+    const double bottom = y + axis_height(plot) - TIME_AXIS - 20;
     fprintf(plot->file, "<text class=\"name\" x=\"%.0f\" y=\"%.0f\">", box.x, y + 16);
     print_escaped(plot->file, plot->trace->names[axis], strlen(plot->trace->names[axis]));
     fputs("</text>\n", plot->file);
@@ -463,7 +456,8 @@ static void print_head(const plot_t *plot)
     double x = 16;
     for (int i = 0; i < CM1E_AXIS_STATE_COUNT; i++) {
         const char *name = cm1e_axis_state_name((cm1e_axis_state_t)i);
-        fprintf(file, "<rect x=\"%.0f\" y=\"62\" width=\"12\" height=\"12\" fill=\"%s\"/>", x, states[i].colour);
+        fprintf(file, "<rect x=\"%.0f\" y=\"62\" width=\"12\" height=\"12\" fill=\"%s\"/>", x,
+                cm1e_plot_states[i].colour);
         fprintf(file, "<text class=\"tick\" x=\"%.0f\" y=\"72\">%s</text>\n", x + 16, name);
         x += 34 + 6.6 * (double)strlen(name);
     }
@@ -478,15 +472,13 @@ static uint32_t slices_for(uint32_t axes, uint32_t pixels)
 
 void cm1e_plot_print_svg(const trace_t *trace, FILE *file)
 {
-    const uint32_t columns = trace->axes < COLUMNS_PER_ROW ? (trace->axes ? trace->axes : 1) : COLUMNS_PER_ROW;
-    const uint32_t rows = (trace->axes + COLUMNS_PER_ROW - 1) / COLUMNS_PER_ROW;
-    plot_t plot = {.file = file, .trace = trace, .width = columns == 1 ? ONLY_PLOT_WIDTH : PLOT_WIDTH};
+    plot_t plot = {.file = file, .trace = trace, .width = PLOT_WIDTH};
     if (trace->used > 0) {
         plot.begin_s = time_s(&plot, 0);
         plot.end_s = fmax(time_s(&plot, trace->used - 1), plot.begin_s + 1e-6);
         place_labels(&plot);
     }
-    const double width = columns * column_width(&plot), height = HEAD + rows * column_height(&plot);
+    const double width = LEFT + plot.width + RIGHT, height = HEAD + trace->axes * axis_height(&plot);
     fprintf(file,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" viewBox=\"0 0 %.0f %.0f\">\n"
             "%s<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n", width, height, width, height, style);
@@ -497,8 +489,7 @@ void cm1e_plot_print_svg(const trace_t *trace, FILE *file)
     plot.slices = slices_for(trace->axes, (uint32_t)plot.width);
     print_head(&plot);
     for (uint32_t axis = 0; axis < trace->axes; axis++)
-        print_column(&plot, (axis % COLUMNS_PER_ROW) * column_width(&plot),
-                     HEAD + (axis / COLUMNS_PER_ROW) * column_height(&plot), axis);
+        print_axis(&plot, HEAD + axis * axis_height(&plot), axis);
     fputs("</svg>\n", file);
 }
 

@@ -1,0 +1,196 @@
+"""The page of a trace in a real browser: it is opened in headless Chromium, and what a person would do is done to it
+(pointer, cursors, zoom, keys). What it shows is compared with the CSV file of the same run. Skips without Chromium or
+without dygraphs in the build.
+
+Usage: test_page.py <folder of the binaries> <output folder> <source folder>
+"""
+import csv
+import html
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+BIN, OUTPUT, SOURCE = sys.argv[1:4]
+SKIP = 77
+
+# Runs behind the page's own script; its result is the text of the element that is added at the end.
+DRIVER = """
+<script>
+(function () {
+  const result = {errors: window.pageErrors};
+  const charts = [...document.querySelectorAll(".chart")];
+  const cells = name => {
+    let axis = "";
+    for (const row of document.querySelectorAll("#values tr")) {
+      if (row.className === "group")
+        axis = row.textContent;
+      else if ((axis === "signals" ? "" : axis + " ") + row.cells[0].textContent.trim() === name)
+        return [...row.cells].slice(1).map(cell => cell.textContent);
+    }
+    throw new Error("no row " + name);
+  };
+  const names = () => [...document.querySelectorAll("#values tr")].map(row => row.cells[0].textContent.trim());
+  const at = (chart, share, type, more) => {
+    const canvas = chart.querySelectorAll("canvas")[1], box = canvas.getBoundingClientRect();
+    const options = {bubbles: true, cancelable: true, view: window, button: 0, clientX: box.left + box.width * share,
+                     clientY: box.top + box.height / 2, screenX: box.left + box.width * share, screenY: 10, ...more};
+    canvas.dispatchEvent(type === "wheel" ? new WheelEvent(type, options) : new MouseEvent(type, options));
+  };
+  const click = (chart, share, shiftKey) => {
+    at(chart, share, "mousemove", {});
+    at(chart, share, "mousedown", {shiftKey});
+    at(chart, share, "mouseup", {shiftKey});
+  };
+  const labels = () => [...charts[0].querySelectorAll(".dygraph-axis-label-y")].length;
+  const times = () => [...document.querySelectorAll("#cursors td")].map(cell => cell.textContent);
+  const key = name => document.dispatchEvent(new KeyboardEvent("keydown", {key: name, cancelable: true}));
+
+  result.charts = charts.length;
+  result.ready = document.body.dataset.ready;
+  result.about = document.getElementById("about").textContent;
+  result.names = names();
+  result.axisLabels = labels();
+  result.events = [...document.querySelectorAll("#events li")].map(item => item.textContent);
+  result.whole = cells(PROBE);
+  click(charts[0], 0.3, false);
+  click(charts[0], 0.8, true);
+  result.cursors = times();
+  result.values = cells(PROBE);
+  result.step = cells("step");
+  result.state = cells(STATE);
+  for (let i = 0; i < 12; i++)
+    at(charts[1], 0.3, "wheel", {deltaY: -1});
+  result.zoomed = cells(PROBE);
+  key("0");
+  result.unzoomed = cells(PROBE);
+  for (let i = 0; i < 5; i++)
+    key("+");
+  key("ArrowRight");
+  result.moved = cells(PROBE);
+  at(charts[2], 0.5, "dblclick", {});
+  result.all = cells(PROBE);
+  document.querySelector("#events li").click();
+  result.atEvent = times();
+  result.nearEvent = cells(PROBE);
+  key("Escape");
+  result.noCursors = times();
+  const box = document.querySelector("#values input");
+  box.click();
+  result.hidden = !box.checked;
+  result.wide = document.documentElement.scrollWidth <= window.innerWidth;
+  const text = document.createElement("pre");
+  text.id = "result";
+  text.textContent = JSON.stringify(result);
+  document.body.append(text);
+})();
+</script>
+"""
+CATCH = "<script>window.pageErrors = []; window.addEventListener('error', e => pageErrors.push(String(e.message)));</script>"
+
+
+def expect(condition, what):
+    if not condition:
+        sys.exit(f"FAILED: {what}")
+
+
+def browser():
+    return next((path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None)
+
+
+def in_browser(page, *arguments):
+    done = subprocess.run([browser(), "--headless", "--no-sandbox", "--disable-gpu", "--window-size=1500,1200",
+                           "--virtual-time-budget=10000", *arguments, f"file://{page}"], capture_output=True, text=True,
+                          timeout=240, check=False)
+    expect(done.returncode == 0, f"the browser ended with {done.returncode}: {done.stderr[-500:]}")
+    return done.stdout
+
+
+def drive(page, probe, state):
+    """What the page shows while it is used."""
+    with open(page, encoding="utf-8") as file:
+        text = file.read()
+    expect("<script src" not in text and "http-equiv" not in text and "<link" not in text, "the page needs other files")
+    driver = DRIVER.replace("PROBE", json.dumps(probe)).replace("STATE", json.dumps(state))
+    driven = page.replace(".html", "_driven.html")
+    with open(driven, "w", encoding="utf-8") as file:
+        file.write(text.replace("<head>", "<head>" + CATCH, 1).replace("</body>", driver + "</body>"))
+    dom = in_browser(driven, "--dump-dom")
+    found = re.search(r'<pre id="result">(.*?)</pre>', dom, re.DOTALL)
+    expect(found, f"the page did not run to its end: {dom[-300:]}")
+    return json.loads(html.unescape(found.group(1)))
+
+
+def run_example():
+    page, table = os.path.join(OUTPUT, "trace_page.html"), os.path.join(OUTPUT, "trace_page.csv")
+    subprocess.run([os.path.join(BIN, "03_plc_program"), "-i", "sim", "-b", f"{SOURCE}/examples/three_axes.yaml",
+                    "--seconds", "9", "--html", page, "--csv", table], check=True, stdout=subprocess.DEVNULL)
+    with open(table, newline="", encoding="utf-8") as file:
+        head, *rows = csv.reader(file)
+    return page, head, rows
+
+
+def seconds(text):
+    return float(re.search(r"(-?[\d.]+) s", text).group(1))
+
+
+def close(text, value, tolerance):
+    return abs(float(text) - value) <= tolerance
+
+
+def check_values(shown, head, rows):
+    """The values at both cursors and their range are those of the CSV file."""
+    probe, step = head.index("X actual position [u]"), head.index("step")
+    values = [float(row[probe]) for row in rows]
+    at = []
+    for text in shown["cursors"][1:3]:
+        wanted = seconds(text)
+        at.append(max(i for i, row in enumerate(rows) if float(row[0]) <= wanted + 1e-9))
+    whole = 1e-4 * (max(values) - min(values))
+    _, a, b, difference, low, high = shown["values"]
+    expect(close(a, values[at[0]], whole) and close(b, values[at[1]], whole), f"values at cursors: {shown['values']}")
+    expect(close(difference, values[at[1]] - values[at[0]], whole), f"difference: {shown['values']}")
+    expect(close(low, min(values), whole) and close(high, max(values), whole), f"range: {shown['values']}")
+    expect(shown["step"][1] == rows[at[0]][step], f"the step at cursor A: {shown['step']}")
+    expect(shown["state"][1] == rows[at[0]][head.index("X state")], f"the state at cursor A: {shown['state']}")
+    expect(abs(seconds(shown["cursors"][3]) - (float(rows[at[1]][0]) - float(rows[at[0]][0]))) < 2e-3,
+           f"between cursors: {shown['cursors']}")
+
+
+def check_page():
+    page, head, rows = run_example()
+    shown = drive(page, "X actual position [u]", "X state")
+    expect(shown["errors"] == [], f"errors of scripts: {shown['errors']}")
+    expect(shown["charts"] == 3 * 3 + 3 and shown["ready"] == str(shown["charts"]), f"{shown['charts']} charts")
+    expect(f"{len(rows)} samples of {len(head) - 1} signals" in shown["about"], shown["about"])
+    expect(shown["axisLabels"] > 1, "a chart without numbers at its axis")
+    check_values(shown, head, rows)
+    expect(shown["zoomed"] != shown["whole"] and shown["unzoomed"][4:] == shown["whole"][4:], "zoom by the wheel")
+    expect(shown["moved"][4:] != shown["whole"][4:] and shown["all"][4:] == shown["whole"][4:], "zoom and move by keys")
+    errors = [text for text in shown["events"] if "motor power is off" in text]
+    expect(len(errors) == 1 and "Y error" in errors[0], f"events: {shown['events']}")
+    expect(seconds(shown["atEvent"][1]) == seconds(shown["events"][0]), "a click on an event sets cursor A there")
+    expect(shown["noCursors"][1:] == ["A: -", "B: -", "B - A: -"], f"Escape: {shown['noCursors']}")
+    expect(shown["hidden"] and shown["wide"], "a hidden signal; or the page is wider than the window")
+    picture = os.path.join(OUTPUT, "trace_page.png")
+    in_browser(page, f"--screenshot={picture}")
+    expect(os.path.getsize(picture) > 20000, "no picture of the page")
+
+
+def main():
+    os.makedirs(OUTPUT, exist_ok=True)
+    tried = subprocess.run([os.path.join(BIN, "cm1e"), "move", "-i", "sim", "--by", "0.1", "--html",
+                            os.path.join(OUTPUT, "move.html")], capture_output=True, text=True, check=False)
+    if "without the chart library" in tried.stderr:
+        print("SKIPPED: this build has no pages (libjs-dygraphs was missing)")
+        sys.exit(SKIP)
+    expect(tried.returncode == 0, tried.stderr)
+    if not browser():
+        print("SKIPPED: there is no Chromium here")
+        sys.exit(SKIP)
+    check_page()
+
+
+main()
