@@ -122,6 +122,17 @@ static const struct {
     [CM1E_FSA_UNKNOWN] = {COMMAND_SHUTDOWN, COMMAND_SHUTDOWN},
 };
 
+cm1e_fsa_command_t cm1e_fsa_command_of(uint16_t controlword)
+{
+    if (!(controlword & CONTROLWORD_ENABLE_VOLTAGE))
+        return COMMAND_DISABLE_VOLTAGE;
+    if (!(controlword & CONTROLWORD_QUICK_STOP))
+        return COMMAND_QUICK_STOP;
+    if (!(controlword & CONTROLWORD_SWITCH_ON))
+        return COMMAND_SHUTDOWN;
+    return controlword & CONTROLWORD_ENABLE_OPERATION ? COMMAND_ENABLE_OPERATION : COMMAND_SWITCH_ON;
+}
+
 cm1e_fsa_command_t cm1e_fsa_next_command(cm1e_fsa_state_t state, bool enable)
 {
     if ((unsigned)state > CM1E_FSA_UNKNOWN)

@@ -82,6 +82,8 @@ typedef struct cm1e_fsa_transition {
  *  Operation enabled is allowed (number 3, then 4). Ends with number 0xFF. */
 extern const cm1e_fsa_transition_t cm1e_fsa_transitions[];
 
+/** What a controlword commands by CiA 402 (bits 3 ... 0), but for a fault reset. */
+cm1e_fsa_command_t cm1e_fsa_command_of(uint16_t controlword);
 /** The next command on the way from `state` to Operation enabled (enable) or to Ready to switch on (not enable). */
 cm1e_fsa_command_t cm1e_fsa_next_command(cm1e_fsa_state_t state, bool enable);
 

@@ -124,8 +124,6 @@ const cm1e_object_t *cm1e_cia402_objects(size_t *count)
 
 const cm1e_entry_t *cm1e_cia402_entry(uint16_t index, uint8_t subindex)
 {
-    for (size_t i = 0; i < COUNT(objects); i++)
-        if (objects[i].index == index)
-            return cm1e_object_entry(&objects[i], subindex);
-    return NULL;
+    const cm1e_object_t *object = cm1e_object_find(objects, COUNT(objects), index);
+    return object ? cm1e_object_entry(object, subindex) : NULL;
 }

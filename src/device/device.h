@@ -150,6 +150,8 @@ typedef struct cm1e_object {
 const cm1e_object_t *cm1e_device_objects(size_t *count);
 /** NULL: no such object or sub-index in any firmware. */
 const cm1e_entry_t *cm1e_device_entry(uint16_t index, uint8_t subindex);
+/** In a table in order of index; NULL: no such object. */
+const cm1e_object_t *cm1e_object_find(const cm1e_object_t *objects, size_t count, uint16_t index);
 /** NULL: it has no such sub-index. */
 const cm1e_entry_t *cm1e_object_entry(const cm1e_object_t *object, uint8_t subindex);
 

@@ -80,20 +80,6 @@ static const cm1e_device_drive_t drive = {
     .error = cm1e_cia402_error, .error_clause = "CiA 301, CiA 402 (IEC 61800-7-201)",
 };
 
-static const cm1e_object_t *object(const cm1e_device_t *device, size_t n)
-{
-    (void)device;
-    size_t count;
-    const cm1e_object_t *objects = cm1e_cia402_objects(&count);
-    return n < count ? &objects[n] : NULL;
-}
-
-static const cm1e_entry_t *entry(const cm1e_device_t *device, uint16_t index, uint8_t subindex)
-{
-    (void)device;
-    return cm1e_cia402_entry(index, subindex);
-}
-
 /* Those that the device has assigned, where the bus file names none. */
 static cm1e_pdo_choice_t pdos(const cm1e_axis_config_t *axis)
 {
@@ -151,7 +137,7 @@ static const cm1e_absent_key_t absent[] = {
 const cm1e_device_t cm1e_device_cia402 = {
     .kind = "cia402", .label = "CiA 402 servo drive", .name = "CiA 402 servo drive", .model = CM1E_DEVICE_CIA402,
     .recognised = CM1E_BY_PROFILE, .profile = CM1E_PROFILE_402, .motor_stated = true,
-    .object = object, .entry = entry, .pdos = pdos,
+    ONE_TABLE(cm1e_cia402_objects), .pdos = pdos,
     .counts_per_revolution = counts_per_revolution, .peak_velocity = peak_velocity,
     .motor = motor, .motors_note = "no such key: drive.counts_per_revolution and drive.max_speed_rpm state its motor",
     .absent = absent, .check_axis = check_axis,

@@ -78,20 +78,6 @@ static const cm1e_device_drive_t drive = {
     .error = cm1e_device_error, .error_clause = "UG 7.3.1",
 };
 
-static const cm1e_object_t *object(const cm1e_device_t *device, size_t n)
-{
-    (void)device;
-    size_t count;
-    const cm1e_object_t *objects = cm1e_device_objects(&count);
-    return n < count ? &objects[n] : NULL;
-}
-
-static const cm1e_entry_t *entry(const cm1e_device_t *device, uint16_t index, uint8_t subindex)
-{
-    (void)device;
-    return cm1e_device_entry(index, subindex);
-}
-
 static cm1e_pdo_choice_t pdos(const cm1e_axis_config_t *axis)
 {
     const unsigned mapping = axis ? axis->mapping : CM1E_MAPPING_DYNAMIC;
@@ -159,7 +145,7 @@ const cm1e_device_t cm1e_device_cm1e = {
     .explicit_id = true, .described = true, .extra_is_error = true,
     .cycle_times_ns = cm1e_device_cycle_times_ns, .cycle_time_count = 4,
     .firmware = cm1e_firmware_from_version,
-    .object = object, .entry = entry, .pdos = pdos,
+    ONE_TABLE(cm1e_device_objects), .pdos = pdos,
     .counts_per_revolution = counts_per_revolution, .peak_velocity = peak_velocity,
     .revision_known = revision_known,
     .revisions = "0x20020001 and, from firmware V1.3.0 on, 0x20020103", .pdo_known = pdo_known,

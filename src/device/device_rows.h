@@ -23,6 +23,11 @@ enum { MAPPED_DYNAMIC = 1 << CM1E_MAPPING_DYNAMIC, MAPPED_CSP = 1 << CM1E_MAPPIN
     {.code = (code_), .error_register = (register_), .fault = (fault_), .fault_only_when_enabled = (when_enabled_), \
      .text = (text_), .cure = (cure_), __VA_ARGS__}
 
+/** `object` and `entry` of a device whose dictionary is one table. */
+const cm1e_object_t *cm1e_device_table_object(const cm1e_device_t *device, size_t n);
+const cm1e_entry_t *cm1e_device_table_entry(const cm1e_device_t *device, uint16_t index, uint8_t subindex);
+#define ONE_TABLE(objects_) .objects = objects_, .object = cm1e_device_table_object, .entry = cm1e_device_table_entry
+
 #define COUNT(table) (sizeof(table) / sizeof(table)[0])
 
 #endif

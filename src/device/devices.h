@@ -213,6 +213,8 @@ struct cm1e_device {
     size_t cycle_time_count;
     /** NULL: no difference between versions is known. */
     const cm1e_firmware_info_t *(*firmware)(const char *version);
+    /** The dictionary as one table in order of index; NULL: it is in parts. */
+    const cm1e_object_t *(*objects)(size_t *count);
     /** Object number n of the dictionary, in order of index; NULL: no more. */
     const cm1e_object_t *(*object)(const cm1e_device_t *device, size_t n);
     const cm1e_entry_t *(*entry)(const cm1e_device_t *device, uint16_t index, uint8_t subindex);

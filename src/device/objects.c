@@ -154,33 +154,10 @@ const cm1e_object_t *cm1e_device_objects(size_t *count)
     return objects;
 }
 
-static const cm1e_object_t *find_object(uint16_t index)
-{
-    size_t low = 0, high = OBJECT_COUNT;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (objects[middle].index == index)
-            return &objects[middle];
-        if (objects[middle].index < index)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return NULL;
-}
-
 const cm1e_entry_t *cm1e_device_entry(uint16_t index, uint8_t subindex)
 {
-    const cm1e_object_t *object = find_object(index);
+    const cm1e_object_t *object = cm1e_object_find(objects, OBJECT_COUNT, index);
     return object ? cm1e_object_entry(object, subindex) : NULL;
-}
-
-const cm1e_entry_t *cm1e_object_entry(const cm1e_object_t *object, uint8_t subindex)
-{
-    for (uint16_t i = 0; i < object->entry_count; i++)
-        if (object->entries[i].subindex == subindex)
-            return &object->entries[i];
-    return NULL;
 }
 
 int64_t cm1e_entry_round(const cm1e_entry_t *entry, int64_t value)

@@ -4,22 +4,28 @@
 
 #include "core/sized.h"
 
-cm1e_error_t cm1e_own_options_take(cm1e_own_options_t *own, const cm1e_generate_options_t *options, size_t size,
-                                   size_t device_size, cm1e_diag_t *diag)
+static cm1e_device_options_t *own_devices(const cm1e_generate_options_t *options, size_t device_size)
 {
-    own->devices = NULL;
-    cm1e_copy_sized(&own->options, sizeof own->options, options, size);
-    const size_t count = own->options.devices ? own->options.device_count : 0;
-    if (count == 0 || device_size == sizeof *own->devices)
-        return CM1E_OK;
-    own->devices = calloc(count, sizeof *own->devices);
-    if (!own->devices)
-        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
-    for (size_t i = 0; i < count; i++)
-        cm1e_copy_sized(&own->devices[i], sizeof *own->devices,
-                        (const char *)own->options.devices + i * device_size, device_size);
-    own->options.devices = own->devices;
-    return CM1E_OK;
+    cm1e_device_options_t *devices = calloc(options->device_count, sizeof *devices);
+    for (size_t i = 0; devices && i < options->device_count; i++)
+        cm1e_copy_sized(&devices[i], sizeof *devices, (const char *)options->devices + i * device_size, device_size);
+    return devices;
 }
 
-void cm1e_own_options_free(cm1e_own_options_t *own) { free(own->devices); }
+cm1e_error_t cm1e_generate_with(cm1e_generator_t *generator, cm1e_file_t *file, const cm1e_generate_options_t *options,
+                                size_t size, size_t device_size, cm1e_diag_t *diag)
+{
+    cm1e_generate_options_t own;
+    cm1e_device_options_t *devices = NULL;
+    *file = (cm1e_file_t){0};
+    cm1e_copy_sized(&own, sizeof own, options, size);
+    if (own.devices && own.device_count > 0 && device_size != sizeof *devices) {
+        devices = own_devices(&own, device_size);
+        if (!devices)
+            return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "out of memory");
+        own.devices = devices;
+    }
+    const cm1e_error_t error = generator(file, &own, diag);
+    free(devices);
+    return error;
+}

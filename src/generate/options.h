@@ -7,14 +7,10 @@
 
 #include "cm1e/generate.h"
 
-typedef struct cm1e_own_options {
-    cm1e_generate_options_t options;
-    cm1e_device_options_t *devices;  /**< NULL: those of the program are used */
-} cm1e_own_options_t;
+typedef cm1e_error_t cm1e_generator_t(cm1e_file_t *file, const cm1e_generate_options_t *options, cm1e_diag_t *diag);
 
-/** Returns CM1E_ERROR_NO_MEMORY, or CM1E_OK; free the options then. */
-cm1e_error_t cm1e_own_options_take(cm1e_own_options_t *own, const cm1e_generate_options_t *options, size_t size,
-                                   size_t device_size, cm1e_diag_t *diag);
-void cm1e_own_options_free(cm1e_own_options_t *own);
+/** Calls a generator with options of the library's sizes. */
+cm1e_error_t cm1e_generate_with(cm1e_generator_t *generator, cm1e_file_t *file, const cm1e_generate_options_t *options,
+                                size_t size, size_t device_size, cm1e_diag_t *diag);
 
 #endif

@@ -212,11 +212,5 @@ static cm1e_error_t generate(cm1e_file_t *file, const cm1e_generate_options_t *o
 cm1e_error_t cm1e_generate_trio_program_sized(cm1e_file_t *file, const cm1e_generate_options_t *options, size_t size,
                                               size_t device_size, cm1e_diag_t *diag)
 {
-    cm1e_own_options_t own;
-    *file = (cm1e_file_t){0};
-    cm1e_error_t error = cm1e_own_options_take(&own, options, size, device_size, diag);
-    if (error == CM1E_OK)
-        error = generate(file, &own.options, diag);
-    cm1e_own_options_free(&own);
-    return error;
+    return cm1e_generate_with(generate, file, options, size, device_size, diag);
 }

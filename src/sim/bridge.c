@@ -3,11 +3,10 @@
 #include "cm1e/bus.h"
 #include "description/describe.h"
 #include "description/sii.h"
+#include "sim/app_time.h"
 #include "sim/bridge_app.h"
 
 enum {
-    STEP_NS = 250000,          /* longest integration step */
-    CATCH_UP_NS = 1000000000,  /* what a longer pause is cut to */
     READY_NS = 50000000,       /* from power-on to Switch on disabled; the guide gives no time */
     EXCHANGE_NS = 1000000,     /* of the serial lines (F511:3 ... F514:3) */
 };
@@ -40,21 +39,14 @@ static void step(cm1e_sim_bridge_t *bridge, double step_s)
 static void advance(void *app, int64_t now_ns)
 {
     cm1e_sim_bridge_t *bridge = app;
-    if (now_ns <= bridge->now_ns && bridge->running)
+    int64_t missed_ns;
+    if (!cm1e_sim_time_passes(&bridge->running, &bridge->now_ns, now_ns, &missed_ns))
         return;
-    if (!bridge->running || now_ns - bridge->now_ns > CATCH_UP_NS) {
-        const int64_t from_ns = bridge->running ? now_ns - CATCH_UP_NS : now_ns;
-        bridge->ready_ns += from_ns - bridge->now_ns;
-        bridge->exchange_ns = from_ns;
-        bridge->now_ns = from_ns;
-        bridge->running = true;
-    }
-    while (bridge->now_ns < now_ns) {
-        const int64_t left_ns = now_ns - bridge->now_ns;
-        const int64_t step_ns = left_ns < STEP_NS ? left_ns : STEP_NS;
-        bridge->now_ns += step_ns;
-        step(bridge, (double)step_ns * 1e-9);
-    }
+    bridge->ready_ns += missed_ns;
+    if (missed_ns != 0)
+        bridge->exchange_ns = bridge->now_ns;
+    for (double step_s; (step_s = cm1e_sim_time_step(&bridge->now_ns, now_ns)) > 0;)
+        step(bridge, step_s);
 }
 
 /* What it does by itself while no motor moves is counted up when somebody asks: serial lines, modes, CML. */

@@ -48,24 +48,12 @@ void cm1e_sim_bridge_axis_ready(cm1e_sim_bridge_axis_t *axis)
         axis->state = axis->error ? FAULT : SWITCH_ON_DISABLED;
 }
 
-/* What a controlword asks for (BR 6.1.2). Quick stop is no command here: it is ignored. */
-static cm1e_fsa_command_t command_of(unsigned controlword)
-{
-    if (!(controlword & CONTROLWORD_ENABLE_VOLTAGE))
-        return COMMAND_DISABLE_VOLTAGE;
-    if (!(controlword & CONTROLWORD_QUICK_STOP))
-        return COMMAND_QUICK_STOP;
-    if (!(controlword & CONTROLWORD_SWITCH_ON))
-        return COMMAND_SHUTDOWN;
-    return controlword & CONTROLWORD_ENABLE_OPERATION ? COMMAND_ENABLE_OPERATION : COMMAND_SWITCH_ON;
-}
-
 /* One transition each cycle; the numbers are those of BR 6.1.1. */
 void cm1e_sim_bridge_axis_obey(cm1e_sim_bridge_axis_t *axis, unsigned controlword)
 {
-    const cm1e_fsa_command_t command = command_of(controlword);
+    const cm1e_fsa_command_t command = cm1e_fsa_command_of((uint16_t)controlword); /* BR 6.1.2 */
     const bool wants_power = command == COMMAND_SWITCH_ON || command == COMMAND_ENABLE_OPERATION;
-    if (command == COMMAND_QUICK_STOP)
+    if (command == COMMAND_QUICK_STOP) /* no command here: it is ignored */
         axis->broken_rules |= CM1E_SIM_QUICK_STOP;
     switch (axis->state) {
     case SWITCH_ON_DISABLED:

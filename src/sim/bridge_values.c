@@ -27,14 +27,9 @@ uint32_t cm1e_sim_bridge_product_code(cm1e_device_model_t model)
     return (uint32_t)strtoul(cm1e_bridge_name(model), NULL, 16);
 }
 
-static const cm1e_object_t *object_of_tables(const void *context, size_t n)
-{
-    return cm1e_bridge_object(*(const cm1e_device_model_t *)context, n);
-}
-
 bool cm1e_sim_bridge_dictionary_create(cm1e_sim_bridge_t *bridge)
 {
-    if (!cm1e_sim_store_create(&bridge->store, object_of_tables, &bridge->model, CM1E_FIRMWARE_1_2_0))
+    if (!cm1e_sim_store_create(&bridge->store, cm1e_device_of_model(bridge->model), CM1E_FIRMWARE_1_2_0))
         return false;
     cm1e_sim_store_set(&bridge->store, OBJ_1018_IDENTITY, 1, CM1E_SIM_BRIDGE_VENDOR_ID);
     cm1e_sim_store_set(&bridge->store, OBJ_1018_IDENTITY, 2, cm1e_sim_bridge_product_code(bridge->model));

@@ -4,9 +4,9 @@
 #include "core/bytes.h"
 #include "description/describe.h"
 #include "description/sii.h"
+#include "sim/app_time.h"
 #include "sim/cia402_app.h"
 
-enum { STEP_NS = 250000, CATCH_UP_NS = 1000000000 };
 enum { INIT = 1, OPERATIONAL = 8, DIRECTIONS = 2 };
 enum { ERROR_FOLLOWING = 0x8611 };
 #define LAG_TIME_S 0.01
@@ -62,14 +62,6 @@ static const struct {
 };
 enum { VALUES = sizeof values / sizeof values[0] };
 
-static const cm1e_object_t *object_of_tables(const void *context, size_t n)
-{
-    (void)context;
-    size_t count;
-    const cm1e_object_t *objects = cm1e_cia402_objects(&count);
-    return n < count ? &objects[n] : NULL;
-}
-
 static int64_t **place_of(cm1e_sim_cia402_t *drive, size_t n)
 {
     return (int64_t **)(void *)((char *)&drive->v + values[n].offset);
@@ -77,7 +69,7 @@ static int64_t **place_of(cm1e_sim_cia402_t *drive, size_t n)
 
 static bool create_dictionary(cm1e_sim_cia402_t *drive)
 {
-    if (!cm1e_sim_store_create(&drive->store, object_of_tables, NULL, CM1E_FIRMWARE_1_2_0))
+    if (!cm1e_sim_store_create(&drive->store, &cm1e_device_cia402, CM1E_FIRMWARE_1_2_0))
         return false;
     for (size_t n = 0; n < VALUES; n++) {
         cm1e_sim_cell_t cell;
@@ -130,11 +122,9 @@ static uint32_t sdo_read(void *app, uint16_t index, uint8_t subindex, uint8_t al
     (void)al_state;
     cm1e_sim_cia402_t *drive = app;
     cm1e_sim_cell_t cell;
-    const uint32_t missing = cm1e_sim_store_find(&drive->store, index, subindex, &cell);
+    const uint32_t missing = cm1e_sim_store_find_readable(&drive->store, index, subindex, &cell);
     if (missing)
         return missing;
-    if (!(cell.entry->access & CM1E_ACCESS_READ))
-        return SDO_ABORT_WRITE_ONLY;
     if (cell.entry->type == CM1E_TYPE_STRING)
         return cm1e_sim_give_text(cell.entry->default_string, data, size);
     cm1e_sim_cia402_refresh(drive);
@@ -272,20 +262,12 @@ static void step(cm1e_sim_cia402_t *drive, double step_s)
 static void advance(void *app, int64_t now_ns)
 {
     cm1e_sim_cia402_t *drive = app;
-    if (now_ns <= drive->now_ns && drive->running)
+    int64_t missed_ns;
+    if (!cm1e_sim_time_passes(&drive->running, &drive->now_ns, now_ns, &missed_ns))
         return;
-    if (!drive->running || now_ns - drive->now_ns > CATCH_UP_NS) {
-        const int64_t missed_ns = drive->running ? now_ns - CATCH_UP_NS - drive->now_ns : now_ns - drive->now_ns;
-        drive->now_ns += missed_ns;
-        drive->state_deadline_ns += drive->state_deadline_ns == INT64_MAX ? 0 : missed_ns;
-        drive->running = true;
-    }
-    while (drive->now_ns < now_ns) {
-        const int64_t left_ns = now_ns - drive->now_ns;
-        const int64_t step_ns = left_ns < STEP_NS ? left_ns : STEP_NS;
-        drive->now_ns += step_ns;
-        step(drive, (double)step_ns * 1e-9);
-    }
+    drive->state_deadline_ns += drive->state_deadline_ns == INT64_MAX ? 0 : missed_ns;
+    for (double step_s; (step_s = cm1e_sim_time_step(&drive->now_ns, now_ns)) > 0;)
+        step(drive, step_s);
 }
 
 static int64_t due(const void *app)

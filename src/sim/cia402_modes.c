@@ -56,13 +56,6 @@ static uint16_t cyclic_bits(const cm1e_sim_cia402_t *drive)
     return drive->state == OPERATION_ENABLED ? STATUSWORD_BIT12 : 0;
 }
 
-/* While the torque limit holds the motor back the reference moves with it: a velocity servo does not catch up. */
-static void run_velocity(cm1e_sim_cia402_t *drive, double step_s)
-{
-    cm1e_servo_t *servo = &drive->servo;
-    servo->reference += (servo->saturated ? drive->mechanics.velocity : servo->reference_velocity) * step_s;
-}
-
 static void velocity_outputs(cm1e_sim_cia402_t *drive, uint16_t rising_bits)
 {
     (void)rising_bits;
@@ -78,7 +71,7 @@ static void csv_enter(cm1e_sim_cia402_t *drive)
 static void csv_step(cm1e_sim_cia402_t *drive, double step_s)
 {
     drive->servo.reference_velocity = drive->goal_velocity;
-    run_velocity(drive, step_s);
+    cm1e_servo_run(&drive->servo, &drive->mechanics, step_s);
 }
 
 /* ---- pv ---------------------------------------------------------------------------------------------------------- */
@@ -96,7 +89,7 @@ static void pv_step(cm1e_sim_cia402_t *drive, double step_s)
     const bool slower = fabs(wanted) < fabs(servo->reference_velocity);
     const int64_t ramp = slower ? *drive->v.profile_deceleration : *drive->v.profile_acceleration;
     cm1e_sim_ramp(&servo->reference_velocity, wanted, from_wire(drive, (double)ramp), step_s);
-    run_velocity(drive, step_s);
+    cm1e_servo_run(&drive->servo, &drive->mechanics, step_s);
     drive->reached_s = fabs(drive->mechanics.velocity - wanted) < VELOCITY_WINDOW ? drive->reached_s + step_s : 0;
     cm1e_servo_rest(servo, &drive->mechanics);
 }
@@ -116,8 +109,7 @@ static void pp_enter(cm1e_sim_cia402_t *drive)
     cm1e_servo_t *servo = &drive->servo;
     const double acceleration = from_wire(drive, (double)*drive->v.profile_acceleration);
     servo->own_profile = true;
-    drive->goal = servo->reference +
-                  servo->reference_velocity * fabs(servo->reference_velocity) / (2 * fmax(acceleration, 1));
+    drive->goal = cm1e_sim_stopping_place(servo, fmax(acceleration, 1));
     drive->acknowledge = false;
 }
 
@@ -135,10 +127,9 @@ static void pp_step(cm1e_sim_cia402_t *drive, double step_s)
 {
     cm1e_servo_t *servo = &drive->servo;
     const double acceleration = fmax(from_wire(drive, (double)*drive->v.profile_acceleration), 1);
-    if (halt_bit(drive)) {
-        cm1e_sim_ramp(&servo->reference_velocity, 0, acceleration, step_s);
-        servo->reference += servo->reference_velocity * step_s;
-    } else
+    if (halt_bit(drive))
+        cm1e_sim_halt_step(servo, acceleration, step_s);
+    else
         cm1e_sim_move_step(servo, drive->goal, limited(drive, (double)*drive->v.profile_velocity), acceleration,
                            step_s);
 }

@@ -81,19 +81,6 @@ void cm1e_sim_cia402_motor_power(cm1e_sim_cia402_t *drive, bool on)
 
 /* ---- controlword ------------------------------------------------------------------------------------------------- */
 
-/* In the order of CiA 402. Bits 3 ... 0 and 7; the row of the state and the command decides. */
-static cm1e_fsa_command_t decode(uint16_t word)
-{
-    const bool voltage = word & CONTROLWORD_ENABLE_VOLTAGE, quick_stop = word & CONTROLWORD_QUICK_STOP;
-    if (!voltage)
-        return COMMAND_DISABLE_VOLTAGE;
-    if (!quick_stop)
-        return COMMAND_QUICK_STOP;
-    if (!(word & CONTROLWORD_SWITCH_ON))
-        return COMMAND_SHUTDOWN;
-    return word & CONTROLWORD_ENABLE_OPERATION ? COMMAND_ENABLE_OPERATION : COMMAND_SWITCH_ON;
-}
-
 static const cm1e_fsa_transition_t transitions[] = {
     {2, SWITCH_ON_DISABLED, READY_TO_SWITCH_ON, COMMAND_SHUTDOWN},
     {3, READY_TO_SWITCH_ON, SWITCHED_ON, COMMAND_SWITCH_ON},
@@ -113,7 +100,7 @@ static const cm1e_fsa_transition_t transitions[] = {
 
 static void apply(cm1e_sim_cia402_t *drive, uint16_t controlword)
 {
-    const cm1e_fsa_command_t command = decode(controlword);
+    const cm1e_fsa_command_t command = cm1e_fsa_command_of(controlword);
     for (size_t i = 0; i < sizeof transitions / sizeof transitions[0]; i++) {
         const cm1e_fsa_transition_t *t = &transitions[i];
         if (t->from != drive->state || t->command != command)

@@ -4,11 +4,10 @@
 
 #include "description/describe.h"
 #include "description/sii.h"
+#include "sim/app_time.h"
 #include "sim/cm1e_app.h"
 
 enum {
-    STEP_NS = 250000,           /* longest integration step */
-    CATCH_UP_NS = 1000000000,   /* what a longer pause is cut to */
     AL_CODE_UNSPECIFIED = 0x0001,
     ID_RESERVED = 0xFF,
 };
@@ -69,18 +68,11 @@ static void step(cm1e_sim_cm1e_t *drive, double step_s)
 static void advance(void *app, int64_t now_ns)
 {
     cm1e_sim_cm1e_t *drive = app;
-    if (now_ns <= drive->now_ns && drive->running)
+    int64_t missed_ns;
+    if (!cm1e_sim_time_passes(&drive->running, &drive->now_ns, now_ns, &missed_ns))
         return;
-    if (!drive->running || now_ns - drive->now_ns > CATCH_UP_NS) {
-        drive->now_ns = drive->running ? now_ns - CATCH_UP_NS : now_ns;
-        drive->running = true;
-    }
-    while (drive->now_ns < now_ns) {
-        const int64_t left_ns = now_ns - drive->now_ns;
-        const int64_t step_ns = left_ns < STEP_NS ? left_ns : STEP_NS;
-        drive->now_ns += step_ns;
-        step(drive, (double)step_ns * 1e-9);
-    }
+    for (double step_s; (step_s = cm1e_sim_time_step(&drive->now_ns, now_ns)) > 0;)
+        step(drive, step_s);
 }
 
 static int64_t due(const void *app)

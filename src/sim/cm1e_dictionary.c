@@ -14,17 +14,9 @@ const cm1e_object_t *cm1e_sim_object(void *app, size_t n)
 
 /* ---- creation and power-on -------------------------------------------------------------------------------------- */
 
-static const cm1e_object_t *object_of_tables(const void *context, size_t n)
-{
-    (void)context;
-    size_t count;
-    const cm1e_object_t *objects = cm1e_device_objects(&count);
-    return n < count ? &objects[n] : NULL;
-}
-
 bool cm1e_sim_dictionary_create(cm1e_sim_cm1e_t *drive)
 {
-    return cm1e_sim_store_create(&drive->store, object_of_tables, NULL, drive->firmware->firmware);
+    return cm1e_sim_store_create(&drive->store, &cm1e_device_cm1e, drive->firmware->firmware);
 }
 
 static void set_value(cm1e_sim_cm1e_t *drive, uint16_t index, uint8_t subindex, int64_t value)
@@ -100,11 +92,9 @@ uint32_t cm1e_sim_sdo_read(void *app, uint16_t index, uint8_t subindex, uint8_t 
     (void)al_state; /* the dictionary is there in every state since V1.2.0 (UG 10.1) */
     cm1e_sim_cm1e_t *drive = app;
     cm1e_sim_cell_t cell;
-    const uint32_t missing = cm1e_sim_store_find(&drive->store, index, subindex, &cell);
+    const uint32_t missing = cm1e_sim_store_find_readable(&drive->store, index, subindex, &cell);
     if (missing)
         return missing;
-    if (!(cell.entry->access & CM1E_ACCESS_READ))
-        return SDO_ABORT_WRITE_ONLY;
     if (cell.entry->type == CM1E_TYPE_STRING)
         return cm1e_sim_give_text(index == OBJ_100A_SOFTWARE_VERSION ? drive->firmware->version
                                                                       : cell.entry->default_string, data, size);

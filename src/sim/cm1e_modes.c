@@ -68,13 +68,6 @@ static uint16_t cyclic_status_bits(const cm1e_sim_cm1e_t *drive)
 
 /* ---- cyclic synchronous velocity -------------------------------------------------------------------------------- */
 
-/* While the torque limit holds the motor back the reference moves with it: a velocity servo does not catch up. */
-static void velocity_step(cm1e_sim_cm1e_t *drive, double step_s)
-{
-    cm1e_servo_t *servo = &drive->servo;
-    servo->reference += (servo->saturated ? drive->mechanics.velocity : servo->reference_velocity) * step_s;
-}
-
 static void csv_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
 {
     (void)rising_bits;
@@ -90,7 +83,7 @@ static void csv_enter(cm1e_sim_cm1e_t *drive)
 static void csv_step(cm1e_sim_cm1e_t *drive, double step_s)
 {
     drive->servo.reference_velocity = drive->goal_velocity;
-    velocity_step(drive, step_s);
+    cm1e_servo_run(&drive->servo, &drive->mechanics, step_s);
 }
 
 /* ---- profile velocity ------------------------------------------------------------------------------------------- */
@@ -120,7 +113,7 @@ static void pv_step(cm1e_sim_cm1e_t *drive, double step_s)
     const double wanted = halt_bit(drive) ? 0 : drive->goal_velocity;
     cm1e_sim_ramp(&drive->servo.reference_velocity, wanted,
                   wanted == 0 ? drive->profile_deceleration : drive->profile_acceleration, step_s);
-    velocity_step(drive, step_s);
+    cm1e_servo_run(&drive->servo, &drive->mechanics, step_s);
     drive->reached_s = at_velocity(drive, wanted) ? drive->reached_s + step_s : 0;
     cm1e_servo_rest(&drive->servo, &drive->mechanics);
 }
@@ -142,8 +135,7 @@ static void pp_enter(cm1e_sim_cm1e_t *drive)
     servo->own_profile = true;
     drive->profile_acceleration = acceleration(drive, drive->objects.profile_acceleration);
     drive->profile_velocity = fabs(servo->reference_velocity);
-    drive->goal = servo->reference + servo->reference_velocity * fabs(servo->reference_velocity) /
-                                         (2 * drive->profile_acceleration);
+    drive->goal = cm1e_sim_stopping_place(servo, drive->profile_acceleration);
     drive->set_point_acknowledge = false;
 }
 
@@ -163,10 +155,9 @@ static void pp_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)
 static void pp_step(cm1e_sim_cm1e_t *drive, double step_s)
 {
     cm1e_servo_t *servo = &drive->servo;
-    if (halt_bit(drive)) {
-        cm1e_sim_ramp(&servo->reference_velocity, 0, drive->profile_acceleration, step_s);
-        servo->reference += servo->reference_velocity * step_s;
-    } else
+    if (halt_bit(drive))
+        cm1e_sim_halt_step(servo, drive->profile_acceleration, step_s);
+    else
         cm1e_sim_move_step(servo, drive->goal, drive->profile_velocity, drive->profile_acceleration, step_s);
 }
 

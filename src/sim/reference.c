@@ -36,6 +36,18 @@ bool cm1e_sim_move_step(cm1e_servo_t *servo, double target, double velocity, dou
     return false;
 }
 
+double cm1e_sim_stopping_place(const cm1e_servo_t *servo, double acceleration)
+{
+    const double velocity = servo->reference_velocity;
+    return servo->reference + velocity * fabs(velocity) / (2 * acceleration);
+}
+
+void cm1e_sim_halt_step(cm1e_servo_t *servo, double acceleration, double step_s)
+{
+    cm1e_sim_ramp(&servo->reference_velocity, 0, acceleration, step_s);
+    servo->reference += servo->reference_velocity * step_s;
+}
+
 void cm1e_sim_line_begin(cm1e_sim_line_t *line, cm1e_servo_t *servo, double goal)
 {
     *line = (cm1e_sim_line_t){.goal = goal};

@@ -13,6 +13,11 @@ void cm1e_sim_ramp(double *velocity, double wanted, double acceleration, double 
 /** Makes one step of a trapezoidal move of the servo's reference to `target`. Returns true when it is at rest there. */
 bool cm1e_sim_move_step(cm1e_servo_t *servo, double target, double velocity, double acceleration, double step_s);
 
+/** Where the reference comes to rest if it brakes now. */
+double cm1e_sim_stopping_place(const cm1e_servo_t *servo, double acceleration);
+/** Makes one step of a ramp to rest. */
+void cm1e_sim_halt_step(cm1e_servo_t *servo, double acceleration, double step_s);
+
 /** Straight lines from one cyclic target to the next. Targets are not checked: a target that is not the actual position
  *  makes the motor jump. */
 typedef struct cm1e_sim_line {

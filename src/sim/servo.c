@@ -39,6 +39,11 @@ void cm1e_servo_rest(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics)
     servo->integral = servo->torque;
 }
 
+void cm1e_servo_run(cm1e_servo_t *servo, const cm1e_mechanics_t *mechanics, double step_s)
+{
+    servo->reference += (servo->saturated ? mechanics->velocity : servo->reference_velocity) * step_s;
+}
+
 /* Velocity and acceleration of a profile of the drive are known exactly and fed forward. Set-points of the master are
  * smoothed. Returns the acceleration, counts/s2. */
 static double feed_forward(cm1e_servo_t *s, double step_s)

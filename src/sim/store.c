@@ -8,11 +8,10 @@
 
 /* ---- the values ------------------------------------------------------------------------------------------------- */
 
-static const cm1e_object_t *next_object(const cm1e_sim_store_t *store, cm1e_sim_objects_fn objects, const void *context,
-                                        size_t *n)
+static const cm1e_object_t *next_object(const cm1e_sim_store_t *store, const cm1e_device_t *device, size_t *n)
 {
     const cm1e_object_t *object;
-    while ((object = objects(context, (*n)++)) != NULL && object->since > store->firmware)
+    while ((object = device->object(device, (*n)++)) != NULL && object->since > store->firmware)
         ;
     return object;
 }
@@ -24,13 +23,12 @@ static void set_defaults(cm1e_sim_store_t *store)
             store->values[store->first_entry[i] + k] = store->objects[i]->entries[k].default_value;
 }
 
-bool cm1e_sim_store_create(cm1e_sim_store_t *store, cm1e_sim_objects_fn objects, const void *context,
-                           cm1e_firmware_t firmware)
+bool cm1e_sim_store_create(cm1e_sim_store_t *store, const cm1e_device_t *device, cm1e_firmware_t firmware)
 {
     const cm1e_object_t *object;
     uint32_t entries = 0;
     *store = (cm1e_sim_store_t){.firmware = firmware};
-    for (size_t n = 0; (object = next_object(store, objects, context, &n)) != NULL; store->object_count++)
+    for (size_t n = 0; (object = next_object(store, device, &n)) != NULL; store->object_count++)
         entries += object->entry_count;
     store->objects = calloc(store->object_count, sizeof *store->objects);
     store->first_entry = calloc(store->object_count, sizeof *store->first_entry);
@@ -39,7 +37,7 @@ bool cm1e_sim_store_create(cm1e_sim_store_t *store, cm1e_sim_objects_fn objects,
         return false;
     entries = 0;
     size_t i = 0;
-    for (size_t n = 0; (object = next_object(store, objects, context, &n)) != NULL; i++) {
+    for (size_t n = 0; (object = next_object(store, device, &n)) != NULL; i++) {
         store->objects[i] = object;
         store->first_entry[i] = entries;
         entries += object->entry_count;
@@ -90,6 +88,15 @@ uint32_t cm1e_sim_store_find(const cm1e_sim_store_t *store, uint16_t index, uint
         }
     }
     return SDO_ABORT_NO_SUBINDEX;
+}
+
+uint32_t cm1e_sim_store_find_readable(const cm1e_sim_store_t *store, uint16_t index, uint8_t subindex,
+                                      cm1e_sim_cell_t *cell)
+{
+    const uint32_t missing = cm1e_sim_store_find(store, index, subindex, cell);
+    if (missing)
+        return missing;
+    return cell->entry->access & CM1E_ACCESS_READ ? 0 : (uint32_t)SDO_ABORT_WRITE_ONLY;
 }
 
 void cm1e_sim_store_set(cm1e_sim_store_t *store, uint16_t index, uint8_t subindex, int64_t value)

@@ -10,7 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "device/device.h"
+#include "device/devices.h"
 
 typedef struct cm1e_sim_store {
     const cm1e_object_t **objects; /**< those that the device has, in order of index */
@@ -26,18 +26,17 @@ typedef struct cm1e_sim_cell {
     int64_t *value;
 } cm1e_sim_cell_t;
 
-/** Object number n of the device tables, in order of index; NULL: no more. */
-typedef const cm1e_object_t *(*cm1e_sim_objects_fn)(const void *context, size_t n);
-
-/** Initialises every value with the default of the tables. Returns false if there is no memory; destroy the store in
- *  that case too. */
-bool cm1e_sim_store_create(cm1e_sim_store_t *store, cm1e_sim_objects_fn objects, const void *context,
-                           cm1e_firmware_t firmware);
+/** Initialises every value with the default of the device's tables. Returns false if there is no memory; destroy the
+ *  store in that case too. */
+bool cm1e_sim_store_create(cm1e_sim_store_t *store, const cm1e_device_t *device, cm1e_firmware_t firmware);
 void cm1e_sim_store_destroy(cm1e_sim_store_t *store);
 /** NULL: no more. */
 const cm1e_object_t *cm1e_sim_store_object(const cm1e_sim_store_t *store, size_t n);
 /** Finds an entry. Returns 0, or the abort code for what is missing; the cell then has two NULL pointers. */
 uint32_t cm1e_sim_store_find(const cm1e_sim_store_t *store, uint16_t index, uint8_t subindex, cm1e_sim_cell_t *cell);
+/** Finds an entry that can be read. */
+uint32_t cm1e_sim_store_find_readable(const cm1e_sim_store_t *store, uint16_t index, uint8_t subindex,
+                                      cm1e_sim_cell_t *cell);
 /** Does nothing where there is no such entry. */
 void cm1e_sim_store_set(cm1e_sim_store_t *store, uint16_t index, uint8_t subindex, int64_t value);
 
