@@ -19,7 +19,7 @@
 #include "device/cml.h"
 #include "drive/drive_bridge.h"
 
-/* Something that a block asked for and polls. */
+/* A request of a block, which polls it by its ticket. */
 typedef struct asked {
     uint32_t ticket;            /* of the last one; 0: none yet */
     cm1e_command_state_t state;
@@ -39,7 +39,7 @@ struct cool_muscle {
     int64_t release_ns;         /* shut down is waited for since then; 0: it is not */
     asked_t switching, command;
     const char *why;            /* of the last refusal, for the text: a sentence; NULL: none */
-    char text[CM1E_CML_BYTES + 1]; /* ... and the string */
+    char text[CM1E_CML_BYTES + 1]; /* and the string that was refused */
 };
 typedef struct cool_muscle cool_muscle_t;
 
@@ -82,7 +82,7 @@ static bool is_quiet(const cm1e_axis_t *axis)
            !axis->drive.torque && !axis->power.shutting_down;
 }
 
-/* In ErrorStop nothing is switched; but a motor that is in CML already can be asked what is the matter. */
+/* In ErrorStop the mode is not switched. A motor that is in CML already can be asked for the cause. */
 static cm1e_error_t check(const cm1e_axis_t *axis, bool string)
 {
     if (!axis->muscle)
@@ -207,7 +207,7 @@ cm1e_error_t cm1e_axis_set_mode(cm1e_axis_t *axis, cm1e_bridge_mode_t mode, bool
     return CM1E_OK;
 }
 
-/* What another one has taken the place of is aborted. */
+/* Aborts a request that another one has replaced. */
 static cm1e_command_state_t state_of(const asked_t *asked, uint32_t ticket, cm1e_error_t *error)
 {
     const bool mine = ticket != 0 && asked->ticket == ticket;
@@ -311,7 +311,7 @@ static void end_strings(cm1e_axis_t *axis, cm1e_error_t error)
     muscle->freeing = 0;
 }
 
-/* A bridge that is in another mode has no CML motion any more. */
+/* A bridge in another mode has no motion by CML any more. */
 static void free_step(cm1e_axis_t *axis)
 {
     cool_muscle_t *muscle = axis->muscle;
@@ -332,7 +332,7 @@ static void free_step(cm1e_axis_t *axis)
         muscle->must_free = muscle->moved = false;
 }
 
-/* The end of the last string is told; where it was one that may have moved the motor, and failed, that is freed. */
+/* Reports the end of the last string. If it may have moved the motor and failed, the motor is freed. */
 static void follow_string(cm1e_axis_t *axis)
 {
     cool_muscle_t *muscle = axis->muscle;
@@ -348,7 +348,7 @@ static void follow_string(cm1e_axis_t *axis)
         end_strings(axis, CM1E_ERROR_CANCELLED);
 }
 
-/* The motor is in the axis's own mode, or on its way there: it may be enabled. */
+/* Whether the motor is in the axis's own mode, or on the way to it, so that it may be enabled. */
 static bool is_home(const cm1e_axis_t *axis)
 {
     const cool_muscle_t *muscle = axis->muscle;

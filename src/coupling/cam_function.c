@@ -6,7 +6,7 @@
 #include "axis/axis_position.h"
 #include "coupling/coupling_private.h"
 
-/* A slave is where the cam wants it, and moves like it, when what is left to be done is as little as this. */
+/* A remainder below this is reached: the slave is where the cam wants it and moves like it. */
 static const double same_place_counts = 10.0;
 static const double same_motion_cycles = 1.0; /* of the axis's own acceleration */
 
@@ -14,7 +14,7 @@ static const double largest_scaling = 1e9;
 
 /* ---- the coupling function --------------------------------------------------------------------------------------- */
 
-/* Divided, so that a master at an end of the cam is exactly there. */
+/* Divides instead of multiplying, so that a master at an end of the cam is exactly there. */
 static double place_in_cam(const cam_place_t *cam, const link_t *link, double counts)
 {
     const double way = (counts + cam->away) / link->master->position.scale - cam->master_offset;
@@ -26,7 +26,7 @@ static double place_now(const follow_t *follow)
     return place_in_cam(&follow->cam, &follow->links[0], follow->links[0].seen.counts);
 }
 
-/* A single-shot that was gone through is not run again, whatever the master does: its slave stays at that end (4.1). */
+/* A single-shot cam that has ended does not run again, whatever the master does. The slave stays at that end (4.1). */
 static double place_to_be(const follow_t *follow)
 {
     const cam_place_t *cam = &follow->cam;
@@ -41,7 +41,7 @@ static double height(const cam_place_t *cam, const cm1e_cam_sample_t *sample)
     return cam->slave_offset + cam->slave_scaling * (turns + sample->point.position);
 }
 
-/* Periods of which the end is behind or under the master, seen from that way. */
+/* Number of periods whose end the master has passed or reached, in this direction. */
 static double ends_below(const cm1e_cam_t *table, const cm1e_cam_sample_t *sample, bool rising)
 {
     return !table->periodic || rising || sample->phase == 0.0 ? sample->turn : sample->turn + 1.0;
@@ -140,7 +140,7 @@ void cm1e_cam_in_point(const cm1e_axis_t *axis, const follow_t *follow, double c
                                   .curvature = cam->slave_scaling * once * once * sample.point.curvature};
 }
 
-/* A cam may need all of this before long, at the master's present velocity. */
+/* The limits that a cam may need soon, at the present velocity of the master. */
 static cm1e_motion_limits_t cam_demand(const follow_t *follow)
 {
     const cam_place_t *cam = &follow->cam;
@@ -166,7 +166,7 @@ cm1e_motion_limits_t cm1e_cam_leaves(const cm1e_axis_t *axis, const follow_t *fo
 {
     const cm1e_motion_limits_t nothing = {0}, *most = &axis->limits.maximum;
     const cm1e_motion_limits_t needed = follow->cam.slot ? cam_demand(follow) : nothing;
-    /* What slows down beside a cam may speed up the axis. */
+    /* A deceleration of the catch-up may accelerate the axis. */
     const double change = part_of(fmin(asked->acceleration, asked->deceleration),
                                   fmin(most->acceleration, most->deceleration),
                                   fmax(needed.acceleration, needed.deceleration));
@@ -231,7 +231,7 @@ static void find_master_zero(const follow_t *follow, cam_place_t *cam, double be
     cam->away = cam->slot->master_absolute ? units * link->master->position.scale : beyond - link->seen.counts;
 }
 
-/* Of the places of a modulo slave, the cam's that is nearest to it. */
+/* Of the repeated positions of a modulo slave, the one nearest to that of the cam. */
 static cm1e_error_t find_slave_zero(const cm1e_axis_t *axis, const cm1e_axis_coupling_t *coupling, const from_t *from,
                                     cam_place_t *cam, double here)
 {

@@ -31,7 +31,7 @@ const cam_slot_t *cm1e_cam_memory_find(const cm1e_axis_t *axis, MC_CAM_ID id)
     return NULL;
 }
 
-/* It is followed, or a command that waits names it. */
+/* Whether the cam is followed, or a command that waits names it. */
 static bool used(cm1e_axis_t *axis, const cam_slot_t *slot)
 {
     const coupling_t *c = axis->coupling;
@@ -51,7 +51,7 @@ static cam_slot_t *empty_slot(cams_t *cams)
     return slot;
 }
 
-/* The oldest that nobody needs. NULL: none; `*room`: there is no need for that. */
+/* The oldest cam that is not needed. NULL: there is none; `*room`: a place is free. */
 static cam_slot_t *to_go(cm1e_axis_t *axis, bool *room)
 {
     cam_slot_t *oldest = NULL;

@@ -36,7 +36,8 @@ static cm1e_motion_limits_t limits_beside(const cm1e_axis_t *axis, const from_t 
     const double down = at_most(catch_up->asked.deceleration, most->deceleration, used);
     const double change = now * f->velocity < 0.0 ? fmin(up, down) : fabs(f->velocity) > fabs(now) ? up : down;
     const double jerk = full_jerk ? catch_up->asked.jerk : at_most(catch_up->asked.jerk, most->jerk, fabs(f_jerk));
-    /* A part of what the function leaves: it may become faster, and the catch-up gives way by its jerk only. */
+    /* A part of what the coupling function leaves. The function may become faster, and the catch-up can give way by its
+     * jerk only. */
     const double part = 0.1, taken = (1.0 - part) * most->velocity + part * fabs(f->velocity);
     const double velocity = catch_up->to_place ? at_most(catch_up->asked.velocity, most->velocity, taken)
                                           : 2.0 * (most->velocity + fabs(catch_up->now.velocity));
@@ -164,7 +165,7 @@ static from_t with_catch_up(cm1e_axis_t *axis, const from_t *f, verdict_t *verdi
     attempt_t kept = ATTEMPTS;
     for (int attempt = first; attempt < ATTEMPTS; attempt++) {
         sum = attempt_to(axis, f, &before, (attempt_t)attempt, verdict);
-        /* At a border that the function leads over, the catch-up could hold the axis for ever. */
+        /* If the coupling function leads beyond a limit, a catch-up could hold the axis there for ever. */
         if (verdict->smooth || verdict->guard.limit == GUARD_DIRECTION ||
             verdict->guard.limit == GUARD_SOFTWARE_LIMIT)
             return sum;
@@ -242,7 +243,7 @@ static void after_set_point(cm1e_axis_t *axis, const from_t *f)
     }
 }
 
-/* FALSE always. In ErrorStop already there is nothing more to tell. */
+/* Always returns false. In ErrorStop there is nothing more to report. */
 static bool stop_alone(cm1e_axis_t *axis, guard_t guard)
 {
     if (axis->coupling->stopping)
@@ -317,7 +318,7 @@ static void leave(cm1e_axis_t *axis)
     axis->coupling->stopping = false;
 }
 
-/* Nobody knows where the masters go. */
+/* The motion of the masters is unknown, so only the way of an emergency stop is known. */
 static bool keeps(const cm1e_axis_t *axis, double lower, double upper)
 {
     const double v = axis->setpoint.velocity;
@@ -337,7 +338,7 @@ const source_t cm1e_source_coupling = {
 
 /* ---- beginnings -------------------------------------------------------------------------------------------------- */
 
-/* What rounding leaves of nothing at all. */
+/* The remainder that rounding leaves of zero. */
 static bool is_nothing(const cm1e_axis_t *axis, const cm1e_motion_state_t *left)
 {
     const double counts = 1e-6, t = axis->cycle_s, scale = fabs(axis->position.scale);

@@ -15,7 +15,7 @@ static prepare_t *const preparers[CM1E_COMMAND_KIND_COUNT] = {
     [CM1E_COMMAND_COMBINE_AXES] = cm1e_gear_prepare,
 };
 
-/* Some numbers are too small to compute with, whatever the masters do when it begins. */
+/* Some numbers are too small to compute with, whatever the masters do when the command begins. */
 static cm1e_error_t check_size(const cm1e_axis_t *axis, const cm1e_motion_limits_t *asked)
 {
     const double most = axis->limits.maximum.velocity;
@@ -60,7 +60,7 @@ static bool same_inputs(const cm1e_axis_coupling_t *a, const cm1e_axis_coupling_
            a->master_scaling == b->master_scaling && a->slave_scaling == b->slave_scaling;
 }
 
-/* Other inputs of these are another coupling, from the present set-point on. */
+/* Changed inputs make a new coupling from the present set-point on. */
 static bool begins_anew(cm1e_command_kind_t kind)
 {
     return kind == CM1E_COMMAND_GEAR_IN || kind == CM1E_COMMAND_COMBINE_AXES;
@@ -151,13 +151,13 @@ cm1e_error_t cm1e_coupling_buffer(cm1e_axis_t *axis, const cm1e_axis_command_t *
     *place = (waiting_coupling_t){axis->commands.last_id + 1 ? axis->commands.last_id + 1 : 1, *command->coupling};
     const cm1e_error_t error = cm1e_axis_buffer(axis, &move);
     if (error)
-        place->id = 0; /* the number will be another command's */
+        place->id = 0; /* the number will belong to another command */
     else
         *id = move.id;
     return error;
 }
 
-/* Where the command before it has come to since its end. */
+/* The end of the previous command, moved on by its velocity to the present. */
 static from_t at_present(const cm1e_axis_t *axis, const from_t *from, double late_s)
 {
     from_t here = *from;
@@ -197,7 +197,7 @@ static cm1e_error_t begin_awaited(cm1e_axis_t *axis, const move_t *move, const c
     return error;
 }
 
-/* It follows from the present set-point on. */
+/* The coupling begins at the present set-point. */
 cm1e_error_t cm1e_coupling_begin(cm1e_axis_t *axis, move_t *move, const from_t *from, double late_s)
 {
     const waiting_coupling_t *waiting = waiting_of(axis, move->id);

@@ -34,7 +34,7 @@ typedef struct master_view {
     double velocity, acceleration; /**< of the master: u/s, u/s2 */
 } master_view_t;
 
-/** A slave at its master. */
+/** The link of a slave to its master. */
 typedef struct link {
     cm1e_axis_t *master;           /**< NULL: there is none, or it has been destroyed */
     cm1e_axis_t *slave;
@@ -53,7 +53,7 @@ enum { LINKS = 2, FOLLOWS = 3, COUPLINGS_WAITING = 3, PHASINGS_WAITING = 3 };
 
 struct coupling_function;
 
-/** What a slave follows, and how. */
+/** What a slave follows, and by which function. */
 typedef struct follow {
     const struct coupling_function *function; /**< NULL: nothing */
     link_t links[LINKS];
@@ -121,7 +121,7 @@ typedef struct phasing {
     double covered;
 } phasing_t;
 
-/** Of this axis, for those that follow its actual value. */
+/** Of this axis, for slaves that follow its actual value. */
 typedef struct observed {
     bool begun;
     cm1e_observer_t filter;
@@ -164,26 +164,26 @@ typedef struct coupling {
 void cm1e_coupling_advance_masters(cm1e_axis_t *axis);
 /** Lets them begin anew before their slave (axis_pause.c); 0: after silence. */
 void cm1e_coupling_resume_masters(cm1e_axis_t *axis, int64_t pause_ns);
-/** After silence, those that follow it. */
+/** Lets the slaves that follow this axis begin anew after silence. */
 void cm1e_coupling_resume_slaves(cm1e_axis_t *axis);
 /** One of its masters began anew in this cycle, or what is seen of it is its actual value. */
 bool cm1e_coupling_begins_anew(const cm1e_axis_t *axis);
 /** Fills in a master of a `follow` that is not in force yet: origin and view as of the slave's present set-point.
  *  CM1E_ERROR_AXIS_MASTER, _COUPLING_CYCLE, _MASTER_LOST, CM1E_ERROR_INVALID_ARGUMENT: nothing follows it. */
 cm1e_error_t cm1e_coupling_link(cm1e_axis_t *slave, follow_t *follow, const cm1e_coupling_master_t *master);
-/** What the slave sees of all its masters in this cycle. */
+/** Makes the slave's view of all its masters in this cycle. */
 master_trouble_t cm1e_coupling_see(cm1e_axis_t *slave, follow_t *follow);
-/** What it sees of them, without a look at how they got there. */
+/** Makes that view without advancing the masters. */
 master_trouble_t cm1e_coupling_look(cm1e_axis_t *slave, follow_t *follow);
 void cm1e_coupling_list_links(follow_t *follow);
 void cm1e_coupling_unlist_links(follow_t *follow);
-/** Nobody follows it any more, and it nobody. @rt init */
+/** Removes the axis from all couplings, as a master and as a slave. @rt init */
 void cm1e_coupling_unlink(cm1e_axis_t *axis);
 /** An empty place for a coupling that is being prepared. */
 follow_t *cm1e_coupling_spare(cm1e_axis_t *axis);
-/** This one, of the first waiting command, waits for its master. */
+/** The coupling of the first waiting command now waits for its master. */
 void cm1e_coupling_await(cm1e_axis_t *axis, follow_t *follow);
-/** Nothing is awaited any more. */
+/** No coupling waits for its master any more. */
 void cm1e_coupling_await_nothing(cm1e_axis_t *axis);
 
 /* coupled_step.c */
@@ -222,9 +222,9 @@ master_trouble_t cm1e_coupling_see_actual(cm1e_axis_t *master, bool of_this_cycl
 cm1e_error_t cm1e_phasing_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
 /** The shift of the next cycle, before anything is seen of the masters. */
 void cm1e_phasing_step(cm1e_axis_t *axis);
-/** Running and waiting ones end. Where the axis still follows, the shift comes to rest. */
+/** Running and waiting phasings end. If the axis still follows, the shift comes to rest. */
 void cm1e_phasing_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
-/** They end with CommandAborted, and the shift stays as it is. */
+/** Phasings end with CommandAborted, and the shift stays as it is. */
 void cm1e_phasing_stand(cm1e_axis_t *axis);
 /** The axis leaves the master that was shifted. */
 void cm1e_phasing_forget(cm1e_axis_t *axis);
@@ -249,7 +249,7 @@ cm1e_error_t cm1e_gear_in_pos_prepare(cm1e_axis_t *axis, const move_t *move, con
 /** Puts an approach before a coupling that is prepared: begun (`approach.awaited` nothing), or to be awaited. */
 cm1e_error_t cm1e_coupling_approach_prepare(cm1e_axis_t *axis, follow_t *follow, const move_t *move,
                                             const from_t *from);
-/** It begins there, with the master as seen. CM1E_ERROR_AXIS_SYNC_WAY: not within these limits. */
+/** Begins the approach with the master as seen. CM1E_ERROR_AXIS_SYNC_WAY: not within these limits. */
 cm1e_error_t cm1e_coupling_approach_begin(cm1e_axis_t *axis, follow_t *follow, const move_t *move,
                                           const from_t *from);
 /** While something is awaited, after the set-point of every cycle. */
@@ -271,7 +271,7 @@ cm1e_motion_limits_t cm1e_cam_leaves(const cm1e_axis_t *axis, const follow_t *fo
                                      const cm1e_motion_limits_t *asked);
 
 /* coupling_stop.c */
-/** A follower has failed: what else stops. */
+/** Stops what else has to stop when a follower has failed. */
 void cm1e_coupling_failed(cm1e_axis_t *axis);
 /** A master cannot be followed any more. TRUE: but to its standstill, and the axis is in ErrorStop. */
 bool cm1e_coupling_follows_to_the_end(cm1e_axis_t *axis, master_trouble_t trouble);

@@ -20,16 +20,16 @@ static bool keeps_ratio(const cm1e_axis_t *axis)
            !axis->superimposed.id; /* it ends with the commands */
 }
 
-/* For the text: because of whom it stops. */
+/* The axis that caused the stop, for the text. */
 static void fail_with(cm1e_axis_t *axis, const cm1e_axis_t *cause, double deceleration)
 {
     if (axis->state == CM1E_AXIS_ERROR_STOP || axis_free(axis))
-        return; /* without torque there is nothing to stop */
+        return; /* without torque there is no motion to stop */
     memcpy(axis->coupling->other_name, cause->config->name, sizeof axis->coupling->other_name);
     cm1e_axis_fail_gently(axis, CM1E_ERROR_AXIS_COUPLED, deceleration);
 }
 
-/* Its slave follows by it, and does not only wait to do so. */
+/* Whether the slave follows by this link, and does not only wait to do so. */
 static bool in_force(const link_t *link)
 {
     const follow_t *now = link->slave->coupling->now;

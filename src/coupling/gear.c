@@ -69,7 +69,7 @@ static bool leaves(cm1e_command_kind_t out, cm1e_command_kind_t in)
     return out == CM1E_COMMAND_CAM_OUT ? in == CM1E_COMMAND_CAM_IN : in != CM1E_COMMAND_CAM_IN;
 }
 
-/* Done at once; what goes on is a command that no block owns. */
+/* The command is done at once. The motion goes on as a command that no block owns. */
 cm1e_error_t cm1e_gear_out(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id)
 {
     const from_t from = from_set(axis);

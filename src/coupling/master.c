@@ -77,7 +77,7 @@ static bool search_masters(const follow_t *follow, const cm1e_axis_t *goal, uint
     return false;
 }
 
-/* Whether `goal` is `from`, or one of its masters, or of theirs. Each axis is looked at once. */
+/* Whether `goal` is `from`, one of its masters, or one of theirs. Looks at each axis once. */
 static bool search(cm1e_axis_t *from, const cm1e_axis_t *goal, uint64_t mark)
 {
     coupling_t *c = from->coupling;
@@ -172,7 +172,7 @@ static master_trouble_t trouble_of_set_value(const cm1e_axis_t *master)
     return stopped ? MASTER_STOPPING : MASTER_GOOD;
 }
 
-/* A set-point of the slave that has not advanced is that of the cycle before. */
+/* If the slave has not advanced, its set-point is that of the previous cycle. */
 static master_trouble_t see_actual(link_t *link, position_t *position)
 {
     from_t seen;
@@ -209,7 +209,7 @@ static bool keeps_phase(const cm1e_axis_t *slave, const link_t *link)
     return axis_follows(slave) && slave->coupling->now->links[0].master == link->master;
 }
 
-/* The slave's own: the shift against the first of its masters (4.8). */
+/* The slave's own shift against the first of its masters (4.8). */
 static void add_phase(const cm1e_axis_t *slave, link_t *link)
 {
     const cm1e_motion_state_t *phase = &slave->coupling->phase;
@@ -240,7 +240,7 @@ static master_trouble_t trouble_with(cm1e_axis_t *slave, const link_t *link, mas
 {
     coupling_t *c = slave->coupling;
     if (c->stopping)
-        return trouble; /* the first cause is the one to tell */
+        return trouble; /* the first cause is reported */
     c->trouble = trouble;
     c->master_error = link->master ? link->master->fault.error : CM1E_OK;
     memcpy(c->other_name, link->master ? link->master->config->name : "", link->master ? sizeof c->other_name : 1);

@@ -23,7 +23,7 @@ static void look(cm1e_axis_t *axis)
     own->now.acceleration = (own->now.velocity - own->before.velocity) / axis->cycle_s;
 }
 
-/* By set-points of ours, not by hand and not by a profile of its drive. */
+/* Whether our set-points move the axis, and not a hand or a profile of its drive. */
 static bool goes_as_told(const cm1e_axis_t *axis)
 {
     return !axis_free(axis) && axis->setpoint.source != &cm1e_source_drive;
@@ -61,7 +61,7 @@ void cm1e_coupling_observe(cm1e_axis_t *axis)
     observed_t *own = &axis->coupling->own;
     const bool fresh = axis->drive.feedback.fresh;
     const uint32_t limit = cm1e_bus_configuration(axis->drive.bus)->lost_cycles_limit;
-    /* What comes after a homing of the drive, or a long silence, is another place. */
+    /* A position after a homing of the drive, or after a long silence, is another place. */
     const bool anew = !own->begun || drive_homes(axis) || own->lost > limit;
     if (anew && fresh) {
         begin(axis);

@@ -18,7 +18,7 @@ static const double relative_tolerance = 1e-9;
 
 /* ---- what the slave can follow ----------------------------------------------------------------------------------- */
 
-/* Of a cam that stands still everything. */
+/* The largest slope of the coupling function; 1 for a cam that does not move its slave. */
 static double steepest(const cm1e_axis_t *axis)
 {
     const follow_t *now = axis->coupling->now;
@@ -83,7 +83,7 @@ static bool fits_beside_master(const cm1e_axis_t *axis, const cm1e_profile_t *pr
 
 /* ---- one after the other ----------------------------------------------------------------------------------------- */
 
-/* How it would go from the present shift on. */
+/* The motion of the shift from its present state on. */
 static cm1e_error_t plan(const cm1e_axis_t *axis, const move_t *move, double *origin, cm1e_profile_t *profile)
 {
     const coupling_t *c = axis->coupling;

@@ -27,7 +27,7 @@ bool cm1e_bridge_status_is_error(cm1e_bridge_motor_t motor, uint32_t status);
 /** One of the values that the guide lists for this motor. */
 bool cm1e_bridge_status_is_listed(cm1e_bridge_motor_t motor, uint32_t status);
 #define CM1E_BRIDGE_STATUS_CLAUSE "BR 7.4"
-/** It moves or pushes: has neither arrived nor an error, nor is it free. */
+/** It moves or pushes: it has not arrived, has no error and is not free. */
 bool cm1e_bridge_status_is_moving(cm1e_bridge_motor_t motor, uint32_t status);
 
 #endif

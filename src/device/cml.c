@@ -18,7 +18,7 @@ static bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c 
 static bool is_printable(char c) { return c >= ' ' && c <= '~'; }
 static char lower(char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c; }
 
-/* Digits at `at`, and goes on behind them. FALSE: there are none, or more than a number of 32 bits can have. */
+/* Reads digits at `at` and moves behind them. false: there are none, or the number has more than 32 bits. */
 static bool take_number(const char **at, const char *end, unsigned *number)
 {
     const char *begin = *at;
@@ -28,7 +28,7 @@ static bool take_number(const char **at, const char *end, unsigned *number)
     return *at > begin && !(*at < end && is_digit(**at));
 }
 
-/* As above, with its sign, up to the ten digits of INT32_MAX and INT32_MIN. */
+/* Reads digits with a sign, up to the ten digits of INT32_MAX and INT32_MIN. */
 static bool take_value(const char **at, const char *end, int32_t *value)
 {
     const bool negative = *at < end && **at == '-';

@@ -55,7 +55,7 @@ enum {
     OBJ_FF00_LED_BRIGHTNESS = 0xFF00,
     OBJ_FF01_LED_OVERRIDE = 0xFF01,
 };
-#define CM1E_K_PARAMETER_HOMING_OFFSET_UNIT 0x19 /**< ... K45, behind a bridge (BR 6.4.1) */
+#define CM1E_K_PARAMETER_HOMING_OFFSET_UNIT 0x19 /**< K45, behind a bridge (BR 6.4.1) */
 #define CM1E_K_PARAMETER_HOMING_TORQUE 0x1B /**< sub-index of 0x60F6: K47, % of rated torque (UG 6.2.4) */
 
 /* ---- firmware ---------------------------------------------------------------------------------------------------- */
@@ -208,7 +208,7 @@ typedef struct cm1e_device_error {
     uint16_t code;               /**< 0x603F */
     uint8_t error_register;      /**< 0x1001 */
     bool fault;                  /**< raises statusword bit 3 */
-    bool fault_only_when_enabled;/**< ... from Operation enabled only (0xFF05) */
+    bool fault_only_when_enabled;/**< in Operation enabled only (0xFF05) */
     const char *text;            /**< UG 7.3.1 */
     const char *cause;           /**< how it comes to it; NULL: `text` says it */
     const char *cure;            /**< what the user does about it */

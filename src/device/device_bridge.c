@@ -72,7 +72,7 @@ static const cm1e_device_homing_t cm1_homing = {HOMING, .steps = {STEPS}};
 /* Its K45 says what K48 counts in (BR 6.4.1, note 3). */
 static const cm1e_device_homing_t cm2_homing = {HOMING, .steps = {HOME_READ, STEPS}};
 
-/* A motor that does not answer is missed after some exchanges only; until then 0x6064 is where it was once. */
+/* A motor that does not answer is detected after some exchanges only. Until then 0x6064 is its last position. */
 #define DRIVE                                                                                                       \
     .name = "motor behind an EtherCAT Cool MUSCLE Bridge", .place = "behind the bridge ",                           \
     .objects = process_data, .object_count = COUNT(process_data),                                                   \
@@ -132,7 +132,7 @@ static const cm1e_entry_t *entry(const cm1e_device_t *device, uint16_t index, ui
     return cm1e_bridge_entry(device->model, index, subindex);
 }
 
-/* Those of all its axes, configured or not: whether it accepts fewer is not in its guide. */
+/* The PDOs of all its axes, configured or not: the guide does not say whether the bridge accepts fewer. */
 static cm1e_pdo_choice_t pdos(const cm1e_axis_config_t *axis)
 {
     (void)axis;

@@ -4,8 +4,8 @@
 
 #include <stdio.h>
 
-/* Sizes are those of the standard. Which objects a drive has mapped is its own affair, or the bus file's; a mode
- * whose target is not mapped is not used. */
+/* The sizes of the standard. Which objects are mapped is decided by the drive or the bus file. A mode whose target is
+ * not mapped is not used. */
 static const cm1e_device_object_t process_data[] = {
     PROCESS_DATA(OUT_CONTROLWORD, OBJ_6040_CONTROLWORD, 2, 2, MAPPED_ALL, "Controlword", ),
     PROCESS_DATA(OUT_POSITION, OBJ_607A_TARGET_POSITION, 4, 4, 0, "Target position", ),
@@ -80,7 +80,7 @@ static const cm1e_device_drive_t drive = {
     .error = cm1e_cia402_error, .error_clause = "CiA 301, CiA 402 (IEC 61800-7-201)",
 };
 
-/* Those that the device has assigned, where the bus file names none. */
+/* The PDOs that the device has assigned, unless the bus file names others. */
 static cm1e_pdo_choice_t pdos(const cm1e_axis_config_t *axis)
 {
     if (!axis || !axis->outputs_pdo)

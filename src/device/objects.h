@@ -42,7 +42,7 @@ enum {
     {.index = (index_), .subindex = (sub_), .access = (access_), .type = CM1E_TYPE_##type_, .bits = BITS_##type_,   \
      .name = (name_), .unit = (unit_), .default_value = (default_), .minimum = (minimum_), .maximum = (maximum_),   \
      __VA_ARGS__}
-/* ... with the range of its type. */
+/* A variable with the range of its type. */
 #define ENTRY(index, sub, access, type, name, unit, value, ...)                                                     \
     ENTRY_RANGE(index, sub, access, type, name, unit, value, MIN_##type, MAX_##type, __VA_ARGS__)
 #define ENTRY_STRING(index_, name_, value_)                                                                         \

@@ -8,8 +8,8 @@
 #include "drive/drive_private.h"
 
 static const int64_t enable_timeout_ns = 2000 * MS_IN_NS;
-/* A controlword shows in the statusword some cycles later. Who took the torque away waits so long before he asks for it
- * again; else the answer to the old command would look like a loss of the new one. */
+/* A controlword shows in the statusword some cycles later. After the torque was taken away, it is not requested again
+ * for this time. Otherwise the answer to the old command would look like a loss of the new torque. */
 static const int64_t torque_pause_ns = 20 * MS_IN_NS;
 
 /* The slave has been matched with the axis (cm1e_bus_identify()); a bus that was made otherwise may have another. */
@@ -108,7 +108,7 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns)
         drive->was_enabled = true;
     if (operating && shown && f->online)
         drive->mode_confirmed = true;
-    /* A frame lost now and then changes nothing: the last picture holds until the supervision calls the bus lost. */
+    /* A single lost frame changes nothing: the last inputs hold until the supervision reports the bus as lost. */
     f->enabled = operating && shown && drive->was_enabled &&
                  (!drive->fault.error || drive_fault_allows_ramp(drive->fault.error));
 }
@@ -118,13 +118,13 @@ static bool in_range(const cm1e_drive_t *drive, int32_t position)
     return position >= drive->position_least && position <= drive->position_most;
 }
 
-/* Who asks for torque where there will be none hears of it. */
+/* Reports an error to a caller that requests torque where there will be none. */
 static void refuse_torque(cm1e_drive_t *drive)
 {
     const bool asked = drive->command.enable && !drive->torque && drive->seen && drive->feedback.online;
-    if (asked && !in_range(drive, drive->feedback.position)) /* as a target it would be cut: a jump */
+    if (asked && !in_range(drive, drive->feedback.position)) /* as a target it would be clamped, which is a jump */
         cm1e_drive_fail(drive, CM1E_ERROR_AXIS_POSITION_RANGE);
-    if (!asked || drive->takes_torque || drive->blocked_ns == 0) /* the clock began long ago */
+    if (!asked || drive->takes_torque || drive->blocked_ns == 0) /* 0: not set yet */
         drive->blocked_ns = drive->now_ns;
     else if (drive->now_ns - drive->blocked_ns >= enable_timeout_ns)
         cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_ENABLE_TIMEOUT);
@@ -139,7 +139,7 @@ static bool wants_torque(const cm1e_drive_t *drive)
     if (!drive->torque && (drive->feedback.state == OPERATION_ENABLED || drive->now_ns < drive->torque_from_ns ||
                            drive->distrusted > 0))
         return false;
-    /* Without fresh inputs the actual position is not known: no step towards torque then. */
+    /* Without fresh inputs the actual position is unknown, so the drive takes no step towards torque. */
     return drive->feedback.online || drive->was_enabled;
 }
 
@@ -166,7 +166,7 @@ static uint16_t mode_bits(cm1e_drive_t *drive, bool pass)
     return bits;
 }
 
-/* Words of another coding are on their way to be understood: those of now say nothing meanwhile. */
+/* During a switch to a mode with other words, the present words are meaningless. */
 static uint16_t no_torque_word(const cm1e_drive_t *drive)
 {
     const cm1e_device_words_t *words = drive->words;
@@ -175,7 +175,7 @@ static uint16_t no_torque_word(const cm1e_drive_t *drive)
     return words->commands ? cm1e_drive_cmd_word(drive) : words->no_torque;
 }
 
-/* One command a cycle, from the state seen (UG 6.1.2, BR 6.1.2). */
+/* Sends one command per cycle, chosen from the state that the drive shows (UG 6.1.2, BR 6.1.2). */
 static uint16_t controlword(cm1e_drive_t *drive, bool pass)
 {
     const cm1e_drive_feedback_t *f = &drive->feedback;
@@ -183,7 +183,7 @@ static uint16_t controlword(cm1e_drive_t *drive, bool pass)
         return drive->words->fault_reset;
     if (!drive->torque || f->state >= CM1E_FSA_STATE_COUNT)
         return no_torque_word(drive);
-    /* Switched on needs motor power, or the drive faults (UG 6.1.1); and the mode must be the right one by then. */
+    /* Switched on without motor power is a drive fault (UG 6.1.1). The mode must be the right one by then, too. */
     const bool ready = f->voltage && f->mode == (int8_t)drive->mode;
     if (!ready && f->state != OPERATION_ENABLED)
         return no_torque_word(drive);
@@ -203,8 +203,9 @@ static uint16_t signals(const cm1e_drive_t *drive)
     return (uint16_t)(words->mark | (outputs << CM1E_DEVICE_SIGNALS_AT & words->outputs));
 }
 
-/* Position to write while the caller's does not pass: the actual one; but as long as the drive shows torque in a mode
- * that holds a position, the last target: it neither sags by its lag, nor can a stale actual position move it. */
+/* The position to write while the caller's target is not used. It is the actual position. While the drive shows torque
+ * in a mode that holds a position, it is the last target: the motor does not sag by its lag, and a stale actual
+ * position cannot move it. */
 static int32_t safe_position(const cm1e_drive_t *drive)
 {
     return drive->target_holds ? drive->target_position : drive->feedback.position;
@@ -218,9 +219,9 @@ static int32_t slewed(int32_t from, int32_t to, int32_t step)
 
 static int64_t way_between(int32_t from, int32_t to) { return (int32_t)((uint32_t)to - (uint32_t)from); }
 
-/* CSP. Without an answer to the last frame the drive may hold its target, or an earlier one. The last target is repeated
- * then: the next frame that is heard carries the step of one cycle, however many were lost before it. Else the target is
- * within a step of the last one, or of where the motor is. */
+/* CSP. Without an answer to the last frame the drive may hold its target or an earlier one, so the last target is
+ * repeated. The next frame that arrives then carries the step of one cycle, however many frames were lost before it.
+ * Otherwise the target stays within one step of the last target, or of the actual position. */
 static int32_t next_position(const cm1e_drive_t *drive)
 {
     const int32_t wanted = drive->command.target_position, last = drive->target_position;
@@ -234,8 +235,8 @@ static int32_t next_position(const cm1e_drive_t *drive)
     return (int32_t)((uint32_t)last + (uint32_t)slewed(0, (int32_t)way_between(last, wanted), step));
 }
 
-/* CSV. Neither a position loop that has seen nothing for a while, nor the frames lost meanwhile, make a step of the
- * velocity. */
+/* CSV. After lost frames the velocity changes in limited steps: a position loop that was without inputs, or the frames
+ * that were lost, cause no jump. */
 static int32_t next_velocity(cm1e_drive_t *drive)
 {
     const int32_t wanted = drive->command.target_velocity;

@@ -80,7 +80,7 @@ typedef struct cm1e_drive_fault {
     bool slave_lost;                /**< it did not answer at its address, then or later */
     bool slave_deaf;                /**< it took no part in the cycle, then or later */
     uint8_t motor_status;           /**< behind a bridge: F530:5 ... 8, read when the motor showed an error ... */
-    bool motor_status_known;        /**< ... where this is TRUE */
+    bool motor_status_known;        /**< `motor_status` is valid */
 } cm1e_drive_fault_t;
 
 typedef struct cm1e_drive_encoder {

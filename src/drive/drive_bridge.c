@@ -8,8 +8,8 @@
 #include "drive/drive_kind.h"
 #include "drive/drive_private.h"
 
-/* 0x6064 of a motor that holds may swing by some pulses. Where a revolution has few of them (K37), one is a long way,
- * and takes its time: what counts as rest is slower than a twentieth of a revolution a second. */
+/* The 0x6064 of a motor that holds its position may vary by some pulses. With few pulses in a revolution (K37), one
+ * pulse is a long way and takes time. So rest is a speed below a twentieth of a revolution per second. */
 enum { REST_COUNTS = 3, REST_COUNTS_COARSE = 1, COARSE_COUNTS_PER_REVOLUTION = 5000 };
 static const int64_t rest_revolution_ns = 40000 * MS_IN_NS;
 enum { STATUS_TRIES = 3 };
@@ -67,7 +67,7 @@ static bool near(const cm1e_drive_bridge_t *behind, int32_t a, int32_t b)
     return way <= behind->rest_counts && way >= -behind->rest_counts;
 }
 
-/* A target that was just written moves the motor in a moment. */
+/* A target that was just written will move the motor soon. */
 static void watch_rest(cm1e_drive_t *drive)
 {
     cm1e_drive_bridge_t *behind = drive->behind;
@@ -79,7 +79,7 @@ static void watch_rest(cm1e_drive_t *drive)
     behind->rest_since_ns = drive->now_ns;
 }
 
-/* It is the motor that has something to say, not the bus. */
+/* The error is one of the motor and not of the bus. */
 static bool is_of_motor(cm1e_error_t error)
 {
     return error <= CM1E_ERROR_DRIVE_FAULT && error >= CM1E_ERROR_DRIVE_RESET_TIMEOUT;

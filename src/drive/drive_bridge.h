@@ -23,14 +23,14 @@ typedef struct cm1e_drive_digital {
 } cm1e_drive_digital_t;
 
 typedef struct cm1e_drive_bridge {
-    int32_t rest_position, rest_target; /**< the motor stands there, its target too ... */
-    int64_t rest_since_ns;          /**< ... since then */
-    int64_t rest_ns;                /**< so long is rest, by the resolution of the motor (K37) ... */
-    int32_t rest_counts;            /**< ... and so many pulses are no motion */
+    int32_t rest_position, rest_target; /**< where the motor stands; also its target */
+    int64_t rest_since_ns;          /**< since when the motor has stood there */
+    int64_t rest_ns;                /**< so long without motion is rest; depends on the resolution of the motor (K37) */
+    int32_t rest_counts;            /**< a change by so many pulses is no motion */
     cm1e_sdo_t status_sdo;          /**< F530:5 ... 8 */
     uint8_t status_data[4], status_tries;
     bool status_reading;
-    bool status_wanted, status_sound; /**< by the answer, until ... */
+    bool status_wanted, status_sound; /**< the answer to the last question, and until when it holds */
     int64_t status_until_ns;
     cm1e_drive_cmd_run_t cmd;
     cm1e_drive_digital_t digital;

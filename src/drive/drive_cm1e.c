@@ -1,7 +1,7 @@
 /* Start-up of a CM1-E: its motor, its firmware, and the unit of velocities that follows from it. */
 #include "drive/drive_private.h"
 
-/* Who does not know the firmware takes one with that unit for an old one in the other respects too. */
+/* If the firmware is unknown, a drive with this unit is taken for an old one in all other respects. */
 static void set_velocity_unit(cm1e_drive_t *drive, bool in_counts_per_ms)
 {
     drive->velocity_unit = in_counts_per_ms ? 1000 : 1;

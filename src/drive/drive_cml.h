@@ -79,21 +79,22 @@ void cm1e_drive_cml_init(cm1e_drive_cml_t *cml, uint16_t position, uint8_t chann
  *  CM1E_ERROR_CML_STRING: see cm1e_cml_check(). CM1E_ERROR_FULL: four wait. Whether it may move the motor is the
  *  caller's to judge. @rt cycle */
 cm1e_error_t cm1e_drive_cml_send(cm1e_drive_cml_t *cml, const char *text, int64_t timeout_ns, uint32_t *ticket);
-/** `ready`: 0x6061 shows CML, and the controlword has been 0000h for five cycles of process data. @rt cycle */
+/** Makes one step. `ready`: 0x6061 shows CML, and the controlword has been 0000h for five cycles of process data. @rt
+ *  cycle */
 void cm1e_drive_cml_step(cm1e_drive_cml_t *cml, int64_t now_ns, bool ready);
 /** NULL: forgotten. @rt cycle */
 const cm1e_drive_cml_request_t *cm1e_drive_cml_request(const cm1e_drive_cml_t *cml, uint32_t ticket);
 /** A line of its answer, 0 = first; NULL: there is none, or another string has come since (the first line is in the
  *  request). @rt cycle */
 const char *cm1e_drive_cml_line(const cm1e_drive_cml_t *cml, uint32_t ticket, unsigned line);
-/** Nothing is waiting or under way. @rt cycle */
+/** Whether no string waits or is under way. @rt cycle */
 static inline bool cm1e_drive_cml_idle(const cm1e_drive_cml_t *cml)
 {
     return cml->phase == CML_IDLE && !cml->submitted && cml->head == cml->next;
 }
-/** Ends one that waits or is under way; what was sent cannot be taken back. @rt cycle */
+/** Ends a string that waits or is under way. What was sent cannot be taken back. @rt cycle */
 void cm1e_drive_cml_cancel(cm1e_drive_cml_t *cml, uint32_t ticket, cm1e_error_t error);
-/** ... all of them. @rt cycle */
+/** Ends all strings that wait or are under way. @rt cycle */
 void cm1e_drive_cml_cancel_all(cm1e_drive_cml_t *cml, cm1e_error_t error);
 /** The string that takes the torque from the motor. Returns `text`. @rt cycle */
 const char *cm1e_drive_cml_motor_free(const cm1e_drive_cml_t *cml, char text[8]);

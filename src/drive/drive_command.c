@@ -79,7 +79,7 @@ cm1e_drive_cmd_state_t cm1e_drive_cmd_state(const cm1e_drive_t *drive)
     return drive->behind ? drive->behind->cmd.state : CM1E_DRIVE_CMD_IDLE;
 }
 
-/* What is told of an attempt to end a search is how the search itself went. */
+/* The result of an attempt to end a search is the result of the search itself. */
 static void end(cm1e_drive_cmd_run_t *run, cm1e_drive_cmd_state_t state)
 {
     run->phase = PHASE_IDLE;
@@ -112,8 +112,8 @@ static void search_step(cm1e_drive_t *drive, uint8_t shown)
     }
 }
 
-/* A short search may be over before its beginning was seen; what was there before the command is the answer to another
- * one. */
+/* A short search may end before its beginning is seen. An answer that was there before the command belongs to another
+ * command. */
 static void answer_step(cm1e_drive_t *drive, uint8_t shown)
 {
     cm1e_drive_cmd_run_t *run = &drive->behind->cmd;
@@ -127,7 +127,7 @@ static void answer_step(cm1e_drive_t *drive, uint8_t shown)
         search_step(drive, shown);
 }
 
-/* The inputs of another cycle are here: so the outputs of one more have arrived. */
+/* The inputs of another cycle have arrived, so the outputs of one more cycle have, too. */
 static void count(cm1e_drive_t *drive)
 {
     cm1e_drive_cmd_run_t *run = &drive->behind->cmd;
@@ -157,7 +157,7 @@ static void leave(cm1e_drive_t *drive)
 {
     lose(drive);
     drive->behind->cmd.ready = false;
-    if (drive->shown) /* another mode is shown: nothing of CMD is under way any more */
+    if (drive->shown) /* another mode is shown: no command of CMD is under way any more */
         drive->behind->cmd.may_search = false;
 }
 

@@ -74,7 +74,7 @@ static void step_inputs(cm1e_drive_t *drive)
     if (d->reading && cm1e_sdo_state(&d->in_sdo) != CM1E_SDO_BUSY)
         read_ended(drive, cm1e_sdo_state(&d->in_sdo));
     if (!reached)
-        d->fresh_until_ns = 0; /* the next picture is another one */
+        d->fresh_until_ns = 0; /* what was read is stale */
     else if (!d->reading && drive->now_ns < d->wanted_until_ns && drive->now_ns >= d->read_next_ns)
         d->reading = submit(drive, &d->in_sdo, (cm1e_sdo_t){.index = OBJ_60FD_DIGITAL_INPUTS, .data = d->in_data,
                                                             .size = sizeof d->in_data});
@@ -132,7 +132,7 @@ static void step_outputs(cm1e_drive_t *drive)
     const uint16_t outputs = wanted(drive);
     if ((d->outputs_known && d->outputs == outputs) || drive->now_ns < d->write_next_ns)
         return;
-    /* What another master left in 60FE:1, behind a mask of 0, must not be on when the mask lets it through. */
+    /* 60FE:1 may hold values of another master behind a mask of 0. They must not act when the mask opens. */
     d->writing_mask = outputs != 0 && d->cleared && !d->mask_written;
     d->writing_outputs = d->cleared ? outputs : 0;
     cm1e_put_u32(d->out_data, d->writing_mask ? cm1e_drive_output_mask(drive) : d->writing_outputs);

@@ -1,4 +1,4 @@
-/* Faults of a drive: what in the inputs is one, and how the first one is latched with its details. */
+/* Faults of a drive: detects them in the inputs, and latches the first one with its details. */
 #include "drive/drive_private.h"
 
 void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
@@ -12,12 +12,12 @@ void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error)
             .mode_commanded = (int8_t)drive->mode,
             .mode_shown = drive->feedback.mode != CM1E_MODE_NONE ? drive->feedback.mode : drive->mode_read,
         };
-    /* Details that arrive after the first sign: the device's code, and what the supervision found out. */
+    /* Adds details that arrive after the first sign: the code of the device, and what the supervision found. */
     if (fault->device_code == 0 && drive->feedback.online && drive->feedback.fault)
         fault->device_code = drive->feedback.error_code;
     fault->slave_lost |= drive->watch.lost;
     fault->slave_deaf |= drive->watch.lost || drive->watch.silent;
-    /* And nobody would see it hear again while the working counter stays wrong. */
+    /* While the working counter stays wrong, nothing shows that the slave hears again. */
     fault->slave_deaf |= fault->error == CM1E_ERROR_BUS_WORKING_COUNTER && error == CM1E_ERROR_BUS_LOST;
     if (!cm1e_drive_operational(drive)) {
         fault->al_state = drive->watch.al_state;
@@ -53,7 +53,7 @@ static cm1e_error_t cause_in_inputs(const cm1e_drive_t *drive)
 
 void cm1e_drive_latch_faults(cm1e_drive_t *drive)
 {
-    cm1e_error_t error = drive->fault.error; /* a latched one only collects its details */
+    cm1e_error_t error = drive->fault.error; /* a latched fault only collects its details */
     if (!error && drive->torque && drive->watch.lost)
         error = CM1E_ERROR_AXIS_OFFLINE;
     if (!error && drive->torque && !cm1e_drive_operational(drive))

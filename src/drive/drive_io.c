@@ -69,7 +69,8 @@ static cm1e_error_t resolve_object(cm1e_drive_t *drive, const cm1e_device_object
     return CM1E_OK;
 }
 
-/* 0x6081 and 0x6083 are zero in the image until somebody writes them: the limits of the configuration then. */
+/* 0x6081 and 0x6083 are zero in the image until they are written. The limits of the configuration are the initial
+ * values. */
 static void profile_objects(cm1e_drive_t *drive)
 {
     const cm1e_axis_config_t *config = drive->config;
@@ -98,7 +99,7 @@ cm1e_error_t cm1e_drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag)
         if (error)
             return error;
     }
-    /* Half of the pair would leave a switch that cannot be confirmed, or one that process data undoes. */
+    /* One object without the other gives a switch that cannot be confirmed, or one that the process data undo. */
     if ((drive->out_mode.bytes == 0) != (drive->in_mode.bytes == 0)) {
         const bool out = drive->out_mode.bytes == 0;
         return cm1e_diag_set(diag, CM1E_ERROR_PDO_MAPPING,
@@ -118,8 +119,8 @@ static int32_t clamp_i32(int64_t value)
     return (int32_t)(value > INT32_MAX ? INT32_MAX : value < INT32_MIN ? INT32_MIN : value);
 }
 
-/* The coding runs for every axis in every cycle. Objects of one possible size are read as such; only those whose size
- * the manual leaves open are read by their size. */
+/* This runs for every axis in every cycle. Objects with one possible size are read without a test of the size. Only
+ * objects whose size the manual leaves open are read by their size. */
 static uint16_t get_u16(const uint8_t *image, cm1e_image_slot_t slot)
 {
     return slot.bytes ? cm1e_get_u16(image + slot.offset) : 0;
@@ -153,7 +154,8 @@ static void put_u32(uint8_t *image, cm1e_image_slot_t slot, uint32_t value)
         cm1e_put_u32(image + slot.offset, value);
 }
 
-/* 0x606C, unless the mapping lacks it or the firmware shows a quarter of it (below V1.3.0 in HM and PP, UG 10.1). */
+/* The velocity is 0x606C, unless the mapping lacks it or the firmware shows a quarter of it (below V1.3.0 in HM and PP,
+ * UG 10.1). Then it is the difference of two positions. */
 static int32_t velocity_of(const cm1e_drive_t *drive, const uint8_t *in, int32_t position, int8_t mode)
 {
     const bool quarter = drive->velocity_quarter && (mode == CM1E_MODE_HM || mode == CM1E_MODE_PP);
@@ -164,7 +166,8 @@ static int32_t velocity_of(const cm1e_drive_t *drive, const uint8_t *in, int32_t
         return 0;
     const int32_t step = (int32_t)((uint32_t)position - (uint32_t)drive->feedback.position);
     const int64_t velocity = (int64_t)step * INT64_C(1000000000) / elapsed_ns;
-    /* Faster than any motor is no way but a new origin: the end of a homing, a counter that was reset. */
+    /* A change faster than any motor is a new origin and not a motion: the end of a homing, or a counter that was
+     * reset. */
     if (velocity > drive->velocity_believed || velocity < -drive->velocity_believed)
         return drive->feedback.velocity;
     return clamp_i32(velocity);
@@ -179,8 +182,7 @@ static void derive(cm1e_drive_t *drive)
     drive->takes_torque = same && drive->wanted->torque;
     drive->marked = same && drive->words->mark != 0;
     drive->holds = drive->shown && drive->shown->holds_position;
-    /* No mode: a switch over SDO is under way, and nobody knows whether the old or the new one acts; a target that
-     * stands is right. */
+    /* While a switch over SDO is under way, either mode may act. A target that stands still is right in both. */
     drive->may_hold = drive->holds || drive->feedback.mode == CM1E_MODE_NONE;
 }
 
@@ -193,8 +195,8 @@ void cm1e_drive_want_mode(cm1e_drive_t *drive, const cm1e_device_mode_t *row)
     derive(drive);
 }
 
-/* While a mode is not shown, its words are still those of the last one, unless those, or the next ones, are of another
- * coding: 0007h in CMD would be Switch on in csp. */
+/* Until a mode is shown, the words of the last mode apply. If the old or the new words have another coding, none apply:
+ * 0007h in CMD would be Switch on in csp. */
 static void take_mode(cm1e_drive_t *drive, int8_t mode)
 {
     drive->feedback.mode = mode;
@@ -221,13 +223,14 @@ static void take_statusword(cm1e_drive_t *drive, uint16_t statusword)
     f->bit13 = statusword & words->bit13;
 }
 
-/* How old a position is that a frame brings, beside the frame: the drive's own cycle, and a serial line to a motor behind a
- * bridge. */
+/* The age of a position in a frame, in addition to the frame: the cycle of the drive, and the serial line to a motor
+ * behind a bridge. */
 static const int64_t position_age_ns = 2 * MS_IN_NS;
-/* Good positions in a row after one that was not, before torque. */
+/* Number of good positions in a row that are required before torque, after a bad one. */
 enum { POSITIONS_TO_TRUST = 3 };
 
-/* Counts from somewhere else are no motion: a damaged position, or another origin. Only homing may set one under torque. */
+/* A position too far away is no motion: it is damaged, or has another origin. Under torque only homing may set an
+ * origin. */
 static bool can_be_there(const cm1e_drive_t *drive, int32_t position)
 {
     if (!drive->seen || drive->now_ns <= drive->read_ns)
@@ -237,7 +240,8 @@ static bool can_be_there(const cm1e_drive_t *drive, int32_t position)
     return llabs(way) <= most;
 }
 
-/* Position and velocity of a motor that really turns go together, but for a jitter of about half a cycle. */
+/* Whether position and velocity contradict each other. Those of a turning motor agree, but for a jitter of about half a
+ * cycle. */
 static bool contradicts(const cm1e_drive_t *drive, int32_t position)
 {
     const int64_t elapsed_ns = drive->now_ns - drive->read_ns;
@@ -247,7 +251,7 @@ static bool contradicts(const cm1e_drive_t *drive, int32_t position)
     return drive->seen && drive->in_velocity.bytes > 0 && llabs(way - told) > llabs(told) / 2 + tolerance;
 }
 
-/* FALSE: the position is not believed. It becomes neither a target, nor a lag, nor a captured position. */
+/* false: the position is rejected. It becomes neither a target, nor a lag, nor a captured position. */
 static bool take_position(cm1e_drive_t *drive, const uint8_t *in, int32_t position, int8_t mode)
 {
     cm1e_drive_feedback_t *f = &drive->feedback;
@@ -291,7 +295,7 @@ void cm1e_drive_decode(cm1e_drive_t *drive)
     f->dc_link_decivolt = get_signed(in, drive->in_dc);
 }
 
-/* UG 6.3: a target above the motor's peak speed is cut; in counts/ms the bound is the whole number below. */
+/* Clamps the target to the peak speed of the motor (UG 6.3). In counts/ms the bound is the whole number below. */
 static int32_t velocity_on_wire(const cm1e_drive_t *drive, int32_t counts_per_s)
 {
     const int32_t half = counts_per_s < 0 ? -drive->velocity_unit / 2 : drive->velocity_unit / 2;

@@ -30,7 +30,7 @@ const char *cm1e_drive_mode_name(const cm1e_drive_t *drive, int8_t mode)
     return row ? row->abbreviation : NULL;
 }
 
-/* Where the device is, as far as is known. */
+/* The mode that the device is in, as far as it is known. */
 static const cm1e_device_mode_t *place(const cm1e_drive_t *drive)
 {
     const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, drive->mode_read);
@@ -76,7 +76,7 @@ static cm1e_error_t read_first(cm1e_drive_t *drive, int8_t *shown, cm1e_diag_t *
     return error;
 }
 
-/* The cycle switches from here on, where a way leads to the first mode. */
+/* Further switches are made in the cycle, if a way leads to the first mode. */
 static cm1e_error_t ask_first(cm1e_drive_t *drive, cm1e_diag_t *diag)
 {
     const cm1e_error_t error = read_first(drive, &drive->mode_read, diag);
@@ -114,7 +114,7 @@ cm1e_error_t cm1e_drive_mode_init(cm1e_drive_t *drive, cm1e_diag_t *diag)
     const cm1e_error_t error = cm1e_sdo_write(drive->bus, drive->position, index, 0, &mode, 1, diag);
     int8_t shown = 0;
     const cm1e_error_t read_error = error ? error : read_first(drive, &shown, diag);
-    /* A device that needs its time shows the mode later: the cycle asks again (cm1e_drive_mode_step). */
+    /* A slow device shows the mode later: the cycle asks again (cm1e_drive_mode_step). */
     drive->mode_shown = shown == mode ? shown : CM1E_MODE_NONE;
     return read_error;
 }
@@ -147,11 +147,12 @@ static void read_done(cm1e_drive_t *drive)
     const cm1e_device_mode_t *before = cm1e_device_mode(drive->kind, drive->mode_read);
     drive->mode_read = drive->mode_sdo.size == 1 ? drive->mode_data : (int8_t)CM1E_MODE_NONE;
     const cm1e_device_mode_t *now = cm1e_device_mode(drive->kind, drive->mode_read);
-    /* No way leads there, and it is there all the same: it was switched off and on. */
+    /* The device is in a mode that no way leads to: it was switched off and on. */
     if (before && now && !drive->mode_known && !leads(drive, before, now))
         drive->abnormal = false;
     drive->abnormal |= now && now->leaves_abnormal;
-    /* A mode that nobody has commanded since it may have been switched off: from there it goes on. */
+    /* The device may have been switched off and show a mode that was not commanded: that mode is the new starting
+     * point. */
     if (now && drive->kind->asks_mode_first && !drive->mode_known && !drive->mode_uncertain)
         cm1e_drive_want_mode(drive, now);
     drive->mode_known = true;
@@ -192,7 +193,7 @@ static void give_up(cm1e_drive_t *drive)
     drive->mode_shown = drive->mode_read;
 }
 
-/* Nothing is under way over SDO. */
+/* Called while no SDO transfer is under way. */
 static void go_on(cm1e_drive_t *drive)
 {
     if (drive->mode_shown == (int8_t)drive->mode || drive->mode_phase == PHASE_GIVEN_UP)
@@ -213,7 +214,7 @@ static void go_on(cm1e_drive_t *drive)
         submit(drive, false);
 }
 
-/* One that ended in an error may have arrived all the same; one that the device has forgotten says nothing. */
+/* A transfer that ended in an error may have arrived. A transfer that the device has forgotten proves nothing. */
 static void written(cm1e_drive_t *drive, bool good)
 {
     const bool forgotten = drive->kind->asks_mode_first && !drive->mode_known;
@@ -228,7 +229,7 @@ void cm1e_drive_mode_step(cm1e_drive_t *drive)
     if (drive->out_mode.bytes)
         return;
     const bool away = drive->kind->asks_mode_first && !cm1e_drive_operational(drive);
-    if (away && drive->mode_known) /* it may come back from a power-off */
+    if (away && drive->mode_known) /* it may have been switched off */
         cm1e_drive_mode_forget(drive);
     if (drive->mode_phase != PHASE_WRITING && drive->mode_phase != PHASE_READING) {
         if (!away)
@@ -260,7 +261,7 @@ void cm1e_drive_mode_forget(cm1e_drive_t *drive)
     drive->mode_shown = CM1E_MODE_NONE;
 }
 
-/* A switch that cannot be supervised by the process data is waited for, whatever comes of it. */
+/* A switch that the process data cannot supervise is waited for, whatever its result. */
 static bool under_way(const cm1e_drive_t *drive)
 {
     if (drive->kind->asks_mode_first)
@@ -268,7 +269,7 @@ static bool under_way(const cm1e_drive_t *drive)
     return drive->was_enabled && drive->feedback.mode != (int8_t)drive->mode;
 }
 
-/* Words of another coding come without torque only. */
+/* A mode whose words have another coding is entered without torque only. */
 static bool needs_less(const cm1e_drive_t *drive, const cm1e_device_mode_t *to)
 {
     const cm1e_fsa_state_t state = drive->feedback.state;
@@ -277,7 +278,8 @@ static bool needs_less(const cm1e_drive_t *drive, const cm1e_device_mode_t *to)
     return drive->torque || state == SWITCHED_ON || state == OPERATION_ENABLED || cm1e_drive_cmd_moves(drive);
 }
 
-/* One switch at a time: until the display shows the last one, nobody knows which mode the next process data meet. */
+/* Makes one switch at a time. Until the display shows the last one, the mode that acts on the next process data is
+ * unknown. */
 void cm1e_drive_mode_choose(cm1e_drive_t *drive)
 {
     const cm1e_mode_t wanted = drive->command.mode;

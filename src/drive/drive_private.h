@@ -13,7 +13,7 @@
 /** Phases of a fault reset (drive_reset.c). */
 enum { RESET_IDLE = 0, RESET_WAIT_ONLINE, RESET_EDGE, RESET_RELEASED };
 
-/** A cause after which a drive may still be under torque and listen, so that a ramp makes sense. */
+/** After this cause the drive may still have torque and receive targets, so a ramp makes sense. */
 static inline bool drive_fault_allows_ramp(cm1e_error_t error)
 {
     return error == CM1E_ERROR_BUS_LOST || error == CM1E_ERROR_BUS_WORKING_COUNTER || error == CM1E_ERROR_DRIVE_POSITION;
@@ -31,7 +31,7 @@ cm1e_error_t cm1e_drive_init_cm1e(cm1e_drive_t *drive, cm1e_diag_t *diag);
 const cm1e_image_slot_t *cm1e_drive_slot(const cm1e_drive_t *drive, cm1e_role_t role);
 cm1e_error_t cm1e_drive_resolve(cm1e_drive_t *drive, cm1e_diag_t *diag);
 void cm1e_drive_decode(cm1e_drive_t *drive);
-/** Commands a mode on the wire. What every cycle asks of the tables is kept in the drive. */
+/** Commands a mode on the wire. The drive keeps what every cycle needs of the tables. */
 void cm1e_drive_want_mode(cm1e_drive_t *drive, const cm1e_device_mode_t *row);
 void cm1e_drive_encode(cm1e_drive_t *drive, uint16_t controlword, int32_t position, int32_t velocity);
 
@@ -40,7 +40,7 @@ cm1e_error_t cm1e_drive_mode_init(cm1e_drive_t *drive, cm1e_diag_t *diag);
 void cm1e_drive_mode_step(cm1e_drive_t *drive);
 /** Takes over `command.mode` when the last switch is confirmed. */
 void cm1e_drive_mode_choose(cm1e_drive_t *drive);
-/** Show the mode again: the device may have been switched off meanwhile. */
+/** Requires the mode to be shown again, because the device may have been switched off. */
 void cm1e_drive_mode_forget(cm1e_drive_t *drive);
 
 /* drive_reset.c */
@@ -59,16 +59,17 @@ void cm1e_drive_virtual_write(cm1e_drive_t *drive);
 /* drive_bridge.c: what a motor behind a bridge has beside this, in drive_command.c, drive_digital.c ... */
 cm1e_error_t cm1e_drive_init_bridge(cm1e_drive_t *drive, cm1e_diag_t *diag);
 void cm1e_drive_bridge_step(cm1e_drive_t *drive);
-/** It has stood for some time, as far as 0x6064 shows. */
+/** Whether the motor has been at rest for some time, as far as 0x6064 shows. */
 bool cm1e_drive_rests(const cm1e_drive_t *drive);
-/** F530 says that the motor has no error. Asks it, and is false until it has answered; an answer holds for some cycles. */
+/** Whether F530 says that the motor has no error. Asks for F530 and returns false until it is answered. An answer holds
+ *  for some cycles. */
 bool cm1e_drive_bridge_sound(cm1e_drive_t *drive);
 
 /* drive_command.c */
 void cm1e_drive_cmd_step(cm1e_drive_t *drive);
-/** What stands in the controlword in CMD. */
+/** The controlword in CMD. */
 uint16_t cm1e_drive_cmd_word(const cm1e_drive_t *drive);
-/** A command is under way, or what it began may still move the motor. */
+/** Whether a command is under way, or its effect may still move the motor. */
 static inline bool cm1e_drive_cmd_moves(const cm1e_drive_t *drive)
 {
     return drive->behind && (drive->behind->cmd.may_search || cm1e_drive_cmd_busy(drive->behind->cmd.state));
@@ -76,7 +77,7 @@ static inline bool cm1e_drive_cmd_moves(const cm1e_drive_t *drive)
 
 /* drive_digital.c */
 void cm1e_drive_digital_step(cm1e_drive_t *drive);
-/** The device may have been switched off meanwhile: its outputs are not known. */
+/** Forgets the outputs, because the device may have been switched off. */
 void cm1e_drive_digital_forget(cm1e_drive_t *drive);
 
 #endif

@@ -43,7 +43,7 @@ static void finish(cm1e_drive_t *drive, cm1e_error_t error)
     cm1e_drive_fail(drive, error);
 }
 
-/* A slave that did not come back keeps the cause it had; a slave that is there and still faulty did not clear. */
+/* A slave that did not come back keeps its fault. A slave that is there and still shows a fault did not clear it. */
 static void give_up(cm1e_drive_t *drive)
 {
     if (drive->feedback.online)
@@ -59,7 +59,8 @@ static void wait_online(cm1e_drive_t *drive)
     if (drive->feedback.online && !drive->feedback.fault) {
         finish(drive, CM1E_OK);
     } else if (drive->feedback.online && drive->words != drive->wanted->words) {
-        /* A switch of mode that the error has stopped is given up first: until then no word has a meaning. */
+        /* The error stopped a switch of mode. That switch is given up first, because the words have no meaning until
+         * then. */
     } else if (drive->feedback.online) {
         drive->reset_phase = RESET_EDGE;
         drive->reset_until_ns = drive->now_ns + edge_ns;
@@ -82,7 +83,7 @@ static void edge(cm1e_drive_t *drive)
         return;
     drive->reset_phase = RESET_RELEASED;
     drive->reset_deadline_ns = drive->now_ns + (device_resets(drive) ? online_timeout_ns : clear_timeout_ns);
-    /* The fault bit of a device that is about to reset may go before the device does. */
+    /* A device that is about to reset may clear its fault bit before it leaves the bus. */
     drive->reset_settle_ns = drive->now_ns + (device_resets(drive) ? settle_ns : drive->kind->reset_settle_ns);
 }
 

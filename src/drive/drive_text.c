@@ -92,7 +92,7 @@ static void say_status(writer_t *w, const cm1e_drive_t *drive)
         say(w, " Cure: %s.", cure);
 }
 
-/* What the user can do about it, where another answer is better than the common one. */
+/* A cure that is better than the common one; NULL: there is none. */
 static const char *further(const cm1e_drive_t *drive)
 {
     const cm1e_device_mode_t *row = cm1e_device_mode(drive->kind, drive->fault.mode_shown);

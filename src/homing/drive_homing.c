@@ -34,7 +34,7 @@ enum { OFFSET = CM1E_HOMING_OFFSET, METHOD = CM1E_HOMING_METHOD, SPEED = CM1E_HO
        ACCELERATION = CM1E_HOMING_ACCELERATION, TORQUE = CM1E_HOMING_TORQUE, TIMEOUT };
 static const double longest_timeout_s = 1e6;
 
-/* What differs between the drives is their device's table. */
+/* The table of the device has all differences between the drives. */
 static const cm1e_device_homing_t *kind_of(const cm1e_axis_t *axis) { return axis->drive.kind->homing; }
 
 bool cm1e_homing_by_switch(const cm1e_axis_t *axis, int method)
@@ -45,7 +45,7 @@ bool cm1e_homing_by_switch(const cm1e_axis_t *axis, int method)
 
 static bool k45_is_known(const drive_homing_t *home) { return cm1e_bridge_offset_unit(home->k45) != 0; }
 
-/* The object of a parameter for a method, and what its range is. */
+/* The object of a parameter for a method, with its range. */
 static cm1e_homing_object_t object_of(const cm1e_axis_t *axis, int which, int method)
 {
     const cm1e_device_homing_t *kind = kind_of(axis);
@@ -75,8 +75,8 @@ static uint8_t bits(const cm1e_axis_t *axis)
 
 /* ---- parameters -------------------------------------------------------------------------------------------------- */
 
-/* The motor's; but a speed is a revolution a second at most. K42 counts pulses, of which a CM1 has 200 in a revolution
- * with K37 = 0: its default would be 50 revolutions a second, into a hard stop. */
+/* The default is the drive's, but a speed is at most one revolution per second. K42 counts pulses, and a CM1 with K37 =
+ * 0 has 200 in a revolution: its default would be 50 revolutions per second, into a hard stop. */
 static double default_of(const cm1e_axis_t *axis, int which, const cm1e_homing_object_t *object,
                          const cm1e_entry_t *entry)
 {
@@ -190,7 +190,7 @@ cm1e_error_t cm1e_homing_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *c
 
 /* ---- from step to step ------------------------------------------------------------------------------------------- */
 
-/* What a step begins with. */
+/* Begins a step. */
 static void enter(cm1e_axis_t *axis, cm1e_home_step_t step)
 {
     drive_homing_t *home = &axis->homing->drive;
@@ -257,7 +257,7 @@ static void leave(cm1e_axis_t *axis)
     cm1e_axis_go(axis, ON_DONE);
 }
 
-/* Nothing has moved: no reason for ErrorStop. */
+/* Nothing has moved, so this is no reason for ErrorStop. */
 static void refuse(cm1e_axis_t *axis, cm1e_error_t error)
 {
     axis->homing->drive.refused = error;
@@ -284,7 +284,7 @@ static void submit(cm1e_axis_t *axis, uint16_t index, uint8_t subindex, unsigned
         refuse(axis, error);
 }
 
-/* TRUE: the transfer under way has ended well. */
+/* true: the transfer under way has ended without an error. */
 static bool transferred(cm1e_axis_t *axis)
 {
     drive_homing_t *home = &axis->homing->drive;
@@ -336,7 +336,7 @@ static void step_write(cm1e_axis_t *axis)
         next_step(axis);
 }
 
-/* Without an offset its unit is of no matter. */
+/* Without an offset, its unit does not matter. */
 static void take_offset_unit(cm1e_axis_t *axis)
 {
     drive_homing_t *home = &axis->homing->drive;
@@ -364,7 +364,7 @@ static void step_read(cm1e_axis_t *axis)
         take_offset_unit(axis);
 }
 
-/* Since when the motor stands is in `quiet_ns`; it stands if that is long ago. */
+/* `quiet_ns` is the time since which the motor has been at rest. It counts as standing after a while. */
 static bool stands(cm1e_axis_t *axis)
 {
     drive_homing_t *home = &axis->homing->drive;
@@ -390,7 +390,7 @@ static bool acting_in(const cm1e_axis_t *axis, cm1e_mode_t mode)
     return axis->drive.feedback.enabled && axis->drive.feedback.mode == (int8_t)mode;
 }
 
-/* Without torque there is nothing to stop and no mode to wait for. */
+/* Without torque there is no motion to stop and no mode to wait for. */
 static bool off(cm1e_axis_t *axis)
 {
     if (axis->homing->drive.goal != HOME_GOAL_OFF)
@@ -430,7 +430,7 @@ static bool timed_out(cm1e_axis_t *axis)
     return true;
 }
 
-/* The bits of the last homing stay until the new one has begun: only a change, or "in progress", is news. */
+/* The bits of the last homing stay until the new one has begun. So only a change, or "in progress", counts. */
 static void step_start(cm1e_axis_t *axis)
 {
     cm1e_axis_set_to_actual(axis);

@@ -32,7 +32,7 @@ static const double pressing_time_s = 0.01;
 static const double farthest_relief_counts = 5000.0;
 /* Part of the allowed lag that shows a stop where no torque is given. */
 static const double pressing_lag = 0.25;
-/* A free motor that friction has caught short of its set-point has come to it by then. */
+/* A free motor that friction held short of its set-point has reached it by then. */
 static const int64_t settling_ns = 50 * MS_IN_NS;
 
 /* ---- signals ----------------------------------------------------------------------------------------------------- */
@@ -42,7 +42,7 @@ static cm1e_axis_switch_t limit_switch(double way)
     return way > 0.0 ? CM1E_SWITCH_LIMIT_POSITIVE : CM1E_SWITCH_LIMIT_NEGATIVE;
 }
 
-/* What a step looks for: a configured switch, or an input as it is. */
+/* What a step searches for: a configured switch, or an input itself. */
 static bool level_of(const cm1e_axis_t *axis, const stepping_t *s)
 {
     if (s->step.kind == CM1E_STEP_LIMIT_SWITCH)
@@ -206,7 +206,7 @@ static void relieve_cycle(cm1e_axis_t *axis)
     stepping_t *s = &axis->homing->stepping;
     s->travel += fabs(axis->setpoint.velocity) * axis->cycle_s;
     const double push = -s->way, lag = lag_counts(axis) / axis->position.scale;
-    /* Whole counts, whole per cent: what is less is rounding. */
+    /* Values below a whole count or per cent are rounding. */
     const bool pushes = lag * fabs(axis->position.scale) * push > 1.0 || torque_percent(axis) * push > 1.0;
     const bool enough = s->travel * fabs(axis->position.scale) >= farthest_relief_counts * axis->position.count;
     if ((pushes && !enough) || !axis->drive.feedback.fresh)
@@ -221,7 +221,7 @@ static bool presses_by_torque(const cm1e_axis_t *axis)
     return limit > 0.0 && fabs(torque_percent(axis)) > 0.5 * limit;
 }
 
-/* Without a doubt: no motor that is free is so far from a set-point that stands. */
+/* A free motor is never so far from a set-point that stands still. */
 static bool presses(const cm1e_axis_t *axis)
 {
     return presses_by_torque(axis) ||
@@ -307,7 +307,7 @@ static cm1e_error_t prepare_finish(const cm1e_axis_t *axis, const move_t *move, 
     return cm1e_axis_limits_check(axis, &from, profile);
 }
 
-/* Where a search begins to go. A switch that is on is left first, unless it is what the step looks for. */
+/* The direction in which a search begins. It first leaves a switch that is on, unless it searches for that switch. */
 static double first_way(const cm1e_axis_t *axis, stepping_t *s)
 {
     const bool by_level = s->step.direction == mcSwitchPositive || s->step.direction == mcSwitchNegative ||
@@ -388,7 +388,7 @@ static bool edge_is_meant(const stepping_t *s, bool rising, double moving)
     return false;
 }
 
-/* The levels of an absolute switch are conditions, whenever and however it is met. */
+/* The levels of an absolute switch are conditions, however the switch is met. */
 static bool level_is_meant(const stepping_t *s, bool on)
 {
     return s->step.kind == CM1E_STEP_ABSOLUTE_SWITCH &&
@@ -401,7 +401,7 @@ static position_t halfway(const cm1e_axis_t *axis)
     return cm1e_position_plus(before, 0.5 * cm1e_position_minus(axis_actual(axis), before));
 }
 
-/* TRUE: the event is there. */
+/* true: the event has occurred. */
 static bool look_at_switch(cm1e_axis_t *axis)
 {
     stepping_t *s = &axis->homing->stepping;
@@ -450,7 +450,7 @@ static bool stands(const cm1e_axis_t *axis)
     return fabs(actual_velocity(axis)) <= axis->homing->stepping.step.detection_velocity;
 }
 
-/* How much of what shows a stop is there: 1 is enough. */
+/* The share of the signs of a stop that is reached; 1 is enough. */
 static double pressure(const cm1e_axis_t *axis)
 {
     const stepping_t *s = &axis->homing->stepping;
@@ -473,7 +473,7 @@ static void keep_pressed(cm1e_axis_t *axis, double now)
     press_on(axis, s->way * pace);
 }
 
-/* A stop is where the motor stands, pressed, for long enough. It searches on should it come free. */
+/* A stop is a place where the motor stands, pressed, for long enough. If it comes free, the search goes on. */
 static void look_for_block(cm1e_axis_t *axis)
 {
     stepping_t *s = &axis->homing->stepping;
@@ -506,7 +506,7 @@ static bool out_of_counts(const cm1e_axis_t *axis)
     return v > 0.0 ? end > axis->limits.counts_upper : v < 0.0 && end < axis->limits.counts_lower;
 }
 
-/* TRUE: one of the limits of the step is reached, or the direction is taken away. */
+/* true: a limit of the step is reached, or MC_Power no longer permits the direction. */
 static bool over_a_limit(cm1e_axis_t *axis)
 {
     const stepping_t *s = &axis->homing->stepping;

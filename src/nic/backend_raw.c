@@ -1,4 +1,4 @@
-/* Network interfaces: a packet socket per port, waits that end at the deadline and not a jiffy later. */
+/* Network interfaces: a packet socket for each port. Waits end exactly at the deadline. */
 #include <errno.h>
 #include <poll.h>
 #include <stdlib.h>
@@ -96,7 +96,7 @@ static size_t raw_receive(cm1e_nic_link_t *link, int *port, uint8_t *frame, int6
             return 0;
         const struct timespec left = {.tv_sec = left_ns / NS_PER_S, .tv_nsec = left_ns % NS_PER_S};
         const int ready = ppoll(raw->fds, (nfds_t)link->ports, &left, NULL);
-        /* An interface that went away reports errors without end, which would make this a busy loop. */
+        /* An interface that was removed reports errors without end, which would make this a busy loop. */
         if (ready > 0 && ++useless > USELESS_WAKE_UPS)
             cm1e_clock_sleep_until(link->clock, deadline_ns);
     }

@@ -27,11 +27,11 @@ extern const cm1e_nic_backend_t cm1e_backend_raw;
 cm1e_error_t cm1e_nic_open_backend(cm1e_nic_t **nic, const cm1e_nic_backend_t *backend, const cm1e_bus_config_t *config,
                                    cm1e_diag_t *diag);
 
-/** The way of every frame: backend, tap, pcap. As in backend.h. @rt cycle */
+/** The path of every frame: backend, tap, pcap. Parameters as in backend.h. @rt cycle */
 bool cm1e_nic_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t length);
 size_t cm1e_nic_receive(cm1e_nic_t *nic, int *port, uint8_t *frame, int64_t deadline_ns);
 
-/** A deadline that has passed on every clock: only what is here already. */
+/** A deadline that is in the past on every clock: takes only what is here already. */
 #define NIC_NOW INT64_MIN
 
 #endif

@@ -230,7 +230,7 @@ static int route(const ecx_portt *port, const uint8_t *frame)
     return word == priMAC[1] ? 0 : 1;
 }
 
-/** An answer that is none of ours; nobody but another master makes whole EtherCAT frames. */
+/** An answer to a frame that is not ours. Only another master makes whole EtherCAT frames. */
 static bool is_foreign(const uint8_t *frame, size_t length, int source)
 {
     return source == FOREIGN_ROUTE || (source == NO_ROUTE && cm1e_frame_is_ethercat(frame, length));
@@ -283,7 +283,7 @@ static void accept_frame(ecx_portt *port, int arrival, const uint8_t *frame, siz
     const uint8 idx = length >= FRAME_MINIMUM ? frame[FRAME_HEADER + 1] : EC_MAXBUF;
     int source = length >= FRAME_MINIMUM ? route(port, frame) : NO_ROUTE;
     const bool stamped = source >= 0;
-    /* A software slave may put its own source address into our frames; without a ring that does no harm. */
+    /* A software slave may put its own source address into our frames. Without a ring that does no harm. */
     if (source == NO_ROUTE && !port->redundant && is_awaited(port, idx, frame, length))
         source = 0;
     if (idx >= EC_MAXBUF || source < 0 || (source == 1 && !port->redundant)) {
@@ -356,7 +356,7 @@ static int64_t deadline_after(const ecx_portt *port, int timeout_us)
 /** Takes in what is here already; EC_OTHERFRAME: a frame came, but not this one. */
 int ecx_inframe(ecx_portt *port, uint8 idx, int stacknumber)
 {
-    (void)stacknumber; /* answers are sorted by index, whichever interface they came in at */
+    (void)stacknumber; /* answers are sorted by index, whichever interface they arrived at */
     const uint64_t before = port->counters.received;
     const int wkc = wait_until(port, idx, NIC_NOW);
     return wkc == EC_NOFRAME && port->counters.received != before ? EC_OTHERFRAME : wkc;

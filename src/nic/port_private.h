@@ -10,10 +10,11 @@
 
 #include "nicdrv.h"
 
-/** Frames that one wait takes in beyond its deadline: so many may be here already, a flood ends there. */
+/** The number of frames that one wait takes in beyond its deadline. So many may be here already, and a flood must
+ *  end. */
 enum { PORT_FRAME_BUDGET = 64 };
 
-/** Takes in the next frame until the deadline, whosever it is; false: none came. */
+/** Takes in the next frame before the deadline, for any waiter; false: none came. */
 bool cm1e_port_take_in(ecx_portt *port, int64_t deadline_ns);
 /** Marks an Ethernet frame as sent by interface 0 (PRI) or 1 (SEC), with the stamp of its transmission. */
 void cm1e_port_stamp(ecx_portt *port, uint8_t *frame, uint8 idx, int source, uint32_t transmission);

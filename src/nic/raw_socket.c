@@ -69,11 +69,11 @@ static cm1e_error_t no_socket(int why, cm1e_diag_t *diag)
                          "sudo setcap cap_net_raw,cap_sys_nice,cap_ipc_lock+ep %s", self);
 }
 
-/** Options that only make things better: a kernel without them still works. */
+/** Options that are useful, but not needed: a kernel without them still works. */
 static void tune(int fd, int interface_index)
 {
     const int on = 1, size = RECEIVE_BUFFER;
-    /* What we send must not come back as received. Older kernels mark it, see cm1e_raw_socket_receive(). */
+    /* Our own frames must not be received again. Older kernels mark them, see cm1e_raw_socket_receive(). */
     setsockopt(fd, SOL_PACKET, PACKET_IGNORE_OUTGOING, &on, sizeof on);
     if (setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) < 0)
         setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, sizeof size);

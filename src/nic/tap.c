@@ -1,4 +1,4 @@
-/* The way of every frame between port and backend. Without tap, pcap and held frames it is a plain call. */
+/* The path of every frame between port and backend. Without tap, pcap and held frames it is a plain call. */
 #include <string.h>
 
 #include "nic/nic_private.h"
@@ -60,7 +60,7 @@ bool cm1e_nic_send(cm1e_nic_t *nic, int port, const uint8_t *frame, size_t lengt
     memcpy(nic->scratch, frame, length);
     cm1e_tap_frame_t t = {.direction = CM1E_TAP_SENT, .port = port, .bytes = nic->scratch, .length = length};
     if (!pass_tap(nic, &t))
-        return true; /* lost on the wire, which the sender does not notice */
+        return true; /* the frame is lost on the wire, which the sender does not notice */
     bool sent = false;
     for (unsigned i = 0; i < t.copies; i++) {
         if (nic->pcap)

@@ -79,7 +79,7 @@ static void sim_close(cm1e_nic_link_t *link)
     free(sim);
 }
 
-/** When the answer is back. On real time it is there at once: waiting for a wire that does not exist helps nobody. */
+/** The time at which the answer is back. On real time it is back at once, because there is no wire. */
 static int64_t arrival(cm1e_nic_link_t *link, int port, size_t length, int64_t now_ns)
 {
     sim_t *sim = link->state;
@@ -96,7 +96,7 @@ static bool sim_send(cm1e_nic_link_t *link, int port, const uint8_t *frame, size
     sim_t *sim = link->state;
     queued_frame_t *place = cm1e_frame_queue_place(&sim->in_flight);
     if (!place) {
-        /* Nobody takes the answers: the oldest makes room, as the newest tells most. */
+        /* No one takes the answers: the oldest gives its place to the newest. */
         cm1e_frame_queue_remove_first(&sim->in_flight);
         place = cm1e_frame_queue_place(&sim->in_flight);
     }
@@ -124,7 +124,7 @@ static bool sim_send(cm1e_nic_link_t *link, int port, const uint8_t *frame, size
     return true;
 }
 
-/** Lets the time come; on a real clock a sleep until a time in the past costs a system call. */
+/** Waits for the time. On a real clock, a sleep until a time in the past costs a system call. */
 static void wait_until(cm1e_clock_t *clock, int64_t time_ns)
 {
     if (time_ns > cm1e_clock_now(clock))

@@ -140,7 +140,7 @@ cm1e_sim_bridge_t *cm1e_sim_bridge_of(cm1e_sim_slave_t *slave);
 
 /** Bounds of a cycle (BR 7.4, F530:19 and 20). */
 enum { CM1E_SIM_BRIDGE_LATE_US = 1300, CM1E_SIM_BRIDGE_EARLY_US = 700 };
-/** How many cycles in a row were all too long or all too short, where they are too many; else 0. */
+/** The number of cycles in a row that were all too long or all too short, if they are too many; else 0. */
 int cm1e_sim_bridge_wrong_cycles(const cm1e_sim_bridge_t *bridge);
 
 /* ---- bridge_values.c -------------------------------------------------------------------------------------------- */
@@ -183,7 +183,7 @@ double cm1e_sim_bridge_peak_torque(void);
 /** The reference stays where it is. */
 void cm1e_sim_bridge_axis_hold(cm1e_sim_bridge_axis_t *axis);
 bool cm1e_sim_bridge_axis_stands(const cm1e_sim_bridge_axis_t *axis);
-/** Where it is is 0 now. */
+/** Makes the present position the position 0. */
 void cm1e_sim_bridge_axis_zero(cm1e_sim_bridge_axis_t *axis);
 /** In pulses. */
 int64_t cm1e_sim_bridge_position(const cm1e_sim_bridge_axis_t *axis);
@@ -195,7 +195,7 @@ uint8_t cm1e_sim_bridge_inputs_of(const cm1e_sim_bridge_axis_t *axis);
 uint8_t cm1e_sim_bridge_motor_status(const cm1e_sim_bridge_axis_t *axis);
 /** The cable between bridge and motor. */
 void cm1e_sim_bridge_axis_plug(cm1e_sim_bridge_axis_t *axis, bool plugged);
-/** In this mode the target of the process data counts. */
+/** Whether the target of the process data counts in this mode. */
 bool cm1e_sim_bridge_follows_targets(const cm1e_sim_bridge_axis_t *axis);
 /** The target holds from now on. It is taken as it is: one that is not the actual position makes the motor jump. */
 void cm1e_sim_bridge_axis_begin_csp(cm1e_sim_bridge_axis_t *axis);
@@ -205,11 +205,11 @@ void cm1e_sim_bridge_axis_follow(cm1e_sim_bridge_axis_t *axis);
 /* ---- bridge_states.c -------------------------------------------------------------------------------------------- */
 /** Initialisation is over. */
 void cm1e_sim_bridge_axis_ready(cm1e_sim_bridge_axis_t *axis);
-/** What the low four bits of a controlword ask for (BR 6.1.2). */
+/** Carries out what the low four bits of a controlword command (BR 6.1.2). */
 void cm1e_sim_bridge_axis_obey(cm1e_sim_bridge_axis_t *axis, unsigned controlword);
 /** No more process data comes: motor free, Switch on disabled. */
 void cm1e_sim_bridge_axis_disable(cm1e_sim_bridge_axis_t *axis);
-/** A state without torque is reached. */
+/** Takes the torque away and enters a state without torque. */
 void cm1e_sim_bridge_axis_release(cm1e_sim_bridge_axis_t *axis, cm1e_fsa_state_t state);
 /** An error of the motor, or of the serial line to it: one of BRIDGE_STATUS_... */
 void cm1e_sim_bridge_axis_error(cm1e_sim_bridge_axis_t *axis, uint8_t status);
@@ -226,7 +226,7 @@ void cm1e_sim_bridge_axis_power_on(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_ax
 /** New process data has come over the serial line. */
 void cm1e_sim_bridge_axis_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
 void cm1e_sim_bridge_axis_step(cm1e_sim_bridge_axis_t *axis, double step_s);
-/** A millisecond of the serial line. */
+/** Simulates a millisecond of the serial line. */
 void cm1e_sim_bridge_axis_exchange(cm1e_sim_bridge_axis_t *axis);
 uint16_t cm1e_sim_bridge_statusword(const cm1e_sim_bridge_axis_t *axis);
 
@@ -239,9 +239,9 @@ void cm1e_sim_bridge_mode_reset(cm1e_sim_bridge_axis_t *axis);
 
 /* ---- bridge_homing.c -------------------------------------------------------------------------------------------- */
 void cm1e_sim_bridge_search_begin(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
-/** As if none had been: neither done nor failed. */
+/** Forgets the last search: it is neither done nor failed. */
 void cm1e_sim_bridge_search_reset(cm1e_sim_bridge_axis_t *axis);
-/** Does nothing where none is under way. */
+/** Does nothing if no search is under way. */
 void cm1e_sim_bridge_search_abort(cm1e_sim_bridge_axis_t *axis);
 void cm1e_sim_bridge_search_step(cm1e_sim_bridge_axis_t *axis, double step_s);
 
@@ -256,7 +256,7 @@ void cm1e_sim_bridge_cml_step(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t 
 /* ---- bridge_command.c ------------------------------------------------------------------------------------------- */
 /** "Wait for 5 cycles of PDO sending" (BR appendix 1, 2): the controlword is there long enough. */
 bool cm1e_sim_bridge_word_is_sent(const cm1e_sim_bridge_axis_t *axis);
-/** ... and is 0000h: no controlwords go over the serial line. */
+/** The controlword has been 0000h for long enough: no controlwords go over the serial line. */
 bool cm1e_sim_bridge_line_is_free(const cm1e_sim_bridge_axis_t *axis);
 void cm1e_sim_bridge_command_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis);
 void cm1e_sim_bridge_command_step(cm1e_sim_bridge_axis_t *axis);

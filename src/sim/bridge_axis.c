@@ -42,8 +42,8 @@ void cm1e_sim_bridge_axis_step(cm1e_sim_bridge_axis_t *axis, double step_s)
     supervise(axis, step_s);
 }
 
-/* One broken answer is counted, some in a row are an error of the line. Of a motor that nothing is heard of nothing is
- * lost: it stands where it is. */
+/* Counts a broken answer; several in a row are an error of the line. A motor that is not heard loses nothing: it stands
+ * where it is. */
 void cm1e_sim_bridge_axis_exchange(cm1e_sim_bridge_axis_t *axis)
 {
     const bool heard = !axis->unplugged && axis->broken_answers == 0;
@@ -84,7 +84,7 @@ void cm1e_sim_bridge_axis_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axi
         cm1e_sim_bridge_command_outputs(bridge, axis);
     else if (axis->mode == CM1E_BRIDGE_MODE_CPIO)
         cm1e_sim_bridge_cpio_outputs(axis);
-    else if (axis->mode != CM1E_BRIDGE_MODE_CML) /* there the controlword says nothing */
+    else if (axis->mode != CM1E_BRIDGE_MODE_CML) /* in CML the controlword has no meaning */
         drive_profile_outputs(bridge, axis);
     if (axis->state == OPERATION_ENABLED && cm1e_sim_bridge_follows_targets(axis))
         cm1e_sim_bridge_axis_follow(axis);

@@ -11,7 +11,7 @@ static const char nothing[] = "Null\r\n";
 
 /* ---- answers ---------------------------------------------------------------------------------------------------- */
 
-/* One that finds no room is lost. */
+/* An answer without a free place is lost. */
 static void answer(cm1e_sim_bridge_axis_t *axis, int64_t due_ns, const char *name, int64_t value)
 {
     cm1e_sim_cml_t *cml = &axis->cml;
@@ -84,7 +84,7 @@ static void set_output(cm1e_sim_bridge_axis_t *axis, long number, bool on)
     axis->outputs = (uint8_t)(on ? axis->outputs | bit : axis->outputs & ~bit);
 }
 
-/* Without power there is nothing to search: the state is the answer. */
+/* Without power there is no search, and the state is the answer. */
 static void search(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, int64_t due_ns)
 {
     if (axis->motor_free) {
@@ -113,8 +113,8 @@ static void take_k(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, int6
         *cm1e_sim_bridge_k(bridge, axis->number, (unsigned)number) = wanted;
 }
 
-/* A letter, perhaps a number, ".ID" (BR 1.4: that of the connector), perhaps "=value". What a motor does not
- * understand, or what is for another one, has no answer. */
+/* A command is a letter, optionally a number, ".ID" (BR 1.4: that of the connector) and "=value". A motor does not
+ * answer what it does not understand, or what is for another motor. */
 static void execute(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, int64_t due_ns, char *text)
 {
     char *rest = text + 1;

@@ -28,13 +28,13 @@ static void execute(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis, uin
         cm1e_sim_bridge_search_abort(axis);
         cm1e_sim_bridge_axis_power(axis, false);
         break;
-    case MOTOR_ENABLE: /* which also ends an error of the motor, as CML's "(" does */
+    case MOTOR_ENABLE: /* it also ends an error of the motor, as "(" of CML does */
         axis->error = 0;
         cm1e_sim_bridge_axis_power(axis, true);
         break;
     case ORIGIN_SEARCH:
         if (axis->motor_free)
-            axis->answer = 0; /* nothing can be searched: no answer comes */
+            axis->answer = 0; /* no search is possible, so no answer comes */
         else
             cm1e_sim_bridge_search_begin(bridge, axis);
         break;
@@ -83,7 +83,7 @@ uint16_t cm1e_sim_bridge_command_status(const cm1e_sim_bridge_axis_t *axis) { re
 
 /* ---- CPIO ------------------------------------------------------------------------------------------------------- */
 
-/* A word that is none of this mode is ignored. Bits 4 to 7 are outputs here, not a new set-point or a fault reset. */
+/* Ignores a word of another mode. Bits 4 to 7 are outputs here, not a new set-point or a fault reset. */
 void cm1e_sim_bridge_cpio_outputs(cm1e_sim_bridge_axis_t *axis)
 {
     if (axis->controlword >> 12 != CPIO)

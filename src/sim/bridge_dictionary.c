@@ -114,7 +114,7 @@ uint32_t cm1e_sim_bridge_sdo_read(void *app, uint16_t index, uint8_t subindex, u
                : cm1e_sim_give_number(cell.entry, present_value(bridge, &cell), data, size);
 }
 
-/* BR 6.5.2: what the mask does not let through is off. */
+/* An output that the mask excludes is off (BR 6.5.2). */
 static void set_outputs(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t *axis)
 {
     const int64_t wanted = *cm1e_sim_bridge_value(bridge, axis->number, OBJ_60FE_DIGITAL_OUTPUTS, 1);

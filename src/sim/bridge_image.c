@@ -3,7 +3,7 @@
 
 /* Each axis has one mapping in each direction, 16 and 32 bits (BR 6.3.1). */
 enum { AXIS_BYTES = 6, POSITION_AT = 2 };
-/* What a cycle brings is with the motors after one exchange of the serial lines (F511:3 ... F514:3). */
+/* The data of a cycle reach the motors after one exchange of the serial lines (F511:3 ... F514:3). */
 enum { ON_THE_WAY_NS = 1000000 };
 
 /* ---- assignment ------------------------------------------------------------------------------------------------- */
@@ -74,7 +74,8 @@ static unsigned axis_at(const cm1e_sim_bridge_t *bridge, bool transmit, unsigned
     return (unsigned)cm1e_bridge_axis_of(bridge->pdos[transmit][place]);
 }
 
-/* Cycles that come faster than the lines carry them are lost; far too fast they are an error anyway (bridge.c). */
+/* Cycles that come faster than the lines carry them are lost. If they are far too fast, that is an error anyway
+ * (bridge.c). */
 void cm1e_sim_bridge_outputs(void *app, const uint8_t *data, uint16_t size, int64_t now_ns)
 {
     cm1e_sim_bridge_t *bridge = app;

@@ -55,7 +55,7 @@ void cm1e_sim_bridge_mode_due(cm1e_sim_bridge_t *bridge, cm1e_sim_bridge_axis_t 
     if (axis->mode == from)
         return;
     if (axis->mode != CM1E_BRIDGE_MODE_CPIO)
-        axis->servo.reference_velocity = 0; /* nothing moves it on any more */
+        axis->servo.reference_velocity = 0; /* in this mode no target moves the reference */
     if (axis->mode == CM1E_BRIDGE_MODE_HM)
         cm1e_sim_bridge_search_reset(axis);
     if (axis->mode == CM1E_BRIDGE_MODE_CMD || axis->mode == CM1E_BRIDGE_MODE_CPIO)

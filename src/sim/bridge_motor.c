@@ -5,8 +5,8 @@
 
 /* Not in the guide: of the size usual for such motors. */
 #define STANDSTILL_COUNTS_PER_S 100.0
-#define STANDSTILL_PULSES_PER_S 10.0 /* where one of them is a long way: nobody outside could tell */
-/* Further than any motor goes in a cycle, with a little for cycles that come late. */
+#define STANDSTILL_PULSES_PER_S 10.0 /* for motors with few pulses in a revolution */
+/* A step larger than any motor makes in a cycle, with a margin for late cycles. */
 #define STEP_IN_CYCLE_COUNTS 2750.0
 #define STEP_AT_START_COUNTS 100.0
 

@@ -25,7 +25,7 @@ void cm1e_sim_esc_fmmu_decode(cm1e_sim_slave_t *slave)
         const uint8_t *registers = slave->memory + ESC_FMMU + i * FMMU_BYTES;
         const uint32_t start = cm1e_get_u32(registers + AT_LOGICAL);
         const uint16_t length = cm1e_get_u16(registers + AT_LENGTH);
-        /* Logical addresses do not wrap: what hangs over the end is not mapped. */
+        /* Logical addresses do not wrap: an FMMU that extends beyond the end is not mapped. */
         if (!(registers[AT_ACTIVATE] & 0x01) || length == 0 || start > UINT32_MAX - length)
             continue;
         const esc_fmmu_t fmmu = {

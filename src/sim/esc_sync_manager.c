@@ -52,7 +52,7 @@ void cm1e_sim_esc_sm_decode(cm1e_sim_slave_t *slave, unsigned number)
     const esc_sync_manager_t before = *sm;
     sm->start = cm1e_get_u16(r + AT_START);
     sm->length = cm1e_get_u16(r + AT_LENGTH);
-    /* A sync manager outside of the RAM guards nothing. */
+    /* A sync manager outside the RAM has no effect. */
     sm->active = (r[AT_ACTIVATE] & 0x01) && sm->length > 0 && sm->start >= ESC_REGISTER_BYTES &&
                  (uint32_t)sm->start + sm->length <= ESC_MEMORY_BYTES;
     sm->mailbox = (r[AT_CONTROL] & CONTROL_MODE) == MODE_MAILBOX;

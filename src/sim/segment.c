@@ -276,13 +276,13 @@ int cm1e_sim_segment_process(cm1e_sim_segment_t *segment, int entry_port, uint8_
         return CM1E_SIM_PORT_LOST;
     const size_t end = frame_end(frame, length);
     if (end == 0) {
-        /* The first processing unit counts what it cannot read. */
+        /* The first processing unit counts frames that it cannot read. */
         if (route.count)
             cm1e_sim_esc_count(segment->slaves[route.first], ESC_UNIT_ERRORS);
         return CM1E_SIM_PORT_LOST;
     }
     if (route.circulates) {
-        /* A frame that comes by a second time goes round for ever: it is destroyed. */
+        /* A frame that passes a second time would circulate for ever: it is destroyed. */
         if (cm1e_get_u16(frame + DATAGRAMS + DATAGRAM_LENGTH) & CIRCULATED)
             return CM1E_SIM_PORT_LOST;
         mark_circulated(frame, end);

@@ -105,7 +105,7 @@ static const cm1e_device_t *find_model(const place_t *place, cm1e_diag_t *diag)
     return device;
 }
 
-/* What stands at a place, made from its axes. */
+/* The slave at a place, made from its axes. */
 typedef struct made {
     const cm1e_bus_config_t *config;
     const place_t *place;

@@ -147,7 +147,7 @@ static void reply(const server_t *server, const uint8_t *frame, size_t length)
     (void)sent;
 }
 
-/* cm1e_sim_server_run() says why. */
+/* The reason is reported by cm1e_sim_server_run(). */
 static bool goes_round(server_t *server, size_t length)
 {
     if (!(server->frame[SOURCE_MAC] & LOCALLY_ADMINISTERED) || !cm1e_frame_has_circulated(server->frame, length))
@@ -241,7 +241,7 @@ static void find_interface(server_t *server, int64_t now_ns)
 
 static int64_t earlier(int64_t a, int64_t b) { return a < b ? a : b; }
 
-/* Sleeps until something arrives, or as long as the segment can do without. */
+/* Sleeps until a frame or a line arrives, or as long as the segment needs no step. */
 static int wait(server_t *server, struct pollfd fds[2])
 {
     const queued_frame_t *delayed = frame_queue_first(&server->delayed);
@@ -272,7 +272,7 @@ void cm1e_sim_server_run(cm1e_sim_server_t *server, const cm1e_sim_streams_t *co
     server->advanced_ns = cm1e_clock_now(server->clock);
     while (!*stop) {
         const int ready = wait(server, fds);
-        /* A socket with nothing but an error would be reported without end. */
+        /* A socket in error would be reported without end. */
         if (ready > 0 && fds[0].revents && (!answer_frames(server) || !(fds[0].revents & POLLIN)))
             lose_interface(server);
         const int64_t now_ns = cm1e_clock_now(server->clock);
