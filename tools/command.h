@@ -21,6 +21,7 @@ enum { EXIT_OK = 0, EXIT_FAILED = 1, EXIT_WRONG_USE = 2 };
     X(scan, "list the slaves of a network", "")                                                                     \
     X(status, "show state, error and measurements of every drive", "")                                              \
     X(sdo, "read or write an object of a slave", "read write list")                                                 \
+    X(params, "list, read, write, back up and compare the parameters of a motor", "list get set backup restore diff")\
     X(cml, "send strings to a motor behind a Cool MUSCLE bridge", "")                                               \
     X(sii, "read, write or show the EEPROM of a slave", "read write decode")                                        \
     X(home, "home one axis", "")                                                                                    \

@@ -118,6 +118,13 @@ typedef enum cm1e_availability {
     CM1E_NO_PARAMETER,  /**< "-": the motor behind it has no such parameter; access is answered with an abort */
 } cm1e_availability_t;
 
+/** What an object that can be written is for. */
+typedef enum cm1e_use {
+    CM1E_USE_COMMAND = 0, /**< commands, process data, communication: not a parameter of the motor */
+    CM1E_USE_SETTING,     /**< a parameter; the guide does not say that it is kept without power */
+    CM1E_USE_KEPT,        /**< a parameter that is kept without power, as the guide says */
+} cm1e_use_t;
+
 /** One sub-index. `round_to` > 1: the device keeps multiples of it (UG: "rounded to the closest"). */
 typedef struct cm1e_entry {
     uint16_t index;
@@ -131,6 +138,8 @@ typedef struct cm1e_entry {
     int64_t default_value, minimum, maximum;
     uint32_t round_to;
     int64_t kept_minimum;  /**< a smaller value is accepted and kept as this one (UG 6.2.2: 0x6083, 0x6084); 0: none */
+    uint8_t use;           /**< cm1e_use_t */
+    const char *meaning;   /**< one line with its clause, of every entry of the CM1-E that can be written; else NULL */
     const char *default_string; /**< CM1E_TYPE_STRING only; "": not known */
     cm1e_firmware_t since;
 } cm1e_entry_t;

@@ -5,7 +5,7 @@ const cm1e_device_error_t cm1e_device_errors[] = {
     ERROR(0x0000, 0x00, false, false, "No error", "nothing to do", ),
     ERROR(0x2310, 0x03, true, false, "Continuous over current error (torque overload)",
      "reduce load, friction or acceleration, or use a larger motor; then reset the fault",
-     .cause = "the motor needs more torque than it can give for so long: too much load or friction, too high an acceleration"),
+     .cause = "the motor needs more torque than it can give for so long: too much load, friction or acceleration"),
     ERROR(0x4310, 0x09, true, false, "Drive over temperature",
      "let the motor cool down, improve the cooling or reduce the load; then reset the fault",
      .cause = "the motor has got too hot: too much load, or too little cooling"),

@@ -77,6 +77,11 @@ struct cm1e_sim_cm1e {
 
     cm1e_sim_store_t store;  /**< dictionary, with the values of the entries that are not in `objects` */
 
+    bool refuses;            /**< writing this object fails, as with a broken memory */
+    bool lacks;              /**< ... and it is not there at all */
+    uint16_t refused_index;
+    uint8_t refused_subindex;
+
     /* time */
     bool running;            /**< now_ns is known */
     int64_t now_ns;

@@ -95,6 +95,8 @@ uint32_t cm1e_sim_sdo_read(void *app, uint16_t index, uint8_t subindex, uint8_t 
     const uint32_t missing = cm1e_sim_store_find_readable(&drive->store, index, subindex, &cell);
     if (missing)
         return missing;
+    if (drive->refuses && drive->lacks && drive->refused_index == index && drive->refused_subindex == subindex)
+        return SDO_ABORT_NO_SUBINDEX;
     if (cell.entry->type == CM1E_TYPE_STRING)
         return cm1e_sim_give_text(index == OBJ_100A_SOFTWARE_VERSION ? drive->firmware->version
                                                                       : cell.entry->default_string, data, size);
@@ -120,6 +122,8 @@ uint32_t cm1e_sim_sdo_write(void *app, uint16_t index, uint8_t subindex, uint8_t
     if (missing)
         return missing;
     const cm1e_entry_t *entry = cm1e_sim_own_entry(drive, cell.entry);
+    if (drive->refuses && drive->refused_index == index && drive->refused_subindex == subindex)
+        return drive->lacks ? SDO_ABORT_NO_SUBINDEX : SDO_ABORT_HARDWARE;
     uint32_t abort_code = cm1e_sim_check_write(entry, al_state, size);
     if (abort_code)
         return abort_code;

@@ -291,6 +291,26 @@ static cm1e_error_t run_temperature(call_t *call)
     return CM1E_OK;
 }
 
+static cm1e_error_t run_refuse(call_t *call)
+{
+    const char *word = argument(call, 0);
+    char *end;
+    const unsigned long index = strtoul(word, &end, 16), subindex = *end == ':' ? strtoul(end + 1, &end, 16) : 0;
+    if (strcmp(word, "nothing") == 0) {
+        call->drive->refuses = false;
+        say(call, "slave %u: refuses nothing", call->position);
+        return CM1E_OK;
+    }
+    if (end == word || *end || index > UINT16_MAX || subindex > UINT8_MAX)
+        return REFUSE(call, "\"%s\": expected index:sub-index in hexadecimal, as 60F6:1B, or nothing", word);
+    call->drive->refuses = true;
+    call->drive->lacks = strcmp(argument(call, 1), "missing") == 0;
+    call->drive->refused_index = (uint16_t)index;
+    call->drive->refused_subindex = (uint8_t)subindex;
+    say(call, "slave %u: refuses to write 0x%04lX:%02lX", call->position, index, subindex);
+    return CM1E_OK;
+}
+
 static cm1e_error_t run_over_torque(call_t *call)
 {
     cm1e_sim_fsa_error(call->drive, ERROR_OVERLOAD);
@@ -501,6 +521,8 @@ static const command_t commands[] = {
     {"sensor", ANY_DRIVE, 2, 2, run_sensor, "<slave> <1...4> on|off|auto",
      "hold a digital input, or let it follow the axis"},
     {"load", ANY_DRIVE, 1, 1, run_load, "<slave> <Nm>", "torque on the shaft from outside, positive drives CW"},
+    {"refuse", DRIVE, 1, 2, run_refuse, "<slave> <index>:<sub>|nothing [missing]",
+     "writing this object fails from now on; missing: it is not there"},
     {"over-torque", DRIVE, 0, 0, run_over_torque, "<slave>", "torque overload, error 2310"},
     {"temperature", DRIVE, 1, 1, run_temperature, "<slave> <degrees C>", "of the drive; error 4310 from 85 on"},
     {"error", ANY_DRIVE, 1, 2, run_error, "<slave> <code>|clear [hold]",

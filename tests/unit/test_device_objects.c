@@ -44,6 +44,25 @@ static void test_entries_are_sorted_and_belong_to_their_object(void)
     }
 }
 
+static void test_what_can_be_written_has_a_meaning_with_its_clause(void)
+{
+    size_t count;
+    unsigned settings = 0;
+    const cm1e_object_t *objects = cm1e_device_objects(&count);
+    for (size_t i = 0; i < count; i++)
+        for (unsigned k = 0; k < objects[i].entry_count; k++) {
+            const cm1e_entry_t *entry = &objects[i].entries[k];
+            const bool writable = entry->access & CM1E_ACCESS_WRITE;
+            TEST_ASSERT_EQUAL_MESSAGE(writable, entry->meaning != NULL, at(entry));
+            if (!writable)
+                TEST_ASSERT_EQUAL_MESSAGE(CM1E_USE_COMMAND, entry->use, at(entry));
+            else
+                TEST_ASSERT_NOT_NULL_MESSAGE(strstr(entry->meaning, "(UG "), at(entry));
+            settings += entry->use != CM1E_USE_COMMAND;
+        }
+    TEST_ASSERT_EQUAL(4 + 7 + 81 + 9 + 1, settings); /* option codes, motion and homing, K, H, LED */
+}
+
 static void test_object_code_fits_the_entries(void)
 {
     size_t count;
@@ -325,6 +344,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_objects_are_sorted_without_doubles);
     RUN_TEST(test_entries_are_sorted_and_belong_to_their_object);
+    RUN_TEST(test_what_can_be_written_has_a_meaning_with_its_clause);
     RUN_TEST(test_object_code_fits_the_entries);
     RUN_TEST(test_every_entry_default_lies_in_range_and_range_in_type);
     RUN_TEST(test_rounding_never_leaves_the_range);

@@ -1,0 +1,154 @@
+#!/usr/bin/env python3
+"""`cm1e params` on the simulated segment: every parameter with unit, range and meaning; by name and number; wrong values
+and files are refused with their line before anything is written; what a file changes is shown.
+
+test_params.py BIN-DIRECTORY SOURCE-DIRECTORY
+"""
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+BIN, SOURCE = sys.argv[1], sys.argv[2]
+FAILED, WRONG_USE = 1, 2
+faults = []
+
+
+def run(*words):
+    return subprocess.run([os.path.join(BIN, "cm1e"), "params", *words], capture_output=True, text=True, timeout=60,
+                          stdin=subprocess.DEVNULL)
+
+
+def on_sim(action, *words):
+    return run(action, "-i", "sim", *words)
+
+
+def expect(condition, what, result):
+    if not condition:
+        faults.append(f"{what}: exit status {result.returncode}\n{result.stdout}{result.stderr}")
+
+
+def check_list():
+    result = on_sim("list", "1", "--json")
+    told = json.loads(result.stdout)
+    names = [row["name"] for row in told]
+    expect(result.returncode == 0 and len(names) == len(set(names)), "list", result)
+    for wanted in [f"K{n}" for n in range(21, 102)] + [f"H{n}" for n in range(9)] + ["Home offset", "Homing method",
+                                                                                   "Status LED brightness"]:
+        expect(wanted in names, f"list lacks {wanted}", result)
+    for row in told:
+        expect(row["meaning"] and "UG" in row["meaning"] and row["minimum"] <= row["value"] <= row["maximum"], str(row),
+               result)
+    for never in ("Controlword", "Target position", "Target velocity", "Digital outputs", "Modes of operation"):
+        expect(never not in names, f"{never} is no parameter", result)
+    for word in ("K47", "k47", "0x60F6:1B", "60f6:1b"):
+        one = on_sim("get", "1", word, "--json")
+        expect(one.returncode == 0 and [(row["name"], row["value"], row["unit"]) for row in json.loads(one.stdout)]
+               == [("K47", 30, "%")], f"get {word}", one)
+    for word in ("home_offset", "Home offset", "home-offset", "0x607C", "607c"):
+        one = on_sim("get", "1", word, "--json")
+        expect(one.returncode == 0 and json.loads(one.stdout)[0]["number"] == "0x607C:00", f"get {word}", one)
+
+
+def check_set():
+    good = on_sim("set", "1", "K47=44", "home_offset=-1250", "h3=-7")
+    expect(good.returncode == 0 and "K47                      30 -> 44 %" in good.stdout and "0 -> -1300 counts (rounded)"
+           in good.stdout and "3 values written" in good.stdout, "set", good)
+    same = on_sim("set", "1", "K47=30")
+    expect(same.returncode == 0 and "nothing to change" in same.stdout, "set of the same", same)
+    dry = on_sim("set", "1", "K47=44", "--dry-run")
+    expect(dry.returncode == 0 and "30 -> 44" in dry.stdout and "nothing was written" in dry.stdout, "dry run", dry)
+    for words, told in ((["K47=101"], "10 ... 100"), (["K47=9"], "10 ... 100"), (["K47=nan"], "whole number"),
+                        (["K47=1.5"], "whole number"), (["K47="], "whole number"), (["K47"], "NAME=VALUE"),
+                        (["=5"], "there is no parameter"), (["K477=5"], 'did you mean "K47"?'),
+                        (["K47=40", "homing_metod=-1"], 'did you mean "Homing method"?'), (["K47=40", "K48=70000"], "65535"),
+                        (["Homing method=-7"], "-6 ... 0"), (["0x6040=6"], "there is no parameter"), ([], "NAME=VALUE")):
+        wrong = on_sim("set", "1", *words)
+        expect(wrong.returncode == WRONG_USE and told in wrong.stderr and "->" not in wrong.stdout, f"set {words}: {told}",
+               wrong)
+    for words, told in ((["lst", "1"], '"list"'), (["get", "1"], "names"), (["list"], "position"), (["list", "0"], "128"),
+                        (["backup", "1"], "file"), (["list", "1", "--yes"], "--yes"), (["list", "X"], "no axis")):
+        wrong = on_sim(*words)
+        expect(wrong.returncode == WRONG_USE and told in wrong.stderr, f"{words}: {told}", wrong)
+
+
+def check_files(folder):
+    path = os.path.join(folder, "motor.yaml")
+    made = on_sim("backup", "1", path)
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    expect(made.returncode == 0 and "  K47: 30                  # 0x60F6:1B, 10 ... 100 %: torque limit" in text
+           and 'firmware: "1.3.5"' in text and len(re.findall(r"^  \S.*# 0x", text, re.MULTILINE)) == 102, "backup", made)
+    same = on_sim("diff", "1", path)
+    expect(same.returncode == 0 and "0 of 102 parameters differ" in same.stdout, "diff of the same", same)
+    restored = on_sim("restore", "1", path)
+    expect(restored.returncode == 0 and "nothing to change" in restored.stdout, "restore of the same", restored)
+    check_changed(folder, text)
+    check_broken(folder, text)
+
+
+def check_changed(folder, text):
+    path = os.path.join(folder, "changed.yaml")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text.replace("K47: 30 ", "K47: 55 ").replace("  H3: 0 ", "  0x60FB:04: -9 "))
+    differs = on_sim("diff", "1", path, "--json")
+    told = {row["name"]: (row["motor"], row["file"]) for row in json.loads(differs.stdout)}
+    expect(differs.returncode == FAILED and told == {"K47": (30, 55), "H3": (0, -9)}, "diff", differs)
+    asks = on_sim("restore", "1", path)
+    expect(asks.returncode == FAILED and "30 -> 55" in asks.stdout and "nothing was written" in asks.stderr
+           and "--yes" in asks.stderr, "restore without a terminal", asks)
+    dry = on_sim("restore", "1", path, "--dry-run", "--json")
+    expect(dry.returncode == 0 and json.loads(dry.stdout)["would_write"] == ["K47", "H3"], "dry run of a restore", dry)
+    done = on_sim("restore", "1", path, "--yes", "--json")
+    expect(done.returncode == 0 and json.loads(done.stdout) == {"done": True, "written": ["K47", "H3"], "failed": None,
+                                                                "not_written": []}, "restore", done)
+
+
+def check_broken(folder, text):
+    path = os.path.join(folder, "broken.yaml")
+    line = text[:text.index("  K47")].count("\n") + 1
+    for change, told in ((("K47: 30", "K47: 300"), f"broken.yaml:{line}"), (("K47: 30", "K4711: 30"), f":{line}"),
+                         (("K47: 30", "K47: [30]"), f":{line}"), (("K47: 30", "K46: 0"), "already"),
+                         (("kind: cm1-e", "kind: bridge"), 'is of a device "bridge"'),
+                         (('"1.3.5"', '"1.3.2"'), "--other-firmware"), (("parameters:", "parametres:"), "parametres"),
+                         (("K47: 30", "K47 30\n  x"), "broken.yaml"), ((text, "a: ["), "not YAML"), ((text, ""), "no param"),
+                         ((text, "- 1\n"), "expected names"), (("  name: CM1-E", "  nmae: x"), "nmae")):
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text.replace(*change, 1))
+        wrong = on_sim("restore", "1", path, "--yes")
+        expect(wrong.returncode == WRONG_USE and told in wrong.stderr and "written to" not in wrong.stdout,
+               f"{change[1][:40]!r}: {told}", wrong)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text.replace('"1.3.5"', '"1.3.2"').replace("K47: 30", "K47: 31"))
+    other = on_sim("restore", "1", path, "--yes", "--other-firmware")
+    expect(other.returncode == 0 and "1 value written" in other.stdout, "another firmware, allowed", other)
+    missing = on_sim("restore", "1", os.path.join(folder, "missing"))
+    expect(missing.returncode == WRONG_USE and "missing" in missing.stderr, "no such file", missing)
+
+
+def check_bridge(folder):
+    bus = os.path.join(folder, "bridge.yaml")
+    with open(bus, "w", encoding="utf-8") as file:
+        file.write("bus: {interface: sim}\naxes: [{position: 1, channel: 1, motor: CM1, k37: 10}]\n")
+    result = run("list", "-b", bus, "1")
+    expect(result.returncode == FAILED and "cm1e cml" in result.stderr, "a bridge", result)
+    with open(bus, "w", encoding="utf-8") as file:
+        file.write("bus: {interface: sim}\naxes: [{name: a}, {name: lift}]\n")
+    named = run("get", "-b", bus, "lift", "K47")
+    expect(named.returncode == 0 and "K47" in named.stdout, "a motor by its axis", named)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        check_list()
+        check_set()
+        check_files(folder)
+        check_bridge(folder)
+    print("\n".join(faults) or "parameters: listed, set, kept in files, restored, refused")
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()

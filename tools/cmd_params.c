@@ -1,0 +1,435 @@
+/** cm1e params: the parameters of a CM1-E with their meaning: listed, read, written, kept in a file, compared. */
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/text.h"
+#include "files.h"
+#include "params.h"
+#include "terminal.h"
+
+enum { KEY_YES = 0x600, KEY_DRY_RUN, KEY_OTHER_FIRMWARE, MAX_NAMES = 32 };
+enum { ABORT_NO_OBJECT = 0x06020000, ABORT_NO_SUBINDEX = 0x06090011 };
+enum { LIST = 0, GET, SET, BACKUP, RESTORE, DIFF };
+#define ACTIONS "list|get|set|backup|restore|diff"
+
+typedef struct params_options {
+    common_options_t common;
+    int action; /* -1: not given yet */
+    const char *where, *words[MAX_NAMES];
+    int word_count;
+    bool yes, dry_run, other_firmware;
+} params_options_t;
+
+static void check_words(const params_options_t *options, struct argp_state *state)
+{
+    const bool file = options->action >= BACKUP;
+    if (options->action < 0 || !options->where)
+        argp_error(state, "expected: %s, and the position or axis of a motor", ACTIONS);
+    if (file && options->word_count != 1)
+        argp_error(state, "expected one file behind the motor");
+    if ((options->action == GET || options->action == SET) && options->word_count == 0)
+        argp_error(state, options->action == GET ? "expected names of parameters behind the motor"
+                                                 : "expected NAME=VALUE behind the motor");
+    if ((options->dry_run || options->yes || options->other_firmware) && options->action != SET
+        && options->action != RESTORE)
+        argp_error(state, "--yes, --dry-run and --other-firmware are for set and restore");
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    params_options_t *options = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case KEY_YES: options->yes = true; return 0;
+    case KEY_DRY_RUN: options->dry_run = true; return 0;
+    case KEY_OTHER_FIRMWARE: options->other_firmware = true; return 0;
+    case ARGP_KEY_ARG:
+        if (options->action < 0) {
+            options->action = choose_word("action", arg, ACTIONS);
+            return options->action < 0 ? EINVAL : 0;
+        }
+        if (!options->where) {
+            options->where = arg;
+            return 0;
+        }
+        if (options->word_count == MAX_NAMES)
+            argp_error(state, "more than %d words", MAX_NAMES);
+        options->words[options->word_count++] = arg;
+        return 0;
+    case ARGP_KEY_END: check_words(options, state); return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+/* ---- the motor --------------------------------------------------------------------------------------------------- */
+
+typedef struct motor {
+    cm1e_bus_t *bus;
+    uint16_t position;
+    const cm1e_slave_info_t *slave;
+    params_t params; /* all that it has */
+} motor_t;
+
+/** The motor has no such object: the guide and the drive that it shows do not agree on H8 (UG 7.3.23, 7.5). */
+static bool is_missing(const cm1e_diag_t *diag)
+{
+    return diag->error == CM1E_ERROR_SDO_ABORT
+           && (diag->foreign_code == ABORT_NO_OBJECT || diag->foreign_code == ABORT_NO_SUBINDEX);
+}
+
+/** Reads the values; parameters that the motor lacks are left out, with a word about them. */
+static bool read_values(const motor_t *motor, params_t *params)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < params->count; i++) {
+        cm1e_diag_t diag = {0};
+        if (param_read(motor->bus, motor->position, params->at[i].entry, &params->at[i].value, &diag)) {
+            params->at[kept++] = params->at[i];
+        } else if (is_missing(&diag)) {
+            complain("slave %u has no %s (0x%04X:%02X): it is left out", motor->position, params->at[i].entry->name,
+                     params->at[i].entry->index, params->at[i].entry->subindex);
+        } else {
+            fail(&diag);
+            return false;
+        }
+    }
+    params->count = kept;
+    return true;
+}
+
+static void head_of(const motor_t *motor, params_head_t *head)
+{
+    *head = (params_head_t){.serial = motor->slave->serial_number};
+    snprintf(head->kind, sizeof head->kind, "%s", motor->slave->device->kind);
+    snprintf(head->name, sizeof head->name, "%s", motor->slave->device->label);
+    snprintf(head->firmware, sizeof head->firmware, "%s", motor->slave->software_version);
+    cm1e_text_clean(head->firmware);
+}
+
+/* ---- list and get ------------------------------------------------------------------------------------------------ */
+
+static json_t *param_as_json(const param_t *param)
+{
+    char number[16];
+    const cm1e_entry_t *entry = param->entry;
+    return json_pack("{s:s, s:s, s:I, s:s, s:I, s:I, s:b, s:s}", "name", entry->name, "number",
+                     param_number(entry, number), "value", (json_int_t)param->value, "unit", entry->unit, "minimum",
+                     (json_int_t)entry->minimum, "maximum", (json_int_t)entry->maximum, "kept",
+                     entry->use == CM1E_USE_KEPT, "meaning", entry->meaning ? entry->meaning : "");
+}
+
+static int show(motor_t *motor, params_t *params, bool json)
+{
+    if (!read_values(motor, params))
+        return EXIT_FAILED;
+    json_t *all = json_array();
+    for (size_t i = 0; i < params->count; i++) {
+        const param_t *param = &params->at[i];
+        char number[16], range[80];
+        json_array_append_new(all, param_as_json(param));
+        if (!json)
+            printf("%s  %-30.30s %10" PRId64 "  %-34s %s\n", param_number(param->entry, number), param->entry->name,
+                   param->value, param_range(param->entry, range, sizeof range),
+                   param->entry->meaning ? param->entry->meaning : "");
+    }
+    if (json)
+        print_json(all);
+    else
+        json_decref(all);
+    return EXIT_OK;
+}
+
+/** The parameters that words name; without words all. */
+static bool named(const motor_t *motor, const params_options_t *options, params_t *params)
+{
+    *params = motor->params;
+    if (options->word_count == 0)
+        return true;
+    params->count = 0;
+    for (int i = 0; i < options->word_count; i++) {
+        const cm1e_entry_t *entry = param_find(&motor->params, options->words[i]);
+        if (!entry)
+            return false;
+        params->at[params->count++] = (param_t){.entry = entry};
+    }
+    return true;
+}
+
+/* ---- set and restore --------------------------------------------------------------------------------------------- */
+
+/** NAME=VALUE */
+static bool parse_settings(const motor_t *motor, const params_options_t *options, params_t *params)
+{
+    params->count = 0;
+    for (int i = 0; i < options->word_count; i++) {
+        char name[PARAM_NAME];
+        const char *equals = strchr(options->words[i], '=');
+        if (!equals || (size_t)(equals - options->words[i]) >= sizeof name) {
+            complain("\"%s\": expected NAME=VALUE, as K47=30", options->words[i]);
+            return false;
+        }
+        snprintf(name, sizeof name, "%.*s", (int)(equals - options->words[i]), options->words[i]);
+        param_t param = {.entry = param_find(&motor->params, name)};
+        if (!param.entry || !param_parse(param.entry, equals + 1, &param.value))
+            return false;
+        params->at[params->count++] = param;
+    }
+    return true;
+}
+
+/** Reads the values of the motor beside those of `params`, which loses what the motor lacks. */
+static bool read_beside(const motor_t *motor, params_t *params, params_t *now)
+{
+    *now = *params;
+    if (!read_values(motor, now))
+        return false;
+    size_t kept = 0;
+    for (size_t i = 0; i < params->count && kept < now->count; i++)
+        if (params->at[i].entry == now->at[kept].entry)
+            params->at[kept++] = params->at[i];
+    params->count = kept;
+    return true;
+}
+
+/** Keeps those whose value would change, and shows the changes. */
+static bool keep_changes(const motor_t *motor, params_t *params, size_t *missing, bool json)
+{
+    params_t now;
+    size_t changes = 0;
+    const size_t wanted = params->count;
+    if (!read_beside(motor, params, &now))
+        return false;
+    *missing = wanted - params->count;
+    for (size_t i = 0; i < params->count; i++) {
+        const cm1e_entry_t *entry = params->at[i].entry;
+        const int64_t kept = cm1e_entry_round(entry, params->at[i].value);
+        if (kept == now.at[i].value || params->at[i].value == now.at[i].value)
+            continue;
+        if (!json)
+            printf("%-24s %" PRId64 " -> %" PRId64 " %s%s\n", entry->name, now.at[i].value, kept, entry->unit,
+                   kept == params->at[i].value ? "" : " (rounded)");
+        params->at[changes++] = params->at[i];
+    }
+    params->count = changes;
+    return true;
+}
+
+static bool confirmed(const params_options_t *options, size_t count)
+{
+    if (options->yes || options->action == SET)
+        return true;
+    if (!at_a_terminal()) {
+        complain("nothing was written: restore needs --yes where there is no terminal to ask, or --dry-run to look "
+                 "only");
+        return false;
+    }
+    fprintf(stderr, "Write %zu value%s? [y/N] ", count, count == 1 ? "" : "s");
+    const int answer = getchar();
+    if (answer == 'y' || answer == 'Y')
+        return true;
+    complain("nothing was written");
+    return false;
+}
+
+static json_t *names_as_json(const params_t *params, size_t from, size_t to)
+{
+    json_t *names = json_array();
+    for (size_t i = from; i < to; i++)
+        json_array_append_new(names, json_string(params->at[i].entry->name));
+    return names;
+}
+
+static void print_names(const char *what, const params_t *params, size_t from, size_t to)
+{
+    fprintf(stderr, "%s:", what);
+    for (size_t i = from; i < to; i++)
+        fprintf(stderr, "%s %s", i > from ? "," : "", params->at[i].entry->name);
+    fputs(from == to ? " nothing\n" : "\n", stderr);
+}
+
+/** Writes one after the other, each read back; stops at the first that fails, and says exactly what was written. */
+static int write_all(const motor_t *motor, params_t *params, bool json)
+{
+    cm1e_diag_t diag = {0};
+    size_t written = 0;
+    while (written < params->count && param_write(motor->bus, motor->position, &params->at[written], &diag))
+        written++;
+    const bool good = written == params->count;
+    if (!good) {
+        fail(&diag);
+        print_names("written and read back", params, 0, written);
+        print_names("failed, its value is to be looked at", params, written, written + 1);
+        print_names("not written", params, written + 1, params->count);
+    }
+    if (json)
+        print_json(json_pack("{s:b, s:o, s:o, s:o}", "done", good, "written", names_as_json(params, 0, written),
+                             "failed", good ? json_null() : json_string(params->at[written].entry->name), "not_written",
+                             names_as_json(params, good ? written : written + 1, params->count)));
+    else if (good)
+        printf("%zu value%s written to slave %u and read back\n", written, written == 1 ? "" : "s", motor->position);
+    return good ? EXIT_OK : EXIT_FAILED;
+}
+
+static int change(motor_t *motor, const params_options_t *options, params_t *params)
+{
+    const bool json = options->common.json;
+    size_t missing;
+    if (!keep_changes(motor, params, &missing, json))
+        return EXIT_FAILED;
+    const int complete = missing ? EXIT_FAILED : EXIT_OK;
+    if (params->count == 0 && !json)
+        puts("nothing to change: the motor has these values already");
+    else if (options->dry_run && !json)
+        puts("nothing was written (--dry-run)");
+    if (options->dry_run && json)
+        print_json(json_pack("{s:b, s:o}", "done", false, "would_write", names_as_json(params, 0, params->count)));
+    if (options->dry_run || (params->count == 0 && !json))
+        return complete;
+    if (params->count > 0 && !confirmed(options, params->count))
+        return EXIT_FAILED;
+    const int status = write_all(motor, params, json);
+    return status == EXIT_OK ? complete : status;
+}
+
+/** The file is of such a motor. */
+static bool suits(const motor_t *motor, const params_options_t *options, const params_head_t *head)
+{
+    params_head_t own;
+    head_of(motor, &own);
+    if (strcmp(head->kind, own.kind) != 0) {
+        complain("%s is of a device \"%s\"; slave %u is a \"%s\"", options->words[0], head->kind, motor->position,
+                 own.kind);
+        return false;
+    }
+    if (strcmp(head->firmware, own.firmware) != 0 && !options->other_firmware) {
+        complain("%s is of firmware %s; slave %u has %s. Units may differ between firmwares (UG 10.1): look at the "
+                 "values, then use --other-firmware", options->words[0], head->firmware, motor->position, own.firmware);
+        return false;
+    }
+    return true;
+}
+
+/* ---- files ------------------------------------------------------------------------------------------------------- */
+
+static int backup(motor_t *motor, const params_options_t *options)
+{
+    params_head_t head;
+    if (!read_values(motor, &motor->params))
+        return EXIT_FAILED;
+    head_of(motor, &head);
+    char *text = params_as_yaml(&head, &motor->params);
+    const bool written = text && write_output(options->words[0], (const uint8_t *)text, strlen(text));
+    if (!text)
+        complain("out of memory");
+    free(text);
+    if (written && options->common.json)
+        print_json(json_pack("{s:o, s:I}", "file", text_as_json(options->words[0]), "parameters",
+                             (json_int_t)motor->params.count));
+    else if (written && strcmp(options->words[0], "-") != 0)
+        printf("%s: %zu parameters of slave %u\n", options->words[0], motor->params.count, motor->position);
+    return written ? EXIT_OK : EXIT_FAILED;
+}
+
+static int diff(motor_t *motor, const params_options_t *options, params_t *file)
+{
+    params_t now;
+    size_t differences = 0;
+    json_t *all = json_array();
+    if (!read_beside(motor, file, &now)) {
+        json_decref(all);
+        return EXIT_FAILED;
+    }
+    for (size_t i = 0; i < file->count; i++) {
+        const param_t *a = &file->at[i], *b = &now.at[i];
+        if (a->value == b->value || cm1e_entry_round(a->entry, a->value) == b->value)
+            continue;
+        differences++;
+        json_array_append_new(all, json_pack("{s:s, s:I, s:I, s:I}", "name", a->entry->name, "file",
+                                             (json_int_t)a->value, "motor", (json_int_t)b->value, "line",
+                                             (json_int_t)a->line));
+        if (!options->common.json)
+            printf("%s:%zu: %s: file %" PRId64 ", motor %" PRId64 " %s\n", options->words[0], a->line, a->entry->name,
+                   a->value, b->value, a->entry->unit);
+    }
+    if (options->common.json)
+        print_json(all);
+    else
+        json_decref(all);
+    if (!options->common.json)
+        printf("%zu of %zu parameters differ\n", differences, file->count);
+    return differences ? EXIT_FAILED : EXIT_OK;
+}
+
+static int run_with_file(motor_t *motor, const params_options_t *options)
+{
+    params_head_t head;
+    static params_t file;
+    if (options->action == BACKUP)
+        return backup(motor, options);
+    if (!params_read_file(options->words[0], &motor->params, &head, &file))
+        return EXIT_WRONG_USE;
+    if (options->action == DIFF)
+        return diff(motor, options, &file);
+    return suits(motor, options, &head) ? change(motor, options, &file) : EXIT_WRONG_USE;
+}
+
+static int run(motor_t *motor, const params_options_t *options)
+{
+    static params_t params;
+    params_of(motor->slave->device, &motor->params);
+    if (motor->params.count == 0) {
+        complain("the parameters of slave %u are not known: only those of a CM1-E are. Those of a motor behind a "
+                 "bridge "
+                 "are read and written by `cm1e cml` (K37.1, K53.1=100)", motor->position);
+        return EXIT_FAILED;
+    }
+    switch (options->action) {
+    case LIST:
+    case GET: return named(motor, options, &params) ? show(motor, &params, options->common.json) : EXIT_WRONG_USE;
+    case SET: return parse_settings(motor, options, &params) ? change(motor, options, &params) : EXIT_WRONG_USE;
+    default: return run_with_file(motor, options);
+    }
+}
+
+static const struct argp_option table[] = {
+    {"yes", KEY_YES, NULL, 0, "restore: do not ask", 0},
+    {"dry-run", KEY_DRY_RUN, NULL, 0, "set, restore: show what would change, write nothing", 0},
+    {"other-firmware", KEY_OTHER_FIRMWARE, NULL, 0, "restore: allow a file of another firmware", 0},
+    {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+const struct argp argp_params = {
+    table, parse,
+    "list POSITION|AXIS [NAME...]\nget POSITION|AXIS NAME...\nset POSITION|AXIS NAME=VALUE...\n"
+    "backup POSITION|AXIS FILE\nrestore POSITION|AXIS FILE\ndiff POSITION|AXIS FILE",
+    "Lists, reads and writes the parameters of a CM1-E, keeps them in a file (YAML with comments), writes them back, "
+    "compares. A parameter is given by name (K47, H3, \"Home offset\", home_offset) or number (0x60F6:1B). restore "
+    "checks "
+    "device, firmware and every range before it writes, shows what will change, reads back each value, and says what "
+    "was "
+    "written if it breaks off.", children, NULL, NULL};
+
+int command_params(int argc, char **argv)
+{
+    static params_options_t options;
+    static cm1e_bus_config_t config;
+    options.action = -1;
+    if (parse_options(&argp_params, argc, argv, &options))
+        return EXIT_WRONG_USE;
+    if (!load_configuration(&options.common, &config))
+        return EXIT_WRONG_USE;
+    cm1e_diag_t diag = {0};
+    static motor_t motor;
+    if (cm1e_bus_open(&motor.bus, &config, &diag) != CM1E_OK || cm1e_bus_scan(motor.bus, &diag) != CM1E_OK) {
+        cm1e_bus_close(motor.bus);
+        return fail(&diag);
+    }
+    int status = find_slave(motor.bus, &config, options.where, &motor.position);
+    if (status == EXIT_OK) {
+        motor.slave = cm1e_bus_slave(motor.bus, motor.position);
+        status = run(&motor, &options);
+    }
+    return close_bus(motor.bus, &options.common, status);
+}
