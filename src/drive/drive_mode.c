@@ -163,10 +163,18 @@ static void read_done(cm1e_drive_t *drive)
     drive->mode_retry_ns = drive->now_ns + (drive->mode_uncertain ? read_again_ns : 0);
 }
 
-/* BR appendix 3: "Confirm No Error Occurs". In CMD the statusword does not tell (BR 7.1.3), so F530 is asked. */
+static bool shows_fault(const cm1e_drive_t *drive, const cm1e_device_mode_t *mode)
+{
+    return mode->words->commands || drive->feedback.statusword & mode->words->fault;
+}
+
+/* BR appendix 3: "Confirm No Error Occurs". While a switch is under way the feedback shows no fault, because the statusword
+ * may be of either mode: a fault is one in both. In CMD the statusword does not tell (BR 7.1.3), so F530 is asked. */
 static bool is_sound(cm1e_drive_t *drive)
 {
-    return place(drive)->words->commands ? cm1e_drive_bridge_sound(drive) : !drive->feedback.fault;
+    if (place(drive)->words->commands)
+        return cm1e_drive_bridge_sound(drive);
+    return !shows_fault(drive, place(drive)) || !shows_fault(drive, drive->wanted);
 }
 
 static bool may_write(cm1e_drive_t *drive)

@@ -13,7 +13,7 @@
 #include "nic/nic.h"
 #include "sim/bridge_app.h"
 
-enum { MOST_OTHERS = 4, SDO_CYCLES = 5, SETTLING = 200, STEP_AT_START = 100 /* counts, of the simulated bridge */ };
+enum { MOST_OTHERS = 4, SDO_CYCLES = 5, SEEN_CYCLES = 2, SETTLING = 200, STEP_AT_START = 100 /* counts, of the simulated bridge */ };
 
 /** An axis that is not judged call by call, and moves to and fro. */
 typedef struct other {
@@ -40,6 +40,7 @@ static struct bench {
     int64_t bus_disturbed_until;    /**< by what concerns all axes */
     int64_t gap_until;              /**< targets are missing */
     double speed[3][5];             /**< counts/s a cycle ago, by slave and channel */
+    long long handed_in[3][5];      /**< the last cycle without a write of the mode on its way */
     long long sound[3][5];          /**< the last cycle without an error of this motor, by slave and channel */
 } bench;
 
@@ -203,6 +204,16 @@ static void act_on_device(void)
 
 /* ---- what must hold ---------------------------------------------------------------------------------------------- */
 
+/** Whether 0x6060 was handed in before the error could be seen, and is on its way only now: others are before it. */
+static bool handed_in_before(const cm1e_axis_config_t *axis, long long sound)
+{
+    const cm1e_sdo_t *sdo = &judged.axis->drive.mode_sdo;
+    long long *since = &bench.handed_in[axis->address][axis->channel];
+    if (!sdo->write || sdo->state != CM1E_SDO_BUSY)
+        *since = judged.number;
+    return *since <= sound + SEEN_CYCLES;
+}
+
 /** Those of the bridge's guide. An SDO that is on its way when a motor fails cannot be held back; nor do targets come that
  *  were in lost frames, or in a pause. A motor that friction holds beside its target may creep the last counts just when
  *  hm is asked for: then the switch is asked for again. */
@@ -212,7 +223,7 @@ static void judge_rules(const cm1e_sim_probe_t *shaft, const cm1e_axis_config_t 
     long long *sound = &bench.sound[axis->address][axis->channel];
     if (!m || m->error == 0)
         *sound = judged.number;
-    const bool just_failed = judged.number - *sound <= SDO_CYCLES;
+    const bool before = handed_in_before(axis, *sound), just_failed = before || judged.number - *sound <= SDO_CYCLES;
     const bool gap = judged.number < bench.gap_until || judged.number < bench.bus_disturbed_until;
     /* A motor that runs out while it is enabled is seen where it was two cycles ago. */
     double *speed = &bench.speed[axis->address][axis->channel];

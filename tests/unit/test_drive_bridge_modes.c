@@ -252,6 +252,29 @@ static void test_an_error_of_the_motor_in_cmd_keeps_it_there(void)
         }
 }
 
+/* A switch that the error came before is not tried again while the motor is in error, whatever the words of the next mode
+ * are. Only the write that was on its way when the error came is not held back. */
+static void test_an_error_during_a_switch_ends_the_tries(void)
+{
+    static const int ways[][2] = {{CSP, HM}, {CSP, CML}, {CSP, CPIO}, {HM, CSP}, {CML, CSP}, {CML, CPIO}, {CPIO, CML}};
+    enum { WAYS = sizeof ways / sizeof ways[0], ON_ITS_WAY = 5 };
+    for (int way = 0; way < WAYS; way++)
+        for (int cycle = 0; cycle < 60; cycle++) {
+            bench_open(CM1E_DEVICE_EB12, (unsigned)(1 + cycle % 4));
+            if (ways[way][0] != CSP)
+                go_to(ways[way][0]);
+            drive.command.mode = (cm1e_mode_t)ways[way][1];
+            bench_cycles(cycle);
+            cm1e_sim_bridge_axis_error(fake_bridge_axis(), BRIDGE_STATUS_OVERLOAD);
+            bench_cycles(ON_ITS_WAY);
+            fake_bridge_axis()->broken_rules = 0;
+            bench_cycles(500);
+            char text[80];
+            snprintf(text, sizeof text, "%d to %d, error in cycle %d", ways[way][0], ways[way][1], cycle);
+            TEST_ASSERT_EQUAL_HEX_MESSAGE(0, fake_bridge_axis()->broken_rules, text);
+        }
+}
+
 /* ---- not confirmed ---------------------------------------------------------------------------------------------- */
 
 static void test_a_switch_that_is_not_confirmed_is_a_fault_that_says_what_is_shown(void)
@@ -418,6 +441,7 @@ int main(void)
     RUN_TEST(test_a_coarse_resolution_does_not_hide_that_the_motor_turns);
     RUN_TEST(test_an_error_of_the_motor_keeps_every_mode_but_cmd_shut);
     RUN_TEST(test_an_error_of_the_motor_in_cmd_keeps_it_there);
+    RUN_TEST(test_an_error_during_a_switch_ends_the_tries);
     RUN_TEST(test_a_switch_that_is_not_confirmed_is_a_fault_that_says_what_is_shown);
     RUN_TEST(test_after_a_refused_switch_csp_works_on);
     RUN_TEST(test_a_switch_survives_broken_transfers_and_lost_frames);
