@@ -33,7 +33,7 @@
 static const double velocity_noise = 3000.0;
 /* Of the maximum velocity, for each cycle of silence: a motor that has slowed down meanwhile overshoots when it gets back
  * to its speed. */
-static const double reserve = 0.05;
+static const double reserve = 0.08;
 
 static cm1e_error_t stop_anew(cm1e_axis_t *axis)
 {
@@ -176,11 +176,17 @@ static double speed_ahead(const cm1e_axis_t *axis)
     return fmax(fabs(v), fmin(ahead, axis->limits.system.velocity));
 }
 
-double cm1e_axis_part_left(const cm1e_axis_t *axis)
+/* Of the set velocity; what keeps it below that. */
+static double part_below(const cm1e_axis_t *axis, double highest)
 {
     static const double rounding = 1.0 + 1e-9;
-    const double ahead = speed_ahead(axis), highest = highest_after(axis, cycles_shaken(axis));
-    return motor_goes_on(axis) || ahead <= highest * rounding ? 1.0 : highest / ahead;
+    const double ahead = speed_ahead(axis);
+    return ahead <= highest * rounding ? 1.0 : highest / ahead;
+}
+
+double cm1e_axis_part_left(const cm1e_axis_t *axis)
+{
+    return motor_goes_on(axis) ? 1.0 : part_below(axis, highest_after(axis, cycles_shaken(axis)));
 }
 
 /* u/s; what the motor still has of the set velocity. */
@@ -191,7 +197,7 @@ static double velocity_left(const cm1e_axis_t *axis)
         return set;
     const double motor = (axis->drive.feedback.velocity - cm1e_axis_backlash_velocity(axis)) / axis->position.scale;
     const double left = set > 0.0 ? fmax(0.0, fmin(motor, set)) : fmin(0.0, fmax(motor, set));
-    const double most = highest_after(axis, axis->silence.silent_before);
+    const double most = fabs(set) * part_below(axis, highest_after(axis, axis->silence.silent_before));
     const double change = fmax(axis->limits.system.acceleration, axis->limits.system.deceleration) * axis->cycle_s *
                           (double)(axis->silence.silent_before + 1);
     const double kept = fabs(set - left) <= change + velocity_noise / fabs(axis->position.scale) ? set : left;
