@@ -64,5 +64,7 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/cm1e-config-version.cmake C
 install(FILES ${CMAKE_BINARY_DIR}/cm1e-config.cmake ${CMAKE_BINARY_DIR}/cm1e-config-version.cmake
         DESTINATION ${package})
 
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN licenses EXCLUDE)
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE docs/THIRD-PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES docs/licenses/SOEM.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}/licenses)

@@ -90,6 +90,18 @@ foreach(room ${rooms})
   endif()
 endforeach()
 
+# Objects of link-time optimisation carry the code of the compiler beside that of the machine. gcc links such an archive by
+# compiling all of it again: 20 s after a change of one line in somebody's program. Installed is the machine's code only.
+if(CM1E_LINK_TIME_OPTIMIZATION AND CMAKE_OBJCOPY)
+  foreach(target ${CM1E_PACKAGE_static})
+    get_target_property(type ${target} TYPE)
+    if(type STREQUAL STATIC_LIBRARY)
+      add_custom_command(TARGET ${target} POST_BUILD VERBATIM
+        COMMAND ${CMAKE_OBJCOPY} --remove-section=.gnu.lto_* --remove-section=.gnu.debuglto_* $<TARGET_FILE:${target}>)
+    endif()
+  endforeach()
+endif()
+
 # Tests look at both kinds. Without them the kind that is installed is enough.
 set(CM1E_KIND static)
 set(other shared)

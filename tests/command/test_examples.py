@@ -11,8 +11,10 @@ import pty
 import re
 import select
 import signal
+import socket
 import subprocess
 import sys
+import tempfile
 import time
 import xml.etree.ElementTree
 
@@ -397,6 +399,26 @@ def check_from_elsewhere():
     expect(done.returncode == 0 and "8 rows of" in done.stdout, f"13_xy_table elsewhere: {done.stdout}{done.stderr}")
 
 
+def check_service():
+    """14_service tells systemd that it is ready, feeds its watchdog, and ends in order on SIGTERM."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "notify")
+        listener = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        listener.bind(path)
+        listener.settimeout(10)
+        process = subprocess.Popen([os.path.join(BIN, "14_service")], env={**os.environ, "NOTIFY_SOCKET": path})
+        heard = []
+        try:
+            while sum(line == "WATCHDOG=1" for line in heard) < 5 or not any("READY=1" in line for line in heard):
+                heard.append(listener.recv(1000).decode())
+            process.send_signal(signal.SIGTERM)
+            while heard[-1] != "STOPPING=1":
+                heard.append(listener.recv(1000).decode())
+        except TimeoutError:
+            faults.append(f"14_service: what systemd would hear is {heard}")
+        expect(process.wait(20) == 0, f"14_service ended with {process.returncode} on SIGTERM")
+
+
 def main():
     real_time.run_above_others()
     check_interrupted()
@@ -414,6 +436,7 @@ def main():
     check_jog_panel()
     check_jog_panel_on_a_terminal()
     check_jog_panel_whose_terminal_goes()
+    check_service()
     real_time.end(faults, "the examples: their traces show what they are about")
 
 

@@ -10,6 +10,7 @@ test_install.py BUILD-DIRECTORY SOURCE-DIRECTORY
 """
 import os
 import re
+import resource
 import subprocess
 import sys
 import tempfile
@@ -19,7 +20,8 @@ from test_wire_only import guests
 
 INSTALLED = ("bin/cm1e", "include/cm1e/plcopen.h", "share/doc/cm1e/LICENSE", "share/doc/cm1e/THIRD-PARTY.md",
              "share/doc/cm1e/licenses/SOEM.txt", "share/man/man1/cm1e.1", "share/man/man1/cm1e-move.1",
-             "share/bash-completion/completions/cm1e", "share/zsh/site-functions/_cm1e")
+             "share/bash-completion/completions/cm1e", "share/zsh/site-functions/_cm1e",
+             "share/doc/cm1e/FIRST-HOUR.md", "share/doc/cm1e/blocks/MC_Home.md", "share/doc/cm1e/examples/01_scan.c")
 APART = ("busfile", "generate", "plot", "sim")
 PROGRAMS = ("consumer", "own_names", "before_libpcap", "after_libpcap")
 
@@ -109,6 +111,42 @@ def check_with_pkg_config(libraries, program, soname):
         sys.exit(f"FAILED: {soname} is not what the program needs")
 
 
+def check_new(prefix, libraries, folder):
+    """What `cm1e new` makes builds against the installed package, with CMake and with make, and runs; after a change of
+    one line it is linked in less than a second. The installed examples build too."""
+    environment = {**os.environ, "PKG_CONFIG_PATH": os.path.join(libraries, "pkgconfig"), "LD_LIBRARY_PATH": libraries}
+    project, build = os.path.join(folder, "new"), os.path.join(folder, "new/build")
+    run(os.path.join(prefix, "bin/cm1e"), "new", project)
+    run("cmake", "-G", "Ninja", "-S", project, "-B", build, f"-DCMAKE_PREFIX_PATH={prefix}",
+        "-DCMAKE_C_FLAGS=-Wall -Wextra -Werror")
+    run("cmake", "--build", build)
+    run("make", "-C", project, env=environment)
+    for program in (os.path.join(build, "motion"), os.path.join(project, "motion")):
+        told = run(program, cwd=project, env=environment)
+        if told != "there and back\n" or os.path.getsize(os.path.join(project, "trace.csv")) < 10000:
+            sys.exit(f"FAILED: {program}: {told}")
+    with open(os.path.join(project, "main.c"), "a", encoding="utf-8") as file:
+        file.write("/* one more line */\n")
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    run("cmake", "--build", build)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    print(f"a program is compiled and linked again in {seconds:.2f} s of computing")
+    if seconds > 1:
+        sys.exit("FAILED: a change of one line takes more than a second")
+    examples = os.path.join(prefix, "share/doc/cm1e/examples")
+    run("cmake", "-G", "Ninja", "-S", examples, "-B", os.path.join(folder, "examples"), f"-DCMAKE_PREFIX_PATH={prefix}")
+    run("cmake", "--build", os.path.join(folder, "examples"), "--target", "02_move_one_axis", "13_xy_table")
+    run("make", "-C", examples, "02_move_one_axis", "13_xy_table", env=environment)
+
+
+def check_no_compiler_code(libraries):
+    """Archives with code of the compiler are compiled anew when they are linked."""
+    for name in os.listdir(libraries):
+        if name.endswith(".a") and ".gnu.lto_" in run("readelf", "-SW", os.path.join(libraries, name)):
+            sys.exit(f"FAILED: {name} carries the code of link-time optimisation")
+
+
 def check_registered_by_hand(source, libraries):
     """Nobody tells the linker about the registration here: the program calls it, or has no simulator."""
     environment = {**os.environ, "PKG_CONFIG_PATH": os.path.join(libraries, "pkgconfig"), "LD_LIBRARY_PATH": libraries}
@@ -134,6 +172,8 @@ def main(build, source):
             check_with_pkg_config(libraries, program, soname)
             check_wire_only(source, prefix, folder, kind)
             check_registered_by_hand(source, libraries)
+            check_no_compiler_code(libraries)
+            check_new(prefix, libraries, folder)
 
 
 if __name__ == "__main__":
