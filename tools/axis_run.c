@@ -6,6 +6,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "attach.h"
+
 enum { WATCH_NS = 50000000, BAR = 30, SIM_PART = 100, DEFAULT_CYCLE_NS = 1000000 };
 
 /* ---- timing ------------------------------------------------------------------------------------------------------ */
@@ -121,6 +123,7 @@ static int run_on_bus(const axis_run_t *run, const cm1e_bus_config_t *config, cm
     if (reported != EXIT_OK)
         status = reported;
     tell_timing(config);
+    complain_of_control(scheduler);
     if (run->keep && !run->keep(scheduler, run->context))
         status = EXIT_FAILED;
     cm1e_scheduler_destroy(scheduler);

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "attach.h"
 #include "command.h"
 #include "core/text.h"
 #include "device/devices.h"
@@ -10,7 +11,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     (void)arg;
     if (key == ARGP_KEY_INIT) {
-        state->child_inputs[0] = state->input;
+        state->child_inputs[0] = state->child_inputs[1] = state->input;
         return 0;
     }
     return ARGP_ERR_UNKNOWN;
@@ -81,7 +82,7 @@ static void print_table(const cm1e_bus_t *bus)
     }
 }
 
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_scan = {NULL, parse, NULL, "Lists the slaves of a network.", children, NULL, NULL};
 
 int command_scan(int argc, char **argv)
@@ -91,14 +92,12 @@ int command_scan(int argc, char **argv)
         return EXIT_WRONG_USE;
 
     static cm1e_bus_config_t config;
-    if (!load_configuration(&options, &config))
+    if (!load_network(&options, &config))
         return EXIT_WRONG_USE;
     cm1e_diag_t diag = {0};
     cm1e_bus_t *bus = NULL;
-    if (cm1e_bus_open(&bus, &config, &diag) != CM1E_OK || cm1e_bus_scan(bus, &diag) != CM1E_OK) {
-        cm1e_bus_close(bus);
+    if (open_network(&options, &config, &bus, &diag) != CM1E_OK)
         return fail(&diag);
-    }
     if (options.json) {
         json_t *slaves = json_array();
         for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++)

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "attach.h"
 #include "command.h"
 #include "core/bytes.h"
 #include "core/text.h"
@@ -39,7 +40,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     sdo_options_t *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &options->common; return 0;
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = state->child_inputs[1] = &options->common;
+        return 0;
     case KEY_TYPE: options->type_name = arg; return 0;
     case KEY_VALUES: options->values = true; return 0;
     case ARGP_KEY_ARG:
@@ -206,7 +209,7 @@ static const struct argp_option table[] = {
     {"type", KEY_TYPE, TYPES, 0, "The type of the object; default: as the device tables say", 0},
     {"values", KEY_VALUES, NULL, 0, "list: also show the present values of the objects", 0},
     {0}};
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_sdo = {
     table, parse, "read POSITION INDEX[:SUB]\nwrite POSITION INDEX[:SUB] VALUE\nlist POSITION",
     "Reads or writes an object, for example `cm1e sdo read -i eth1 1 0x1018:2`, or lists the dictionary of the "
@@ -224,13 +227,11 @@ int command_sdo(int argc, char **argv)
         return EXIT_WRONG_USE;
 
     static cm1e_bus_config_t config;
-    if (!load_configuration(&options.common, &config))
+    if (!load_network(&options.common, &config))
         return EXIT_WRONG_USE;
     cm1e_diag_t diag = {0};
     cm1e_bus_t *bus = NULL;
-    if (cm1e_bus_open(&bus, &config, &diag) != CM1E_OK || cm1e_bus_scan(bus, &diag) != CM1E_OK) {
-        cm1e_bus_close(bus);
+    if (open_network(&options.common, &config, &bus, &diag) != CM1E_OK)
         return fail(&diag);
-    }
     return close_bus(bus, &options.common, transfer(bus, &options, &diag));
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "attach.h"
 #include "command.h"
 #include "device/devices.h"
 #include "device/unit.h"
@@ -13,7 +14,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     (void)arg;
     if (key == ARGP_KEY_INIT) {
-        state->child_inputs[0] = state->input;
+        state->child_inputs[0] = state->child_inputs[1] = state->input;
         return 0;
     }
     return ARGP_ERR_UNKNOWN;
@@ -101,11 +102,11 @@ static bool show_bridge(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const 
     return readable;
 }
 
-static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&common_argp, 0, NULL, 0}, {&attach_argp, 0, NULL, 0}, {0}};
 const struct argp argp_status = {NULL, parse, NULL,
                                  "Shows state, error and measurements of every drive, and which slaves are not "
-                                 "motors. It brings the network to Pre-Operational: do not use it while another "
-                                 "master runs.",
+                                 "motors. Where a program runs the network, it is asked; else the network is brought "
+                                 "to Pre-Operational.",
                                  children, NULL, NULL};
 
 int command_status(int argc, char **argv)
@@ -115,14 +116,12 @@ int command_status(int argc, char **argv)
         return EXIT_WRONG_USE;
 
     static cm1e_bus_config_t config;
-    if (!load_configuration(&options, &config))
+    if (!load_network(&options, &config))
         return EXIT_WRONG_USE;
     cm1e_diag_t diag = {0};
     cm1e_bus_t *bus = NULL;
-    if (cm1e_bus_open(&bus, &config, &diag) != CM1E_OK || cm1e_bus_scan(bus, &diag) != CM1E_OK) {
-        cm1e_bus_close(bus);
+    if (open_network(&options, &config, &bus, &diag) != CM1E_OK)
         return fail(&diag);
-    }
     json_t *all = options.json ? json_array() : NULL;
     bool readable = true;
     for (uint32_t i = 1; i <= cm1e_bus_slave_count(bus); i++) {

@@ -22,6 +22,7 @@ enum { EXIT_OK = 0, EXIT_FAILED = 1, EXIT_WRONG_USE = 2 };
     X(status, "show state, error and measurements of every drive", "")                                              \
     X(sdo, "read or write an object of a slave", "read write list")                                                 \
     X(params, "list, read, write, back up and compare the parameters of a motor", "list get set backup restore diff")\
+    X(log, "show what has happened to a running program's axes", "")                                                \
     X(cml, "send strings to a motor behind a Cool MUSCLE bridge", "")                                               \
     X(sii, "read, write or show the EEPROM of a slave", "read write decode")                                        \
     X(home, "home one axis", "")                                                                                    \
@@ -75,6 +76,7 @@ typedef struct common_options {
     const char *bus_file;       /**< -b */
     const char *pcap_file;      /**< --pcap */
     bool json;                  /**< --json */
+    const char *attach;         /**< --attach, of commands that have attach_argp (attach.h) */
 } common_options_t;
 extern const struct argp common_argp;
 

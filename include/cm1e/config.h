@@ -123,6 +123,13 @@ typedef enum cm1e_coupling_stop {
     CM1E_COUPLING_STOP_KEEP_RATIO,   /**< the master is braked so that the axis can follow it down to standstill */
 } cm1e_coupling_stop_t;
 
+/** What other programs may do with a running one through its control socket (docs/CONTROL.md). */
+typedef enum cm1e_control_mode {
+    CM1E_CONTROL_OBSERVE = 0,        /**< look: axes, slaves, statistics, log, reading objects */
+    CM1E_CONTROL_NONE,               /**< nothing: there is no socket */
+    CM1E_CONTROL_MAINTAIN,           /**< also write to slaves whose axes are not commanded by the program */
+} cm1e_control_mode_t;
+
 /** One axis: its address, its motor, its units and limits. */
 typedef struct cm1e_axis_config {
     char name[CM1E_NAME_LENGTH];     /**< "" selects "axis<n>" */
@@ -206,6 +213,7 @@ typedef struct cm1e_bus_config {
     bool virtual_time;               /**< simulated segment only: time passes only in the cycle and in waits */
     cm1e_pdo_order_t sim_pdo_order;  /**< simulated segment only */
     cm1e_sim_io_t sim_gaps;          /**< simulated segment only: the device at each place without a motor */
+    cm1e_control_mode_t control;     /**< only where the program links cm1e::control */
 } cm1e_bus_config_t;
 
 /** Does the work of cm1e_bus_config_init(), for a program with these sizes of the structs. @rt init */

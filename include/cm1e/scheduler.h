@@ -61,7 +61,7 @@ typedef struct cm1e_scheduler_statistics_t {
     bool realtime;               /**< true: SCHED_FIFO and locked memory are in force */
     char advice[512];            /**< what to do about a missing privilege; "": none is missing */
     char control_socket[112];    /**< path at which other programs can watch this run (docs/CONTROL.md); "": none */
-    char control_advice[256];    /**< why there is none although it is configured, and the cure; "": there is one, or
+    char control_advice[400];    /**< why there is none although it is configured, and the cure; "": there is one, or
                                       none is wanted */
 } cm1e_scheduler_statistics_t;
 

@@ -261,8 +261,8 @@ bool cm1e_axis_may_go(const cm1e_axis_t *axis, bool positive);
  *  on that side). @rt cycle */
 void cm1e_axis_bounds(const cm1e_axis_t *axis, cm1e_motion_limits_t *limits, double *lower, double *upper);
 
-void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info);
-const cm1e_axis_config_t *cm1e_axis_configuration(const cm1e_axis_t *axis);
+CM1E_GUEST_API void cm1e_axis_get(const cm1e_axis_t *axis, cm1e_axis_info_t *info);
+CM1E_GUEST_API const cm1e_axis_config_t *cm1e_axis_configuration(const cm1e_axis_t *axis);
 
 /** Orderly end: ramp down whatever runs, then disable. TRUE when the drive is disabled (or gone). Call every cycle
  *  instead of the programs. @rt cycle */

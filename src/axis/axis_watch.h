@@ -19,19 +19,20 @@ typedef struct cm1e_axis_news {
 } cm1e_axis_news_t;
 
 /** @rt cycle */
-void cm1e_axis_news(const cm1e_axis_t *axis, cm1e_axis_news_t *news);
+CM1E_GUEST_API void cm1e_axis_news(const cm1e_axis_t *axis, cm1e_axis_news_t *news);
 /** The name of the block that posts commands of this kind: "MC_MoveAbsolute". @rt any */
-const char *cm1e_command_name(cm1e_command_kind_t kind);
+CM1E_GUEST_API const char *cm1e_command_name(cm1e_command_kind_t kind);
 /** Meaning and cure of an error code of the axis's drive; NULL: not a code of its manual. @rt any */
 const cm1e_device_error_t *cm1e_axis_device_error(const cm1e_axis_t *axis, uint16_t code);
 
 /** TRUE: cm1e_axis_text() has something to say. @rt cycle */
-bool cm1e_axis_has_text(const cm1e_axis_t *axis);
+CM1E_GUEST_API bool cm1e_axis_has_text(const cm1e_axis_t *axis);
 /** Bytes of a copy. @rt any */
-size_t cm1e_axis_copy_bytes(void);
+CM1E_GUEST_API size_t cm1e_axis_copy_bytes(void);
 /** A copy whose text another thread may make while the axis goes on. @rt cycle */
-void cm1e_axis_copy(const cm1e_axis_t *axis, void *copy);
-/** As cm1e_axis_error_text(), of an axis or of a copy. @rt block */
-void cm1e_axis_text(const cm1e_axis_t *axis, char *text, size_t size);
+CM1E_GUEST_API void cm1e_axis_copy(const cm1e_axis_t *axis, void *copy);
+/** As cm1e_axis_error_text(), of an axis or of a copy. Of the coupling of an axis the present
+ *  state is told. @rt block */
+CM1E_GUEST_API void cm1e_axis_text(const cm1e_axis_t *axis, char *text, size_t size);
 
 #endif

@@ -32,11 +32,23 @@ static cm1e_error_t copy_config(cm1e_bus_config_t *to, const cm1e_bus_config_t *
     return CM1E_OK;
 }
 
-static cm1e_error_t open_parts(cm1e_bus_t *bus, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
+cm1e_error_t cm1e_bus_make(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
 {
-    bus->slaves = calloc(CM1E_MAX_SLAVES, sizeof *bus->slaves);
-    if (!bus->slaves || copy_config(&bus->config, config) != CM1E_OK)
-        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory when opening the bus.");
+    cm1e_bus_t *made = calloc(1, sizeof *made);
+    if (made)
+        made->slaves = calloc(CM1E_MAX_SLAVES, sizeof *made->slaves);
+    if (made && made->slaves && copy_config(&made->config, config) == CM1E_OK) {
+        *bus = made;
+        return CM1E_OK;
+    }
+    if (made)
+        free(made->slaves);
+    free(made);
+    return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory when opening the bus.");
+}
+
+static cm1e_error_t open_parts(cm1e_bus_t *bus, cm1e_diag_t *diag)
+{
     const cm1e_error_t error = cm1e_nic_open(&bus->nic, &bus->config, diag);
     if (error != CM1E_OK)
         return error;
@@ -59,10 +71,11 @@ cm1e_error_t cm1e_bus_open(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm
     cm1e_error_t error = cm1e_bus_config_check(config, diag);
     if (error != CM1E_OK)
         return error;
-    cm1e_bus_t *made = calloc(1, sizeof *made);
-    if (!made)
-        return cm1e_diag_set(diag, CM1E_ERROR_NO_MEMORY, 0, "Out of memory when opening the bus.");
-    error = open_parts(made, config, diag);
+    cm1e_bus_t *made;
+    error = cm1e_bus_make(&made, config, diag);
+    if (error != CM1E_OK)
+        return error;
+    error = open_parts(made, diag);
     if (error != CM1E_OK) {
         cm1e_bus_close(made);
         return error;
@@ -80,6 +93,8 @@ cm1e_error_t cm1e_bus_close(cm1e_bus_t *bus)
     cm1e_bus_stop(bus);
     cm1e_soem_destroy(bus->soem);
     const cm1e_error_t error = cm1e_nic_close(bus->nic);
+    if (bus->remote)
+        bus->remote->close(bus->remote_state);
     cm1e_bus_free_image(bus);
     free(bus->slaves);
     cm1e_bus_config_free(&bus->config);

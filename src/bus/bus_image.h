@@ -47,6 +47,8 @@ cm1e_clock_t *cm1e_bus_clock(cm1e_bus_t *bus);
                                "Only one master may: find that program and end it."
 /** The firmware of a slave as object 0x100A tells; NULL: unreadable. @rt init */
 const cm1e_firmware_info_t *cm1e_bus_slave_firmware(const cm1e_bus_t *bus, uint16_t position);
+/** It has a mailbox with CoE, so its objects can be read. @rt any */
+CM1E_GUEST_API bool cm1e_bus_slave_has_coe(const cm1e_bus_t *bus, uint16_t position);
 /** The nic below: the simulator finds its segment by it. @rt any */
 CM1E_GUEST_API struct cm1e_nic *cm1e_bus_nic(cm1e_bus_t *bus);
 

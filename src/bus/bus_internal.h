@@ -11,6 +11,7 @@
 #include "bus/mapping.h"
 #include "bus/recognise.h"
 #include "bus/recovery.h"
+#include "bus/remote.h"
 #include "bus/soem_adapter.h"
 
 enum {
@@ -116,7 +117,18 @@ struct cm1e_bus {
     uint32_t watched_slave;
 
     cm1e_sdo_queue_t queue;
+
+    const cm1e_bus_remote_t *remote;         /**< another program runs the network: there is no nic; NULL: we do */
+    void *remote_state;
 };
+
+/** A bus with its configuration and no network yet. */
+cm1e_error_t cm1e_bus_make(cm1e_bus_t **bus, const cm1e_bus_config_t *config, cm1e_diag_t *diag);
+/** remote.c: the same of a bus that another program runs. The last one refuses; CM1E_OK: the bus is our own. */
+cm1e_error_t cm1e_bus_scan_remote(cm1e_bus_t *bus, cm1e_diag_t *diag);
+cm1e_error_t cm1e_bus_transfer_remote(cm1e_bus_t *bus, const cm1e_bus_slave_t *slave, cm1e_sdo_t *sdo,
+                                      cm1e_diag_t *diag);
+cm1e_error_t cm1e_bus_refuse_attached(const cm1e_bus_t *bus, const char *function, cm1e_diag_t *diag);
 
 static inline cm1e_bus_slave_t *cm1e_bus_at(const cm1e_bus_t *bus, uint32_t position)
 {

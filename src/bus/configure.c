@@ -169,12 +169,14 @@ cm1e_error_t cm1e_bus_configure(cm1e_bus_t *bus, cm1e_diag_t *diag)
 {
     if (cm1e_in_task())
         return cm1e_in_task_refuse("cm1e_bus_configure()", "", diag);
+    cm1e_error_t error = cm1e_bus_refuse_attached(bus, "Configuring the slaves", diag);
+    if (error != CM1E_OK)
+        return error;
     if (bus->phase < BUS_IDENTIFIED || bus->phase >= BUS_OPERATING)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Identify the slaves before configuring them.");
     if (bus->phase == BUS_CONFIGURED)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The slaves are configured already: scan again to start anew.");
     cm1e_bus_enter(bus);
-    cm1e_error_t error = CM1E_OK;
     for (uint32_t i = 0; i < bus->slave_count && error == CM1E_OK; i++) {
         if (cm1e_bus_has_motors(&bus->slaves[i]))
             error = check_cycle_time(bus, &bus->slaves[i], diag);

@@ -144,6 +144,8 @@ cm1e_error_t cm1e_bus_scan(cm1e_bus_t *bus, cm1e_diag_t *diag)
     if (bus->phase >= BUS_OPERATING)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The bus is in operation: stop it before scanning.");
     cm1e_bus_enter(bus);
+    if (bus->remote)
+        return cm1e_bus_scan_remote(bus, diag);
     cm1e_acyclic_cancel(bus);
     cm1e_bus_free_image(bus);
     cm1e_bus_set_phase(bus, BUS_OPEN);

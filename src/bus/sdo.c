@@ -14,6 +14,8 @@ static cm1e_error_t transfer(cm1e_bus_t *bus, cm1e_sdo_t *sdo, cm1e_diag_t *diag
     if (!slave)
         return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "There is no slave %u; %u were found.",
                              sdo->position, bus->slave_count);
+    if (bus->remote)
+        return cm1e_bus_transfer_remote(bus, slave, sdo, diag);
     const cm1e_error_t error = cm1e_sdo_submit(bus, sdo);
     if (error == CM1E_ERROR_FULL)
         return cm1e_diag_set(diag, error, 0, "Too many SDO transfers wait.");

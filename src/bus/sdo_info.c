@@ -37,6 +37,9 @@ static cm1e_error_t ask(cm1e_bus_t *bus, uint16_t position, cm1e_info_request_t 
 {
     if (!bus || bus->phase < BUS_SCANNED)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "Scan the bus before reading SDO information.");
+    const cm1e_error_t attached = cm1e_bus_refuse_attached(bus, "Reading the dictionary of a slave", diag);
+    if (attached != CM1E_OK)
+        return attached;
     cm1e_bus_enter(bus);
     cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
     if (!slave)

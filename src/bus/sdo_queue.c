@@ -7,7 +7,7 @@ enum { SDO_MAX_BYTES = 1 << 24 };
 /** Checks a transfer without asking the slave. */
 static cm1e_error_t check(const cm1e_bus_t *bus, const cm1e_sdo_t *sdo)
 {
-    if (__atomic_load_n(&bus->phase, __ATOMIC_ACQUIRE) < BUS_SCANNED)
+    if (__atomic_load_n(&bus->phase, __ATOMIC_ACQUIRE) < BUS_SCANNED || bus->remote)
         return CM1E_ERROR_STATE;
     const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, sdo->position);
     if (!slave || (!sdo->data && sdo->size > 0) || sdo->size > SDO_MAX_BYTES)

@@ -50,6 +50,9 @@ static cm1e_error_t begin(session_t *session, cm1e_bus_t *bus, uint16_t position
 {
     if (!bus || bus->phase < BUS_OPEN || bus->phase >= BUS_OPERATING)
         return cm1e_diag_set(diag, CM1E_ERROR_STATE, 0, "The SII of a slave needs an open bus that does not operate.");
+    const cm1e_error_t attached = cm1e_bus_refuse_attached(bus, "Access to the SII of a slave", diag);
+    if (attached != CM1E_OK)
+        return attached;
     cm1e_bus_enter(bus);
     *session = (session_t){.bus = bus, .position = position, .eeprom = {.soem = bus->soem}};
     uint8_t type;

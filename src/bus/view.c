@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "bus/bus_internal.h"
+#include "cm1e/control.h"
 
 int64_t cm1e_bus_enter(cm1e_bus_t *bus)
 {
@@ -62,4 +63,12 @@ const char *cm1e_bus_label_first(const cm1e_bus_t *bus, const cm1e_bus_slave_t *
     cm1e_bus_label(bus, slave, label);
     label[0] = 'S';
     return label;
+}
+
+bool cm1e_bus_is_attached(const cm1e_bus_t *bus) { return bus && bus->remote; }
+
+bool cm1e_bus_slave_has_coe(const cm1e_bus_t *bus, uint16_t position)
+{
+    const cm1e_bus_slave_t *slave = cm1e_bus_at(bus, position);
+    return slave && slave->facts.coe;
 }

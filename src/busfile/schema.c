@@ -48,6 +48,11 @@ static const cyaml_strval_t gaps[] = {
     {"terminal", CM1E_SIM_IO_TERMINAL},
     {"coupler", CM1E_SIM_IO_COUPLER},
 };
+static const cyaml_strval_t control_modes[] = {
+    {"observe", CM1E_CONTROL_OBSERVE},
+    {"none", CM1E_CONTROL_NONE},
+    {"maintain", CM1E_CONTROL_MAINTAIN},
+};
 static const cyaml_strval_t velocity_units[] = {
     {"counts_per_s", CM1E_BUSFILE_VELOCITY_COUNTS_PER_S},
     {"counts_per_ms", CM1E_BUSFILE_VELOCITY_COUNTS_PER_MS},
@@ -67,6 +72,7 @@ static const cyaml_schema_field_t bus_fields[] = {
     BUS_BOOL("virtual_time", config.virtual_time),
     ENUM_OF("sim_pdo_order", cm1e_busfile_t, config.sim_pdo_order, pdo_orders),
     ENUM_OF("sim_gaps", cm1e_busfile_t, config.sim_gaps, gaps),
+    ENUM_OF("control", cm1e_busfile_t, config.control, control_modes),
     CYAML_FIELD_END,
 };
 

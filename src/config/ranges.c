@@ -62,6 +62,8 @@ static bool check_bus(const check_t *check)
         return bus_wrong(check, "sim_pdo_order", "is %d; expected one of the enumeration", (int)config->sim_pdo_order);
     if ((unsigned)config->sim_gaps > CM1E_SIM_IO_COUPLER)
         return bus_wrong(check, "sim_gaps", "is %d; expected one of the enumeration", (int)config->sim_gaps);
+    if ((unsigned)config->control > CM1E_CONTROL_MAINTAIN)
+        return bus_wrong(check, "control", "is %d; expected one of the enumeration", (int)config->control);
     return check_cycle_time(check);
 }
 

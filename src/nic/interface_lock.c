@@ -12,10 +12,11 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "core/program.h"
 #include "core/text.h"
 
 /** The record follows the name within a moment, or the owner has just ended. */
-enum { RECORD_TRIES = 20, RECORD_PAUSE_US = 500, COMMAND_LINE = 512 };
+enum { RECORD_TRIES = 20, RECORD_PAUSE_US = 500 };
 
 /* ---- names ------------------------------------------------------------------------------------------------------ */
 
@@ -39,29 +40,6 @@ static int take_name(const char *name)
     close(s);
     errno = why;
     return -1;
-}
-
-static const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
-/** This program with its first word that is no option: "cm1e move", "python3 machine.py". */
-static void name_program(char *text, size_t size)
-{
-    char line[COMMAND_LINE] = "";
-    FILE *file = fopen("/proc/self/cmdline", "r");
-    const size_t length = file ? fread(line, 1, sizeof line - 2, file) : 0;
-    if (file)
-        fclose(file);
-    line[length] = line[length + 1] = 0;
-    const char *word = line + strlen(line) + 1;
-    const bool named = word < line + length && word[0] && word[0] != '-';
-    snprintf(text, size, "%.23s%s%.22s", line[0] ? base_name(line) : program_invocation_short_name, named ? " " : "",
-             named ? base_name(word) : "");
-    for (char *c = text; *c; c++)
-        *c = *c >= ' ' && *c <= '~' ? *c : '?';
 }
 
 /* ---- records ---------------------------------------------------------------------------------------------------- */
@@ -120,7 +98,7 @@ bool cm1e_interface_owner(const char *interface_name, cm1e_interface_owner_t *ow
 
 /* ---- the lock --------------------------------------------------------------------------------------------------- */
 
-static void write_owner(char *text, size_t size, const cm1e_interface_owner_t *owner)
+void cm1e_interface_owner_text(char *text, size_t size, const cm1e_interface_owner_t *owner)
 {
     char since[40] = "", process[24] = "";
     const time_t time_s = (time_t)owner->since_s;
@@ -138,12 +116,12 @@ static cm1e_error_t in_use(const char *interface_name, cm1e_diag_t *diag)
     cm1e_interface_owner_t owner;
     char who[128];
     cm1e_interface_owner(interface_name, &owner);
-    write_owner(who, sizeof who, &owner);
+    cm1e_interface_owner_text(who, sizeof who, &owner);
     /* A process that is forked off inherits the socket and keeps the name. */
     const bool ended = owner.pid > 0 && kill(owner.pid, 0) != 0 && errno == ESRCH;
     return cm1e_diag_set(diag, CM1E_ERROR_INTERFACE_IN_USE, (uint32_t)owner.pid,
-                         "Network interface \"%s\" is in use by %s. An interface has one owner at a time: two masters, or "
-                         "two simulated segments, on one network disturb each other, and motors lose their torque.%s "
+                         "Network interface \"%s\" is in use by %s. An interface has one owner at a time: two masters, "
+                         "or two simulated segments, on one network disturb each other, and motors lose their torque.%s "
                          "End that program first, or use another interface.", interface_name, who,
                          ended ? " This process has ended, or is in another container; a process that it started may "
                                  "still hold the interface." : "");
@@ -163,7 +141,7 @@ cm1e_error_t cm1e_interface_lock_take(cm1e_interface_lock_t *lock, const char *i
     if (lock->name_fd < 0)
         return cm1e_diag_set(diag, CM1E_ERROR_IO, 0, "Network interface \"%s\" cannot be locked: %s.", interface_name,
                              strerror(errno));
-    name_program(program, sizeof program);
+    cm1e_program_name(program, sizeof program);
     snprintf(record, sizeof record, "cm1e-owner.%u:%d:%lld:%s", index, getpid(), (long long)time(NULL), program);
     lock->record_fd = take_name(record); /* without it others know that somebody has the interface, but not who */
     return CM1E_OK;

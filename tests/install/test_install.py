@@ -22,7 +22,7 @@ INSTALLED = ("bin/cm1e", "include/cm1e/plcopen.h", "share/doc/cm1e/LICENSE", "sh
              "share/doc/cm1e/licenses/SOEM.txt", "share/man/man1/cm1e.1", "share/man/man1/cm1e-move.1",
              "share/bash-completion/completions/cm1e", "share/zsh/site-functions/_cm1e",
              "share/doc/cm1e/FIRST-HOUR.md", "share/doc/cm1e/blocks/MC_Home.md", "share/doc/cm1e/examples/01_scan.c")
-APART = ("busfile", "generate", "plot", "sim")
+APART = ("busfile", "control", "generate", "plot", "sim")
 PROGRAMS = ("consumer", "own_names", "before_libpcap", "after_libpcap")
 
 
@@ -80,10 +80,15 @@ def build_consumer(source, prefix, project, program, components, *settings, **op
     return os.path.join(project, "consumer")
 
 
-def check_with_cmake(source, prefix, project, program):
+def check_with_cmake(source, prefix, project, program, kind):
     build_consumer(source, prefix, project, program, "fb;scheduler;sim", "-DCM1E_BESIDE_OTHERS=ON")
     for name in PROGRAMS:
         print(run(os.path.join(project, name), cwd=project), end="")
+    usual = build_consumer(source, prefix, project + "_usual", program, "cm1e")
+    print(run(usual, cwd=project), end="")
+    needed = run("nm", "-D", usual) if kind == "shared" else run("nm", usual)
+    if "cm1e_control_register" not in needed and "libcm1e_control" not in run("ldd", usual):
+        sys.exit("FAILED: a program that links cm1e::cm1e has no control socket")
 
 
 def check_wire_only(source, prefix, folder, kind):
@@ -168,7 +173,7 @@ def main(build, source):
             program = program_of_readme(source, folder)
             prefix = os.path.join(folder, "prefix")
             libraries, soname = install(build, kind, prefix)
-            check_with_cmake(source, prefix, os.path.join(folder, "project"), program)
+            check_with_cmake(source, prefix, os.path.join(folder, "project"), program, kind)
             check_with_pkg_config(libraries, program, soname)
             check_wire_only(source, prefix, folder, kind)
             check_registered_by_hand(source, libraries)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""One owner of an interface: every other command beside a running `cm1e move` on the same interface is refused in words
-and disturbs nothing. A master that knows no lock is recognised by its frames, and named in the error that it causes.
+"""One owner of an interface: beside a running `cm1e move`, commands on the same interface that look attach to it, others
+are refused in words, and nothing disturbs it. A master that knows no lock is recognised by its frames, and named in the error that it causes.
 
 test_two_masters.py CM1E
 """
@@ -15,35 +15,46 @@ import time
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import wire  # noqa: E402
 
-ROUNDS = 5
+ROUNDS = 3
 ETHERCAT, BWR, AL_CONTROL, INIT = 0x88A4, 8, 0x0120, 1
 SOEM_ADDRESS, NETWORK_CARD_ADDRESS = b"\1" * 6, b"\x00\x1b\x21\x3c\x9d\xf8"
 SLAVES = "axes: [{sim: {no_stops: true}}]\n"
 
 
-def others(cm1e, bus_file, interface):
-    return ([cm1e, "scan", "-i", interface], [cm1e, "status", "-b", bus_file],
-            [cm1e, "sdo", "read", "-i", interface, "1", "0x6041"],
-            [cm1e, "move", "-b", bus_file, "X", "--by", "0.1", "--velocity", "1"])
+def others(cm1e, bus_file, interface, control):
+    """[(command, what it prints if it is let in; None: it is refused)]"""
+    lookers = [([cm1e, "scan", "-i", interface], "Operational"), ([cm1e, "status", "-b", bus_file], "Operation enabled"),
+               ([cm1e, "sdo", "read", "-i", interface, "1", "0x6041"], "0x1237"),
+               ([cm1e, "log", "-i", interface], "MC_MoveVelocity")]
+    movers = [([cm1e, "move", "-b", bus_file, "X", "--by", "0.1", "--velocity", "1"], None),
+              ([cm1e, "home", "-b", bus_file, "X"], None), ([cm1e, "sdo", "list", "-i", interface, "1"], None),
+              ([cm1e, "sii", "decode", "-i", interface, "1"], None)]
+    return [(command, told if control else None) for command, told in lookers] + movers
 
 
 def start_move(segment, cm1e, bus_file):
-    move = subprocess.Popen(segment.command([cm1e, "move", "-b", bus_file, "X", "--speed", "0.5", "--for", "8"]),
+    move = subprocess.Popen(segment.command([cm1e, "move", "-b", bus_file, "X", "--speed", "0.5", "--for", "12"]),
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     wire.wait_for(lambda: "Operation enabled" in segment.console("status 1") or move.poll() is not None, 10,
                   "the motor was not enabled")
     return move
 
 
-def move_is_left_alone(segment, cm1e, bus_file):
+def move_is_left_alone(segment, cm1e, bus_file, control):
     move = start_move(segment, cm1e, bus_file)
     began = time.strftime("%Y-%m-%d %H:")
     for number in range(ROUNDS):
-        for command in others(cm1e, bus_file, wire.MASTER_INTERFACE):
+        for command, expected in others(cm1e, bus_file, wire.MASTER_INTERFACE, control):
             wire.check(move.poll() is None, f"the move ended beside {command[1]}: {move.poll()}")
             result = segment.run(command)
             told = result.stdout + result.stderr
+            if expected:
+                wire.check(result.returncode == 0 and expected in told, f"{command[1]} beside a move: {told}")
+                continue
             wire.check(result.returncode == 1, f"{command[1]} beside a move was not refused: {told}")
+            if command[1] in ("sdo", "sii") and control:
+                wire.check("needs the network for itself" in told or "in use by cm1e move" in told, f"{command}: {told}")
+                continue
             wire.check(re.search(rf"in use by cm1e move \(process {move.pid}\) since", told),
                        f"{command[1]}: who has it is not said: {told}")
             wire.check(began[:10] in told, f"{command[1]}: since when is not said: {told}")
@@ -105,8 +116,13 @@ if __name__ == "__main__":
             file.write(SLAVES)
         with wire.segment(sys.argv[1], slaves) as segment:
             bus_file = segment.bus_file()
-            move_is_left_alone(segment, sys.argv[1], bus_file)
+            move_is_left_alone(segment, sys.argv[1], bus_file, True)
+            with open(bus_file, "r+", encoding="utf-8") as file:
+                text = file.read().replace("bus:\n", "bus:\n  control: none\n", 1)
+                file.seek(0)
+                file.write(text)
+            move_is_left_alone(segment, sys.argv[1], bus_file, False)
             lock_ends_with_its_owner(segment, sys.argv[1], bus_file)
             other_master_is_named(segment, sys.argv[1], bus_file)
             nobody_is_named_alone(segment, sys.argv[1], bus_file)
-    print(f"{ROUNDS * 4} commands beside a move: all refused, the move done")
+    print(f"{ROUNDS * 16} commands beside moves: all refused or attached, the moves done")

@@ -1,0 +1,30 @@
+/**
+ * @file remote.h
+ * A bus that another program runs: slaves and transfers come through a table of functions, and no frame is sent.
+ */
+#ifndef CM1E_BUS_REMOTE_H
+#define CM1E_BUS_REMOTE_H
+
+#include "cm1e/bus.h"
+#include "core/guest_api.h"
+
+/** A slave as the other program found it. */
+typedef struct cm1e_remote_slave {
+    cm1e_slave_info_t info; /**< without `device` and `kind` */
+    char kind[24];          /**< "": none of ours */
+    bool coe;
+} cm1e_remote_slave_t;
+
+typedef struct cm1e_bus_remote {
+    cm1e_error_t (*scan)(void *state, cm1e_remote_slave_t *slaves, uint32_t room, uint32_t *count, cm1e_diag_t *diag);
+    /** Executes a transfer; an error is in `sdo` as after any other transfer. Returns CM1E_OK, or why it could not even
+     *  be tried, with `diag`. */
+    cm1e_error_t (*transfer)(void *state, cm1e_sdo_t *sdo, cm1e_diag_t *diag);
+    void (*close)(void *state);
+} cm1e_bus_remote_t;
+
+/** As cm1e_bus_open(). `state` belongs to the bus from then on, after an error too. @rt init */
+CM1E_GUEST_API cm1e_error_t cm1e_bus_open_remote(cm1e_bus_t **bus, const cm1e_bus_config_t *config,
+                                                 const cm1e_bus_remote_t *remote, void *state, cm1e_diag_t *diag);
+
+#endif

@@ -1,0 +1,52 @@
+/**
+ * @file request.h
+ * What a client may ask for: a table of requests. Each is answered at once, or waits for a snapshot or a transfer.
+ */
+#ifndef CM1E_CONTROL_REQUEST_H
+#define CM1E_CONTROL_REQUEST_H
+
+#include <jansson.h>
+#include <time.h>
+
+#include "control/view.h"
+
+/** Facts of a run that do not change. */
+typedef struct control_run {
+    view_t view;
+    cm1e_control_mode_t control;
+    char program[64];
+    time_t since;
+} control_run_t;
+
+typedef enum request_state {
+    REQUEST_NONE = 0, /**< the client is not waiting */
+    REQUEST_SNAPSHOT,
+    REQUEST_WRITE,    /**< until the cycle has decided on it */
+    REQUEST_SDO,
+} request_state_t;
+
+/** The request of one client that is being worked on. */
+typedef struct control_request {
+    request_state_t state;
+    json_t *id;                /**< what the client calls it; NULL: nothing */
+    bool wanted;               /**< a snapshot was wanted after this request came */
+    json_t *(*show)(const view_t *view); /**< SNAPSHOT: what of it */
+    const char *name;          /**< ... and under which name */
+    int64_t begun_ns;
+    cm1e_sdo_t sdo;
+    uint8_t *data;             /**< of the transfer */
+    view_write_t write;
+} control_request_t;
+
+/** Begins a request. Returns its reply, or NULL if it goes on: cm1e_request_continue(). */
+json_t *cm1e_request_begin(control_request_t *request, control_run_t *run, const json_t *message, int64_t now_ns);
+/** Returns the reply when there is one. `stopping`: the cycle does not run any more. */
+json_t *cm1e_request_continue(control_request_t *request, control_run_t *run, int64_t now_ns, bool stopping);
+/** A transfer is still on its way: the request must live until it has ended. */
+bool cm1e_request_must_end(const control_request_t *request);
+/** Frees what belongs to a request, which may be used again. */
+void cm1e_request_clear(control_request_t *request);
+/** A reply that refuses; `id` may be NULL. */
+json_t *cm1e_request_refuse(json_t *id, cm1e_error_t error, uint32_t foreign_code, const char *text);
+
+#endif

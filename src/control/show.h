@@ -1,0 +1,25 @@
+/**
+ * @file show.h
+ * What the control socket tells, as JSON. docs/CONTROL.md names every member.
+ */
+#ifndef CM1E_CONTROL_SHOW_H
+#define CM1E_CONTROL_SHOW_H
+
+#include <jansson.h>
+
+#include "control/view.h"
+
+/** Of a filled snapshot. */
+json_t *cm1e_show_axes(const view_t *view);
+json_t *cm1e_show_slaves(const view_t *view);
+
+json_t *cm1e_show_statistics(const cm1e_scheduler_t *scheduler);
+/** Records after number `after`, as many as fit into a reply: {"events": [...], "lost": n, "last": n}. */
+json_t *cm1e_show_log(const cm1e_scheduler_t *scheduler, uint64_t after);
+
+/** A text that may come from a device or a file: always valid UTF-8. */
+json_t *cm1e_show_text(const char *text);
+/** null for what JSON has no number for. */
+json_t *cm1e_show_real(double value);
+
+#endif

@@ -1,0 +1,119 @@
+#include "control/view.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+cm1e_error_t cm1e_view_init(view_t *view, cm1e_scheduler_t *scheduler)
+{
+    view->scheduler = scheduler;
+    view->bus = cm1e_scheduler_bus(scheduler);
+    view->axes = cm1e_scheduler_axes(scheduler, &view->axis_count);
+    view->slave_count = cm1e_bus_slave_count(view->bus);
+    view->copies = calloc(view->axis_count ? view->axis_count : 1, cm1e_axis_copy_bytes());
+    return view->copies ? CM1E_OK : CM1E_ERROR_NO_MEMORY;
+}
+
+void cm1e_view_free(view_t *view) { free(view->copies); }
+
+/* ---- the cycle -------------------------------------------------------------------------------------------------- */
+
+static unsigned char *copy_of(const view_t *view, uint32_t axis)
+{
+    return view->copies + axis * cm1e_axis_copy_bytes();
+}
+
+static void begin(view_t *view)
+{
+    view->begun = true;
+    view->next = 0;
+    view->run_ns = cm1e_scheduler_time_ns(view->scheduler);
+    for (uint32_t i = 0; i < view->axis_count; i++) {
+        cm1e_axis_get(view->axes[i], &view->infos[i]);
+        cm1e_axis_news(view->axes[i], &view->news[i]);
+        view->has_text[i] = cm1e_axis_has_text(view->axes[i]);
+    }
+    for (uint32_t i = 0; i < view->slave_count; i++) {
+        const cm1e_slave_info_t *slave = cm1e_bus_slave(view->bus, i + 1);
+        view->slaves[i].al_state = slave->al_state;
+        view->slaves[i].al_status_code = slave->al_status_code;
+    }
+}
+
+static void fill(view_t *view)
+{
+    if (!view->begun)
+        begin(view);
+    while (view->next < view->axis_count && !view->has_text[view->next])
+        view->next++;
+    if (view->next < view->axis_count) {
+        cm1e_axis_copy(view->axes[view->next], copy_of(view, view->next));
+        view->next++;
+        return;
+    }
+    view->begun = false;
+    atomic_store_explicit(&view->state, VIEW_FILLED, memory_order_release);
+}
+
+/** A program's block moves it, or something that a block began. */
+static bool is_commanded(const cm1e_axis_t *axis)
+{
+    cm1e_axis_news_t news;
+    cm1e_axis_news(axis, &news);
+    return news.command != 0 || (news.state != CM1E_AXIS_DISABLED && news.state != CM1E_AXIS_STANDSTILL &&
+                                 news.state != CM1E_AXIS_ERROR_STOP);
+}
+
+static void decide(view_t *view, view_write_t *write)
+{
+    write->commanded = -1;
+    for (uint32_t i = 0; i < view->axis_count && write->commanded < 0; i++)
+        if (cm1e_bus_axis_position(view->bus, i) == write->sdo->position && is_commanded(view->axes[i]))
+            write->commanded = (int32_t)i;
+    write->result = write->commanded >= 0 ? CM1E_ERROR_AXIS_STATE : cm1e_sdo_submit(view->bus, write->sdo);
+    atomic_store_explicit(&write->decided, true, memory_order_release);
+}
+
+void cm1e_view_cycle(view_t *view)
+{
+    if (atomic_load_explicit(&view->state, memory_order_acquire) == VIEW_WANTED)
+        fill(view);
+    if (!atomic_load_explicit(&view->write, memory_order_relaxed))
+        return;
+    view_write_t *write = atomic_exchange_explicit(&view->write, NULL, memory_order_acquire);
+    if (write)
+        decide(view, write);
+}
+
+/* ---- the thread ------------------------------------------------------------------------------------------------- */
+
+void cm1e_view_want(view_t *view)
+{
+    if (atomic_load_explicit(&view->state, memory_order_acquire) != VIEW_WANTED)
+        atomic_store_explicit(&view->state, VIEW_WANTED, memory_order_release);
+}
+
+bool cm1e_view_filled(const view_t *view)
+{
+    return atomic_load_explicit(&view->state, memory_order_acquire) == VIEW_FILLED;
+}
+
+void cm1e_view_text(const view_t *view, uint32_t axis, char *text, size_t size)
+{
+    text[0] = 0;
+    if (view->has_text[axis])
+        cm1e_axis_text((const cm1e_axis_t *)(const void *)copy_of(view, axis), text, size);
+}
+
+bool cm1e_view_submit(view_t *view, view_write_t *write)
+{
+    view_write_t *none = NULL;
+    atomic_store_explicit(&write->decided, false, memory_order_relaxed);
+    return atomic_compare_exchange_strong_explicit(&view->write, &none, write, memory_order_release,
+                                                   memory_order_relaxed);
+}
+
+bool cm1e_view_withdraw(view_t *view, view_write_t *write)
+{
+    view_write_t *expected = write;
+    return atomic_compare_exchange_strong(&view->write, &expected, NULL);
+}

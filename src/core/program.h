@@ -1,0 +1,13 @@
+/**
+ * @file program.h
+ * How a program is called where others are told of it.
+ */
+#ifndef CM1E_CORE_PROGRAM_H
+#define CM1E_CORE_PROGRAM_H
+
+#include <stddef.h>
+
+/** This program with its first word that is no option: "cm1e move", "python3 machine.py". @rt init */
+void cm1e_program_name(char *text, size_t size);
+
+#endif

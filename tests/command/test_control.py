@@ -1,0 +1,365 @@
+#!/usr/bin/env python3
+"""The control socket of a running program, through its documented protocol and through the commands that attach: what is
+told, what is refused, and that nothing sent or left unread disturbs the program.
+
+test_control.py BIN-DIRECTORY
+"""
+import contextlib
+import json
+import os
+import random
+import re
+import shutil
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+import real_time  # noqa: E402
+
+CM1E = os.path.join(os.path.abspath(sys.argv[1]), "cm1e")
+BUS = """\
+bus: {{interface: sim, control: {control}, lost_cycles_limit: 50}}
+axes:
+  - {{name: X, sim: {{no_stops: true}}}}
+  - {{name: Y, sim: {{no_stops: true}}}}
+"""
+FOLDER = tempfile.mkdtemp()
+RUNTIME = os.path.join(FOLDER, "run")
+ENVIRONMENT = {**os.environ, "CM1E_RUNTIME_DIR": RUNTIME}
+faults = []
+
+
+def expect(condition, what, told=""):
+    if not condition:
+        faults.append(f"{what}\n    {told}")
+
+
+def wait_for(condition, what, seconds=10):
+    end = time.monotonic() + seconds
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.01)
+    expect(condition(), what)
+
+
+# ---- the program and its clients ------------------------------------------------------------------------------------
+
+class Running:
+    """`cm1e move` of axis X on a simulated segment."""
+
+    def __init__(self, control="observe", seconds=30, speed=0.5):
+        bus_file = os.path.join(FOLDER, f"{control}.yaml")
+        with open(bus_file, "w", encoding="utf-8") as file:
+            file.write(BUS.format(control=control))
+        self.process = subprocess.Popen([CM1E, "move", "-b", bus_file, "X", "--speed", str(speed), "--for",
+                                         str(seconds)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                        env=ENVIRONMENT)
+        self.pid = self.process.pid
+        self.path = os.path.join(RUNTIME, f"cm1e-{self.pid}-0.sock")
+
+    def moves(self):
+        """Waits until the axis moves."""
+        wait_for(lambda: os.path.exists(self.path), "no control socket")
+        with Client(self) as client:
+            wait_for(lambda: client.ask("axes")["axes"][0]["velocity"] > 0.4, "the axis does not move")
+        return self
+
+    def end(self):
+        self.process.terminate()
+        out, err = self.process.communicate(timeout=30)
+        return out + err
+
+    def attached(self, *words):
+        return subprocess.run([CM1E, *words, "--attach", str(self.pid)], capture_output=True, text=True, timeout=60,
+                              env=ENVIRONMENT)
+
+
+@contextlib.contextmanager
+def running(control="observe"):
+    program = Running(control).moves()
+    try:
+        yield program
+        with Client(program) as client:  # it still moves, as if nothing had been
+            axis = client.ask("axes")["axes"][0]
+            expect(axis["state"] == "ContinuousMotion" and axis["error"] is None, "the program was disturbed", axis)
+            expect(abs(axis["velocity"] - 0.5) < 0.1, "the motor does not keep its speed", axis)
+    finally:
+        said = program.end()
+        expect("ErrorStop" not in said, "the run ended with an error", said)
+        expect(not os.path.exists(program.path), "the socket is left behind")
+
+
+class Client:
+    def __init__(self, program):
+        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self.socket.settimeout(20)
+        while True:
+            try:
+                self.socket.connect(program.path)
+                return
+            except BlockingIOError:  # more connect at a time than wait in the queue
+                time.sleep(0.01)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.socket.close()
+
+    def send(self, text):
+        data = text if isinstance(text, bytes) else text.encode()
+        self.socket.sendall(struct.pack(">I", len(data)) + data)
+
+    def receive(self):
+        """The next reply; None: the program has closed the connection."""
+        header = self.read(4)
+        data = self.read(struct.unpack(">I", header)[0]) if header else None
+        return json.loads(data) if data else None
+
+    def read(self, length):
+        data = b""
+        while len(data) < length:
+            try:
+                part = self.socket.recv(length - len(data))
+            except ConnectionError:
+                return None
+            if not part:
+                return None
+            data += part
+        return data
+
+    def ask(self, request, **arguments):
+        self.send(json.dumps({"request": request, **arguments}))
+        return self.receive()
+
+
+# ---- what is told ---------------------------------------------------------------------------------------------------
+
+def check_requests():
+    with running() as program, Client(program) as client:
+        hello = client.ask("hello", id="mine", protocol=1)
+        expect(hello["ok"] and hello["id"] == "mine" and hello["hello"]["pid"] == program.pid, "hello", hello)
+        expect(hello["hello"]["program"] == "cm1e move" and hello["hello"]["control"] == "observe", "hello", hello)
+        expect(abs(hello["hello"]["since"] - time.time()) < 60 and hello["hello"]["protocol"] == 1, "hello", hello)
+        x, y = client.ask("axes")["axes"]
+        expect((x["name"], y["name"], x["slave"], y["slave"]) == ("X", "Y", 1, 2), "axes", x)
+        expect(x["command"] == "MC_MoveVelocity" and y["command"] is None and y["state"] == "Disabled", "axes", (x, y))
+        expect(abs(x["lag"]) < 0.1 and isinstance(x["torque"], float) and x["text"] == "", "values of an axis", x)
+        before, after = x["position"], client.ask("axes")["axes"][0]["position"]
+        expect(after > before, "the position stands", (before, after))
+        slaves = client.ask("slaves")["slaves"]
+        expect([s["al_state"] for s in slaves] == [8, 8] and slaves[0]["kind"] == "cm1-e" and slaves[0]["coe"], "slaves",
+               slaves)
+        statistics = client.ask("statistics")["statistics"]
+        expect(statistics["cycles"] > 0 and statistics["bus"]["foreign_frames"] == 0 and
+               sum(statistics["cycle_time"]["histogram"]) == statistics["cycle_time"]["count"], "statistics", statistics)
+        log = client.ask("log")["log"]
+        expect([e["number"] for e in log["events"]] == list(range(1, log["last"] + 1)), "log", log)
+        expect(any(e["text"] == "X: ContinuousMotion (was Standstill)" for e in log["events"]), "log", log)
+        more = client.ask("log", after=log["last"] - 1)["log"]["events"]
+        expect(more and more[0]["number"] == log["last"], "the log goes on where it was", more)
+        identity = client.ask("sdo_read", slave=1, index=0x1018, subindex=2)
+        expect(identity["data"] == "02204144", "reading an object", identity)
+        absent = client.ask("sdo_read", slave=1, index=0x1234)
+        expect(not absent["ok"] and absent["error"]["code"] == -26 and absent["error"]["foreign_code"] == 0x06020000,
+               "an object that is not there", absent)
+        nobody = client.ask("sdo_read", slave=77, index=0x1018)
+        expect(not nobody["ok"] and nobody["error"]["code"] == -1, "a slave that is not there", nobody)
+        client.send('{"request": "hello", "id": 1}')
+        client.send('{"request": "statistics", "id": 2}')
+        expect((client.receive()["id"], client.receive()["id"]) == (1, 2), "two requests at once are answered in turn")
+
+
+def check_writing():
+    with running("observe") as program, Client(program) as client:
+        refused = client.ask("sdo_write", slave=2, index=0x2201, subindex=1, data="10270000")
+        expect(not refused["ok"] and "control: maintain" in refused["error"]["text"], "writing by observe", refused)
+    with running("maintain") as program, Client(program) as client:
+        before = client.ask("sdo_read", slave=2, index=0x2201, subindex=1)["data"]
+        written = client.ask("sdo_write", slave=2, index=0x2201, subindex=1, data="11270000")
+        after = client.ask("sdo_read", slave=2, index=0x2201, subindex=1)["data"]
+        expect(written["ok"] and after == "11270000" != before, "writing to an axis at rest", (before, written, after))
+        refused = client.ask("sdo_write", slave=1, index=0x2201, subindex=1, data="11270000")
+        expect(not refused["ok"] and '"X" is commanded' in refused["error"]["text"], "writing to a moving axis", refused)
+        told = program.attached("sdo", "write", "2", "0x2201:1", "10002")
+        expect(told.returncode == 0 and client.ask("sdo_read", slave=2, index=0x2201, subindex=1)["data"] == "12270000",
+               "cm1e sdo write, attached", told)
+
+
+# ---- what does no harm ----------------------------------------------------------------------------------------------
+
+WRONG = (b"", b"{", b"[]", b"null", b'"hello"', b"{}", b'{"request": 5}', b'{"request": "hello", "request": "axes"}',
+         b'{"request": "hello", "protocol": 2}', b'{"request": "nothing"}', b'{"request": "log", "after": -1}',
+         b'{"request": "log", "after": "x"}', b'{"request": "sdo_read"}', b'{"request": "sdo_read", "slave": 0}',
+         b'{"request": "sdo_read", "slave": 1, "index": 65536}', b'{"request": "sdo_read", "slave": 1.5, "index": 1}',
+         b'{"request": "sdo_read", "slave": 1, "index": 1, "subindex": 256}', b'{"request": "\\ud800"}', b"\xff\xfe",
+         b'{"request": "sdo_read", "slave": 1, "index": 4120, "size": 0}', b'{"request": "sdo_write", "slave": 2}',
+         b'{"request": "sdo_write", "slave": 2, "index": 24677, "data": "1"}', b"[" * 60000, b'{"a":' * 10000,
+         b'{"request": "sdo_write", "slave": 2, "index": 24677, "data": "zz"}', b'{"request": "' + b"x" * 60000 + b'"}')
+
+
+def check_wrong_messages():
+    with running("maintain") as program:
+        with Client(program) as client:
+            for text in WRONG:
+                client.send(text)
+                reply = client.receive()
+                expect(reply and not reply["ok"] and reply["error"]["text"], f"{text[:60]}", reply)
+            expect(client.ask("hello")["ok"], "the connection goes on after wrong messages")
+        for length in (65537, 0x7FFFFFFF, 0xFFFFFFFF):
+            with Client(program) as client:
+                client.socket.sendall(struct.pack(">I", length))
+                reply = client.receive()
+                expect(reply and "longer" in reply["error"]["text"], f"a message of {length} bytes", reply)
+                expect(client.receive() is None, "the connection ends then")
+        chance = random.Random(20240)
+        for _ in range(200):
+            with Client(program) as client, contextlib.suppress(ConnectionError):
+                client.socket.sendall(chance.randbytes(chance.randrange(1, 3000)))
+
+
+def check_bad_clients():
+    with running() as program:
+        with contextlib.ExitStack() as stack:
+            half = stack.enter_context(Client(program))
+            half.socket.sendall(struct.pack(">I", 100) + b'{"request"')
+            deaf = stack.enter_context(Client(program))
+            deaf.socket.settimeout(0.2)
+            with contextlib.suppress(OSError):
+                for _ in range(20000):
+                    deaf.send('{"request": "axes"}')
+            others = [stack.enter_context(Client(program)) for _ in range(20)]
+            for _ in range(20):
+                for client in others:
+                    client.send('{"request": "axes"}')
+                for client in others:
+                    expect(client.receive()["ok"], "one of 20 clients got no answer")
+            crowd = [stack.enter_context(Client(program)) for _ in range(40)]
+            told = crowd[-1].receive()
+            expect(told and not told["ok"] and "at most 32" in told["error"]["text"], "the 60th client", told)
+            expect(others[0].ask("hello")["ok"], "those that were there first are served")
+            half.socket.settimeout(15)
+            expect(half.receive() is None, "half a message is not waited for for ever")
+        for _ in range(100):  # gone before the answer
+            with Client(program) as client, contextlib.suppress(ConnectionError):  # or turned away
+                client.send(random.choice(('{"request": "sdo_read", "slave": 1, "index": 4120, "subindex": 1}',
+                                           '{"request": "axes"}')))
+        def answered():
+            with Client(program) as client:
+                return client.ask("sdo_read", slave=2, index=0x1018, subindex=1)["ok"]
+
+        wait_for(answered, "no answer after clients that vanished")
+
+
+def check_end_beside_clients():
+    for _ in range(5):
+        program = Running().moves()
+        with contextlib.ExitStack() as stack:
+            clients = [stack.enter_context(Client(program)) for _ in range(8)]
+            for client in clients:
+                for _ in range(20):
+                    client.send('{"request": "sdo_read", "slave": 1, "index": 4104}')
+            said = program.end()
+            expect("ErrorStop" not in said, "ended beside waiting clients", said)
+
+
+# ---- who may, and where ---------------------------------------------------------------------------------------------
+
+def check_rights():
+    with running() as program:
+        expect(os.stat(program.path).st_mode & 0o777 == 0o600 and os.stat(RUNTIME).st_mode & 0o777 == 0o700,
+               "rights of socket and directory")
+        if os.geteuid() == 0 and shutil.which("setpriv"):
+            os.chmod(FOLDER, 0o755)
+            os.chmod(RUNTIME, 0o755)
+            told = subprocess.run(["setpriv", "--reuid=65534", "--clear-groups", CM1E, "scan", "--attach",
+                                   str(program.pid)], capture_output=True, text=True, timeout=60)
+            os.chmod(RUNTIME, 0o700)
+            expect(told.returncode == 1 and "another user" in told.stderr, "another user", told)
+
+
+def check_no_socket():
+    program = Running("none")
+    time.sleep(1)
+    expect(not os.path.exists(program.path), "control: none has a socket")
+    told = program.attached("scan")
+    expect(told.returncode == 1 and "control: none" in told.stderr, "attaching to control: none", told)
+    program.end()
+    with open(os.path.join(FOLDER, "no-directory"), "w", encoding="utf-8"):
+        pass
+    for where, words in ((os.path.join(FOLDER, "no-directory"), "not a directory"), ("relative", "absolute path"),
+                         ("/proc/1/nothing", "cannot be made"), (FOLDER + "/" + "x" * 90, "CM1E_RUNTIME_DIR")):
+        told = subprocess.run([CM1E, "move", "-i", "sim", "1", "--by", "0.1"], capture_output=True, text=True,
+                              timeout=60, env={**os.environ, "CM1E_RUNTIME_DIR": where})
+        expect(told.returncode == 0 and words in told.stderr, f"runtime directory {where}", told)
+
+
+def check_left_behind():
+    killed = Running().moves()
+    killed.process.kill()
+    killed.process.communicate()
+    expect(os.path.exists(killed.path), "a killed program leaves its socket")
+    with running():
+        expect(not os.path.exists(killed.path), "the next program removes it")
+    told = killed.attached("scan")
+    expect(told.returncode == 1 and "has no control socket" in told.stderr, "attaching to a dead program", told)
+
+
+# ---- commands, attached and alone -----------------------------------------------------------------------------------
+
+def without_state(text):
+    return re.sub(r"Operational|Pre-Operational|Safe-Operational", "STATE", text.replace("Pre-Operational", "STATE"))
+
+
+def check_commands():
+    bus_file = os.path.join(FOLDER, "observe.yaml")
+    with running() as program:
+        for words in (["scan"], ["scan", "--json"], ["sdo", "read", "1", "0x1018:2"], ["sdo", "read", "2", "0x100A"],
+                      ["sdo", "read", "--json", "1", "0x1008"], ["sdo", "read", "1", "0x1234"], ["sdo", "read", "9", "1"],
+                      ["scan", "-b", bus_file], ["sdo", "read", "-b", bus_file, "1", "0x1018:1"]):
+            attached = program.attached(*words)
+            alone = subprocess.run([CM1E, *words, "-b", bus_file, "-i", f"sim:{bus_file}"], capture_output=True, text=True,
+                                   timeout=60)
+            squeeze = lambda text: re.sub(r" +", " ", without_state(text))  # noqa: E731
+            expect((squeeze(attached.stdout), attached.returncode) == (squeeze(alone.stdout), alone.returncode),
+                   f"{words}: attached and alone differ", f"{attached}\n    {alone}")
+            labels = re.compile(r'\("[XY]", CM1-E\)')
+            expect(labels.sub("(CM1-E)", attached.stderr) == labels.sub("(CM1-E)", alone.stderr),
+                   f"{words}: attached and alone complain otherwise", f"{attached}\n    {alone}")
+        status = program.attached("status", "--json")
+        drives = json.loads(status.stdout)
+        expect(status.returncode == 0 and len(drives) == 2 and "Operation enabled" in json.dumps(drives[0]), "status",
+               status)
+        log = program.attached("log")
+        expect("MC_MoveVelocity, velocity 0.5 u/s" in log.stdout and log.returncode == 0, "log", log)
+        as_json = json.loads(program.attached("log", "--json").stdout)
+        expect(as_json[0]["text"] == "the run began", "log --json", as_json[:1])
+        expect(program.attached("sdo", "list", "1").returncode == 1, "what needs the network for itself is refused")
+        by_path = subprocess.run([CM1E, "scan", "--attach", program.path], capture_output=True, text=True, timeout=60)
+        expect(by_path.returncode == 0 and by_path.stdout.count("CM1-E") == 2, "attach by the path", by_path)
+        follower = subprocess.Popen([CM1E, "log", "--follow", "--attach", str(program.pid)], stdout=subprocess.PIPE,
+                                    stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+        time.sleep(0.5)
+    out, err = follower.communicate(timeout=20)
+    expect(follower.returncode == 0 and "Disabled (was" in out and "the run ended" in out, "log --follow ends with the program", out + err)
+
+
+if __name__ == "__main__":
+    try:
+        for check in (check_requests, check_writing, check_wrong_messages, check_bad_clients, check_end_beside_clients,
+                      check_rights, check_no_socket, check_left_behind, check_commands):
+            begin = time.monotonic()
+            check()
+            print(f"{check.__name__}: {time.monotonic() - begin:.1f} s, {len(faults)} faults so far", flush=True)
+    except (KeyError, TypeError, OSError) as error:
+        faults.append(f"{check.__name__}: {error!r}\n{traceback.format_exc()}")
+    finally:
+        shutil.rmtree(FOLDER, ignore_errors=True)
+    if faults:
+        real_time.skip_on_a_busy_machine(faults)
+        print("FAILED:", *faults, sep="\n")
+        sys.exit(1)

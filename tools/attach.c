@@ -1,0 +1,77 @@
+#include "attach.h"
+
+#include <string.h>
+
+enum { KEY_ATTACH = 0x700 };
+
+static const struct argp_option option_table[] = {
+    {"attach", KEY_ATTACH, "PROGRAM", 0,
+     "Ask the program that runs the network: its process number, or the path of its control socket. Without this "
+     "option the program is found by the network interface", 1},
+    {0},
+};
+
+static error_t parse_attach(int key, char *arg, struct argp_state *state)
+{
+    common_options_t *options = state->input;
+    if (key != KEY_ATTACH)
+        return ARGP_ERR_UNKNOWN;
+    if (!arg[0])
+        argp_error(state, "--attach needs a process number or a path; it is empty");
+    options->attach = arg;
+    return 0;
+}
+
+const struct argp attach_argp = {option_table, parse_attach, NULL, NULL, NULL, NULL, NULL};
+
+bool load_network(const common_options_t *options, cm1e_bus_config_t *config)
+{
+    if (!options->attach || options->interface_name || options->bus_file)
+        return load_configuration(options, config);
+    return cm1e_bus_config_init(config, NULL, 0) == CM1E_OK;
+}
+
+cm1e_error_t connect_network(const common_options_t *options, const cm1e_bus_config_t *config,
+                             cm1e_control_t **control, cm1e_diag_t *diag)
+{
+    /* A stated program may call the network otherwise than a bus file. */
+    return cm1e_control_connect(control, options->attach,
+                                options->attach ? options->interface_name : config->interface_name, diag);
+}
+
+static cm1e_error_t attach(const common_options_t *options, const cm1e_bus_config_t *config, cm1e_control_t *control,
+                           cm1e_bus_t **bus, cm1e_diag_t *diag)
+{
+    if (!options->pcap_file)
+        return cm1e_bus_open_attached(bus, config, control, diag);
+    cm1e_control_close(control);
+    return cm1e_diag_set(diag, CM1E_ERROR_UNSUPPORTED, 0, "--pcap records the frames of this program, and another one "
+                         "runs the network: leave it out.");
+}
+
+cm1e_error_t open_network(const common_options_t *options, const cm1e_bus_config_t *config, cm1e_bus_t **bus,
+                          cm1e_diag_t *diag)
+{
+    cm1e_control_t *control;
+    *bus = NULL;
+    cm1e_error_t error = connect_network(options, config, &control, diag);
+    if (error == CM1E_OK)
+        error = attach(options, config, control, bus, diag);
+    else if (error == CM1E_ERROR_NOT_FOUND && !options->attach)
+        error = cm1e_bus_open(bus, config, diag);
+    if (error == CM1E_OK)
+        error = cm1e_bus_scan(*bus, diag);
+    if (error != CM1E_OK) {
+        cm1e_bus_close(*bus);
+        *bus = NULL;
+    }
+    return error;
+}
+
+void complain_of_control(const cm1e_scheduler_t *scheduler)
+{
+    cm1e_scheduler_statistics_t statistics;
+    cm1e_scheduler_statistics(scheduler, &statistics);
+    if (statistics.control_advice[0])
+        complain("%s", statistics.control_advice);
+}
