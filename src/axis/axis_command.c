@@ -34,12 +34,18 @@ void cm1e_axis_commands_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_
     cm1e_axis_waiting_end(axis, state);
 }
 
+static void tell_of_coupling(const cm1e_axis_t *axis, cm1e_command_status_t *status)
+{
+    status->synchronizing = axis->setpoint.synchronizing;
+    status->ends = axis->setpoint.ends;
+}
+
 cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_command_id_t id)
 {
     cm1e_command_status_t status = {.state = CM1E_COMMAND_ACTIVE, .reached = axis->setpoint.reached};
     if (id != 0 && id == axis->commands.active) {
         if (axis_follows(axis))
-            axis->coupling_hooks->tell(axis, &status);
+            tell_of_coupling(axis, &status);
         return status;
     }
     for (int i = 0; i < axis->commands.waiting.count; i++)
@@ -72,7 +78,7 @@ bool cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id, cm1e_comma
     if (!axis || id == 0 || axis->commands.active != id || !axis_follows(axis))
         return false;
     status->reached = axis->setpoint.reached;
-    axis->coupling_hooks->tell(axis, status);
+    tell_of_coupling(axis, status);
     return true;
 }
 

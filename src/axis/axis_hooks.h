@@ -66,8 +66,6 @@ typedef struct coupling_hooks {
     bool (*stops_with_masters)(const cm1e_axis_t *axis);
     /** It has failed: what else stops. */
     void (*failed)(cm1e_axis_t *axis);
-    /** `synchronizing` and `ends` of the active command. */
-    void (*tell)(const cm1e_axis_t *axis, cm1e_command_status_t *status);
 } coupling_hooks_t;
 
 /** Homings (src/homing): by the drive, a source of set-points, and in steps (Part 5), which move by profiles. */

@@ -20,18 +20,20 @@
 typedef struct setpoint {
     const source_t *source;         /**< cm1e_axis_set_source() */
     bool reached, positive_before;
+    bool synchronizing;             /**< while it follows: not yet by what was commanded */
     bool paused;                    /**< its end is not that of its command, which waits (MC_SetOverride) */
     bool stands;                    /**< the base has come to its end, only a superimposed motion goes on */
     bool brakes_hard;               /**< the set-point is one of a ramp without limit of jerk */
+    uint32_t ends;                  /**< by a cam: cm1e_command_status_t */
     position_t position;            /**< set position */
-    position_t base, target;        /**< base: where the profile began; target: where it ends, exactly */
     double velocity, acceleration;  /**< set velocity and acceleration; u/s, u/s2 */
-    double base_line;               /**< u; cm1e_axis_line() of base */
-    int64_t profile_cycles;         /**< since it began ... */
-    double profile_offset_s;        /**< ... so long before the first of them */
-    double profile_next_s;          /**< its time in the next cycle */
-    cm1e_slow_time_t slow;          /**< of a table over time (axis_pause.c) */
+    double profile_next_s;          /**< time of the profile in the next cycle */
     cm1e_profile_stretch_t stretch; /**< of it, the one that the set-point is in */
+    position_t base, target;        /**< base: where the profile began; target: where it ends, exactly */
+    double base_line;               /**< u; cm1e_axis_line() of base */
+    int64_t profile_cycles;         /**< since the profile began */
+    double profile_offset_s;        /**< so long before the first of these cycles it began */
+    cm1e_slow_time_t slow;          /**< of a table over time (axis_pause.c) */
     double loop_velocity;           /**< counts/s that the position loop adds in CSV */
     cm1e_profile_t profile;         /**< relative to base, in u; along a table only its duration and end */
 } setpoint_t;
@@ -40,16 +42,17 @@ typedef struct setpoint {
 
 /** Counts of the drive, units, turns of a modulo axis, the origin. Written by axis_position.h and axis_position.c. */
 typedef struct axis_position {
-    bool known, homed;
-    int32_t raw;                    /**< counts of the drive, last seen */
-    int64_t actual_counts;          /**< the same without wrap-around */
-    double scale;                   /**< counts per u; negative: inverted */
-    double count;                   /**< counts of this motor on the way of one count of a CM1-E */
-    position_t origin;              /**< position origin_units is there; modulo: 0 */
-    double origin_units;
+    cm1e_unit_t unit;               /**< the amount of `scale`, exactly */
     double modulo_range;            /**< u; 0: a linear axis */
     cm1e_fraction_t turn;           /**< counts of it */
-    cm1e_unit_t unit;               /**< its amount, exactly */
+    double count;                   /**< counts of this motor on the way of one count of a CM1-E */
+    /* what every cycle looks at */
+    double origin_units;
+    position_t origin;              /**< position origin_units is there; modulo: 0 */
+    double scale;                   /**< counts per u; negative: inverted */
+    int64_t actual_counts;          /**< counts of the drive, last seen, without wrap-around */
+    int32_t raw;                    /**< counts of the drive, last seen */
+    bool known, homed;
 } axis_position_t;
 
 /* ---- limits and guard: axis_limits.h, axis_guard.h --------------------------------------------------------------- */
@@ -68,14 +71,15 @@ typedef struct guarding {
 
 /** What the axis may do: dynamics, software limits, directions. Written by axis_limits.c and axis_parameter.c. */
 typedef struct limits {
-    bool software_limits;           /**< one of them at least; those in force are ... */
+    /* what every cycle looks at */
     bool lag_monitoring;
+    bool software_limits;           /**< one of them is in force at least */
     bool positive_enabled, negative_enabled;
     int32_t counts_limit;           /**< of the motor's own counts in either direction, by its K37; 0: none */
-    double lower, upper;            /**< u, as cm1e_axis_line() counts; infinite: none on that side */
+    double max_lag;                 /**< u */
+    double lower, upper;            /**< u, as cm1e_axis_line() counts; in force; infinite: none on that side */
     double tolerance;               /**< u; which they are kept with */
     double emergency_way;           /**< s2/u; times the square of a velocity: that it goes */
-    double max_lag;                 /**< u */
     cm1e_motion_limits_t system;    /**< u; of motor and configuration */
     cm1e_motion_limits_t maximum;   /**< u; what the application allows of it: the bounds of commands */
     cm1e_motion_limits_t emergency; /**< u; the ramp of an error: that of `system` without a limit of jerk */
@@ -110,13 +114,13 @@ typedef struct guard {
 /** What MC_Power and MC_Reset ask for, and how far it has come. Written by axis_power.h, axis_power.c and
  *  axis_free.c. */
 typedef struct power {
+    const void *owner;
     bool enable, enable_positive, enable_negative;
     bool energized;                 /**< the axis has taken over the enabled drive */
     bool shutting_down;
     bool reset_sent;
-    cm1e_error_t reset_error;
     cm1e_command_state_t reset_state;
-    const void *owner;
+    cm1e_error_t reset_error;
     int64_t free_ns;                /**< since when no torque is asked for */
     int64_t brake_until_ns;         /**< so long at least the torque stays to brake */
 } power_t;
@@ -149,10 +153,10 @@ typedef struct silence {
 /** The gap between motor and load; counts in the direction in which u grows. Written by axis_backlash.h and
  *  axis_backlash.c. */
 typedef struct backlash {
-    double gap;                    /**< 0: none */
     double velocity, acceleration; /**< of its compensation; counts/s, counts/s2 */
     double offset;                 /**< -gap ... 0: of the motor as seen from the load */
     double offset_velocity, target;
+    double gap;                    /**< 0: none; every cycle looks at it */
 } backlash_t;
 
 /* ---- in position: axis_in_position.h ----------------------------------------------------------------------------- */
@@ -160,17 +164,18 @@ typedef struct backlash {
 /** Whether the motor is where its set-point stands. Written by axis_in_position.h, axis_in_position.c and
  *  axis_parameter.c. */
 typedef struct in_position {
-    bool inside;                /**< where it was seen last, the motor is in the window; FALSE: the set-point moves */
-    bool there;                 /**< ... and has been for the time */
-    bool done_waits;
-    bool missed;                /**< an error ended a command that waited */
-    cm1e_command_id_t settling; /**< the command that waits for the motor while it is active and the axis holds */
-    int64_t inside_ns;          /**< since when */
-    int64_t arrived_ns;         /**< since when the set-point of that command stands */
+    double missed_actual, missed_by; /**< for the text; u */
     double window;              /**< u, to either side */
     uint32_t time_us, timeout_us;
     float torque;               /**< % of rated torque, while it waited last: a fault takes it away; NAN: not known */
-    double missed_actual, missed_by; /**< for the text; u */
+    /* what every cycle looks at */
+    bool inside;                /**< where it was seen last, the motor is in the window; FALSE: the set-point moves */
+    bool there;                 /**< it has been in the window for the time */
+    bool done_waits;
+    bool missed;                /**< an error ended a command that waited */
+    int64_t inside_ns;          /**< since when */
+    int64_t arrived_ns;         /**< since when the set-point of that command stands */
+    cm1e_command_id_t settling; /**< the command that waits for the motor while it is active and the axis holds */
 } in_position_t;
 
 /* ---- touch probes, digital signals, objects: axis_device.h ------------------------------------------------------- */
@@ -197,11 +202,12 @@ typedef struct probe_sample {
 
 /** Digital signals and touch probes. Written by axis_probe.c, axis_digital.c and axis_keep.c. */
 typedef struct signals {
-    uint32_t probes_armed, probe_count;
     probe_t probes[PROBES];
     probe_sample_t probe_sample;    /**< the last one, while probes are armed */
-    int64_t output_until_ns;        /**< the digital output goes off then unless it is written again */
     int64_t inputs_asked_ns, inputs_since_ns; /**< where SDOs bring them: last, and without an answer since */
+    /* what every cycle looks at */
+    int64_t output_until_ns;        /**< the digital output goes off then unless it is written again */
+    uint32_t probes_armed, probe_count;
 } signals_t;
 
 enum { OBJECT_REQUESTS = 8 };
@@ -278,48 +284,47 @@ typedef struct not_set {
 
 /* ---- the axis ---------------------------------------------------------------------------------------------------- */
 
-/** Everything in its room runs in the cycle unless marked otherwise. */
+/** Everything in its room runs in the cycle unless marked otherwise. The order is that of the memory: what every cycle
+ *  looks at stands together, at the end of one part and the begin of the next. */
 struct cm1e_axis {
-    /* what every cycle of a motion looks at */
     cm1e_drive_t drive;
-    const axis_events_t *events;    /**< what a motion tells those that command it */
     cm1e_axis_state_t state;        /**< cm1e_axis_go() */
     cm1e_mode_t mode;               /**< of the set-points: CSP, or CSV where the mapping has no target position */
     uint16_t handle;
     bool advanced;                  /**< its set-point is that of this cycle */
     bool observed;                  /**< somebody follows its actual value, or has; an encoder always is */
+    power_t power;
     silence_t silence;
+    homing_step_t homing_step;
     double cycle_s;
     int64_t now_ns;
-    power_t power;
-    setpoint_t setpoint;
-    axis_position_t position;
-    limits_t limits;
-    guarding_t guarding;
-    backlash_t backlash;
-    in_position_t in_position;
-    superimposed_t superimposed;
+    const axis_events_t *events;    /**< what a motion tells those that command it */
+    const motor_hooks_t *motor_hooks; /**< NULL: the motor is a CM1-E, or there is none */
+    const coupling_hooks_t *coupling_hooks; /**< NULL: it cannot follow, nor be followed */
+    struct coupling *coupling;      /**< theirs */
     commands_t commands;
     signals_t signals;
     objects_t objects;
-
-    /* the rest */
+    backlash_t backlash;
+    setpoint_t setpoint;
+    guarding_t guarding;
+    axis_position_t position;
+    limits_t limits;
+    in_position_t in_position;
+    superimposed_t superimposed;
+    /* not in every cycle */
+    cm1e_axis_leader_t leader;      /**< next is NULL: none */
     const cm1e_axis_config_t *config;
     fault_t fault;
     guard_t broken;                 /**< with CM1E_ERROR_AXIS_COUPLING_LIMIT */
     not_set_t not_set;
     override_t override, override_refused; /**< the latter for the text; one that is good: none was */
-    cm1e_axis_leader_t leader;      /**< next is NULL: none */
     const void *group;              /**< that it belongs to; NULL: none */
     tables_t *tables;               /**< NULL: none (cm1e_axis_config_t.table_profiles) */
     driving_t driving;
-    homing_step_t homing_step;
     const homing_hooks_t *homing_hooks; /**< NULL: it cannot be homed */
     struct homing *homing;          /**< theirs */
-    const motor_hooks_t *motor_hooks; /**< NULL: the motor is a CM1-E, or there is none */
-    struct cool_muscle *muscle;     /**< theirs */
-    const coupling_hooks_t *coupling_hooks; /**< NULL: it cannot follow, nor be followed */
-    struct coupling *coupling;      /**< theirs */
+    struct cool_muscle *muscle;     /**< of the motor's hooks */
 };
 
 #endif

@@ -92,6 +92,10 @@ static inline void cm1e_axis_put_duration(cm1e_axis_t *axis, double duration_s, 
     axis->setpoint.profile.segment_count = 0;
 }
 static inline void cm1e_axis_set_reached(cm1e_axis_t *axis, bool reached) { axis->setpoint.reached = reached; }
+/** Of a follower: whether it is still on its way to what was commanded. */
+static inline void cm1e_axis_set_synchronizing(cm1e_axis_t *axis, bool on) { axis->setpoint.synchronizing = on; }
+/** Of a cam: cm1e_command_status_t.ends */
+static inline void cm1e_axis_set_ends(cm1e_axis_t *axis, uint32_t ends) { axis->setpoint.ends = ends; }
 static inline void cm1e_axis_set_paused(cm1e_axis_t *axis, bool paused) { axis->setpoint.paused = paused; }
 static inline void cm1e_axis_set_stands(cm1e_axis_t *axis, bool stands) { axis->setpoint.stands = stands; }
 

@@ -4,6 +4,7 @@
 #include "axis/axis_limits.h"
 #include "axis/axis_plan.h"
 #include "axis/axis_position.h"
+#include "axis/axis_setpoint.h"
 #include "coupling/coupling_private.h"
 
 /* A remainder below this is reached: the slave is where the cam wants it and moves like it. */
@@ -106,7 +107,7 @@ static void evaluate(cm1e_axis_t *axis, follow_t *follow, from_t *point)
     cm1e_cam_sample(&cam->slot->cam, &cam->place, place_to_be(follow), &sample);
     if (came_over_end(cam, &sample)) {
         axis->coupling->end_of_profile = true;
-        axis->coupling->ends++;
+        cm1e_axis_set_ends(axis, axis->setpoint.ends + 1);
     }
     remember(cam, &sample);
     sample_point(axis, follow, &sample, point);

@@ -193,6 +193,7 @@ static from_t with_superimposed(cm1e_axis_t *axis, const from_t *f, verdict_t *v
 static void emit(cm1e_axis_t *axis, const from_t *point)
 {
     cm1e_axis_put_set_point(axis, point);
+    cm1e_axis_set_synchronizing(axis, !axis->coupling->now->in_step);
     if (!cm1e_position_in_range(axis->setpoint.position))
         cm1e_axis_fail(axis, CM1E_ERROR_AXIS_POSITION_RANGE, cm1e_axis_units(axis, axis->setpoint.position),
                        cm1e_axis_farthest(axis));
@@ -385,6 +386,7 @@ void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *fro
     begin_catch_up(axis, from, asked, c->now->to_position);
     cm1e_axis_set_source(axis, &cm1e_source_coupling);
     cm1e_axis_guard_renew(axis);
+    cm1e_axis_set_synchronizing(axis, !follow->in_step);
     cm1e_axis_set_reached(axis, false);
     cm1e_axis_set_paused(axis, false);
     cm1e_axis_set_stands(axis, false);
@@ -407,6 +409,7 @@ static void begin_anew(cm1e_axis_t *axis)
     const bool was_in_step = !c->catch_up.on || c->catch_up.made_up, comes_back = axis->mode == CM1E_MODE_CSP ||
                                                                           axis->silence.silent_before > 0;
     begin_catch_up(axis, &from, &asked, c->now->to_position || (was_in_step && comes_back));
+    cm1e_axis_set_synchronizing(axis, !c->now->in_step);
     cm1e_axis_set_reached(axis, false);
 }
 

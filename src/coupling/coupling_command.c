@@ -40,7 +40,7 @@ static void take(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling
     cm1e_axis_command_end(axis, CM1E_COMMAND_ABORTED, CM1E_OK);
     cm1e_axis_activate(axis, move);
     axis->coupling->inputs = *coupling;
-    axis->coupling->ends = 0;
+    cm1e_axis_set_ends(axis, 0);
     cm1e_coupling_follow(axis, follow, from, limits);
 }
 

@@ -145,7 +145,6 @@ typedef struct coupling {
     bool due;                      /**< the awaited command begins in this cycle */
     cm1e_error_t due_error;        /**< error with which it fails instead */
     bool end_of_profile;           /**< CAM_IN: the cam came over it in this cycle */
-    uint32_t ends;                 /**< number of these since the command began */
     bool at_end;                   /**< what is being prepared waited for that */
     uint64_t mark;                 /**< of the last search that came here */
     uint32_t searches;

@@ -22,12 +22,6 @@ static bool hands_over(const cm1e_axis_t *axis)
     return !now->waits_for_end || now->cam.left != 0.0;
 }
 
-static void tell(const cm1e_axis_t *axis, cm1e_command_status_t *status)
-{
-    status->synchronizing = !axis->coupling->now->in_step;
-    status->ends = axis->coupling->ends;
-}
-
 static const command_method_t methods[PLAN_COUNT] = {
     [PLAN_KEEP_VELOCITY] = {cm1e_gear_out, NULL, NULL, NULL, cm1e_axis_update_move},
     [PLAN_COUPLING] = {cm1e_coupling_start, cm1e_coupling_buffer, cm1e_coupling_awaits, cm1e_coupling_begin,
@@ -54,7 +48,6 @@ static const coupling_hooks_t hooks = {
     .phasing_end = cm1e_phasing_end,
     .phasing_status = cm1e_phasing_status,
     .phasing_covered = cm1e_phasing_covered,
-    .tell = tell,
     .text = cm1e_coupling_text,
     .cam_text = cm1e_cam_table_text,
 };
