@@ -38,19 +38,7 @@ static const cm1e_device_words_t words = {
 };
 
 /* pp takes a set-point at once (bit 5), as the driver gives one after the other. */
-static const cm1e_device_mode_t modes[] = {
-    {.mode = CM1E_MODE_PP, .abbreviation = "PP", .words = &words, .target = CM1E_OUT_POSITION, .torque = true,
-     .holds_position = true, .halts = true, .controlword = CONTROLWORD_CHANGE_IMMEDIATELY,
-     .ways = CM1E_DEVICE_WAYS_ALL},
-    {.mode = CM1E_MODE_PV, .abbreviation = "PV", .words = &words, .target = CM1E_OUT_VELOCITY, .torque = true,
-     .halts = true, .ways = CM1E_DEVICE_WAYS_ALL},
-    {.mode = CM1E_MODE_HM, .abbreviation = "HM", .words = &words, .target = CM1E_NO_ROLE, .torque = true,
-     .halts = true, .ways = CM1E_DEVICE_WAYS_ALL},
-    {.mode = CM1E_MODE_CSP, .abbreviation = "CSP", .words = &words, .target = CM1E_OUT_POSITION, .torque = true,
-     .holds_position = true, .ways = CM1E_DEVICE_WAYS_ALL},
-    {.mode = CM1E_MODE_CSV, .abbreviation = "CSV", .words = &words, .target = CM1E_OUT_VELOCITY, .torque = true,
-     .ways = CM1E_DEVICE_WAYS_ALL},
-};
+static const cm1e_device_mode_t modes[] = {MODES_OF_CIA402(&words, CONTROLWORD_CHANGE_IMMEDIATELY)};
 
 /* Methods of the standard (1 ... 37) and of makers (below 0); the drive refuses those that it does not have. Makers
  * differ in the sign of 0x607C, so it is 0, and the axis reckons with its own offset. 0x6099:02, the speed of the
@@ -58,12 +46,7 @@ static const cm1e_device_mode_t modes[] = {
 static const cm1e_device_homing_t homing = {
     .first_method = -128, .last_method = 37, .first_by_switch = -128, .last_by_switch = 37, .halts = true,
     .offset_by_axis = true, .place = "",
-    .objects = {
-        [CM1E_HOMING_OFFSET] = {OBJ_607C_HOME_OFFSET, 0, 1.0, NULL},
-        [CM1E_HOMING_METHOD] = {OBJ_6098_HOMING_METHOD, 0, 1.0, NULL},
-        [CM1E_HOMING_SPEED] = {OBJ_6099_HOMING_SPEEDS, 1, 1.0, NULL},
-        [CM1E_HOMING_ACCELERATION] = {OBJ_609A_HOMING_ACCELERATION, 0, 1.0, NULL},
-    },
+    .objects = {HOMING_OBJECTS_OF_CIA402},
     .steps = {HOME_WRITE, HOME_SWITCH, HOME_START, HOME_RUN, HOME_RETURN},
 };
 

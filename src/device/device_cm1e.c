@@ -35,28 +35,14 @@ static const cm1e_device_words_t words = {
 };
 
 /* UG 6.2; homing needs no special mapping (UG 6.2.4). */
-static const cm1e_device_mode_t modes[] = {
-    {.mode = CM1E_MODE_PP, .abbreviation = "PP", .words = &words, .target = CM1E_OUT_POSITION, .torque = true,
-     .holds_position = true, .halts = true, .ways = CM1E_DEVICE_WAYS_ALL},
-    {.mode = CM1E_MODE_PV, .abbreviation = "PV", .words = &words, .target = CM1E_OUT_VELOCITY, .torque = true,
-     .halts = true, .ways = CM1E_DEVICE_WAYS_ALL},
-    {.mode = CM1E_MODE_HM, .abbreviation = "HM", .words = &words, .target = CM1E_NO_ROLE, .torque = true,
-     .halts = true, .ways = CM1E_DEVICE_WAYS_ALL},
-    {.mode = CM1E_MODE_CSP, .abbreviation = "CSP", .words = &words, .target = CM1E_OUT_POSITION, .torque = true,
-     .holds_position = true, .ways = CM1E_DEVICE_WAYS_ALL},
-    {.mode = CM1E_MODE_CSV, .abbreviation = "CSV", .words = &words, .target = CM1E_OUT_VELOCITY, .torque = true,
-     .ways = CM1E_DEVICE_WAYS_ALL},
-};
+static const cm1e_device_mode_t modes[] = {MODES_OF_CIA402(&words, 0)};
 
 /* UG 6.2.4 */
 static const cm1e_device_homing_t homing = {
     .first_method = -6, .last_method = -1, .first_by_switch = -6, .last_by_switch = -3,
     .positive_stop = -1, .negative_stop = -2, .halts = true, .place = "",
     .objects = {
-        [CM1E_HOMING_OFFSET] = {OBJ_607C_HOME_OFFSET, 0, 1.0, NULL},
-        [CM1E_HOMING_METHOD] = {OBJ_6098_HOMING_METHOD, 0, 1.0, NULL},
-        [CM1E_HOMING_SPEED] = {OBJ_6099_HOMING_SPEEDS, 1, 1.0, NULL},
-        [CM1E_HOMING_ACCELERATION] = {OBJ_609A_HOMING_ACCELERATION, 0, 1.0, NULL},
+        HOMING_OBJECTS_OF_CIA402,
         [CM1E_HOMING_TORQUE] = {OBJ_60F6_K_PARAMETERS, CM1E_K_PARAMETER_HOMING_TORQUE, 1.0, NULL},
     },
     .steps = {HOME_WRITE, HOME_SWITCH, HOME_START, HOME_RUN, HOME_RETURN},
