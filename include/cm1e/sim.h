@@ -136,9 +136,9 @@ CM1E_API void cm1e_sim_segment_set_frame_fault(cm1e_sim_segment_t *segment, cm1e
  *  breaks none: tests look at it. */
 enum cm1e_sim_broken_rule {
     CM1E_SIM_MODE_TOO_SOON = 0x001,   /**< 0x6060 within 5 ms of the last time (BR 6.2.2, note 2) */
-    CM1E_SIM_MODE_IN_MOTION = 0x002,  /**< ... while the motor moved (note 1) */
-    CM1E_SIM_MODE_IN_ERROR = 0x004,   /**< ... with an error of the motor (BR appendix 3) */
-    CM1E_SIM_MODE_NO_WAY = 0x008,     /**< ... where the drawing of BR 6 has no way, or the motor has been in CMD or
+    CM1E_SIM_MODE_IN_MOTION = 0x002,  /**< 0x6060 while the motor moved (note 1) */
+    CM1E_SIM_MODE_IN_ERROR = 0x004,   /**< 0x6060 with an error of the motor (BR appendix 3) */
+    CM1E_SIM_MODE_NO_WAY = 0x008,     /**< 0x6060 for a mode without a way in BR 6, or the motor has been in CMD or
                                            CPIO and is to follow targets in csp (note 2) */
     CM1E_SIM_QUICK_STOP = 0x010,      /**< "Do not send Quick Stop command" (BR 6.1.1) */
     CM1E_SIM_STEP_AT_START = 0x020,   /**< the target was not the actual position when the motor began to follow it */

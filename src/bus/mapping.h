@@ -40,7 +40,7 @@ typedef enum cm1e_mapping_step {
 typedef struct cm1e_mapping_job {
     cm1e_mapping_step_t step;
     cm1e_pdo_choice_t choice;   /**< as asked for; none: the device's own assignment is read */
-    cm1e_pdo_choice_t assigned; /**< ... of the present direction */
+    cm1e_pdo_choice_t assigned; /**< the choice of the present direction */
     int direction;           /**< 0 outputs, 1 inputs */
     uint8_t place;           /**< which PDO of the choice, from 0 */
     uint8_t entry, entries;  /**< where the reading of its entries is, from 1 */

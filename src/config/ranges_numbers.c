@@ -16,7 +16,7 @@ typedef struct number {
     scale_t scale;
     const char *unit; /* of the range */
     double minimum, maximum;
-    int homing;           /* ... of a homing of the drive: which of them; NO_HOMING: none */
+    int homing;           /* a parameter of the drive's homing; NO_HOMING: none */
 } number_t;
 enum { NO_HOMING = -1 };
 

@@ -41,7 +41,7 @@ typedef enum awaited {
  *  at a place. Counts of the master are those of the link. */
 typedef struct approach {
     const struct coupling_function *then; /**< the coupling function behind it */
-    awaited_t awaited;             /**< it is still to come */
+    awaited_t awaited;             /**< the approach is still to come */
     double start_distance;         /**< counts of the master, signed as it goes; 0: from where it is */
     double sync;                   /**< counts of the master where it ends */
     double again;                  /**< counts after which that place comes again; 0: it does not */
@@ -53,14 +53,14 @@ typedef struct approach {
     cm1e_curve_t curve;            /**< u of the slave from `begin` over u of the master from the end */
 } approach_t;
 
-/** What an approach would have asked of the slave, for the text. */
+/** What an approach would have demanded of the slave, for the text. */
 typedef struct approach_refused {
     const char *what;              /**< NULL: the master stands while the slave moves, or has gone over it */
     const char *unit;
     double asked, allowed;
 } approach_refused_t;
 
-/** Where a slave was that should have been on its cam, and where that wanted it; u, u/s; for the text. */
+/** The state of a slave that should have been on its cam, and the state that the cam demanded; u, u/s; for the text. */
 typedef struct cam_refused {
     double position, wanted_position, velocity, wanted_velocity;
 } cam_refused_t;

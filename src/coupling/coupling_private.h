@@ -95,10 +95,10 @@ typedef enum master_trouble {
     MASTER_GOOD = 0,
     MASTER_DESTROYED,
     MASTER_ERROR_STOP,
-    MASTER_STOPPING,               /**< in ErrorStop, but it is still on its ramp, which can be seen */
-    MASTER_FREE,                   /**< no torque, so no set value */
+    MASTER_STOPPING,               /**< the master is in ErrorStop, but still on its ramp, which can be seen */
+    MASTER_FREE,                   /**< the master has no torque, so it has no set value */
     MASTER_HOMING,                 /**< by its drive */
-    MASTER_UNSEEN,                 /**< its actual position is not known */
+    MASTER_UNSEEN,                 /**< the actual position of the master is unknown */
     MASTER_JUMPED,
 } master_trouble_t;
 
@@ -150,7 +150,7 @@ typedef struct coupling {
     uint32_t searches;
     cm1e_axis_coupling_t inputs;   /**< of the active command, for ContinuousUpdate */
     waiting_coupling_t waiting[COUPLINGS_WAITING];
-    master_trouble_t trouble;      /**< why a master was lost */
+    master_trouble_t trouble;      /**< the reason why a master was lost */
     cm1e_error_t master_error;     /**< error of that master */
     char other_name[CM1E_NAME_LENGTH]; /**< name of that master, or of the axis because of which this one stops */
     int32_t numerator;             /**< a ratio that was refused */
@@ -192,12 +192,12 @@ static inline bool coupling_keeps_jerk(const coupling_t *c)
 {
     return !c->now->linear && !c->now->by_actual && !c->stopping;
 }
-/** This is what the axis follows from now on; what the state `from` differs from it becomes the catch-up. The active
- *  command is the caller's to change. */
+/** Makes `follow` what the axis follows from now on. The difference to the state `from` becomes the catch-up. The
+ *  caller changes the active command. */
 void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *from, const cm1e_motion_limits_t *asked);
-/** What was superimposed for so long has become part of the way; u. */
+/** Makes the superimposed distance a part of the base motion; u. */
 void cm1e_coupling_shift(cm1e_axis_t *axis, double way);
-/** In a cycle in which the coupling has begun: its set-point, without going on. */
+/** The set-point of a coupling in the cycle in which it began, without advancing. */
 void cm1e_coupling_first_set_point(cm1e_axis_t *axis);
 
 /* coupling_command.c */
@@ -213,19 +213,19 @@ cm1e_error_t cm1e_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, const
 /* observe.c */
 /** In every cycle in which somebody may follow its actual value: with the inputs. */
 void cm1e_coupling_observe(cm1e_axis_t *axis);
-/** Where it is, or was in the cycle before: for a set-point that is still of that. MASTER_UNSEEN: for too long nothing
- *  was heard of it. */
+/** The place of the axis in this cycle, or in the previous one if the set-point is still of that. MASTER_UNSEEN:
+ *  nothing was heard of it for too long. */
 master_trouble_t cm1e_coupling_see_actual(cm1e_axis_t *master, bool of_this_cycle, from_t *seen);
 
 /* phasing.c */
 cm1e_error_t cm1e_phasing_start(cm1e_axis_t *axis, const cm1e_axis_command_t *command, cm1e_command_id_t *id);
-/** The shift of the next cycle, before anything is seen of the masters. */
+/** Advances the shift, before anything is seen of the masters. */
 void cm1e_phasing_step(cm1e_axis_t *axis);
 /** Running and waiting phasings end. If the axis still follows, the shift comes to rest. */
 void cm1e_phasing_end(cm1e_axis_t *axis, cm1e_command_state_t state, cm1e_error_t error);
 /** Phasings end with CommandAborted, and the shift stays as it is. */
 void cm1e_phasing_stand(cm1e_axis_t *axis);
-/** The axis leaves the master that was shifted. */
+/** Ends the shift, because the axis leaves that master. */
 void cm1e_phasing_forget(cm1e_axis_t *axis);
 /** FALSE: `id` is not one that runs or waits. */
 bool cm1e_phasing_status(const cm1e_axis_t *axis, cm1e_command_id_t id, cm1e_command_status_t *status);
@@ -251,14 +251,14 @@ cm1e_error_t cm1e_coupling_approach_prepare(cm1e_axis_t *axis, follow_t *follow,
 /** Begins the approach with the master as seen. CM1E_ERROR_AXIS_SYNC_WAY: not within these limits. */
 cm1e_error_t cm1e_coupling_approach_begin(cm1e_axis_t *axis, follow_t *follow, const move_t *move,
                                           const from_t *from);
-/** While something is awaited, after the set-point of every cycle. */
+/** Called after the set-point of every cycle while a coupling waits for its master. */
 void cm1e_coupling_await_step(cm1e_axis_t *axis);
 
 /* cam_function.c */
 /** Prepares a cam, as cm1e_gear_prepare() does a gear. */
 cm1e_error_t cm1e_cam_in_prepare(cm1e_axis_t *axis, const move_t *move, const cm1e_axis_coupling_t *coupling,
                                  const from_t *from);
-/** Other offsets and scalings, from the present set-point on; what else may have changed is for the next edge. On an
+/** Takes other offsets and scalings from the present set-point on. Other changed inputs wait for the next edge. On an
  *  approach they wait for its end. CM1E_ERROR_AXIS_RATIO, _POSITION_RANGE: nothing has changed. */
 cm1e_error_t cm1e_cam_in_update(cm1e_axis_t *axis, const cm1e_axis_coupling_t *coupling);
 /** Where the cam has the slave when the master is there (counts of the link), and how it goes on: but for the place. */
@@ -272,7 +272,7 @@ cm1e_motion_limits_t cm1e_cam_leaves(const cm1e_axis_t *axis, const follow_t *fo
 /* coupling_stop.c */
 /** Stops what else has to stop when a follower has failed. */
 void cm1e_coupling_failed(cm1e_axis_t *axis);
-/** A master cannot be followed any more. TRUE: but to its standstill, and the axis is in ErrorStop. */
+/** Stops because a master cannot be followed any more. true: the axis follows it to its standstill, in ErrorStop. */
 bool cm1e_coupling_follows_to_the_end(cm1e_axis_t *axis, master_trouble_t trouble);
 /** After the set-point: it may be the last one from which the axis can still be braked together with its master. */
 void cm1e_coupling_keep_ratio(cm1e_axis_t *axis);

@@ -77,9 +77,9 @@ typedef struct cm1e_drive_fault {
     uint16_t statusword;
     int8_t mode_commanded, mode_shown;
     uint16_t al_state, al_status_code;
-    bool slave_lost;                /**< it did not answer at its address, then or later */
-    bool slave_deaf;                /**< it took no part in the cycle, then or later */
-    uint8_t motor_status;           /**< behind a bridge: F530:5 ... 8, read when the motor showed an error ... */
+    bool slave_lost;                /**< the slave did not answer at its address, then or later */
+    bool slave_deaf;                /**< the slave took no part in the cycle, then or later */
+    uint8_t motor_status;           /**< behind a bridge: F530:5 ... 8, read when the motor showed an error */
     bool motor_status_known;        /**< `motor_status` is valid */
 } cm1e_drive_fault_t;
 
@@ -91,13 +91,14 @@ typedef struct cm1e_drive_encoder {
 /** A touch probe of the drive's own (0x60B8). Edges are bits: 1 rising, 2 falling. */
 typedef struct cm1e_drive_probe {
     uint8_t wanted;                 /**< edges that are waited for */
-    uint8_t taken;                  /**< edges whose position nobody has fetched */
+    uint8_t taken;                  /**< edges whose position was not fetched yet */
     bool on;                        /**< the enable bit is set */
-    bool clearing;                  /**< it is off until the drive shows so: its next rise arms the probe anew */
+    bool clearing;                  /**< the enable bit is off until the drive shows that: its next rise arms the
+                                         probe anew */
     int32_t positions[2];           /**< counts: rising, falling */
 } cm1e_drive_probe_t;
 
-/** In the order of use: first what every cycle looks at. */
+/** Members that every cycle uses come first. */
 typedef struct cm1e_drive {
     cm1e_bus_t *bus;
     int64_t now_ns;
@@ -125,9 +126,9 @@ typedef struct cm1e_drive {
     int32_t set_point;              /**< PP: the target position that bit 4 announced */
     cm1e_mode_t mode;               /**< commanded on the wire; follows `command.mode` once the last switch is shown */
     bool velocity_quarter;          /**< 0x606C is wrong in HM and PP */
-    bool target_holds;              /**< it was the caller's, and the drive is still seen holding a position */
+    bool target_holds;              /**< the target was the caller's, and the drive is still seen holding a position */
     bool may_hold, holds;           /**< of the mode shown: a target position may act, acts */
-    bool takes_torque;              /**< the commanded mode does, and its words are those of the mode shown */
+    bool takes_torque;              /**< the commanded mode has torque, and its words are those of the mode shown */
     bool marked;                    /**< the controlword carries more than the state: words->mark, outputs */
     bool operates;                  /**< Operation enabled, and the motor is not free */
     bool seen;                      /**< inputs were valid at least once */
@@ -135,7 +136,8 @@ typedef struct cm1e_drive {
     bool was_enabled;               /**< Operation enabled was seen since torque is asked for */
     bool mode_confirmed;
     uint8_t positions_rejected;     /**< in a row: actual positions that the motor cannot have come to */
-    uint8_t contradictions;         /**< actual positions that did not go with the actual velocity, less the others */
+    uint8_t contradictions;         /**< actual positions that contradicted the actual velocity, less those that
+                                         agreed */
     uint8_t distrusted;             /**< good positions that are still to come before torque is asked for */
     bool answered;                  /**< the last frame came back, with every slave's part in it */
     bool slewing;                   /**< CSV: the target velocity is not yet the commanded one after lost frames */
@@ -153,12 +155,12 @@ typedef struct cm1e_drive {
     int64_t reset_until_ns, reset_deadline_ns, reset_settle_ns, recovery_ns, mode_retry_ns;
     cm1e_sdo_t mode_sdo;            /**< 0x6060 and 0x6061 where the mapping lacks them */
     int64_t mode_write_ns;          /**< when the last 0x6060 was written */
-    int8_t mode_read;               /**< what 0x6061 said last, a switch under way or not */
-    bool mode_known;                /**< 0x6061 was read since the device may have been switched off */
+    int8_t mode_read;               /**< the last value of 0x6061, also during a switch */
+    bool mode_known;                /**< 0x6061 was read after the device may have been switched off */
     bool mode_uncertain;            /**< 0x6060 was written, and 0x6061 has not shown it yet */
     bool abnormal;                  /**< behind a bridge: was in CMD or CPIO since power-on, as far as is known */
     int64_t mode_from_ns;           /**< 0x6060 may be written from then on */
-    int64_t blocked_ns;             /**< since when torque is asked for in a mode that has none */
+    int64_t blocked_ns;             /**< since when torque is requested in a mode that has none */
     uint32_t axis;                  /**< index in the configuration */
     const cm1e_axis_config_t *config;
     const cm1e_motor_t *motor;      /**< NULL behind a bridge */
@@ -183,19 +185,20 @@ void cm1e_drive_read(cm1e_drive_t *drive, bool bus_ok, int64_t now_ns);
 void cm1e_drive_write(cm1e_drive_t *drive);
 /** Latches a fault that the caller saw (the bus is lost ...); an earlier one stays. @rt cycle */
 void cm1e_drive_fail(cm1e_drive_t *drive, cm1e_error_t error);
-/** For some cycles the actual position has moved by other than what the actual velocity says: one of them is not true.
- *  @rt cycle */
+/** Whether the actual position has moved for some cycles by another distance than the actual velocity says: one of them
+ *  is wrong. @rt cycle */
 static inline bool cm1e_drive_contradicts_itself(const cm1e_drive_t *drive) { return drive->contradictions >= 3; }
-/** CSV: the target velocity gets back to the commanded one by command.velocity_step a cycle. @rt cycle */
+/** Whether the target velocity (CSV) is on its way back to the commanded one, by command.velocity_step per cycle. @rt
+ *  cycle */
 static inline void cm1e_drive_slew(cm1e_drive_t *drive) { drive->slewing = true; }
 /** TRUE while a commanded reset is under way. @rt cycle */
 bool cm1e_drive_resetting(const cm1e_drive_t *drive);
-/** The slave answers and is in Operational, as far as the supervision has seen. @rt cycle */
+/** Whether the slave answers and is in Operational, as far as the supervision has seen. @rt cycle */
 static inline bool cm1e_drive_operational(const cm1e_drive_t *drive)
 {
     return !drive->watch.lost && (drive->watch.al_state == CM1E_AL_NONE || drive->watch.al_state == CM1E_AL_OP);
 }
-/** There is no device: a virtual axis, or an encoder. @rt any */
+/** Whether there is no device: the axis is virtual, or an encoder. @rt any */
 static inline bool cm1e_drive_is_virtual(const cm1e_drive_t *drive) { return drive->position == 0; }
 /** On the wire, the index of an object that the dictionary of a first axis has at `index`; what is the device's and no
  *  axis's stays where it is. @rt any */
@@ -228,14 +231,14 @@ cm1e_bridge_motor_t cm1e_drive_bridge_motor(const cm1e_drive_t *drive);
 void cm1e_drive_want_inputs(cm1e_drive_t *drive);
 /** How `command.digital_outputs` stands with the motor. */
 typedef enum cm1e_drive_outputs {
-    CM1E_DRIVE_OUTPUTS_SET = 0,     /**< they are as commanded (where they are process data: always) */
+    CM1E_DRIVE_OUTPUTS_SET = 0,     /**< the outputs are as commanded (always, if they are process data) */
     CM1E_DRIVE_OUTPUTS_UNDER_WAY,
-    CM1E_DRIVE_OUTPUTS_WAITING,     /**< they cannot be written now: not enabled, not in csp, not on the bus */
+    CM1E_DRIVE_OUTPUTS_WAITING,     /**< the outputs cannot be written now: not enabled, not in csp, not on the bus */
     CM1E_DRIVE_OUTPUTS_FAILED,      /**< the last transfer ended with an error; it is repeated */
 } cm1e_drive_outputs_t;
 /** @rt cycle */
 cm1e_drive_outputs_t cm1e_drive_outputs(const cm1e_drive_t *drive);
-/** They are in the process data: in CPIO, and where there is no bridge. @rt cycle */
+/** Whether digital signals are in the process data: in CPIO, and without a bridge. @rt cycle */
 bool cm1e_drive_signals_in_cycle(const cm1e_drive_t *drive);
 /** Bit 0: input 1, output 1. Those that can be reached from the bus: all of the mapping, or what the motor behind a
  *  bridge leaves to its user (BR 6.5). 0: none. @rt cycle */

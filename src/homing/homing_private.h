@@ -90,23 +90,23 @@ typedef struct homing {
 /** A method that looks for a switch and not for a stop. */
 bool cm1e_homing_by_switch(const cm1e_axis_t *axis, int method);
 cm1e_error_t cm1e_homing_prepare(cm1e_axis_t *axis, const cm1e_axis_command_t *command);
-/** In words: what cm1e_homing_prepare() refused for its method or another parameter. */
+/** The sentence for a homing that cm1e_homing_prepare() refused, for its method or another parameter. */
 void cm1e_homing_wrong_text(const cm1e_axis_t *axis, char *text, size_t size);
 void cm1e_homing_run(cm1e_axis_t *axis);
 
 /* homing_steps.c */
-/** What is wrong with a step whatever the state of the axis. */
+/** Checks a step in every state of the axis. */
 cm1e_error_t cm1e_homing_step_check(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move);
 /** Decides how a step begins: `*next` and `*profile`, nothing else. It is in force with cm1e_homing_step_run(). */
 cm1e_error_t cm1e_homing_step_prepare(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move,
                                     stepping_t *next, cm1e_profile_t *profile);
 void cm1e_homing_step_run(cm1e_axis_t *axis, const stepping_t *next, const cm1e_profile_t *profile);
-/** Before every set-point: looks, and decides what the profile is. */
+/** Called before every set-point: looks at inputs and motor, and decides the profile. */
 void cm1e_homing_step_cycle(cm1e_axis_t *axis);
 /** The profile of a step, or of the MC_Stop that ended one, has come to its end. TRUE: what comes next is decided. */
 bool cm1e_homing_step_ended(cm1e_axis_t *axis);
 
-/** After a pause: the step goes on as it was about to. */
+/** Continues the step after a pause. */
 cm1e_error_t cm1e_homing_step_anew(cm1e_axis_t *axis);
 
 /* homing_command.c: what is done with a command (command_method_t) */

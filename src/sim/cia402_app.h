@@ -95,18 +95,18 @@ struct cm1e_sim_cia402 {
 cm1e_sim_cia402_t *cm1e_sim_cia402_of(cm1e_sim_slave_t *slave);
 /** Brings the objects that the drive shows up to date. */
 void cm1e_sim_cia402_refresh(cm1e_sim_cia402_t *drive);
-/** It has stood for a while. */
+/** Whether the motor has been at rest for a while. */
 bool cm1e_sim_cia402_stands(const cm1e_sim_cia402_t *drive);
 /** 0x60FD */
 uint32_t cm1e_sim_cia402_inputs(const cm1e_sim_cia402_t *drive);
 
 /* ---- cia402_states.c --------------------------------------------------------------------------------------------- */
 void cm1e_sim_cia402_reset(cm1e_sim_cia402_t *drive);
-/** New process data has come: controlword and mode take effect. */
+/** Carries out controlword and mode of new process data. */
 void cm1e_sim_cia402_command(cm1e_sim_cia402_t *drive);
-/** The state's time is over. */
+/** Ends a state whose time is over. */
 void cm1e_sim_cia402_deadline(cm1e_sim_cia402_t *drive);
-/** Torque off, without an error. */
+/** Takes the torque away, without an error. */
 void cm1e_sim_cia402_disable(cm1e_sim_cia402_t *drive);
 void cm1e_sim_cia402_fault(cm1e_sim_cia402_t *drive, uint16_t code);
 void cm1e_sim_cia402_motor_power(cm1e_sim_cia402_t *drive, bool on);
