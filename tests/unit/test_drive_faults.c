@@ -284,6 +284,61 @@ static void test_bus_lost_holds_the_target_under_torque_then_disables(void)
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_BUS_LOST, drive.fault.error);
 }
 
+/* One sign is enough: the slave does not answer at its address, or it gives no inputs while others do. */
+static void test_a_slave_that_took_no_part_in_the_cycle_is_kept_in_mind(void)
+{
+    for (int lost = 0; lost < 2; lost++) {
+        setUp();
+        enable();
+        bus.watch.lost = lost;
+        bus.watch.silent = !lost;
+        bus_ok = false;
+        cycle();
+        cm1e_drive_fail(&drive, CM1E_ERROR_BUS_WORKING_COUNTER);
+        TEST_ASSERT_TRUE(drive.fault.slave_deaf);
+        TEST_ASSERT_EQUAL(lost, drive.fault.slave_lost);
+        bus.watch.lost = bus.watch.silent = false; /* and stays so */
+        cycle();
+        TEST_ASSERT_TRUE(drive.fault.slave_deaf);
+    }
+}
+
+/* While the working counter is wrong and then the bus is lost, nothing shows that the slave hears again. */
+static void test_a_bus_lost_after_a_wrong_working_counter_leaves_no_sign_of_the_slave(void)
+{
+    static const struct {
+        cm1e_error_t first, then;
+        bool deaf;
+    } rows[] = {
+        {CM1E_ERROR_BUS_WORKING_COUNTER, CM1E_ERROR_BUS_LOST, true},
+        {CM1E_ERROR_BUS_WORKING_COUNTER, CM1E_ERROR_BUS_WORKING_COUNTER, false},
+        {CM1E_ERROR_BUS_LOST, CM1E_ERROR_BUS_LOST, false},
+        {CM1E_ERROR_BUS_LOST, CM1E_ERROR_BUS_WORKING_COUNTER, false},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        enable();
+        cm1e_drive_fail(&drive, rows[i].first);
+        TEST_ASSERT_FALSE(drive.fault.slave_deaf);
+        cm1e_drive_fail(&drive, rows[i].then);
+        TEST_ASSERT_EQUAL(rows[i].deaf, drive.fault.slave_deaf);
+    }
+}
+
+static void test_a_reset_asks_for_a_slave_that_left_operational_once_a_second(void)
+{
+    enable();
+    bus.watch.al_state = CM1E_AL_SAFE_OP;
+    cycles(3);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_BUS_STATE, drive.fault.error);
+    TEST_ASSERT_EQUAL_UINT(0, bus.recoveries);
+    drive.command.reset = true;
+    cycles(900);
+    TEST_ASSERT_EQUAL_UINT(1, bus.recoveries);
+    cycles(200);
+    TEST_ASSERT_EQUAL_UINT(2, bus.recoveries);
+}
+
 static void test_reset_is_one_bounded_edge(void)
 {
     bus.fault_stays = true;
@@ -473,6 +528,9 @@ int main(void)
     RUN_TEST(test_mode_timeout_while_enabled_and_while_enabling);
     RUN_TEST(test_slave_lost_or_out_of_operational);
     RUN_TEST(test_bus_lost_holds_the_target_under_torque_then_disables);
+    RUN_TEST(test_a_slave_that_took_no_part_in_the_cycle_is_kept_in_mind);
+    RUN_TEST(test_a_bus_lost_after_a_wrong_working_counter_leaves_no_sign_of_the_slave);
+    RUN_TEST(test_a_reset_asks_for_a_slave_that_left_operational_once_a_second);
     RUN_TEST(test_reset_is_one_bounded_edge);
     RUN_TEST(test_reset_survives_a_lost_frame_at_every_cycle);
     RUN_TEST(test_reset_of_a_restarting_device_waits_for_it);
