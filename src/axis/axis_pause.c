@@ -229,6 +229,20 @@ static bool both_slower(cm1e_axis_t *axis, double part)
     return true;
 }
 
+/* What is superimposed on a slave takes all of it: its base stays in step. FALSE: it is too slow for that. */
+static bool only_superimposed_slower(cm1e_axis_t *axis, double part)
+{
+    const cm1e_motion_state_t on_top = axis->superimposed.now;
+    const double lost = axis->setpoint.velocity * (1.0 - part);
+    if (fabs(lost) >= fabs(on_top.velocity) || lost * on_top.velocity <= 0.0)
+        return false;
+    if (!cm1e_axis_superimposed_slow(axis, 1.0 - lost / on_top.velocity))
+        return false;
+    cm1e_axis_put_motion(axis, axis->setpoint.velocity - lost,
+                         axis->setpoint.acceleration - on_top.acceleration + axis->superimposed.now.acceleration);
+    return true;
+}
+
 /* Made of several, and none of them is lost. An axis that is led goes on as slowly as all that are. */
 static void go_on_slower(cm1e_axis_t *axis)
 {
@@ -237,8 +251,8 @@ static void go_on_slower(cm1e_axis_t *axis)
         return;
     if (axis->setpoint.source->slow)
         axis->setpoint.source->slow(axis, part);
-    else if (!both_slower(axis, part))
-        begin_anew(axis, velocity_left(axis));
+    else if (!(axis_follows(axis) ? only_superimposed_slower(axis, part) : both_slower(axis, part)))
+        begin_anew(axis, axis->setpoint.velocity * part);
     if (axis->setpoint.velocity != before)
         lost_speed(axis, before - axis->setpoint.velocity);
 }
@@ -251,8 +265,7 @@ static void go_on_or_begin_anew(cm1e_axis_t *axis)
     const double ran_on = cm1e_axis_ran_on(axis);
     const bool goes_on = !shaken && ran_on == 0.0;
     if (is_composite(axis) && !follows_on && goes_on) {
-        if (!axis_follows(axis))
-            go_on_slower(axis);
+        go_on_slower(axis);
         return;
     }
     cm1e_axis_shift_set_point(axis, ran_on);

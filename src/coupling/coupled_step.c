@@ -15,10 +15,30 @@ static const double rounding_counts = 1e-3;
 
 /* ---- what is not in step yet ------------------------------------------------------------------------------------- */
 
+static const double least_part = 0.01; /* it must come to an end */
+
 static double at_most(double asked, double most, double used)
 {
-    const double least_part = 0.01; /* it must come to an end */
     return fmin(asked, fmax(most - used, least_part * most));
+}
+
+/* u/s; what is left of the axis's velocity to a slave that makes up distance in the direction of the function. */
+static double room_beside(const cm1e_axis_t *axis, const from_t *f)
+{
+    const cm1e_motion_state_t *now = &axis->coupling->catch_up.now;
+    const double most = axis->limits.maximum.velocity;
+    const double on_top = axis->superimposed.moving ? axis->superimposed.share.velocity : 0.0;
+    const double at_rest = now->position + now->velocity * fabs(now->velocity) * axis->limits.emergency_way;
+    const bool lags = at_rest * f->velocity < 0.0;
+    return lags ? fmax(most - fabs(f->velocity) - on_top, 0.0) : most;
+}
+
+/* A part of what the coupling function leaves. The function may become faster, and the catch-up can give way by its
+ * jerk only. */
+static double velocity_to_place(const cm1e_axis_t *axis, const from_t *f)
+{
+    const double part = 0.1, most = axis->limits.maximum.velocity, left = part * (most - fabs(f->velocity));
+    return fmin(axis->coupling->catch_up.asked.velocity, fmin(fmax(left, least_part * most), room_beside(axis, f)));
 }
 
 /* What the coupling function leaves of the axis's limits. The velocity of the catch-up goes to 0 while the axis's own
@@ -36,11 +56,8 @@ static cm1e_motion_limits_t limits_beside(const cm1e_axis_t *axis, const from_t 
     const double down = at_most(catch_up->asked.deceleration, most->deceleration, used);
     const double change = now * f->velocity < 0.0 ? fmin(up, down) : fabs(f->velocity) > fabs(now) ? up : down;
     const double jerk = full_jerk ? catch_up->asked.jerk : at_most(catch_up->asked.jerk, most->jerk, fabs(f_jerk));
-    /* A part of what the coupling function leaves. The function may become faster, and the catch-up can give way by its
-     * jerk only. */
-    const double part = 0.1, taken = (1.0 - part) * most->velocity + part * fabs(f->velocity);
-    const double velocity = catch_up->to_place ? at_most(catch_up->asked.velocity, most->velocity, taken)
-                                          : 2.0 * (most->velocity + fabs(catch_up->now.velocity));
+    const double velocity = catch_up->to_place ? velocity_to_place(axis, f)
+                                               : 2.0 * (most->velocity + fabs(catch_up->now.velocity));
     return (cm1e_motion_limits_t){velocity, change, change, jerk};
 }
 
@@ -57,10 +74,13 @@ static void plan_catch_up(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits)
         catch_up->profile = (cm1e_profile_t){.end = catch_up->now};
 }
 
-/* A gear that accelerates may need all of the axis's limits: lost distance is made up when it no longer does. */
-static bool goes_to_place(const coupling_t *c, bool steady)
+/* A gear that accelerates may need all of the axis's limits: lost distance is made up when it no longer does, and when
+ * it leaves some velocity for that. */
+static bool goes_to_place(const cm1e_axis_t *axis, const from_t *f, bool steady)
 {
-    return c->now->to_position || (c->catch_up.made_up && steady);
+    const double next_to_nothing = 1e-4 * axis->limits.maximum.velocity;
+    const coupling_t *c = axis->coupling;
+    return c->now->to_position || (c->catch_up.made_up && steady && room_beside(axis, f) > next_to_nothing);
 }
 
 static void next_of_catch_up(cm1e_axis_t *axis)
@@ -119,7 +139,7 @@ static void go_on(cm1e_axis_t *axis, const from_t *f, attempt_t attempt)
     const double t = axis->cycle_s;
     if (attempt == WITH_ALL_JERK || attempt == WITH_JERK_LEFT) {
         const bool steady = f->acceleration == 0.0 && axis->coupling->f_acceleration == 0.0;
-        catch_up->to_place = goes_to_place(axis->coupling, steady);
+        catch_up->to_place = goes_to_place(axis, f, steady);
         const cm1e_motion_limits_t limits = limits_beside(axis, f, jerk_of_f(axis, f), attempt == WITH_ALL_JERK);
         plan_catch_up(axis, &limits);
     }
@@ -220,9 +240,9 @@ static void catch_up_ended(cm1e_axis_t *axis, const from_t *f)
         return;
     }
     catch_up->held_back = false;
-    if (f->acceleration != 0.0)
+    catch_up->to_place = goes_to_place(axis, f, f->acceleration == 0.0);
+    if (!catch_up->to_place)
         return;
-    catch_up->to_place = true;
     const cm1e_motion_limits_t limits = limits_beside(axis, f, 0.0, true);
     plan_catch_up(axis, &limits);
 }
@@ -367,7 +387,7 @@ static void begin_catch_up(cm1e_axis_t *axis, const from_t *from, const cm1e_mot
                        .held_back = f.acceleration != 0.0};
     if (is_nothing(axis, &c->catch_up.now))
         c->catch_up.now = (cm1e_motion_state_t){0};
-    c->catch_up.to_place = goes_to_place(c, f.acceleration == 0.0);
+    c->catch_up.to_place = goes_to_place(axis, &f, f.acceleration == 0.0);
     const cm1e_motion_limits_t limits = limits_beside(axis, &f, 0.0, true);
     plan_catch_up(axis, &limits);
 }
