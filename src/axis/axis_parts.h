@@ -34,6 +34,7 @@ typedef struct setpoint {
     int64_t profile_cycles;         /**< since the profile began */
     double profile_offset_s;        /**< so long before the first of these cycles it began */
     cm1e_slow_time_t slow;          /**< of a table over time (axis_pause.c) */
+    uint32_t jumps;                 /**< how often it was put to the actual position: nobody may follow that way */
     double loop_velocity;           /**< counts/s that the position loop adds in CSV */
     cm1e_profile_t profile;         /**< relative to base, in u; along a table only its duration and end */
 } setpoint_t;

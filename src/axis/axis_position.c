@@ -292,6 +292,6 @@ void cm1e_axis_track(cm1e_axis_t *axis)
 
 void cm1e_axis_set_to_actual(cm1e_axis_t *axis)
 {
-    cm1e_axis_put_position(axis, axis_actual(axis));
+    cm1e_axis_jump(axis, axis_actual(axis));
     cm1e_axis_put_velocity(axis, 0.0);
 }

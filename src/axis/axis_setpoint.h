@@ -56,6 +56,12 @@ static inline void cm1e_axis_put_position(cm1e_axis_t *axis, position_t position
 {
     axis->setpoint.position = position;
 }
+/** No motion led there. */
+static inline void cm1e_axis_jump(cm1e_axis_t *axis, position_t position)
+{
+    axis->setpoint.position = position;
+    axis->setpoint.jumps++;
+}
 /** From here on with this velocity, u/s, and acceleration, u/s2. */
 static inline void cm1e_axis_put_motion(cm1e_axis_t *axis, double velocity, double acceleration)
 {

@@ -32,6 +32,7 @@
 typedef struct master_view {
     double counts;                 /**< of the master, since the slave began to follow it */
     double velocity, acceleration; /**< of the master: u/s, u/s2 */
+    uint32_t jumps;                /**< of its set-point, so far */
 } master_view_t;
 
 /** The link of a slave to its master. */

@@ -200,6 +200,7 @@ static master_trouble_t see(link_t *link, position_t *position)
     *position = master->setpoint.position;
     link->seen.velocity = master->setpoint.velocity;
     link->seen.acceleration = master->setpoint.acceleration;
+    link->seen.jumps = master->setpoint.jumps;
     return trouble;
 }
 
@@ -230,8 +231,11 @@ static void know_ways(link_t *link, double cycle_s)
                                                            : same_way_counts + corner * fabs(master->position.scale);
 }
 
+/* A jump of its set-point, however short, is no way that limits were kept on. */
 static bool jumped(const link_t *link, const master_view_t *before)
 {
+    if (link->seen.jumps != before->jumps)
+        return true;
     const double way = (link->seen.velocity + before->velocity) * link->half_cycle;
     return fabs(link->seen.counts - before->counts - way) > link->most_unexplained;
 }

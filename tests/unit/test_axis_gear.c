@@ -169,9 +169,34 @@ static void test_what_cannot_be_followed_is_refused(void)
     axes_must_be(SLAVE, CM1E_AXIS_STANDSTILL);
 }
 
+/* A homing step may leave the set-point where the motor is not. With power back before its ramp has ended, the master's
+ * set-point begins anew at the motor. That is no motion to be followed, not even by a part of a count. */
+static void test_it_does_not_follow_a_master_that_begins_anew_where_its_motor_is(void)
+{
+    static const cm1e_homing_step_t block = {.kind = CM1E_STEP_BLOCK};
+    int lost = 0;
+    for (int delay = 200; delay < 210; delay++) {
+        axes_begin(2);
+        axes_command(MASTER, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_HOMING_STEP, .step = &block, .velocity = 2.0});
+        axes_cycles(delay);
+        axes_power(MASTER, false);
+        axes_cycles(1);
+        axes_must_be(MASTER, CM1E_AXIS_DISABLED);
+        axes_gear_in(SLAVE, MASTER, 1, 1);
+        axes_power(MASTER, true);
+        AXES_UNTIL(axes_state(MASTER) == CM1E_AXIS_STANDSTILL); /* the bench watches the slave */
+        if (axes_state(SLAVE) == CM1E_AXIS_ERROR_STOP) {
+            axes_told(SLAVE, "jump");
+            lost++;
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(10, lost);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_it_does_not_follow_a_master_that_begins_anew_where_its_motor_is);
     RUN_TEST(test_it_gets_into_step_with_a_master_that_moves);
     RUN_TEST(test_it_follows_within_the_cycle_in_either_order);
     RUN_TEST(test_it_gets_into_step_with_a_master_that_accelerates);
