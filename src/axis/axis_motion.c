@@ -127,6 +127,16 @@ static bool may_go_on(const cm1e_axis_t *axis, cm1e_motion_state_t next)
            cm1e_axis_limits_can_stop(axis, axis->setpoint.base_line, next);
 }
 
+/* What waits begins where the profile ended `late_s` ago, a follower with the present set-point. What begins where the
+ * axis can no longer be stopped would go beyond the limit. */
+static bool may_hand_over(cm1e_axis_t *axis, double late_s)
+{
+    cm1e_motion_state_t begin = axis->setpoint.profile.end;
+    if (axis->commands.waiting.count > 0 && kind_row(waiting_move(axis, 0)->kind)->plan == PLAN_COUPLING)
+        begin.position += begin.velocity * late_s;
+    return may_go_on(axis, begin);
+}
+
 /* The profile ended `late_s` ago, inside the present cycle. Where its command ends with it, the next one has begun at
  * that very moment. TRUE: there is a profile to go on with. */
 static bool profile_ended(cm1e_axis_t *axis, double late_s)
@@ -139,8 +149,7 @@ static bool profile_ended(cm1e_axis_t *axis, double late_s)
     if (axis->homing_hooks && axis->homing_hooks->step_ended(axis))
         return axis_on_profile(axis);
     if (axis->commands.active && kind_row(axis->commands.kind)->is_endless) {
-        /* What begins where nothing can stop any more would go beyond the limit. */
-        if (may_go_on(axis, axis->setpoint.profile.end) && cm1e_axis_begin_waiting(axis, &end, late_s))
+        if (may_hand_over(axis, late_s) && cm1e_axis_begin_waiting(axis, &end, late_s))
             return axis_on_profile(axis); /* not what follows a master */
         axis->setpoint.reached = true;
         cm1e_axis_set_passing(axis); /* the position lies behind now, whatever else changes */

@@ -193,9 +193,36 @@ static void test_it_does_not_follow_a_master_that_begins_anew_where_its_motor_is
     TEST_ASSERT_EQUAL_INT(10, lost);
 }
 
+/* A command reaches its velocity inside a cycle, and the slave follows from the end of that cycle on, as fast. There it
+ * must still be able to stop before its software limit. */
+static void test_it_does_not_take_over_where_it_can_no_longer_stop(void)
+{
+    const double a = 100.0, jerk = 2000.0, cycle_s = 0.001; /* as an axis has them by default */
+    for (int i = 0; i < 40; i++) {
+        const double v = 10.0 + i * 0.013, reached_s = v / a + a / jerk, way = v * reached_s / 2.0;
+        const double late_s = cycle_s * ceil(reached_s / cycle_s) - reached_s;
+        const double limit = way + v * v / (2.0 * a) + v * late_s / 2.0;
+        axes_describe(2);
+        axes_config(SLAVE)->software_limit_negative = -100.0;
+        axes_config(SLAVE)->software_limit_positive = limit;
+        axes_make();
+        axes_enable_all();
+        const cm1e_axis_coupling_t coupling = {.master = {{.axis = axes_reference(MASTER), .source = mcSetValue,
+                                                           .numerator = 1, .denominator = 1}}};
+        axes_move_velocity(SLAVE, v);
+        axes_command(SLAVE, &(cm1e_axis_command_t){.kind = CM1E_COMMAND_GEAR_IN, .buffer_mode = mcBuffered,
+                                                   .coupling = &coupling});
+        axes_cycles(400);
+        axes_must_be(SLAVE, CM1E_AXIS_ERROR_STOP);
+        AXES_MUST(axes_bench.witness[SLAVE].highest <= limit + 1e-6, "%.9g u/s: at %.9g u, with a limit at %.9g u", v,
+                  axes_bench.witness[SLAVE].highest, limit);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_it_does_not_take_over_where_it_can_no_longer_stop);
     RUN_TEST(test_it_does_not_follow_a_master_that_begins_anew_where_its_motor_is);
     RUN_TEST(test_it_gets_into_step_with_a_master_that_moves);
     RUN_TEST(test_it_follows_within_the_cycle_in_either_order);
