@@ -40,6 +40,7 @@ static struct player {
     ranges_t ranges;
     bool edge_in_cycle;             /**< who lost the axis by a call may have been called before */
     int at_rest, off_cycles, still_cycles;
+    double off_velocity[JUDGED_MOST]; /**< u/s; of all axes, before its torque was to go */
     MC_CAM_ID cam;                  /**< the last one that was selected for it */
 } players[JUDGED_MOST];
 #define player players[judged_at]
@@ -293,6 +294,11 @@ static void judge_sync(int n)
         sync->known = false;
         return;
     }
+    /* While no answer comes its time stands still; in the first cycle after that it has lost such a master. */
+    if (axis_free(master)) {
+        MUST(slave->silence.frozen, "InGear with a master that has no torque");
+        return;
+    }
     if (!sync->known) {
         sync->known = true;
         sync->master_at = master->setpoint.position;
@@ -491,8 +497,11 @@ static void judge_rest(void)
     double longest_s = 0;
     for (int n = 0; n < axis_count; n++) { /* a master that keeps its ratio brakes as its slave can */
         const cm1e_motion_limits_t *most = &judged_axes[n].axis->limits.maximum;
-        longest_s = fmax(longest_s, most->velocity / most->deceleration + 2 * most->deceleration / most->jerk +
-                                        2 * sqrt(most->velocity / most->jerk) + 0.2);
+        if (!off)
+            player.off_velocity[n] = fabs(judged_axes[n].axis->setpoint.velocity);
+        const double velocity = fmax(most->velocity, player.off_velocity[n]); /* the maximum may be lowered */
+        longest_s = fmax(longest_s, velocity / most->deceleration + 2 * most->deceleration / most->jerk +
+                                        2 * sqrt(velocity / most->jerk) + 0.2);
     }
     longest_s += 10.5 * (drive_homes(axis));
     player.off_cycles = off ? player.off_cycles + 1 : 0;
