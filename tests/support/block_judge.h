@@ -55,6 +55,7 @@ static struct judged_axis {
     cm1e_axis_state_t state;        /**< last judged */
     bool reset_asked;               /**< since ErrorStop */
     bool searched;                  /**< a call of this cycle found or left it in Homing, which may end in the cycle */
+    bool stopped;                   /**< the calls of this cycle left it in a stop, which may end in the cycle too */
     bool waited;                    /**< a command did, maybe of a block that has lost it by an error of its own */
     bool led;                       /**< by an axes group, when it was judged last */
     long long number;               /**< of the cycle */
@@ -228,6 +229,13 @@ static void judge_enable(const instance_t *fb)
     RULE(!now->trigger || now->busy || now->error, "Enable and neither Busy nor Error");
 }
 
+/** It is in MC_Halt or MC_Stop. */
+static bool stops(const cm1e_axis_t *axis)
+{
+    return axis->commands.active &&
+           (axis->commands.kind == CM1E_COMMAND_HALT || axis->commands.kind == CM1E_COMMAND_STOP);
+}
+
 /** What a call may do to the state of the axis: nothing but what the block's rules say, and that at an edge only. */
 static void judge_state(instance_t *fb, cm1e_axis_state_t before, bool may_wait)
 {
@@ -236,6 +244,7 @@ static void judge_state(instance_t *fb, cm1e_axis_state_t before, bool may_wait)
     const cm1e_axis_state_t after = judged.axis->state;
     const bool edge = now->trigger && !fb->before.trigger;
     judged.searched = judged.searched || after == CM1E_AXIS_HOMING;
+    judged.stopped = stops(judged.axis);
     const bool free_to_change = edge && !now->error && type->rules && !type->rules[before].unchanged;
     /* MC_Reset, MC_Jog, the ends of a homing: tested where they are. A command that cannot go on under another override
      * ends with that error, and the next one begins (2.2.2, case 2). */
@@ -499,9 +508,7 @@ static inline void watch_set_point(void)
     const cm1e_motion_limits_t *most = limits_in_force();
     const double t = (double)judged.cycle_ns * 1e-9, v = axis->setpoint.velocity, a = axis->setpoint.acceleration;
     const bool stop = axis->setpoint.source != &cm1e_source_leader &&
-                      (!axis->commands.active || axis->commands.kind == CM1E_COMMAND_HALT ||
-                                                         axis->commands.kind == CM1E_COMMAND_STOP ||
-                                                             axis->setpoint.paused);
+                      (!axis->commands.active || stops(axis) || judged.stopped || axis->setpoint.paused);
     const bool ours = set_point_is_ours(), stepping = watched.searched; /* lets go of what it pushes at */
     watched.rough = follows_roughly(axis, JUDGED_MOST) || (watched.rough && ours && watched.velocity != 0.0);
     const bool is_hard = axis->state == CM1E_AXIS_ERROR_STOP || stepping || (stop && axis->limits.software_limits) ||
@@ -526,6 +533,7 @@ static inline void watch_set_point(void)
         KEEPS(off <= most->jerk * t * t * t / 6.0 * slack + rounding,
              "the position moves by %.9g, the velocities are %.9g and %.9g", way, watched.velocity, v);
     }
+    judged.stopped = false;
     watched.hard = is_hard;
     watched.moving += ours && v != 0.0;
     watched.ours = ours;
