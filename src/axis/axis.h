@@ -228,6 +228,9 @@ typedef struct cm1e_axis_leader {
      *  velocity that cm1e_axis_part_left() leaves each of them. The velocity and the acceleration that the axis has
      *  now, at its last set-point. Asked before the next one is. NULL: as fast as before. */
     void (*slow)(void *context, uint32_t index, double *velocity, double *acceleration);
+    /** The silence was too long for one of all that are led together (cm1e_axis_begins_anew()): then all of them begin
+     *  anew, each as its mode permits. NULL: each by itself. */
+    bool (*begins_anew)(void *context);
     /** s; how long the slowest of all that are led together needs to brake: the ramp that they have in common when the
      *  bus is lost. NULL: each has its own. */
     double (*stop_time)(void *context);
@@ -253,6 +256,9 @@ const cm1e_bus_t *cm1e_axis_bus(const cm1e_axis_t *axis);
 /** After a silence: the part of its set velocity (0 ... 1) that the motor can go on with. Faster, it would exceed the
  *  axis's maximum velocity while it catches up. @rt cycle */
 double cm1e_axis_part_left(const cm1e_axis_t *axis);
+/** After a silence: it cannot go on as it was. In CSP the motor has stood too often shortly one after the other, in CSV
+ *  it has run on too far. @rt cycle */
+bool cm1e_axis_begins_anew(const cm1e_axis_t *axis);
 /** s; how far apart its set-points are. @rt cycle */
 double cm1e_axis_cycle(const cm1e_axis_t *axis);
 /** What MC_Power permits. @rt cycle */

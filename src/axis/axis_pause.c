@@ -218,6 +218,20 @@ double cm1e_axis_ran_on(const cm1e_axis_t *axis)
     return axis->setpoint.velocity * axis->position.scale * axis->cycle_s * (double)axis->silence.silent_before;
 }
 
+bool cm1e_axis_begins_anew(const cm1e_axis_t *axis)
+{
+    const bool in_place = axis->mode == CM1E_MODE_CSV; /* nearly, and as fast as before */
+    const bool shaken = !in_place && axis->silence.shaken > CM1E_AXIS_RIDDEN_OUT_CYCLES * CM1E_SHAKEN_BY_SILENCE;
+    return shaken || cm1e_axis_ran_on(axis) != 0.0;
+}
+
+/* The path of a group begins anew for all of its axes, or goes on for all. */
+static bool begins_anew(const cm1e_axis_t *axis)
+{
+    const cm1e_axis_leader_t *leader = &axis->leader;
+    return axis_led(axis) && leader->begins_anew ? leader->begins_anew(leader->context) : cm1e_axis_begins_anew(axis);
+}
+
 /* Of a base and what is superimposed on it; FALSE: the latter cannot go on. */
 static bool both_slower(cm1e_axis_t *axis, double part)
 {
@@ -260,17 +274,14 @@ static void go_on_slower(cm1e_axis_t *axis)
 static void go_on_or_begin_anew(cm1e_axis_t *axis)
 {
     const bool follows_on = axis_follows(axis) && axis->coupling_hooks->begins_anew(axis);
-    const bool in_place = axis->mode == CM1E_MODE_CSV; /* nearly, and as fast as before */
-    const bool shaken = !in_place && axis->silence.shaken > CM1E_AXIS_RIDDEN_OUT_CYCLES * CM1E_SHAKEN_BY_SILENCE;
     const double ran_on = cm1e_axis_ran_on(axis);
-    const bool goes_on = !shaken && ran_on == 0.0;
-    if (is_composite(axis) && !follows_on && goes_on) {
+    if (is_composite(axis) && !follows_on && !begins_anew(axis)) {
         go_on_slower(axis);
         return;
     }
     cm1e_axis_shift_set_point(axis, ran_on);
     const bool led = axis_led(axis); /* the path stands for an axis at rest too */
-    const double left = led && !in_place ? 0.0 : velocity_left(axis);
+    const double left = led && axis->mode != CM1E_MODE_CSV ? 0.0 : velocity_left(axis);
     if (left != axis->setpoint.velocity || follows_on || led || ran_on != 0.0)
         begin_anew(axis, left);
 }

@@ -125,6 +125,17 @@ static void slow(void *context, uint32_t index, double *velocity, double *accele
     *acceleration = group->sample.acceleration[index];
 }
 
+static bool begins_anew(void *context)
+{
+    const cm1e_group_t *group = context;
+    for (int i = 0; i < group->axes; i++) {
+        const cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
+        if (axis && (group->led & 1u << i) != 0 && cm1e_axis_begins_anew(axis))
+            return true;
+    }
+    return false;
+}
+
 static double stop_time(void *context)
 {
     const cm1e_group_t *group = context;
@@ -188,7 +199,7 @@ cm1e_error_t cm1e_group_lead(cm1e_group_t *group, bool some)
     for (int i = 0; i < group->axes; i++) {
         cm1e_axis_t *axis = cm1e_group_axis(group, group->ident[i]);
         const cm1e_axis_leader_t leader = {.next = next, .lost = lost, .paused = paused, .slow = slow,
-                                           .stop_time = stop_time, .context = group,
+                                           .begins_anew = begins_anew, .stop_time = stop_time, .context = group,
                                            .index = (uint32_t)i};
         if (axis && cm1e_axis_lead(axis, &leader) == CM1E_OK) {
             group->led |= 1u << i;

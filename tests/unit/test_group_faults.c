@@ -205,11 +205,11 @@ static void turn(cm1e_bus_t *motor)
     motor->position = (int32_t)lround(*at);
 }
 
-static void begin_by_velocity(void)
+static void begin_by_velocity_from(int first)
 {
     group_end();
     axes_describe(3);
-    for (int n = 0; n < 3; n++) {
+    for (int n = first; n < 3; n++) {
         axes_config(n)->mapping = CM1E_MAPPING_CSV;
         cm1e_device_pdo(&axes_motor(n)->rx, CM1E_MAPPING_CSV, false, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
         cm1e_device_pdo(&axes_motor(n)->tx, CM1E_MAPPING_CSV, true, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
@@ -223,6 +223,8 @@ static void begin_by_velocity(void)
     group_form();
     AXES_MUST(cm1e_group_enable(group) == CM1E_OK, "%s", group_text());
 }
+
+static void begin_by_velocity(void) { begin_by_velocity_from(0); }
 
 /* In CSV the axes go on: all with one ramp, in step along the line. */
 static void test_a_bus_that_is_lost_brakes_the_axes_in_step_in_csv(void)
@@ -254,6 +256,31 @@ static void test_a_bus_that_is_lost_brakes_the_axes_in_step_in_csv(void)
     }
     for (int n = 0; n < 3; n++)
         axes_must_be(n, CM1E_AXIS_ERROR_STOP);
+}
+
+/* Single lost frames shortly one after the other: a path with an axis in CSP begins anew from rest. An axis in CSV is
+ * still on its way then, and fails; however slow it is, its velocity does not jump (the bench watches). */
+static void test_an_axis_by_velocity_does_not_jump_where_the_path_begins_anew(void)
+{
+    for (int order = 0; order < 2; order++) {
+        begin_by_velocity_from(1);
+        for (int n = 0; n < 3; n++)
+            axes_bench.order[n] = order ? 2 - n : n;
+        group_line(1.0, 1.0, 0.08, mcAborting);
+        axes_cycles(500);
+        for (int i = 0; i < 4; i++) {
+            axes_bench.received = CM1E_ERROR_BUS_LOST;
+            axes_cycles(1);
+            axes_bench.received = CM1E_OK;
+            axes_cycles(2);
+        }
+        axes_must_be(1, CM1E_AXIS_ERROR_STOP);
+        TEST_ASSERT_EQUAL_INT(CM1E_ERROR_AXIS_COUPLING_LIMIT, axes_axis(1)->fault.error);
+        axes_told(1, "pause");
+        axes_cycles(500);
+        group_must_be(CM1E_GROUP_ERROR_STOP);
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, axes_axis(0)->setpoint.velocity);
+    }
 }
 
 static void test_the_end_of_a_run_shuts_all_axes_down(void)
@@ -325,6 +352,7 @@ int main(void)
     RUN_TEST(test_several_axes_fail_together);
     RUN_TEST(test_a_bus_that_is_lost_holds_every_axis_on_the_path);
     RUN_TEST(test_a_bus_that_is_lost_brakes_the_axes_in_step_in_csv);
+    RUN_TEST(test_an_axis_by_velocity_does_not_jump_where_the_path_begins_anew);
     RUN_TEST(test_the_end_of_a_run_shuts_all_axes_down);
     RUN_TEST(test_an_axis_that_is_destroyed_on_the_way);
     RUN_TEST(test_a_limit_that_is_lowered_on_the_way_stops_it);
