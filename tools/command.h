@@ -37,6 +37,7 @@ enum { EXIT_OK = 0, EXIT_FAILED = 1, EXIT_WRONG_USE = 2 };
     X(check, "check a file for other masters, from any source", "")                                                 \
     X(diff, "compare a file with the live devices that it describes", "")                                           \
     X(new, "make a project that builds and runs", "")                                                               \
+    X(doctor, "look at machine, interface and network, and say what to do", "")                                     \
     X(explain, "say what an error number or name means", "")
 
 #define DECLARE(name, summary, words)              \

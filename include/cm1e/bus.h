@@ -104,6 +104,21 @@ CM1E_API void cm1e_bus_send(cm1e_bus_t *bus);
 /** CM1E_OK, or the last error of the cycle after `lost_cycles_limit` bad cycles in a row: the inputs of the bus are not
  *  valid then. It returns to CM1E_OK by itself with the next good cycle. @rt cycle */
 CM1E_API cm1e_error_t cm1e_bus_health(const cm1e_bus_t *bus);
+/** What one port of a slave controller has counted since its power-on; each counter stops at 255 (ETG.1000.4). Port 0
+ *  is IN, port 1 OUT; ports 2 and 3 are branches. */
+typedef struct cm1e_slave_port {
+    bool link;                 /**< there is a link now */
+    uint8_t invalid_frames, receive_errors; /**< damaged on the way to this port */
+    uint8_t forwarded_errors;  /**< damaged before, at another slave */
+    uint8_t lost_links;
+} cm1e_slave_port_t;
+enum { CM1E_PORTS = 4 };
+
+/** Reads the counters of all ports of a slave, after cm1e_bus_scan() and while no cycle runs. Returns
+ *  CM1E_ERROR_INVALID_ARGUMENT if there is no such slave, CM1E_ERROR_TIMEOUT if it does not answer. @rt block */
+CM1E_API cm1e_error_t cm1e_bus_read_ports(cm1e_bus_t *bus, uint16_t position, cm1e_slave_port_t ports[CM1E_PORTS],
+                                          cm1e_diag_t *diag);
+
 /** The counters of the cycle. The pointer is valid as long as the bus. @rt cycle */
 CM1E_API const cm1e_bus_counters_t *cm1e_bus_counters(const cm1e_bus_t *bus);
 /** The bus's own copy of its configuration, with defaults filled in. The pointer is valid as long as the bus.

@@ -168,8 +168,9 @@ static bool shows_fault(const cm1e_drive_t *drive, const cm1e_device_mode_t *mod
     return mode->words->commands || drive->feedback.statusword & mode->words->fault;
 }
 
-/* BR appendix 3: "Confirm No Error Occurs". While a switch is under way the feedback shows no fault, because the statusword
- * may be of either mode: a fault is one in both. In CMD the statusword does not tell (BR 7.1.3), so F530 is asked. */
+/* BR appendix 3: "Confirm No Error Occurs". While a switch is under way the feedback shows no fault, because the
+ * statusword may be of either mode: a fault is one in both. In CMD the statusword does not tell (BR 7.1.3), so F530 is
+ * asked. */
 static bool is_sound(cm1e_drive_t *drive)
 {
     if (place(drive)->words->commands)

@@ -13,7 +13,8 @@
 #include "nic/nic.h"
 #include "sim/bridge_app.h"
 
-enum { MOST_OTHERS = 4, SDO_CYCLES = 5, SEEN_CYCLES = 2, SETTLING = 200, STEP_AT_START = 100 /* counts, of the simulated bridge */ };
+enum { MOST_OTHERS = 4, SDO_CYCLES = 5, SEEN_CYCLES = 2, SETTLING = 200 };
+enum { STEP_AT_START = 100 }; /* counts, of the simulated bridge */
 
 /** An axis that is not judged call by call, and moves to and fro. */
 typedef struct other {

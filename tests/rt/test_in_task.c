@@ -10,6 +10,7 @@
 #include "cm1e/plot.h"
 #include "cm1e/sdo_info.h"
 #include "cm1e/sii.h"
+#include "cm1e/trace.h"
 #include "machine.h"
 
 #define MS INT64_C(1000000)
@@ -124,6 +125,22 @@ static cm1e_error_t call_check(cm1e_bus_t *bus)
     return cm1e_scheduler_check_path(CM1E_TEST_OUTPUT "/never.svg", &diag);
 }
 
+static cm1e_error_t call_ports(cm1e_bus_t *bus)
+{
+    cm1e_slave_port_t ports[CM1E_PORTS];
+    return cm1e_bus_read_ports(bus, 1, ports, &diag);
+}
+static cm1e_error_t call_html(cm1e_bus_t *bus)
+{
+    (void)bus;
+    return cm1e_scheduler_write_html(machine.scheduler, CM1E_TEST_OUTPUT "/never.html", &diag);
+}
+static cm1e_error_t call_npy(cm1e_bus_t *bus)
+{
+    (void)bus;
+    return cm1e_scheduler_write_npy(machine.scheduler, CM1E_TEST_OUTPUT "/never.npy", &diag);
+}
+
 static const struct {
     const char *name;
     cm1e_error_t (*call)(cm1e_bus_t *bus);
@@ -136,7 +153,8 @@ static const struct {
     {"cm1e_cml_exchange()", call_cml}, {"cm1e_cml_leave()", call_cml_leave}, {"cm1e_bus_config_load()", call_load},
     {"cm1e_scheduler_create()", call_create}, {"cm1e_scheduler_run()", call_run},
     {"cm1e_scheduler_write_csv()", call_csv}, {"cm1e_scheduler_write_svg()", call_svg},
-    {"cm1e_scheduler_check_path()", call_check},
+    {"cm1e_scheduler_check_path()", call_check}, {"cm1e_bus_read_ports()", call_ports},
+    {"cm1e_scheduler_write_html()", call_html}, {"cm1e_scheduler_write_npy()", call_npy},
 };
 enum { WAITING = sizeof waiting / sizeof waiting[0] };
 

@@ -1,0 +1,82 @@
+/* The counters of the ports of every slave: each register ends in its own field of its own port. */
+#include "bus_support.h"
+#include "sim/esc.h"
+#include "sim/segment.h"
+
+enum { SLAVES = 3 };
+
+static cm1e_bus_t *scanned_bus(void)
+{
+    sim_config(SLAVES);
+    cm1e_bus_t *bus = open_bus();
+    ck_assert_msg(cm1e_bus_scan(bus, &diag) == CM1E_OK, "%s", diag.text);
+    return bus;
+}
+
+static uint8_t *registers_of(cm1e_bus_t *bus, uint32_t position)
+{
+    return cm1e_sim_segment_slave(segment_of(bus), position)->memory;
+}
+
+START_TEST(every_counter_of_every_port_is_found)
+{
+    cm1e_bus_t *bus = scanned_bus();
+    cm1e_slave_port_t ports[CM1E_PORTS];
+    for (uint16_t position = 1; position <= SLAVES; position++) {
+        uint8_t *registers = registers_of(bus, position);
+        for (int i = 0; i < 12; i++)
+            registers[ESC_RX_ERRORS + i] = (uint8_t)(10 * position + i);
+        for (int i = 0; i < 4; i++)
+            registers[ESC_LOST_LINKS + i] = (uint8_t)(200 + 10 * position + i);
+    }
+    for (uint16_t position = 1; position <= SLAVES; position++) {
+        ck_assert_msg(cm1e_bus_read_ports(bus, position, ports, &diag) == CM1E_OK, "%s", diag.text);
+        for (int port = 0; port < CM1E_PORTS; port++) {
+            ck_assert_uint_eq(ports[port].invalid_frames, 10 * position + 2 * port);
+            ck_assert_uint_eq(ports[port].receive_errors, 10 * position + 2 * port + 1);
+            ck_assert_uint_eq(ports[port].forwarded_errors, 10 * position + 8 + port);
+            ck_assert_uint_eq(ports[port].lost_links, 200 + 10 * position + port);
+        }
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(links_are_those_of_a_line)
+{
+    cm1e_bus_t *bus = scanned_bus();
+    for (uint16_t position = 1; position <= SLAVES; position++) {
+        cm1e_slave_port_t ports[CM1E_PORTS];
+        ck_assert_int_eq(cm1e_bus_read_ports(bus, position, ports, &diag), CM1E_OK);
+        ck_assert(ports[0].link);
+        ck_assert_int_eq(ports[1].link, position < SLAVES);
+        ck_assert(!ports[2].link && !ports[3].link);
+    }
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+START_TEST(slaves_that_are_none_or_silent_are_errors_in_words)
+{
+    cm1e_bus_t *bus = scanned_bus();
+    cm1e_slave_port_t ports[CM1E_PORTS];
+    ck_assert_int_eq(cm1e_bus_read_ports(bus, 0, ports, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_int_eq(cm1e_bus_read_ports(bus, SLAVES + 1, ports, &diag), CM1E_ERROR_INVALID_ARGUMENT);
+    ck_assert_ptr_nonnull(strstr(diag.text, "no slave 4"));
+    cm1e_sim_slave_reset(cm1e_sim_segment_slave(segment_of(bus), 2), INT64_MAX);
+    ck_assert_int_eq(cm1e_bus_read_ports(bus, 2, ports, &diag), CM1E_ERROR_TIMEOUT);
+    ck_assert_ptr_nonnull(strstr(diag.text, "Slave 2 does not answer"));
+    cm1e_bus_close(bus);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("bus_ports");
+    TCase *tests = tcase_create("ports");
+    tcase_add_test(tests, every_counter_of_every_port_is_found);
+    tcase_add_test(tests, links_are_those_of_a_line);
+    tcase_add_test(tests, slaves_that_are_none_or_silent_are_errors_in_words);
+    suite_add_tcase(suite, tests);
+    return run_suite(suite);
+}
