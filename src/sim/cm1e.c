@@ -113,8 +113,8 @@ void cm1e_sim_cm1e_power_on(void *app, int64_t now_ns)
     cm1e_sim_fsa_off(drive);
     advance(drive, now_ns);
     drive->last_outputs_ns = 0;
-    drive->period_ns = drive->candidate_ns = 0;
-    drive->candidate_count = 0;
+    drive->period.ns = drive->period.candidate_ns = 0;
+    drive->period.candidate_count = 0;
     drive->al_state = INIT;
     drive->zero = 0;
     drive->zero = cm1e_sim_actual_counts(drive);

@@ -66,6 +66,20 @@ typedef struct cm1e_sim_homing {
     uint8_t input;         /**< bit of 0x60FD; hard stop: 0 */
 } cm1e_sim_homing_t;
 
+/** An object that the console has made fail. */
+typedef struct cm1e_sim_refusal {
+    bool writing;      /**< writing it fails, as with a broken memory */
+    bool missing;      /**< it is not there at all */
+    uint16_t index;
+    uint8_t subindex;
+} cm1e_sim_refusal_t;
+
+/** How far apart the outputs of the master come, as the device has detected it. */
+typedef struct cm1e_sim_period {
+    uint32_t ns, candidate_ns; /**< 0: not known yet */
+    uint8_t candidate_count;
+} cm1e_sim_period_t;
+
 struct cm1e_sim_cm1e {
     cm1e_sim_slave_t *slave; /**< NULL: no slave controller below (unit tests) */
     const cm1e_firmware_info_t *firmware;
@@ -77,17 +91,13 @@ struct cm1e_sim_cm1e {
 
     cm1e_sim_store_t store;  /**< dictionary, with the values of the entries that are not in `objects` */
 
-    bool refuses;            /**< writing this object fails, as with a broken memory */
-    bool lacks;              /**< ... and it is not there at all */
-    uint16_t refused_index;
-    uint8_t refused_subindex;
+    cm1e_sim_refusal_t refusal;
 
     /* time */
     bool running;            /**< now_ns is known */
     int64_t now_ns;
     int64_t last_outputs_ns;
-    uint32_t period_ns, candidate_ns;
-    uint8_t candidate_count;
+    cm1e_sim_period_t period;
 
     /* process data */
     cm1e_sim_image_t outputs, inputs;

@@ -87,6 +87,12 @@ static int64_t present_value(const cm1e_sim_cm1e_t *drive, const cm1e_sim_cell_t
     return place >= 0 ? ((const int32_t *)&drive->objects)[place] : *cell->value;
 }
 
+static bool is_refused(const cm1e_sim_cm1e_t *drive, uint16_t index, uint8_t subindex)
+{
+    const cm1e_sim_refusal_t *refusal = &drive->refusal;
+    return refusal->writing && refusal->index == index && refusal->subindex == subindex;
+}
+
 uint32_t cm1e_sim_sdo_read(void *app, uint16_t index, uint8_t subindex, uint8_t al_state, uint8_t *data, size_t *size)
 {
     (void)al_state; /* the dictionary is there in every state since V1.2.0 (UG 10.1) */
@@ -95,7 +101,7 @@ uint32_t cm1e_sim_sdo_read(void *app, uint16_t index, uint8_t subindex, uint8_t 
     const uint32_t missing = cm1e_sim_store_find_readable(&drive->store, index, subindex, &cell);
     if (missing)
         return missing;
-    if (drive->refuses && drive->lacks && drive->refused_index == index && drive->refused_subindex == subindex)
+    if (drive->refusal.missing && is_refused(drive, index, subindex))
         return SDO_ABORT_NO_SUBINDEX;
     if (cell.entry->type == CM1E_TYPE_STRING)
         return cm1e_sim_give_text(index == OBJ_100A_SOFTWARE_VERSION ? drive->firmware->version
@@ -122,8 +128,8 @@ uint32_t cm1e_sim_sdo_write(void *app, uint16_t index, uint8_t subindex, uint8_t
     if (missing)
         return missing;
     const cm1e_entry_t *entry = cm1e_sim_own_entry(drive, cell.entry);
-    if (drive->refuses && drive->refused_index == index && drive->refused_subindex == subindex)
-        return drive->lacks ? SDO_ABORT_NO_SUBINDEX : SDO_ABORT_HARDWARE;
+    if (is_refused(drive, index, subindex))
+        return drive->refusal.missing ? SDO_ABORT_NO_SUBINDEX : SDO_ABORT_HARDWARE;
     uint32_t abort_code = cm1e_sim_check_write(entry, al_state, size);
     if (abort_code)
         return abort_code;

@@ -92,23 +92,23 @@ static void detect_cycle_time(cm1e_sim_cm1e_t *drive, int64_t now_ns)
 {
     const int64_t interval_ns = now_ns - drive->last_outputs_ns;
     drive->last_outputs_ns = now_ns;
-    if (drive->period_ns != 0 && interval_ns == drive->period_ns) {
-        drive->candidate_count = 0;
+    if (drive->period.ns != 0 && interval_ns == drive->period.ns) {
+        drive->period.candidate_count = 0;
         return;
     }
     const uint32_t nearest_ns = nearest_cycle_ns(drive, interval_ns);
-    if (nearest_ns == drive->period_ns) {
-        drive->candidate_count = 0;
+    if (nearest_ns == drive->period.ns) {
+        drive->period.candidate_count = 0;
         return;
     }
-    if (nearest_ns != drive->candidate_ns) {
-        drive->candidate_ns = nearest_ns;
-        drive->candidate_count = 0;
+    if (nearest_ns != drive->period.candidate_ns) {
+        drive->period.candidate_ns = nearest_ns;
+        drive->period.candidate_count = 0;
     }
-    if (++drive->candidate_count < DETECTION_INTERVALS)
+    if (++drive->period.candidate_count < DETECTION_INTERVALS)
         return;
-    drive->candidate_count = 0;
-    drive->period_ns = nearest_ns;
+    drive->period.candidate_count = 0;
+    drive->period.ns = nearest_ns;
     drive->objects.cycle_time_us = (int32_t)(nearest_ns / 1000);
     drive->objects.output_cycle_ns = drive->objects.input_cycle_ns = (int32_t)nearest_ns;
 }

@@ -47,7 +47,7 @@ static void csp_enter(cm1e_sim_cm1e_t *drive)
 
 static double cycle_s(const cm1e_sim_cm1e_t *drive)
 {
-    return drive->period_ns ? drive->period_ns * 1e-9 : DEFAULT_CYCLE_S;
+    return drive->period.ns ? drive->period.ns * 1e-9 : DEFAULT_CYCLE_S;
 }
 
 static void csp_outputs(cm1e_sim_cm1e_t *drive, uint16_t rising_bits)

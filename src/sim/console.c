@@ -297,16 +297,16 @@ static cm1e_error_t run_refuse(call_t *call)
     char *end;
     const unsigned long index = strtoul(word, &end, 16), subindex = *end == ':' ? strtoul(end + 1, &end, 16) : 0;
     if (strcmp(word, "nothing") == 0) {
-        call->drive->refuses = false;
+        call->drive->refusal.writing = false;
         say(call, "slave %u: refuses nothing", call->position);
         return CM1E_OK;
     }
     if (end == word || *end || index > UINT16_MAX || subindex > UINT8_MAX)
         return REFUSE(call, "\"%s\": expected index:sub-index in hexadecimal, as 60F6:1B, or nothing", word);
-    call->drive->refuses = true;
-    call->drive->lacks = strcmp(argument(call, 1), "missing") == 0;
-    call->drive->refused_index = (uint16_t)index;
-    call->drive->refused_subindex = (uint8_t)subindex;
+    call->drive->refusal.writing = true;
+    call->drive->refusal.missing = strcmp(argument(call, 1), "missing") == 0;
+    call->drive->refusal.index = (uint16_t)index;
+    call->drive->refusal.subindex = (uint8_t)subindex;
     say(call, "slave %u: refuses to write 0x%04lX:%02lX", call->position, index, subindex);
     return CM1E_OK;
 }

@@ -12,7 +12,7 @@ import sys
 SOURCE = sys.argv[1]
 MOST = 40
 # Structs that are larger still: their members. A number here only falls, and goes when it is 40.
-NOT_YET = {"cm1e_drive": 91, "cm1e_sim_cm1e": 55}
+NOT_YET = {"cm1e_drive": 91, "cm1e_sim_cm1e": 54}
 ROOMS_OF_AXES = ("axis", "assembly", "bridge", "coupling", "homing")
 PARTS = ("src/axis/axis_parts.h", "src/axis/axis_move.h", "src/axis/axis_hooks.h")
 faults = []
