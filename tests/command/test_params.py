@@ -6,6 +6,7 @@ test_params.py BIN-DIRECTORY SOURCE-DIRECTORY
 """
 import json
 import os
+import pty
 import re
 import subprocess
 import sys
@@ -86,6 +87,7 @@ def check_files(folder):
     restored = on_sim("restore", "1", path)
     expect(restored.returncode == 0 and "nothing to change" in restored.stdout, "restore of the same", restored)
     check_changed(folder, text)
+    check_asked(folder)
     check_broken(folder, text)
 
 
@@ -104,6 +106,32 @@ def check_changed(folder, text):
     done = on_sim("restore", "1", path, "--yes", "--json")
     expect(done.returncode == 0 and json.loads(done.stdout) == {"done": True, "written": ["K47", "H3"], "failed": None,
                                                                 "not_written": []}, "restore", done)
+
+
+def check_asked(folder):
+    """On a terminal a person is asked; nothing but "y" writes."""
+    path = os.path.join(folder, "changed.yaml")
+    for answer, status, told in (("n\n", FAILED, "nothing was written"), ("\n", FAILED, "nothing was written"),
+                                 ("y\n", 0, "2 values written")):
+        pid, master = pty.fork()
+        if pid == 0:
+            os.execv(os.path.join(BIN, "cm1e"), ["cm1e", "params", "restore", "-i", "sim", "1", path])
+        seen, answered = "", False
+        while True:
+            try:
+                data = os.read(master, 4096).decode(errors="replace")
+            except OSError:
+                break
+            seen += data
+            if not data:
+                break
+            if "[y/N]" in seen and not answered:
+                os.write(master, answer.encode())
+                answered = True
+        code = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+        os.close(master)
+        if code != status or told not in seen or "Write 2 values?" not in seen:
+            faults.append(f"restore, answered with {answer!r}: {code} {seen}")
 
 
 def check_broken(folder, text):
