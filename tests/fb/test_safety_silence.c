@@ -64,6 +64,8 @@ static const double limit_u = 20;      /* u/s, of every axis: what the motions b
 static const double ROUNDING = 0.0005;
 /* Counts, where a motor with friction comes to rest; in CSV the position loop has no integral. */
 static const double END_TOLERANCE = 75;
+/* Of the speed of one step of a target: what the simulated servo makes of it from rest until the next step. */
+static const double KICK = 0.4;
 static const double acceleration_u = 200, jerk_u = 4000, way_u = 8, added_u = 1.5, WATCHDOG_S = 0.1;
 
 /** What a drive hears, whatever the master knows of it. */
@@ -101,7 +103,7 @@ static heard_t heard[AXES];
 static double undisturbed;
 static double undisturbed_end[AXES];
 static int done_at, undisturbed_done_at; /**< cycles; of the table */
-static double fastest[AXES], position_at_break[AXES], speed_at_break[AXES], rest_at[AXES];
+static double fastest[AXES], position_at_break[AXES], lag_at_break[AXES], speed_at_break[AXES], rest_at[AXES];
 static double table[PATTERNS][SILENCES]; /**< largest speed over the limit */
 
 /* ---- the wire ---------------------------------------------------------------------------------------------------- */
@@ -222,6 +224,7 @@ static void watch(uint32_t n)
     if (bench.cycle < begin || (bench.answered && bench_info(&bench, n).state != CM1E_AXIS_ERROR_STOP)) {
         position_at_break[n] = probe.position_counts;
         speed_at_break[n] = fabs(probe.velocity_counts_per_s);
+        lag_at_break[n] = fabs(bench_info(&bench, n).set_position * unit - probe.position_counts);
     }
     fastest[n] = fmax(fastest[n], fabs(probe.peak_velocity_counts_per_s));
     if (bench.cycle == end_at - 200)
@@ -242,10 +245,16 @@ static double allowed_way(uint32_t n)
     /* Unheard, a profile of the drive goes on with its acceleration. */
     const double v = holds ? before : fmin(limit_u * unit, before + acceleration_u * unit * (unheard_s + 0.005));
     const double ramp_s = v / (acceleration_u * unit), same = 1000;
-    const double ridden_out = v * (variant->lost_limit + (holds ? 3 : 4)) * 1e-3;
     const double by_torque = v * v / (2 * torque * m->gain), by_friction = v * v / (2 * m->friction * m->gain);
+    /* A target stands from the first missing answer on: the motor has its lag to go, and the step of one frame, whatever
+     * lost_cycles_limit is. If that frame is heard at last by a motor that stands, and the next one takes the torque
+     * away, the motor coasts with the part KICK of the speed of that step. */
     if (holds)
-        return ridden_out + by_torque + same;
+        return lag_at_break[n] + v * 1e-3 + by_torque + KICK * KICK * by_friction + same;
+    /* A velocity goes on until the bus counts as lost: the frame of the last answer, the cycles of the limit, one whose
+     * frame is heard although its answer is not, and the one in which the ramp is sent. The halt of a drive's own
+     * profile takes one more, as measured. */
+    const double ridden_out = v * (variant->lost_limit + (motion == A_DRIVE_MOVE ? 4 : 3)) * 1e-3;
     const bool runs_out = silence_s >= ramp_s || (has_watchdog && silence_s >= WATCHDOG_S);
     return 1.2 * (ridden_out + v * unheard_s + (runs_out ? by_friction : v * ramp_s / 2)) + same;
 }
