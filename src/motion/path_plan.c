@@ -409,6 +409,7 @@ void cm1e_path_cut(cm1e_path_t *path)
 {
     if (path->stopping || cm1e_path_plan_stop(path)) {
         cut_at(path, path->profile.end.position - path->begin);
+        (void)cm1e_path_plan(path, 0); /* the stop stays; what was known of the way behind it is not true any more */
         return;
     }
     /* It cannot stop before the end of this run: soonest in one that it enters slowly enough. */

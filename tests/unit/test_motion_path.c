@@ -294,6 +294,31 @@ static void test_what_is_cut_off_is_not_done_and_the_path_goes_on_from_there(voi
     TEST_ASSERT_EQUAL(4, driven.done_tag);
 }
 
+/* A stop that ends in the second segment is cut off there, and then a pause of the master lets it begin again from rest
+ * with most of the way still before it. The end of the cut is the end: it is not run over, nor met at speed. */
+static void test_a_path_that_was_cut_off_ends_there_also_after_a_pause(void)
+{
+    const cm1e_path_config_t config = plain_config(2, 2, 1000, 10000, 1e6);
+    for (int at = 100; at < 300; at++) {
+        begin_path(&config, ORIGIN);
+        line((double[]){100, 0}, 100, CM1E_PATH_EXACT, 0);
+        line((double[]){110, 0}, 50, CM1E_PATH_EXACT, 0);
+        for (int i = 0; i < at; i++)
+            step_path();
+        cm1e_path_stop(&driven.path, 60, 1e6);
+        cm1e_path_clear(&driven.path);
+        double end[2];
+        cm1e_path_end(&driven.path, end);
+        step_path();
+        cm1e_path_pause(&driven.path);
+        driven.now.path_velocity = 0;
+        for (int i = 0; i < 2; i++)
+            driven.now.velocity[i] = driven.now.acceleration[i] = 0;
+        run_path(); /* position and velocity of every step fit together */
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, end[0], driven.now.position[0]);
+    }
+}
+
 static void test_a_stop_keeps_its_deceleration_and_comes_to_an_end_in_corners(void)
 {
     const cm1e_path_config_t config = plain_config(2, 2, 1000, 10000, 1e6);
@@ -333,6 +358,7 @@ int main(void)
     RUN_TEST(test_override_slows_pauses_and_goes_on);
     RUN_TEST(test_absurdly_slow_commands_do_not_jump);
     RUN_TEST(test_what_is_cut_off_is_not_done_and_the_path_goes_on_from_there);
+    RUN_TEST(test_a_path_that_was_cut_off_ends_there_also_after_a_pause);
     RUN_TEST(test_a_stop_keeps_its_deceleration_and_comes_to_an_end_in_corners);
     return UNITY_END();
 }
