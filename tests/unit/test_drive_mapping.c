@@ -203,7 +203,12 @@ static void test_inputs_of_both_orders_are_decoded(void)
             TEST_ASSERT_EQUAL_INT16(drive.in_temperature.bytes ? -12 : 0, drive.feedback.temperature);
             TEST_ASSERT_EQUAL_INT32(drive.in_dc.bytes ? 241 : 0, drive.feedback.dc_link_decivolt);
             TEST_ASSERT_TRUE(drive.feedback.voltage);
+            TEST_ASSERT_TRUE(drive.feedback.digital_known);
         }
+    fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+    drop(&bus.tx, OBJ_60FD_DIGITAL_INPUTS);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_drive_init(&drive, &bus, 0, &diag));
+    TEST_ASSERT_FALSE(drive.feedback.digital_known);
 }
 
 static void test_32_bit_torque_saturates(void)
@@ -220,6 +225,20 @@ static void test_32_bit_torque_saturates(void)
     fake_input(&bus, OBJ_6077_TORQUE_ACTUAL_VALUE, (uint32_t)-999);
     cm1e_drive_read(&drive, true, 2);
     TEST_ASSERT_EQUAL_INT16(-999, drive.feedback.torque);
+}
+
+/* Sizes that the manual leaves open are read with their sign. */
+static void test_24_bit_torque_has_a_sign(void)
+{
+    fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+    TEST_ASSERT_TRUE(resize(&bus.tx, OBJ_6077_TORQUE_ACTUAL_VALUE, 24));
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_drive_init(&drive, &bus, 0, &diag));
+    fake_bus_show(&bus);
+    for (int value = -1000; value <= 1000; value += 250) {
+        fake_input(&bus, OBJ_6077_TORQUE_ACTUAL_VALUE, (uint32_t)value & 0xFFFFFF);
+        cm1e_drive_read(&drive, true, cycle_ns);
+        TEST_ASSERT_EQUAL_INT16(value, drive.feedback.torque);
+    }
 }
 
 static void test_profile_objects_carry_the_limits_of_the_configuration(void)
@@ -335,6 +354,7 @@ int main(void)
     RUN_TEST(test_velocity_below_1_3_0_in_homing_comes_from_positions);
     RUN_TEST(test_inputs_of_both_orders_are_decoded);
     RUN_TEST(test_32_bit_torque_saturates);
+    RUN_TEST(test_24_bit_torque_has_a_sign);
     RUN_TEST(test_profile_objects_carry_the_limits_of_the_configuration);
     RUN_TEST(test_mappings_support_the_modes_whose_targets_they_have);
     RUN_TEST(test_mode_over_sdo_is_set_before_and_switched_in_the_cycle);
