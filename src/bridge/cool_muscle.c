@@ -16,6 +16,7 @@
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
 #include "cm1e/cml.h"
+#include "core/clock.h"
 #include "device/cml.h"
 #include "drive/drive_bridge.h"
 

@@ -5,9 +5,8 @@
 
 #include "bus/soem_private.h"
 #include "core/bytes.h"
+#include "core/clock.h"
 #include "device/device.h"
-
-enum { NS_PER_US = 1000 };
 
 cm1e_soem_t *cm1e_soem_create(cm1e_nic_t *nic, const cm1e_bus_config_t *config)
 {
@@ -163,7 +162,7 @@ void cm1e_soem_send_process_data(cm1e_soem_t *soem) { ecx_send_processdata(&soem
 int cm1e_soem_receive_process_data(cm1e_soem_t *soem, int64_t timeout_ns)
 {
     const int frames = soem->stack.pushed > 0 ? soem->stack.pushed : 1;
-    const int working_counter = ecx_receive_processdata(&soem->context, (int)(timeout_ns / NS_PER_US / frames));
+    const int working_counter = ecx_receive_processdata(&soem->context, (int)(timeout_ns / US_IN_NS / frames));
     return working_counter < 0 ? DATAGRAM_LOST : working_counter;
 }
 
@@ -194,7 +193,7 @@ static bool is_answer(const cm1e_datagram_t *d, const uint8_t *frame)
 
 bool cm1e_soem_take(cm1e_soem_t *soem, cm1e_datagram_t *d, int64_t timeout_ns)
 {
-    const int working_counter = ecx_waitinframe(&soem->port, d->frame_index, (int)(timeout_ns / NS_PER_US));
+    const int working_counter = ecx_waitinframe(&soem->port, d->frame_index, (int)(timeout_ns / US_IN_NS));
     if (working_counter < 0)
         return false;
     const uint8_t *frame = (const uint8_t *)&soem->port.rxbuf[d->frame_index];

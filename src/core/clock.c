@@ -4,14 +4,12 @@
 #include <stddef.h>
 #include <time.h>
 
-enum { NS_PER_S = 1000000000 };
-
 static int64_t monotonic_now_ns(const cm1e_clock_t *clock)
 {
     (void)clock;
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
-    return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
+    return (int64_t)t.tv_sec * S_IN_NS + t.tv_nsec;
 }
 
 static void monotonic_sleep_until_ns(cm1e_clock_t *clock, int64_t time_ns)
@@ -19,7 +17,7 @@ static void monotonic_sleep_until_ns(cm1e_clock_t *clock, int64_t time_ns)
     /* A time in the past costs tens of microseconds, because the kernel arms a timer even then. */
     if (time_ns <= monotonic_now_ns(clock))
         return;
-    const struct timespec t = {.tv_sec = time_ns / NS_PER_S, .tv_nsec = time_ns % NS_PER_S};
+    const struct timespec t = {.tv_sec = time_ns / S_IN_NS, .tv_nsec = time_ns % S_IN_NS};
     while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, NULL) == EINTR)
         ;
 }

@@ -3,10 +3,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/clock.h"
 #include "device/bridge_tables.h"
 #include "device/device_rows.h"
-
-#define MS_IN_NS INT64_C(1000000)
 
 /* BR 6.3.1; appendix 6 gives the words 32 bits, which nothing else does. */
 static const cm1e_device_object_t process_data[] = {

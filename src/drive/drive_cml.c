@@ -2,10 +2,9 @@
 
 #include <string.h>
 
+#include "core/clock.h"
 #include "device/bridge.h"
 #include "device/bridge_status.h"
-
-#define MS_IN_NS INT64_C(1000000)
 
 enum { DRAIN_MOST = 64 };
 

@@ -11,7 +11,6 @@
 #include "device/devices.h"
 #include "drive/drive_cml.h"
 
-#define MS_IN_NS INT64_C(1000000)
 #define INSTEAD "In a task: the block CM_SendCML."
 
 enum { OWN_MODE = CM1E_BRIDGE_MODE_CSP };

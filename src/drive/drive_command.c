@@ -1,5 +1,6 @@
 #include "drive/drive_command.h"
 
+#include "core/clock.h"
 #include "drive/drive_kind.h"
 #include "drive/drive_private.h"
 

@@ -5,10 +5,9 @@
 #ifndef CM1E_DRIVE_DRIVE_PRIVATE_H
 #define CM1E_DRIVE_DRIVE_PRIVATE_H
 
+#include "core/clock.h"
 #include "device/unit.h"
 #include "drive/drive_bridge.h"
-
-#define MS_IN_NS INT64_C(1000000)
 
 /** Phases of a fault reset (drive_reset.c). */
 enum { RESET_IDLE = 0, RESET_WAIT_ONLINE, RESET_EDGE, RESET_RELEASED };

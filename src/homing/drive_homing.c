@@ -20,6 +20,7 @@
 #include "axis/axis_power.h"
 #include "axis/axis_setpoint.h"
 #include "core/bytes.h"
+#include "core/clock.h"
 #include "homing/homing_private.h"
 
 static const int64_t start_timeout_ns = 500 * MS_IN_NS;

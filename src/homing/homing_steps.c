@@ -19,6 +19,7 @@
 #include "axis/axis_position.h"
 #include "axis/axis_setpoint.h"
 #include "axis/axis_signals.h"
+#include "core/clock.h"
 #include "homing/homing_private.h"
 
 static const int64_t default_detection_ns = 50 * MS_IN_NS;

@@ -8,10 +8,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "core/clock.h"
 #include "nic/nic_private.h"
 #include "nic/raw_socket.h"
 
-enum { NS_PER_S = 1000000000, USELESS_WAKE_UPS = 16 };
+enum { USELESS_WAKE_UPS = 16 };
 
 typedef struct raw {
     cm1e_raw_socket_t sockets[CM1E_NIC_PORTS];
@@ -94,7 +95,7 @@ static size_t raw_receive(cm1e_nic_link_t *link, int *port, uint8_t *frame, int6
         const int64_t left_ns = deadline_ns - cm1e_clock_now(link->clock);
         if (left_ns <= 0)
             return 0;
-        const struct timespec left = {.tv_sec = left_ns / NS_PER_S, .tv_nsec = left_ns % NS_PER_S};
+        const struct timespec left = {.tv_sec = left_ns / S_IN_NS, .tv_nsec = left_ns % S_IN_NS};
         const int ready = ppoll(raw->fds, (nfds_t)link->ports, &left, NULL);
         /* An interface that was removed reports errors without end, which would make this a busy loop. */
         if (ready > 0 && ++useless > USELESS_WAKE_UPS)

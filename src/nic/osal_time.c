@@ -4,7 +4,7 @@
 #include "core/clock.h"
 #include "osal.h"
 
-enum { NS_PER_US = 1000, US_PER_S = 1000000 };
+enum { US_PER_S = 1000000 };
 
 /** SOEM's distributed clocks start at 2000-01-01 and get there by subtracting this from the time of day. What counts
  *  for them is that time is monotonic and starts after it. */
@@ -15,7 +15,7 @@ static ec_timet from_us(int64_t us)
     return (ec_timet){.sec = (uint32)(us / US_PER_S), .usec = (uint32)(us % US_PER_S)};
 }
 
-static int64_t now_us(void) { return cm1e_clock_now(cm1e_clock_current()) / NS_PER_US; }
+static int64_t now_us(void) { return cm1e_clock_now(cm1e_clock_current()) / US_IN_NS; }
 
 ec_timet osal_current_time(void)
 {
@@ -41,6 +41,6 @@ boolean osal_timer_is_expired(osal_timert *self)
 int osal_usleep(uint32 usec)
 {
     cm1e_clock_t *clock = cm1e_clock_current();
-    cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + (int64_t)usec * NS_PER_US);
+    cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + (int64_t)usec * US_IN_NS);
     return 0;
 }

@@ -1,4 +1,5 @@
 #include "nic/pcap.h"
+#include "core/clock.h"
 
 #include <errno.h>
 #include <stdbool.h>
@@ -6,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BUFFER_SIZE = 1 << 20, SNAP_LENGTH = 65535, LINK_ETHERNET = 1, NS_PER_S = 1000000000 };
+enum { BUFFER_SIZE = 1 << 20, SNAP_LENGTH = 65535, LINK_ETHERNET = 1 };
 
 struct pcap_file {
     FILE *file;
@@ -63,8 +64,8 @@ cm1e_error_t cm1e_pcap_check(pcap_file_t *pcap, const char *path, cm1e_diag_t *d
 
 void cm1e_pcap_write(pcap_file_t *pcap, int64_t time_ns, const uint8_t *frame, size_t length)
 {
-    const record_header_t header = {.seconds = (uint32_t)(time_ns / NS_PER_S),
-                                    .nanoseconds = (uint32_t)(time_ns % NS_PER_S),
+    const record_header_t header = {.seconds = (uint32_t)(time_ns / S_IN_NS),
+                                    .nanoseconds = (uint32_t)(time_ns % S_IN_NS),
                                     .stored_length = (uint32_t)length, .length = (uint32_t)length};
     put(pcap, &header, sizeof header);
     put(pcap, frame, length);

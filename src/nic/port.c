@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/clock.h"
 #include "nic/frame.h"
 #include "nic/nic_private.h"
 #include "nic/port_private.h"
@@ -18,7 +19,7 @@ const uint16 priMAC[3] = {0x0101, 0x0101, 0x0101};
 const uint16 secMAC[3] = {0x0404, 0x0404, 0x0404};
 
 enum {
-    NS_PER_US = 1000, LOCALLY_ADMINISTERED = 0x02,
+    LOCALLY_ADMINISTERED = 0x02,
     MAC_IDENTITY_HIGH = 7, MAC_ROUTE = 8, MAC_IDENTITY_LOW = 10, MAC_STAMP = 11,
     NO_ROUTE = -1,      /* not one of our source addresses */
     FOREIGN_ROUTE = -2, /* another SOEM's, or of another program with this library */
@@ -350,7 +351,7 @@ static int64_t deadline_after(const ecx_portt *port, int timeout_us)
 {
     if (!port->nic || timeout_us <= 0)
         return NIC_NOW;
-    return cm1e_clock_now(port->nic->link.clock) + (int64_t)timeout_us * NS_PER_US;
+    return cm1e_clock_now(port->nic->link.clock) + (int64_t)timeout_us * US_IN_NS;
 }
 
 /** Takes in what is here already; EC_OTHERFRAME: a frame came, but not this one. */
@@ -379,7 +380,7 @@ int ecx_srconfirm(ecx_portt *port, uint8 idx, int timeout)
         if (send_frame(port, idx, again) < 0 && !can_send(port, idx))
             return EC_NOFRAME;
         again = true;
-        const int64_t part = now + (int64_t)EC_TIMEOUTRET * NS_PER_US;
+        const int64_t part = now + (int64_t)EC_TIMEOUTRET * US_IN_NS;
         wkc = wait_until(port, idx, part < end ? part : end);
         now = cm1e_clock_now(port->nic->link.clock);
     } while (wkc <= EC_NOFRAME && now < end);

@@ -1,10 +1,10 @@
 #include "scheduler/log.h"
+#include "core/clock.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#define NS_PER_S INT64_C(1000000000)
 /** Between two records of one counter. */
 #define QUIET_NS INT64_C(100000000)
 
@@ -31,7 +31,7 @@ static int64_t present_ns(const log_t *log)
     if (log->clock != cm1e_clock_monotonic())
         return cm1e_clock_now(log->clock);
     clock_gettime(CLOCK_REALTIME, &now);
-    return now.tv_sec * NS_PER_S + now.tv_nsec;
+    return now.tv_sec * S_IN_NS + now.tv_nsec;
 }
 
 static void write_event(log_t *log, cm1e_log_event_t event, int64_t run_ns)

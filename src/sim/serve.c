@@ -13,12 +13,13 @@
 #include <unistd.h>
 
 #include "cm1e/sim.h"
+#include "core/clock.h"
 #include "nic/frame.h"
 #include "nic/frame_queue.h"
 #include "nic/raw_socket.h"
 
 enum {
-    NS_PER_S = 1000000000, PRIORITY = 60, FRAMES_AT_ONCE = 64, LINE_LENGTH = 256,
+    PRIORITY = 60, FRAMES_AT_ONCE = 64, LINE_LENGTH = 256,
     TICK_NS = 1000000,                  /* while a motor moves */
     SLEEP_NS = 50000000,                /* while all is at rest: to look whether it is to stop, and to count time up */
     RETRY_NS = 200000000,               /* to look for an interface that is away */
@@ -252,7 +253,7 @@ static int wait(server_t *server, struct pollfd fds[2])
     int64_t left_ns = until_ns - cm1e_clock_now(server->clock);
     if (left_ns < 0)
         left_ns = 0;
-    const struct timespec left = {.tv_sec = left_ns / NS_PER_S, .tv_nsec = left_ns % NS_PER_S};
+    const struct timespec left = {.tv_sec = left_ns / S_IN_NS, .tv_nsec = left_ns % S_IN_NS};
     fds[0].fd = server->socket.fd;
     return ppoll(fds, 2, &left, NULL);
 }
