@@ -38,9 +38,6 @@ cm1e_error_t cm1e_axis_make(cm1e_axis_t **result, cm1e_bus_t *bus, uint32_t inde
         error = cm1e_axis_table_init(axis, diag);
     axis->override = axis->override_refused = (override_t){1.0, 1.0, 1.0};
     axis->mode = !error && !cm1e_drive_supports(&axis->drive, CM1E_MODE_CSP) ? CM1E_MODE_CSV : CM1E_MODE_CSP;
-    if (!error && !cm1e_axis_handle_take(axis, &axis->handle))
-        error = cm1e_diag_set(diag, CM1E_ERROR_FULL, 0, "There are already %d axes in this process.",
-                              CM1E_AXIS_HANDLES);
     if (error) {
         cm1e_drive_free(&axis->drive);
         free(axis->tables);
@@ -63,7 +60,8 @@ void cm1e_axis_destroy(cm1e_axis_t *axis)
     if (!axis)
         return;
     cm1e_axis_lead_end(axis, CM1E_ERROR_FB_AXIS_REF);
-    cm1e_axis_handle_give_back(axis->handle);
+    if (axis->handle)
+        cm1e_handle_give_back(cm1e_axis_places, axis->handle);
     cm1e_drive_free(&axis->drive);
     free(axis->tables);
     if (axis->motor_hooks)

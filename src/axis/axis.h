@@ -139,9 +139,10 @@ typedef struct cm1e_command_status {
                                covered (relative), u of the master */
 } cm1e_command_status_t;
 
-/** Makes the axis of drive `index` and registers its handle; what rooms above it add comes then (cm1e_axis_create()).
- *  @rt init */
+/** Makes the axis of drive `index`; then the rooms above it add what is theirs (cm1e_axis_create()). @rt init */
 cm1e_error_t cm1e_axis_make(cm1e_axis_t **axis, cm1e_bus_t *bus, uint32_t index, cm1e_diag_t *diag);
+/** Gives it its handle, by which any thread finds it: the last step, when all of it is written. @rt init */
+cm1e_error_t cm1e_axis_publish(cm1e_axis_t *axis, cm1e_diag_t *diag);
 /** After cm1e_bus_stop(): transfers of the axis that wait in the bus would end in its memory. @rt init */
 void cm1e_axis_destroy(cm1e_axis_t *axis);
 AXIS_REF_t cm1e_axis_reference(const cm1e_axis_t *axis);

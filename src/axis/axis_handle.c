@@ -1,25 +1,14 @@
 #include "axis/axis_handle.h"
 #include "axis/axis_parts.h"
 
-_Atomic(cm1e_axis_t *) cm1e_axis_table[CM1E_AXIS_HANDLES];
-static _Atomic uint8_t uses[CM1E_AXIS_HANDLES];
+cm1e_handle_place_t cm1e_axis_places[CM1E_AXIS_HANDLES];
 
-bool cm1e_axis_handle_take(cm1e_axis_t *axis, uint16_t *handle)
+cm1e_error_t cm1e_axis_publish(cm1e_axis_t *axis, cm1e_diag_t *diag)
 {
-    for (unsigned i = 0; i < CM1E_AXIS_HANDLES; i++) {
-        cm1e_axis_t *none = NULL;
-        if (atomic_load(&cm1e_axis_table[i]) || !atomic_compare_exchange_strong(&cm1e_axis_table[i], &none, axis))
-            continue;
-        uint8_t use = (uint8_t)(atomic_fetch_add(&uses[i], 1) + 1);
-        if (use == 0) /* 0 is left to "no axis" */
-            use = (uint8_t)(atomic_fetch_add(&uses[i], 1) + 1);
-        *handle = (uint16_t)(use << 8 | i);
-        return true;
-    }
-    return false;
+    if (cm1e_handle_take(cm1e_axis_places, CM1E_AXIS_HANDLES, axis, &axis->handle))
+        return CM1E_OK;
+    return cm1e_diag_set(diag, CM1E_ERROR_FULL, 0, "There are already %d axes in this process.", CM1E_AXIS_HANDLES);
 }
-
-void cm1e_axis_handle_give_back(uint16_t handle) { atomic_store(&cm1e_axis_table[handle & 0xFF], NULL); }
 
 cm1e_axis_t *cm1e_axis_from_reference(const AXIS_REF_t *reference)
 {
