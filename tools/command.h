@@ -110,9 +110,9 @@ int find_axis_at(const cm1e_bus_config_t *config, const cm1e_slave_info_t *slave
 bool parse_number(const char *word, const char *what, long long minimum, long long maximum, long long *value);
 /** A finite decimal number; false and a complaint otherwise. */
 bool parse_real(const char *word, const char *what, double *value);
-/** ... above 0. */
+/** As parse_real(), above 0. */
 bool parse_positive(const char *word, const char *what, double *value);
-/** ... above 0, up to `longest` seconds. */
+/** As parse_real(), above 0 and up to `longest` seconds. */
 bool parse_seconds(const char *word, int longest, double *value);
 
 /** The slave of a word after a scan: the name of an axis of the bus file (not behind a bridge), or a position. Returns

@@ -186,7 +186,7 @@ cm1e_command_status_t cm1e_axis_command_status(const cm1e_axis_t *axis, cm1e_com
 /** TRUE while this is the active command of an axis that exists: the short question of a block to which nothing has
  *  happened. @rt cycle */
 bool cm1e_axis_runs(AXIS_REF_t reference, cm1e_command_id_t id);
-/** The same for a block that follows a master: TRUE while this is what the axis follows by, then `reached`,
+/** For a block that follows a master: true while this is the command that the axis follows by. Then `reached`,
  *  `synchronizing` and `ends` are as cm1e_axis_command_status() has them, and nothing else is. @rt cycle */
 bool cm1e_axis_follows_by(AXIS_REF_t reference, cm1e_command_id_t id, cm1e_command_status_t *status);
 /** MC_Stop.Execute is (still) TRUE: while it is, the axis stays Stopping. @rt cycle */

@@ -107,9 +107,9 @@ bool cm1e_axis_can_replan(const cm1e_axis_t *axis);
 /** Something that the active command's profile depends on has changed: it is planned anew from the present set-point.
  *  Where that is refused, it goes on as it was. */
 cm1e_error_t cm1e_axis_replan(cm1e_axis_t *axis);
-/** The same; FALSE, and nothing has changed: refused, or it would run over its target. */
+/** As cm1e_axis_replan(). false, and nothing has changed: it is refused, or it would run over its target. */
 bool cm1e_axis_replan_if(cm1e_axis_t *axis);
-/** The same with other inputs, which are in force when it is not refused. */
+/** As cm1e_axis_replan(), with other inputs, which are in force if it is not refused. */
 cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *move);
 
 /* axis_record.c */

@@ -12,11 +12,12 @@ static inline bool cm1e_axis_begin_waiting(cm1e_axis_t *axis, const from_t *from
 {
     return axis->events->begin_waiting(axis, from, offset_s);
 }
+/** The axis cannot go on: ErrorStop. */
 static inline void cm1e_axis_fail(cm1e_axis_t *axis, cm1e_error_t error, double value, double bound)
 {
     axis->events->failed(axis, error, value, bound, &axis->limits.emergency);
 }
-/** The same; it brakes no harder than this, u/s2. */
+/** As cm1e_axis_fail(), but it brakes no harder than this, u/s2. */
 static inline void cm1e_axis_fail_gently(cm1e_axis_t *axis, cm1e_error_t error, double deceleration)
 {
     cm1e_motion_limits_t ramp = axis->limits.emergency;

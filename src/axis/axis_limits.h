@@ -12,7 +12,7 @@ cm1e_error_t cm1e_axis_limits_init(cm1e_axis_t *axis, cm1e_diag_t *diag); /* @rt
  *  refused. */
 cm1e_error_t cm1e_axis_limits_of(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                                  cm1e_motion_limits_t *limits);
-/** The same with these factors instead of the axis's override. */
+/** As cm1e_axis_limits_of(), with these factors instead of the axis's override. */
 cm1e_error_t cm1e_axis_limits_with(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                                    const override_t *override, cm1e_motion_limits_t *limits);
 /** More jerk, where what is left of another motion's acceleration would else overshoot the maximum velocity. */
@@ -23,15 +23,15 @@ cm1e_error_t cm1e_axis_limits_on_top(const cm1e_axis_t *axis, const superimposed
 /** A target inside the software limits, or not farther outside than where the way there begins; with a superimposed
  *  motion on top where `from` has one. */
 bool cm1e_axis_limits_contain_target(const cm1e_axis_t *axis, const from_t *from, position_t target);
-/** The same for a way between two positions, counted from there in u. */
+/** As cm1e_axis_limits_contain_target(), for a way between two positions, counted from there in u. */
 bool cm1e_axis_limits_contain_way(const cm1e_axis_t *axis, const from_t *from, double lowest, double highest);
 /** Whether a profile that begins there stays inside the software limits. */
 bool cm1e_axis_limits_contain(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
-/** The same, also while a homing in steps makes positions mean nothing. */
+/** As cm1e_axis_limits_contain(), also while a homing in steps makes positions mean nothing. */
 bool cm1e_axis_limits_keep_within(const cm1e_axis_t *axis, const from_t *from, const cm1e_profile_t *profile);
 bool cm1e_axis_direction_enabled(const cm1e_axis_t *axis, double velocity);
 
-/** The same of a profile. */
+/** source_t.keeps of a profile. */
 bool cm1e_axis_profile_keeps(const cm1e_axis_t *axis, double lower, double upper);
 
 /** What the drive may be given in a cycle: cm1e_drive_command_t. @rt init; after the limits */

@@ -43,7 +43,8 @@ static cm1e_error_t set_override(cm1e_axis_t *axis, const override_t *asked)
     return CM1E_OK;
 }
 
-/* The same factors come in every cycle: once refused, they shall not hide the text of what is refused after them. */
+/* Factors that do not change come in every cycle: once refused, they must not hide the text of what is refused after
+ * them. */
 cm1e_error_t cm1e_axis_set_override(cm1e_axis_t *axis, double velocity, double acceleration, double jerk)
 {
     const override_t asked = {velocity, acceleration, jerk};

@@ -21,7 +21,7 @@ typedef struct parameter {
     rule_t rule;
     size_t value;        /* in the axis; 0: none, see value_of() */
     size_t system;       /* APPLICATION: the largest value */
-    double least_counts; /* ... and the smallest, of a CM1-E */
+    double least_counts; /* APPLICATION: the smallest value, of a CM1-E */
 } parameter_t;
 
 #define AT(member) offsetof(struct cm1e_axis, member)

@@ -29,8 +29,8 @@ enum {
     CM1E_PARAMETER_MAX_JERK_SYSTEM,
     CM1E_PARAMETER_MAX_JERK_APPL,
     CM1E_PARAMETER_END,
-    CM1E_PARAMETER_VENDOR = 1000, /**< from here on: objects of the drive, but for ... */
-    CM1E_PARAMETER_IN_POSITION = 1800, /**< ... these of the axis itself (axis_in_position.c) */
+    CM1E_PARAMETER_VENDOR = 1000, /**< from here on: objects of the drive, except the next five */
+    CM1E_PARAMETER_IN_POSITION = 1800, /**< of the axis itself (axis_in_position.c) */
     CM1E_PARAMETER_IN_POSITION_WINDOW,
     CM1E_PARAMETER_IN_POSITION_TIME,
     CM1E_PARAMETER_IN_POSITION_TIMEOUT,

@@ -145,8 +145,8 @@ typedef struct silence {
     uint16_t silent, silent_before; /**< cycles in a row without an answer; those that the present one has ended */
     bool blind;                     /**< the actual position was not fresh, and the set-point goes on */
     bool frozen;                    /**< no answer to the last frame: set-points stay in this cycle */
-    bool resumed;                   /**< a pause or silence before this cycle has been dealt with ... */
-    bool began_anew;                /**< ... by another velocity than it had */
+    bool resumed;                   /**< a pause or silence before this cycle has been dealt with */
+    bool began_anew;                /**< after it the motion began anew, with another velocity */
 } silence_t;
 
 /* ---- backlash: axis_backlash.h ----------------------------------------------------------------------------------- */

@@ -40,7 +40,7 @@ position_t cm1e_axis_profile_end(const cm1e_axis_t *axis, const from_t *from, co
 /** Whether a profile that begins there goes beyond its target (NULL: it has none), or back where its way lies ahead. */
 bool cm1e_axis_strays(const cm1e_axis_t *axis, const cm1e_motion_state_t *start, const double *target,
                       const cm1e_profile_t *profile);
-/** The same of a command's. */
+/** As cm1e_axis_strays(), of the profile of a command. */
 bool cm1e_axis_profile_strays(const cm1e_axis_t *axis, const from_t *from, const move_t *move,
                               const cm1e_profile_t *profile);
 /** Whether a profile that begins there stays inside the software limits, with no disabled direction in it. */

@@ -24,13 +24,13 @@ static inline bool axis_free(const cm1e_axis_t *axis) { return axis->setpoint.so
 static inline bool axis_holds(const cm1e_axis_t *axis) { return axis->setpoint.source->holds; }
 /** A profile, or a table over time, which is one too. */
 static inline bool axis_on_profile(const cm1e_axis_t *axis) { return axis->setpoint.source->find_stretch != NULL; }
-/** F of a coupling is what moves the axis. */
+/** A coupling function moves the axis. */
 static inline bool axis_follows(const cm1e_axis_t *axis) { return axis->setpoint.source->follows; }
 /** Set-points of ours change from cycle to cycle. */
 static inline bool set_points_move(const cm1e_axis_t *axis) { return axis->setpoint.source->moves; }
 /** The drive moves, or is about to, by itself. */
 static inline bool drive_moves(const cm1e_axis_t *axis) { return axis->setpoint.source->by_drive; }
-/** ... in its homing. */
+/** The drive moves by itself in its homing. */
 static inline bool drive_homes(const cm1e_axis_t *axis) { return axis->setpoint.source->homes; }
 /** The axis's motions are the drive's: `motion: drive`. */
 static inline bool drive_profiles(const cm1e_axis_t *axis) { return axis->config->motion == CM1E_MOTION_DRIVE; }
@@ -113,11 +113,11 @@ void cm1e_axis_begin_run(cm1e_axis_t *axis, const source_t *source, const from_t
                          double offset_s);
 /** Down to standstill without a command. */
 void cm1e_axis_ramp_down(cm1e_axis_t *axis, const cm1e_motion_limits_t *limits);
-/** The same, as sources have it whose set-points are ours. */
+/** source_t.stop of sources whose set-points are ours: cm1e_axis_ramp_down(). */
 void cm1e_axis_stop_by_ramp(cm1e_axis_t *axis, const cm1e_motion_limits_t *ramp, home_goal_t goal);
 /** The profile's functions, which a table over time shares. */
 bool cm1e_axis_profile_step(cm1e_axis_t *axis);
-/** The same of one whose time can run slower for a while (motion/slow_time.h). */
+/** source_t.step and slowing of a profile whose time can run slower for a while (motion/slow_time.h). */
 bool cm1e_axis_timed_step(cm1e_axis_t *axis);
 void cm1e_axis_timed_slow(cm1e_axis_t *axis, double part);
 bool cm1e_axis_profile_goes(cm1e_axis_t *axis, double sign);

@@ -29,8 +29,8 @@ cm1e_error_t cm1e_axis_write_output(cm1e_axis_t *axis, int number, bool value);
 /** Whether what was written is with the motor: ACTIVE while an SDO brings it, DONE, ERROR, then the text of the axis
  *  says of which output. @rt cycle */
 cm1e_command_state_t cm1e_axis_output_state(cm1e_axis_t *axis, int number, cm1e_error_t *error);
-/** The same for a value that goes off by itself unless it is written again within `keep_ns`. CM1E_ERROR_PDO_MAPPING
- *  also where it would go by SDO, too late for what follows a position. @rt cycle */
+/** As cm1e_axis_write_output(), for a value that goes off by itself unless it is written again within `keep_ns`.
+ *  CM1E_ERROR_PDO_MAPPING also where it would go by SDO, too late for what follows a position. @rt cycle */
 cm1e_error_t cm1e_axis_hold_output(cm1e_axis_t *axis, int number, bool value, int64_t keep_ns);
 /** What is commanded. @rt cycle */
 cm1e_error_t cm1e_axis_read_output(const cm1e_axis_t *axis, int number, bool *value);

@@ -38,7 +38,7 @@ typedef struct source {
     bool is_composite; /**< they are a part of something that would be lost if it began anew */
     bool follows;      /**< masters are what moves the axis */
     bool by_drive;     /**< the drive moves, or is about to, by itself */
-    bool homes;        /**< ... in its homing */
+    bool homes;        /**< the drive moves by itself in its homing */
 } source_t;
 
 extern const source_t cm1e_source_free;    /**< no torque: the set-point is the actual position; axis_free.c */

@@ -28,8 +28,8 @@ typedef enum state_trigger {
     ON_BROKEN_OFF,                 /**< a motion ends before its end: it is braked */
     ON_STOP_RELEASED,              /**< MC_Stop is done, and its Execute FALSE (note 6) */
     /* groups */
-    ON_LED,                        /**< somebody above gives the set-points from now on ... */
-    ON_LET_GO,                     /**< ... and no longer; the axis is at rest */
+    ON_LED,                        /**< a group gives the set-points from now on */
+    ON_LET_GO,                     /**< the group gives them no longer; the axis is at rest */
     /* power, errors, reset */
     ON_POWER_ON,                   /**< MC_Power.Enable, and the drive is enabled (note 5) */
     ON_POWER_OFF,                  /**< MC_Power.Enable FALSE (note 2) */

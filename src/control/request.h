@@ -31,7 +31,7 @@ typedef struct control_request {
     json_t *id;                /**< what the client calls it; NULL: nothing */
     bool wanted;               /**< a snapshot was wanted after this request came */
     json_t *(*show)(const view_t *view); /**< SNAPSHOT: what of it */
-    const char *name;          /**< ... and under which name */
+    const char *name;          /**< SNAPSHOT: the name under which it is sent */
     int64_t begun_ns;
     cm1e_sdo_t sdo;
     uint8_t *data;             /**< of the transfer */

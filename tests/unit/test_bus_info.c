@@ -11,7 +11,7 @@
 #include "bus/info_answer.h"
 
 enum { STEP_NS = 100000, OBJECTS_MAX = 400 };
-enum { BODY = 6 /* mailbox header */, DATA = 12 /* ... and that of the service */ };
+enum { BODY = 6 /* mailbox header */, DATA = 12 /* and that of the service */ };
 enum { PER_FRAGMENT = (MAILBOX - DATA) / 2 };
 enum { WAY_OK = 0, WAY_THERE, WAY_BACK };
 

@@ -29,7 +29,7 @@ static void load(const char *text)
     TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_bus_config_load(&config, temporary, &diag), diag.text);
 }
 
-/* The same members and axes; `expected` is freed. */
+/* Members and axes are equal; `expected` is freed. */
 static void expect_same(cm1e_bus_config_t *expected)
 {
     TEST_ASSERT_EQUAL(expected->axis_count, config.axis_count);
