@@ -244,7 +244,9 @@ static double allowed_way(uint32_t n)
     const double unheard_s = has_watchdog ? fmin(silence_s, WATCHDOG_S) : silence_s;
     /* Unheard, a profile of the drive goes on with its acceleration. */
     const double v = holds ? before : fmin(limit_u * unit, before + acceleration_u * unit * (unheard_s + 0.005));
-    const double ramp_s = v / (acceleration_u * unit), same = 1000;
+    /* The axes of a group brake in the same time, that of the fastest. */
+    const double fastest_v = motion == A_GROUP ? fmax(v, fmax(speed_at_break[MASTER], speed_at_break[SLAVE])) : v;
+    const double ramp_s = fastest_v / (acceleration_u * unit), same = 1000;
     const double by_torque = v * v / (2 * torque * m->gain), by_friction = v * v / (2 * m->friction * m->gain);
     /* A target stands from the first missing answer on: the motor has its lag to go, and the step of one frame, whatever
      * lost_cycles_limit is. If that frame is heard at last by a motor that stands, and the next one takes the torque
