@@ -256,9 +256,12 @@ def check_bad_clients():
             with Client(program) as client, contextlib.suppress(ConnectionError):  # or turned away
                 client.send(random.choice(('{"request": "sdo_read", "slave": 1, "index": 4120, "subindex": 1}',
                                            '{"request": "axes"}')))
-        def answered():
-            with Client(program) as client:
-                return client.ask("sdo_read", slave=2, index=0x1018, subindex=1)["ok"]
+
+        def answered():  # turned away while their places are still taken
+            reply = None
+            with Client(program) as client, contextlib.suppress(ConnectionError):
+                reply = client.ask("sdo_read", slave=2, index=0x1018, subindex=1)
+            return bool(reply and reply["ok"])
 
         wait_for(answered, "no answer after clients that vanished")
 
